@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaExecution.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <future>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace lacuna
+{
+namespace
+{
+// Often enough for a progress bar and a prompt stop, rarely enough to cost nothing.
+constexpr std::chrono::milliseconds ReportInterval(50);
+}
+
+Aborted::Aborted()
+  : std::runtime_error("stopped by the user")
+{
+}
+
+void Execution::SetStage(double first, double last)
+{
+  this->StageFirst = first;
+  this->StageLast = last;
+}
+
+void Execution::Report(double fraction)
+{
+  const double whole = this->StageFirst + fraction * (this->StageLast - this->StageFirst);
+  if (!this->OnProgress(whole))
+  {
+    throw Aborted();
+  }
+}
+
+void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
+{
+  if (count <= 0)
+  {
+    return;
+  }
+  grain = std::max<std::int64_t>(1, grain);
+  std::atomic<std::int64_t> done(0);
+  std::atomic<bool> stop(false);
+  std::exception_ptr error;
+  std::mutex errorMutex;
+  // Back ends hand out ranges as they like and let no exception through: divide and guard here.
+  const Body guarded = [&](std::int64_t begin, std::int64_t end)
+  {
+    for (std::int64_t b = begin; b < end && !stop; b += grain)
+    {
+      const std::int64_t e = std::min(end, b + grain);
+      try
+      {
+        body(b, e);
+      }
+      catch (...)
+      {
+        const std::lock_guard<std::mutex> lock(errorMutex);
+        if (!error)
+        {
+          error = std::current_exception();
+        }
+        stop = true;
+      }
+      done += e - b;
+    }
+  };
+
+  // Not every back end lets the calling thread work, and only that thread may report: so the
+  // loop is launched from another one and this one watches it.
+  std::future<void> loop =
+    std::async(std::launch::async, [&] { this->Launch(count, grain, guarded); });
+  bool aborted = false;
+  while (loop.wait_for(ReportInterval) != std::future_status::ready)
+  {
+    if (aborted)
+    {
+      continue;
+    }
+    try
+    {
+      this->Report(static_cast<double>(done) / static_cast<double>(count));
+    }
+    catch (const Aborted&)
+    {
+      stop = true;
+      aborted = true;
+    }
+  }
+  loop.get();
+  if (error)
+  {
+    std::rethrow_exception(error);
+  }
+  if (aborted)
+  {
+    throw Aborted();
+  }
+  this->Report(1);
+}
+
+ThreadExecution::ThreadExecution(int threads, std::function<bool(double)> progress)
+  : Threads(
+      threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency())))
+  , Progress(std::move(progress))
+{
+}
+
+void ThreadExecution::Launch(std::int64_t count, std::int64_t grain, const Body& body)
+{
+  std::atomic<std::int64_t> next(0);
+  const auto work = [&]
+  {
+    for (std::int64_t begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
+    {
+      body(begin, std::min(count, begin + grain));
+    }
+  };
+  const std::int64_t ranges = (count + grain - 1) / grain;
+  std::vector<std::thread> others;
+  for (std::int64_t i = 1; i < std::min<std::int64_t>(this->Threads, ranges); ++i)
+  {
+    others.emplace_back(work);
+  }
+  work();
+  for (std::thread& thread : others)
+  {
+    thread.join();
+  }
+}
+
+bool ThreadExecution::OnProgress(double fraction)
+{
+  return !this->Progress || this->Progress(fraction);
+}
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaDepthMap.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+//------------------------------------------------------------------------------
+vtkLacunaDepthMap::vtkLacunaDepthMap(vtkImageData* map)
+{
+  const int* extent = map->GetExtent();
+  if (extent[4] != extent[5])
+  {
+    std::ostringstream message;
+    message << "a depth map is one pixel deep (W x H x 1), this image has "
+            << extent[5] - extent[4] + 1 << " layers";
+    throw std::runtime_error(message.str());
+  }
+  this->Depth = map->GetPointData()->GetArray(DepthName);
+  if (!this->Depth || this->Depth->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(std::string("a depth map has a one-component point array '") +
+      DepthName + "', which is missing here");
+  }
+  this->ImageToWorld =
+    vtkLacunaFieldData::GetMatrix(vtkLacunaFieldData::Get(map, ImageToWorldName, 16, 1), 0);
+  const vtkMatrix4x4* own = map->GetIndexToPhysicalMatrix();
+  const double tolerance = 1e-6 * (map->GetSpacing()[0] + map->GetSpacing()[1]);
+  for (int r = 0; r < 3; ++r)
+  {
+    for (const int c : { 0, 1, 2, 3 })
+    {
+      if (!(std::abs(own->GetElement(r, c) - this->ImageToWorld(r, c)) <= tolerance))
+      {
+        throw std::runtime_error(std::string("field data array '") + ImageToWorldName +
+          "' disagrees with the origin, spacing and direction of the image: a filter in between "
+          "has changed one of them (Median and Resample To Image reset the direction)");
+      }
+    }
+  }
+  if (vtkDataArray* eye = vtkLacunaFieldData::Find(map, EyePositionName, 3, 1))
+  {
+    this->Perspective = true;
+    eye->GetTuple(0, this->Eye.data());
+  }
+}
+
+//------------------------------------------------------------------------------
+lacuna::Vec3 vtkLacunaDepthMap::GetRay(double column, double row) const
+{
+  if (!this->Perspective)
+  {
+    return this->ImageToWorld.Column(2);
+  }
+  return lacuna::Normalized(this->ImageToWorld.Point({ column, row, 0 }) - this->Eye);
+}
+
+//------------------------------------------------------------------------------
+lacuna::Vec3 vtkLacunaDepthMap::GetPoint(double column, double row, double depth) const
+{
+  return this->ImageToWorld.Point({ column, row, 0 }) + depth * this->GetRay(column, row);
+}
+
+//------------------------------------------------------------------------------
+lacuna::Vec2 vtkLacunaDepthMap::GetPixelSpacing() const
+{
+  return { lacuna::Norm(this->ImageToWorld.Column(0)), lacuna::Norm(this->ImageToWorld.Column(1)) };
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMap::SetGeometry(vtkImageData* map, const Geometry& g)
+{
+  map->SetOrigin(g.Origin.data());
+  map->SetSpacing(g.PixelSpacing[0], g.PixelSpacing[1], 1);
+  map->SetDirectionMatrix(g.Right[0], g.Down[0], g.View[0], g.Right[1], g.Down[1], g.View[1],
+    g.Right[2], g.Down[2], g.View[2]);
+  vtkLacunaFieldData::SetMatrices(map, ImageToWorldName,
+    { lacuna::Matrix4::FromColumns(
+      g.PixelSpacing[0] * g.Right, g.PixelSpacing[1] * g.Down, g.View, g.Origin) });
+}

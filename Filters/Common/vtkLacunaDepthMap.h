@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The data contract of depth maps, in one place for writers and readers.
+///
+/// One vtkImageData of W x H x 1 points. Its direction matrix has the columns x = the viewer's
+/// right, y = the viewer's down, z = the view direction (right-handed; pixel (0,0) is top left). A
+/// pixel's surface point is its position + Depth * the unit ray, which in a parallel map is z.
+///
+/// Point data: Depth (double, mm, NaN where there is none), vtkValidPointMask (char, 1 where Depth
+/// is a number), Normals (float x 3, unit, world, towards the viewer), for further iso-values
+/// Depth_1, … Filled maps add Fitted (double), FilledMask (char) and Deviation (double).
+/// Field data: ImageToWorld (16, (column, row, mm along z, 1) to world mm), IsoValues, and for
+/// perspective maps EyePosition (3) and ViewAngle (degrees).
+#ifndef vtkLacunaDepthMap_h
+#define vtkLacunaDepthMap_h
+
+#include "lacunaMatrix4.h"
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+#include "vtkType.h"
+
+class vtkDataArray;
+class vtkImageData;
+
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaDepthMap
+{
+public:
+  static constexpr const char* DepthName = "Depth";
+  static constexpr const char* MaskName = "vtkValidPointMask";
+  static constexpr const char* NormalsName = "Normals";
+  static constexpr const char* FittedName = "Fitted";
+  static constexpr const char* FilledMaskName = "FilledMask";
+  static constexpr const char* DeviationName = "Deviation";
+  static constexpr const char* ImageToWorldName = "ImageToWorld";
+  static constexpr const char* EyePositionName = "EyePosition";
+  static constexpr const char* ViewAngleName = "ViewAngle";
+  static constexpr const char* IsoValuesName = "IsoValues";
+
+  /// Where a map lies. Right, Down and View are orthonormal and right-handed.
+  struct Geometry
+  {
+    lacuna::Vec3 Origin; ///< pixel (0,0), world mm
+    lacuna::Vec3 Right;
+    lacuna::Vec3 Down;
+    lacuna::Vec3 View;
+    lacuna::Vec2 PixelSpacing; ///< mm along Right and Down
+  };
+
+  /// Checks map against the contract; throws std::runtime_error that says what is wrong, among
+  /// others when ImageToWorld disagrees with the image's own origin, spacing and direction (some
+  /// filters reset the direction). Keeps no reference: map must outlive this object.
+  explicit vtkLacunaDepthMap(vtkImageData* map);
+
+  /// (column, row, mm along the view direction, 1) to world mm; column and row are extent indices.
+  const lacuna::Matrix4& GetImageToWorld() const { return this->ImageToWorld; }
+  bool IsPerspective() const { return this->Perspective; }
+  /// The point at depth mm along the ray of pixel (column, row); these may be fractions.
+  lacuna::Vec3 GetPoint(double column, double row, double depth) const;
+  /// Unit direction of the ray of pixel (column, row), world.
+  lacuna::Vec3 GetRay(double column, double row) const;
+  /// mm between columns and between rows.
+  lacuna::Vec2 GetPixelSpacing() const;
+  vtkDataArray* GetDepth() const { return this->Depth; }
+
+  /// Sets origin, spacing, direction matrix and ImageToWorld of a map whose extent starts anywhere.
+  static void SetGeometry(vtkImageData* map, const Geometry& geometry);
+
+private:
+  lacuna::Matrix4 ImageToWorld;
+  bool Perspective = false;
+  lacuna::Vec3 Eye{};
+  vtkDataArray* Depth = nullptr;
+};
+#endif

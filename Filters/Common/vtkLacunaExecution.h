@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Runs kernels inside a VTK algorithm: threads, progress, abort, errors.
+#ifndef vtkLacunaExecution_h
+#define vtkLacunaExecution_h
+
+#include "lacunaExecution.h"
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+#include <functional>
+
+class vtkAlgorithm;
+class vtkInformationVector;
+
+/// Kernel execution on vtkSMPTools. All cores by default: where VTK's back end is the sequential
+/// one (Debian's ParaView) and the user did not choose it through VTK_SMP_BACKEND_IN_USE, the
+/// std::thread back end is used. VTK_SMP_MAX_THREADS is respected.
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaExecution : public lacuna::Execution
+{
+public:
+  /// Reports the progress of algorithm and asks it whether to stop. Not owned.
+  explicit vtkLacunaExecution(vtkAlgorithm* algorithm)
+    : Algorithm(algorithm)
+  {
+  }
+
+  /// Runs the body of algorithm's RequestData. Returns what RequestData shall return: 1, or 0 after
+  /// an exception, whose text becomes algorithm's error. When body fails or is stopped by the user
+  /// all outputs are emptied, so that no half result looks whole.
+  static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+    const std::function<void(vtkLacunaExecution&)>& body);
+
+protected:
+  void Launch(std::int64_t count, std::int64_t grain, const Body& body) override;
+  bool OnProgress(double fraction) override;
+
+private:
+  vtkAlgorithm* Algorithm;
+};
+#endif

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where a result comes from, carried by every output.
+#ifndef vtkLacunaProvenance_h
+#define vtkLacunaProvenance_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkObjectBase;
+
+namespace vtkLacunaProvenance
+{
+/// Name of the field data string array: one string per processing step, the oldest first.
+constexpr const char* ArrayName = "Provenance";
+
+/// Lacuna's version, for example "0.1.0".
+VTKLACUNAFILTERSCOMMON_EXPORT const char* GetVersion();
+
+/// Copies the steps of the inputs to output and adds one for this step: version, class, a hash of
+/// each input's active point scalars, parameters ("Name=value Name=value"). Never a patient's name.
+VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkDataObject* output, vtkObjectBase* algorithm,
+  const std::vector<vtkDataObject*>& inputs, const std::string& parameters);
+
+/// The steps of data, the oldest first; empty when it carries none.
+VTKLACUNAFILTERSCOMMON_EXPORT std::vector<std::string> Get(vtkDataObject* data);
+}
+#endif

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaTrackedSlices.h"
+
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+//------------------------------------------------------------------------------
+vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
+  : Stack(stack)
+  , GreyLevels(stack->GetPointData()->GetScalars())
+{
+  if (!this->GreyLevels)
+  {
+    throw std::runtime_error("tracked slices have no active point scalars (grey levels)");
+  }
+  if (this->GreyLevels->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("tracked slices must have one grey level per pixel, not " +
+      std::to_string(this->GreyLevels->GetNumberOfComponents()) + " components");
+  }
+  vtkDataArray* poses = vtkLacunaFieldData::Find(stack, ImageToReferenceName, 16, -1);
+  if (!poses)
+  {
+    throw std::runtime_error(std::string("field data array '") + ImageToReferenceName +
+      "' is missing: the probe is not calibrated (give the reader a CalibrationFileName), or a "
+      "filter in between dropped the field data");
+  }
+  const vtkIdType n = poses->GetNumberOfTuples();
+  vtkDataArray* status = vtkLacunaFieldData::Get(stack, SliceStatusName, 1, n);
+  vtkDataArray* times = vtkLacunaFieldData::Find(stack, TimestampName, 1, n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    this->Poses.push_back(vtkLacunaFieldData::GetMatrix(poses, i));
+    this->StatusFlags.push_back(static_cast<unsigned char>(status->GetTuple1(i)));
+    this->Times.push_back(times ? times->GetTuple1(i) : static_cast<double>(i));
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(int k) const
+{
+  const double z = this->Stack->GetOrigin()[2] + this->Stack->GetSpacing()[2] * k;
+  const auto slice = static_cast<vtkIdType>(std::llround(z));
+  if (slice < 0 || slice >= this->GetNumberOfSlices())
+  {
+    std::ostringstream message;
+    message << "the stack holds a slice at z = " << z << ", but field data array '"
+            << ImageToReferenceName << "' has " << this->GetNumberOfSlices()
+            << " tuples (the z coordinate of tracked slices is the slice number)";
+    throw std::runtime_error(message.str());
+  }
+  return slice;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSlices::Write(vtkImageData* stack, const std::vector<lacuna::Matrix4>& poses,
+  const std::vector<double>& timestamps, const std::vector<unsigned char>& status,
+  const std::vector<int>& frameNumbers)
+{
+  if (!poses.empty())
+  {
+    vtkLacunaFieldData::SetMatrices(stack, ImageToReferenceName, poses);
+  }
+  vtkLacunaFieldData::Set(stack, TimestampName, timestamps, 1);
+  vtkNew<vtkUnsignedCharArray> statusArray;
+  statusArray->SetName(SliceStatusName);
+  for (const unsigned char s : status)
+  {
+    statusArray->InsertNextValue(s);
+  }
+  stack->GetFieldData()->AddArray(statusArray);
+  vtkNew<vtkIntArray> frameArray;
+  frameArray->SetName(FrameNumberName);
+  for (const int f : frameNumbers)
+  {
+    frameArray->InsertNextValue(f);
+  }
+  stack->GetFieldData()->AddArray(frameArray);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The data contract of tracked slices (B-scans with poses), in one place for writers and readers.
+///
+/// One vtkImageData of W x H x N points; its physical coordinates (origin + spacing * index) are
+/// (column, row, slice), so that a cropped or strided stack still says which slice is which.
+/// Active point scalars: grey levels, one component. Field data, always one tuple for each slice of
+/// the original sweep, however cropped the stack is:
+///
+/// | array              | type, components | meaning |
+/// |--------------------|------------------|-------------------------------------------------------|
+/// | ImageToReference   | double, 16       | (column, row, 0, 1) to mm in the reference frame; | |
+/// |                  | absent until the probe is calibrated                   | | Timestamp |
+/// double           | seconds                                               | | SliceStatus |
+/// unsigned char    | flags, see Status; 0 = valid                          | | FrameNumber | int
+/// | number in the file or of the frame grabber            | | ProbeToTracker, …  | double, 16 |
+/// every transform of the file under its own name        |
+///
+/// and, when known, ImageToProbe with one tuple.
+#ifndef vtkLacunaTrackedSlices_h
+#define vtkLacunaTrackedSlices_h
+
+#include "lacunaMatrix4.h"
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkDataArray;
+class vtkImageData;
+
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices
+{
+public:
+  static constexpr const char* ImageToReferenceName = "ImageToReference";
+  static constexpr const char* ImageToProbeName = "ImageToProbe";
+  static constexpr const char* TimestampName = "Timestamp";
+  static constexpr const char* SliceStatusName = "SliceStatus";
+  static constexpr const char* FrameNumberName = "FrameNumber";
+
+  /// Flags of SliceStatus.
+  enum Status : unsigned char
+  {
+    Valid = 0,
+    PoseInvalid = 1,
+    ImageInvalid = 2,
+    TooFast = 4,
+    GatedOut = 8
+  };
+
+  /// Checks stack against the contract. Throws std::runtime_error that names the array and what is
+  /// wrong with it. Keeps no reference: stack must outlive this object.
+  explicit vtkLacunaTrackedSlices(vtkImageData* stack);
+
+  /// Slices of the original sweep: the length of the field data arrays.
+  vtkIdType GetNumberOfSlices() const { return static_cast<vtkIdType>(this->Poses.size()); }
+
+  /// Number in the sweep, 0-based, of the slice at extent index k. Throws when it is outside of it.
+  vtkIdType GetSliceNumber(int k) const;
+
+  /// (column, row, 0, 1) to mm in the reference frame.
+  const lacuna::Matrix4& GetImageToReference(vtkIdType slice) const { return this->Poses[slice]; }
+  unsigned char GetStatus(vtkIdType slice) const { return this->StatusFlags[slice]; }
+  /// Seconds; the slice number when the stack has no Timestamp.
+  double GetTimestamp(vtkIdType slice) const { return this->Times[slice]; }
+  /// Grey levels, one component, the points of the stack's extent.
+  vtkDataArray* GetGreyLevels() const { return this->GreyLevels; }
+
+  /// Writes the arrays of the contract. poses may be empty: then ImageToReference is left out (the
+  /// probe is not calibrated). The others have one element per slice.
+  static void Write(vtkImageData* stack, const std::vector<lacuna::Matrix4>& poses,
+    const std::vector<double>& timestamps, const std::vector<unsigned char>& status,
+    const std::vector<int>& frameNumbers);
+
+private:
+  vtkImageData* Stack;
+  vtkDataArray* GreyLevels;
+  std::vector<lacuna::Matrix4> Poses;
+  std::vector<unsigned char> StatusFlags;
+  std::vector<double> Times;
+};
+#endif

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Language level, warnings, sanitizers and where the build tree puts its files.
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON) # static kernels are linked into shared modules
+if (NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif ()
+
+include(GNUInstallDirs)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+
+add_compile_options(-Wall -Wextra -Wno-unused-parameter)
+# The same numbers whatever the compiler's default: no silent fused multiply-add.
+add_compile_options(-ffp-contract=off)
+if (LACUNA_WARNINGS_AS_ERRORS)
+  add_compile_options(-Werror)
+endif ()
+if (LACUNA_SANITIZE)
+  add_compile_options(-fsanitize=${LACUNA_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${LACUNA_SANITIZE})
+endif ()

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds the VTK to build against: ParaView's own, or a plain one. Sets lacuna_flavor.
+
+# One list, used here and again by LacunaConfig.cmake. Never find_package(VTK) without
+# COMPONENTS: that asks for every third party of every VTK module (Qt5, HDF5, ...).
+set(lacuna_vtk_components
+  CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
+  CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersSources
+  ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML)
+if (LACUNA_WITH_PARAVIEW)
+  # With COMPONENTS, Debian 12 needs few -dev packages next to paraview-dev; without, about
+  # 15 more. RemotingViews brings the X11 and GLEW targets of the C++ rendering tests.
+  find_package(ParaView 5.11 REQUIRED
+    COMPONENTS RemotingCore RemotingServerManager RemotingViews)
+  set(lacuna_flavor "pv${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}")
+else ()
+  # ParaView carries a whole VTK: it serves when no plain VTK is installed.
+  file(GLOB lacuna_paraview_vtk LIST_DIRECTORIES ON
+    "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-*/vtk")
+  find_package(VTK 9.1 REQUIRED
+    COMPONENTS ${lacuna_vtk_components}
+    OPTIONAL_COMPONENTS TestingCore TestingRendering RenderingOpenGL2 InteractionStyle
+      Python WrappingPythonCore
+    PATHS ${lacuna_paraview_vtk})
+  set(lacuna_flavor "vtk${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
+endif ()

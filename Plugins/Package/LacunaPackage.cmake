@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What find_package(Lacuna COMPONENTS ...) reads, in the build tree and when installed.
+include(CMakePackageConfigHelpers)
+vtk_module_export_find_packages(
+  CMAKE_DESTINATION "${lacuna_cmake_destination}"
+  FILE_NAME         "Lacuna-vtk-module-find-packages.cmake"
+  MODULES           ${lacuna_modules})
+configure_package_config_file(Plugins/Package/LacunaConfig.cmake.in
+  "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfig.cmake"
+  INSTALL_DESTINATION "${lacuna_cmake_destination}")
+write_basic_package_version_file(
+  "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfig.cmake"
+  "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfigVersion.cmake"
+  DESTINATION "${lacuna_cmake_destination}" COMPONENT development)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Helpers that declare tests.
+# lacuna_add_kernel_test(<name> SOURCES <file>... LIBRARIES <target>...)
+# A GoogleTest program without VTK; its cases appear in ctest as Kernel.<name>.<suite>.<case>.
+function (lacuna_add_kernel_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(Test${name}Kernel ${arg_SOURCES})
+  target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
+  add_test(NAME Kernel.${name} COMMAND Test${name}Kernel)
+  set_tests_properties(Kernel.${name} PROPERTIES LABELS "kernel")
+endfunction ()
+
+# lacuna_add_paraview_test(<script.py> [LABELS <label>...] [ARGS <argument>...])
+# Runs a script of Testing/ParaView in pvpython with the plugin of the build tree at hand. A script
+# that lacks the real data leaves with code 77, which counts as skipped.
+function (lacuna_add_paraview_test script)
+  cmake_parse_arguments(arg "" "" "LABELS;ARGS" ${ARGN})
+  get_filename_component(name "${script}" NAME_WE)
+  add_test(NAME ParaView.${name}
+    COMMAND "$<TARGET_FILE:ParaView::pvpython>" --force-offscreen-rendering
+      "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${arg_ARGS})
+  set_tests_properties(ParaView.${name} PROPERTIES
+    LABELS "paraview;${arg_LABELS}"
+    SKIP_RETURN_CODE 77
+    ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
+endfunction ()
