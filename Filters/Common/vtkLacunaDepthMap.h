@@ -8,7 +8,7 @@
 ///
 /// Point data: Depth (double, mm, NaN where there is none), vtkValidPointMask (char, 1 where Depth
 /// is a number), Normals (float x 3, unit, world, towards the viewer), for further iso-values
-/// Depth_1, … Filled maps add Fitted (double), FilledMask (char) and Deviation (double).
+/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char) and Deviation (double).
 /// Field data: ImageToWorld (16, (column, row, mm along z, 1) to world mm), IsoValues, and for
 /// perspective maps EyePosition (3) and ViewAngle (degrees).
 #ifndef vtkLacunaDepthMap_h

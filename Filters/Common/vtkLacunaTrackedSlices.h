@@ -13,7 +13,7 @@
 /// |                  | absent until the probe is calibrated                   | | Timestamp |
 /// double           | seconds                                               | | SliceStatus |
 /// unsigned char    | flags, see Status; 0 = valid                          | | FrameNumber | int
-/// | number in the file or of the frame grabber            | | ProbeToTracker, …  | double, 16 |
+/// | number in the file or of the frame grabber            | | ProbeToTracker, ...  | double, 16 |
 /// every transform of the file under its own name        |
 ///
 /// and, when known, ImageToProbe with one tuple.

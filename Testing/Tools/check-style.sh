@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Rules that a tool can check: format, license tags, kernels without VTK. With --tidy also
+# clang-tidy on every source (needs build/release).
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+sources=$(git ls-files '*.h' '*.cxx')
+failed=0
+complain() { echo "style: $1" >&2; failed=1; }
+
+if command -v clang-format-14 >/dev/null || command -v clang-format >/dev/null; then
+  format=$(command -v clang-format-14 || command -v clang-format)
+  # shellcheck disable=SC2086
+  $format --dry-run -Werror $sources || complain "run clang-format -i on the files above"
+else
+  echo "style: clang-format is not installed; format not checked" >&2
+fi
+for file in $sources $(git ls-files '*.py' '*.sh' '*.cmake' '*CMakeLists.txt'); do
+  head -n 3 "$file" | grep -q 'SPDX-License-Identifier: BSD-3-Clause' ||
+    complain "$file has no SPDX license tag"
+done
+bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
+[ -z "$bad" ] || complain "kernels must not include VTK: $bad"
+bad=$(grep -nP '[^\x00-\x7F]' $sources | grep -v 'vtkLacuna.*Doc' | head -n 5 || true)
+[ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
+
+if [ "${1:-}" = --tidy ]; then
+  cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+  git ls-files '*.cxx' | grep -v -e Testing/Embedding -e Testing/Cxx |
+    xargs -P 2 -n 4 clang-tidy --quiet -p build/release || complain "clang-tidy has findings"
+fi
+exit $failed

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Shared by demo.sh and test.sh (sourced from the top folder): installs what is missing, configures
+# and builds. Each function says what failed and returns non-zero.
+
+lacuna_fail() {
+  echo "error: $1 failed: $2" >&2
+  return 1
+}
+
+# Debian packages of packages-debian.txt that are not there yet.
+lacuna_install_packages() {
+  local wanted missing="" package as_root=""
+  wanted=$(grep -v '^#' Testing/Tools/packages-debian.txt)
+  for package in $wanted; do
+    dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
+      missing="$missing $package"
+  done
+  [ -z "$missing" ] && return 0
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null ||
+      { lacuna_fail "installing packages" "as root, run: apt-get install$missing"; return 1; }
+    as_root=sudo
+  fi
+  echo "== installing$missing"
+  $as_root apt-get -qq update &&
+    $as_root env DEBIAN_FRONTEND=noninteractive \
+      apt-get -y -qq install --no-install-recommends $missing >/dev/null ||
+    lacuna_fail "installing packages" "apt-get could not install$missing"
+}
+
+# lacuna_build <preset>: configures and builds into build/<preset>; does nothing when up to date.
+lacuna_build() {
+  local log="build/$1.log"
+  mkdir -p build
+  if [ ! -f "build/$1/build.ninja" ]; then
+    echo "== configuring ($1)"
+    cmake --preset "$1" >"$log" 2>&1 ||
+      { tail -n 30 "$log" >&2; lacuna_fail "configuring" "see $log"; return 1; }
+  fi
+  echo "== building ($1)"
+  cmake --build --preset "$1" >"$log" 2>&1 ||
+    { grep -E -A8 'error|FAILED' "$log" | head -n 60 >&2; lacuna_fail "building" "see $log"; }
+}
+
+# lacuna_display <command>...: runs it with a display, a virtual one if there is none.
+lacuna_display() {
+  if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a -s "-screen 0 1600x1200x24" "$@"; fi
+}
