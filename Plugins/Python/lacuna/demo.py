@@ -1,1 +1,106 @@
-"""placeholder"""
+# SPDX-License-Identifier: BSD-3-Clause
+"""Both of Lacuna's jobs in one run: a closed surface from freehand ultrasound slices, and an implant
+surface for the hole in a skull. Without arguments it works on built-in phantoms whose truth is
+known; with --sweep and --ct on your own files. It writes pictures, the volume (.vti), the closed
+surface (.stl), the filled depth map (.vti), the implant surface (.igs) and report.md with numbers."""
+import argparse
+import contextlib
+import os
+import sys
+import time
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(
+        prog="demo.sh", description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("--output", default="demo-output", help="folder for the results")
+    parser.add_argument("--only", choices=["ultrasound", "implant"], help="do one of the two jobs")
+
+    sweep = parser.add_argument_group("freehand ultrasound")
+    sweep.add_argument("--sweep", metavar="FILE", help="tracked sequence (.igs.mha, .mha, .mhd); default: a phantom")
+    sweep.add_argument("--calibration", metavar="XML", help="PLUS configuration with the Image-to-Probe transform")
+    sweep.add_argument("--spacing", type=float, default=0.5, metavar="MM", help="voxel size of the volume")
+    sweep.add_argument("--level", type=float, metavar="GREY",
+                       help="grey level of the surface; default: the phantom's, or half-way between the mean and the brightest")
+    sweep.add_argument("--median", type=int, default=5, metavar="N", help="size of the median window, voxels")
+
+    implant = parser.add_argument_group("cranial implant")
+    implant.add_argument("--ct", metavar="FILE", help="CT volume in Hounsfield units; default: a phantom with a hole")
+    implant.add_argument("--iso", type=float, default=500, metavar="HU", help="level of the bone surface")
+    implant.add_argument("--view", type=float, nargs=3, default=[0, 0, -1], metavar=("X", "Y", "Z"),
+                         help="direction from which the hole is seen (for --ct)")
+    implant.add_argument("--hole", type=float, nargs=4, metavar=("X", "Y", "Z", "R"),
+                         help="a point in the hole and its radius, mm: what lies inside this cylinder along the view is "
+                              "replaced; default: the holes of the depth map")
+    implant.add_argument("--margin", type=float, default=12, metavar="MM", help="sound bone used around the hole")
+    implant.add_argument("--node-spacing", type=float, default=1, metavar="MM", help="distance of the spline's nodes")
+    options = parser.parse_args(arguments)
+    if options.calibration and not options.sweep:
+        parser.error("--calibration belongs to --sweep")
+    if options.hole and not options.ct:
+        parser.error("--hole belongs to --ct (the phantom knows its own hole)")
+    for name in ("sweep", "calibration", "ct"):
+        file = getattr(options, name)
+        if file and not os.path.isfile(file):
+            parser.error(f"--{name}: there is no file {file}")
+    return options
+
+
+class Report:
+    """Collects numbers and the seconds of each stage, and says which stage failed."""
+
+    def __init__(self):
+        self.sections = []
+        self.stages = []
+
+    @contextlib.contextmanager
+    def stage(self, name):
+        from lacuna.errors import raising
+        print(f"== {name}", flush=True)
+        started = time.perf_counter()
+        warnings = []
+        try:
+            with raising(warnings):
+                yield
+        except Exception as error:
+            raise SystemExit(f"demo.sh: stage '{name}' failed: {error}") from error
+        for warning in dict.fromkeys(warnings):
+            print(f"   note: {warning}", flush=True)
+        self.stages.append((name, time.perf_counter() - started))
+
+    def section(self, title):
+        self.sections.append((title, []))
+
+    def add(self, what, value):
+        self.sections[-1][1].append((what, value))
+        print(f"   {what}: {value}", flush=True)
+
+    def write(self, name, version):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(f"# Lacuna {version}: demo report\n")
+            for title, rows in self.sections:
+                file.write(f"\n## {title}\n\n| quantity | value |\n|---|---|\n")
+                file.writelines(f"| {what} | {value} |\n" for what, value in rows)
+            file.write("\n## Seconds per stage\n\n| stage | s |\n|---|---|\n")
+            file.writelines(f"| {stage} | {seconds:.2f} |\n" for stage, seconds in self.stages)
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    import lacuna.plugin
+    from lacuna import demo_implant, demo_ultrasound
+    os.makedirs(options.output, exist_ok=True)
+    report = Report()
+    with report.stage("load the plugin"):
+        lacuna.plugin.load()
+    if options.only != "implant":
+        demo_ultrasound.run(options, report)
+    if options.only != "ultrasound":
+        demo_implant.run(options, report)
+    name = os.path.join(options.output, "report.md")
+    report.write(name, lacuna.__version__)
+    print(f"== done: see {name} and the pictures beside it")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pipeline errors as Python exceptions.
+
+VTK and ParaView print what goes wrong and go on; a batch script wants to stop:
+
+    from lacuna.errors import raising
+    with raising():
+        volume.UpdatePipeline()
+"""
+import contextlib
+import re
+
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+
+class PipelineError(RuntimeError):
+    """What an algorithm reported through its error macro."""
+
+
+def _clean(text):
+    """The sentence alone, without the line that names a source file and the object's address."""
+    lines = [line for line in text.strip().splitlines()
+             if not re.match(r"(ERROR|Warning|Generic Warning): In ", line)]
+    return re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", " ".join(line.strip() for line in lines)).strip()
+
+
+@contextlib.contextmanager
+def raising(warnings=None):
+    """Raises PipelineError at the end of the block when an algorithm reported an error in it.
+
+    warnings: a list that receives the texts of warnings, or None.
+    """
+    errors = []
+
+    def keep(_window, event, text):
+        text = _clean(text)
+        if event == "ErrorEvent" and not text.startswith("Algorithm "):
+            errors.append(text)
+        elif event == "WarningEvent" and warnings is not None:
+            warnings.append(text)
+
+    keep.CallDataType = "string0"
+    window = vtkOutputWindow.GetInstance()
+    tags = [window.AddObserver(event, keep) for event in ("ErrorEvent", "WarningEvent")]
+    try:
+        yield
+    finally:
+        for tag in tags:
+            window.RemoveObserver(tag)
+    if errors:
+        raise PipelineError("; ".join(dict.fromkeys(errors)))

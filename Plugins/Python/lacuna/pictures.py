@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures in one style: white background, matt surfaces, scalar bars with units."""
+import paraview.simple as pv
+
+BONE = (0.93, 0.89, 0.80)
+TISSUE = (0.80, 0.45, 0.38)
+
+
+def new_view(size=(1200, 900)):
+    """A render view on white with dark text."""
+    view = pv.CreateView("RenderView")
+    view.ViewSize = list(size)
+    view.UseColorPaletteForBackground = 0
+    view.BackgroundColorMode = "Gradient"
+    view.Background = [1.0, 1.0, 1.0]
+    view.Background2 = [0.86, 0.89, 0.93]
+    view.OrientationAxesLabelColor = [0.1, 0.1, 0.1]
+    view.CenterAxesVisibility = 0
+    return view
+
+
+def show_surface(proxy, view, color):
+    """Shows a surface in one matt colour."""
+    display = pv.Show(proxy, view)
+    pv.ColorBy(display, None)
+    display.AmbientColor = display.DiffuseColor = list(color)
+    display.Specular = 0.15
+    display.SpecularPower = 20
+    return display
+
+
+def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
+    """Colours by a point array over fixed bounds, with a scalar bar that says what it is."""
+    pv.ColorBy(display, ("POINTS", array))
+    table = pv.GetColorTransferFunction(array, display, separate=True)
+    table.ApplyPreset(preset, True)
+    table.RescaleTransferFunction(*bounds)
+    table.NanOpacity = 0
+    display.LookupTable = table
+    display.SetScalarBarVisibility(view, True)
+    bar = pv.GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = title, ""
+    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = "%.2f"
+    bar.WindowLocation = "Lower Right Corner"
+    return table
+
+
+def look(view, direction, up, zoom=1.0):
+    """Points the camera along direction with up upwards and everything in sight."""
+    camera = view.GetActiveCamera()
+    camera.SetPosition(0, 0, 0)
+    camera.SetFocalPoint(*direction)
+    camera.SetViewUp(*up)
+    view.CameraParallelProjection = 1
+    pv.ResetCamera(view)
+    camera.Zoom(zoom)
+
+
+def add_text(view, text):
+    """A line of text in the upper left corner."""
+    display = pv.Show(pv.Text(Text=text), view)
+    display.Color = [0.1, 0.1, 0.1]
+    display.FontSize = 20
+    display.WindowLocation = "Upper Left Corner"
+
+
+def save(view, name):
+    """Renders into a PNG file."""
+    pv.Render(view)
+    pv.SaveScreenshot(name, view, ImageResolution=list(view.ViewSize))

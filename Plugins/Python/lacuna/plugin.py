@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Finds and loads the ParaView plugin that belongs to this package."""
+import os
+
+
+def path():
+    """File name of the plugin: LACUNA_PLUGIN, or the one beside this package."""
+    from . import _plugin_path
+    here = os.path.dirname(os.path.abspath(__file__))
+    name = os.environ.get("LACUNA_PLUGIN") or os.path.normpath(os.path.join(here, _plugin_path))
+    if not os.path.exists(name):
+        raise FileNotFoundError(f"the Lacuna plugin is not at {name}; set LACUNA_PLUGIN to its file name")
+    return name
+
+
+def load():
+    """Loads the plugin into the current ParaView session: paraview.simple then has SweptVolume() etc."""
+    import paraview.simple
+    paraview.simple.LoadPlugin(path(), remote=False, ns=vars(paraview.simple))
