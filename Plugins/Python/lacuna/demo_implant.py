@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The implant half of the demo: CT -> depth map -> filled hole -> IGES surface."""
+import math
 import os
 
 import numpy as np
@@ -9,6 +10,56 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import lacuna
 from lacuna import pictures
+
+ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
+
+
+def run(options, report):
+    """All stages; options are demo.py's, report its Report."""
+    report.section("Cranial implant")
+    with report.stage("read the CT" if options.ct else "make the skull phantom"):
+        ct, skull = read(options)
+        view = options.view if options.ct else [-c for c in ct.DefectDirection]
+        report.add("CT", options.ct or "Skull Phantom (truth known)")
+        bounds = ct.GetDataInformation().GetBounds()
+        size = [f"{high - low:.1f}" for low, high in zip(bounds[::2], bounds[1::2])]
+        report.add("size, mm", " × ".join(size))
+    with report.stage("cast rays: depth map"):
+        depth = pv.BSplineIsoRayCaster(Input=ct, IsoValues=[options.iso], ViewDirection=view)
+        depth.ViewUp = view_up(view)
+        depth.UpdatePipeline()
+        report.add("bone surface, HU", f"{options.iso:g}")
+        report.add("view direction", " ".join(f"{c:.3g}" for c in view))
+    with report.stage("fill the hole"):
+        filled = fill(depth, options, skull, ct)
+        image = servermanager.Fetch(filled)
+        describe(image, skull, report)
+        pv.SaveData(os.path.join(options.output, "filled-depth-map.vti"), proxy=filled)
+    with report.stage("write the implant surface"):
+        writer = lacuna.vtkLacunaIGESWriter()
+        writer.SetInputData(image)
+        writer.SetFileName(os.path.join(options.output, "implant.igs"))
+        if not writer.Write():
+            raise RuntimeError("implant.igs was not written")
+        report.add("IGES surface: largest deviation from the fit, mm", f"{writer.GetMaximumDeviation():.2g}")
+        report.add("IGES surface: control points", " × ".join(map(str, writer.GetNumberOfControlPoints())))
+    with report.stage("picture of skull and implant"):
+        picture(image, view, os.path.join(options.output, "implant.png"))
+
+
+def read(options):
+    """The CT's proxy, and the phantom as an object that knows the truth (None for --ct)."""
+    if not options.ct:
+        ct = pv.SkullPhantom()
+        ct.UpdatePipeline()
+        return ct, ct.GetClientSideObject()
+    if options.ct.lower().endswith((".mha", ".mhd")):
+        refuse_orientation(options.ct)
+    ct = pv.OpenDataFile(options.ct)
+    if ct is None:
+        raise ValueError(f"ParaView has no reader for {options.ct}")
+    ct.UpdatePipeline()
+    return ct, None
 
 
 def refuse_orientation(name):
@@ -21,28 +72,86 @@ def refuse_orientation(name):
             if [float(x) for x in value.split()] != [1, 0, 0, 0, 1, 0, 0, 0, 1]:
                 raise ValueError(
                     f"{name} is oriented ({key.strip().decode()} = {value.strip().decode()}), which ParaView's "
-                    "reader ignores; the result could be mirrored. Keep oriented images in .vti")
+                    "reader ignores: the result could be turned or mirrored. Keep oriented images in .vti")
         if key.strip() == b"ElementDataFile":
             return
 
 
-def read(options):
-    """The CT proxy, the view direction, and the truth (a function of filled pixels) or None."""
-    if options.ct:
-        if options.ct.lower().endswith((".mha", ".mhd")):
-            refuse_orientation(options.ct)
-        ct = pv.OpenDataFile(options.ct)
-        if ct is None:
-            raise ValueError(f"ParaView has no reader for {options.ct}")
-        return ct, options.view
-    ct = pv.SkullPhantom()
-    return ct, [-c for c in ct.DefectDirection]
+def view_up(view):
+    """Superior is up; seen from above or below, anterior is (LPS: -y)."""
+    x, y, z = view
+    return [0, -1, 0] if abs(z) > 0.7 * math.sqrt(x * x + y * y + z * z) else [0, 0, 1]
 
 
-def cast(ct, view, options):
-    ct.UpdatePipeline()
-    caster = pv.BSplineIsoRayCaster(Input=ct, IsoValues=[options.iso], ViewDirection=view)
-    if abs(view[2]) > 0.9 * np.linalg.norm(view):
-        caster.ViewUp = [0, -1, 0]  # seen from above: anterior (LPS: -y) is up
-    caster.UpdatePipeline()
-    return caster
+def fill(depth, options, skull, ct):
+    """The hole filler on the hole that the user gave, that the phantom has, or that the map shows."""
+    filled = pv.RBFHoleFiller(Input=depth, SupportMargin=options.margin, NodeSpacing=options.node_spacing)
+    if skull:
+        # a ball over the hole, a little larger than the irregular outline
+        center, direction = np.array(ct.Center), np.array(ct.DefectDirection)
+        direction = direction / np.linalg.norm(direction)
+        on_bone = center + direction * skull.IntersectOuterSurface(center, direction)
+        filled.DefectRegion = "Sphere"
+        filled.DefectRegion.Center = list(on_bone)
+        filled.DefectRegion.Radius = 1.3 * ct.DefectRadius
+    elif options.hole:
+        filled.DefectRegion = "Cylinder"
+        filled.DefectRegion.Center = options.hole[:3]
+        filled.DefectRegion.Axis = options.view
+        filled.DefectRegion.Radius = options.hole[3]
+    filled.UpdatePipeline()
+    return filled
+
+
+def describe(image, skull, report):
+    """Numbers of the fit; adds the array Error to the filled pixels where the truth is known."""
+    field = image.GetFieldData()
+    report.add("depth map, pixels", "{} × {}".format(*image.GetDimensions()))
+    report.add("nodes of the spline", int(field.GetArray("NodeCount").GetValue(0)))
+    report.add("condition estimate", f"{field.GetArray('ConditionEstimate').GetValue(0):.2g}")
+    report.add("hole, mm² of surface", f"{field.GetArray('DefectArea').GetValue(0):.0f}")
+
+    mask = vtk_to_numpy(image.GetPointData().GetArray("FilledMask")) > 0
+    if not mask.any():
+        raise ValueError("the depth map has no hole to fill; mark it with --hole X Y Z R")
+    if skull:
+        error = np.full(mask.shape, np.nan)
+        fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted"))
+        to_world = np.array(field.GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
+        ray = to_world[:3, 2]
+        width = image.GetDimensions()[0]
+        for pixel in np.flatnonzero(mask):
+            start = to_world @ (pixel % width, pixel // width, 0, 1)
+            error[pixel] = fitted[pixel] - skull.IntersectOuterSurface(start[:3], ray)
+        truth = "the intact phantom"
+    else:
+        error = np.where(mask, vtk_to_numpy(image.GetPointData().GetArray("Deviation")), np.nan)
+        truth = "the bone that was there"
+    array = numpy_to_vtk(error, deep=True)
+    array.SetName(ERROR)
+    image.GetPointData().AddArray(array)
+    known = error[np.isfinite(error)]
+    if known.size:
+        report.add(f"error against {truth}: largest, mm", f"{np.abs(known).max():.3f}")
+        report.add(f"error against {truth}: RMS, mm", f"{np.sqrt((known ** 2).mean()):.3f}")
+
+
+def picture(image, view, name):
+    """The bone in one colour, the implant coloured by its error where the truth is known."""
+    source = pv.TrivialProducer()
+    source.GetClientSideObject().SetOutput(image)
+    source.UpdatePipeline()
+    surface = pv.DepthMapSurface(Input=source)
+    bone = pv.Threshold(Input=surface, Scalars=["POINTS", "FilledMask"], ThresholdMethod="Below Lower Threshold",
+                        LowerThreshold=0.5)
+    implant = pv.Threshold(Input=surface, Scalars=["POINTS", "FilledMask"], ThresholdMethod="Above Upper Threshold",
+                           UpperThreshold=0.5, AllScalars=0)
+    render = pictures.new_view()
+    pictures.show_surface(bone, render, pictures.BONE)
+    display = pictures.show_surface(implant, render, pictures.METAL)
+    error = vtk_to_numpy(image.GetPointData().GetArray(ERROR))
+    if np.isfinite(error).any():
+        limit = math.ceil(10 * np.nanmax(np.abs(error))) / 10
+        pictures.color_by(display, render, ERROR, "error of the implant, mm", (-limit, limit))
+    pictures.look(render, view, view_up(view), 1.1)
+    pictures.save(render, name)

@@ -2,15 +2,49 @@
 """The ultrasound half of the demo: tracked slices -> volume -> closed surface."""
 import os
 
+import numpy as np
 import paraview.simple as pv
 from paraview import servermanager
-from vtkmodules.vtkFiltersCore import vtkMassProperties
-from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties, vtkTriangleFilter
 
 from lacuna import pictures
 
-PHANTOM = dict(NumberOfSlices=120, ImageSize=[400, 300], PixelSpacing=0.15, Motion="Twist", Anatomy="Ellipsoids")
+PHANTOM = dict(NumberOfSlices=120, Motion="Twist", Anatomy="Ellipsoids", SpeckleLevel=0.15)
+
+
+def run(options, report):
+    """All stages; options are demo.py's, report its Report."""
+    report.section("Freehand ultrasound")
+    with report.stage("read the sweep" if options.sweep else "make the phantom sweep"):
+        sweep = read(options)
+        width, height, slices = dimensions(sweep)
+        report.add("sweep", options.sweep or "Phantom Sweep (truth known)")
+        report.add("slices", f"{slices} of {width} × {height} pixels")
+    with report.stage("reconstruct the volume"):
+        volume = pv.SweptVolume(Input=sweep, OutputSpacing=[options.spacing] * 3)
+        volume.UpdatePipeline()
+        report.add("volume, voxels", " × ".join(map(str, dimensions(volume))))
+        report.add("voxel, mm", f"{options.spacing:g}")
+        report.add("origin, mm", " ".join(f"{b:.3f}" for b in volume.GetDataInformation().GetBounds()[::2]))
+        pv.SaveData(os.path.join(options.output, "volume.vti"), proxy=volume)
+    with report.stage("filter and contour"):
+        truth = None if options.sweep else sweep.GetClientSideObject()
+        level = options.level or (truth.GetTrueIsoValue() if truth else surface_level(volume))
+        surface = closed_surface(sweep, volume, level, options.median)
+        surface.UpdatePipeline()
+        pv.SaveData(os.path.join(options.output, "surface.stl"), proxy=surface)
+        millilitres, open_edges = measure(surface)
+        report.add("surface level, grey", f"{level:.1f}")
+        report.add("enclosed volume, ml", f"{millilitres:.3f}")
+        report.add("open edges of the surface", open_edges)
+        if truth:
+            exact = truth.GetTrueVolume() / 1000
+            report.add("true volume, ml", f"{exact:.3f} (error {100 * (millilitres / exact - 1):+.2f} %)")
+    with report.stage("picture of slices and surface"):
+        picture(sweep, surface, os.path.join(options.output, "ultrasound.png"))
 
 
 def read(options):
@@ -24,26 +58,71 @@ def read(options):
     return sweep
 
 
+def dimensions(image):
+    extent = image.GetDataInformation().GetExtent()
+    return tuple(high - low + 1 for low, high in zip(extent[::2], extent[1::2]))
+
+
 def surface_level(volume):
     """Half-way between the mean and the brightest grey level of the voxels that have one."""
     data = servermanager.Fetch(volume).GetPointData()
     grey = vtk_to_numpy(data.GetArray("Intensity"))[vtk_to_numpy(data.GetArray("vtkValidPointMask")) > 0]
-    return float(grey.mean() + grey.max()) / 2
+    return (float(grey.mean()) + float(grey.max())) / 2
 
 
-def closed_surface(volume, level, median):
-    """Contour of the median-filtered volume, largest piece."""
-    smooth = pv.Median(Input=volume, SelectInputScalars=["POINTS", "Intensity"], KernelSize=[median] * 3)
+def closed_surface(sweep, volume, level, median):
+    """Contour of the median-filtered volume. A rim of empty voxels around the sweep closes it there."""
+    bounds = volume.GetDataInformation().GetBounds()
+    rim = [median * s for s in volume.OutputSpacing]
+    grown = [b + side * rim[i] for i in range(3) for b, side in ((bounds[2 * i], -1), (bounds[2 * i + 1], 1))]
+    padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown)
+    smooth = pv.Median(Input=padded, SelectInputScalars=["POINTS", "Intensity"], KernelSize=[median] * 3)
     contour = pv.Contour(Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[level],
                          ComputeNormals=1, ComputeScalars=0)
-    return pv.Connectivity(Input=contour, ExtractionMode="Extract Largest Region", ColorRegions=0)
+    largest = pv.Connectivity(Input=contour, ExtractionMode="Extract Largest Region", ColorRegions=0)
+    return pv.ExtractSurface(Input=largest)
 
 
 def measure(surface):
-    """Volume in ml and whether the surface is closed (no edge with one triangle only)."""
+    """Enclosed volume in ml, and the number of edges that only one triangle has (0 = closed)."""
     triangles = vtkTriangleFilter()
     triangles.SetInputData(servermanager.Fetch(surface))
     mass = vtkMassProperties()
     mass.SetInputConnection(triangles.GetOutputPort())
     mass.Update()
-    return mass.GetVolume() / 1000
+    edges = vtkFeatureEdges()
+    edges.SetInputConnection(triangles.GetOutputPort())
+    edges.FeatureEdgesOff()
+    edges.NonManifoldEdgesOff()
+    edges.BoundaryEdgesOn()
+    edges.Update()
+    return mass.GetVolume() / 1000, edges.GetOutput().GetNumberOfCells()
+
+
+def slice_frames(sweep, step):
+    """Outlines of every step-th slice, as lines in the reference frame."""
+    image = servermanager.Fetch(sweep)
+    poses = image.GetFieldData().GetArray("ImageToReference")
+    x0, x1, y0, y1 = image.GetBounds()[:4]
+    points, lines = vtkPoints(), vtkCellArray()
+    for slice_number in range(0, poses.GetNumberOfTuples(), step):
+        pose = np.array(poses.GetTuple(slice_number)).reshape(4, 4)
+        corners = [points.InsertNextPoint((pose @ (x, y, 0, 1))[:3])
+                   for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+        lines.InsertNextCell(5, corners + corners[:1])
+    frames = vtkPolyData()
+    frames.SetPoints(points)
+    frames.SetLines(lines)
+    return frames
+
+
+def picture(sweep, surface, name):
+    """The surface among the outlines of the slices that it was made from."""
+    render = pictures.new_view()
+    pictures.show_surface(surface, render, pictures.TISSUE)
+    frames = pv.TrivialProducer()
+    frames.GetClientSideObject().SetOutput(slice_frames(sweep, max(1, dimensions(sweep)[2] // 20)))
+    display = pictures.show_surface(frames, render, (0.35, 0.45, 0.6))
+    display.LineWidth = 1.5
+    pictures.look(render, (-0.6, 0.7, -0.4), (0, 0, 1), 1.1)
+    pictures.save(render, name)

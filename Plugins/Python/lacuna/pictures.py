@@ -3,6 +3,7 @@
 import paraview.simple as pv
 
 BONE = (0.93, 0.89, 0.80)
+METAL = (0.62, 0.66, 0.72)
 TISSUE = (0.80, 0.45, 0.38)
 
 
