@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Both of Lacuna's jobs in one run: a closed surface from freehand ultrasound slices, and an implant
-surface for the hole in a skull. Without arguments it works on built-in phantoms whose truth is
-known; with --sweep and --ct on your own files. It writes pictures, the volume (.vti), the closed
-surface (.stl), the filled depth map (.vti), the implant surface (.igs) and report.md with numbers."""
+"""Both of Lacuna's jobs in one run: a closed surface from freehand ultrasound slices, and an
+implant surface for the hole in a skull. Without arguments it works on built-in phantoms
+whose truth is known; with --sweep and --ct on your own files. It writes pictures, the
+volume (.vti), the closed surface (.stl), the filled depth map (.vti), the implant surface
+(.igs) and report.md with the numbers."""
 import argparse
 import contextlib
 import os
@@ -12,28 +13,28 @@ import time
 
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(
-        prog="demo.sh", description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--output", default="demo-output", help="folder for the results")
+        prog="demo.sh", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", default="demo-output", help="folder for the results (%(default)s)")
     parser.add_argument("--only", choices=["ultrasound", "implant"], help="do one of the two jobs")
 
     sweep = parser.add_argument_group("freehand ultrasound")
     sweep.add_argument("--sweep", metavar="FILE", help="tracked sequence (.igs.mha, .mha, .mhd); default: a phantom")
     sweep.add_argument("--calibration", metavar="XML", help="PLUS configuration with the Image-to-Probe transform")
-    sweep.add_argument("--spacing", type=float, default=0.5, metavar="MM", help="voxel size of the volume")
+    sweep.add_argument("--spacing", type=float, default=0.5, metavar="MM", help="voxel size of the volume (%(default)s)")
     sweep.add_argument("--level", type=float, metavar="GREY",
                        help="grey level of the surface; default: the phantom's, or half-way between the mean and the brightest")
-    sweep.add_argument("--median", type=int, default=5, metavar="N", help="size of the median window, voxels")
+    sweep.add_argument("--median", type=int, default=5, metavar="N", help="size of the median window, voxels (%(default)s)")
 
     implant = parser.add_argument_group("cranial implant")
     implant.add_argument("--ct", metavar="FILE", help="CT volume in Hounsfield units; default: a phantom with a hole")
-    implant.add_argument("--iso", type=float, default=500, metavar="HU", help="level of the bone surface")
+    implant.add_argument("--iso", type=float, default=500, metavar="HU", help="level of the bone surface (%(default)s)")
     implant.add_argument("--view", type=float, nargs=3, default=[0, 0, -1], metavar=("X", "Y", "Z"),
-                         help="direction from which the hole is seen (for --ct)")
+                         help="direction in which --ct is looked at (%(default)s: from above)")
     implant.add_argument("--hole", type=float, nargs=4, metavar=("X", "Y", "Z", "R"),
                          help="a point in the hole and its radius, mm: what lies inside this cylinder along the view is "
                               "replaced; default: the holes of the depth map")
-    implant.add_argument("--margin", type=float, default=12, metavar="MM", help="sound bone used around the hole")
-    implant.add_argument("--node-spacing", type=float, default=1, metavar="MM", help="distance of the spline's nodes")
+    implant.add_argument("--margin", type=float, default=12, metavar="MM", help="sound bone used around the hole (%(default)s)")
+    implant.add_argument("--node-spacing", type=float, default=1, metavar="MM", help="distance of the spline's nodes (%(default)s)")
     options = parser.parse_args(arguments)
     if options.calibration and not options.sweep:
         parser.error("--calibration belongs to --sweep")
@@ -75,6 +76,10 @@ class Report:
         self.sections[-1][1].append((what, value))
         print(f"   {what}: {value}", flush=True)
 
+    def get(self, what):
+        """The value added last under a name."""
+        return [value for _, rows in self.sections for name, value in rows if name == what][-1]
+
     def write(self, name, version):
         with open(name, "w", encoding="utf-8") as file:
             file.write(f"# Lacuna {version}: demo report\n")
@@ -100,6 +105,7 @@ def main(arguments=None):
     name = os.path.join(options.output, "report.md")
     report.write(name, lacuna.__version__)
     print(f"== done: see {name} and the pictures beside it")
+    return report
 
 
 if __name__ == "__main__":

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the scripts in this folder share."""
+import os
+import sys
+
+SKIPPED = 77  # ctest counts this exit code as skipped
+
+
+def data(name):
+    """File of the real data, or leaves the test as skipped."""
+    file = os.path.join(os.environ.get("LACUNA_TEST_DATA", ""), name)
+    if not os.path.exists(file):
+        print(f"skipped: {file} is not there (set LACUNA_TEST_DATA)", flush=True)
+        sys.exit(SKIPPED)
+    return file
+
+
+def output(name):
+    """File name in the folder for what tests write."""
+    folder = os.environ.get("LACUNA_TEST_OUTPUT", ".")
+    os.makedirs(folder, exist_ok=True)
+    return os.path.join(folder, name)
+
+
+def compare_with_baseline(picture, threshold):
+    """Compares a PNG with the one of the same name in Testing/Data/Baseline.
+
+    threshold: see vtkImageDifference; 0 is equal, tens are font and driver differences.
+    """
+    from vtkmodules.vtkImagingCore import vtkImageDifference
+    from vtkmodules.vtkIOImage import vtkPNGReader
+    baseline = os.path.join(os.path.dirname(__file__), "..", "Data", "Baseline", os.path.basename(picture))
+    assert os.path.exists(baseline), f"no baseline {baseline}; look at {picture} and copy it there"
+    readers = []
+    for name in (picture, baseline):
+        reader = vtkPNGReader()
+        reader.SetFileName(name)
+        reader.Update()
+        readers.append(reader)
+    sizes = [reader.GetOutput().GetDimensions() for reader in readers]
+    assert sizes[0] == sizes[1], f"{picture} is {sizes[0]}, its baseline {sizes[1]}"
+    difference = vtkImageDifference()
+    difference.SetInputConnection(readers[0].GetOutputPort())
+    difference.SetImageConnection(readers[1].GetOutputPort())
+    difference.Update()
+    error = difference.GetThresholdedError()
+    print(f"{os.path.basename(picture)}: image error {error:.1f} (at most {threshold})", flush=True)
+    assert error <= threshold
