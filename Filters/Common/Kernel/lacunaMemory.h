@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Refuses allocations that cannot succeed before they are tried.
+#ifndef lacunaMemory_h
+#define lacunaMemory_h
+
+#include <string>
+
+namespace lacuna
+{
+/// Bytes of memory this machine has; 0 when the system does not tell.
+double GetPhysicalMemory();
+
+/// Throws std::runtime_error when bytes exceed the memory of this machine; the text names what is
+/// to be stored, its size and the memory there is. bytes is a double so that no product of sizes
+/// can overflow on its way here.
+void RequireMemory(const std::string& what, double bytes);
+}
+#endif
