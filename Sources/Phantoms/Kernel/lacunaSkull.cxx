@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSkull.h"
+
+#include "lacunaCounterNoise.h"
+#include "lacunaSkullSurface.h"
+#include "lacunaSmoothStep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+
+// Hounsfield units of the tissues. Scalp and outer table lie evenly about 500.
+constexpr double Air = -1000;
+constexpr double Scalp = 0;
+constexpr double Cortical = 1000;
+constexpr double Diploe = 600;
+constexpr double DiploeTexture = 80;
+constexpr double Brain = 35;
+
+constexpr double ScalpThickness = 6;
+constexpr double OuterTable = 2;
+constexpr double InnerTable = 1.5;
+constexpr double DeepestBone = OuterTable + 4.4 + InnerTable;
+
+// The box of the head with its scalp and 3 mm of air, relative to the centre.
+constexpr Vec3 Lowest{ { -83, -101, -71 } };
+constexpr Vec3 Highest{ { 85, 102, 80 } };
+
+double DiploeThickness(const Vec3& direction)
+{
+  return 3.4 + 0.6 * direction[1] + 0.4 * direction[2];
+}
+
+// A spongy look with a period of about 9 mm.
+double DiploeLevel(const Vec3& p)
+{
+  return Diploe +
+    DiploeTexture * std::sin(0.71 * p[0]) * std::sin(0.63 * p[1] + 1) * std::sin(0.67 * p[2] + 2);
+}
+}
+
+// What is at a point, as jumps at the boundaries that have been crossed so far, 0 to 1 each.
+struct Skull::Layers
+{
+  double Scalp;
+  double Bone;
+  double Diploe;
+  double Inner;
+  double Brain;
+  double DiploeLevel;
+
+  double Intact() const
+  {
+    return Air + (lacuna::Scalp - Air) * this->Scalp + (Cortical - lacuna::Scalp) * this->Bone +
+      (this->DiploeLevel - Cortical) * (this->Diploe - this->Inner) +
+      (lacuna::Brain - Cortical) * this->Brain;
+  }
+  double WithoutBone() const
+  {
+    return Air + (lacuna::Scalp - Air) * this->Scalp +
+      (lacuna::Brain - lacuna::Scalp) * this->Brain;
+  }
+};
+
+Skull::Skull(const Parameters& parameters)
+  : P(parameters)
+{
+  std::ostringstream message;
+  for (int i = 0; i < 3; ++i)
+  {
+    if (!(this->P.Spacing[i] > 0 && this->P.Spacing[i] <= 5))
+    {
+      message << "Spacing is " << this->P.Spacing[0] << " " << this->P.Spacing[1] << " "
+              << this->P.Spacing[2] << " mm; all three must be above 0 and at most 5 mm";
+      throw std::invalid_argument(message.str());
+    }
+    if (!(std::abs(this->P.Center[i]) <= 1e6))
+    {
+      message << "Center is " << this->P.Center[0] << " " << this->P.Center[1] << " "
+              << this->P.Center[2] << " mm; it must be finite and within 1e6 mm";
+      throw std::invalid_argument(message.str());
+    }
+  }
+  if (!(this->P.DefectRadius >= 0 && this->P.DefectRadius <= MaximumDefectRadius))
+  {
+    message << "DefectRadius is " << this->P.DefectRadius << " mm; it must be from 0 (intact) to "
+            << MaximumDefectRadius << " mm";
+    throw std::invalid_argument(message.str());
+  }
+  if (!(this->P.NoiseLevel >= 0 && this->P.NoiseLevel <= 1e4))
+  {
+    message << "NoiseLevel is " << this->P.NoiseLevel << " HU; it must be from 0 to 10000 HU";
+    throw std::invalid_argument(message.str());
+  }
+  const double length = Norm(this->P.DefectDirection);
+  if (!std::isfinite(length) || !(length > 0))
+  {
+    message << "DefectDirection is " << this->P.DefectDirection[0] << " "
+            << this->P.DefectDirection[1] << " " << this->P.DefectDirection[2]
+            << "; it must be a finite vector that is not zero, for example 0 0 1 for the vertex";
+    throw std::invalid_argument(message.str());
+  }
+  this->Axis = (1 / length) * this->P.DefectDirection;
+  // psi is counted from the patient's left (from anterior when the axis itself points sideways).
+  const Vec3 from = std::abs(this->Axis[0]) < 0.9 ? Vec3{ 1, 0, 0 } : Vec3{ 0, -1, 0 };
+  this->Side1 = Normalized(from - Dot(from, this->Axis) * this->Axis);
+  this->Side2 = Cross(this->Axis, this->Side1);
+}
+
+Vec3 Skull::GetOrigin() const
+{
+  return this->P.Center + Lowest;
+}
+
+std::array<int, 3> Skull::GetDimensions() const
+{
+  std::array<int, 3> dimensions;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double intervals = (Highest[i] - Lowest[i]) / this->P.Spacing[i];
+    // Beyond this no memory suffices, and the number of voxels must stay a number.
+    dimensions[i] = static_cast<int>(std::min(std::ceil(intervals - 1e-9), 1e9)) + 1;
+  }
+  return dimensions;
+}
+
+double Skull::BlurWidth(const Vec3& normal) const
+{
+  double square = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double shadow = normal[i] * this->P.Spacing[i];
+    square += shadow * shadow;
+  }
+  return std::sqrt(28.0 / 12 * square);
+}
+
+Skull::Layers Skull::Resolve(const Vec3& point) const
+{
+  const Vec3 p = point - this->P.Center;
+  const double widest =
+    this->BlurWidth({ 1, 1, 1 }); // no unit normal gives more than all axes together
+  const double value = SkullSurface::Implicit(p);
+  if (value > SkullSurface::MaximumSlope * (ScalpThickness + 0.5 * widest))
+  {
+    return { 0, 0, 0, 0, 0, Diploe };
+  }
+  if (value < -1.5 * (DeepestBone + 0.5 * widest))
+  {
+    return { 1, 1, 1, 1, 1, Diploe };
+  }
+  Vec3 foot;
+  Vec3 normal;
+  const double d = SkullSurface::SignedDistance(p, foot, normal);
+  const double width = this->BlurWidth(normal);
+  const double diploe = DiploeThickness(Normalized(foot));
+  const auto crossed = [&](double depth) { return SmoothStep(-d - depth, width); };
+  const double inner = OuterTable + diploe;
+  return { crossed(-ScalpThickness), crossed(0), crossed(OuterTable), crossed(inner),
+    crossed(inner + InnerTable), DiploeLevel(p) };
+}
+
+double Skull::DefectDepth(const Vec3& point, Vec3& normal) const
+{
+  const Vec3 p = point - this->P.Center;
+  if (!(this->P.DefectRadius > 0) || !(Dot(p, this->Axis) > 0))
+  {
+    return -std::numeric_limits<double>::infinity();
+  }
+  const double x = Dot(p, this->Side1);
+  const double y = Dot(p, this->Side2);
+  const double rho = std::max(std::hypot(x, y), 1e-9);
+  const double psi = std::atan2(y, x);
+  const double outline = this->P.DefectRadius *
+    (1 + 0.12 * std::cos(2 * psi + 0.5) + 0.08 * std::cos(3 * psi - 1.1) +
+      0.04 * std::cos(5 * psi + 2.0));
+  const double slope = -this->P.DefectRadius *
+    (0.24 * std::sin(2 * psi + 0.5) + 0.24 * std::sin(3 * psi - 1.1) +
+      0.20 * std::sin(5 * psi + 2.0));
+  // Gradient of rho - outline(psi): radial part 1, tangential part -slope / rho; near the axis the
+  // latter says nothing about the far outline.
+  const double tangential = -slope / std::max(rho, 0.5 * this->P.DefectRadius);
+  const double length = std::hypot(1, tangential);
+  const double cosine = x / rho;
+  const double sine = y / rho;
+  normal = (1 / length) *
+    ((cosine - tangential * sine) * this->Side1 + (sine + tangential * cosine) * this->Side2);
+  return (outline - rho) / length;
+}
+
+bool Skull::IsInDefect(const Vec3& point) const
+{
+  Vec3 normal;
+  return this->DefectDepth(point, normal) > 0;
+}
+
+double Skull::IntactValue(const Vec3& point) const
+{
+  return this->Resolve(point).Intact();
+}
+
+double Skull::Value(const Vec3& point) const
+{
+  const Layers layers = this->Resolve(point);
+  const double intact = layers.Intact();
+  if (layers.Bone == 0 || layers.Brain == 1)
+  {
+    return intact; // no bone here
+  }
+  Vec3 normal;
+  const double depth = this->DefectDepth(point, normal);
+  if (!std::isfinite(depth))
+  {
+    return intact;
+  }
+  const double removed = SmoothStep(depth, this->BlurWidth(normal));
+  return intact + removed * (layers.WithoutBone() - intact);
+}
+
+double Skull::IntersectOuterSurface(const Vec3& origin, const Vec3& direction) const
+{
+  return SkullSurface::Intersect(origin - this->P.Center, direction);
+}
+
+void Skull::Sample(Execution& execution, const Extent& extent, short* voxels) const
+{
+  const std::array<int, 3> dimensions = this->GetDimensions();
+  const Vec3 origin = this->GetOrigin();
+  const std::int64_t columns = extent[1] - extent[0] + 1;
+  const std::int64_t rows = extent[3] - extent[2] + 1;
+  const std::int64_t slices = extent[5] - extent[4] + 1;
+  const CounterNoise noise(this->P.Seed, 0);
+  constexpr std::int64_t RowsPerTask = 16;
+  execution.For(rows * slices, RowsPerTask,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t r = begin; r < end; ++r)
+      {
+        const std::int64_t j = extent[2] + r % rows;
+        const std::int64_t k = extent[4] + r / rows;
+        for (std::int64_t i = 0; i < columns; ++i)
+        {
+          const std::int64_t column = extent[0] + i;
+          double value = this->Value({ origin[0] + this->P.Spacing[0] * static_cast<double>(column),
+            origin[1] + this->P.Spacing[1] * static_cast<double>(j),
+            origin[2] + this->P.Spacing[2] * static_cast<double>(k) });
+          if (this->P.NoiseLevel > 0)
+          {
+            value +=
+              this->P.NoiseLevel * noise.Normal((k * dimensions[1] + j) * dimensions[0] + column);
+          }
+          voxels[r * columns + i] =
+            static_cast<short>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
+        }
+      }
+    });
+}
+}

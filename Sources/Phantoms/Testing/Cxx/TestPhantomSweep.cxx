@@ -1,0 +1,4 @@
+int TestPhantomSweep(int, char*[])
+{
+  return 0;
+}

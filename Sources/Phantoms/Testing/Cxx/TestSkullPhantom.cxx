@@ -1,0 +1,4 @@
+int TestSkullPhantom(int, char*[])
+{
+  return 0;
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSkullPhantom.h"
+
+#include "lacunaMemory.h"
+#include "lacunaSkull.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+vtkStandardNewMacro(vtkLacunaSkullPhantom);
+
+namespace
+{
+constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSkullPhantom::vtkLacunaSkullPhantom()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSkullPhantom::~vtkLacunaSkullPhantom() = default;
+
+//------------------------------------------------------------------------------
+lacuna::Skull vtkLacunaSkullPhantom::MakeSkull()
+{
+  lacuna::Skull::Parameters p;
+  p.Center = { this->Center[0], this->Center[1], this->Center[2] };
+  p.Spacing = { this->Spacing[0], this->Spacing[1], this->Spacing[2] };
+  p.DefectRadius = this->DefectRadius;
+  p.DefectDirection = { this->DefectDirection[0], this->DefectDirection[1],
+    this->DefectDirection[2] };
+  p.NoiseLevel = this->NoiseLevel;
+  p.Seed = static_cast<std::uint64_t>(this->Seed);
+  return lacuna::Skull(p);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullPhantom::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  try
+  {
+    const lacuna::Skull skull = this->MakeSkull();
+    const std::array<int, 3> dimensions = skull.GetDimensions();
+    const int extent[6] = { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 };
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    info->Set(vtkDataObject::ORIGIN(), skull.GetOrigin().data(), 3);
+    info->Set(vtkDataObject::SPACING(), this->Spacing, 3);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_SHORT, 1);
+    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    return 1;
+  }
+  catch (const std::exception& e)
+  {
+    vtkErrorMacro(<< e.what());
+    return 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullPhantom::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::Run(this, outputVector,
+    [&](vtkLacunaExecution& execution)
+    {
+      const lacuna::Skull skull = this->MakeSkull();
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      lacuna::Extent extent;
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
+      double bytes = sizeof(short);
+      std::ostringstream what;
+      what << "a skull of";
+      for (int i = 0; i < 3; ++i)
+      {
+        const double points = 1.0 + extent[2 * i + 1] - extent[2 * i];
+        bytes *= points;
+        what << (i > 0 ? " x " : " ") << points;
+      }
+      what << " voxels (Spacing " << this->Spacing[0] << " " << this->Spacing[1] << " "
+           << this->Spacing[2] << " mm)";
+      lacuna::RequireMemory(what.str(), bytes);
+
+      vtkImageData* output = vtkImageData::GetData(outputVector);
+      output->SetOrigin(skull.GetOrigin().data());
+      output->SetSpacing(this->Spacing);
+      output->SetExtent(extent.data());
+      output->AllocateScalars(VTK_SHORT, 1);
+      vtkDataArray* scalars = output->GetPointData()->GetScalars();
+      scalars->SetName("HounsfieldUnits");
+      skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
+      vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters());
+    });
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaSkullPhantom::EvaluateTruth(double x, double y, double z)
+{
+  const lacuna::Vec3 point{ x, y, z };
+  try
+  {
+    return lacuna::IsFinite(point) ? this->MakeSkull().IntactValue(point) : NoNumber;
+  }
+  catch (const std::invalid_argument&)
+  {
+    return NoNumber;
+  }
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaSkullPhantom::IntersectOuterSurface(
+  const double origin[3], const double direction[3])
+{
+  try
+  {
+    return this->MakeSkull().IntersectOuterSurface(
+      { origin[0], origin[1], origin[2] }, { direction[0], direction[1], direction[2] });
+  }
+  catch (const std::invalid_argument&)
+  {
+    return NoNumber;
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaSkullPhantom::IsInDefect(double x, double y, double z)
+{
+  try
+  {
+    return this->MakeSkull().IsInDefect({ x, y, z });
+  }
+  catch (const std::invalid_argument&)
+  {
+    return false;
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSkullPhantom::DescribeParameters()
+{
+  std::ostringstream text;
+  text << "Spacing=" << this->Spacing[0] << "," << this->Spacing[1] << "," << this->Spacing[2]
+       << " DefectRadius=" << this->DefectRadius << " DefectDirection=" << this->DefectDirection[0]
+       << "," << this->DefectDirection[1] << "," << this->DefectDirection[2]
+       << " NoiseLevel=" << this->NoiseLevel << " Seed=" << this->Seed
+       << " Center=" << this->Center[0] << "," << this->Center[1] << "," << this->Center[2];
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullPhantom::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << this->DescribeParameters() << "\n";
+}
