@@ -238,37 +238,48 @@ private:
   double Width;
 };
 
-// A tube of constant radius around a circular arc, with round ends.
-class Arc
+// A tube around a circular arc, tapered evenly along it, with round ends.
+class Tube
 {
 public:
-  // Starts at start along the unit vector tangent and bends towards hint with the given radius of
-  // curvature.
-  Arc(const Vec3& start, const Vec3& tangent, const Vec3& hint, double curvatureRadius,
-    double length, double radius, double width)
-    : Curvature(curvatureRadius)
-    , Radius(radius)
-    , Width(width)
+  struct Shape
   {
-    const double angle = length / curvatureRadius;
-    const Vec3 normal = Normalized(hint - Dot(hint, tangent) * tangent);
-    this->Center = start + curvatureRadius * normal;
-    const auto direction = [&](double a) { return std::sin(a) * tangent - std::cos(a) * normal; };
-    this->Middle = direction(0.5 * angle);
-    this->Across = std::cos(0.5 * angle) * tangent + std::sin(0.5 * angle) * normal;
+    Vec3 Bend;        // towards the centre of curvature
+    double Curvature; // radius of curvature, mm
+    double Length;    // mm
+    double Radius;    // at the end, mm
+  };
+
+  Tube(const Vec3& start, const Vec3& tangent, double startRadius, const Shape& shape, double width)
+    : Curvature(shape.Curvature)
+    , StartRadius(startRadius)
+    , EndRadius(shape.Radius)
+    , Width(width)
+    , HalfAngle(0.5 * shape.Length / shape.Curvature)
+    , CosHalf(std::cos(this->HalfAngle))
+    , SinHalf(std::sin(this->HalfAngle))
+  {
+    const Vec3 normal = Normalized(shape.Bend - Dot(shape.Bend, tangent) * tangent);
+    this->Center = start + this->Curvature * normal;
+    this->Middle = this->SinHalf * tangent - this->CosHalf * normal;
+    this->Across = this->CosHalf * tangent + this->SinHalf * normal;
     this->Binormal = Cross(this->Middle, this->Across);
-    this->CosHalf = std::cos(0.5 * angle);
-    this->SinHalf = std::sin(0.5 * angle);
-    this->End = this->Center + curvatureRadius * direction(angle);
+    const double angle = 2 * this->HalfAngle;
+    this->End =
+      this->Center + this->Curvature * (std::sin(angle) * tangent - std::cos(angle) * normal);
     this->EndTangent = std::cos(angle) * tangent + std::sin(angle) * normal;
-    const double sagitta = curvatureRadius * (1 - this->CosHalf);
-    this->Bounds.Center = this->Center + (curvatureRadius - 0.5 * sagitta) * this->Middle;
-    this->Bounds.Radius =
-      std::hypot(curvatureRadius * this->SinHalf, 0.5 * sagitta) + radius + 0.5 * width;
+    const double sagitta = this->Curvature * (1 - this->CosHalf);
+    this->Bounds.Center = this->Center + (this->Curvature - 0.5 * sagitta) * this->Middle;
+    this->Bounds.Radius = std::hypot(this->Curvature * this->SinHalf, 0.5 * sagitta) +
+      std::max(this->StartRadius, this->EndRadius) + 0.5 * width;
   }
 
-  const Vec3& GetEnd() const { return this->End; }
-  const Vec3& GetEndTangent() const { return this->EndTangent; }
+  // The next one starts here.
+  Tube Continue(const Shape& shape) const
+  {
+    return Tube(this->End, this->EndTangent, this->EndRadius, shape, this->Width);
+  }
+
   const Sphere& GetBounds() const { return this->Bounds; }
 
   // Share of the tube at a point, 0 to 1, from the exact distance to the arc.
@@ -276,35 +287,43 @@ public:
   {
     const Vec3 p = point - this->Center;
     const double u = Dot(p, this->Middle);
-    const double v = std::abs(Dot(p, this->Across));
+    const double v = Dot(p, this->Across);
     const double w = Dot(p, this->Binormal);
+    const double outwards = std::abs(v);
     double inPlane;
-    if (v * this->CosHalf <= u * this->SinHalf)
+    double along;
+    if (outwards * this->CosHalf <= u * this->SinHalf)
     {
       const double d = std::sqrt(u * u + v * v) - this->Curvature;
       inPlane = d * d;
+      along = std::atan2(v, u) / this->HalfAngle;
     }
     else
     {
       const double du = u - this->Curvature * this->CosHalf;
-      const double dv = v - this->Curvature * this->SinHalf;
+      const double dv = outwards - this->Curvature * this->SinHalf;
       inPlane = du * du + dv * dv;
+      along = v < 0 ? -1 : 1;
     }
-    return SmoothStep(this->Radius - std::sqrt(inPlane + w * w), this->Width);
+    const double radius =
+      this->StartRadius + 0.5 * (1 + along) * (this->EndRadius - this->StartRadius);
+    return SmoothStep(radius - std::sqrt(inPlane + w * w), this->Width);
   }
 
 private:
+  double Curvature;
+  double StartRadius;
+  double EndRadius;
+  double Width;
+  double HalfAngle;
+  double CosHalf;
+  double SinHalf;
   Vec3 Center;
   Vec3 Middle;
   Vec3 Across;
   Vec3 Binormal;
   Vec3 End;
   Vec3 EndTangent;
-  double Curvature;
-  double Radius;
-  double Width;
-  double CosHalf;
-  double SinHalf;
   Sphere Bounds;
 };
 
@@ -313,29 +332,29 @@ class VesselScene : public PhantomScene
 public:
   explicit VesselScene(double width)
   {
-    // Every fork: r0^3 = r1^3 + r2^3; both children leave along the parent and bend away.
-    this->Tubes.emplace_back(
-      Vec3{ -9, 9, -18 }, Normalized({ 0.25, -0.3, 1 }), Vec3{ 0.3, -1, 0 }, 70, 13, 4.0, width);
-    this->Fork(0, { 1, 0.15, 0 }, 20, 16, 3.3, { -1, -0.5, 0.1 }, 24, 15, 3.035, width);
-    this->Fork(1, { 0.4, 1, 0.1 }, 18, 12, 2.7, { 0.3, -1, 0.4 }, 16, 13, 2.536, width);
-    this->Fork(2, { -0.2, -1, 0.2 }, 18, 12, 2.45, { -0.3, 1, 0.5 }, 22, 13, 2.365, width);
-    this->Fork(3, { -1, 0.2, 0.6 }, 15, 11, 2.25, { 1, 0.3, -0.2 }, 18, 7, 2.022, width);
+    this->Tubes.emplace_back(Vec3{ -10, 9, -18 }, Normalized({ 0.25, -0.3, 1 }), 4.2,
+      Tube::Shape{ { 0.3, -1, 0 }, 70, 13, 4.0 }, width);
+    // At every fork r0^3 = r1^3 + r2^3; both branches leave along the parent and bend away.
+    this->Fork(0, { { 1, 0.15, 0 }, 20, 16, 3.3 }, { { -1, -0.5, 0.1 }, 24, 15, 3.035 });
+    this->Fork(1, { { 0.4, 1, 0.1 }, 18, 12, 2.7 }, { { 0.3, -1, 0.4 }, 16, 13, 2.536 });
+    this->Fork(2, { { -0.2, -1, 0.2 }, 18, 12, 2.45 }, { { -0.3, 1, 0.5 }, 22, 13, 2.365 });
+    this->Fork(3, { { -1, 0.2, 0.6 }, 15, 11, 2.25 }, { { 1, 0.3, -0.2 }, 18, 8, 2.022 });
   }
 
   void SampleRow(
     const Vec3& start, const Vec3& step, int first, int count, double* values) const override
   {
-    // values first holds the share of tissue: what none of the vessels takes. The product keeps the
-    // field twice differentiable where vessels meet.
-    std::fill(values, values + count, 1.0);
-    for (const Arc& tube : this->Tubes)
+    // The union: what the fullest tube takes of a point. So the surface of the tree does not depend
+    // on the width of the edges.
+    std::fill(values, values + count, 0.0);
+    for (const Tube& tube : this->Tubes)
     {
       ForRowInSphere(tube.GetBounds(), start, step, first, count,
-        [&](int j, const Vec3& p) { values[j] *= 1 - tube.Occupancy(p); });
+        [&](int j, const Vec3& p) { values[j] = std::max(values[j], tube.Occupancy(p)); });
     }
     for (int j = 0; j < count; ++j)
     {
-      values[j] = Fluid + (Tissue - Fluid) * values[j];
+      values[j] = Tissue + (Fluid - Tissue) * values[j];
     }
   }
 
@@ -345,17 +364,14 @@ private:
   static constexpr double Fluid = 25;
   static constexpr double Tissue = 150;
 
-  void Fork(std::size_t parent, const Vec3& hint1, double curvature1, double length1,
-    double radius1, const Vec3& hint2, double curvature2, double length2, double radius2,
-    double width)
+  void Fork(std::size_t parent, const Tube::Shape& shape1, const Tube::Shape& shape2)
   {
-    const Vec3 at = this->Tubes[parent].GetEnd();
-    const Vec3 along = this->Tubes[parent].GetEndTangent();
-    this->Tubes.emplace_back(at, along, hint1, curvature1, length1, radius1, width);
-    this->Tubes.emplace_back(at, along, hint2, curvature2, length2, radius2, width);
+    const Tube from = this->Tubes[parent];
+    this->Tubes.push_back(from.Continue(shape1));
+    this->Tubes.push_back(from.Continue(shape2));
   }
 
-  std::vector<Arc> Tubes;
+  std::vector<Tube> Tubes;
 };
 
 class LinearScene : public PhantomScene

@@ -46,8 +46,9 @@ enum class Anatomy
   /// A sweet potato in water (20): a bent, tapered ellipsoid of 190 mm along z, 80 mm along x and
   /// 90 mm along y, flesh 150 under a bright skin of 200 that is 4 mm thick (Carr 1996, ch. 5).
   Kumara,
-  /// A fluid-filled tree of vessels (25) in bright tissue (150): a trunk of 4 mm radius that forks
-  /// four times into arcs whose radii obey Murray's law; all ends are closed.
+  /// A fluid-filled tree of vessels (25) in bright tissue (150): a trunk of 4 mm radius and four
+  /// forks; tubes around circular arcs that taper so that the radii at the forks obey Murray's law;
+  /// all ends are closed. The union of the tubes leaves creases where branches part.
   Vessels,
   /// 130 + 1.25 x + 1.5 y - z: reproduced exactly by any linear interpolation.
   Linear
