@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaHoleFill.h"
+
+#include "lacunaExecution.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+using lacuna::HoleFillInput;
+using lacuna::HoleFillOptions;
+using lacuna::HoleFillResult;
+
+// A map of 71 x 61 pixels of 1.5 x 1 mm from a surface, with an off-centre disc as defect.
+template <class Surface>
+HoleFillInput MakeMap(const Surface& surface, double radius = 15)
+{
+  HoleFillInput input;
+  input.Grid.Width = 71;
+  input.Grid.Height = 61;
+  input.Grid.Spacing = { 1.5, 1 };
+  for (std::size_t i = 0; i < input.Grid.GetSize(); ++i)
+  {
+    const double x = 1.5 * static_cast<double>(i % 71);
+    const double y = static_cast<double>(i / 71);
+    input.Depth.push_back(surface(x, y));
+    input.Valid.push_back(1);
+    input.Defect.push_back(std::hypot(x - 45, y - 27) <= radius);
+  }
+  return input;
+}
+
+double Plane(double x, double y)
+{
+  return 30 + 0.25 * x - 0.5 * y;
+}
+
+double Sphere(double x, double y)
+{
+  return 100 - std::sqrt(90 * 90 - (x - 50) * (x - 50) - (y - 30) * (y - 30));
+}
+
+HoleFillResult Fill(
+  const HoleFillInput& input, const HoleFillOptions& options = {}, int threads = 2)
+{
+  lacuna::ThreadExecution execution(threads);
+  return lacuna::FillHole(execution, input, options);
+}
+
+std::string ErrorOf(const HoleFillInput& input, const HoleFillOptions& options = {})
+{
+  try
+  {
+    Fill(input, options);
+  }
+  catch (const std::exception& e)
+  {
+    return e.what();
+  }
+  return "";
+}
+
+void ExpectContains(const std::string& text, const std::string& part)
+{
+  EXPECT_NE(text.find(part), std::string::npos) << "'" << text << "' lacks '" << part << "'";
+}
+}
+
+TEST(HoleFill, ReproducesAPlane)
+{
+  HoleFillInput input = MakeMap(Plane);
+  for (std::size_t i = 0; i < input.Depth.size(); ++i)
+  {
+    if (input.Defect[i])
+    {
+      input.Valid[i] = 0;
+      input.Depth[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  const HoleFillResult result = Fill(input);
+  for (std::size_t i = 0; i < input.Depth.size(); ++i)
+  {
+    if (input.Defect[i])
+    {
+      EXPECT_NEAR(result.Fitted[i], Plane(1.5 * (i % 71), static_cast<double>(i / 71)), 1e-9);
+      EXPECT_TRUE(std::isnan(result.Deviation[i])) << "nothing was measured there";
+    }
+  }
+  EXPECT_NEAR(result.Plane[0], 30, 1e-8);
+  EXPECT_NEAR(result.Plane[1], 0.25, 1e-10);
+  EXPECT_NEAR(result.Plane[2], -0.5, 1e-10);
+  ASSERT_EQ(result.Filled.size(), result.Gradients.size());
+  for (const auto& g : result.Gradients)
+  {
+    EXPECT_NEAR(g[0], 0.25, 1e-9);
+    EXPECT_NEAR(g[1], -0.5, 1e-9);
+  }
+  EXPECT_NEAR(result.DefectArea,
+    1.5 * static_cast<double>(result.Filled.size()) * std::sqrt(1 + 0.0625 + 0.25), 1e-6);
+  EXPECT_TRUE(result.Warnings.empty());
+}
+
+TEST(HoleFill, RestoresASphere)
+{
+  // Removed data are compared with the fit; nodes are restored exactly.
+  const HoleFillInput input = MakeMap(Sphere);
+  const HoleFillResult result = Fill(input);
+  double worst = 0;
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < input.Depth.size(); ++i)
+  {
+    if (input.Defect[i])
+    {
+      worst = std::max(worst, std::abs(result.Deviation[i]));
+      EXPECT_NEAR(result.Deviation[i], result.Fitted[i] - input.Depth[i], 1e-12);
+    }
+    else if (result.Support[i])
+    {
+      nodes += std::abs(result.Deviation[i]) < 1e-10;
+    }
+    else
+    {
+      EXPECT_TRUE(std::isnan(result.Deviation[i]));
+    }
+  }
+  EXPECT_LT(worst, 0.15); // of a cap 1.3 mm high
+  EXPECT_EQ(nodes, result.Fit.NodeCount);
+  EXPECT_LT(result.Fit.Residual, 1e-10);
+}
+
+TEST(HoleFill, FittedIsCompleteOnItsRectangle)
+{
+  const HoleFillInput input = MakeMap(Sphere);
+  HoleFillOptions options;
+  options.SupportMargin = 6;
+  for (const double margin : { 0.0, 4.0, 1e6 })
+  {
+    options.OutputMargin = margin;
+    const HoleFillResult result = Fill(input, options);
+    // defect 30..60 x 12..42 mm, support 6 mm around
+    const int grow[2] = { static_cast<int>(std::min(margin, 1e3) / 1.5 + 0.999),
+      static_cast<int>(std::min(margin, 1e3)) };
+    EXPECT_EQ(result.Rectangle[0], std::max(0, 16 - grow[0]));
+    EXPECT_EQ(result.Rectangle[1], std::min(70, 44 + grow[0]));
+    EXPECT_EQ(result.Rectangle[2], std::max(0, 6 - grow[1]));
+    EXPECT_EQ(result.Rectangle[3], std::min(60, 48 + grow[1]));
+    for (int i = 0; i < 71 * 61; ++i)
+    {
+      const bool inside = i % 71 >= result.Rectangle[0] && i % 71 <= result.Rectangle[1] &&
+        i / 71 >= result.Rectangle[2] && i / 71 <= result.Rectangle[3];
+      EXPECT_EQ(std::isfinite(result.Fitted[i]), inside);
+    }
+  }
+}
+
+TEST(HoleFill, IsTheSameForAnyNumberOfThreads)
+{
+  const HoleFillInput input = MakeMap(Sphere);
+  const HoleFillResult one = Fill(input, {}, 1);
+  for (const int threads : { 2, 5 })
+  {
+    const HoleFillResult other = Fill(input, {}, threads);
+    EXPECT_EQ(std::memcmp(one.Fitted.data(), other.Fitted.data(), one.Fitted.size() * 8), 0);
+    EXPECT_EQ(one.Gradients, other.Gradients);
+    EXPECT_EQ(one.DefectArea, other.DefectArea);
+  }
+}
+
+TEST(HoleFill, UsesPaintedSupportOnly)
+{
+  // An artefact beside the defect spoils the fit unless only sound surface is painted.
+  HoleFillInput input = MakeMap(Plane);
+  HoleFillInput painted = input;
+  painted.Painted.assign(input.Grid.GetSize(), 0);
+  for (std::size_t i = 0; i < input.Depth.size(); ++i)
+  {
+    const double x = 1.5 * static_cast<double>(i % 71);
+    const bool artefact = x > 62;
+    painted.Depth[i] = input.Depth[i] += artefact ? 0.5 * (x - 62) : 0;
+    painted.Painted[i] = !artefact && x > 20;
+  }
+  const HoleFillResult spoilt = Fill(input);
+  const HoleFillResult sound = Fill(painted);
+  const std::size_t right = 27 * 71 + 38; // in the defect, near the artefact
+  EXPECT_GT(std::abs(spoilt.Deviation[right]), 0.1);
+  EXPECT_NEAR(sound.Deviation[right], 0, 1e-9);
+}
+
+TEST(HoleFill, WarnsOfAStepAndFitsTheLargerPart)
+{
+  // a floor is seen 40 mm below in a part of the surroundings
+  HoleFillInput input = MakeMap(Plane);
+  for (std::size_t i = 0; i < input.Depth.size(); ++i)
+  {
+    if (i % 71 > 45)
+    {
+      input.Depth[i] += 40;
+    }
+  }
+  const HoleFillResult result = Fill(input);
+  ASSERT_EQ(result.Warnings.size(), 1u);
+  ExpectContains(result.Warnings[0], "beyond a depth step");
+  EXPECT_NEAR(result.Fitted[27 * 71 + 30], Plane(45, 27), 1e-9);
+}
+
+TEST(HoleFill, WarnsOfADefectAtTheBorder)
+{
+  HoleFillInput input = MakeMap(Plane);
+  for (int j = 20; j < 30; ++j)
+  {
+    input.Defect[j * 71] = 1;
+  }
+  const HoleFillResult result = Fill(input);
+  ASSERT_EQ(result.Warnings.size(), 1u);
+  ExpectContains(result.Warnings[0], "border");
+  EXPECT_NEAR(result.Fitted[25 * 71], Plane(0, 25), 1e-9);
+}
+
+TEST(HoleFill, SmoothingSuppressesRipple)
+{
+  const HoleFillInput input = MakeMap(
+    [](double x, double y) { return Sphere(x, y) + 0.2 * std::sin(2 * x) * std::cos(3 * y); });
+  const auto worst = [&](double smoothing)
+  {
+    HoleFillOptions options;
+    options.Smoothing = smoothing;
+    const HoleFillResult result = Fill(input, options);
+    double error = 0;
+    for (const std::size_t i : result.Filled)
+    {
+      error = std::max(
+        error, std::abs(result.Fitted[i] - Sphere(1.5 * (i % 71), static_cast<double>(i / 71))));
+    }
+    return error;
+  };
+  EXPECT_LT(worst(20), 0.5 * worst(0));
+}
+
+TEST(HoleFill, RefusesBadInput)
+{
+  const HoleFillInput good = MakeMap(Plane);
+  EXPECT_EQ(ErrorOf(good), "");
+  HoleFillOptions options;
+  options.SupportMargin = 0;
+  ExpectContains(ErrorOf(good, options), "SupportMargin is 0");
+  options.SupportMargin = std::numeric_limits<double>::quiet_NaN();
+  ExpectContains(ErrorOf(good, options), "SupportMargin");
+  options = {};
+  options.NodeSpacing = -1;
+  ExpectContains(ErrorOf(good, options), "NodeSpacing is -1");
+  options = {};
+  options.OutputMargin = -2;
+  ExpectContains(ErrorOf(good, options), "OutputMargin is -2");
+  options = {};
+  options.Smoothing = HUGE_VAL;
+  ExpectContains(ErrorOf(good, options), "Smoothing");
+  options = {};
+  options.MaximumBytes = 1000;
+  ExpectContains(ErrorOf(good, options), "raise NodeSpacing");
+  options = {};
+  options.NodeSpacing = 500;
+  ExpectContains(ErrorOf(good, options), "lower NodeSpacing");
+
+  HoleFillInput bare = good;
+  bare.Valid = bare.Defect; // only the defect has a depth
+  ExpectContains(ErrorOf(bare), "raise SupportMargin");
+  bare.Painted.assign(bare.Grid.GetSize(), 1);
+  ExpectContains(ErrorOf(bare), "marked as support");
+
+  HoleFillInput line = good;
+  for (std::size_t i = 0; i < line.Valid.size(); ++i)
+  {
+    line.Valid[i] = i / 71 == 5;
+  }
+  line.Painted.assign(line.Grid.GetSize(), 1);
+  ExpectContains(ErrorOf(line), "one line");
+}

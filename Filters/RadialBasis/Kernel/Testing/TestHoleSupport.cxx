@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaHoleSupport.h"
+
+#include "lacunaExecution.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace
+{
+// From a picture, one string per row: '#' is 1.
+lacuna::MapMask Mask(const std::vector<std::string>& rows, char one = '#')
+{
+  lacuna::MapMask mask;
+  for (const std::string& row : rows)
+  {
+    for (const char c : row)
+    {
+      mask.push_back(c == one);
+    }
+  }
+  return mask;
+}
+
+lacuna::MapGrid Grid(const std::vector<std::string>& rows)
+{
+  lacuna::MapGrid grid;
+  grid.Width = static_cast<int>(rows[0].size());
+  grid.Height = static_cast<int>(rows.size());
+  return grid;
+}
+}
+
+TEST(HoleSupport, FindsInteriorHoles)
+{
+  // 'h' must be found; '.' reaches the border; holes are connected over edges, not corners
+  const std::vector<std::string> map = {
+    "..######",
+    ".##hh##.",
+    ".#hh###.",
+    ".######h",
+    ".#h##h#.",
+    "#.###.##",
+  };
+  // The 'h' at the right border in row 3 reaches it, the one in row 4 reaches the lower border.
+  lacuna::MapMask expected = Mask(map, 'h');
+  expected[3 * 8 + 7] = 0;
+  expected[4 * 8 + 5] = 0;
+  EXPECT_EQ(lacuna::FindInteriorHoles(Grid(map), Mask(map)), expected);
+}
+
+TEST(HoleSupport, SelectsByDistanceInMillimetres)
+{
+  const std::vector<std::string> map = { ".......", ".......", "...#...", ".......", "......." };
+  lacuna::MapGrid grid = Grid(map);
+  grid.Spacing = { 2, 0.5 };
+  const lacuna::MapMask all(grid.GetSize(), 1);
+  lacuna::ThreadExecution execution(2);
+  const std::vector<std::string> expected = { "...#...", "...#...", "..###..", "...#...",
+    "...#..." };
+  EXPECT_EQ(
+    lacuna::SelectWithin(execution, grid, Mask(map), 2, all), Mask(expected)); // 2 is included
+  lacuna::MapMask candidates = all;
+  candidates[2 * 7 + 2] = 0;
+  lacuna::MapMask fewer = Mask(expected);
+  fewer[2 * 7 + 2] = 0;
+  EXPECT_EQ(lacuna::SelectWithin(execution, grid, Mask(map), 2, candidates), fewer);
+}
+
+TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
+{
+  // 'a' at depth 10, 'b' at 40 beside it, 'c' at 70 touches neither
+  const std::vector<std::string> map = {
+    "aaaab...c",
+    "aaaabb.cc",
+    "aaaab...c",
+  };
+  lacuna::MapMask support = Mask(map, '.');
+  std::vector<double> depth;
+  for (std::size_t i = 0; i < support.size(); ++i)
+  {
+    const char c = map[i / 9][i % 9];
+    support[i] = c != '.';
+    depth.push_back(c == 'a' ? 10 : c == 'b' ? 40 : 70);
+  }
+  lacuna::MapMask expected = support;
+  for (std::size_t i = 0; i < support.size(); ++i)
+  {
+    expected[i] = support[i] && depth[i] != 40;
+  }
+  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(Grid(map), depth, 5, support);
+  EXPECT_EQ(support, expected);
+  EXPECT_EQ(report.RemovedPixels, 4u);
+  EXPECT_EQ(report.LargestStep, 30);
+}
+
+TEST(HoleSupport, KeepsASteepSlope)
+{
+  // 4 mm per mm of map, and the same in a map of coarse pixels
+  for (const double spacing : { 1.0, 3.0 })
+  {
+    lacuna::MapGrid grid;
+    grid.Width = 20;
+    grid.Height = 3;
+    grid.Spacing = { spacing, spacing };
+    std::vector<double> depth;
+    for (std::size_t i = 0; i < grid.GetSize(); ++i)
+    {
+      depth.push_back(4 * spacing * static_cast<double>(i % 20));
+    }
+    lacuna::MapMask support(grid.GetSize(), 1);
+    EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, 5, support).RemovedPixels, 0u);
+    EXPECT_EQ(support, lacuna::MapMask(grid.GetSize(), 1));
+    EXPECT_GT(lacuna::RemoveBeyondSteps(grid, depth, 3.9, support).RemovedPixels, 0u);
+  }
+}
+
+TEST(HoleSupport, ThinsToOneNodePerSquare)
+{
+  lacuna::MapGrid grid;
+  grid.Width = 8;
+  grid.Height = 6;
+  grid.Spacing = { 0.5, 0.5 };
+  lacuna::MapMask all(grid.GetSize(), 1);
+  // Squares of 1 mm hold pixels at 0 and 0.5; the middle is at 0.5.
+  std::vector<std::size_t> expected;
+  for (std::size_t j = 1; j < 6; j += 2)
+  {
+    for (std::size_t i = 1; i < 8; i += 2)
+    {
+      expected.push_back(j * 8 + i);
+    }
+  }
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), expected);
+  // Without the best pixel of a square, the first of the next best is taken.
+  all[1 * 8 + 1] = 0;
+  expected[0] = 1;
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), expected);
+}
+
+TEST(HoleSupport, ThinningFollowsTheMapNotItsCrop)
+{
+  lacuna::MapGrid whole;
+  whole.Width = 30;
+  whole.Height = 20;
+  whole.Spacing = { 0.7, 0.7 };
+  lacuna::MapMask mask(whole.GetSize(), 0);
+  lacuna::MapGrid crop = whole;
+  crop.Width = 17;
+  crop.Height = 11;
+  crop.FirstColumn = 5;
+  crop.FirstRow = 4;
+  for (int j = 0; j < crop.Height; ++j)
+  {
+    for (int i = 0; i < crop.Width; ++i)
+    {
+      mask[(j + crop.FirstRow) * 30 + i + crop.FirstColumn] = 1;
+    }
+  }
+  const auto inWhole = lacuna::ThinNodes(whole, mask, 2);
+  const auto inCrop = lacuna::ThinNodes(crop, lacuna::MapMask(crop.GetSize(), 1), 2);
+  ASSERT_EQ(inWhole.size(), inCrop.size());
+  for (std::size_t k = 0; k < inCrop.size(); ++k)
+  {
+    EXPECT_EQ(inWhole[k],
+      (inCrop[k] / crop.Width + crop.FirstRow) * 30 + inCrop[k] % crop.Width + crop.FirstColumn);
+  }
+}
+
+TEST(HoleSupport, KeepsAllPixelsWhenTheSpacingIsSmall)
+{
+  lacuna::MapGrid grid;
+  grid.Width = 50;
+  grid.Height = 40;
+  grid.Spacing = { 0.3, 0.3 };
+  const lacuna::MapMask all(grid.GetSize(), 1);
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 0.3).size(), grid.GetSize());
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 0.01).size(), grid.GetSize());
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1e6).size(), 1u);
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaHoleSupport.h"
+
+#include "lacunaDistanceTransform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::int64_t None = -1;
+
+// Visits the edge neighbours of pixel in the order left, right, above, below, with their distance.
+template <class Visitor>
+void ForNeighbours(const MapGrid& grid, std::size_t pixel, const Visitor& visit)
+{
+  const std::size_t width = grid.Width;
+  const std::size_t i = pixel % width;
+  const std::size_t j = pixel / width;
+  if (i > 0)
+  {
+    visit(pixel - 1, grid.Spacing[0]);
+  }
+  if (i + 1 < width)
+  {
+    visit(pixel + 1, grid.Spacing[0]);
+  }
+  if (j > 0)
+  {
+    visit(pixel - width, grid.Spacing[1]);
+  }
+  if (j + 1 < static_cast<std::size_t>(grid.Height))
+  {
+    visit(pixel + width, grid.Spacing[1]);
+  }
+}
+
+// Number of each pixel's piece of mask, None outside; pieces are numbered by their first pixel and
+// connected over edges for which connects(pixel, neighbour, distance) holds. Returns their sizes.
+template <class Predicate>
+std::vector<std::size_t> Label(const MapGrid& grid, const MapMask& mask, const Predicate& connects,
+  std::vector<std::int64_t>& labels)
+{
+  labels.assign(mask.size(), None);
+  std::vector<std::size_t> sizes;
+  std::vector<std::size_t> open;
+  for (std::size_t start = 0; start < mask.size(); ++start)
+  {
+    if (!mask[start] || labels[start] != None)
+    {
+      continue;
+    }
+    const auto label = static_cast<std::int64_t>(sizes.size());
+    sizes.push_back(0);
+    labels[start] = label;
+    open.push_back(start);
+    while (!open.empty())
+    {
+      const std::size_t pixel = open.back();
+      open.pop_back();
+      ++sizes.back();
+      ForNeighbours(grid, pixel,
+        [&](std::size_t neighbour, double distance)
+        {
+          if (mask[neighbour] && labels[neighbour] == None && connects(pixel, neighbour, distance))
+          {
+            labels[neighbour] = label;
+            open.push_back(neighbour);
+          }
+        });
+    }
+  }
+  return sizes;
+}
+
+// Number of the square of size spacing in which x = index * pixel lies.
+std::int64_t GetSquare(std::int64_t index, double pixel, double spacing)
+{
+  // The small number keeps rounding from moving a pixel that lies on a line.
+  return spacing <= pixel
+    ? index
+    : static_cast<std::int64_t>(std::floor(static_cast<double>(index) * pixel / spacing + 1e-9));
+}
+}
+
+//------------------------------------------------------------------------------
+MapMask FindInteriorHoles(const MapGrid& grid, const MapMask& mask)
+{
+  MapMask holes(mask.size());
+  std::transform(
+    mask.begin(), mask.end(), holes.begin(), [](unsigned char m) { return m ? 0 : 1; });
+  std::vector<std::int64_t> labels;
+  const std::vector<std::size_t> sizes = Label(
+    grid, holes, [](std::size_t, std::size_t, double) { return true; }, labels);
+  MapMask open(sizes.size(), 0); // reaches the border
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    int neighbours = 0;
+    ForNeighbours(grid, pixel, [&](std::size_t, double) { ++neighbours; });
+    if (neighbours < 4 && labels[pixel] != None)
+    {
+      open[labels[pixel]] = 1;
+    }
+  }
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    holes[pixel] = labels[pixel] != None && !open[labels[pixel]];
+  }
+  return holes;
+}
+
+//------------------------------------------------------------------------------
+MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& region,
+  double margin, const MapMask& candidates)
+{
+  const std::vector<double> squared =
+    SquaredDistanceTransform(execution, grid.Width, grid.Height, grid.Spacing, region);
+  const double limit = margin * margin * (1 + 1e-12);
+  MapMask selected(candidates.size());
+  for (std::size_t pixel = 0; pixel < selected.size(); ++pixel)
+  {
+    selected[pixel] = candidates[pixel] && squared[pixel] <= limit;
+  }
+  return selected;
+}
+
+//------------------------------------------------------------------------------
+StepReport RemoveBeyondSteps(
+  const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support)
+{
+  std::vector<std::int64_t> labels;
+  const auto isSmooth = [&](std::size_t a, std::size_t b, double distance)
+  { return std::abs(depth[a] - depth[b]) <= maximumSlope * distance; };
+  const std::vector<std::size_t> sizes = Label(grid, support, isSmooth, labels);
+
+  // Pairs of different pieces that a step divides, with the largest step.
+  std::map<std::pair<std::int64_t, std::int64_t>, double> steps;
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+  {
+    ForNeighbours(grid, pixel,
+      [&](std::size_t neighbour, double)
+      {
+        if (labels[pixel] != None && labels[neighbour] != None &&
+          labels[pixel] != labels[neighbour])
+        {
+          double& step = steps[{ labels[pixel], labels[neighbour] }];
+          step = std::max(step, std::abs(depth[pixel] - depth[neighbour]));
+        }
+      });
+  }
+
+  std::vector<std::int64_t> order(sizes.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    order[i] = static_cast<std::int64_t>(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::int64_t a, std::int64_t b) { return sizes[a] > sizes[b]; });
+  StepReport report;
+  std::vector<char> removed(sizes.size(), 0);
+  std::vector<char> kept(sizes.size(), 0);
+  for (const std::int64_t piece : order)
+  {
+    for (auto it = steps.lower_bound({ piece, 0 }); it != steps.end() && it->first.first == piece;
+         ++it)
+    {
+      if (kept[it->first.second])
+      {
+        removed[piece] = 1;
+        report.LargestStep = std::max(report.LargestStep, it->second);
+      }
+    }
+    kept[piece] = !removed[piece];
+    report.RemovedPixels += removed[piece] ? sizes[piece] : 0;
+  }
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+  {
+    support[pixel] = labels[pixel] != None && kept[labels[pixel]];
+  }
+  return report;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, double nodeSpacing)
+{
+  struct Best
+  {
+    std::size_t Pixel;
+    double Distance; // squared, from the middle of the square
+  };
+  std::map<std::pair<std::int64_t, std::int64_t>, Best> squares;
+  const double tie = 1e-9 * nodeSpacing * nodeSpacing;
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+  {
+    if (!support[pixel])
+    {
+      continue;
+    }
+    const std::int64_t index[2] = { grid.FirstColumn +
+        static_cast<std::int64_t>(pixel % grid.Width),
+      grid.FirstRow + static_cast<std::int64_t>(pixel / grid.Width) };
+    std::int64_t square[2];
+    double distance = 0;
+    for (int c = 0; c < 2; ++c)
+    {
+      square[c] = GetSquare(index[c], grid.Spacing[c], nodeSpacing);
+      const double d = static_cast<double>(index[c]) * grid.Spacing[c] -
+        (static_cast<double>(square[c]) + 0.5) * nodeSpacing;
+      distance += d * d;
+    }
+    const auto [entry, isNew] = squares.insert({ { square[1], square[0] }, { pixel, distance } });
+    if (!isNew && distance < entry->second.Distance - tie)
+    {
+      entry->second = { pixel, distance };
+    }
+  }
+  std::vector<std::size_t> nodes;
+  nodes.reserve(squares.size());
+  for (const auto& square : squares)
+  {
+    nodes.push_back(square.second.Pixel);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+}

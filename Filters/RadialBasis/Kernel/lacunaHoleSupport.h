@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Which pixels of a depth map carry the surface that fills a hole: rules about masks.
+///
+/// Masks and depths are arrays of width x height pixels, row after row; a mask is 0 or 1.
+#ifndef lacunaHoleSupport_h
+#define lacunaHoleSupport_h
+
+#include "lacunaVector.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace lacuna
+{
+class Execution;
+
+/// Where the pixels of a map are: pixel (i, j), 0 <= i < Width, 0 <= j < Height, has its centre at
+/// x = (FirstColumn + i) Spacing[0], y = (FirstRow + j) Spacing[1], the map's axes, mm.
+struct MapGrid
+{
+  int Width = 0;
+  int Height = 0;
+  Vec2 Spacing{ 1, 1 };
+  int FirstColumn = 0;
+  int FirstRow = 0;
+
+  std::size_t GetSize() const
+  {
+    return static_cast<std::size_t>(this->Width) * static_cast<std::size_t>(this->Height);
+  }
+};
+
+using MapMask = std::vector<unsigned char>;
+
+/// Pixels outside of mask that cannot be reached from the border of the map over edges between
+/// pixels outside of mask: its interior holes.
+MapMask FindInteriorHoles(const MapGrid& grid, const MapMask& mask);
+
+/// Pixels of candidates whose centres are at most margin mm from the centre of a pixel of region.
+MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& region,
+  double margin, const MapMask& candidates);
+
+/// What RemoveBeyondSteps did.
+struct StepReport
+{
+  std::size_t RemovedPixels = 0;
+  double LargestStep = 0; ///< mm, between neighbours of kept and removed pixels
+};
+
+/// Removes from support what lies beyond a depth step. A step is between two edge neighbours of
+/// support whose depths differ by more than maximumSlope times their distance. Steps divide the
+/// support into connected pieces (over edges without a step). Taken from the largest piece to the
+/// smallest (of equal ones the one with the first pixel), a piece is removed when a step divides it
+/// from one that was kept. Pieces that touch none, like those around another hole, stay.
+StepReport RemoveBeyondSteps(
+  const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support);
+
+/// Thins support to about one pixel for each square of nodeSpacing mm: the plane is divided into
+/// squares of that size with a corner at x = y = 0, and of the pixels whose centres lie in a square
+/// the one nearest to its middle is kept, the first one of equals. Returns the pixels, ascending.
+/// Where nodeSpacing is at most the pixel spacing of an axis, each pixel is a square of its own.
+std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, double nodeSpacing);
+}
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSymmetricFactorization.h"
+
+#include <cblas.h>
+
+#include <limits>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+// Fortran interfaces; the last arguments are the lengths of the character arguments.
+extern "C"
+{
+  void dsytrf_(const char* uplo, const int* n, double* a, const int* lda, int* pivots, double* work,
+    const int* workLength, int* info, std::size_t);
+  void dsytrs_(const char* uplo, const int* n, const int* columns, const double* a, const int* lda,
+    const int* pivots, double* b, const int* ldb, int* info, std::size_t);
+  void dsycon_(const char* uplo, const int* n, const double* a, const int* lda, const int* pivots,
+    const double* norm, double* reciprocal, double* work, int* intWork, int* info, std::size_t);
+  double dlansy_(const char* norm, const char* uplo, const int* n, const double* a, const int* lda,
+    double* work, std::size_t, std::size_t);
+}
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::align_val_t Alignment{ 64 };
+
+// OpenBLAS divides its work by the number of threads, and sums accordingly.
+class SingleBlasThread
+{
+public:
+  SingleBlasThread()
+    : Lock(Mutex())
+    , Threads(openblas_get_num_threads())
+  {
+    openblas_set_num_threads(1);
+  }
+  ~SingleBlasThread() { openblas_set_num_threads(this->Threads); }
+  SingleBlasThread(const SingleBlasThread&) = delete;
+  SingleBlasThread& operator=(const SingleBlasThread&) = delete;
+
+private:
+  static std::mutex& Mutex()
+  {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> Lock;
+  int Threads;
+};
+}
+
+SquareMatrix::SquareMatrix(std::size_t size)
+  : Size(size)
+  , Elements(new (Alignment) double[size * size])
+{
+}
+
+void SquareMatrix::Free::operator()(double* elements) const
+{
+  ::operator delete[](elements, Alignment);
+}
+
+SymmetricFactorization::SymmetricFactorization(SquareMatrix matrix)
+  : Factors(std::move(matrix))
+  , Pivots(Factors.GetSize())
+{
+  if (this->Factors.GetSize() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+  {
+    throw std::length_error("matrix is too large for LAPACK");
+  }
+  const SingleBlasThread single;
+  const int n = static_cast<int>(this->Factors.GetSize());
+  double* a = this->Factors.Column(0);
+  std::vector<double> work(2 * this->Factors.GetSize());
+  const double norm = dlansy_("1", "L", &n, a, &n, work.data(), 1, 1);
+
+  int info = 0;
+  const int query = -1;
+  double workLength = 0;
+  dsytrf_("L", &n, a, &n, this->Pivots.data(), &workLength, &query, &info, 1);
+  std::vector<double> factorWork(static_cast<std::size_t>(workLength));
+  const int length = static_cast<int>(factorWork.size());
+  dsytrf_("L", &n, a, &n, this->Pivots.data(), factorWork.data(), &length, &info, 1);
+  if (info > 0)
+  {
+    throw std::runtime_error("matrix is singular");
+  }
+
+  double reciprocal = 0;
+  std::vector<int> intWork(this->Factors.GetSize());
+  dsycon_(
+    "L", &n, a, &n, this->Pivots.data(), &norm, &reciprocal, work.data(), intWork.data(), &info, 1);
+  this->Condition = reciprocal > 0 ? 1 / reciprocal : std::numeric_limits<double>::infinity();
+}
+
+void SymmetricFactorization::Solve(std::vector<double>& rightHandSide) const
+{
+  if (rightHandSide.size() != this->Factors.GetSize())
+  {
+    throw std::invalid_argument("right-hand side and matrix differ in size");
+  }
+  const SingleBlasThread single;
+  const int n = static_cast<int>(this->Factors.GetSize());
+  const int columns = 1;
+  int info = 0;
+  dsytrs_("L", &n, &columns, this->Factors.Column(0), &n, this->Pivots.data(), rightHandSide.data(),
+    &n, &info, 1);
+}
+}
