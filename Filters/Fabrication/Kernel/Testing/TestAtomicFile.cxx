@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaAtomicFile.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+using lacuna::FileError;
+using lacuna::WriteFileAtomically;
+
+namespace
+{
+class AtomicFile : public ::testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    this->Folder = fs::path(::testing::TempDir()) / ("lacuna-atomic-" + std::to_string(getpid()));
+    fs::remove_all(this->Folder);
+    fs::create_directory(this->Folder);
+  }
+  void TearDown() override
+  {
+    fs::permissions(this->Folder, fs::perms::owner_all);
+    fs::remove_all(this->Folder);
+  }
+  std::string Path(const std::string& name) const { return (this->Folder / name).string(); }
+  std::size_t CountFiles() const
+  {
+    return std::distance(fs::directory_iterator(this->Folder), fs::directory_iterator());
+  }
+  static std::string Read(const std::string& path)
+  {
+    std::ostringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  static FileError::Kind KindOf(const std::string& path, const std::string& content)
+  {
+    try
+    {
+      WriteFileAtomically(path, content);
+    }
+    catch (const FileError& e)
+    {
+      EXPECT_NE(std::string(e.what()).find(path), std::string::npos) << e.what();
+      return e.GetKind();
+    }
+    ADD_FAILURE() << "no error for " << path;
+    return FileError::Kind::Other;
+  }
+  fs::path Folder;
+};
+
+// The super-user may write everywhere, so the tests of permissions act as nobody.
+class AsNobody
+{
+public:
+  AsNobody()
+    : Changed(geteuid() == 0 && seteuid(65534) == 0)
+  {
+  }
+  ~AsNobody()
+  {
+    if (this->Changed && seteuid(0) != 0)
+    {
+      std::abort();
+    }
+  }
+
+private:
+  bool Changed;
+};
+}
+
+TEST_F(AtomicFile, WritesAndReplacesTheWholeFile)
+{
+  const std::string path = this->Path("a.igs");
+  const std::string large(3000000, 'x');
+  WriteFileAtomically(path, large);
+  EXPECT_EQ(Read(path), large);
+  WriteFileAtomically(path, "small\n");
+  EXPECT_EQ(Read(path), "small\n");
+  EXPECT_EQ(this->CountFiles(), 1u); // no temporary file is left
+}
+
+TEST_F(AtomicFile, RespectsTheUmask)
+{
+  const mode_t before = umask(027);
+  WriteFileAtomically(this->Path("a"), "x");
+  umask(before);
+  EXPECT_EQ(fs::status(this->Path("a")).permissions(), static_cast<fs::perms>(0640));
+}
+
+TEST_F(AtomicFile, WritesRelativePaths)
+{
+  const fs::path before = fs::current_path();
+  fs::current_path(this->Folder);
+  WriteFileAtomically("relative.igs", "x");
+  fs::current_path(before);
+  EXPECT_EQ(Read(this->Path("relative.igs")), "x");
+}
+
+TEST_F(AtomicFile, FollowsSymbolicLinks)
+{
+  fs::create_directory(this->Folder / "other");
+  fs::create_symlink("other/real.igs", this->Folder / "link.igs");
+  WriteFileAtomically(this->Path("link.igs"), "x");
+  EXPECT_TRUE(fs::is_symlink(this->Folder / "link.igs"));
+  EXPECT_EQ(Read(this->Path("other/real.igs")), "x");
+}
+
+TEST_F(AtomicFile, RefusesLoopsOfLinks)
+{
+  fs::create_symlink("b", this->Folder / "a");
+  fs::create_symlink("a", this->Folder / "b");
+  EXPECT_EQ(KindOf(this->Path("a"), "x"), FileError::Kind::CannotOpen);
+}
+
+TEST_F(AtomicFile, NoFolderOrAFolderInTheWay)
+{
+  EXPECT_EQ(KindOf(this->Path("no/such/a.igs"), "x"), FileError::Kind::CannotOpen);
+  fs::create_directory(this->Folder / "folder.igs");
+  EXPECT_EQ(KindOf(this->Path("folder.igs"), "x"), FileError::Kind::CannotOpen);
+  EXPECT_TRUE(fs::is_directory(this->Folder / "folder.igs"));
+}
+
+TEST_F(AtomicFile, ReadOnlyFolder)
+{
+  fs::permissions(
+    this->Folder, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_exec);
+  {
+    const AsNobody nobody;
+    EXPECT_EQ(KindOf(this->Path("a.igs"), "x"), FileError::Kind::CannotOpen);
+  }
+  EXPECT_EQ(this->CountFiles(), 0u);
+}
+
+TEST_F(AtomicFile, ReadOnlyFileStays)
+{
+  const std::string path = this->Path("a.igs");
+  WriteFileAtomically(path, "old");
+  fs::permissions(path, static_cast<fs::perms>(0444));
+  fs::permissions(this->Folder, fs::perms::all);
+  {
+    const AsNobody nobody;
+    EXPECT_EQ(KindOf(path, "new"), FileError::Kind::CannotOpen);
+  }
+  EXPECT_EQ(Read(path), "old");
+}
+
+TEST_F(AtomicFile, FullDevice)
+{
+  if (!fs::exists("/dev/full"))
+  {
+    GTEST_SKIP() << "no /dev/full";
+  }
+  EXPECT_EQ(KindOf("/dev/full", "x"), FileError::Kind::NoSpace);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+// A limit of the file size stands for a full disk: writing stops halfway.
+TEST_F(AtomicFile, FullDiskLeavesWhatWasThere)
+{
+  const std::string path = this->Path("a.igs");
+  WriteFileAtomically(path, "old");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const FileError::Kind kind = KindOf(path, std::string(100000, 'x'));
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(kind, FileError::Kind::NoSpace);
+  EXPECT_EQ(Read(path), "old");
+  EXPECT_EQ(this->CountFiles(), 1u);
+}

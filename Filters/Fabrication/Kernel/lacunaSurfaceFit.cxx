@@ -1,0 +1,498 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSurfaceFit.h"
+
+#include "lacunaExecution.h"
+#include "lacunaKnotSelection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+// Samples with the given number of values each, at the crossings of two sets of parameters.
+struct Problem
+{
+  std::vector<double> U;
+  std::vector<double> V;
+  int Components = 0;
+  std::vector<double> ByU; // one row for each u, v fastest
+  std::vector<double> ByV; // one row for each v, u fastest
+
+  std::int64_t Columns() const { return static_cast<std::int64_t>(this->U.size()); }
+  std::int64_t Rows() const { return static_cast<std::int64_t>(this->V.size()); }
+};
+
+struct Spaces
+{
+  CubicSplineSpace U;
+  CubicSplineSpace V;
+  std::int64_t GetSize() const { return this->U.GetSize() * this->V.GetSize(); }
+};
+
+// in: rows x columns groups of values; out: columns x rows.
+std::vector<double> Transposed(
+  const std::vector<double>& in, std::int64_t rows, std::int64_t columns, int group)
+{
+  std::vector<double> out(in.size());
+  for (std::int64_t r = 0; r < rows; ++r)
+  {
+    for (std::int64_t c = 0; c < columns; ++c)
+    {
+      std::copy_n(
+        in.data() + (r * columns + c) * group, group, out.data() + (c * rows + r) * group);
+    }
+  }
+  return out;
+}
+
+Spaces Interpolation(const Problem& problem)
+{
+  return { CubicSplineSpace::NotAKnot(problem.U), CubicSplineSpace::NotAKnot(problem.V) };
+}
+
+// Coefficients of the tensor product least squares fit, u fastest.
+std::vector<double> Solve(Execution& execution, const Problem& problem, const Spaces& spaces)
+{
+  const std::int64_t sizeU = spaces.U.GetSize();
+  const int group = problem.Components;
+  std::vector<double> alongU;
+  CubicSplineFit(spaces.U, problem.U).Solve(execution, problem.ByU, problem.Rows() * group, alongU);
+  std::vector<double> coefficients;
+  CubicSplineFit(spaces.V, problem.V)
+    .Solve(
+      execution, Transposed(alongU, sizeU, problem.Rows(), group), sizeU * group, coefficients);
+  return coefficients;
+}
+
+// The largest distance between the samples (by u) and the spline with these coefficients.
+double Deviation(Execution& execution, const Problem& problem, const Spaces& spaces,
+  const std::vector<double>& coefficients, const std::vector<double>& samples, int group)
+{
+  const std::int64_t sizeU = spaces.U.GetSize();
+  std::vector<double> alongV;
+  CubicSplineFit(spaces.V, problem.V).Evaluate(execution, coefficients, sizeU * group, alongV);
+  std::vector<double> values;
+  CubicSplineFit(spaces.U, problem.U)
+    .Evaluate(
+      execution, Transposed(alongV, problem.Rows(), sizeU, group), problem.Rows() * group, values);
+  double largest = 0;
+  for (std::size_t i = 0; i < samples.size(); i += group)
+  {
+    double sum = 0;
+    for (int c = 0; c < group; ++c)
+    {
+      sum += (samples[i + c] - values[i + c]) * (samples[i + c] - values[i + c]);
+    }
+    largest = std::max(largest, sum);
+  }
+  return std::sqrt(largest);
+}
+
+// The spaces with the fewest control points found whose fit deviates by no more than tolerance.
+Spaces Economise(Execution& execution, const Problem& problem, double tolerance)
+{
+  KnotSelection selectU(
+    problem.U, problem.ByU, problem.Rows() * problem.Components, problem.Components);
+  KnotSelection selectV(
+    problem.V, problem.ByV, problem.Columns() * problem.Components, problem.Components);
+  const auto make = [&](const KnotSelection::Result& u, const KnotSelection::Result& v) -> Spaces
+  {
+    return { CubicSplineSpace(problem.U.front(), u.Interior, problem.U.back()),
+      CubicSplineSpace(problem.V.front(), v.Interior, problem.V.back()) };
+  };
+  const auto deviation = [&](const Spaces& spaces)
+  {
+    return Deviation(execution, problem, spaces, Solve(execution, problem, spaces), problem.ByU,
+      problem.Components);
+  };
+
+  Spaces best = Interpolation(problem);
+  // The two directions share the tolerance. Their deviations seldom add up at one place, so what
+  // is left over after the first round is shared out again.
+  double share = tolerance;
+  double longest = 0; // share known to do
+  for (int round = 0; round < 4; ++round)
+  {
+    execution.Report(0.2 * round);
+    const KnotSelection::Result v = selectV.Select(execution, 0.5 * share);
+    const KnotSelection::Result u =
+      selectU.Select(execution, std::max(0.5 * share, share - v.Deviation));
+    const Spaces spaces = make(u, v);
+    const double reached = deviation(spaces);
+    const bool good = reached <= tolerance;
+    if (good)
+    {
+      best = spaces.GetSize() <= best.GetSize() ? spaces : best;
+      longest = share;
+    }
+    if (reached == 0 || (good && reached > 0.97 * tolerance))
+    {
+      break;
+    }
+    const double next = share * std::clamp(0.99 * tolerance / reached, 0.3, 3.0);
+    share = next > longest ? next : 0.5 * (share + longest);
+  }
+  // A knot less along one direction, as long as it goes.
+  for (bool fewer = true; fewer;)
+  {
+    fewer = false;
+    execution.Report(0.8);
+    for (const bool alongU :
+      { best.U.GetSize() < best.V.GetSize(), best.U.GetSize() >= best.V.GetSize() })
+    {
+      CubicSplineSpace& shrunk = alongU ? best.U : best.V;
+      const std::int64_t count = shrunk.GetSize() - 5;
+      if (count < 0)
+      {
+        continue;
+      }
+      const KnotSelection::Result result =
+        (alongU ? selectU : selectV).SelectCount(execution, count);
+      if (result.Deviation > tolerance)
+      {
+        continue;
+      }
+      Spaces trial = best;
+      (alongU ? trial.U : trial.V) =
+        CubicSplineSpace(shrunk.GetFirst(), result.Interior, shrunk.GetLast());
+      if (deviation(trial) <= tolerance)
+      {
+        best = trial;
+        fewer = true;
+        break;
+      }
+    }
+  }
+  return best;
+}
+
+// Fits the components that need it, lets place make points of their coefficients and verifies
+// what came out, rounding included.
+SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglected,
+  const std::function<Vec3(double u, double v, const double* values)>& place,
+  const std::vector<Vec3>& points, const SurfaceFitOptions& options)
+{
+  if (!(options.Tolerance >= 0 && std::isfinite(options.Tolerance)))
+  {
+    throw std::invalid_argument("the tolerance must be 0 or a positive number of mm");
+  }
+  problem.ByU = Transposed(problem.ByV, problem.Rows(), problem.Columns(), problem.Components);
+  std::vector<double> coordinates(3 * points.size());
+  for (std::int64_t j = 0; j < problem.Rows(); ++j)
+  {
+    for (std::int64_t i = 0; i < problem.Columns(); ++i)
+    {
+      std::copy_n(points[i + problem.Columns() * j].data(), 3,
+        coordinates.data() + 3 * (j + problem.Rows() * i));
+    }
+  }
+
+  const auto build = [&](const Spaces& spaces, int decimals)
+  {
+    SurfaceFit fit;
+    fit.Surface.U = spaces.U;
+    fit.Surface.V = spaces.V;
+    fit.Decimals = decimals;
+    std::vector<double> coefficients;
+    if (problem.Components > 0)
+    {
+      coefficients = Solve(execution, problem, spaces);
+    }
+    const double steps = std::pow(10, decimals);
+    const std::int64_t sizeU = spaces.U.GetSize();
+    std::vector<double> flat;
+    flat.reserve(3 * spaces.GetSize());
+    for (std::int64_t k = 0; k < spaces.GetSize(); ++k)
+    {
+      Vec3 p = place(spaces.U.GetIdentityCoefficient(k % sizeU),
+        spaces.V.GetIdentityCoefficient(k / sizeU), coefficients.data() + k * problem.Components);
+      for (double& x : p.Elements)
+      {
+        x = decimals < 17 ? std::round(x * steps) / steps + 0.0 : x;
+        flat.push_back(x);
+      }
+      fit.Surface.ControlPoints.push_back(p);
+    }
+    fit.MaximumDeviation = Deviation(execution, problem, spaces, flat, coordinates, 3);
+    return fit;
+  };
+
+  if (options.Tolerance > 0)
+  {
+    // A control point moved by rounding moves the surface by no more than that.
+    const int decimals = static_cast<int>(std::ceil(1 - std::log10(options.Tolerance) - 1e-9));
+    const bool round = decimals >= 0 && decimals <= 12;
+    const double left = options.Tolerance - neglected -
+      (round ? 0.5 * std::sqrt(3.0) * std::pow(10, -decimals) : 0.0);
+    Spaces spaces;
+    spaces.U = CubicSplineSpace(problem.U.front(), {}, problem.U.back());
+    spaces.V = CubicSplineSpace(problem.V.front(), {}, problem.V.back());
+    if (problem.Components > 0)
+    {
+      spaces = Economise(execution, problem, left);
+    }
+    SurfaceFit fit = build(spaces, round ? decimals : 17);
+    if (fit.MaximumDeviation <= options.Tolerance)
+    {
+      return fit;
+    }
+  }
+  SurfaceFit fit = build(Interpolation(problem), 17);
+  if (options.Tolerance > 0 && fit.MaximumDeviation > options.Tolerance)
+  {
+    std::ostringstream message;
+    message << "double precision reaches a deviation of " << fit.MaximumDeviation
+            << " mm here, the tolerance is " << options.Tolerance << " mm";
+    throw std::runtime_error(message.str());
+  }
+  return fit;
+}
+
+void CheckSize(GridSize size, std::size_t samples)
+{
+  if (size.Columns < 4 || size.Rows < 4)
+  {
+    std::ostringstream message;
+    message << "a bicubic surface needs at least 4 x 4 samples, these are " << size.Columns << " x "
+            << size.Rows;
+    throw std::invalid_argument(message.str());
+  }
+  if (samples != static_cast<std::size_t>(size.Columns) * static_cast<std::size_t>(size.Rows))
+  {
+    throw std::invalid_argument("the number of samples is not columns x rows");
+  }
+}
+
+[[noreturn]] void ThrowAt(GridSize size, std::size_t index, const std::string& what)
+{
+  std::ostringstream message;
+  message << what << " at column " << static_cast<std::int64_t>(index) % size.Columns << ", row "
+          << static_cast<std::int64_t>(index) / size.Columns;
+  throw std::invalid_argument(message.str());
+}
+
+std::vector<double> Uniform(std::int64_t count)
+{
+  std::vector<double> parameters(count);
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    parameters[i] = static_cast<double>(i);
+  }
+  return parameters;
+}
+
+// Parameters for given mean distances between neighbours.
+std::vector<double> Parameters(const std::vector<double>& distances, const char* what)
+{
+  const auto intervals = static_cast<std::int64_t>(distances.size());
+  double total = 0;
+  bool smooth = true;
+  for (std::int64_t i = 0; i < intervals; ++i)
+  {
+    total += distances[i];
+    const double previous = distances[std::max<std::int64_t>(0, i - 1)];
+    smooth = smooth && distances[i] <= 1.25 * previous && previous <= 1.25 * distances[i];
+  }
+  std::vector<double> parameters = Uniform(intervals + 1);
+  double sum = 0;
+  for (std::int64_t i = 0; i < intervals; ++i)
+  {
+    const double part = distances[i] / total * static_cast<double>(intervals);
+    if (!(part > 1e-4))
+    {
+      std::ostringstream message;
+      message << what << " " << i << " and " << i + 1 << " of the grid coincide";
+      throw std::invalid_argument(message.str());
+    }
+    sum += part;
+    if (!smooth && i + 1 < intervals)
+    {
+      parameters[i + 1] = std::round(1e6 * sum) / 1e6; // short in the file
+    }
+  }
+  return parameters;
+}
+}
+
+//------------------------------------------------------------------------------
+SurfaceFit FitHeights(Execution& execution, GridSize size, const std::vector<double>& heights,
+  const Matrix4& toWorld, const SurfaceFitOptions& options)
+{
+  CheckSize(size, heights.size());
+  const Vec3 view = toWorld.Column(2);
+  const auto is = [](double x, double wanted) { return std::abs(x - wanted) <= 1e-6; };
+  if (!(is(Norm(view), 1) && is(Dot(view, Normalized(toWorld.Column(0))), 0) &&
+        is(Dot(view, Normalized(toWorld.Column(1))), 0) && toWorld.Determinant3() > 0))
+  {
+    throw std::invalid_argument("the axes of the height field are not right-handed with a unit "
+                                "vector perpendicular to the columns and rows");
+  }
+  Problem problem;
+  problem.U = Uniform(size.Columns);
+  problem.V = Uniform(size.Rows);
+  problem.Components = 1;
+  problem.ByV = heights;
+  std::vector<Vec3> points(heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i)
+  {
+    const auto k = static_cast<std::int64_t>(i);
+    points[i] = toWorld.Point(
+      { static_cast<double>(k % size.Columns), static_cast<double>(k / size.Columns), heights[i] });
+    if (!IsFinite(points[i]))
+    {
+      ThrowAt(size, i, "the height is not a number");
+    }
+  }
+  return FitComponents(
+    execution, problem, 0,
+    [&](double u, double v, const double* height) {
+      return toWorld.Point({ u, v, *height });
+    },
+    points, options);
+}
+
+//------------------------------------------------------------------------------
+SurfaceFit FitPoints(Execution& execution, GridSize size, const std::vector<Vec3>& points,
+  const SurfaceFitOptions& options)
+{
+  CheckSize(size, points.size());
+  std::vector<double> alongU(size.Columns - 1, 0.0);
+  std::vector<double> alongV(size.Rows - 1, 0.0);
+  double scale = 0;
+  const std::int64_t columns = size.Columns;
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    if (!IsFinite(points[k]))
+    {
+      ThrowAt(size, k, "the point is not finite");
+    }
+    const std::int64_t i = static_cast<std::int64_t>(k) % columns;
+    const std::int64_t j = static_cast<std::int64_t>(k) / columns;
+    alongU[std::max<std::int64_t>(0, i - 1)] += i > 0 ? Norm(points[k] - points[k - 1]) : 0;
+    alongV[std::max<std::int64_t>(0, j - 1)] += j > 0 ? Norm(points[k] - points[k - columns]) : 0;
+    scale = std::max(scale, Norm(points[k]));
+  }
+  Problem problem;
+  problem.U = Parameters(alongU, "columns");
+  problem.V = Parameters(alongV, "rows");
+
+  // Coordinates that are linear in u and v (as in height fields) need no fit.
+  const Vec3& origin = points.front();
+  const Vec3 slopeU = (1 / problem.U.back()) * (points[columns - 1] - origin);
+  const Vec3 slopeV = (1 / problem.V.back()) * (points[columns * (size.Rows - 1)] - origin);
+  const auto plane = [&](double u, double v, int c)
+  { return origin[c] + u * slopeU[c] + v * slopeV[c]; };
+  const double negligible =
+    std::max(0.005 * options.Tolerance, 4 * std::numeric_limits<double>::epsilon() * scale);
+  std::vector<int> fitted;
+  for (int c = 0; c < 3; ++c)
+  {
+    for (std::size_t k = 0; k < points.size(); ++k)
+    {
+      const auto at = static_cast<std::int64_t>(k);
+      if (std::abs(points[k][c] - plane(problem.U[at % columns], problem.V[at / columns], c)) >
+        negligible)
+      {
+        fitted.push_back(c);
+        break;
+      }
+    }
+  }
+  problem.Components = static_cast<int>(fitted.size());
+  problem.ByV.reserve(points.size() * fitted.size());
+  for (const Vec3& p : points)
+  {
+    for (const int c : fitted)
+    {
+      problem.ByV.push_back(p[c] - origin[c]);
+    }
+  }
+  return FitComponents(
+    execution, problem, std::sqrt(3.0) * negligible,
+    [&](double u, double v, const double* values)
+    {
+      Vec3 p{ plane(u, v, 0), plane(u, v, 1), plane(u, v, 2) };
+      for (const int c : fitted)
+      {
+        p[c] = origin[c] + *values++;
+      }
+      return p;
+    },
+    points, options);
+}
+
+//------------------------------------------------------------------------------
+void CheckRegular(GridSize size, const std::vector<Vec3>& points)
+{
+  CheckSize(size, points.size());
+  const std::int64_t columns = size.Columns;
+  double extent = 0;
+  for (const Vec3& p : points)
+  {
+    extent = std::max(extent, Norm(p - points.front()));
+  }
+  const auto at = [&](std::int64_t i, std::int64_t j) -> const Vec3&
+  { return points[i + columns * j]; };
+  const auto check = [&](std::int64_t i, std::int64_t j, const Vec3& neighbour)
+  {
+    if (!(Norm(at(i, j) - neighbour) > 1e-9 * extent))
+    {
+      ThrowAt(size, i + columns * j, "the point coincides with a neighbour");
+    }
+  };
+  for (std::int64_t j = 0; j < size.Rows; ++j)
+  {
+    for (std::int64_t i = 0; i < columns; ++i)
+    {
+      if (i + 1 < columns)
+      {
+        check(i, j, at(i + 1, j));
+      }
+      if (j + 1 < size.Rows)
+      {
+        check(i, j, at(i, j + 1));
+      }
+    }
+  }
+  // Directions of the facet (i, j) as its corners see them; nearly the same for a flat one.
+  const auto corners = [&](std::int64_t i, std::int64_t j) -> std::array<Vec3, 4>
+  {
+    const Vec3 top = at(i + 1, j) - at(i, j);
+    const Vec3 bottom = at(i + 1, j + 1) - at(i, j + 1);
+    const Vec3 left = at(i, j + 1) - at(i, j);
+    const Vec3 right = at(i + 1, j + 1) - at(i + 1, j);
+    return { Normalized(Cross(top, left)), Normalized(Cross(top, right)),
+      Normalized(Cross(bottom, left)), Normalized(Cross(bottom, right)) };
+  };
+  for (std::int64_t j = 0; j + 1 < size.Rows; ++j)
+  {
+    for (std::int64_t i = 0; i + 1 < columns; ++i)
+    {
+      const std::array<Vec3, 4> own = corners(i, j);
+      bool folded = false;
+      for (const Vec3& n : own)
+      {
+        if (!(Dot(n, n) > 0))
+        {
+          ThrowAt(size, i + columns * j, "the facet has no area");
+        }
+        folded = folded || Dot(n, own[0]) < -0.5;
+      }
+      folded = folded || (i + 2 < columns && Dot(own[0], corners(i + 1, j)[0]) < -0.5) ||
+        (j + 2 < size.Rows && Dot(own[0], corners(i, j + 1)[0]) < -0.5);
+      if (folded)
+      {
+        ThrowAt(
+          size, i + columns * j, "the surface folds back (facets turn by more than 120 degrees)");
+      }
+    }
+  }
+}
+}
