@@ -70,7 +70,10 @@ void vtkLacunaTrackedSlices::Write(vtkImageData* stack, const std::vector<lacuna
   {
     vtkLacunaFieldData::SetMatrices(stack, ImageToReferenceName, poses);
   }
-  vtkLacunaFieldData::Set(stack, TimestampName, timestamps, 1);
+  if (!timestamps.empty())
+  {
+    vtkLacunaFieldData::Set(stack, TimestampName, timestamps, 1);
+  }
   vtkNew<vtkUnsignedCharArray> statusArray;
   statusArray->SetName(SliceStatusName);
   for (const unsigned char s : status)

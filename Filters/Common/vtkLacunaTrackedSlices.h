@@ -67,7 +67,8 @@ public:
   vtkDataArray* GetGreyLevels() const { return this->GreyLevels; }
 
   /// Writes the arrays of the contract. poses may be empty: then ImageToReference is left out (the
-  /// probe is not calibrated). The others have one element per slice.
+  /// probe is not calibrated). So may timestamps, when they are not known. The others have one
+  /// element per slice.
   static void Write(vtkImageData* stack, const std::vector<lacuna::Matrix4>& poses,
     const std::vector<double>& timestamps, const std::vector<unsigned char>& status,
     const std::vector<int>& frameNumbers);
