@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCalibrationFile.h"
+
+#include "lacunaSequenceText.h"
+#include "lacunaTransformGraph.h"
+
+#include <pugixml.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+
+namespace lacuna
+{
+namespace
+{
+bool NearlyEqual(const Matrix4& a, const Matrix4& b)
+{
+  for (int i = 0; i < 16; ++i)
+  {
+    const double x = a.Data()[i];
+    if (!(std::abs(x - b.Data()[i]) <= 1e-3 * std::max(1.0, std::abs(x))))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+class CalibrationFileReader
+{
+public:
+  explicit CalibrationFileReader(const std::string& fileName)
+    : FileName(fileName)
+  {
+  }
+
+  std::vector<NamedTransform> Read()
+  {
+    this->Load();
+    bool defined = false;
+    this->Visit(this->Document, defined);
+    if (!defined)
+    {
+      this->Fail("has no CoordinateDefinitions element; a calibration file is a PLUS device set "
+                 "configuration with <CoordinateDefinitions><Transform From=\"Image\" To=\"Probe\" "
+                 "Matrix=\"16 numbers\"/></CoordinateDefinitions>");
+    }
+    if (this->Transforms.empty())
+    {
+      this->Fail("its CoordinateDefinitions has no Transform");
+    }
+    return std::move(this->Transforms);
+  }
+
+private:
+  [[noreturn]] void Fail(const std::string& text) const
+  {
+    throw std::runtime_error(this->FileName + ": " + text);
+  }
+
+  void Load()
+  {
+    std::ifstream stream(this->FileName, std::ios::binary);
+    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    if (!stream || text.empty())
+    {
+      this->Fail("the calibration file does not exist, is empty or cannot be read");
+    }
+    const pugi::xml_parse_result result = this->Document.load_buffer(text.data(), text.size());
+    if (!result)
+    {
+      const auto end = text.begin() +
+        std::min<std::ptrdiff_t>(result.offset, static_cast<std::ptrdiff_t>(text.size()));
+      this->Fail("is not well-formed XML: line " +
+        std::to_string(1 + std::count(text.begin(), end, '\n')) + ": " + result.description());
+    }
+  }
+
+  // Without recursion: the depth of a file is not ours to trust.
+  void Visit(const pugi::xml_node& root, bool& defined)
+  {
+    struct Finder : pugi::xml_tree_walker
+    {
+      std::vector<pugi::xml_node> Found;
+      bool for_each(pugi::xml_node& node) override
+      {
+        if (std::string_view(node.name()) == "CoordinateDefinitions")
+        {
+          this->Found.push_back(node);
+        }
+        return true;
+      }
+    } finder;
+    pugi::xml_node start = root;
+    start.traverse(finder);
+    for (const pugi::xml_node& definitions : finder.Found)
+    {
+      defined = true;
+      for (const pugi::xml_node& element : definitions.children("Transform"))
+      {
+        this->Add(element);
+      }
+    }
+  }
+
+  void Add(const pugi::xml_node& element)
+  {
+    NamedTransform transform;
+    transform.From = Trim(element.attribute("From").value());
+    transform.To = Trim(element.attribute("To").value());
+    const std::string_view text = element.attribute("Matrix").value();
+    const std::string name =
+      "Transform From=\"" + transform.From + "\" To=\"" + transform.To + "\"";
+    if (transform.From.empty() || transform.To.empty())
+    {
+      this->Fail(name + " lacks one of the attributes From and To");
+    }
+    if (transform.From == transform.To)
+    {
+      this->Fail(name + " leads from a frame to itself");
+    }
+    const std::string wrong = ParseMatrix(text, transform.Matrix);
+    if (!wrong.empty())
+    {
+      this->Fail(name + ": the Matrix " + wrong);
+    }
+    try
+    {
+      transform.Matrix.Inverse();
+    }
+    catch (const std::invalid_argument& e)
+    {
+      this->Fail(name + ": the " + e.what());
+    }
+    std::vector<TransformGraph::Link> chain;
+    if (!this->Graph.FindChain(transform.From, transform.To, chain))
+    {
+      this->Graph.Add(transform.From, transform.To, static_cast<int>(this->Transforms.size()));
+      this->Transforms.push_back(transform);
+      return;
+    }
+    Matrix4 known;
+    for (const TransformGraph::Link& link : chain)
+    {
+      const Matrix4& step = this->Transforms[static_cast<std::size_t>(link.Transform)].Matrix;
+      known = (link.Inverse ? step.Inverse() : step) * known;
+    }
+    if (!NearlyEqual(known, transform.Matrix))
+    {
+      this->Fail(name + " contradicts the transforms before it, which already lead from " +
+        transform.From + " to " + transform.To + "; remove the wrong one");
+    }
+  }
+
+  std::string FileName;
+  pugi::xml_document Document;
+  TransformGraph Graph;
+  std::vector<NamedTransform> Transforms;
+};
+}
+
+std::vector<NamedTransform> ReadCalibrationFile(const std::string& fileName)
+{
+  return CalibrationFileReader(fileName).Read();
+}
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaHeaderLines.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::size_t BufferSize = 1 << 14; // asking whether a file is ours reads one or two
+constexpr std::size_t LongestLine = 1 << 20;
+}
+
+HeaderLines::HeaderLines(const std::string& fileName)
+  : FileName(fileName)
+  , Buffer(BufferSize)
+{
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(fileName, error);
+  if (!std::filesystem::exists(status))
+  {
+    this->Fail("there is no such file", false);
+  }
+  if (!std::filesystem::is_regular_file(status))
+  {
+    this->Fail("is not a file", false);
+  }
+  this->Stream.open(fileName, std::ios::binary);
+  if (!this->Stream)
+  {
+    this->Fail("cannot be opened for reading", false);
+  }
+  if (!this->Fill())
+  {
+    this->Fail("is empty or cannot be read", false);
+  }
+}
+
+bool HeaderLines::Fill()
+{
+  this->Stream.read(this->Buffer.data(), static_cast<std::streamsize>(this->Buffer.size()));
+  this->Position = 0;
+  this->Filled = static_cast<std::size_t>(this->Stream.gcount());
+  return this->Filled > 0;
+}
+
+bool HeaderLines::Next(std::string& line)
+{
+  line.clear();
+  if (this->Position == this->Filled && !this->Fill())
+  {
+    return false;
+  }
+  ++this->LineNumber;
+  bool ended = false;
+  while (!ended && (this->Position < this->Filled || this->Fill()))
+  {
+    const char* begin = this->Buffer.data() + this->Position;
+    const std::size_t rest = this->Filled - this->Position;
+    const auto* end = static_cast<const char*>(std::memchr(begin, '\n', rest));
+    ended = end != nullptr;
+    const std::size_t size = ended ? static_cast<std::size_t>(end - begin) : rest;
+    line.append(begin, size);
+    this->Position += size + (ended ? 1 : 0);
+    if (line.size() > LongestLine || std::memchr(begin, '\0', size))
+    {
+      this->Fail("is not text; the file has no header, or the header lacks ElementDataFile");
+    }
+  }
+  this->Offset += static_cast<std::int64_t>(line.size()) + (ended ? 1 : 0);
+  if (!line.empty() && line.back() == '\r')
+  {
+    line.pop_back();
+  }
+  return true;
+}
+
+void HeaderLines::Fail(const std::string& text, bool line) const
+{
+  throw std::runtime_error(
+    this->FileName + (line ? ": line " + std::to_string(this->LineNumber) + " " : ": ") + text);
+}
+}

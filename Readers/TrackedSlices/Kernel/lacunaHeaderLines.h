@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Reads the text lines at the start of a file that goes on with binary data.
+#ifndef lacunaHeaderLines_h
+#define lacunaHeaderLines_h
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+class HeaderLines
+{
+public:
+  /// Opens the file. Throws std::runtime_error when it is absent, not a file, empty or unreadable.
+  explicit HeaderLines(const std::string& fileName);
+
+  /// The next line without its end (LF or CRLF); false at the end of the file. Throws
+  /// std::runtime_error when the line is not text: it holds a zero byte or is over 1 MiB long.
+  bool Next(std::string& line);
+
+  /// 1-based number of the line that Next gave last.
+  std::int64_t GetLineNumber() const { return this->LineNumber; }
+  /// Bytes from the start of the file to the end of that line, its LF included.
+  std::int64_t GetOffset() const { return this->Offset; }
+
+  /// Throws std::runtime_error with the file's name and, when line is set, the line's number.
+  [[noreturn]] void Fail(const std::string& text, bool line = true) const;
+
+private:
+  bool Fill();
+
+  std::string FileName;
+  std::ifstream Stream;
+  std::vector<char> Buffer;
+  std::size_t Position = 0;
+  std::size_t Filled = 0;
+  std::int64_t LineNumber = 0;
+  std::int64_t Offset = 0;
+};
+}
+#endif

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The header of a tracked sequence file: an image of many slices with named fields for each.
+#ifndef lacunaSequenceHeader_h
+#define lacunaSequenceHeader_h
+
+#include "lacunaElementType.h"
+#include "lacunaSliceOrientation.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lacuna
+{
+/// What the header says, checked in itself but not yet against the pixel data. Whichever format it
+/// comes from, the pixels are frames back to back, x fastest.
+struct SequenceHeader
+{
+  std::string FileName;
+
+  std::int64_t Columns = 0;
+  std::int64_t Rows = 0;
+  std::int64_t Frames = 0;
+  std::int64_t Channels = 1;
+  ElementType Type = ElementType::UInt8;
+  /// MET_LONG and MET_ULONG: four bytes by MetaImage's definition, eight when written by programs
+  /// that took the machine's long. Type holds the four-byte type until the data size decides.
+  bool TypeIsLong = false;
+  bool BigEndian = false;
+  bool Compressed = false;
+  SliceFlips Flips;
+
+  std::string DataFileName;            ///< the file itself when the pixels follow the header
+  std::int64_t DataOffset = 0;         ///< first byte of the pixels; -1: they end the file
+  std::int64_t CompressedDataSize = 0; ///< bytes; 0 when the header does not say
+
+  /// Fields that the format does not define, in the file's order.
+  std::vector<std::pair<std::string, std::string>> CustomFields;
+  /// For each field that frames have, its text in every frame; empty where a frame lacks it.
+  std::map<std::string, std::vector<std::string>> FrameFields;
+  /// What was odd but could be read, one sentence each.
+  std::vector<std::string> Warnings;
+
+  /// Bytes of one frame as it is stored uncompressed.
+  std::int64_t GetFrameSize() const
+  {
+    return this->Columns * this->Rows * this->Channels *
+      static_cast<std::int64_t>(GetElementSize(this->Type));
+  }
+};
+
+/// Reads the header of a MetaImage (.mha, .mhd) sequence. Throws std::runtime_error that names the
+/// file, the line or field, what is wrong with it and what would be right. Frame fields are kept as
+/// text; a bad one spoils its frame, not the file.
+SequenceHeader ReadMetaImageHeader(const std::string& fileName);
+
+/// Whether fileName is a MetaImage with fields for its frames and frames that are slices: not an
+/// ordinary image, and not a reconstructed volume, which has frame fields too. Reads no further
+/// than the first frame field and does not throw.
+bool IsTrackedMetaImage(const std::string& fileName);
+}
+#endif

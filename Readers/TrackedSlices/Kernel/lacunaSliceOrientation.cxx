@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSliceOrientation.h"
+
+#include "lacunaSequenceText.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace lacuna
+{
+namespace
+{
+std::string WithoutPrefix(std::string_view text, std::string_view prefix)
+{
+  text = Trim(text);
+  return std::string(text.substr(0, prefix.size()) == prefix ? text.substr(prefix.size()) : text);
+}
+
+void ReverseRow(unsigned char* row, std::int64_t columns, std::size_t pixelSize)
+{
+  if (pixelSize == 1)
+  {
+    std::reverse(row, row + columns);
+    return;
+  }
+  unsigned char* left = row;
+  unsigned char* right = row + static_cast<std::size_t>(columns - 1) * pixelSize;
+  for (; left < right; left += pixelSize, right -= pixelSize)
+  {
+    std::swap_ranges(left, left + pixelSize, right);
+  }
+}
+}
+
+SliceFlips GetSliceFlips(std::string_view orientation, std::string_view imageType)
+{
+  const std::string letters = WithoutPrefix(orientation, "US_IMG_ORIENT_");
+  const std::string type = WithoutPrefix(imageType, "US_IMG_");
+  const bool complex = type == "RF_IQ_LINE" || type == "RF_I_LINE_Q_LINE";
+  const bool lines = complex || type == "RF_REAL";
+  if (!lines && !type.empty() && type != "BRIGHTNESS" && type != "RGB_COLOR")
+  {
+    throw std::invalid_argument("UltrasoundImageType '" + type +
+      "' is unknown; known are BRIGHTNESS, RGB_COLOR, RF_REAL, RF_IQ_LINE and RF_I_LINE_Q_LINE");
+  }
+  const auto oneOf = [&](std::size_t i, std::string_view allowed)
+  { return allowed.find(letters[i]) != std::string_view::npos; };
+  const bool known = (letters.size() == 2 || (letters.size() == 3 && oneOf(2, "AD"))) &&
+    (lines ? oneOf(0, "FN") && oneOf(1, "MU") : oneOf(0, "MU") && oneOf(1, "FN"));
+  if (!known)
+  {
+    throw std::invalid_argument("UltrasoundImageOrientation '" + letters +
+      "' does not describe a " +
+      (lines ? "slice of radio-frequency lines; known are FM, FU, NM and NU"
+             : "slice of pixels; known are MF, MN, UF and UN, also with A or D added"));
+  }
+  SliceFlips flips;
+  flips.X = letters[0] == (lines ? 'N' : 'U');
+  flips.Y = letters[1] == (lines ? 'U' : 'N');
+  if (complex && (flips.X || flips.Y))
+  {
+    throw std::invalid_argument("UltrasoundImageOrientation '" + letters + "' of " + type +
+      " data would need complex samples to be re-ordered; only FM is read");
+  }
+  return flips;
+}
+
+void FlipSlice(void* pixels, std::int64_t columns, std::int64_t rows, std::size_t pixelSize,
+  const SliceFlips& flips)
+{
+  auto* bytes = static_cast<unsigned char*>(pixels);
+  const std::size_t rowSize = static_cast<std::size_t>(columns) * pixelSize;
+  if (flips.X)
+  {
+    for (std::int64_t row = 0; row < rows; ++row)
+    {
+      ReverseRow(bytes + static_cast<std::size_t>(row) * rowSize, columns, pixelSize);
+    }
+  }
+  for (std::int64_t top = 0, bottom = rows - 1; flips.Y && top < bottom; ++top, --bottom)
+  {
+    unsigned char* first = bytes + static_cast<std::size_t>(top) * rowSize;
+    std::swap_ranges(first, first + rowSize, bytes + static_cast<std::size_t>(bottom) * rowSize);
+  }
+}
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaTrackedSliceReader
+ * @brief reads ultrasound slices with their poses from a tracked sequence file
+ *
+ * Reads MetaImage sequences (.igs.mha, .mha, .mhd with .raw or .zraw) as PLUS, 3D Slicer and their
+ * kin write them: a stack of slices, raw or zlib-compressed, of any element type, with named fields
+ * for each frame. The output is tracked slices, see vtkLacunaTrackedSlices for the contract:
+ *
+ * - vtkImageData of columns x rows x slices; point scalars `Intensity` (grey levels in the file's
+ *   type; colours become luminance 0.299 R + 0.587 G + 0.114 B). Slices are turned to the
+ *   orientation MF (x towards the marked side, y away from the probe; radio-frequency data to FM),
+ *   to which the file's transforms refer.
+ * - field data, one tuple for each frame of the file: `ImageToReference` (16 components, pixel
+ *   (column, row, 0, 1) to mm; NaN where the pose is invalid), `Timestamp` (s), `SliceStatus`,
+ *   `FrameNumber`, each transform of the file under its name (`ProbeToTracker`, 16), the file's
+ *   other fields as strings under their names; one tuple: `ImageToProbe` when known and constant.
+ *   Fields whose name begins with Patient are left out.
+ *
+ * **Chains.** ImageToReference is composed from the file's transforms of each frame and the
+ * constant ones of the calibration file (CoordinateDefinitions), forwards or backwards, along the
+ * shortest way from ImageFrame to ReferenceFrame. When no transform mentions ImageFrame and no
+ * calibration file is given, the probe is not calibrated: the slices are read, with a warning,
+ * without ImageToReference. Any other gap is an error that names the two unconnected groups of
+ * frames.
+ *
+ * **Invalid slices** stay in the stack, since z is the slice number and slices are equally spaced.
+ * With DropInvalidSlices (the default) a slice whose pose or image is not `OK` in the file has bit
+ * 1 (pose) or 2 (image) set in SliceStatus, and all Lacuna filters leave it out. Without it the
+ * file's word is not heeded and a slice is flagged only when its pose has no usable numbers
+ * (missing, malformed, not finite, singular) or its pixels are missing because the file is cut off.
+ * Frames whose fields are damaged are named in a warning.
+ *
+ * Requested extents are honoured: of uncompressed files only the slices asked for are read, of
+ * compressed ones all up to the last slice asked for. Errors set vtkErrorCode::FileFormatError or
+ * FileNotFoundError.
+ *
+ * @sa vtkLacunaTrackedSlices
+ */
+#ifndef vtkLacunaTrackedSliceReader_h
+#define vtkLacunaTrackedSliceReader_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaTrackedSliceReader* New();
+  vtkTypeMacro(vtkLacunaTrackedSliceReader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The sequence file.
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /// Device set configuration (XML) whose CoordinateDefinitions hold the constant transforms, such
+  /// as Image to Probe. Default: none.
+  vtkSetFilePathMacro(CalibrationFileName);
+  vtkGetFilePathMacro(CalibrationFileName);
+  ///@}
+
+  ///@{
+  /// Name of the frame of pixel coordinates. Default: Image.
+  vtkSetStringMacro(ImageFrame);
+  vtkGetStringMacro(ImageFrame);
+  ///@}
+
+  ///@{
+  /// Name of the frame in which the slices shall lie. Default: Reference.
+  vtkSetStringMacro(ReferenceFrame);
+  vtkGetStringMacro(ReferenceFrame);
+  ///@}
+
+  ///@{
+  /// First and last slice to read, counted from 0; a last one of -1 means the end. Default: 0 -1.
+  vtkSetVector2Macro(FrameRange, int);
+  vtkGetVector2Macro(FrameRange, int);
+  ///@}
+
+  ///@{
+  /// Read every n-th slice of FrameRange, n >= 1. Default: 1. The z spacing of the stack becomes n.
+  vtkSetClampMacro(FrameStride, int, 1, VTK_INT_MAX);
+  vtkGetMacro(FrameStride, int);
+  ///@}
+
+  ///@{
+  /// Whether slices that the file calls invalid are flagged for being left out. Default: on.
+  vtkSetMacro(DropInvalidSlices, bool);
+  vtkGetMacro(DropInvalidSlices, bool);
+  vtkBooleanMacro(DropInvalidSlices, bool);
+  ///@}
+
+  ///@{
+  /// Most memory that the pixels may take, in MiB; more is an error before anything is allocated.
+  /// Default: 0, the memory of the machine.
+  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryLimit, int);
+  ///@}
+
+  /// Whether a file is a tracked sequence that this class reads: its header has Seq_Frame fields
+  /// and its frames are slices. Reads no more than the beginning of the header.
+  int CanReadFile(VTK_FILEPATH const char* fileName);
+
+protected:
+  vtkLacunaTrackedSliceReader();
+  ~vtkLacunaTrackedSliceReader() override;
+
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaTrackedSliceReader(const vtkLacunaTrackedSliceReader&) = delete;
+  void operator=(const vtkLacunaTrackedSliceReader&) = delete;
+
+  struct Sequence;
+  void OpenSequence(Sequence& sequence);
+  void CheckMemory(const int extent[6]) const;
+  void WriteFieldData(vtkImageData* output);
+  std::string DescribeParameters() const;
+
+  char* FileName = nullptr;
+  char* CalibrationFileName = nullptr;
+  char* ImageFrame = nullptr;
+  char* ReferenceFrame = nullptr;
+  int FrameRange[2] = { 0, -1 };
+  int FrameStride = 1;
+  bool DropInvalidSlices = true;
+  int MemoryLimit = 0;
+  /// The file as RequestInformation found it; kept open from one requested extent to the next.
+  std::unique_ptr<Sequence> Opened;
+};
+#endif
