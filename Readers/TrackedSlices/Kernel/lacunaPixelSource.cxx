@@ -94,7 +94,7 @@ public:
       this->Fail("cannot be opened for reading");
     }
     const std::int64_t there = std::max<std::int64_t>(0, fileSize - header.DataOffset);
-    const bool whole = header.CompressedDataSize <= there;
+    this->Whole = header.CompressedDataSize <= there;
     const std::int64_t stated = header.CompressedDataSize > 0 ? header.CompressedDataSize : there;
     if (static_cast<double>(header.GetFrameSize() * header.Frames) >
       (static_cast<double>(stated) + 16) * BestCompression)
@@ -104,7 +104,7 @@ public:
         " bytes that DimSize and ElementType call for");
     }
     this->Rewind();
-    if (whole && !header.TypeIsLong)
+    if (this->Whole && !header.TypeIsLong)
     {
       this->Divide(header.GetFrameSize() * header.Frames);
     }
@@ -135,12 +135,7 @@ protected:
     }
     if (this->Next == this->Header.Frames)
     {
-      // What is left is the check sum; asking for one byte more makes zlib look at it.
-      unsigned char beyond = 0;
-      if (this->Inflate(&beyond, 1) == 0 && this->Corrupt)
-      {
-        this->Fail("the check sum of the compressed pixels is wrong: they are corrupt");
-      }
+      this->CheckEnd();
     }
   }
 
@@ -154,6 +149,7 @@ private:
     this->Next = 0;
     this->Ended = false;
     this->Corrupt = false;
+    this->Complete = false;
   }
 
   /// Puts up to size bytes into output and returns how many there were.
@@ -176,11 +172,23 @@ private:
       const int result = inflate(&zlib, Z_NO_FLUSH);
       done += room - zlib.avail_out;
       this->Corrupt = result == Z_DATA_ERROR || result == Z_NEED_DICT;
+      this->Complete = result == Z_STREAM_END;
       this->Ended = result != Z_OK; // Z_BUF_ERROR: the file ends before the stream
     }
     return done;
   }
 
+  /// After the last frame: damage may show only in what follows, at the latest in the check sum.
+  void CheckEnd()
+  {
+    this->CountBytes();
+    if (this->Corrupt || (this->Whole && !this->Complete))
+    {
+      this->Fail("the compressed pixels are corrupt: their check sum is wrong or missing");
+    }
+  }
+
+  /// Inflates what is left and returns how many bytes that was.
   std::int64_t CountBytes()
   {
     std::vector<unsigned char> scratch(1 << 18);
@@ -195,8 +203,10 @@ private:
   std::ifstream Stream;
   std::vector<unsigned char> Input;
   Inflater Zlib;
-  bool Ended = false;
-  bool Corrupt = false;
+  bool Whole = false;    ///< the file is as long as the header says
+  bool Ended = false;    ///< nothing more to be had, for whatever reason
+  bool Corrupt = false;  ///< because the data are wrong
+  bool Complete = false; ///< because the stream came to its proper end
   std::int64_t Next = 0; ///< frame at which the inflater stands
 };
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweep.h"
 
-#include "lacunaCalibrationFile.h"
 #include "lacunaSequenceText.h"
+#include "lacunaSweepTransforms.h"
 #include "lacunaTransformGraph.h"
 
 #include <algorithm>
 #include <climits>
-#include <cstring>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -16,17 +16,8 @@ namespace lacuna
 {
 namespace
 {
-constexpr std::string_view TransformSuffix = "Transform";
-constexpr std::string_view StatusSuffix = "TransformStatus";
 // Arrays of tracked slices with a meaning of their own.
 const std::set<std::string> ReservedNames = { "ImageToReference", "ImageToProbe" };
-
-Matrix4 NoMatrix()
-{
-  std::array<double, 16> elements;
-  elements.fill(std::numeric_limits<double>::quiet_NaN());
-  return Matrix4(elements);
-}
 
 std::string FrameList(const std::vector<std::size_t>& frames)
 {
@@ -36,31 +27,6 @@ std::string FrameList(const std::vector<std::size_t>& frames)
   return (frames.size() > 1 ? "frames " : "frame ") + JoinSome(numbers);
 }
 
-// One transform that may be a link: constant, or one matrix for each frame.
-struct Transform
-{
-  std::string Name;
-  std::string From;
-  std::string To;
-  bool FromCalibration = false;
-  Matrix4 Constant;
-  std::vector<Matrix4> Matrices;
-  std::vector<std::string> Errors; ///< what is wrong with each frame's text; empty: nothing
-  const std::vector<std::string>* Status = nullptr;
-
-  bool IsConstant() const
-  {
-    return this->FromCalibration ||
-      std::all_of(this->Matrices.begin(), this->Matrices.end(),
-        [&](const Matrix4& m)
-        { return std::memcmp(m.Data(), this->Matrices[0].Data(), 16 * sizeof(double)) == 0; });
-  }
-  const Matrix4& Get(std::size_t frame) const
-  {
-    return this->FromCalibration ? this->Constant : this->Matrices[frame];
-  }
-};
-
 class SweepBuilder
 {
 public:
@@ -68,14 +34,15 @@ public:
     : Header(header)
     , Options(options)
     , Count(static_cast<std::size_t>(header.Frames))
+    , Transforms(header, options.CalibrationFileName)
   {
   }
 
   Sweep Build()
   {
+    this->Result.Warnings = this->Transforms.GetWarnings();
     this->Result.Status.assign(this->Count, Sweep::Valid);
-    this->ReadCalibration();
-    this->ReadTransforms();
+    this->KeepFields();
     this->ReadTimes();
     this->FlagImages();
     this->FindImageToProbe();
@@ -98,179 +65,41 @@ private:
     throw std::runtime_error(this->Header.FileName + ": " + text);
   }
   void Warn(const std::string& text) { this->Result.Warnings.push_back(text); }
-  const Transform& Get(const TransformGraph::Link& link) const
-  {
-    return this->Transforms[static_cast<std::size_t>(link.Transform)];
-  }
+  const TransformGraph& Graph() const { return this->Transforms.GetGraph(); }
 
-  void ReadCalibration();
-  void ReadTransforms();
-  void ParseTransform(const std::string& name, const std::vector<std::string>& texts);
-  void NameFrames();
+  void KeepFields();
   void ReadTimes();
   void FlagImages();
   void FindImageToProbe();
   bool FindChain(Chain& chain);
-  std::string DescribeTransforms() const;
   void BuildPoses();
-  bool Compose(const Chain& chain, std::size_t frame, Matrix4& pose);
-  void ReportBadFrames(const Chain& chain);
+  void DescribeChain(const Chain& chain);
+  void ReportBadFrames(const SweepTransform& transform);
 
   const SequenceHeader& Header;
   const SweepOptions& Options;
   std::size_t Count;
+  SweepTransforms Transforms;
   Sweep Result;
-  std::vector<Transform> Transforms; ///< the calibration's first: they win among equal chains
-  TransformGraph Graph;
 };
 
 //------------------------------------------------------------------------------
-void SweepBuilder::ReadCalibration()
+void SweepBuilder::KeepFields()
 {
-  if (this->Options.CalibrationFileName.empty())
+  for (const SweepTransform& transform : this->Transforms.GetAll())
   {
-    return;
-  }
-  for (const NamedTransform& named : ReadCalibrationFile(this->Options.CalibrationFileName))
-  {
-    Transform transform;
-    transform.Name = named.From + "To" + named.To;
-    transform.From = named.From;
-    transform.To = named.To;
-    transform.FromCalibration = true;
-    transform.Constant = named.Matrix;
-    this->Graph.Add(named.From, named.To, static_cast<int>(this->Transforms.size()));
-    this->Transforms.push_back(std::move(transform));
-  }
-}
-
-//------------------------------------------------------------------------------
-void SweepBuilder::ReadTransforms()
-{
-  for (const auto& [name, texts] : this->Header.FrameFields)
-  {
-    const bool isTransform =
-      name.size() > TransformSuffix.size() && EndsWithIgnoringCase(name, TransformSuffix);
-    if (isTransform)
+    if (!transform.FromCalibration && ReservedNames.count(transform.Name) == 0)
     {
-      this->ParseTransform(name.substr(0, name.size() - TransformSuffix.size()), texts);
-    }
-    const bool reserved =
-      isTransform && ReservedNames.count(name.substr(0, name.size() - TransformSuffix.size())) > 0;
-    if (!isTransform || reserved)
-    {
-      this->Result.TextFields[name] = texts;
+      this->Result.Transforms[transform.Name] = transform.Matrices;
     }
   }
-  for (const auto& [name, texts] : this->Header.FrameFields)
+  for (const auto& [field, texts] : this->Header.FrameFields)
   {
-    for (Transform& transform : this->Transforms)
+    const std::string transform = SweepTransforms::GetTransformName(field);
+    if (transform.empty() || ReservedNames.count(transform) > 0)
     {
-      if (name.size() == transform.Name.size() + StatusSuffix.size() &&
-        name.compare(0, transform.Name.size(), transform.Name) == 0 &&
-        EndsWithIgnoringCase(name, StatusSuffix))
-      {
-        transform.Status = &texts;
-      }
+      this->Result.TextFields[field] = texts;
     }
-  }
-  this->NameFrames();
-}
-
-//------------------------------------------------------------------------------
-void SweepBuilder::ParseTransform(const std::string& name, const std::vector<std::string>& texts)
-{
-  Transform transform;
-  transform.Name = name;
-  transform.Matrices.assign(this->Count, NoMatrix());
-  transform.Errors.resize(this->Count);
-  for (std::size_t i = 0; i < this->Count; ++i)
-  {
-    Matrix4 matrix;
-    transform.Errors[i] = texts[i].empty() ? "is missing" : ParseMatrix(texts[i], matrix);
-    if (transform.Errors[i].empty())
-    {
-      transform.Matrices[i] = matrix;
-    }
-  }
-  if (ReservedNames.count(name) == 0)
-  {
-    this->Result.Transforms[name] = transform.Matrices;
-  }
-  this->Transforms.push_back(std::move(transform));
-}
-
-//------------------------------------------------------------------------------
-// Enters the file's transforms in the graph. A name like AToBToC can be read in two ways: the
-// frames that other transforms mention decide.
-void SweepBuilder::NameFrames()
-{
-  const auto add = [&](std::size_t i, const std::pair<std::string, std::string>& reading)
-  {
-    Transform& transform = this->Transforms[i];
-    transform.From = reading.first;
-    transform.To = reading.second;
-    const bool replaced = std::any_of(this->Transforms.begin(), this->Transforms.end(),
-      [&](const Transform& other)
-      {
-        return other.FromCalibration &&
-          ((other.From == transform.From && other.To == transform.To) ||
-            (other.From == transform.To && other.To == transform.From));
-      });
-    if (replaced)
-    {
-      this->Warn("the calibration file replaces transform " + transform.Name + " of the sequence");
-    }
-    else if (transform.From != transform.To)
-    {
-      this->Graph.Add(transform.From, transform.To, static_cast<int>(i));
-    }
-  };
-  std::vector<std::size_t> ambiguous;
-  std::vector<std::string> unused;
-  for (std::size_t i = 0; i < this->Transforms.size(); ++i)
-  {
-    if (this->Transforms[i].FromCalibration)
-    {
-      continue;
-    }
-    const auto readings = ReadTransformName(this->Transforms[i].Name);
-    if (readings.size() == 1)
-    {
-      add(i, readings[0]);
-    }
-    else if (readings.empty())
-    {
-      unused.push_back(this->Transforms[i].Name);
-    }
-    else
-    {
-      ambiguous.push_back(i);
-    }
-  }
-  const TransformGraph certain = this->Graph;
-  for (const std::size_t i : ambiguous)
-  {
-    auto readings = ReadTransformName(this->Transforms[i].Name);
-    readings.erase(std::remove_if(readings.begin(), readings.end(),
-                     [&](const auto& reading) {
-                       return !certain.HasFrame(reading.first) || !certain.HasFrame(reading.second);
-                     }),
-      readings.end());
-    if (readings.size() == 1)
-    {
-      add(i, readings[0]);
-    }
-    else
-    {
-      unused.push_back(this->Transforms[i].Name);
-    }
-  }
-  if (!unused.empty())
-  {
-    this->Warn("transforms whose names do not read as one pair of frames, <From>To<To>, are kept "
-               "but not used in chains: " +
-      JoinSome(unused));
   }
 }
 
@@ -330,40 +159,14 @@ void SweepBuilder::FlagImages()
 void SweepBuilder::FindImageToProbe()
 {
   Chain chain;
-  Matrix4 product;
-  if (!this->Graph.FindChain(this->Options.ImageFrame, "Probe", chain) || chain.empty())
+  Matrix4 imageToProbe;
+  if (this->Graph().FindChain(this->Options.ImageFrame, "Probe", chain) && !chain.empty() &&
+    std::all_of(chain.begin(), chain.end(),
+      [&](const TransformGraph::Link& link) { return this->Transforms.Get(link).IsConstant(); }) &&
+    this->Transforms.Compose(chain, 0, imageToProbe))
   {
-    return;
+    this->Result.ImageToProbe.push_back(imageToProbe);
   }
-  for (const TransformGraph::Link& link : chain)
-  {
-    const Transform& transform = this->Get(link);
-    if (!transform.IsConstant())
-    {
-      return;
-    }
-  }
-  if (this->Compose(chain, 0, product))
-  {
-    this->Result.ImageToProbe.push_back(product);
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string SweepBuilder::DescribeTransforms() const
-{
-  std::vector<std::string> ofFile;
-  std::vector<std::string> ofCalibration;
-  for (const Transform& transform : this->Transforms)
-  {
-    (transform.FromCalibration ? ofCalibration : ofFile).push_back(transform.Name);
-  }
-  std::string text =
-    "Transforms of the sequence: " + (ofFile.empty() ? "none" : JoinSome(ofFile, 20)) +
-    "; of the calibration file: ";
-  return text +
-    (this->Options.CalibrationFileName.empty() ? "no file given" : JoinSome(ofCalibration, 20)) +
-    ".";
 }
 
 //------------------------------------------------------------------------------
@@ -377,11 +180,11 @@ bool SweepBuilder::FindChain(Chain& chain)
     this->Fail("ImageFrame and ReferenceFrame are both '" + image +
       "'; the reference frame must be one that does not move with the image");
   }
-  if (this->Graph.FindChain(image, reference, chain))
+  if (this->Graph().FindChain(image, reference, chain))
   {
     return true;
   }
-  if (!this->Graph.HasFrame(image))
+  if (!this->Graph().HasFrame(image))
   {
     const std::string none = "no transform leads from or to the image frame '" + image + "'. ";
     if (!this->Options.CalibrationFileName.empty())
@@ -389,47 +192,26 @@ bool SweepBuilder::FindChain(Chain& chain)
       this->Fail(none +
         "Set ImageFrame to the frame that the calibration is for, or give another "
         "CalibrationFileName. " +
-        this->DescribeTransforms());
+        this->Transforms.Describe());
     }
     this->Warn(none +
       "The slices are read without ImageToReference: filters that need positions will refuse them. "
       "Give the CalibrationFileName that holds " +
-      image + " to Probe. " + this->DescribeTransforms());
+      image + " to Probe. " + this->Transforms.Describe());
     return false;
   }
-  const std::string reached = JoinSome(this->Graph.GetReachable(image), 20);
-  if (!this->Graph.HasFrame(reference))
+  const std::string reached = JoinSome(this->Graph().GetReachable(image), 20);
+  if (!this->Graph().HasFrame(reference))
   {
     this->Fail("no transform leads from or to the reference frame '" + reference + "'. From '" +
       image + "' these frames can be reached: " + reached +
       ". Set ReferenceFrame to one that does not move with the probe. " +
-      this->DescribeTransforms());
+      this->Transforms.Describe());
   }
   this->Fail("the chain of transforms from '" + image + "' to '" + reference +
     "' has a missing link: one is needed between a frame of the first group (" + reached +
-    ") and one of the second (" + JoinSome(this->Graph.GetReachable(reference), 20) + "). " +
-    this->DescribeTransforms());
-}
-
-//------------------------------------------------------------------------------
-bool SweepBuilder::Compose(const Chain& chain, std::size_t frame, Matrix4& pose)
-{
-  Matrix4 product;
-  try
-  {
-    for (const TransformGraph::Link& link : chain)
-    {
-      const Matrix4& matrix = this->Get(link).Get(frame);
-      const Matrix4 inverse = matrix.Inverse(); // also tells whether it is affine and regular
-      product = (link.Inverse ? inverse : matrix) * product;
-    }
-  }
-  catch (const std::invalid_argument&)
-  {
-    return false;
-  }
-  pose = product;
-  return product.IsFinite();
+    ") and one of the second (" + JoinSome(this->Graph().GetReachable(reference), 20) + "). " +
+    this->Transforms.Describe());
 }
 
 //------------------------------------------------------------------------------
@@ -439,22 +221,10 @@ void SweepBuilder::BuildPoses()
   const bool calibrated = this->FindChain(chain);
   if (calibrated)
   {
-    this->Result.Chain = this->Options.ImageFrame;
-    for (const TransformGraph::Link& link : chain)
-    {
-      this->Result.Chain += " > " + (link.Inverse ? this->Get(link).From : this->Get(link).To);
-    }
-    if (!this->Options.CalibrationFileName.empty() &&
-      std::none_of(chain.begin(), chain.end(),
-        [&](const TransformGraph::Link& link) { return this->Get(link).FromCalibration; }))
-    {
-      this->Warn("the calibration file is not used: the sequence itself leads from '" +
-        this->Options.ImageFrame + "' to '" + this->Options.ReferenceFrame + "' (" +
-        this->Result.Chain + ")");
-    }
-    this->Result.ImageToReference.assign(this->Count, NoMatrix());
+    this->DescribeChain(chain);
+    this->Result.ImageToReference.resize(this->Count);
   }
-  else if (!this->Graph.FindChain("Probe", this->Options.ReferenceFrame, chain))
+  else if (!this->Graph().FindChain("Probe", this->Options.ReferenceFrame, chain))
   {
     return; // no pose to judge
   }
@@ -462,76 +232,96 @@ void SweepBuilder::BuildPoses()
   {
     const bool refused = this->Options.DropInvalid &&
       std::any_of(chain.begin(), chain.end(),
-        [&](const TransformGraph::Link& link)
-        {
-          const Transform& transform = this->Get(link);
-          return transform.Status && (*transform.Status)[i] != "OK";
-        });
+        [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
     Matrix4 pose;
-    if (refused || !this->Compose(chain, i, pose))
+    if (!this->Transforms.Compose(chain, i, pose) || refused)
     {
       this->Result.Status[i] |= Sweep::PoseInvalid;
+      std::array<double, 16> none;
+      none.fill(std::numeric_limits<double>::quiet_NaN());
+      pose = Matrix4(none);
     }
-    else if (calibrated)
+    if (calibrated)
     {
       this->Result.ImageToReference[i] = pose;
     }
   }
-  this->ReportBadFrames(chain);
+  for (const TransformGraph::Link& link : chain)
+  {
+    if (!this->Transforms.Get(link).FromCalibration)
+    {
+      this->ReportBadFrames(this->Transforms.Get(link));
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
-void SweepBuilder::ReportBadFrames(const Chain& chain)
+void SweepBuilder::DescribeChain(const Chain& chain)
 {
-  const std::set<std::string> states = { "OK", "MISSING", "OUT_OF_VIEW", "OUT_OF_VOLUME",
-    "SWITCH1_IS_ON", "SWITCH2_IS_ON", "SWITCH3_IS_ON", "REQ_TIMEOUT", "INVALID", "PATH_NOT_FOUND",
-    "UNKNOWN" };
+  this->Result.Chain = this->Options.ImageFrame;
+  bool calibrationUsed = this->Options.CalibrationFileName.empty();
   for (const TransformGraph::Link& link : chain)
   {
-    const Transform& transform = this->Get(link);
-    if (transform.FromCalibration)
+    this->Result.Chain += " > " + link.To;
+    calibrationUsed = calibrationUsed || this->Transforms.Get(link).FromCalibration;
+  }
+  if (!calibrationUsed)
+  {
+    this->Warn("the calibration file is not used: the sequence itself leads from '" +
+      this->Options.ImageFrame + "' to '" + this->Options.ReferenceFrame + "' (" +
+      this->Result.Chain + ")");
+  }
+}
+
+//------------------------------------------------------------------------------
+// What the file itself calls invalid is no surprise and not reported.
+void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
+{
+  static const std::set<std::string> states = { "OK", "MISSING", "OUT_OF_VIEW", "OUT_OF_VOLUME",
+    "SWITCH1_IS_ON", "SWITCH2_IS_ON", "SWITCH3_IS_ON", "REQ_TIMEOUT", "INVALID", "PATH_NOT_FOUND",
+    "UNKNOWN" };
+  std::map<std::string, std::vector<std::size_t>> problems;
+  for (std::size_t i = 0; i < this->Count; ++i)
+  {
+    std::string problem;
+    if (transform.IsValid(i))
     {
-      continue;
-    }
-    std::map<std::string, std::vector<std::size_t>> frames;
-    for (std::size_t i = 0; i < this->Count; ++i)
-    {
-      const std::string state = transform.Status ? (*transform.Status)[i] : "OK";
-      const bool asExpected = states.count(state) > 0;
-      if (!asExpected)
-      {
-        frames["TransformStatus is '" + state + "', which is not a known state,"].push_back(i);
-      }
-      if (state != "OK" && asExpected)
-      {
-        continue; // the file itself says that there is nothing to expect
-      }
-      std::string wrong = transform.Errors[i];
+      problem = transform.Errors[i];
       try
       {
-        if (wrong.empty())
+        if (problem.empty())
         {
           transform.Matrices[i].Inverse();
         }
       }
       catch (const std::invalid_argument& e)
       {
-        wrong = std::string("cannot be used (") + e.what() + ")";
-      }
-      if (!wrong.empty())
-      {
-        frames["Transform " + wrong].push_back(i);
+        problem = std::string("cannot be used (") + e.what() + ")";
       }
     }
-    for (const auto& [problem, list] : frames)
+    else if (states.count((*transform.Status)[i]) == 0)
     {
-      this->Warn("field " + transform.Name + problem + " in " + FrameList(list));
+      const std::string& state = (*transform.Status)[i];
+      problem = state.empty() ? "has no status" : "has the unknown status '" + state + "'";
     }
-    if (!transform.Status)
+    if (!problem.empty())
     {
-      this->Warn("field " + transform.Name +
-        "TransformStatus is missing in all frames; the transform is taken as valid");
+      problems[problem].push_back(i);
     }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [problem, frames] : problems)
+  {
+    texts.push_back(problem + " in " + FrameList(frames));
+  }
+  if (!texts.empty())
+  {
+    this->Warn("transform " + transform.Name + " " + JoinSome(texts));
+  }
+  if (!transform.Status)
+  {
+    this->Warn("field " + transform.Name +
+      "TransformStatus is missing in all frames; the transform is taken as valid");
   }
 }
 }

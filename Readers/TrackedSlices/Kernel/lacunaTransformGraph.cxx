@@ -23,49 +23,48 @@ std::vector<std::pair<std::string, std::string>> ReadTransformName(std::string_v
 
 void TransformGraph::Add(const std::string& from, const std::string& to, int transform)
 {
-  this->Frames[from].push_back({ to, { transform, false } });
-  this->Frames[to].push_back({ from, { transform, true } });
+  this->Frames[from].push_back({ transform, false, to });
+  this->Frames[to].push_back({ transform, true, from });
 }
 
-std::map<std::string, TransformGraph::Edge> TransformGraph::Search(const std::string& start) const
+std::map<std::string, TransformGraph::Arrival> TransformGraph::Search(
+  const std::string& start) const
 {
   // breadth first: the first way found to a frame is a shortest one
-  std::map<std::string, Edge> before;
+  std::map<std::string, Arrival> arrivals;
   if (!this->HasFrame(start))
   {
-    return before;
+    return arrivals;
   }
-  before[start] = { start, { -1, false } };
+  arrivals[start] = {};
   std::deque<std::string> open{ start };
   while (!open.empty())
   {
     const std::string frame = open.front();
     open.pop_front();
-    for (const Edge& edge : this->Frames.at(frame))
+    for (const Link& link : this->Frames.at(frame))
     {
-      if (before.emplace(edge.Neighbour, Edge{ frame, edge.Step }).second)
+      if (arrivals.emplace(link.To, Arrival{ frame, link }).second)
       {
-        open.push_back(edge.Neighbour);
+        open.push_back(link.To);
       }
     }
   }
-  return before;
+  return arrivals;
 }
 
 bool TransformGraph::FindChain(
   const std::string& from, const std::string& to, std::vector<Link>& chain) const
 {
   chain.clear();
-  const std::map<std::string, Edge> before = this->Search(from);
-  if (before.count(to) == 0)
+  const std::map<std::string, Arrival> arrivals = this->Search(from);
+  if (arrivals.count(to) == 0)
   {
     return false;
   }
-  for (std::string frame = to; frame != from;)
+  for (std::string frame = to; frame != from; frame = arrivals.at(frame).From)
   {
-    const Edge& edge = before.at(frame);
-    chain.push_back(edge.Step);
-    frame = edge.Neighbour;
+    chain.push_back(arrivals.at(frame).Step);
   }
   std::reverse(chain.begin(), chain.end());
   return true;
@@ -74,9 +73,9 @@ bool TransformGraph::FindChain(
 std::vector<std::string> TransformGraph::GetReachable(const std::string& frame) const
 {
   std::vector<std::string> frames;
-  for (const auto& found : this->Search(frame))
+  for (const auto& arrival : this->Search(frame))
   {
-    frames.push_back(found.first);
+    frames.push_back(arrival.first);
   }
   return frames;
 }

@@ -20,11 +20,12 @@ std::vector<std::pair<std::string, std::string>> ReadTransformName(std::string_v
 class TransformGraph
 {
 public:
-  /// One link of a chain: a transform, taken backwards when Inverse is set.
+  /// One link of a chain: a transform, taken backwards when Inverse is set, and where it leads.
   struct Link
   {
     int Transform;
     bool Inverse;
+    std::string To;
   };
 
   /// Adds a transform from one frame to another; transform is the caller's number for it.
@@ -41,15 +42,15 @@ public:
   std::vector<std::string> GetReachable(const std::string& frame) const;
 
 private:
-  struct Edge
+  struct Arrival
   {
-    std::string Neighbour;
+    std::string From;
     Link Step;
   };
-  /// For each frame the frame before it on the way from start, and the link between them.
-  std::map<std::string, Edge> Search(const std::string& start) const;
+  /// For each frame that can be reached from start, the last step of the way to it.
+  std::map<std::string, Arrival> Search(const std::string& start) const;
 
-  std::map<std::string, std::vector<Edge>> Frames;
+  std::map<std::string, std::vector<Link>> Frames;
 };
 }
 #endif

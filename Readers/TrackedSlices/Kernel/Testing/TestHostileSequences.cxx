@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever the bytes are, reading them ends in a sentence or in a consistent result. Most telling
+// under the address and undefined-behaviour sanitizers.
+#include "Compress.h"
+#include "SequenceFile.h"
+#include "lacunaSliceStack.h"
+#include "lacunaSweep.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace lacuna;
+
+namespace
+{
+class HostileSequences : public ::testing::Test
+{
+protected:
+  // Reads all there is; returns whether that worked.
+  bool Survives(const std::string& content, const std::string& calibration = MakeCalibration())
+  {
+    this->File.Write(content);
+    this->File.WriteBeside("calibration.xml", calibration);
+    IsTrackedMetaImage(this->File.GetPath());
+    try
+    {
+      this->ReadEverything();
+      return true;
+    }
+    catch (const std::runtime_error& e)
+    {
+      EXPECT_GT(std::string(e.what()).size(), 20u) << "not much of a message: " << e.what();
+      return false;
+    }
+  }
+
+  void ReadEverything()
+  {
+    const SequenceHeader header = ReadMetaImageHeader(this->File.GetPath());
+    const auto pixels = PixelSource::Open(header);
+    ASSERT_GE(pixels->GetNumberOfWholeFrames(), 1);
+    ASSERT_LE(pixels->GetNumberOfWholeFrames(), header.Frames);
+    SweepOptions options;
+    options.CalibrationFileName =
+      (std::filesystem::path(this->File.GetPath()).parent_path() / "calibration.xml").string();
+    options.FramesWithPixels = pixels->GetNumberOfWholeFrames();
+    const Sweep sweep = BuildSweep(header, options);
+    const auto frames = static_cast<std::size_t>(header.Frames);
+    ASSERT_EQ(sweep.Status.size(), frames);
+    ASSERT_EQ(sweep.FrameNumbers.size(), frames);
+    ASSERT_EQ(sweep.ImageToReference.size(), frames);
+    for (std::size_t i = 0; i < frames; ++i)
+    {
+      ASSERT_EQ(sweep.ImageToReference[i].IsFinite(), (sweep.Status[i] & Sweep::PoseInvalid) == 0);
+    }
+    SliceRegion all;
+    all.Columns = header.Columns;
+    all.Rows = header.Rows;
+    all.Frames = header.Frames;
+    const std::int64_t size = header.Columns * header.Rows * header.Frames *
+      static_cast<std::int64_t>(GetElementSize(pixels->GetElementType()));
+    ASSERT_LT(size, 10000000) << "more than a file of this size can hold";
+    std::vector<unsigned char> stack(static_cast<std::size_t>(size));
+    ThreadExecution execution(1);
+    ReadSliceStack(header, *pixels, all, stack.data(), execution);
+  }
+
+  TemporaryFile File{ "sweep.igs.mha" };
+};
+
+SequenceFile MakeRich()
+{
+  SequenceFile file = MakeSequence(3);
+  file.Set("ElementNumberOfChannels", "1");
+  file.Set("ElementSpacing", "1 1 1");
+  file.SetFrame(1, "Note", "a custom text = with a sign");
+  file.SetFrame(2, "FrameNumber", "42");
+  return file;
+}
+}
+
+TEST_F(HostileSequences, TheGoodFilesAreGood)
+{
+  EXPECT_TRUE(this->Survives(MakeRich().GetContent()));
+  EXPECT_TRUE(this->Survives(Compressed(MakeRich()).GetContent()));
+}
+
+TEST_F(HostileSequences, CutOffAnywhere)
+{
+  for (const SequenceFile& file : { MakeRich(), Compressed(MakeRich()) })
+  {
+    const std::string content = file.GetContent();
+    const std::size_t header = file.GetHeader().size();
+    for (std::size_t size = 0; size < content.size(); ++size)
+    {
+      const bool good = this->Survives(content.substr(0, size));
+      ASSERT_FALSE(good && size < header - 1) << size; // the last line feed may be missing
+    }
+  }
+}
+
+TEST_F(HostileSequences, EveryByteReplaced)
+{
+  for (const SequenceFile& file : { MakeRich(), Compressed(MakeRich()) })
+  {
+    const std::string content = file.GetContent();
+    for (std::size_t at = 0; at < content.size(); ++at)
+    {
+      for (const char c : { '\0', '\n', ' ', '=', '-', '9', '\xff' })
+      {
+        std::string bad = content;
+        bad[at] = c;
+        this->Survives(bad);
+        ASSERT_FALSE(this->HasFatalFailure()) << at << " " << static_cast<int>(c);
+      }
+    }
+  }
+}
+
+TEST_F(HostileSequences, RandomDamage)
+{
+  std::mt19937 random(20240229);
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
+  const std::string contents[] = { MakeRich().GetContent(), Compressed(MakeRich()).GetContent() };
+  const std::string words[] = { "99999999999", "-1", "nan", "1e999", "Seq_Frame", "= ", "MET_LONG",
+    "domain", "list", "True", "LOCAL", "To", "Transform", "0 0 0", "CompressedData = True\n",
+    "DimSize = 1 1 1\n", "UltrasoundImageOrientation = UN\n", "ElementNumberOfChannels = 3\n" };
+  for (int round = 0; round < 6000; ++round)
+  {
+    std::string bad = contents[round % 2];
+    for (std::size_t k = 1 + below(6); k > 0 && !bad.empty(); --k)
+    {
+      const std::size_t at = below(bad.size());
+      const std::size_t length = below(40);
+      switch (below(5))
+      {
+        case 0:
+          bad[at] = static_cast<char>(random());
+          break;
+        case 1:
+          bad.erase(at, length);
+          break;
+        case 2:
+          bad.insert(at, bad.substr(below(bad.size()), length));
+          break;
+        case 3:
+          bad.insert(at, words[below(std::size(words))]);
+          break;
+        default:
+        {
+          // swap two lines' worth of text
+          const std::size_t other = below(bad.size());
+          std::swap(bad[at], bad[other]);
+          break;
+        }
+      }
+    }
+    this->Survives(bad);
+    ASSERT_FALSE(this->HasFatalFailure()) << "round " << round;
+  }
+}
+
+TEST_F(HostileSequences, DamagedCalibrations)
+{
+  const std::string content = MakeRich().GetContent();
+  const std::string calibration = MakeCalibration();
+  for (std::size_t at = 0; at < calibration.size(); ++at)
+  {
+    this->Survives(content, calibration.substr(0, at));
+    for (const char c : { '\0', '<', '>', '"', ' ', '9', '&', '\xff' })
+    {
+      std::string bad = calibration;
+      bad[at] = c;
+      this->Survives(content, bad);
+      ASSERT_FALSE(this->HasFatalFailure()) << at;
+    }
+  }
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SequenceFile.h"
+#include "lacunaSliceOrientation.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+using namespace lacuna;
+
+namespace
+{
+std::string Describe(const std::string& orientation, const std::string& type = {})
+{
+  const SliceFlips flips = GetSliceFlips(orientation, type);
+  return std::string(flips.X ? "x" : "-") + (flips.Y ? "y" : "-");
+}
+}
+
+TEST(SliceOrientation, Pixels)
+{
+  for (const char* type : { "", "BRIGHTNESS", "RGB_COLOR", "US_IMG_BRIGHTNESS" })
+  {
+    EXPECT_EQ(Describe("MF", type), "--");
+    EXPECT_EQ(Describe("MFA", type), "--");
+    EXPECT_EQ(Describe("MFD", type), "--"); // the third axis is not one of a slice
+    EXPECT_EQ(Describe("UF", type), "x-");
+    EXPECT_EQ(Describe("UFD", type), "x-");
+    EXPECT_EQ(Describe("MN", type), "-y");
+    EXPECT_EQ(Describe("UNA", type), "xy");
+    EXPECT_EQ(Describe(" US_IMG_ORIENT_UN ", type), "xy");
+  }
+}
+
+TEST(SliceOrientation, Lines)
+{
+  EXPECT_EQ(Describe("FM", "RF_REAL"), "--");
+  EXPECT_EQ(Describe("NM", "RF_REAL"), "x-");
+  EXPECT_EQ(Describe("FU", "RF_REAL"), "-y");
+  EXPECT_EQ(Describe("NU", "US_IMG_RF_REAL"), "xy");
+  EXPECT_EQ(Describe("FM", "RF_IQ_LINE"), "--");
+}
+
+TEST(SliceOrientation, RefusesWhatCannotBeRight)
+{
+  const auto error = [](const char* orientation, const char* type)
+  { return GetError([&] { GetSliceFlips(orientation, type); }); };
+  EXPECT_NE(error("FM", "BRIGHTNESS").find("'FM'"), std::string::npos);
+  EXPECT_NE(error("MF", "RF_REAL").find("known are FM"), std::string::npos);
+  EXPECT_NE(error("MF", "DOPPLER").find("'DOPPLER' is unknown"), std::string::npos);
+  EXPECT_NE(error("NM", "RF_IQ_LINE").find("complex"), std::string::npos);
+  for (const char* bad : { "", "M", "XX", "MFX", "MFAA", "AMF", "mf", "MM" })
+  {
+    EXPECT_NE(error(bad, ""), "") << bad;
+  }
+}
+
+TEST(SliceOrientation, FlipsEverySizeOfPixel)
+{
+  for (const std::size_t size : { 1, 2, 3, 4, 8, 12 })
+  {
+    for (const int columns : { 1, 4, 5 })
+    {
+      const int rows = 3;
+      const auto byte = [&](int column, int row, std::size_t k)
+      {
+        return static_cast<unsigned char>(
+          1 + k + size * static_cast<std::size_t>(column + columns * row));
+      };
+      for (int f = 0; f < 4; ++f)
+      {
+        std::vector<unsigned char> pixels;
+        for (int i = 0; i < columns * rows; ++i)
+        {
+          for (std::size_t k = 0; k < size; ++k)
+          {
+            pixels.push_back(byte(i % columns, i / columns, k));
+          }
+        }
+        const SliceFlips flips{ (f & 1) != 0, (f & 2) != 0 };
+        FlipSlice(pixels.data(), columns, rows, size, flips);
+        for (int i = 0; i < columns * rows; ++i)
+        {
+          const int column = flips.X ? columns - 1 - i % columns : i % columns;
+          const int row = flips.Y ? rows - 1 - i / columns : i / columns;
+          for (std::size_t k = 0; k < size; ++k)
+          {
+            ASSERT_EQ(pixels[static_cast<std::size_t>(i) * size + k], byte(column, row, k))
+              << size << " " << columns << " " << f;
+          }
+        }
+      }
+    }
+  }
+}

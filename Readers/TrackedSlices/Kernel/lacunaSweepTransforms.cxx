@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweepTransforms.h"
+
+#include "lacunaCalibrationFile.h"
+#include "lacunaSequenceText.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::string_view TransformSuffix = "Transform";
+constexpr std::string_view StatusSuffix = "TransformStatus";
+
+Matrix4 NoMatrix()
+{
+  std::array<double, 16> elements;
+  elements.fill(std::numeric_limits<double>::quiet_NaN());
+  return Matrix4(elements);
+}
+}
+
+//------------------------------------------------------------------------------
+bool SweepTransform::IsConstant() const
+{
+  return std::all_of(this->Matrices.begin(), this->Matrices.end(),
+    [&](const Matrix4& matrix)
+    { return std::memcmp(matrix.Data(), this->Matrices[0].Data(), 16 * sizeof(double)) == 0; });
+}
+
+//------------------------------------------------------------------------------
+std::string SweepTransforms::GetTransformName(const std::string& field)
+{
+  const bool is =
+    field.size() > TransformSuffix.size() && EndsWithIgnoringCase(field, TransformSuffix);
+  return is ? field.substr(0, field.size() - TransformSuffix.size()) : std::string();
+}
+
+//------------------------------------------------------------------------------
+SweepTransforms::SweepTransforms(
+  const SequenceHeader& header, const std::string& calibrationFileName)
+  : HasCalibrationFile(!calibrationFileName.empty())
+{
+  if (this->HasCalibrationFile)
+  {
+    this->ReadCalibration(calibrationFileName);
+  }
+  this->ReadFrames(header);
+  this->NameFrames();
+}
+
+//------------------------------------------------------------------------------
+void SweepTransforms::ReadCalibration(const std::string& fileName)
+{
+  for (const NamedTransform& named : ReadCalibrationFile(fileName))
+  {
+    SweepTransform transform;
+    transform.Name = named.From + "To" + named.To;
+    transform.From = named.From;
+    transform.To = named.To;
+    transform.FromCalibration = true;
+    transform.Matrices.push_back(named.Matrix);
+    this->Graph.Add(named.From, named.To, static_cast<int>(this->Transforms.size()));
+    this->Transforms.push_back(std::move(transform));
+  }
+}
+
+//------------------------------------------------------------------------------
+void SweepTransforms::ReadFrames(const SequenceHeader& header)
+{
+  for (const auto& [field, texts] : header.FrameFields)
+  {
+    SweepTransform transform;
+    transform.Name = GetTransformName(field);
+    if (transform.Name.empty())
+    {
+      continue;
+    }
+    for (const std::string& text : texts)
+    {
+      Matrix4 matrix;
+      transform.Errors.push_back(text.empty() ? "is missing" : ParseMatrix(text, matrix));
+      transform.Matrices.push_back(transform.Errors.back().empty() ? matrix : NoMatrix());
+    }
+    const std::string status = transform.Name + std::string(StatusSuffix);
+    for (const auto& [other, states] : header.FrameFields)
+    {
+      if (EqualsIgnoringCase(other, status) &&
+        other.compare(0, transform.Name.size(), transform.Name) == 0)
+      {
+        transform.Status = &states;
+      }
+    }
+    this->Transforms.push_back(std::move(transform));
+  }
+}
+
+//------------------------------------------------------------------------------
+// Enters the sequence's transforms in the graph. A name like AToBToC can be read in two ways: the
+// frames that other transforms mention decide.
+void SweepTransforms::NameFrames()
+{
+  std::vector<std::size_t> ambiguous;
+  std::vector<std::string> unused;
+  for (std::size_t i = 0; i < this->Transforms.size(); ++i)
+  {
+    if (this->Transforms[i].FromCalibration)
+    {
+      continue;
+    }
+    const auto readings = ReadTransformName(this->Transforms[i].Name);
+    if (readings.size() > 1)
+    {
+      ambiguous.push_back(i);
+    }
+    else if (readings.empty() || !this->Enter(i, readings[0].first, readings[0].second))
+    {
+      unused.push_back(this->Transforms[i].Name);
+    }
+  }
+  const TransformGraph certain = this->Graph;
+  for (const std::size_t i : ambiguous)
+  {
+    auto readings = ReadTransformName(this->Transforms[i].Name);
+    const auto end = std::remove_if(readings.begin(), readings.end(),
+      [&](const auto& reading)
+      { return !certain.HasFrame(reading.first) || !certain.HasFrame(reading.second); });
+    readings.erase(end, readings.end());
+    if (readings.size() != 1 || !this->Enter(i, readings[0].first, readings[0].second))
+    {
+      unused.push_back(this->Transforms[i].Name);
+    }
+  }
+  if (!unused.empty())
+  {
+    this->Warnings.push_back("transforms whose names do not read as one pair of frames, "
+                             "<From>To<To>, are kept but not used in chains: " +
+      JoinSome(unused));
+  }
+}
+
+//------------------------------------------------------------------------------
+bool SweepTransforms::Enter(std::size_t transform, const std::string& from, const std::string& to)
+{
+  if (from == to)
+  {
+    return false;
+  }
+  for (const SweepTransform& other : this->Transforms)
+  {
+    if (other.FromCalibration &&
+      ((other.From == from && other.To == to) || (other.From == to && other.To == from)))
+    {
+      this->Warnings.push_back("transform " + this->Transforms[transform].Name +
+        " of the sequence is replaced by " + other.Name + " of the calibration file");
+      return true;
+    }
+  }
+  this->Transforms[transform].From = from;
+  this->Transforms[transform].To = to;
+  this->Graph.Add(from, to, static_cast<int>(transform));
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool SweepTransforms::Compose(
+  const std::vector<TransformGraph::Link>& chain, std::size_t frame, Matrix4& product) const
+{
+  product = Matrix4();
+  try
+  {
+    for (const TransformGraph::Link& link : chain)
+    {
+      const Matrix4& matrix = this->Get(link).Get(frame);
+      const Matrix4 inverse = matrix.Inverse(); // also tells whether it is usable at all
+      product = (link.Inverse ? inverse : matrix) * product;
+    }
+  }
+  catch (const std::invalid_argument&)
+  {
+    product = NoMatrix();
+  }
+  return product.IsFinite();
+}
+
+//------------------------------------------------------------------------------
+std::string SweepTransforms::Describe() const
+{
+  std::vector<std::string> ofSequence;
+  std::vector<std::string> ofCalibration;
+  for (const SweepTransform& transform : this->Transforms)
+  {
+    (transform.FromCalibration ? ofCalibration : ofSequence).push_back(transform.Name);
+  }
+  return "Transforms of the sequence: " +
+    (ofSequence.empty() ? std::string("none") : JoinSome(ofSequence, 20)) +
+    "; of the calibration file: " +
+    (this->HasCalibrationFile ? JoinSome(ofCalibration, 20) : std::string("no file given")) + ".";
+}
+}
