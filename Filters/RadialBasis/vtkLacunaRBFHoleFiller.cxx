@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -302,19 +303,22 @@ vtkImplicitFunction* vtkLacunaRBFHoleFiller::GetDefectRegion()
 //------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::SetDefectArray(const char* name)
 {
-  if (this->DefectArray != (name ? name : ""))
-  {
-    this->DefectArray = name ? name : "";
-    this->Modified();
-  }
+  this->SetArrayName(this->DefectArray, name);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::SetSupportArray(const char* name)
 {
-  if (this->SupportArray != (name ? name : ""))
+  this->SetArrayName(this->SupportArray, name);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFHoleFiller::SetArrayName(std::string& member, const char* name)
+{
+  const std::string value = !name || !std::strcmp(name, "None") ? "" : name;
+  if (member != value)
   {
-    this->SupportArray = name ? name : "";
+    member = value;
     this->Modified();
   }
 }

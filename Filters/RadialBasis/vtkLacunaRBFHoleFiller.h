@@ -84,7 +84,7 @@ public:
   ///@}
 
   ///@{
-  /** Point array of the map with one component: not 0 is defect. Default "", none. */
+  /** Point array of the map with one component: not 0 is defect. Default "" (or "None"): none. */
   void SetDefectArray(const char* name);
   const char* GetDefectArray() const { return this->DefectArray.c_str(); }
   ///@}
@@ -92,7 +92,7 @@ public:
   ///@{
   /**
    * Point array of the map with one component: not 0 is sound surface that the fit may use; all
-   * else is not. SupportMargin does not count then. Default "", none.
+   * else is not. SupportMargin does not count then. Default "" (or "None"): none.
    */
   void SetSupportArray(const char* name);
   const char* GetSupportArray() const { return this->SupportArray.c_str(); }
@@ -106,9 +106,9 @@ public:
 
   ///@{
   /**
-   * About one node for each square of this size, mm, > 0. Smooth bone needs about 1 (Carr 1996,
-   * §6.1.5). Time grows with the third power of the number of nodes, memory (8 bytes) with the
-   * second; above 4 GiB, about 23 000 nodes, the filter stops with an error. Default 1.
+   * Nodes are the pixels nearest to a lattice of this spacing, mm, > 0. Smooth bone needs about 1
+   * (Carr 1996, §6.1.5). Time grows with the third power of the number of nodes, memory (8 bytes)
+   * with the second; above 4 GiB, about 23 000 nodes, the filter stops with an error. Default 1.
    */
   vtkSetMacro(NodeSpacing, double);
   vtkGetMacro(NodeSpacing, double);
@@ -142,6 +142,8 @@ protected:
 private:
   vtkLacunaRBFHoleFiller(const vtkLacunaRBFHoleFiller&) = delete;
   void operator=(const vtkLacunaRBFHoleFiller&) = delete;
+
+  void SetArrayName(std::string& member, const char* name);
 
   int Kernel = ThinPlate;
   vtkSmartPointer<vtkImplicitFunction> DefectRegion;

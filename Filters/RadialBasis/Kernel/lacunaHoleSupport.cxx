@@ -78,13 +78,13 @@ std::vector<std::size_t> Label(const MapGrid& grid, const MapMask& mask, const P
   return sizes;
 }
 
-// Number of the square of size spacing in which x = index * pixel lies.
-std::int64_t GetSquare(std::int64_t index, double pixel, double spacing)
+// Number of the lattice point to whose square x = index * pixel belongs.
+std::int64_t GetLatticePoint(std::int64_t index, double pixel, double spacing)
 {
-  // The small number keeps rounding from moving a pixel that lies on a line.
-  return spacing <= pixel
-    ? index
-    : static_cast<std::int64_t>(std::floor(static_cast<double>(index) * pixel / spacing + 1e-9));
+  // The small number keeps rounding from moving a pixel that lies between two squares.
+  return spacing <= pixel ? index
+                          : static_cast<std::int64_t>(std::floor(
+                              static_cast<double>(index) * pixel / spacing + (0.5 + 1e-9)));
 }
 }
 
@@ -191,7 +191,7 @@ std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, 
   struct Best
   {
     std::size_t Pixel;
-    double Distance; // squared, from the middle of the square
+    double Distance; // squared, from the lattice point
   };
   std::map<std::pair<std::int64_t, std::int64_t>, Best> squares;
   const double tie = 1e-9 * nodeSpacing * nodeSpacing;
@@ -204,16 +204,16 @@ std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, 
     const std::int64_t index[2] = { grid.FirstColumn +
         static_cast<std::int64_t>(pixel % grid.Width),
       grid.FirstRow + static_cast<std::int64_t>(pixel / grid.Width) };
-    std::int64_t square[2];
+    std::int64_t lattice[2];
     double distance = 0;
     for (int c = 0; c < 2; ++c)
     {
-      square[c] = GetSquare(index[c], grid.Spacing[c], nodeSpacing);
+      lattice[c] = GetLatticePoint(index[c], grid.Spacing[c], nodeSpacing);
       const double d = static_cast<double>(index[c]) * grid.Spacing[c] -
-        (static_cast<double>(square[c]) + 0.5) * nodeSpacing;
+        static_cast<double>(lattice[c]) * nodeSpacing;
       distance += d * d;
     }
-    const auto [entry, isNew] = squares.insert({ { square[1], square[0] }, { pixel, distance } });
+    const auto [entry, isNew] = squares.insert({ { lattice[1], lattice[0] }, { pixel, distance } });
     if (!isNew && distance < entry->second.Distance - tie)
     {
       entry->second = { pixel, distance };

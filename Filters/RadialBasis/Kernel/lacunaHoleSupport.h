@@ -56,10 +56,10 @@ struct StepReport
 StepReport RemoveBeyondSteps(
   const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support);
 
-/// Thins support to about one pixel for each square of nodeSpacing mm: the plane is divided into
-/// squares of that size with a corner at x = y = 0, and of the pixels whose centres lie in a square
-/// the one nearest to its middle is kept, the first one of equals. Returns the pixels, ascending.
-/// Where nodeSpacing is at most the pixel spacing of an axis, each pixel is a square of its own.
+/// Thins support to a lattice of nodeSpacing mm through x = y = 0: for each lattice point the
+/// nearest pixel of support is kept, the first one of equals, if one lies in the square of that
+/// size around the point. Returns the pixels, ascending. Where nodeSpacing is at most the pixel
+/// spacing of an axis, no pixel is dropped along it.
 std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, double nodeSpacing);
 }
 #endif

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -117,27 +119,52 @@ TEST(HoleSupport, KeepsASteepSlope)
   }
 }
 
-TEST(HoleSupport, ThinsToOneNodePerSquare)
+TEST(HoleSupport, ThinsToALattice)
 {
   lacuna::MapGrid grid;
-  grid.Width = 8;
-  grid.Height = 6;
+  grid.Width = 9;
+  grid.Height = 7;
   grid.Spacing = { 0.5, 0.5 };
   lacuna::MapMask all(grid.GetSize(), 1);
-  // Squares of 1 mm hold pixels at 0 and 0.5; the middle is at 0.5.
   std::vector<std::size_t> expected;
-  for (std::size_t j = 1; j < 6; j += 2)
+  for (std::size_t j = 0; j < 7; j += 2)
   {
-    for (std::size_t i = 1; i < 8; i += 2)
+    for (std::size_t i = 0; i < 9; i += 2)
     {
-      expected.push_back(j * 8 + i);
+      expected.push_back(j * 9 + i);
     }
   }
   EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), expected);
-  // Without the best pixel of a square, the first of the next best is taken.
-  all[1 * 8 + 1] = 0;
-  expected[0] = 1;
-  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), expected);
+  // Without the pixel at (1, 1) mm the first of the next nearest is taken, above it, then the one
+  // to its left.
+  all[2 * 9 + 2] = 0;
+  std::vector<std::size_t> changed = expected;
+  *std::find(changed.begin(), changed.end(), 2 * 9 + 2) = 1 * 9 + 2;
+  std::sort(changed.begin(), changed.end());
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), changed);
+  all[1 * 9 + 2] = 0;
+  *std::find(changed.begin(), changed.end(), 1 * 9 + 2) = 2 * 9 + 1;
+  std::sort(changed.begin(), changed.end());
+  EXPECT_EQ(lacuna::ThinNodes(grid, all, 1), changed);
+}
+
+TEST(HoleSupport, KeepsOnePixelPerLatticePoint)
+{
+  // A spacing that is no multiple: about one node per square, none farther from its lattice point
+  // than from the edge of its square.
+  lacuna::MapGrid grid;
+  grid.Width = 101;
+  grid.Height = 83;
+  grid.Spacing = { 0.7, 0.9 };
+  const auto nodes = lacuna::ThinNodes(grid, lacuna::MapMask(grid.GetSize(), 1), 2);
+  EXPECT_EQ(nodes.size(), 36u * 38u);
+  for (const std::size_t node : nodes)
+  {
+    const double x = 0.7 * static_cast<double>(node % 101);
+    const double y = 0.9 * static_cast<double>(node / 101);
+    EXPECT_LE(std::abs(x - 2 * std::round(x / 2)), 0.5 * 0.7 + 1e-9);
+    EXPECT_LE(std::abs(y - 2 * std::round(y / 2)), 0.5 * 0.9 + 1e-9);
+  }
 }
 
 TEST(HoleSupport, ThinningFollowsTheMapNotItsCrop)
