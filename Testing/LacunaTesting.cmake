@@ -25,3 +25,26 @@ function (lacuna_add_paraview_test script)
     SKIP_RETURN_CODE 77
     ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
 endfunction ()
+
+# lacuna_find_opencascade()
+# Makes the target LacunaOpenCASCADE (data exchange of the CAD kernel, for tests and benchmarks only)
+# if it is installed. Not through its CMake package: Debian's links libtbb, which it does not depend
+# on, and sets compile definitions for whole folders.
+function (lacuna_find_opencascade)
+  if (TARGET LacunaOpenCASCADE)
+    return ()
+  endif ()
+  find_path(LACUNA_OPENCASCADE_INCLUDE_DIR IGESControl_Reader.hxx PATH_SUFFIXES opencascade)
+  set(libraries)
+  foreach (library IN ITEMS TKIGES TKXSBase TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d
+      TKG2d TKMath TKernel)
+    find_library(LACUNA_OPENCASCADE_${library} ${library})
+    list(APPEND libraries "${LACUNA_OPENCASCADE_${library}}")
+  endforeach ()
+  if (LACUNA_OPENCASCADE_INCLUDE_DIR AND NOT libraries MATCHES "NOTFOUND")
+    add_library(LacunaOpenCASCADE INTERFACE)
+    target_include_directories(LacunaOpenCASCADE SYSTEM INTERFACE
+      "${LACUNA_OPENCASCADE_INCLUDE_DIR}")
+    target_link_libraries(LacunaOpenCASCADE INTERFACE ${libraries})
+  endif ()
+endfunction ()

@@ -434,9 +434,13 @@ void CheckRegular(GridSize size, const std::vector<Vec3>& points)
   CheckSize(size, points.size());
   const std::int64_t columns = size.Columns;
   double extent = 0;
-  for (const Vec3& p : points)
+  for (std::size_t k = 0; k < points.size(); ++k)
   {
-    extent = std::max(extent, Norm(p - points.front()));
+    if (!IsFinite(points[k]))
+    {
+      ThrowAt(size, k, "the point is not finite");
+    }
+    extent = std::max(extent, Norm(points[k] - points.front()));
   }
   const auto at = [&](std::int64_t i, std::int64_t j) -> const Vec3&
   { return points[i + columns * j]; };

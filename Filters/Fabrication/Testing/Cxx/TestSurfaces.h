@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Inputs of the IGES Writer's tests. All are asymmetric: no mirror image is the same.
+#ifndef TestSurfaces_h
+#define TestSurfaces_h
+
+#include "vtkCharArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkImageData.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+#include "vtkStructuredGrid.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace TestSurfaces
+{
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A dome with a bump off its centre; x, y in mm from the centre.
+inline double Depth(double x, double y)
+{
+  return 65 - std::sqrt(60 * 60 - x * x - 1.2 * y * y) -
+    3 * std::exp(-((x - 8) * (x - 8) + (y + 5) * (y + 5)) / 60);
+}
+
+/// The geometry of a map seen along the view, turned by an angle about it.
+inline vtkLacunaDepthMap::Geometry Geometry(const lacuna::Vec3& view, double turn)
+{
+  const lacuna::Matrix4 rotation = lacuna::Matrix4::Rotation(view, turn);
+  const lacuna::Vec3 z = lacuna::Normalized(view);
+  const lacuna::Vec3 other =
+    std::abs(z[0]) < 0.5 ? lacuna::Vec3{ 1, 0, 0 } : lacuna::Vec3{ 0, 1, 0 };
+  const lacuna::Vec3 x = rotation.Vector(lacuna::Normalized(other - lacuna::Dot(other, z) * z));
+  return { { 33, -71, 140 }, x, lacuna::Cross(z, x), z, { 0.5, 0.75 } };
+}
+
+/// A map of 90 x 70 pixels whose extent starts at (5, -3). With fitted, Fitted is a number on
+/// columns 20..79 and rows 10..49 only, and Depth has a hole.
+inline vtkSmartPointer<vtkImageData> Map(
+  const vtkLacunaDepthMap::Geometry& geometry, bool fitted, bool perspective = false)
+{
+  auto map = vtkSmartPointer<vtkImageData>::New();
+  map->SetExtent(5, 94, -3, 66, 0, 0);
+  vtkLacunaDepthMap::SetGeometry(map, geometry);
+  vtkNew<vtkDoubleArray> depth;
+  depth->SetName(vtkLacunaDepthMap::DepthName);
+  vtkNew<vtkDoubleArray> fit;
+  fit->SetName(vtkLacunaDepthMap::FittedName);
+  for (int j = -3; j <= 66; ++j)
+  {
+    for (int i = 5; i <= 94; ++i)
+    {
+      const double d = Depth(0.5 * (i - 49), 0.75 * (j - 30));
+      depth->InsertNextValue(fitted && std::hypot(i - 50, j - 30) < 10 ? NaN : d);
+      fit->InsertNextValue(i >= 20 && i <= 79 && j >= 10 && j <= 49 ? d : NaN);
+    }
+  }
+  map->GetPointData()->AddArray(depth);
+  if (fitted)
+  {
+    map->GetPointData()->AddArray(fit);
+  }
+  if (perspective)
+  {
+    const lacuna::Vec3 eye =
+      geometry.Origin + 20.0 * geometry.Right + 25.0 * geometry.Down + -150.0 * geometry.View;
+    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
+    vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::ViewAngleName, { 30 }, 1);
+  }
+  return map;
+}
+
+/// The surface points that are to be written of a Map, column fastest.
+inline std::vector<lacuna::Vec3> Points(vtkImageData* image, bool fitted)
+{
+  const vtkLacunaDepthMap map(image);
+  std::vector<lacuna::Vec3> points;
+  for (int j = fitted ? 10 : -3; j <= (fitted ? 49 : 66); ++j)
+  {
+    for (int i = fitted ? 20 : 5; i <= (fitted ? 79 : 94); ++i)
+    {
+      points.push_back(map.GetPoint(i, j, Depth(0.5 * (i - 49), 0.75 * (j - 30))));
+    }
+  }
+  return points;
+}
+
+/// A structured surface of 40 x 25 points; flat is the dimension (0, 1, 2) that is 1.
+inline vtkSmartPointer<vtkStructuredGrid> Grid(int flat, std::vector<lacuna::Vec3>& points)
+{
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  int dimensions[3] = { 40, 40, 25 };
+  dimensions[flat] = 1;
+  dimensions[flat == 0 ? 1 : 0] = 40;
+  dimensions[flat == 2 ? 1 : 2] = 25;
+  grid->SetDimensions(dimensions);
+  vtkNew<vtkPoints> array;
+  array->SetDataTypeToDouble();
+  points.clear();
+  for (int j = 0; j < 25; ++j)
+  {
+    for (int i = 0; i < 40; ++i)
+    {
+      // bent round, so that no direction sees it as a height field
+      const double angle = 0.1 * i;
+      const double radius = 20 + 0.2 * j + std::sin(0.3 * j + angle);
+      points.push_back({ radius * std::cos(angle), radius * std::sin(angle), 1.5 * j });
+      array->InsertNextPoint(points.back().data());
+    }
+  }
+  grid->SetPoints(array);
+  return grid;
+}
+}
+#endif
