@@ -15,7 +15,7 @@ class FileError : public std::runtime_error
 public:
   enum class Kind
   {
-    CannotOpen, ///< no such folder, read-only, is a folder, …
+    CannotOpen, ///< no such folder, read-only, is a folder
     NoSpace,    ///< the disk or the quota is full
     Other
   };

@@ -3,6 +3,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaKnotSelection.h"
+#include "lacunaMemory.h"
 
 #include <algorithm>
 #include <array>
@@ -183,6 +184,9 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
   {
     throw std::invalid_argument("the tolerance must be 0 or a positive number of mm");
   }
+  // Samples by u and by v, points, coordinates, and as much again for solutions.
+  RequireMemory("a surface through so many samples",
+    sizeof(double) * 4.0 * (problem.Components + 3) * static_cast<double>(points.size()));
   problem.ByU = Transposed(problem.ByV, problem.Rows(), problem.Columns(), problem.Components);
   std::vector<double> coordinates(3 * points.size());
   for (std::int64_t j = 0; j < problem.Rows(); ++j)
