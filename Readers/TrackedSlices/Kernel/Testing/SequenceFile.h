@@ -36,6 +36,9 @@ public:
   /// Writes another file, or this one, in the same folder.
   void WriteBeside(const std::string& name, const std::string& content) const
   {
+    // A new file: some file systems wait for the disk when an old one is written over.
+    std::error_code error;
+    std::filesystem::remove(this->Folder / name, error);
     std::ofstream stream(this->Folder / name, std::ios::binary);
     stream << content;
   }

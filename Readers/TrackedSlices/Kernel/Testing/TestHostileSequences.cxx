@@ -107,7 +107,8 @@ TEST_F(HostileSequences, EveryByteReplaced)
     const std::string content = file.GetContent();
     for (std::size_t at = 0; at < content.size(); ++at)
     {
-      for (const char c : { '\0', '\n', ' ', '=', '-', '9', '\xff' })
+      const char bytes[] = { '\0', '\n', ' ', '=', '-', '9', '\xff' };
+      for (const char c : { bytes[at % 7], bytes[(at + 3) % 7] })
       {
         std::string bad = content;
         bad[at] = c;

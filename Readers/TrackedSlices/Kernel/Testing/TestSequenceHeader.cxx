@@ -283,7 +283,7 @@ TEST(SequenceHeader, WhatIsNotASequence)
 {
   ExpectError("", { "empty" });
   ExpectError("hello\nworld\n", { "line 1", "not of the form 'Name = Value'" });
-  ExpectError(std::string("ObjectType = Image\nX = \0\1\2", 29), { "line 2", "not text" });
+  ExpectError(std::string("ObjectType = Image\nX = \0\1\2", 26), { "line 2", "not text" });
   ExpectError(std::string(3000000, 'x'), { "line 1", "not text" });
   ExpectError("ObjectType = Image\nNDims = 3\n", { "line 2", "ElementDataFile", "cut off" });
   ExpectError(
