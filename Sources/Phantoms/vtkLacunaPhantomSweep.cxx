@@ -229,12 +229,9 @@ int vtkLacunaPhantomSweep::RequestData(
       lacuna::Extent extent;
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
       vtkImageData* output = vtkImageData::GetData(outputVector);
-      double bytes = this->OutputScalarType == FLOAT ? 4 : 1;
-      for (int i = 0; i < 3; ++i)
-      {
-        bytes *= 1.0 + extent[2 * i + 1] - extent[2 * i];
-      }
-      constexpr double BytesPerPose = 4 * 16 * sizeof(double);
+      const double bytes =
+        lacuna::CountPoints(extent) * (this->OutputScalarType == FLOAT ? sizeof(float) : 1);
+      constexpr double BytesPerPose = 4.0 * 16 * sizeof(double);
       std::ostringstream what;
       what << "a sweep of " << this->NumberOfSlices << " slices of " << this->ImageSize[0] << " x "
            << this->ImageSize[1] << " pixels";

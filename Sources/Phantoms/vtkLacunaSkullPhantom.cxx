@@ -82,18 +82,12 @@ int vtkLacunaSkullPhantom::RequestData(
       vtkInformation* info = outputVector->GetInformationObject(0);
       lacuna::Extent extent;
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
-      double bytes = sizeof(short);
+      const std::array<int, 3> whole = skull.GetDimensions();
       std::ostringstream what;
-      what << "a skull of";
-      for (int i = 0; i < 3; ++i)
-      {
-        const double points = 1.0 + extent[2 * i + 1] - extent[2 * i];
-        bytes *= points;
-        what << (i > 0 ? " x " : " ") << points;
-      }
-      what << " voxels (Spacing " << this->Spacing[0] << " " << this->Spacing[1] << " "
+      what << "a skull of " << whole[0] << " x " << whole[1] << " x " << whole[2]
+           << " voxels (Spacing " << this->Spacing[0] << " " << this->Spacing[1] << " "
            << this->Spacing[2] << " mm)";
-      lacuna::RequireMemory(what.str(), bytes);
+      lacuna::RequireMemory(what.str(), sizeof(short) * lacuna::CountPoints(extent));
 
       vtkImageData* output = vtkImageData::GetData(outputVector);
       output->SetOrigin(skull.GetOrigin().data());

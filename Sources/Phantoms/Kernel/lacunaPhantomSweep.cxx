@@ -18,13 +18,25 @@ constexpr std::int64_t RowsPerTask = 16;
 
 void Store(double value, unsigned char& pixel)
 {
-  pixel = !(value > 0) ? 0 : (value >= 255 ? 255 : static_cast<unsigned char>(value + 0.5));
+  if (!(value > 0))
+  {
+    pixel = 0;
+    return;
+  }
+  const double raised = std::min(value, 255.0) + 0.5; // truncation then rounds half up
+  pixel = static_cast<unsigned char>(raised);
 }
 
 void Store(double value, float& pixel)
 {
   pixel = static_cast<float>(value);
 }
+}
+
+double CountPoints(const Extent& extent)
+{
+  return (1.0 + extent[1] - extent[0]) * (1.0 + extent[3] - extent[2]) *
+    (1.0 + extent[5] - extent[4]);
 }
 
 template <class T>
@@ -85,8 +97,9 @@ void SampleGrid(Execution& execution, const PhantomScene& scene,
       std::vector<double> levels(dimensions[0]);
       for (std::int64_t r = begin; r < end; ++r)
       {
-        const Vec3 index{ 0, static_cast<double>(r % dimensions[1]),
-          static_cast<double>(r / dimensions[1]) };
+        const std::int64_t j = r % dimensions[1];
+        const std::int64_t k = r / dimensions[1];
+        const Vec3 index{ 0, static_cast<double>(j), static_cast<double>(k) };
         scene.SampleRow(indexToReference.Point(index), indexToReference.Column(0), 0, dimensions[0],
           levels.data());
         std::transform(levels.begin(), levels.end(), values + r * dimensions[0],

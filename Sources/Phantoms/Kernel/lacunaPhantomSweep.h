@@ -17,6 +17,9 @@ namespace lacuna
 /// Extent of a part of a stack: first and last column, row and slice, as in VTK.
 using Extent = std::array<int, 6>;
 
+/// Number of points of an extent; a double, so that it cannot overflow.
+double CountPoints(const Extent& extent);
+
 /// How slices are imaged.
 struct SliceImaging
 {

@@ -15,8 +15,6 @@ namespace lacuna
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
-
 // Hounsfield units of the tissues. Scalp and outer table lie evenly about 500.
 constexpr double Air = -1000;
 constexpr double Scalp = 0;

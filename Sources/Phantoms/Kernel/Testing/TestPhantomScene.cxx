@@ -120,7 +120,7 @@ TEST(PhantomScene, ClosedFormVolumesAgreeWithIntegration)
     const auto scene = lacuna::MakePhantomScene(anatomy, 1.5);
     const bool small = anatomy == Anatomy::Ellipsoids;
     std::int64_t above = 0;
-    const double cell = ForEachCell(*scene, BoxOf(anatomy), small ? 0.2 : 0.5,
+    const double cell = ForEachCell(*scene, BoxOf(anatomy), small ? 0.25 : 0.8,
       [&](const Vec3&, double v) { above += v > scene->IsoValue(); });
     // Counting cell centres converges faster than the surface times the cell edge.
     EXPECT_NEAR(above * cell / scene->TrueVolume(), 1, 2e-4);
@@ -143,7 +143,7 @@ TEST(PhantomScene, LevelsAndSizesAreAsDocumented)
       const auto scene = lacuna::MakePhantomScene(c.Kind, width);
       double low = 1e9;
       double high = -1e9;
-      ForEachCell(*scene, BoxOf(c.Kind), 1,
+      ForEachCell(*scene, BoxOf(c.Kind), c.Kind == Anatomy::Kumara ? 2 : 1,
         [&](const Vec3&, double v)
         {
           low = std::min(low, v);
@@ -160,8 +160,7 @@ TEST(PhantomScene, LevelsAndSizesAreAsDocumented)
   }
   // The kumara's box: 190 x 80 x 90 mm, about the origin.
   const auto kumara = lacuna::MakePhantomScene(Anatomy::Kumara, 1.5);
-  const Box box =
-    BoundsOf(*kumara, KumaraBox, 0.5, [&](double v) { return v > kumara->IsoValue(); });
+  const Box box = BoundsOf(*kumara, KumaraBox, 1, [&](double v) { return v > kumara->IsoValue(); });
   const double size[3] = { 80, 90, 190 };
   for (int i = 0; i < 3; ++i)
   {

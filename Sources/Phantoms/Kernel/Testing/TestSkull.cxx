@@ -53,7 +53,7 @@ std::vector<short> Sample(const Skull& skull, const Extent& e, int threads)
 Skull::Parameters Coarse()
 {
   Skull::Parameters p;
-  p.Spacing = { 2.5, 2.5, 2.3 };
+  p.Spacing = { 3, 3, 2.3 };
   return p;
 }
 }
@@ -64,7 +64,7 @@ TEST(Skull, FiveHundredIsTheOuterSurface)
   Skull::Parameters p;
   p.Center = { 5, -11, 40 };
   const Skull skull(p);
-  for (int i = 0; i < 5000; ++i)
+  for (int i = 0; i < 2000; ++i)
   {
     const Vec3 n = RandomDirection(i);
     const Vec3 surface = SkullSurface::Radius(n) * n;
@@ -126,7 +126,7 @@ TEST(Skull, BlurIsCloseToTheAverageOverTheVoxel)
   sharpParameters.Spacing = { 1e-6, 1e-6, 1e-6 };
   const Skull sharp(sharpParameters);
   double mean = 0;
-  constexpr int N = 40;
+  constexpr int N = 25;
   for (int i = 0; i < N; ++i)
   {
     const Vec3 n = RandomDirection(i);
@@ -188,7 +188,7 @@ TEST(Skull, VoxelsAreTheRoundedValuesAtTheirPlaces)
   Skull::Parameters p = Coarse();
   p.Center = { 3, 4, -5 };
   const Skull skull(p);
-  const Extent part{ 10, 40, 20, 50, 30, 60 };
+  const Extent part{ 8, 40, 20, 50, 30, 60 };
   const auto voxels = Sample(skull, part, 2);
   const Vec3 origin = skull.GetOrigin();
   std::size_t at = 0;
