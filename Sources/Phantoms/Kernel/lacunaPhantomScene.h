@@ -36,12 +36,12 @@ public:
   virtual double TrueVolume() const;
 };
 
-/// The scenes of Phantom Sweep. None equals its mirror image or a turned copy of it.
+/// The scenes of Phantom Sweep. None equals its mirror image along an axis.
 enum class Anatomy
 {
   /// A bright tilted ellipsoid (180) with a brighter and a darker inclusion in tissue (60), a dark
-  /// cyst and two dimmer lesions beside it: within about 29 x 22 x 22 mm of the origin. The
-  /// iso-value 120 encloses the main ellipsoid and nothing else.
+  /// cyst (20) and two lesions (100, 35) beside it: within 29, 22 and 22 mm of the origin along x,
+  /// y and z. The iso-value 120 encloses the main ellipsoid and nothing else.
   Ellipsoids,
   /// A sweet potato in water (20): a bent, tapered ellipsoid of 190 mm along z, 80 mm along x and
   /// 90 mm along y, flesh 150 under a bright skin of 200 that is 4 mm thick (Carr 1996, ch. 5).

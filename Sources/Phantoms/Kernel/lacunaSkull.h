@@ -15,19 +15,18 @@ namespace lacuna
 {
 /// Layers along the outward normal at the nearest point of SkullSurface (signed distance d, mm):
 /// air -1000 HU beyond the scalp (d > 6), scalp 0, outer table 1000 (0 > d > -2), diploe 520 to 680
-/// (2.4 to 4.4 mm thick), inner table 1000 (1.5 mm), brain 35.
+/// (2.7 to 4.1 mm thick), inner table 1000 (1.5 mm), brain 35.
 ///
-/// Partial-volume blur: each boundary is a SmoothStep of d whose width gives the blur the variance
-/// that the average over the voxel's box has along the normal n, width^2 / 28 = sum (n_i s_i)^2
-/// / 12. For voxels of 1 x 1 x 2.3 mm it is 1.5 to 3.5 mm wide. A step of d is not shifted by
-/// curvature, and the outer table is wider than half the blur: 500 HU lie exactly on the outer
-/// surface as long as no spacing exceeds 2.6 mm. (The average over the box itself would shift it by
-/// about H s^2 / 12, below 0.012 mm for a mean curvature H of 1/70 mm and s = 2.3 mm.)
+/// Partial-volume blur: each boundary is a SmoothStep of d, so wide that the blur has the variance
+/// of the average over the voxel's box along the normal n: width^2 / 28 = sum (n_i s_i)^2 / 12.
+/// For voxels of 1 x 1 x 2.3 mm it is 1.5 to 3.5 mm wide. A step of d is not shifted by curvature,
+/// and the outer table is wider than half the blur: 500 HU lie exactly on the outer surface as long
+/// as no spacing exceeds 2.6 mm; at 3, 4 and 5 mm they sink in by up to 0.003, 0.07 and 0.24 mm.
+/// (The average over the box itself would move them by less than 0.015 mm at 1 x 1 x 2.3 mm.)
 ///
-/// Defect: within a cylinder around DefectDirection through the centre, with an irregular outline
-/// r(psi) = DefectRadius (1 + 0.12 cos(2 psi + 0.5) + 0.08 cos(3 psi - 1.1) + 0.04 cos(5 psi
-/// + 2.0)) of mean DefectRadius, bone is replaced by soft tissue of 0 HU through its full
-/// thickness.
+/// Defect: within a cylinder around DefectDirection through the centre, bone is replaced by soft
+/// tissue of 0 HU through its full thickness. The outline is irregular, of mean DefectRadius R:
+/// r(psi) = R (1 + 0.12 cos(2 psi + 0.5) + 0.08 cos(3 psi - 1.1) + 0.04 cos(5 psi + 2)).
 class Skull
 {
 public:
