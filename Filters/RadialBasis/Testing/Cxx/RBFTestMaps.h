@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Depth maps for the tests of this module, and a collector of errors and warnings.
+/// Depth maps for the tests of this module.
 #ifndef RBFTestMaps_h
 #define RBFTestMaps_h
 
-#include "vtkAlgorithm.h"
-#include "vtkCallbackCommand.h"
 #include "vtkCharArray.h"
-#include "vtkCommand.h"
 #include "vtkDoubleArray.h"
-#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
@@ -18,40 +14,7 @@
 #include "vtkSmartPointer.h"
 
 #include <cmath>
-#include <iostream>
 #include <limits>
-#include <string>
-
-#define CHECK(condition)                                                                           \
-  if (!(condition))                                                                                \
-  {                                                                                                \
-    std::cerr << "line " << __LINE__ << ": failed: " #condition << std::endl;                      \
-    return EXIT_FAILURE;                                                                           \
-  }
-
-/// Gathers the text of errors and warnings, which are then not printed.
-class MessageCollector
-{
-public:
-  explicit MessageCollector(vtkAlgorithm* algorithm)
-  {
-    this->Callback->SetClientData(&this->Text);
-    this->Callback->SetCallback([](vtkObject*, unsigned long, void* text, void* message)
-      { *static_cast<std::string*>(text) += static_cast<const char*>(message); });
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      algorithm->AddObserver(event, this->Callback);
-      algorithm->GetExecutive()->AddObserver(event, this->Callback);
-    }
-  }
-  bool Has(const std::string& part) const { return this->Text.find(part) != std::string::npos; }
-  void Clear() { this->Text.clear(); }
-
-  std::string Text;
-
-private:
-  vtkNew<vtkCallbackCommand> Callback;
-};
 
 /// A map of 80 x 60 pixels of 1 x 0.8 mm whose extent starts at (10, 20), seen obliquely. Its
 /// surface is an inclined plane (no symmetry: an error of axis or sign cannot hide).

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Radial basis functions on Franke's function in the unit square: fit, and evaluation on a grid,
+// beside the direct sum that one would write first.
+#include "lacunaExecution.h"
+#include "lacunaRadialBasis.h"
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace
+{
+using Point = std::array<double, 2>;
+
+double Franke(const Point& p)
+{
+  const auto square = [](double a) { return a * a; };
+  const double x = 9 * p[0];
+  const double y = 9 * p[1];
+  return 0.75 * std::exp(-(square(x - 2) + square(y - 2)) / 4) +
+    0.75 * std::exp(-square(x + 1) / 49 - (y + 1) / 10) +
+    0.5 * std::exp(-(square(x - 7) + square(y - 3)) / 4) -
+    0.2 * std::exp(-square(x - 4) - square(y - 7));
+}
+
+struct Problem
+{
+  std::vector<Point> Nodes;
+  std::vector<double> Values;
+
+  explicit Problem(std::int64_t count)
+  {
+    for (std::int64_t i = 1; i <= count; ++i)
+    {
+      const double x = static_cast<double>(i) * 0.7548776662466927;
+      const double y = static_cast<double>(i) * 0.5698402909980532;
+      this->Nodes.push_back({ x - std::floor(x), y - std::floor(y) });
+      this->Values.push_back(Franke(this->Nodes.back()));
+    }
+  }
+};
+
+std::vector<Point> MakeGrid(std::int64_t size)
+{
+  std::vector<Point> points;
+  for (std::int64_t j = 0; j < size; ++j)
+  {
+    for (std::int64_t i = 0; i < size; ++i)
+    {
+      points.push_back({ static_cast<double>(i) / static_cast<double>(size - 1),
+        static_cast<double>(j) / static_cast<double>(size - 1) });
+    }
+  }
+  return points;
+}
+
+lacuna::RadialBasisOptions MakeOptions(std::int64_t kernel)
+{
+  lacuna::RadialBasisOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(kernel);
+  return options;
+}
+
+// arguments: kernel, nodes
+void Fit(benchmark::State& state)
+{
+  const Problem problem(state.range(1));
+  lacuna::ThreadExecution execution;
+  for (auto _ : state)
+  {
+    const lacuna::RadialBasis<2> s(
+      execution, problem.Nodes, problem.Values, MakeOptions(state.range(0)));
+    state.counters["condition"] = s.GetReport().ConditionEstimate;
+  }
+}
+
+// arguments: kernel, nodes, grid size, threads, instruction set
+void Evaluate(benchmark::State& state)
+{
+  const Problem problem(state.range(1));
+  const std::vector<Point> points = MakeGrid(state.range(2));
+  lacuna::ThreadExecution execution(static_cast<int>(state.range(3)));
+  const auto set = static_cast<lacuna::InstructionSet>(state.range(4));
+  if (set > lacuna::BestInstructionSet())
+  {
+    state.SkipWithError("this machine lacks the instruction set");
+    return;
+  }
+  lacuna::RadialBasis<2> s(execution, problem.Nodes, problem.Values, MakeOptions(state.range(0)));
+  s.SetInstructionSet(set);
+  std::vector<double> values;
+  for (auto _ : state)
+  {
+    s.Evaluate(execution, points, values);
+    benchmark::DoNotOptimize(values.data());
+  }
+}
+
+// The plain direct sum, one thread. arguments: nodes, grid size
+void PlainSum(benchmark::State& state)
+{
+  const Problem problem(state.range(0));
+  const std::vector<Point> points = MakeGrid(state.range(1));
+  std::vector<double> values(points.size());
+  for (auto _ : state)
+  {
+    for (std::size_t p = 0; p < points.size(); ++p)
+    {
+      double sum = 0;
+      for (std::size_t i = 0; i < problem.Nodes.size(); ++i)
+      {
+        const double dx = points[p][0] - problem.Nodes[i][0];
+        const double dy = points[p][1] - problem.Nodes[i][1];
+        const double r2 = dx * dx + dy * dy;
+        sum += r2 > 0 ? problem.Values[i] * 0.5 * r2 * std::log(r2) : 0;
+      }
+      values[p] = sum;
+    }
+    benchmark::DoNotOptimize(values.data());
+  }
+}
+
+constexpr std::int64_t ThinPlate = static_cast<std::int64_t>(lacuna::RadialKernel::ThinPlate);
+constexpr std::int64_t Linear = static_cast<std::int64_t>(lacuna::RadialKernel::Linear);
+}
+
+BENCHMARK(Fit)
+  ->ArgNames({ "kernel", "nodes" })
+  ->Args({ ThinPlate, 700 })
+  ->Args({ Linear, 700 })
+  ->Args({ ThinPlate, 2700 })
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(PlainSum)
+  ->ArgNames({ "nodes", "grid" })
+  ->Args({ 700, 205 })
+  ->Args({ 700, 512 })
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(Evaluate)
+  ->ArgNames({ "kernel", "nodes", "grid", "threads", "set" })
+  ->ArgsProduct({ { ThinPlate }, { 700 }, { 205, 512 }, { 1, 2 }, { 0, 1, 2 } })
+  ->Args({ Linear, 700, 512, 1, 1 })
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_MAIN();

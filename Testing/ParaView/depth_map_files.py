@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Depth maps from numpy arrays, for tests that need one with known values."""
+import numpy as np
+from lacuna_test import output
+from paraview import servermanager
+from paraview.simple import XMLImageDataReader
+from vtkmodules.numpy_interface import dataset_adapter as dsa
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+
+def write_map(name, depth, spacing, origin, right, down):
+    """A depth map (rows x columns, NaN where there is none) as a file; returns a reader of it."""
+    view = np.cross(right, down)
+    image = vtkImageData()
+    image.SetDimensions(depth.shape[1], depth.shape[0], 1)
+    image.SetOrigin(*origin)
+    image.SetSpacing(spacing, spacing, 1)
+    direction = np.column_stack([right, down, view])
+    image.SetDirectionMatrix(*direction.ravel())
+    to_world = np.eye(4)
+    to_world[:3, 0] = spacing * np.asarray(right)
+    to_world[:3, 1] = spacing * np.asarray(down)
+    to_world[:3, 2] = view
+    to_world[:3, 3] = origin
+    arrays = [("Depth", depth.ravel().astype(float)),
+              ("vtkValidPointMask", np.isfinite(depth).ravel().astype(np.int8)),
+              ("Normals", np.tile(-view, (depth.size, 1)).astype(np.float32))]
+    for array_name, values in arrays:
+        array = numpy_to_vtk(values, deep=1)
+        array.SetName(array_name)
+        image.GetPointData().AddArray(array)
+    image.GetPointData().SetActiveScalars("Depth")
+    matrix = numpy_to_vtk(to_world.reshape(1, 16), deep=1)
+    matrix.SetName("ImageToWorld")
+    image.GetFieldData().AddArray(matrix)
+    path = output(name + ".vti")
+    writer = vtkXMLImageDataWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(image)
+    assert writer.Write() == 1
+    return XMLImageDataReader(FileName=[path])
+
+
+def fetch(proxy):
+    """Arrays of the output as rows x columns, and its field data."""
+    proxy.UpdatePipeline()
+    data = servermanager.Fetch(proxy)
+    columns, rows, _ = data.GetDimensions()
+    wrapped = dsa.WrapDataObject(data)
+    names = wrapped.PointData.keys()
+    points = {n: np.asarray(wrapped.PointData[n]).reshape(rows, columns, -1).squeeze(-1)
+              for n in names if n != "Normals"}
+    fields = {n: np.asarray(wrapped.FieldData[n]).ravel()
+              for n in wrapped.FieldData.keys() if n != "Provenance"}
+    return points, fields
