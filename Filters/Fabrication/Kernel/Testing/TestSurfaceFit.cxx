@@ -277,6 +277,12 @@ TEST(CheckRegular, FindsFoldsAndCoincidentPoints)
   grid = good;
   std::swap(grid.Points[45], grid.Points[46]);
   EXPECT_THROW(CheckRegular(grid.Size, grid.Points), std::invalid_argument);
+  // A point beyond the diagonal of its facet: only that corner turns over.
+  grid = good;
+  grid.Points[45] = 0.35 * (grid.Points[46] + grid.Points[65]) + 0.3 * grid.Points[24] +
+    0.5 * (grid.Points[24] - grid.Points[66]);
+  EXPECT_NE(
+    MessageOf([&] { CheckRegular(grid.Size, grid.Points); }).find("folds"), std::string::npos);
   // The second half folded back over the first.
   for (int j = 0; j < 20; ++j)
   {
