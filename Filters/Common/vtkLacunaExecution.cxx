@@ -3,9 +3,11 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaVersionCompat.h"
 #include "vtkSMPTools.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cstdlib>
 #include <new>
@@ -21,6 +23,10 @@ void EmptyOutputs(vtkInformationVector* outputs)
     {
       output->Initialize();
     }
+    // VTK forgets the combined request only after success: the next one would be united with it,
+    // though the whole extent may have become smaller.
+    outputs->GetInformationObject(i)->Remove(
+      vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
   }
 }
 }
