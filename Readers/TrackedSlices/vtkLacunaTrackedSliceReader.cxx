@@ -130,11 +130,21 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
 {
   this->Opened.reset();
   this->SetErrorCode(vtkErrorCode::NoError);
+  const auto fail = [&](unsigned long code, const std::string& text)
+  {
+    // After an error no older slices may pass for the ones asked for.
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, 0))
+    {
+      output->Initialize();
+    }
+    this->SetErrorCode(code);
+    vtkErrorMacro(<< text);
+    return 0;
+  };
   if (!this->FileName || !this->FileName[0])
   {
-    this->SetErrorCode(vtkErrorCode::NoFileNameError);
-    vtkErrorMacro("FileName is not set; it must be a tracked sequence file (.mha, .mhd)");
-    return 0;
+    return fail(vtkErrorCode::NoFileNameError,
+      "FileName is not set; it must be a tracked sequence file (.mha, .mhd)");
   }
   auto sequence = std::make_unique<Sequence>();
   try
@@ -143,11 +153,8 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
   }
   catch (const std::exception& e)
   {
-    this->SetErrorCode(vtksys::SystemTools::FileExists(this->FileName)
-        ? vtkErrorCode::FileFormatError
-        : vtkErrorCode::FileNotFoundError);
-    vtkErrorMacro(<< e.what());
-    return 0;
+    const bool exists = vtksys::SystemTools::FileExists(this->FileName);
+    return fail(exists ? vtkErrorCode::FileFormatError : vtkErrorCode::FileNotFoundError, e.what());
   }
 
   const lacuna::SequenceHeader& header = sequence->Header;
