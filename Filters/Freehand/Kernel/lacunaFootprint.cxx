@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFootprint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna
+{
+namespace
+{
+// Finer rasters come closer to an even mean, and cost their square. 2 halves an aliasing frequency's
+// remainder already to what the box itself leaves.
+constexpr double SamplesPerFootprint = 2;
+// Lines reduced together, so that the inner loops run over neighbouring values.
+constexpr int BlockSize = 8;
+
+// Integral of the linear interpolation kernel (a hat of width 2) up to t.
+double HatIntegral(double t)
+{
+  if (t <= -1)
+  {
+    return 0;
+  }
+  if (t >= 1)
+  {
+    return 1;
+  }
+  return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
+}
+
+// Mean over [x - half, x + half] of the hat around pixel q.
+double HatMean(double x, double half, int q)
+{
+  if (half < 1e-6)
+  {
+    return std::max(0.0, 1 - std::abs(x - q));
+  }
+  return (HatIntegral(x + half - q) - HatIntegral(x - half - q)) / (2 * half);
+}
+}
+
+FootprintAxis::FootprintAxis(int n, double width)
+{
+  const double length = n - 1;
+  this->Identity = !(width > std::sqrt(2.0));
+  int steps = n - 1;
+  double box = 0;
+  if (!this->Identity)
+  {
+    const double wanted = std::max(1.0, width / SamplesPerFootprint);
+    steps = std::max(1, static_cast<int>(std::min(length, std::ceil(length / wanted - 1e-9))));
+    this->Step = length / steps;
+    box = std::sqrt(std::max(0.0, width * width - 2 * this->Step * this->Step));
+  }
+  this->Taps = std::min(n, this->Identity ? 1 : static_cast<int>(std::ceil(box)) + 2);
+  this->Starts.resize(steps + 1);
+  this->Weights.assign(static_cast<std::size_t>(steps + 1) * this->Taps, 0.0);
+  for (int i = 0; i <= steps; ++i)
+  {
+    const double x = std::min(length, i * this->Step);
+    const double half = std::min({ box / 2, x, length - x });
+    const int start =
+      std::clamp(static_cast<int>(std::floor(x - half)), 0, n - this->Taps);
+    this->Starts[i] = start;
+    double* weights = this->Weights.data() + static_cast<std::size_t>(this->Taps) * i;
+    for (int t = 0; t < this->Taps; ++t)
+    {
+      weights[t] = HatMean(x, half, start + t);
+    }
+  }
+}
+
+namespace
+{
+// line = sum of count lines from pixels, weighted. A few lines at a time: the compiler turns the
+// inner loops into vector code.
+template <class T, class Real>
+void WeighLines(const T* pixels, std::int64_t rowStride, int width, const double* weights, int count,
+  Real* line)
+{
+  int t = 0;
+  const auto w = [&](int i) { return static_cast<Real>(weights[i]); };
+  const auto row = [&](int i) { return pixels + rowStride * i; };
+  if (count >= 4)
+  {
+    const T *p0 = row(0), *p1 = row(1), *p2 = row(2), *p3 = row(3);
+    const Real w0 = w(0), w1 = w(1), w2 = w(2), w3 = w(3);
+    for (int x = 0; x < width; ++x)
+    {
+      line[x] = w0 * static_cast<Real>(p0[x]) + w1 * static_cast<Real>(p1[x]) +
+        w2 * static_cast<Real>(p2[x]) + w3 * static_cast<Real>(p3[x]);
+    }
+    t = 4;
+  }
+  else
+  {
+    const T* p0 = row(0);
+    const Real w0 = w(0);
+    for (int x = 0; x < width; ++x)
+    {
+      line[x] = w0 * static_cast<Real>(p0[x]);
+    }
+    t = 1;
+  }
+  for (; t + 2 <= count; t += 2)
+  {
+    const T *p0 = row(t), *p1 = row(t + 1);
+    const Real w0 = w(t), w1 = w(t + 1);
+    for (int x = 0; x < width; ++x)
+    {
+      line[x] += w0 * static_cast<Real>(p0[x]) + w1 * static_cast<Real>(p1[x]);
+    }
+  }
+  for (; t < count; ++t)
+  {
+    const T* p0 = row(t);
+    const Real w0 = w(t);
+    for (int x = 0; x < width; ++x)
+    {
+      line[x] += w0 * static_cast<Real>(p0[x]);
+    }
+  }
+}
+}
+
+template <class T, class Real>
+void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
+  const FootprintAxis& rows, Real* means)
+{
+  const int lastColumn = columns.GetNumberOfSamples() - 1;
+  const int width = columns.GetStart(lastColumn) + columns.GetNumberOfTaps();
+  const int numberOfLines = rows.GetNumberOfSamples();
+  std::vector<Real> line(width);
+  std::vector<Real> block(static_cast<std::size_t>(width) * BlockSize);
+  for (int first = 0; first < numberOfLines; first += BlockSize)
+  {
+    const int lines = std::min(BlockSize, numberOfLines - first);
+    for (int l = 0; l < lines; ++l)
+    {
+      WeighLines(pixels + rowStride * rows.GetStart(first + l), rowStride, width,
+        rows.GetWeights(first + l), rows.GetNumberOfTaps(), line.data());
+      for (int x = 0; x < width; ++x)
+      {
+        block[static_cast<std::size_t>(x) * BlockSize + l] = line[x];
+      }
+    }
+    for (int i = 0; i <= lastColumn; ++i)
+    {
+      const Real* source =
+        block.data() + static_cast<std::size_t>(columns.GetStart(i)) * BlockSize;
+      const double* weights = columns.GetWeights(i);
+      Real sum[BlockSize] = {};
+      for (int t = 0; t < columns.GetNumberOfTaps(); ++t)
+      {
+        const auto weight = static_cast<Real>(weights[t]);
+        for (int l = 0; l < BlockSize; ++l)
+        {
+          sum[l] += weight * source[t * BlockSize + l];
+        }
+      }
+      for (int l = 0; l < lines; ++l)
+      {
+        means[static_cast<std::size_t>(first + l) * (lastColumn + 1) + i] = sum[l];
+      }
+    }
+  }
+}
+
+#define LACUNA_INSTANTIATE(T, Real)                                                               \
+  template void AverageFootprints(                                                                 \
+    const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*)
+LACUNA_INSTANTIATE(std::int8_t, float);
+LACUNA_INSTANTIATE(std::uint8_t, float);
+LACUNA_INSTANTIATE(std::int16_t, float);
+LACUNA_INSTANTIATE(std::uint16_t, float);
+LACUNA_INSTANTIATE(float, float);
+LACUNA_INSTANTIATE(std::int8_t, double);
+LACUNA_INSTANTIATE(std::uint8_t, double);
+LACUNA_INSTANTIATE(std::int16_t, double);
+LACUNA_INSTANTIATE(std::uint16_t, double);
+LACUNA_INSTANTIATE(std::int32_t, double);
+LACUNA_INSTANTIATE(std::uint32_t, double);
+LACUNA_INSTANTIATE(std::int64_t, double);
+LACUNA_INSTANTIATE(std::uint64_t, double);
+LACUNA_INSTANTIATE(float, double);
+LACUNA_INSTANTIATE(double, double);
+#undef LACUNA_INSTANTIATE
+}

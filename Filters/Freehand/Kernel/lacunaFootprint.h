@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Means of a slice's grey levels over the footprints of voxels.
+///
+/// A slice is usually much finer than the volume: sampled at single pixels it would alias. Instead
+/// it is reduced once to a raster of local means, from which voxels interpolate bilinearly. Along
+/// each axis the raster's step s is about half the footprint's width w, and each mean is the exact
+/// integral of the (linearly interpolated) grey levels over a box of width sqrt(w² - 2s²). Box and
+/// interpolation between the means together weigh the pixels with the footprint's centre and
+/// second moment w²/12. Towards the border the box narrows symmetrically, so that linear grey
+/// levels are reproduced exactly everywhere. A footprint narrower than sqrt(2) pixels leaves the
+/// axis as it is.
+#ifndef lacunaFootprint_h
+#define lacunaFootprint_h
+
+#include <cstdint>
+#include <vector>
+
+namespace lacuna
+{
+/// Reduces one axis of n pixels.
+class FootprintAxis
+{
+public:
+  /// width of the footprint in pixels; n >= 2.
+  FootprintAxis(int n, double width);
+
+  /// True when the samples are the pixels.
+  bool IsIdentity() const { return this->Identity; }
+  int GetNumberOfSamples() const { return static_cast<int>(this->Starts.size()); }
+  /// Pixels from one sample to the next; sample 0 lies at pixel 0, the last one at pixel n - 1.
+  double GetStep() const { return this->Step; }
+  /// Sample i is the sum of GetNumberOfTaps() pixels from GetStart(i), weighted by GetWeights(i).
+  int GetNumberOfTaps() const { return this->Taps; }
+  int GetStart(int i) const { return this->Starts[i]; }
+  const double* GetWeights(int i) const
+  {
+    return this->Weights.data() + static_cast<std::size_t>(this->Taps) * i;
+  }
+
+private:
+  bool Identity = true;
+  double Step = 1;
+  int Taps = 1;
+  std::vector<int> Starts;
+  std::vector<double> Weights;
+};
+
+/// Fills means (rows.GetNumberOfSamples() lines of columns.GetNumberOfSamples() values). T is any
+/// pixel type, Real is double, or float for pixels that a float holds exactly.
+template <class T, class Real>
+void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
+  const FootprintAxis& rows, Real* means);
+}
+#endif

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSampledSlice.h"
+
+#include "lacunaFootprint.h"
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+namespace lacuna
+{
+namespace
+{
+// gradient · (voxel - point) as a function of the voxel's indices.
+AffineFunction MakeFunction(const VolumeGrid& grid, const Vec3& gradient, const Vec3& point)
+{
+  return { gradient[0] * grid.Spacing[0], gradient[1] * grid.Spacing[1],
+    gradient[2] * grid.Spacing[2], Dot(gradient, grid.Origin - point) };
+}
+
+// Pixels that a voxel covers: the width of the box that has the same second moment as the voxel
+// seen along f's gradient. For cubic voxels it does not depend on the direction.
+double GetFootprintWidth(const AffineFunction& f)
+{
+  return std::sqrt(f.I * f.I + f.J * f.J + f.K * f.K);
+}
+
+template <class Real>
+void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const FootprintAxis& rows,
+  SampledSlice& sampled)
+{
+  sampled.Width = columns.GetNumberOfSamples();
+  sampled.Height = rows.GetNumberOfSamples();
+  sampled.RowStride = sampled.Width;
+  sampled.Type = std::is_same<Real, float>::value ? PixelType::Float32 : PixelType::Float64;
+  const auto count = static_cast<std::size_t>(sampled.Width) * sampled.Height;
+  sampled.Storage.reset(new std::byte[count * sizeof(Real)]);
+  sampled.Pixels = sampled.Storage.get();
+  auto* const means = reinterpret_cast<Real*>(sampled.Storage.get());
+  VisitPixels(slice,
+    [&](const auto* pixels)
+    {
+      using T = std::remove_cv_t<std::remove_pointer_t<decltype(pixels)>>;
+      if constexpr (std::is_same<Real, double>::value || sizeof(T) <= 2 ||
+        std::is_same<T, float>::value)
+      {
+        AverageFootprints(pixels, slice.RowStride, columns, rows, means);
+      }
+    });
+}
+
+bool HasSampler(PixelType type, bool doublePrecision)
+{
+  return doublePrecision ? type == PixelType::Float64
+                         : type == PixelType::UInt8 || type == PixelType::Int16 ||
+      type == PixelType::UInt16 || type == PixelType::Float32;
+}
+}
+
+bool NeedsDoublePrecision(PixelType type)
+{
+  return GetPixelSize(type) > 2 && type != PixelType::Float32;
+}
+
+SampledSlice SampleSlice(
+  const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling, bool doublePrecision)
+{
+  CheckSlice(slice);
+  if (NeedsDoublePrecision(slice.Type) && !doublePrecision)
+  {
+    throw std::invalid_argument(slice.Label + ": grey levels of this type need double precision");
+  }
+  const Vec3 x = slice.PixelToReference.Column(0);
+  const Vec3 y = slice.PixelToReference.Column(1);
+  const Vec3 origin = slice.PixelToReference.Column(3);
+  const Vec3 area = Cross(x, y);
+
+  SampledSlice sampled;
+  sampled.Label = slice.Label;
+  sampled.Corners = GetCorners(slice);
+  sampled.Normal = Normalized(area);
+  // the basis dual to (x, y, normal): rows and columns need not be at right angles
+  sampled.Column = MakeFunction(grid, 1 / Norm(area) * Cross(y, sampled.Normal), origin);
+  sampled.Row = MakeFunction(grid, 1 / Norm(area) * Cross(sampled.Normal, x), origin);
+  sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
+
+  const bool footprint = sampling == PixelSampling::Footprint;
+  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
+  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
+  if (columns.IsIdentity() && rows.IsIdentity() && HasSampler(slice.Type, doublePrecision))
+  {
+    sampled.Type = slice.Type;
+    sampled.Pixels = slice.Pixels;
+    sampled.RowStride = slice.RowStride;
+    sampled.Width = slice.Width;
+    sampled.Height = slice.Height;
+    return sampled;
+  }
+  if (doublePrecision)
+  {
+    FillRaster<double>(slice, columns, rows, sampled);
+  }
+  else
+  {
+    FillRaster<float>(slice, columns, rows, sampled);
+  }
+  sampled.Column = 1 / columns.GetStep() * sampled.Column;
+  sampled.Row = 1 / rows.GetStep() * sampled.Row;
+  return sampled;
+}
+
+void OwnPixels(SampledSlice& slice)
+{
+  if (slice.Storage)
+  {
+    return;
+  }
+  const std::size_t size = GetPixelSize(slice.Type);
+  const std::size_t line = size * static_cast<std::size_t>(slice.Width);
+  slice.Storage.reset(new std::byte[line * static_cast<std::size_t>(slice.Height)]);
+  for (int row = 0; row < slice.Height; ++row)
+  {
+    std::memcpy(slice.Storage.get() + line * static_cast<std::size_t>(row),
+      static_cast<const std::byte*>(slice.Pixels) +
+        static_cast<std::ptrdiff_t>(size) * slice.RowStride * row,
+      line);
+  }
+  slice.Pixels = slice.Storage.get();
+  slice.RowStride = slice.Width;
+}
+}

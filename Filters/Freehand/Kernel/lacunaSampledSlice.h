@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A slice made ready for sampling at voxels.
+#ifndef lacunaSampledSlice_h
+#define lacunaSampledSlice_h
+
+#include "lacunaAffineFunction.h"
+#include "lacunaSliceImage.h"
+#include "lacunaVolumeGrid.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace lacuna
+{
+/// How the grey level at the foot of a perpendicular is found.
+enum class PixelSampling
+{
+  Footprint, ///< mean over the voxel's footprint (lacunaFootprint.h)
+  Bilinear,
+  Nearest
+};
+
+/// Where a slice lies seen from the voxels, and its grey levels: the slice's own pixels, or a
+/// raster of means over footprints.
+struct SampledSlice
+{
+  std::string Label;
+  std::array<Vec3, 4> Corners; ///< centres of the corner pixels, mm
+  /// Columns × rows of the image, unit: turns with the probe.
+  Vec3 Normal;
+  /// Of a voxel: the foot of its perpendicular on the slice in raster coordinates, and its signed
+  /// distance from the slice along Normal in mm.
+  AffineFunction Column, Row, Distance;
+
+  /// The raster: UInt8, Int16, UInt16, Float32 or Float64.
+  PixelType Type = PixelType::UInt8;
+  const void* Pixels = nullptr;
+  std::int64_t RowStride = 0;
+  int Width = 0;
+  int Height = 0;
+  std::unique_ptr<std::byte[]> Storage; ///< holds Pixels when they are the slice's own copy
+};
+
+/// Makes slice ready. Without doublePrecision the raster's values are such as a float holds.
+/// The result refers to the slice's pixels when it can.
+/// Throws std::invalid_argument when the slice is unusable, see CheckSlice.
+SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling,
+  bool doublePrecision);
+
+/// Copies the pixels that slice refers to, so that the caller's may go.
+void OwnPixels(SampledSlice& slice);
+
+/// True when grey levels of this type need double precision.
+bool NeedsDoublePrecision(PixelType type);
+}
+#endif

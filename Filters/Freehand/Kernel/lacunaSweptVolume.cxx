@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweptVolume.h"
+
+#include "lacunaSlicePair.h"
+#include "lacunaVoxelFilling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+namespace lacuna
+{
+namespace
+{
+// Slices whose rasters of footprint means are held at a time: enough to keep the threads busy.
+constexpr std::size_t SlicesAtATime = 16;
+// Layers that a thread takes at a time when it places pixels: each time it looks at all slices.
+constexpr std::int64_t PixelLayersAtATime = 8;
+
+// Rounds half away from zero and cuts to the range of an integer type.
+template <class T, class Real>
+T Convert(Real value)
+{
+  if constexpr (std::is_integral<T>::value)
+  {
+    const double rounded = std::floor(std::abs(static_cast<double>(value)) + 0.5);
+    const double x = value < 0 ? -rounded : rounded;
+    constexpr auto lowest = static_cast<double>(std::numeric_limits<T>::min());
+    constexpr auto highest = static_cast<double>(std::numeric_limits<T>::max());
+    // in this order: a NaN becomes the lowest value
+    return x > lowest ? (x < highest ? static_cast<T>(x) : std::numeric_limits<T>::max())
+                      : std::numeric_limits<T>::min();
+  }
+  else
+  {
+    return static_cast<T>(value);
+  }
+}
+
+template <class T, class Real>
+void WriteVoxels(const VoxelBlock<Real>& voxels, Compounding compounding, T* intensity,
+  unsigned int* contributions, char* mask, Execution& execution)
+{
+  constexpr std::int64_t grain = 65536;
+  execution.For(voxels.GetNumberOfVoxels(), grain,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        const Voxel<Real>& voxel = voxels.GetData()[i];
+        const Real samples = compounding == Compounding::Mean && voxel.Count > 1
+          ? static_cast<Real>(voxel.Count)
+          : Real(1);
+        intensity[i] = Convert<T>(voxel.Value / samples);
+        contributions[i] = voxel.Count;
+        mask[i] = voxel.Count > 0 ? 1 : 0;
+      }
+    });
+}
+}
+
+SweptVolume::SweptVolume(
+  const VolumeGrid& grid, const std::array<int, 6>& extent, const Options& options)
+  : Grid(grid)
+  , Extent(extent)
+  , Settings(options)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    if (extent[2 * a] < 0 || extent[2 * a] > extent[2 * a + 1] ||
+      extent[2 * a + 1] >= grid.Dimensions[a])
+    {
+      throw std::invalid_argument("the requested extent is not a part of the volume");
+    }
+  }
+  if (options.DoublePrecision)
+  {
+    this->Doubles = VoxelBlock<double>(extent);
+  }
+  else
+  {
+    this->Floats = VoxelBlock<float>(extent);
+  }
+}
+
+SweptVolume::~SweptVolume() = default;
+
+void SweptVolume::BeginSweep()
+{
+  this->Previous.reset();
+}
+
+void SweptVolume::AddSlices(
+  const std::vector<SliceImage>& slices, Execution& execution, double first, double last)
+{
+  for (const SliceImage& slice : slices)
+  {
+    CheckSlice(slice);
+    if (NeedsDoublePrecision(slice.Type) && !this->Settings.DoublePrecision)
+    {
+      throw std::invalid_argument(
+        slice.Label + ": grey levels of this type need double precision");
+    }
+    if (slice.Type != slices.front().Type)
+    {
+      throw std::invalid_argument(
+        slice.Label + ": its grey levels are of another type than those of the slices before");
+    }
+  }
+  if (this->Settings.Interpolation == Method::NearestVoxel)
+  {
+    this->AddPixels(slices, execution, first, last);
+  }
+  else
+  {
+    this->AddPairs(slices, execution, first, last);
+  }
+}
+
+void SweptVolume::AddPairs(
+  const std::vector<SliceImage>& slices, Execution& execution, double first, double last)
+{
+  for (std::size_t begin = 0; begin < slices.size(); begin += SlicesAtATime)
+  {
+    const std::size_t count = std::min(SlicesAtATime, slices.size() - begin);
+    const auto stage = [&](double part)
+    {
+      return first +
+        (last - first) * (static_cast<double>(begin) + part * static_cast<double>(count)) /
+        static_cast<double>(slices.size());
+    };
+    std::vector<SampledSlice> sampled(count);
+    const Execution::Body sample = [&](std::int64_t b, std::int64_t e)
+    {
+      for (std::int64_t n = b; n < e; ++n)
+      {
+        sampled[n] = SampleSlice(slices[begin + n], this->Grid, this->Settings.Sampling,
+          this->Settings.DoublePrecision);
+      }
+    };
+    if (this->Settings.Sampling == PixelSampling::Footprint && count > 1)
+    {
+      execution.SetStage(stage(0), stage(0.5));
+      execution.For(static_cast<std::int64_t>(count), 1, sample);
+    }
+    else
+    {
+      sample(0, static_cast<std::int64_t>(count)); // no work, or too little to share
+    }
+
+    std::vector<SlicePair> pairs;
+    const SampledSlice* previous = this->Previous.get();
+    for (const SampledSlice& slice : sampled)
+    {
+      if (previous)
+      {
+        if (previous->Type != slice.Type)
+        {
+          throw std::invalid_argument(slice.Label +
+            ": its grey levels are of another type than those of the slices before");
+        }
+        pairs.emplace_back(*previous, slice, this->Grid, this->Settings.MaximumSliceGap);
+        ++this->Counts.All;
+        const SlicePair::Relation relation = pairs.back().GetRelation();
+        this->Counts.Coincident += relation == SlicePair::Relation::Coincident ? 1 : 0;
+        this->Counts.Turned += relation == SlicePair::Relation::Turned ? 1 : 0;
+      }
+      previous = &slice;
+    }
+    execution.SetStage(stage(0.5), stage(1));
+    this->Fill(pairs, execution);
+
+    OwnPixels(sampled.back());
+    this->Previous = std::make_unique<SampledSlice>(std::move(sampled.back()));
+  }
+}
+
+void SweptVolume::Fill(const std::vector<SlicePair>& pairs, Execution& execution)
+{
+  IndexInterval layers;
+  for (const SlicePair& pair : pairs)
+  {
+    const IndexInterval own = pair.GetLayers();
+    if (!own.IsEmpty())
+    {
+      layers = layers.IsEmpty()
+        ? own
+        : IndexInterval{ std::min(layers.First, own.First), std::max(layers.Last, own.Last) };
+    }
+  }
+  layers = { std::max<std::int64_t>(layers.First, this->Extent[4]),
+    std::min<std::int64_t>(layers.Last, this->Extent[5]) };
+  // Each layer belongs to one thread, which visits the pairs in their order: so the sums do not
+  // depend on the threads.
+  execution.For(layers.Last - layers.First + 1, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t k = layers.First + begin; k < layers.First + end; ++k)
+      {
+        for (const SlicePair& pair : pairs)
+        {
+          if (k < pair.GetLayers().First || k > pair.GetLayers().Last)
+          {
+            continue;
+          }
+          if (this->Settings.DoublePrecision)
+          {
+            FillBetween(
+              pair, k, this->Settings.Sampling, this->Settings.Compound, this->Doubles);
+          }
+          else
+          {
+            FillBetween(pair, k, this->Settings.Sampling, this->Settings.Compound, this->Floats);
+          }
+        }
+      }
+    });
+}
+
+void SweptVolume::AddPixels(
+  const std::vector<SliceImage>& slices, Execution& execution, double first, double last)
+{
+  execution.SetStage(first, last);
+  execution.For(this->Extent[5] - this->Extent[4] + 1, PixelLayersAtATime,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      const IndexInterval layers{ this->Extent[4] + begin, this->Extent[4] + end - 1 };
+      for (const SliceImage& slice : slices)
+      {
+        if (this->Settings.DoublePrecision)
+        {
+          PutPixels(slice, this->Grid, layers, this->Settings.Compound, this->Doubles);
+        }
+        else
+        {
+          PutPixels(slice, this->Grid, layers, this->Settings.Compound, this->Floats);
+        }
+      }
+    });
+}
+
+template <class T>
+void SweptVolume::Write(
+  T* intensity, unsigned int* contributions, char* mask, Execution& execution) const
+{
+  if (this->Settings.DoublePrecision)
+  {
+    WriteVoxels(
+      this->Doubles, this->Settings.Compound, intensity, contributions, mask, execution);
+  }
+  else
+  {
+    WriteVoxels(this->Floats, this->Settings.Compound, intensity, contributions, mask, execution);
+  }
+}
+
+#define LACUNA_INSTANTIATE(T)                                                                      \
+  template void SweptVolume::Write(T*, unsigned int*, char*, Execution&) const
+LACUNA_INSTANTIATE(char);
+LACUNA_INSTANTIATE(signed char);
+LACUNA_INSTANTIATE(unsigned char);
+LACUNA_INSTANTIATE(short);
+LACUNA_INSTANTIATE(unsigned short);
+LACUNA_INSTANTIATE(int);
+LACUNA_INSTANTIATE(unsigned int);
+LACUNA_INSTANTIATE(long);
+LACUNA_INSTANTIATE(unsigned long);
+LACUNA_INSTANTIATE(long long);
+LACUNA_INSTANTIATE(unsigned long long);
+LACUNA_INSTANTIATE(float);
+LACUNA_INSTANTIATE(double);
+#undef LACUNA_INSTANTIATE
+}

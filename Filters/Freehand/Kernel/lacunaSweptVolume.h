@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A volume made of slices, slice by slice (Carr 1996, §4.2).
+#ifndef lacunaSweptVolume_h
+#define lacunaSweptVolume_h
+
+#include "lacunaExecution.h"
+#include "lacunaSampledSlice.h"
+#include "lacunaSliceImage.h"
+#include "lacunaVolumeGrid.h"
+#include "lacunaVoxelBlock.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace lacuna
+{
+class SlicePair;
+
+/// Collects slices in the voxels of a grid, or of a part of it. Slices may be given all at once or
+/// one by one: each pair of consecutive slices of a sweep touches only the voxels between the two.
+/// The result is the same bit by bit, also for any number of threads and for any part of the grid.
+class SweptVolume
+{
+public:
+  enum class Method
+  {
+    /// Voxels between consecutive slices interpolate between the feet of their perpendiculars:
+    /// V = (a·X_second + b·X_first) / (a + b), a and b the distances from the first and the second
+    /// slice, X the grey levels at the feet. See lacunaSlicePair.h for what between means.
+    BetweenSlices,
+    /// Each pixel goes to the voxel in which its centre lies; nothing is interpolated.
+    NearestVoxel
+  };
+  struct Options
+  {
+    Method Interpolation = Method::BetweenSlices;
+    PixelSampling Sampling = PixelSampling::Footprint; ///< BetweenSlices only
+    Compounding Compound = Compounding::Mean;
+    /// mm; voxels at which two slices are further apart stay empty. 0 = no limit. BetweenSlices
+    /// only.
+    double MaximumSliceGap = 0;
+    /// Collect in double; float is enough for 8 and 16 bit and for float grey levels.
+    bool DoublePrecision = false;
+  };
+
+  /// extent: first and last voxel along x, y, z, of the part of grid to fill.
+  /// Throws std::invalid_argument when it is not inside the grid, std::bad_alloc without memory.
+  SweptVolume(const VolumeGrid& grid, const std::array<int, 6>& extent, const Options& options);
+  ~SweptVolume();
+  SweptVolume(const SweptVolume&) = delete;
+  SweptVolume& operator=(const SweptVolume&) = delete;
+
+  /// Memory that this class takes per voxel.
+  static std::int64_t GetBytesPerVoxel(bool doublePrecision)
+  {
+    return doublePrecision ? sizeof(Voxel<double>) : sizeof(Voxel<float>);
+  }
+
+  /// The next slice starts a new sweep: it forms no pair with the one before.
+  void BeginSweep();
+
+  /// Adds slices in the order of the sweep. The pixels are not needed any more when it returns.
+  /// Progress covers first..last of the whole. Throws std::invalid_argument for unusable slices
+  /// (none is added then), Aborted when stopped (the volume is then to be thrown away).
+  void AddSlices(
+    const std::vector<SliceImage>& slices, Execution& execution, double first = 0, double last = 1);
+
+  /// Pairs of consecutive slices so far, and those among them between which nothing was filled
+  /// because they lie in the same plane or are turned by 90° or more against each other.
+  struct PairCounts
+  {
+    std::int64_t All = 0;
+    std::int64_t Coincident = 0;
+    std::int64_t Turned = 0;
+  };
+  const PairCounts& GetPairCounts() const { return this->Counts; }
+
+  /// Writes the present state, x fastest: intensity (T is any arithmetic type; rounded once and cut
+  /// to the range of T when T is an integer; 0 where nothing contributed), contributions (how many
+  /// samples made a voxel) and mask (1 where there are any, else 0).
+  template <class T>
+  void Write(T* intensity, unsigned int* contributions, char* mask, Execution& execution) const;
+
+private:
+  void AddPairs(
+    const std::vector<SliceImage>& slices, Execution& execution, double first, double last);
+  void AddPixels(
+    const std::vector<SliceImage>& slices, Execution& execution, double first, double last);
+  void Fill(const std::vector<SlicePair>& pairs, Execution& execution);
+
+  VolumeGrid Grid;
+  std::array<int, 6> Extent;
+  Options Settings;
+  VoxelBlock<float> Floats; ///< one of the two is used
+  VoxelBlock<double> Doubles;
+  std::unique_ptr<SampledSlice> Previous; ///< of this sweep, with pixels of its own
+  PairCounts Counts;
+};
+}
+#endif

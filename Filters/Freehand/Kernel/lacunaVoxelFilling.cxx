@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaVoxelFilling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace lacuna
+{
+namespace
+{
+template <class T>
+struct Raster
+{
+  explicit Raster(const SampledSlice& slice)
+    : Pixels(static_cast<const T*>(slice.Pixels))
+    , RowStride(slice.RowStride)
+    , LastColumn(slice.Width - 2)
+    , LastRow(slice.Height - 2)
+  {
+  }
+
+  const T* Pixels;
+  std::int64_t RowStride;
+  int LastColumn; ///< the last one that has a right neighbour
+  int LastRow;
+};
+
+// Grey level at (column, row), which lies on the raster but for the tolerance of SlicePair: a
+// truncated column is in range, or one too far.
+template <class T, class Real>
+struct SampleBilinearly
+{
+  static Real At(const Raster<T>& raster, double column, double row)
+  {
+    const int c = std::min(static_cast<int>(column), raster.LastColumn);
+    const int r = std::min(static_cast<int>(row), raster.LastRow);
+    const auto x = static_cast<Real>(column - c);
+    const auto y = static_cast<Real>(row - r);
+    const T* const p = raster.Pixels + (raster.RowStride * r + c);
+    const T* const q = p + raster.RowStride;
+    const Real upper = static_cast<Real>(p[0]) + x * static_cast<Real>(p[1] - p[0]);
+    const Real lower = static_cast<Real>(q[0]) + x * static_cast<Real>(q[1] - q[0]);
+    return upper + y * (lower - upper);
+  }
+};
+
+template <class T, class Real>
+struct SampleNearest
+{
+  static Real At(const Raster<T>& raster, double column, double row)
+  {
+    return static_cast<Real>(raster.Pixels[raster.RowStride * static_cast<int>(row + 0.5) +
+      static_cast<int>(column + 0.5)]);
+  }
+};
+
+// A quantity along one line of voxels.
+struct Line
+{
+  double Start, Step;
+  double At(double i) const { return this->Start + this->Step * i; }
+};
+
+struct Lines
+{
+  Lines(const SlicePair::Functions& f, double j, double k)
+    : Column{ f.Column.C + f.Column.K * k + f.Column.J * j, f.Column.I }
+    , Row{ f.Row.C + f.Row.K * k + f.Row.J * j, f.Row.I }
+    , Distance{ f.Distance.C + f.Distance.K * k + f.Distance.J * j, f.Distance.I }
+  {
+  }
+  Line Column, Row, Distance;
+};
+
+// Voxels first..last of a line. Everything is computed from the voxel's own index, not from its
+// predecessor, so that it does not matter where a piece of the volume begins.
+template <class T, class Real, template <class, class> class Sampler, Compounding compounding>
+void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const Lines& first,
+  const Lines& second, IndexInterval interval, Voxel<Real>* voxel, std::int64_t stride)
+{
+  for (std::int64_t n = interval.First; n <= interval.Last; ++n, voxel += stride)
+  {
+    const auto i = static_cast<double>(static_cast<int>(n));
+    const Real x = Sampler<T, Real>::At(firstRaster, first.Column.At(i), first.Row.At(i));
+    const Real y = Sampler<T, Real>::At(secondRaster, second.Column.At(i), second.Row.At(i));
+    const double a = std::abs(first.Distance.At(i));
+    const double b = std::abs(second.Distance.At(i));
+    // both are zero where the planes intersect: there is no nearer one
+    const double weight = a + b > 0 ? a / (a + b) : 0.5;
+    voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+  }
+}
+
+template <class T, class Real, template <class, class> class Sampler, Compounding compounding>
+void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
+{
+  const std::array<int, 6>& extent = voxels.GetExtent();
+  const int iAxis = pair.IsTransposed() ? 1 : 0;
+  const int jAxis = 1 - iAxis;
+  const IndexInterval columns{ extent[2 * iAxis], extent[2 * iAxis + 1] };
+  const IndexInterval rows{ extent[2 * jAxis], extent[2 * jAxis + 1] };
+  const std::array<std::int64_t, 2> strides{ 1, voxels.GetSize(0) };
+  Voxel<Real>* const corner =
+    voxels.GetData() + (k - extent[4]) * voxels.GetSize(0) * voxels.GetSize(1);
+
+  VoxelRegion::Layer layers[2];
+  IndexInterval all;
+  for (int w = 0; w < pair.GetNumberOfWedges(); ++w)
+  {
+    if (!pair.HasLayer(w, k))
+    {
+      continue;
+    }
+    layers[w] = pair.GetWedge(w).GetLayer(k, rows);
+    const IndexInterval own = layers[w].GetRows();
+    if (!own.IsEmpty())
+    {
+      all = all.IsEmpty()
+        ? own
+        : IndexInterval{ std::min(all.First, own.First), std::max(all.Last, own.Last) };
+    }
+  }
+
+  const Raster<T> firstRaster(pair.GetFirst());
+  const Raster<T> secondRaster(pair.GetSecond());
+  for (std::int64_t j = all.First; j <= all.Last; ++j)
+  {
+    IndexInterval parts[2];
+    for (int w = 0; w < 2; ++w)
+    {
+      const IndexInterval own = layers[w].GetRows();
+      if (j >= own.First && j <= own.Last)
+      {
+        parts[w] = layers[w].GetRow(j, columns);
+      }
+    }
+    // The halves of a double wedge share the voxels on the line of intersection: count them once.
+    if (!parts[0].IsEmpty() && !parts[1].IsEmpty() && parts[0].First <= parts[1].Last &&
+      parts[1].First <= parts[0].Last)
+    {
+      parts[0] = { std::min(parts[0].First, parts[1].First),
+        std::max(parts[0].Last, parts[1].Last) };
+      parts[1] = {};
+    }
+    if (parts[0].IsEmpty() && parts[1].IsEmpty())
+    {
+      continue;
+    }
+    const auto row = static_cast<double>(j);
+    const Lines first(pair.GetFirstFunctions(), row, static_cast<double>(k));
+    const Lines second(pair.GetSecondFunctions(), row, static_cast<double>(k));
+    Voxel<Real>* const start = corner + (j - rows.First) * strides[jAxis];
+    for (const IndexInterval& part : parts)
+    {
+      FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second, part,
+        start + (part.First - columns.First) * strides[iAxis], strides[iAxis]);
+    }
+  }
+}
+
+template <class T, class Real>
+void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
+  Compounding compounding, VoxelBlock<Real>& voxels)
+{
+  const bool nearest = sampling == PixelSampling::Nearest;
+  if (compounding == Compounding::Mean)
+  {
+    nearest ? FillLayer<T, Real, SampleNearest, Compounding::Mean>(pair, k, voxels)
+            : FillLayer<T, Real, SampleBilinearly, Compounding::Mean>(pair, k, voxels);
+  }
+  else
+  {
+    nearest ? FillLayer<T, Real, SampleNearest, Compounding::Maximum>(pair, k, voxels)
+            : FillLayer<T, Real, SampleBilinearly, Compounding::Maximum>(pair, k, voxels);
+  }
+}
+
+// Index of the voxel in whose cell the coordinate lies; half-way points go up.
+std::int64_t Round(double index)
+{
+  return static_cast<std::int64_t>(std::floor(index + 0.5));
+}
+
+template <Compounding compounding, class T, class Real>
+void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& grid,
+  IndexInterval layers, VoxelBlock<Real>& voxels)
+{
+  const std::array<int, 6>& extent = voxels.GetExtent();
+  const std::array<IndexInterval, 3> range{ IndexInterval{ extent[0], extent[1] },
+    IndexInterval{ extent[2], extent[3] }, layers };
+  // The voxel index along each axis, a function of the pixel's column and row.
+  std::array<AffineFunction, 3> index;
+  VoxelRegion region; // of pixels
+  constexpr double margin = 1e-6;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double scale = 1 / grid.Spacing[a];
+    index[a] = { scale * slice.PixelToReference(a, 0), scale * slice.PixelToReference(a, 1), 0,
+      scale * (slice.PixelToReference(a, 3) - grid.Origin[a]) };
+    region.Add(index[a] + (0.5 + margin - static_cast<double>(range[a].First)));
+    region.Add(-index[a] + (0.5 + margin + static_cast<double>(range[a].Last)));
+  }
+  const VoxelRegion::Layer layer = region.GetLayer(0, { 0, slice.Height - 1 });
+  const std::int64_t lineSize = voxels.GetSize(0);
+  const std::int64_t layerSize = lineSize * voxels.GetSize(1);
+  const IndexInterval rows = layer.GetRows();
+  for (std::int64_t j = rows.First; j <= rows.Last; ++j)
+  {
+    const IndexInterval columns = layer.GetRow(j, { 0, slice.Width - 1 });
+    const T* const line = pixels + slice.RowStride * j;
+    std::array<Line, 3> along;
+    for (int a = 0; a < 3; ++a)
+    {
+      along[a] = { index[a].C + index[a].J * static_cast<double>(j), index[a].I };
+    }
+    for (std::int64_t i = columns.First; i <= columns.Last; ++i)
+    {
+      std::array<std::int64_t, 3> v;
+      bool inside = true;
+      for (int a = 0; a < 3; ++a)
+      {
+        v[a] = Round(along[a].At(static_cast<double>(i)));
+        inside &= v[a] >= range[a].First && v[a] <= range[a].Last;
+      }
+      if (inside)
+      {
+        voxels
+          .GetData()[(v[2] - extent[4]) * layerSize + (v[1] - extent[2]) * lineSize +
+            (v[0] - extent[0])]
+          .template Put<compounding>(static_cast<Real>(line[i]));
+      }
+    }
+  }
+}
+}
+
+template <class Real>
+void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
+  Compounding compounding, VoxelBlock<Real>& voxels)
+{
+  if constexpr (std::is_same<Real, double>::value)
+  {
+    FillLayerOf<double>(pair, k, sampling, compounding, voxels);
+  }
+  else
+  {
+    switch (pair.GetFirst().Type)
+    {
+      case PixelType::UInt8:
+        return FillLayerOf<std::uint8_t>(pair, k, sampling, compounding, voxels);
+      case PixelType::Int16:
+        return FillLayerOf<std::int16_t>(pair, k, sampling, compounding, voxels);
+      case PixelType::UInt16:
+        return FillLayerOf<std::uint16_t>(pair, k, sampling, compounding, voxels);
+      default:
+        return FillLayerOf<float>(pair, k, sampling, compounding, voxels);
+    }
+  }
+}
+
+template <class Real>
+void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
+  Compounding compounding, VoxelBlock<Real>& voxels)
+{
+  VisitPixels(slice,
+    [&](const auto* pixels)
+    {
+      if (compounding == Compounding::Mean)
+      {
+        PutPixelsOf<Compounding::Mean>(slice, pixels, grid, layers, voxels);
+      }
+      else
+      {
+        PutPixelsOf<Compounding::Maximum>(slice, pixels, grid, layers, voxels);
+      }
+    });
+}
+
+template void FillBetween(
+  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<float>&);
+template void FillBetween(
+  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<double>&);
+template void PutPixels(
+  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<float>&);
+template void PutPixels(
+  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<double>&);
+}
