@@ -48,16 +48,15 @@ struct Sweep
         Matrix4::Rotation({ 1, 0, 0 }, 8 * Pi / 180 * std::cos(2 * Pi * t)) *
         Matrix4::Scaling({ PixelSpacing, PixelSpacing, 1 }) *
         Matrix4::Translation({ -0.5 * (Width - 1), -0.5 * (Height - 1), 0 });
-      std::uint8_t* pixels =
-        this->Pixels.data() + static_cast<std::size_t>(n) * Width * Height;
+      std::uint8_t* pixels = this->Pixels.data() + static_cast<std::size_t>(n) * Width * Height;
       slice.Pixels = pixels;
       this->Slices.push_back(slice);
       for (int y = 0; y < Height; ++y)
       {
         for (int x = 0; x < Width; ++x)
         {
-          *pixels++ = static_cast<std::uint8_t>(std::lround(
-            Truth(slice.PixelToReference.Point({ double(x), double(y), 0 }))));
+          *pixels++ = static_cast<std::uint8_t>(
+            std::lround(Truth(slice.PixelToReference.Point({ double(x), double(y), 0 }))));
         }
       }
     }

@@ -8,8 +8,8 @@ namespace lacuna
 {
 namespace
 {
-// Finer rasters come closer to an even mean, and cost their square. 2 halves an aliasing frequency's
-// remainder already to what the box itself leaves.
+// Finer rasters come closer to an even mean, and cost their square. 2 halves an aliasing
+// frequency's remainder already to what the box itself leaves.
 constexpr double SamplesPerFootprint = 2;
 // Lines reduced together, so that the inner loops run over neighbouring values.
 constexpr int BlockSize = 8;
@@ -42,25 +42,23 @@ double HatMean(double x, double half, int q)
 FootprintAxis::FootprintAxis(int n, double width)
 {
   const double length = n - 1;
-  this->Identity = !(width > std::sqrt(2.0));
   int steps = n - 1;
   double box = 0;
-  if (!this->Identity)
+  if (width > std::sqrt(2.0))
   {
     const double wanted = std::max(1.0, width / SamplesPerFootprint);
     steps = std::max(1, static_cast<int>(std::min(length, std::ceil(length / wanted - 1e-9))));
     this->Step = length / steps;
     box = std::sqrt(std::max(0.0, width * width - 2 * this->Step * this->Step));
   }
-  this->Taps = std::min(n, this->Identity ? 1 : static_cast<int>(std::ceil(box)) + 2);
+  this->Taps = box > 0 ? std::min(n, static_cast<int>(std::ceil(box)) + 2) : 1;
   this->Starts.resize(steps + 1);
   this->Weights.assign(static_cast<std::size_t>(steps + 1) * this->Taps, 0.0);
   for (int i = 0; i <= steps; ++i)
   {
     const double x = std::min(length, i * this->Step);
     const double half = std::min({ box / 2, x, length - x });
-    const int start =
-      std::clamp(static_cast<int>(std::floor(x - half)), 0, n - this->Taps);
+    const int start = std::clamp(static_cast<int>(std::floor(x - half)), 0, n - this->Taps);
     this->Starts[i] = start;
     double* weights = this->Weights.data() + static_cast<std::size_t>(this->Taps) * i;
     for (int t = 0; t < this->Taps; ++t)
@@ -75,8 +73,8 @@ namespace
 // line = sum of count lines from pixels, weighted. A few lines at a time: the compiler turns the
 // inner loops into vector code.
 template <class T, class Real>
-void WeighLines(const T* pixels, std::int64_t rowStride, int width, const double* weights, int count,
-  Real* line)
+void WeighLines(
+  const T* pixels, std::int64_t rowStride, int width, const double* weights, int count, Real* line)
 {
   int t = 0;
   const auto w = [&](int i) { return static_cast<Real>(weights[i]); };
@@ -146,8 +144,7 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
     }
     for (int i = 0; i <= lastColumn; ++i)
     {
-      const Real* source =
-        block.data() + static_cast<std::size_t>(columns.GetStart(i)) * BlockSize;
+      const Real* source = block.data() + static_cast<std::size_t>(columns.GetStart(i)) * BlockSize;
       const double* weights = columns.GetWeights(i);
       Real sum[BlockSize] = {};
       for (int t = 0; t < columns.GetNumberOfTaps(); ++t)
@@ -166,7 +163,7 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
   }
 }
 
-#define LACUNA_INSTANTIATE(T, Real)                                                               \
+#define LACUNA_INSTANTIATE(T, Real)                                                                \
   template void AverageFootprints(                                                                 \
     const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*)
 LACUNA_INSTANTIATE(std::int8_t, float);

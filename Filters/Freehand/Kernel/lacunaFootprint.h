@@ -25,8 +25,6 @@ public:
   /// width of the footprint in pixels; n >= 2.
   FootprintAxis(int n, double width);
 
-  /// True when the samples are the pixels.
-  bool IsIdentity() const { return this->Identity; }
   int GetNumberOfSamples() const { return static_cast<int>(this->Starts.size()); }
   /// Pixels from one sample to the next; sample 0 lies at pixel 0, the last one at pixel n - 1.
   double GetStep() const { return this->Step; }
@@ -39,7 +37,6 @@ public:
   }
 
 private:
-  bool Identity = true;
   double Step = 1;
   int Taps = 1;
   std::vector<int> Starts;

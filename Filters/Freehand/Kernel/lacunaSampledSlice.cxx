@@ -85,9 +85,9 @@ SampledSlice SampleSlice(
   sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
 
   const bool footprint = sampling == PixelSampling::Footprint;
-  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
-  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
-  if (columns.IsIdentity() && rows.IsIdentity() && HasSampler(slice.Type, doublePrecision))
+  // Footprints of some slices of a sweep may be narrower than a pixel: all get a raster, so that
+  // all are of one type.
+  if (!footprint && HasSampler(slice.Type, doublePrecision))
   {
     sampled.Type = slice.Type;
     sampled.Pixels = slice.Pixels;
@@ -96,6 +96,8 @@ SampledSlice SampleSlice(
     sampled.Height = slice.Height;
     return sampled;
   }
+  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
+  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
   if (doublePrecision)
   {
     FillRaster<double>(slice, columns, rows, sampled);

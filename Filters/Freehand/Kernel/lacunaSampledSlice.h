@@ -48,8 +48,8 @@ struct SampledSlice
 /// Makes slice ready. Without doublePrecision the raster's values are such as a float holds.
 /// The result refers to the slice's pixels when it can.
 /// Throws std::invalid_argument when the slice is unusable, see CheckSlice.
-SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling,
-  bool doublePrecision);
+SampledSlice SampleSlice(
+  const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling, bool doublePrecision);
 
 /// Copies the pixels that slice refers to, so that the caller's may go.
 void OwnPixels(SampledSlice& slice);

@@ -37,7 +37,8 @@ void CheckSlice(const SliceImage& slice)
   const Matrix4& pose = slice.PixelToReference;
   if (!pose.IsFinite())
   {
-    throw std::invalid_argument(slice.Label + ": its pose has elements that are not finite" + advice);
+    throw std::invalid_argument(
+      slice.Label + ": its pose has elements that are not finite" + advice);
   }
   if (!pose.IsAffine())
   {

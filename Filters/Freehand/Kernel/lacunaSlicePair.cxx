@@ -61,13 +61,13 @@ void AddImageBounds(
 }
 }
 
-SlicePair::SlicePair(const SampledSlice& first, const SampledSlice& second, const VolumeGrid& grid,
-  double maximumGap)
+SlicePair::SlicePair(
+  const SampledSlice& first, const SampledSlice& second, const VolumeGrid& grid, double maximumGap)
   : First(&first)
   , Second(&second)
+  , DistanceTolerance(Tolerance * std::min({ grid.Spacing[0], grid.Spacing[1], grid.Spacing[2] }))
 {
-  const double tolerance =
-    Tolerance * std::min({ grid.Spacing[0], grid.Spacing[1], grid.Spacing[2] });
+  const double tolerance = this->DistanceTolerance;
   if (!(Dot(first.Normal, second.Normal) > SmallestCosine))
   {
     this->SliceRelation = Relation::Turned;
@@ -84,18 +84,17 @@ SlicePair::SlicePair(const SampledSlice& first, const SampledSlice& second, cons
   this->SecondFunctions = GetFunctions(second, this->Transposed);
   for (const double direction : { 1.0, -1.0 })
   {
-    this->AddWedge(direction, grid, maximumGap, tolerance);
+    this->AddWedge(direction, grid, maximumGap);
   }
 }
 
 // direction 1: the half where the probe moves along its normal, -1: against it.
-void SlicePair::AddWedge(
-  double direction, const VolumeGrid& grid, double maximumGap, double tolerance)
+void SlicePair::AddWedge(double direction, const VolumeGrid& grid, double maximumGap)
 {
+  const double tolerance = this->DistanceTolerance;
   // A voxel's foot lies on the first image; from there the way along the normal to the second plane
   // is at most that of the farthest corner.
-  const std::array<double, 4> ahead =
-    GetCornerDistances(*this->First, *this->Second, -direction);
+  const std::array<double, 4> ahead = GetCornerDistances(*this->First, *this->Second, -direction);
   double reach = (*std::max_element(ahead.begin(), ahead.end()) + 2 * tolerance) /
     Dot(this->First->Normal, this->Second->Normal);
   if (reach < 0)
@@ -119,8 +118,8 @@ void SlicePair::AddWedge(
   Wedge wedge;
   wedge.Layers.First =
     std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(layerOf(lowest) - 0.01)));
-  wedge.Layers.Last = std::min<std::int64_t>(grid.Dimensions[2] - 1,
-    static_cast<std::int64_t>(std::floor(layerOf(highest) + 0.01)));
+  wedge.Layers.Last = std::min<std::int64_t>(
+    grid.Dimensions[2] - 1, static_cast<std::int64_t>(std::floor(layerOf(highest) + 0.01)));
   if (wedge.Layers.IsEmpty())
   {
     return;

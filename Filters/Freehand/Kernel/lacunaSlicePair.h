@@ -45,6 +45,9 @@ public:
   const SampledSlice& GetFirst() const { return *this->First; }
   const SampledSlice& GetSecond() const { return *this->Second; }
 
+  /// mm; both slices are this near only where they intersect, and then equally near.
+  double GetTolerance() const { return this->DistanceTolerance; }
+
   /// Layers k of the grid that the region may reach.
   IndexInterval GetLayers() const { return this->Layers; }
 
@@ -73,11 +76,12 @@ private:
     VoxelRegion Region;
     IndexInterval Layers;
   };
-  void AddWedge(double direction, const VolumeGrid& grid, double maximumGap, double tolerance);
+  void AddWedge(double direction, const VolumeGrid& grid, double maximumGap);
 
   const SampledSlice* First;
   const SampledSlice* Second;
   Relation SliceRelation = Relation::Neighbours;
+  double DistanceTolerance;
   bool Transposed = false;
   Functions FirstFunctions, SecondFunctions;
   std::array<Wedge, 2> Wedges;

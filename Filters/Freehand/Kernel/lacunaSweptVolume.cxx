@@ -5,7 +5,6 @@
 #include "lacunaVoxelFilling.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
@@ -20,18 +19,25 @@ constexpr std::size_t SlicesAtATime = 16;
 constexpr std::int64_t PixelLayersAtATime = 8;
 
 // Rounds half away from zero and cuts to the range of an integer type.
-template <class T, class Real>
-T Convert(Real value)
+template <class T>
+T Convert(double value)
 {
   if constexpr (std::is_integral<T>::value)
   {
-    const double rounded = std::floor(std::abs(static_cast<double>(value)) + 0.5);
-    const double x = value < 0 ? -rounded : rounded;
     constexpr auto lowest = static_cast<double>(std::numeric_limits<T>::min());
     constexpr auto highest = static_cast<double>(std::numeric_limits<T>::max());
-    // in this order: a NaN becomes the lowest value
-    return x > lowest ? (x < highest ? static_cast<T>(x) : std::numeric_limits<T>::max())
-                      : std::numeric_limits<T>::min();
+    if (!(value > lowest)) // or not a number
+    {
+      return std::numeric_limits<T>::min();
+    }
+    if (!(value < highest))
+    {
+      return std::numeric_limits<T>::max();
+    }
+    // from 2^52 on all doubles are whole, and adding a half would round
+    constexpr double whole = 4503599627370496;
+    const double half = value < 0 ? -0.5 : 0.5;
+    return static_cast<T>(value > -whole && value < whole ? value + half : value);
   }
   else
   {
@@ -50,10 +56,9 @@ void WriteVoxels(const VoxelBlock<Real>& voxels, Compounding compounding, T* int
       for (std::int64_t i = begin; i < end; ++i)
       {
         const Voxel<Real>& voxel = voxels.GetData()[i];
-        const Real samples = compounding == Compounding::Mean && voxel.Count > 1
-          ? static_cast<Real>(voxel.Count)
-          : Real(1);
-        intensity[i] = Convert<T>(voxel.Value / samples);
+        const double samples =
+          compounding == Compounding::Mean && voxel.Count > 1 ? voxel.Count : 1;
+        intensity[i] = Convert<T>(static_cast<double>(voxel.Value) / samples);
         contributions[i] = voxel.Count;
         mask[i] = voxel.Count > 0 ? 1 : 0;
       }
@@ -100,8 +105,7 @@ void SweptVolume::AddSlices(
     CheckSlice(slice);
     if (NeedsDoublePrecision(slice.Type) && !this->Settings.DoublePrecision)
     {
-      throw std::invalid_argument(
-        slice.Label + ": grey levels of this type need double precision");
+      throw std::invalid_argument(slice.Label + ": grey levels of this type need double precision");
     }
     if (slice.Type != slices.front().Type)
     {
@@ -136,8 +140,8 @@ void SweptVolume::AddPairs(
     {
       for (std::int64_t n = b; n < e; ++n)
       {
-        sampled[n] = SampleSlice(slices[begin + n], this->Grid, this->Settings.Sampling,
-          this->Settings.DoublePrecision);
+        sampled[n] = SampleSlice(
+          slices[begin + n], this->Grid, this->Settings.Sampling, this->Settings.DoublePrecision);
       }
     };
     if (this->Settings.Sampling == PixelSampling::Footprint && count > 1)
@@ -158,8 +162,8 @@ void SweptVolume::AddPairs(
       {
         if (previous->Type != slice.Type)
         {
-          throw std::invalid_argument(slice.Label +
-            ": its grey levels are of another type than those of the slices before");
+          throw std::invalid_argument(
+            slice.Label + ": its grey levels are of another type than those of the slices before");
         }
         pairs.emplace_back(*previous, slice, this->Grid, this->Settings.MaximumSliceGap);
         ++this->Counts.All;
@@ -207,8 +211,7 @@ void SweptVolume::Fill(const std::vector<SlicePair>& pairs, Execution& execution
           }
           if (this->Settings.DoublePrecision)
           {
-            FillBetween(
-              pair, k, this->Settings.Sampling, this->Settings.Compound, this->Doubles);
+            FillBetween(pair, k, this->Settings.Sampling, this->Settings.Compound, this->Doubles);
           }
           else
           {
@@ -247,8 +250,7 @@ void SweptVolume::Write(
 {
   if (this->Settings.DoublePrecision)
   {
-    WriteVoxels(
-      this->Doubles, this->Settings.Compound, intensity, contributions, mask, execution);
+    WriteVoxels(this->Doubles, this->Settings.Compound, intensity, contributions, mask, execution);
   }
   else
   {

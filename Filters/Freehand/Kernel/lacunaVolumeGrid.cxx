@@ -71,8 +71,8 @@ double GetLargestPixelSpacing(const std::vector<SliceImage>& slices)
   double largest = 0;
   for (const SliceImage& slice : slices)
   {
-    largest = std::max({ largest, Norm(slice.PixelToReference.Column(0)),
-      Norm(slice.PixelToReference.Column(1)) });
+    largest = std::max(
+      { largest, Norm(slice.PixelToReference.Column(0)), Norm(slice.PixelToReference.Column(1)) });
   }
   return largest;
 }
@@ -100,11 +100,25 @@ double FitSpacing(const Box& box, double smallest, double voxels)
   // Each step at least as large as the error of counting one voxel more than the lengths give.
   while (CountVoxels(box, { spacing, spacing, spacing }) > voxels)
   {
-    const double ratio =
-      std::cbrt(CountVoxels(box, { spacing, spacing, spacing }) / voxels);
+    const double ratio = std::cbrt(CountVoxels(box, { spacing, spacing, spacing }) / voxels);
     spacing = RoundUpToTwoDigits(spacing * std::max(ratio, 1.001));
   }
   return spacing;
+}
+
+// In full, and in a unit that can be read.
+std::string DescribeBytes(double bytes)
+{
+  std::ostringstream text;
+  if (bytes < 1e15)
+  {
+    text << static_cast<std::int64_t>(bytes) << " bytes (" << bytes / 1048576 << " MiB)";
+  }
+  else
+  {
+    text << bytes << " bytes";
+  }
+  return text.str();
 }
 
 Vec3 GetCentre(const SliceImage& slice)
@@ -201,11 +215,11 @@ VolumeGrid MakeVolumeGrid(const std::vector<SliceImage>& slices, const VolumeGri
   {
     const double allowed = std::min(limit / static_cast<double>(request.BytesPerVoxel), 1e15);
     std::ostringstream message;
-    message << "the volume would have " << size.str() << " voxels and take " << bytes
-            << " bytes; the limit is " << limit << " bytes (MemoryLimit)."
-            << DescribeWildSlice(slices) << " An OutputSpacing of "
-            << FitSpacing(box, *std::min_element(grid.Spacing.data(), grid.Spacing.data() + 3),
-                 allowed)
+    message << "the volume would have " << size.str() << " voxels and take " << DescribeBytes(bytes)
+            << "; MemoryLimit allows " << DescribeBytes(limit) << "." << DescribeWildSlice(slices)
+            << " An OutputSpacing of "
+            << FitSpacing(
+                 box, *std::min_element(grid.Spacing.data(), grid.Spacing.data() + 3), allowed)
             << " mm would fit.";
     throw std::invalid_argument(message.str());
   }

@@ -50,8 +50,9 @@ struct SampleNearest
 {
   static Real At(const Raster<T>& raster, double column, double row)
   {
-    return static_cast<Real>(raster.Pixels[raster.RowStride * static_cast<int>(row + 0.5) +
-      static_cast<int>(column + 0.5)]);
+    return static_cast<Real>(
+      raster
+        .Pixels[raster.RowStride * static_cast<int>(row + 0.5) + static_cast<int>(column + 0.5)]);
   }
 };
 
@@ -77,7 +78,8 @@ struct Lines
 // predecessor, so that it does not matter where a piece of the volume begins.
 template <class T, class Real, template <class, class> class Sampler, Compounding compounding>
 void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const Lines& first,
-  const Lines& second, IndexInterval interval, Voxel<Real>* voxel, std::int64_t stride)
+  const Lines& second, double tolerance, IndexInterval interval, Voxel<Real>* voxel,
+  std::int64_t stride)
 {
   for (std::int64_t n = interval.First; n <= interval.Last; ++n, voxel += stride)
   {
@@ -86,8 +88,8 @@ void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const
     const Real y = Sampler<T, Real>::At(secondRaster, second.Column.At(i), second.Row.At(i));
     const double a = std::abs(first.Distance.At(i));
     const double b = std::abs(second.Distance.At(i));
-    // both are zero where the planes intersect: there is no nearer one
-    const double weight = a + b > 0 ? a / (a + b) : 0.5;
+    const double gap = a + b;
+    const double weight = gap > tolerance ? a / gap : 0.5;
     voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
   }
 }
@@ -153,8 +155,9 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
     Voxel<Real>* const start = corner + (j - rows.First) * strides[jAxis];
     for (const IndexInterval& part : parts)
     {
-      FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second, part,
-        start + (part.First - columns.First) * strides[iAxis], strides[iAxis]);
+      FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second,
+        pair.GetTolerance(), part, start + (part.First - columns.First) * strides[iAxis],
+        strides[iAxis]);
     }
   }
 }
@@ -174,12 +177,6 @@ void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
     nearest ? FillLayer<T, Real, SampleNearest, Compounding::Maximum>(pair, k, voxels)
             : FillLayer<T, Real, SampleBilinearly, Compounding::Maximum>(pair, k, voxels);
   }
-}
-
-// Index of the voxel in whose cell the coordinate lies; half-way points go up.
-std::int64_t Round(double index)
-{
-  return static_cast<std::int64_t>(std::floor(index + 0.5));
 }
 
 template <Compounding compounding, class T, class Real>
@@ -220,7 +217,8 @@ void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& gri
       bool inside = true;
       for (int a = 0; a < 3; ++a)
       {
-        v[a] = Round(along[a].At(static_cast<double>(i)));
+        // the nearest one; not negative but for the margin, so that cutting off is rounding down
+        v[a] = static_cast<std::int64_t>(along[a].At(static_cast<double>(i)) + 0.5);
         inside &= v[a] >= range[a].First && v[a] <= range[a].Last;
       }
       if (inside)

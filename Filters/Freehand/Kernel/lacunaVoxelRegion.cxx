@@ -74,8 +74,8 @@ VoxelRegion::Layer VoxelRegion::GetLayer(std::int64_t k, IndexInterval rows) con
   {
     for (int u = 0; u < layer.NumberOfUpper; ++u)
     {
-      layer.NarrowRows(layer.Upper[u].Start - layer.Lower[l].Start,
-        layer.Upper[u].Step - layer.Lower[l].Step);
+      layer.NarrowRows(
+        layer.Upper[u].Start - layer.Lower[l].Start, layer.Upper[u].Step - layer.Lower[l].Step);
     }
   }
   return layer;
