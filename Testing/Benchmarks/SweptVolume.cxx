@@ -2,8 +2,9 @@
 /// @file
 /// A sweep of an analytic scene reconstructed: seconds, and the error against the truth.
 ///
-/// 200 slices of 640 x 480 pixels of 0.1 mm over 60 mm, twisting by +-12 degrees about the image's
-/// vertical and fanning by +-8 degrees; grey levels between 20 and 240, 8 bit.
+/// 200 slices of 640 x 480 pixels of 0.1 mm over 60 mm, twisting from -12 to 12 degrees about the
+/// image's vertical and fanning from -8 to 8 degrees about its horizontal; grey levels between 20
+/// and 240, 8 bit.
 #include "lacunaSweptVolume.h"
 
 #include <benchmark/benchmark.h>
@@ -44,8 +45,8 @@ struct Sweep
       slice.RowStride = Width;
       slice.Label = "slice " + std::to_string(n);
       slice.PixelToReference = Matrix4::Translation({ 0, 0, Travel * (t - 0.5) }) *
-        Matrix4::Rotation({ 0, 1, 0 }, 12 * Pi / 180 * std::sin(2 * Pi * t)) *
-        Matrix4::Rotation({ 1, 0, 0 }, 8 * Pi / 180 * std::cos(2 * Pi * t)) *
+        Matrix4::Rotation({ 0, 1, 0 }, 12 * Pi / 180 * (2 * t - 1)) *
+        Matrix4::Rotation({ 1, 0, 0 }, 8 * Pi / 180 * (2 * t - 1)) *
         Matrix4::Scaling({ PixelSpacing, PixelSpacing, 1 }) *
         Matrix4::Translation({ -0.5 * (Width - 1), -0.5 * (Height - 1), 0 });
       std::uint8_t* pixels = this->Pixels.data() + static_cast<std::size_t>(n) * Width * Height;

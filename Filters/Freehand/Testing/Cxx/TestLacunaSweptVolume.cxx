@@ -1,0 +1,2 @@
+#include <cstdlib>
+int TestLacunaSweptVolume(int, char*[]) { return EXIT_SUCCESS; }

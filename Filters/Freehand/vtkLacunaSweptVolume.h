@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaSweptVolume
+ * @brief   Volume swept by freehand ultrasound slices that are not parallel
+ *
+ * Fills a voxel grid from tracked slices (see vtkLacunaTrackedSlices.h for what these are). A voxel
+ * between two consecutive slices is interpolated between the feet of its perpendiculars,
+ * V = (a X2 + b X1) / (a + b), with a and b its distances from the first and the second slice and
+ * X1, X2 the grey levels at the feet (Carr 1996, §4.2). A voxel is between two slices when its
+ * signed distances from them, along normals that turn with the probe, have opposite signs or one
+ * is zero, and its feet lie on both images, between the centres of the outermost pixels.
+ * Consecutive slices may intersect: what lies between them is then a double wedge. Several samples
+ * of one voxel, within a sweep or from several sweeps, are averaged or the largest one is kept;
+ * they are collected in floating point and rounded once. The result does not depend on threads,
+ * pieces or ranks, bit by bit.
+ *
+ * Input (repeatable): tracked slices, taken in the order of the stack. Slices whose SliceStatus is
+ * not 0 are left out; their neighbours then form the pair. Different inputs form no pairs.
+ *
+ * Output: an image along the axes of the reference frame, mm, whose whole extent starts at 0:
+ * voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of OutputBounds),
+ * and there are round(length / spacing) + 1 voxels along each axis. Point data:
+ * | array             | type                  | meaning                                          |
+ * |-------------------|-----------------------|--------------------------------------------------|
+ * | Intensity         | see OutputScalarType  | grey level, active scalars; 0 where there is none|
+ * | Contributions     | unsigned int          | how many samples made the voxel                  |
+ * | vtkValidPointMask | char                  | 1 where there are samples, else 0                |
+ * Field data: Provenance. The arrays of the slices are not copied: they do not describe a volume.
+ *
+ * The grid depends on the poses, which are known when the input has been executed: so the input is
+ * brought up to date already when information about the output is asked for.
+ *
+ * It is an error when an array of the input is missing, when fewer than two slices of an input are
+ * valid (one for NearestVoxel), when a valid slice has a pose that is singular or not a number,
+ * when all slices lie in one plane, and when the volume would need more than MemoryLimit.
+ *
+ * @sa lacunaSweptVolume.h, lacunaSlicePair.h, lacunaFootprint.h, lacunaVolumeGrid.h
+ */
+#ifndef vtkLacunaSweptVolume_h
+#define vtkLacunaSweptVolume_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersFreehandModule.h" // for export macro
+
+#include <string>
+
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaSweptVolume* New();
+  vtkTypeMacro(vtkLacunaSweptVolume, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum PixelSamplings
+  {
+    Footprint = 0,
+    Bilinear = 1,
+    Nearest = 2
+  };
+  enum Interpolations
+  {
+    BetweenSlices = 0,
+    NearestVoxel = 1
+  };
+  enum Compoundings
+  {
+    Mean = 0,
+    Maximum = 1
+  };
+  enum OutputScalarTypes
+  {
+    Input = 0,
+    Float = 1
+  };
+
+  ///@{
+  /// Voxel spacing in mm. 0 on an axis takes it from the data: the largest pixel spacing, or, if
+  /// the volume would have more than 2^23 voxels then, the spacing that gives this number, rounded
+  /// up to two digits. Default: 0 0 0.
+  vtkSetVector3Macro(OutputSpacing, double);
+  vtkGetVector3Macro(OutputSpacing, double);
+  ///@}
+
+  ///@{
+  /// Box of the volume in the reference frame, mm: x, y, z minimum and maximum. 1 -1 on an axis
+  /// takes all that the slices cover. Default: 1 -1 1 -1 1 -1.
+  vtkSetVector6Macro(OutputBounds, double);
+  vtkGetVector6Macro(OutputBounds, double);
+  ///@}
+
+  ///@{
+  /// The grey level at the foot of a perpendicular: Footprint (the mean over the voxel's footprint
+  /// in the slice, so that slices finer than the voxels do not alias), Bilinear or Nearest. Only
+  /// for BetweenSlices. Default: Footprint.
+  vtkSetClampMacro(PixelSampling, int, Footprint, Nearest);
+  vtkGetMacro(PixelSampling, int);
+  ///@}
+
+  ///@{
+  /// BetweenSlices, or NearestVoxel: each pixel of each slice goes to the voxel in which its centre
+  /// lies, and nothing is interpolated. Default: BetweenSlices.
+  vtkSetClampMacro(Interpolation, int, BetweenSlices, NearestVoxel);
+  vtkGetMacro(Interpolation, int);
+  ///@}
+
+  ///@{
+  /// What several samples of a voxel become: their Mean or their Maximum. Default: Mean.
+  vtkSetClampMacro(Compounding, int, Mean, Maximum);
+  vtkGetMacro(Compounding, int);
+  ///@}
+
+  ///@{
+  /// Voxels at which two consecutive slices are further apart than this many mm stay empty. Only
+  /// for BetweenSlices. 0 = no limit. Default: 0.
+  vtkSetMacro(MaximumSliceGap, double);
+  vtkGetMacro(MaximumSliceGap, double);
+  ///@}
+
+  ///@{
+  /// The part of the slices to use, in pixels: first column, first row, width, height. A width or
+  /// height of 0 reaches to the edge of the image. Default: 0 0 0 0, all.
+  vtkSetVector4Macro(ClipRectangle, int);
+  vtkGetVector4Macro(ClipRectangle, int);
+  ///@}
+
+  ///@{
+  /// Type of Intensity: that of the input, or Float. Default: Input.
+  vtkSetClampMacro(OutputScalarType, int, Input, Float);
+  vtkGetMacro(OutputScalarType, int);
+  ///@}
+
+  ///@{
+  /// Memory that the volume may take, in MiB (2^20 bytes), its work space included. 0 = no limit.
+  /// Default: 4096.
+  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryLimit, int);
+  ///@}
+
+protected:
+  vtkLacunaSweptVolume() = default;
+  ~vtkLacunaSweptVolume() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaSweptVolume(const vtkLacunaSweptVolume&) = delete;
+  void operator=(const vtkLacunaSweptVolume&) = delete;
+
+  class Plan;
+  std::string DescribeParameters() const;
+
+  double OutputSpacing[3] = { 0, 0, 0 };
+  double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
+  int PixelSampling = Footprint;
+  int Interpolation = BetweenSlices;
+  int Compounding = Mean;
+  double MaximumSliceGap = 0;
+  int ClipRectangle[4] = { 0, 0, 0, 0 };
+  int OutputScalarType = Input;
+  int MemoryLimit = 4096;
+};
+#endif
