@@ -287,6 +287,18 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaSweptVolume::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // Slices that change with time change the grid: it is found again when the time is known.
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  {
+    return this->RequestInformation(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaSweptVolume::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
@@ -344,6 +356,7 @@ int vtkLacunaSweptVolume::RequestInformation(
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
   info->Remove(vtkDataObject::DIRECTION());
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
   return 1;
 }
 

@@ -94,6 +94,9 @@ public:
   /// for BetweenSlices. Default: Footprint.
   vtkSetClampMacro(PixelSampling, int, Footprint, Nearest);
   vtkGetMacro(PixelSampling, int);
+  void SetPixelSamplingToFootprint() { this->SetPixelSampling(Footprint); }
+  void SetPixelSamplingToBilinear() { this->SetPixelSampling(Bilinear); }
+  void SetPixelSamplingToNearest() { this->SetPixelSampling(Nearest); }
   ///@}
 
   ///@{
@@ -101,12 +104,16 @@ public:
   /// lies, and nothing is interpolated. Default: BetweenSlices.
   vtkSetClampMacro(Interpolation, int, BetweenSlices, NearestVoxel);
   vtkGetMacro(Interpolation, int);
+  void SetInterpolationToBetweenSlices() { this->SetInterpolation(BetweenSlices); }
+  void SetInterpolationToNearestVoxel() { this->SetInterpolation(NearestVoxel); }
   ///@}
 
   ///@{
   /// What several samples of a voxel become: their Mean or their Maximum. Default: Mean.
   vtkSetClampMacro(Compounding, int, Mean, Maximum);
   vtkGetMacro(Compounding, int);
+  void SetCompoundingToMean() { this->SetCompounding(Mean); }
+  void SetCompoundingToMaximum() { this->SetCompounding(Maximum); }
   ///@}
 
   ///@{
@@ -127,6 +134,8 @@ public:
   /// Type of Intensity: that of the input, or Float. Default: Input.
   vtkSetClampMacro(OutputScalarType, int, Input, Float);
   vtkGetMacro(OutputScalarType, int);
+  void SetOutputScalarTypeToInput() { this->SetOutputScalarType(Input); }
+  void SetOutputScalarTypeToFloat() { this->SetOutputScalarType(Float); }
   ///@}
 
   ///@{
@@ -135,6 +144,9 @@ public:
   vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryLimit, int);
   ///@}
+
+  int ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 protected:
   vtkLacunaSweptVolume() = default;

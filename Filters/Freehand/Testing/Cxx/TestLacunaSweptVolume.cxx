@@ -1,2 +1,520 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Ports, arrays, extents, pieces, time, errors of vtkLacunaSweptVolume.
+#include "vtkCallbackCommand.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageAlgorithm.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSweptVolume.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedIntArray.h"
+
+#include <cmath>
 #include <cstdlib>
-int TestLacunaSweptVolume(int, char*[]) { return EXIT_SUCCESS; }
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using lacuna::Matrix4;
+
+namespace
+{
+int failures = 0;
+
+void Check(bool condition, const std::string& what)
+{
+  if (!condition)
+  {
+    std::cerr << "FAILED: " << what << "\n";
+    ++failures;
+  }
+}
+
+bool Contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+// Poses of slices of 0.5 mm pixels, 1 mm apart along z.
+std::vector<Matrix4> MakePoses(int count, double start = 0)
+{
+  std::vector<Matrix4> poses;
+  for (int n = 0; n < count; ++n)
+  {
+    poses.push_back(
+      Matrix4::Translation({ 10, 20, start + n }) * Matrix4::Scaling({ 0.5, 0.5, 1 }));
+  }
+  return poses;
+}
+
+// Columns 0..12, rows 0..8; grey level = column + 2 row + 10 slice.
+vtkSmartPointer<vtkImageData> MakeStack(const std::vector<Matrix4>& poses,
+  int type = VTK_UNSIGNED_CHAR, const std::vector<unsigned char>& status = {})
+{
+  const auto count = static_cast<int>(poses.size());
+  auto stack = vtkSmartPointer<vtkImageData>::New();
+  stack->SetDimensions(13, 9, count);
+  stack->AllocateScalars(type, 1);
+  for (int k = 0; k < count; ++k)
+  {
+    for (int j = 0; j < 9; ++j)
+    {
+      for (int i = 0; i < 13; ++i)
+      {
+        stack->SetScalarComponentFromDouble(i, j, k, 0, i + 2 * j + 10 * k);
+      }
+    }
+  }
+  std::vector<double> times;
+  std::vector<int> frames;
+  for (int k = 0; k < count; ++k)
+  {
+    times.push_back(0.1 * k);
+    frames.push_back(k);
+  }
+  vtkLacunaTrackedSlices::Write(stack, poses, times,
+    status.empty() ? std::vector<unsigned char>(poses.size(), 0) : status, frames);
+  return stack;
+}
+
+// Collects errors and warnings instead of printing them.
+class Messages
+{
+public:
+  explicit Messages(vtkObject* object)
+  {
+    this->Command->SetClientData(this);
+    this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
+      { static_cast<Messages*>(self)->Text += static_cast<const char*>(text); });
+    object->AddObserver(vtkCommand::ErrorEvent, this->Command);
+    object->AddObserver(vtkCommand::WarningEvent, this->Command);
+    // the executive tells once more that the algorithm failed
+    if (auto* algorithm = vtkAlgorithm::SafeDownCast(object))
+    {
+      algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->Command);
+    }
+  }
+  std::string Text;
+
+private:
+  vtkNew<vtkCallbackCommand> Command;
+};
+
+double GetValue(vtkImageData* volume, const char* array, int i, int j, int k)
+{
+  int ijk[3] = { i, j, k };
+  return volume->GetPointData()->GetArray(array)->GetTuple1(volume->ComputePointId(ijk));
+}
+
+using Configure = std::function<void(vtkLacunaSweptVolume*)>;
+
+// The error of a filter on stack.
+std::string GetError(vtkImageData* stack, const Configure& configure = {})
+{
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputDataObject(stack);
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  if (configure)
+  {
+    configure(filter);
+  }
+  const Messages messages(filter);
+  filter->Update();
+  Check(messages.Text.empty() || filter->GetOutput()->GetNumberOfPoints() == 0,
+    "no half result after: " + messages.Text);
+  return messages.Text;
+}
+
+void CheckError(const std::string& error, const std::string& part)
+{
+  Check(Contains(error, part), "'" + part + "' in the error: " + error);
+}
+
+// A source of slices that knows how often it ran; its poses move with time.
+class SliceSource : public vtkImageAlgorithm
+{
+public:
+  static SliceSource* New();
+  vtkTypeMacro(SliceSource, vtkImageAlgorithm);
+  int Executions = 0;
+  bool HasTime = false;
+
+protected:
+  SliceSource() { this->SetNumberOfInputPorts(0); }
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    const int extent[6] = { 0, 12, 0, 8, 0, 4 };
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    if (this->HasTime)
+    {
+      const double steps[2] = { 0, 100 };
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, 2);
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), steps, 2);
+    }
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    ++this->Executions;
+    vtkInformation* info = outputs->GetInformationObject(0);
+    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
+      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
+      : 0;
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    output->ShallowCopy(MakeStack(MakePoses(5, time)));
+    if (this->HasTime)
+    {
+      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+    }
+    return 1;
+  }
+};
+vtkStandardNewMacro(SliceSource);
+
+void TestContract()
+{
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputData(MakeStack(MakePoses(5)));
+  filter->SetOutputSpacing(0.5, 1, 0.5);
+  filter->Update();
+  vtkImageData* volume = filter->GetOutput();
+  const int* extent = volume->GetExtent();
+  Check(extent[0] == 0 && extent[1] == 12 && extent[2] == 0 && extent[3] == 4 && extent[4] == 0 &&
+      extent[5] == 8,
+    "extent");
+  Check(volume->GetOrigin()[0] == 10 && volume->GetOrigin()[1] == 20 && volume->GetOrigin()[2] == 0,
+    "origin");
+  Check(volume->GetSpacing()[1] == 1, "spacing");
+  vtkPointData* points = volume->GetPointData();
+  Check(points->GetNumberOfArrays() == 3, "three arrays");
+  Check(points->GetScalars() && std::string(points->GetScalars()->GetName()) == "Intensity" &&
+      points->GetScalars()->GetDataType() == VTK_UNSIGNED_CHAR,
+    "Intensity is active and of the input's type");
+  Check(vtkUnsignedIntArray::SafeDownCast(points->GetArray("Contributions")) != nullptr,
+    "Contributions are unsigned int");
+  Check(
+    vtkCharArray::SafeDownCast(points->GetArray("vtkValidPointMask")) != nullptr, "mask is char");
+  // column 6, row 4, between slices 2 and 3: 6 + 8 + 25
+  Check(GetValue(volume, "Intensity", 6, 2, 5) == 39, "interpolated grey level");
+  Check(GetValue(volume, "Contributions", 6, 2, 5) == 1, "one sample between slices");
+  Check(GetValue(volume, "vtkValidPointMask", 12, 4, 8) == 1, "the last voxel is filled");
+  Check(volume->GetFieldData()->GetNumberOfArrays() == 1, "only Provenance in the field data");
+  const std::vector<std::string> steps = vtkLacunaProvenance::Get(volume);
+  Check(steps.size() == 1 && Contains(steps[0], "vtkLacunaSweptVolume") &&
+      Contains(steps[0], "OutputSpacing=0.5,1,0.5") &&
+      Contains(steps[0], "PixelSampling=Footprint"),
+    "provenance");
+
+  std::ostringstream text;
+  filter->Print(text);
+  Check(Contains(text.str(), "Compounding=Mean") && Contains(text.str(), "MemoryLimit: 4096"),
+    "PrintSelf");
+}
+
+void TestTypes()
+{
+  for (const int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT,
+         VTK_UNSIGNED_SHORT, VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG,
+         VTK_UNSIGNED_LONG_LONG, VTK_FLOAT, VTK_DOUBLE })
+  {
+    for (const int output : { vtkLacunaSweptVolume::Input, vtkLacunaSweptVolume::Float })
+    {
+      vtkNew<vtkLacunaSweptVolume> filter;
+      filter->SetInputData(MakeStack(MakePoses(5), type));
+      filter->SetOutputSpacing(0.5, 0.5, 0.5);
+      filter->SetOutputScalarType(output);
+      filter->Update();
+      const std::string name = "type " + std::to_string(type);
+      vtkImageData* volume = filter->GetOutput();
+      Check(volume->GetScalarType() == (output == vtkLacunaSweptVolume::Float ? VTK_FLOAT : type),
+        name + " of the output");
+      Check(GetValue(volume, "Intensity", 6, 4, 5) == 39, name);
+    }
+  }
+  // several inputs of different types
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->AddInputData(MakeStack(MakePoses(5), VTK_UNSIGNED_CHAR));
+  filter->AddInputData(MakeStack(MakePoses(5), VTK_DOUBLE));
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  const Messages messages(filter);
+  filter->Update();
+  CheckError(messages.Text, "different types (unsigned char, double)");
+  filter->SetOutputScalarTypeToFloat();
+  filter->Update();
+  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "mixed types as float");
+  Check(GetValue(filter->GetOutput(), "Contributions", 6, 4, 5) == 2, "two sweeps");
+}
+
+void TestPieces()
+{
+  vtkNew<vtkLacunaSweptVolume> whole;
+  whole->SetInputData(MakeStack(MakePoses(5)));
+  whole->SetOutputSpacing(0.3, 0.3, 0.3);
+  whole->Update();
+  vtkIdType points = 0;
+  for (int piece = 0; piece < 3; ++piece)
+  {
+    vtkNew<vtkLacunaSweptVolume> filter;
+    filter->SetInputData(MakeStack(MakePoses(5)));
+    filter->SetOutputSpacing(0.3, 0.3, 0.3);
+    filter->UpdatePiece(piece, 3, 0);
+    vtkImageData* part = filter->GetOutput();
+    points += part->GetNumberOfPoints();
+    Check(part->GetNumberOfPoints() > 0 &&
+        part->GetNumberOfPoints() < whole->GetOutput()->GetNumberOfPoints(),
+      "a piece is a part");
+    const int* e = part->GetExtent();
+    bool same = true;
+    for (int k = e[4]; k <= e[5]; ++k)
+    {
+      for (int j = e[2]; j <= e[3]; ++j)
+      {
+        for (int i = e[0]; i <= e[1]; ++i)
+        {
+          for (const char* name : { "Intensity", "Contributions", "vtkValidPointMask" })
+          {
+            same &= GetValue(part, name, i, j, k) == GetValue(whole->GetOutput(), name, i, j, k);
+          }
+        }
+      }
+    }
+    Check(same, "piece " + std::to_string(piece) + " equals its part of the whole");
+  }
+  Check(points >= whole->GetOutput()->GetNumberOfPoints(), "pieces cover the whole");
+}
+
+void TestSlicesLeftOut()
+{
+  // The middle slice is garbage and marked; its pose is not even a number.
+  std::vector<Matrix4> poses = MakePoses(5);
+  poses[2](0, 3) = std::numeric_limits<double>::quiet_NaN();
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputData(MakeStack(poses, VTK_UNSIGNED_CHAR, { 0, 0, 1, 0, 0 }));
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  filter->Update();
+  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 4) == 34, "its neighbours form the pair");
+  filter->SetMaximumSliceGap(1.5);
+  filter->Update();
+  Check(GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 4) == 0, "unless too far apart");
+  Check(GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 1) == 1, "others stay");
+}
+
+// A part of a stack, with all tuples in the field data, as Extract Subset makes it.
+vtkSmartPointer<vtkImageData> Crop(vtkImageData* stack, int extent[6])
+{
+  auto part = vtkSmartPointer<vtkImageData>::New();
+  part->DeepCopy(stack);
+  part->Crop(extent);
+  return part;
+}
+
+void TestParts()
+{
+  vtkNew<vtkLacunaSweptVolume> clipped;
+  clipped->SetInputData(MakeStack(MakePoses(5)));
+  clipped->SetOutputSpacing(0.5, 0.5, 0.5);
+  clipped->SetClipRectangle(3, 2, 7, 5);
+  clipped->Update();
+  const double* bounds = clipped->GetOutput()->GetBounds();
+  Check(bounds[0] == 11.5 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 23,
+    "bounds of the clip rectangle");
+  Check(GetValue(clipped->GetOutput(), "Intensity", 3, 2, 5) == 39, "grey level in the rectangle");
+
+  // the same pixels of slices 1..4 as a cropped stack
+  int extent[6] = { 3, 9, 2, 6, 1, 4 };
+  const auto part = Crop(MakeStack(MakePoses(5)), extent);
+  vtkNew<vtkLacunaSweptVolume> cropped;
+  cropped->SetInputData(part);
+  cropped->SetOutputSpacing(0.5, 0.5, 0.5);
+  cropped->Update();
+  Check(cropped->GetOutput()->GetBounds()[4] == 1, "the first slice is left out");
+  Check(GetValue(cropped->GetOutput(), "Intensity", 3, 2, 3) == 39, "cropped stack");
+  // a stack whose extent starts at 0 says by its origin which part it is
+  part->SetExtent(0, 6, 0, 4, 0, 3);
+  part->SetOrigin(3, 2, 1);
+  cropped->SetClipRectangle(4, 0, 0, 5);
+  cropped->Update();
+  bounds = cropped->GetOutput()->GetBounds();
+  Check(bounds[0] == 12 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 22,
+    "the rectangle counts the pixels of the original slices");
+  Check(GetValue(cropped->GetOutput(), "Intensity", 2, 2, 3) == 39, "stack with an origin");
+  // every second column and row
+  vtkNew<vtkImageData> strided;
+  strided->DeepCopy(MakeStack(MakePoses(5)));
+  strided->SetSpacing(2, 2, 1);
+  vtkNew<vtkLacunaSweptVolume> wide;
+  wide->SetInputData(strided);
+  wide->SetOutputSpacing(0.5, 0.5, 0.5);
+  wide->Update();
+  Check(wide->GetOutput()->GetBounds()[1] == 22, "pixels of a strided stack lie further apart");
+}
+
+void TestErrors()
+{
+  const double notANumber = std::numeric_limits<double>::quiet_NaN();
+  const auto good = MakeStack(MakePoses(5));
+  Check(GetError(good).empty(), "no error");
+
+  auto stack = MakeStack(MakePoses(5));
+  stack->GetFieldData()->RemoveArray("ImageToReference");
+  CheckError(GetError(stack), "'ImageToReference' is missing");
+  stack = MakeStack(MakePoses(5));
+  stack->GetFieldData()->RemoveArray("SliceStatus");
+  CheckError(GetError(stack), "'SliceStatus' is missing");
+  stack = MakeStack(MakePoses(5));
+  stack->GetPointData()->SetActiveScalars(nullptr);
+  stack->GetPointData()->RemoveArray(0);
+  CheckError(GetError(stack), "no active point scalars");
+  stack = MakeStack(MakePoses(5));
+  stack->SetOrigin(0, 0, 3);
+  CheckError(GetError(stack), "z = 5");
+  stack = MakeStack(MakePoses(5));
+  stack->SetDirectionMatrix(0, 1, 0, 1, 0, 0, 0, 0, 1);
+  CheckError(GetError(stack), "direction matrix");
+
+  CheckError(GetError(MakeStack(MakePoses(1))), "too few: 1 of 1 are valid");
+  CheckError(GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 0, 2, 4 })), "1 of 4 are valid");
+  Check(GetError(MakeStack(MakePoses(1)),
+          [](vtkLacunaSweptVolume* f) { f->SetInterpolationToNearestVoxel(); })
+          .empty(),
+    "one slice is enough for NearestVoxel");
+  CheckError(GetError(MakeStack(std::vector<Matrix4>(5, MakePoses(1)[0]))), "in the same plane");
+
+  std::vector<Matrix4> poses = MakePoses(5);
+  poses[3](1, 1) = notANumber;
+  CheckError(GetError(MakeStack(poses)), "slice 3: its pose has elements that are not finite");
+  CheckError(GetError(MakeStack(poses)), "mark the slice invalid (SliceStatus 1)");
+  poses = MakePoses(5);
+  poses[1] = poses[1] * Matrix4::Scaling({ 0, 1, 1 });
+  CheckError(GetError(MakeStack(poses)), "slice 1: its pose is singular");
+  poses = MakePoses(5);
+  poses[4] = Matrix4::Translation({ 0, 0, 1e9 }) * poses[4];
+  const std::string wild = GetError(MakeStack(poses));
+  CheckError(wild, "slice 4 lies 1e+09 mm from the middle");
+  CheckError(wild, "MemoryLimit allows 4294967296 bytes");
+  CheckError(wild, "An OutputSpacing of");
+
+  const auto with = [&](const Configure& configure) { return GetError(good, configure); };
+  CheckError(with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }), "OutputSpacing along y");
+  CheckError(with([=](auto* f) { f->SetOutputSpacing(notANumber, 1, 1); }), "along x is nan");
+  CheckError(with([](auto* f) { f->SetOutputBounds(12, 11, 1, -1, 1, -1); }), "minimum first");
+  CheckError(with([](auto* f) { f->SetOutputBounds(1, -1, 90, 99, 1, -1); }), "between 20 and 24");
+  CheckError(with([](auto* f) { f->SetClipRectangle(40, 0, 0, 0); }), "0 columns of 0 to 12");
+  CheckError(with([](auto* f) { f->SetClipRectangle(0, 8, 0, 0); }), "1 rows of 0 to 8");
+  CheckError(with([](auto* f) { f->SetClipRectangle(-2147483647, 0, 5, 0); }), "0 columns");
+  CheckError(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
+  CheckError(with([](auto* f) { f->SetOutputSpacing(0.001, 0.001, 0.001); }), "MemoryLimit");
+  CheckError(with(
+               [](auto* f)
+               {
+                 f->SetMemoryLimit(1);
+                 f->SetOutputSpacing(0.05, 0.05, 0.05);
+               }),
+    "1048576 bytes");
+
+  // a pair turned too far is a warning, the rest is filled
+  poses = MakePoses(3);
+  poses.push_back(poses[2] * Matrix4::Rotation({ 0, 1, 0 }, 2));
+  vtkNew<vtkLacunaSweptVolume> turned;
+  turned->SetInputData(MakeStack(poses));
+  turned->SetOutputSpacing(0.5, 0.5, 0.5);
+  const Messages messages(turned);
+  turned->Update();
+  CheckError(messages.Text, "1 of 3 pairs");
+  Check(turned->GetOutput()->GetNumberOfPoints() > 0, "a warning keeps the output");
+
+  // the second of two inputs is named
+  vtkNew<vtkLacunaSweptVolume> two;
+  two->AddInputData(good);
+  poses = MakePoses(2);
+  poses[0](2, 2) = notANumber;
+  two->AddInputData(MakeStack(poses));
+  const Messages second(two);
+  two->Update();
+  CheckError(second.Text, "slice 0 of input 1");
+
+  // once mended, it works again
+  vtkNew<vtkLacunaSweptVolume> mended;
+  mended->SetInputData(good);
+  mended->SetOutputSpacing(-1, 1, 1);
+  const Messages once(mended);
+  mended->Update();
+  Check(!once.Text.empty(), "an error first");
+  mended->SetOutputSpacing(1, 1, 1);
+  mended->Update();
+  Check(mended->GetOutput()->GetNumberOfPoints() == 7 * 5 * 5, "then the volume");
+
+  // nothing in, nothing out
+  vtkNew<vtkImageData> empty;
+  Check(GetError(empty).empty(), "an empty input is no error");
+}
+
+void TestPipeline()
+{
+  vtkNew<SliceSource> source;
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  filter->UpdateInformation();
+  int whole[6];
+  filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+  Check(whole[1] == 12 && whole[3] == 8 && whole[5] == 8, "whole extent before the data");
+  filter->Update();
+  filter->SetCompoundingToMaximum();
+  filter->Update();
+  Check(source->Executions == 1, "the source runs once");
+  source->Modified();
+  filter->Update();
+  Check(source->Executions == 2, "and once more when modified");
+
+  // a source that moves with time
+  vtkNew<SliceSource> moving;
+  moving->HasTime = true;
+  filter->SetInputConnection(moving->GetOutputPort());
+  filter->UpdateTimeStep(0);
+  Check(filter->GetOutput()->GetOrigin()[2] == 0, "at time 0");
+  filter->UpdateTimeStep(100);
+  Check(filter->GetOutput()->GetOrigin()[2] == 100, "the grid follows in time");
+  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "and so do the grey levels");
+  filter->UpdateTimeStep(0);
+  Check(filter->GetOutput()->GetOrigin()[2] == 0, "and back");
+
+  // stopped by the user
+  vtkNew<vtkLacunaSweptVolume> stopped;
+  stopped->SetInputData(MakeStack(MakePoses(5)));
+  stopped->SetOutputSpacing(0.02, 0.02, 0.02);
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
+  stopped->AddObserver(vtkCommand::ProgressEvent, stop);
+  stopped->Update();
+  Check(stopped->GetOutput()->GetNumberOfPoints() == 0, "nothing is left when stopped");
+}
+}
+
+int TestLacunaSweptVolume(int, char*[])
+{
+  TestContract();
+  TestTypes();
+  TestPieces();
+  TestSlicesLeftOut();
+  TestParts();
+  TestErrors();
+  TestPipeline();
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
