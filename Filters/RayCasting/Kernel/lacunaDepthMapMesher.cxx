@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDepthMapMesher.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+/// The triangles that a square of pixels can hold; its corners are, from top left, row by row, 0 1
+/// / 2 3. Wound so that their normal is towards the viewer: columns go right and rows down.
+constexpr int Corners[4][3] = { { 0, 2, 3 }, { 0, 3, 1 }, { 0, 2, 1 }, { 1, 2, 3 } };
+constexpr int RowGrain = 16;
+
+void CheckAngle(const char* name, double degrees, double limit)
+{
+  if (!(degrees >= 0 && degrees <= limit))
+  {
+    std::ostringstream message;
+    message << name << " is " << degrees << " degrees; it must lie within 0 and " << limit;
+    throw std::invalid_argument(message.str());
+  }
+}
+}
+
+DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& rule, int firstRow,
+  int lastRow, Execution& execution)
+  : Grid(grid)
+  , Rule(rule)
+  , FirstRow(firstRow)
+  , LastRow(lastRow)
+{
+  CheckAngle("MaximumAngle", rule.MaximumAngle, 90);
+  CheckAngle("MaximumAngleChange", rule.MaximumAngleChange, 180);
+  const auto& e = grid.Extent;
+  if (firstRow < e[2] || lastRow > e[3] || e[1] < e[0])
+  {
+    throw std::invalid_argument("rows to mesh are not within the depth map");
+  }
+  const std::int64_t columns = static_cast<std::int64_t>(e[1]) - e[0] + 1;
+  const std::int64_t rows = std::int64_t(lastRow) - firstRow + 1;
+  const std::int64_t squareRows = rows > 0 ? rows - 1 : 0;
+  this->PointOffsets.assign(rows > 0 ? rows + 1 : 1, 0);
+  this->TriangleOffsets.assign(squareRows + 1, 0);
+  this->Triangles.resize((columns - 1) * squareRows);
+  execution.For(rows, RowGrain,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t r = begin; r < end; ++r)
+      {
+        const int row = static_cast<int>(firstRow + r);
+        std::int64_t points = 0;
+        for (int c = e[0]; c <= e[1]; ++c)
+        {
+          points += this->IsDefined(c, row);
+        }
+        this->PointOffsets[r + 1] = points;
+        if (r == squareRows)
+        {
+          continue;
+        }
+        std::int64_t triangles = 0;
+        unsigned char* flags = this->Triangles.data() + r * (columns - 1);
+        for (int c = e[0]; c < e[1]; ++c, ++flags)
+        {
+          *flags = this->ChooseTriangles(c, row);
+          for (int t = 0; t < 4; ++t)
+          {
+            triangles += *flags >> t & 1;
+          }
+        }
+        this->TriangleOffsets[r + 1] = triangles;
+      }
+    });
+  for (std::size_t i = 1; i < this->PointOffsets.size(); ++i)
+  {
+    this->PointOffsets[i] += this->PointOffsets[i - 1];
+  }
+  for (std::size_t i = 1; i < this->TriangleOffsets.size(); ++i)
+  {
+    this->TriangleOffsets[i] += this->TriangleOffsets[i - 1];
+  }
+}
+
+std::int64_t DepthMapMesher::PixelOf(int column, int row) const
+{
+  const auto& e = this->Grid.Extent;
+  return (static_cast<std::int64_t>(row) - e[2]) * (e[1] - e[0] + 1) + (column - e[0]);
+}
+
+bool DepthMapMesher::IsDefined(int column, int row) const
+{
+  const auto& e = this->Grid.Extent;
+  return column >= e[0] && column <= e[1] && row >= e[2] && row <= e[3] &&
+    std::isfinite(this->Grid.Depth[this->PixelOf(column, row)]);
+}
+
+Vec3 DepthMapMesher::PointOf(int column, int row) const
+{
+  const Matrix4& m = this->Grid.ImageToWorld;
+  const Vec3 pixel = m.Point({ static_cast<double>(column), static_cast<double>(row), 0 });
+  const Vec3 ray =
+    this->Grid.Perspective ? Normalized(pixel - this->Grid.Eye) : Normalized(m.Column(2));
+  return pixel + this->Grid.Depth[this->PixelOf(column, row)] * ray;
+}
+
+/// Degrees between the edge from a pixel to its neighbour and the plane perpendicular to the rays;
+/// positive away from the viewer, NaN when either has no depth.
+double DepthMapMesher::Angle(int column, int row, int right, int down) const
+{
+  if (!this->IsDefined(column, row) || !this->IsDefined(column + right, row + down))
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Vec3 from = this->PointOf(column, row);
+  const Vec3 to = this->PointOf(column + right, row + down);
+  const Vec3 ray = Normalized(this->Grid.Perspective ? 0.5 * (from + to) - this->Grid.Eye
+                                                     : this->Grid.ImageToWorld.Column(2));
+  const Vec3 edge = to - from;
+  const double along = Dot(edge, ray);
+  return std::atan2(along, Norm(edge - along * ray)) * (180 / 3.14159265358979323846);
+}
+
+bool DepthMapMesher::GoesOn(double angle, int column, int row, int right, int down) const
+{
+  const double beyond = this->Angle(column, row, right, down);
+  return std::isnan(beyond) || std::abs(beyond - angle) < this->Rule.MaximumAngleChange ||
+    (std::abs(beyond) > this->Rule.MaximumAngle && (beyond > 0) == (angle > 0));
+}
+
+bool DepthMapMesher::IsJoined(int column, int row, int right, int down) const
+{
+  if (!this->IsDefined(column, row) || !this->IsDefined(column + right, row + down))
+  {
+    return false;
+  }
+  if (!this->Rule.Break)
+  {
+    return true;
+  }
+  const double angle = this->Angle(column, row, right, down);
+  return !(std::abs(angle) > this->Rule.MaximumAngle) ||
+    (this->GoesOn(angle, column - right, row - down, right, down) &&
+      this->GoesOn(angle, column + right, row + down, right, down));
+}
+
+unsigned char DepthMapMesher::ChooseTriangles(int column, int row) const
+{
+  const bool top = this->IsJoined(column, row, 1, 0);
+  const bool bottom = this->IsJoined(column, row + 1, 1, 0);
+  const bool left = this->IsJoined(column, row, 0, 1);
+  const bool right = this->IsJoined(column + 1, row, 0, 1);
+  if (top + bottom + left + right < 2)
+  {
+    return 0;
+  }
+  const bool falling = this->IsJoined(column, row, 1, 1);
+  const bool rising = this->IsJoined(column, row + 1, 1, -1);
+  const unsigned char alongFalling =
+    (left && bottom && falling ? 1 : 0) | (top && right && falling ? 2 : 0);
+  const unsigned char alongRising =
+    (left && top && rising ? 4 : 0) | (right && bottom && rising ? 8 : 0);
+  const int excess =
+    (alongFalling & 1) + (alongFalling >> 1) - (alongRising >> 2 & 1) - (alongRising >> 3);
+  if (excess != 0)
+  {
+    return excess > 0 ? alongFalling : alongRising;
+  }
+  const double* depth = this->Grid.Depth;
+  const double fall = depth[this->PixelOf(column + 1, row + 1)] - depth[this->PixelOf(column, row)];
+  const double rise = depth[this->PixelOf(column + 1, row)] - depth[this->PixelOf(column, row + 1)];
+  return std::abs(rise) < std::abs(fall) ? alongRising : alongFalling;
+}
+
+void DepthMapMesher::FillPoints(double* points, std::int64_t* pixels, Execution& execution) const
+{
+  const auto& e = this->Grid.Extent;
+  execution.For(static_cast<std::int64_t>(this->PointOffsets.size()) - 1, RowGrain,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t r = begin; r < end; ++r)
+      {
+        const int row = static_cast<int>(this->FirstRow + r);
+        std::int64_t i = this->PointOffsets[r];
+        for (int c = e[0]; c <= e[1]; ++c)
+        {
+          if (this->IsDefined(c, row))
+          {
+            const Vec3 p = this->PointOf(c, row);
+            points[3 * i] = p[0];
+            points[3 * i + 1] = p[1];
+            points[3 * i + 2] = p[2];
+            pixels[i] = this->PixelOf(c, row);
+            ++i;
+          }
+        }
+      }
+    });
+}
+
+void DepthMapMesher::FillTriangles(std::int64_t* corners, Execution& execution) const
+{
+  const auto& e = this->Grid.Extent;
+  execution.For(static_cast<std::int64_t>(this->TriangleOffsets.size()) - 1, RowGrain,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t r = begin; r < end; ++r)
+      {
+        const int row = static_cast<int>(this->FirstRow + r);
+        std::int64_t upper = this->PointOffsets[r];
+        std::int64_t lower = this->PointOffsets[r + 1];
+        const unsigned char* flags = this->Triangles.data() + r * (e[1] - e[0]);
+        std::int64_t* out = corners + 3 * this->TriangleOffsets[r];
+        for (int c = e[0]; c < e[1]; ++c, ++flags)
+        {
+          const std::int64_t nextUpper = upper + this->IsDefined(c, row);
+          const std::int64_t nextLower = lower + this->IsDefined(c, row + 1);
+          const std::int64_t square[4] = { upper, nextUpper, lower, nextLower };
+          for (int t = 0; t < 4; ++t)
+          {
+            for (int corner = 0; (*flags >> t & 1) && corner < 3; ++corner)
+            {
+              *out++ = square[Corners[t][corner]];
+            }
+          }
+          upper = nextUpper;
+          lower = nextLower;
+        }
+      }
+    });
+}
+}

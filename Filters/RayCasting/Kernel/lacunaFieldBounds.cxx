@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFieldBounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <type_traits>
+
+namespace lacuna
+{
+namespace
+{
+constexpr int FineShift = 2;
+constexpr int CoarseShift = 4;
+
+template <class T>
+constexpr T Lowest()
+{
+  return std::is_floating_point<T>::value ? -std::numeric_limits<T>::infinity()
+                                          : std::numeric_limits<T>::lowest();
+}
+
+template <class T>
+constexpr T Highest()
+{
+  return std::is_floating_point<T>::value ? std::numeric_limits<T>::infinity()
+                                          : std::numeric_limits<T>::max();
+}
+
+/// Widens low[x]..high[x] by row[x]. Plain loops, so that the compiler vectorises them.
+template <class T>
+void Accumulate(const T* row, int n, bool guard, T* low, T* high)
+{
+  if constexpr (std::is_floating_point<T>::value)
+  {
+    if (guard)
+    {
+      for (int x = 0; x < n; ++x)
+      {
+        const bool finite = std::isfinite(row[x]);
+        low[x] = std::min(low[x], finite ? row[x] : Lowest<T>());
+        high[x] = std::max(high[x], finite ? row[x] : Highest<T>());
+      }
+      return;
+    }
+  }
+  for (int x = 0; x < n; ++x)
+  {
+    const T v = row[x];
+    low[x] = v < low[x] ? v : low[x];
+    high[x] = v > high[x] ? v : high[x];
+  }
+}
+
+std::array<int, 3> CountBlocks(const std::array<int, 3>& size, int shift)
+{
+  std::array<int, 3> blocks;
+  for (int a = 0; a < 3; ++a)
+  {
+    blocks[a] = (size[a] - 2 + (1 << shift)) >> shift; // size - 1 cells, rounded up
+  }
+  return blocks;
+}
+
+/// Voxels in the support of a block of cells, inside the volume.
+struct Reach
+{
+  int First;
+  int Last;
+  Reach(int block, int shift, int size, int before, int after)
+    : First(std::max(0, (block << shift) - before))
+    , Last(std::min(size - 1, ((block + 1) << shift) - 1 + after))
+  {
+  }
+};
+}
+
+template <class T>
+FieldBounds<T>::FieldBounds(
+  const T* voxels, const std::array<int, 3>& size, int before, int after, Execution& execution)
+{
+  this->FindRange(voxels, size, execution);
+  this->BuildFine(voxels, size, before, after, execution);
+  this->BuildCoarse();
+  if constexpr (std::is_integral<T>::value)
+  {
+    T low = Highest<T>();
+    T high = Lowest<T>();
+    for (std::size_t b = 0; b < this->Coarse.Bounds.size(); b += 2)
+    {
+      low = std::min(low, this->Coarse.Bounds[b]);
+      high = std::max(high, this->Coarse.Bounds[b + 1]);
+    }
+    this->Minimum = static_cast<double>(low);
+    this->Maximum = static_cast<double>(high);
+  }
+}
+
+template <class T>
+void FieldBounds<T>::FindRange(
+  const T* voxels, const std::array<int, 3>& size, Execution& execution)
+{
+  this->Minimum = std::numeric_limits<double>::infinity();
+  this->Maximum = -std::numeric_limits<double>::infinity();
+  if constexpr (std::is_floating_point<T>::value)
+  {
+    const std::int64_t slice = static_cast<std::int64_t>(size[0]) * size[1];
+    std::mutex mutex;
+    execution.For(size[2], 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        T low = Highest<T>();
+        T high = Lowest<T>();
+        std::int64_t count = 0;
+        for (std::int64_t i = begin * slice; i < end * slice; ++i)
+        {
+          const T v = voxels[i];
+          const bool finite = std::isfinite(v);
+          count += !finite;
+          low = finite && v < low ? v : low;
+          high = finite && v > high ? v : high;
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        this->NumberOfNonFinite += count;
+        this->Minimum = std::min(this->Minimum, static_cast<double>(low));
+        this->Maximum = std::max(this->Maximum, static_cast<double>(high));
+      });
+  }
+}
+
+template <class T>
+void FieldBounds<T>::BuildFine(
+  const T* voxels, const std::array<int, 3>& size, int before, int after, Execution& execution)
+{
+  Level& level = this->Fine;
+  level.Shift = FineShift;
+  level.Blocks = CountBlocks(size, FineShift);
+  level.Bounds.resize(level.IndexOf(0, 0, level.Blocks[2]));
+  const bool guard = this->NumberOfNonFinite > 0;
+  execution.For(level.Blocks[2], 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<T> low(size[0]);
+      std::vector<T> high(size[0]);
+      for (int k = static_cast<int>(begin); k < end; ++k)
+      {
+        const Reach rz(k, FineShift, size[2], before, after);
+        for (int j = 0; j < level.Blocks[1]; ++j)
+        {
+          // first across rows, which vectorises, then along the result
+          std::fill(low.begin(), low.end(), Highest<T>());
+          std::fill(high.begin(), high.end(), Lowest<T>());
+          const Reach ry(j, FineShift, size[1], before, after);
+          for (int z = rz.First; z <= rz.Last; ++z)
+          {
+            for (int y = ry.First; y <= ry.Last; ++y)
+            {
+              const T* row = voxels + (static_cast<std::int64_t>(z) * size[1] + y) * size[0];
+              Accumulate(row, size[0], guard, low.data(), high.data());
+            }
+          }
+          T* bounds = level.Bounds.data() + level.IndexOf(0, j, k);
+          for (int i = 0; i < level.Blocks[0]; ++i, bounds += 2)
+          {
+            const Reach rx(i, FineShift, size[0], before, after);
+            bounds[0] = *std::min_element(low.begin() + rx.First, low.begin() + rx.Last + 1);
+            bounds[1] = *std::max_element(high.begin() + rx.First, high.begin() + rx.Last + 1);
+          }
+        }
+      }
+    });
+}
+
+template <class T>
+void FieldBounds<T>::BuildCoarse()
+{
+  Level& level = this->Coarse;
+  constexpr int step = CoarseShift - FineShift;
+  level.Shift = CoarseShift;
+  for (int a = 0; a < 3; ++a)
+  {
+    level.Blocks[a] = ((this->Fine.Blocks[a] - 1) >> step) + 1;
+  }
+  level.Bounds.resize(level.IndexOf(0, 0, level.Blocks[2]));
+  for (std::size_t b = 0; b < level.Bounds.size(); b += 2)
+  {
+    level.Bounds[b] = Highest<T>();
+    level.Bounds[b + 1] = Lowest<T>();
+  }
+  for (int k = 0; k < this->Fine.Blocks[2]; ++k)
+  {
+    for (int j = 0; j < this->Fine.Blocks[1]; ++j)
+    {
+      for (int i = 0; i < this->Fine.Blocks[0]; ++i)
+      {
+        const T* fine = this->Fine.Bounds.data() + this->Fine.IndexOf(i, j, k);
+        T* coarse = level.Bounds.data() + level.IndexOf(i >> step, j >> step, k >> step);
+        coarse[0] = std::min(coarse[0], fine[0]);
+        coarse[1] = std::max(coarse[1], fine[1]);
+      }
+    }
+  }
+}
+
+template class FieldBounds<std::int8_t>;
+template class FieldBounds<std::uint8_t>;
+template class FieldBounds<std::int16_t>;
+template class FieldBounds<std::uint16_t>;
+template class FieldBounds<std::int32_t>;
+template class FieldBounds<std::uint32_t>;
+template class FieldBounds<std::int64_t>;
+template class FieldBounds<std::uint64_t>;
+template class FieldBounds<float>;
+template class FieldBounds<double>;
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the pixels of a depth map lie in the world.
+#ifndef lacunaImagePlane_h
+#define lacunaImagePlane_h
+
+#include "lacunaMatrix4.h"
+
+#include <array>
+#include <cstdint>
+
+namespace lacuna
+{
+/// How a volume is looked at (parallel projection).
+struct ViewSettings
+{
+  Vec3 Direction{ 0, 0, -1 }; ///< the way the viewer looks, any length
+  Vec3 Up{ 0, 1, 0 };         ///< shown upwards; need not be perpendicular to Direction
+  bool HasPlaneOrigin = false;
+  /// A point of the image plane, where depth is 0. Without it the plane goes through the corner of
+  /// the volume nearest the viewer, so that no depth is negative.
+  Vec3 PlaneOrigin{ 0, 0, 0 };
+  double PixelSpacing = 0;             ///< mm; 0 = the smallest voxel edge
+  std::array<int, 2> Size{ { 0, 0 } }; ///< columns, rows; 0 = as many as show the whole volume
+};
+
+/// The pixels of a depth map: W columns along Right, H rows along Down, (0,0) top left. Right, Down
+/// and View are orthonormal and right-handed.
+struct ImagePlane
+{
+  Vec3 Origin; ///< pixel (0,0), world mm
+  Vec3 Right;
+  Vec3 Down;
+  Vec3 View;
+  double PixelSpacing; ///< mm
+  std::array<int, 2> Size;
+
+  Vec3 PixelPosition(int column, int row) const
+  {
+    return this->Origin + (column * this->PixelSpacing) * this->Right +
+      (row * this->PixelSpacing) * this->Down;
+  }
+};
+
+/// More pixels than this are refused: 2^28, a map of 16384 x 16384 and of 5.6 GB.
+constexpr std::int64_t MaximumNumberOfPixels = std::int64_t(1) << 28;
+
+/// The plane for looking at a box of size voxels (the centres of the outermost voxels are its
+/// corners). An image that fits the volume has its first pixels in the box's edge; one of a given
+/// size is centred on the box. Throws std::invalid_argument for what cannot be seen: a zero
+/// direction, Up along Direction, a spacing or size that is negative, not finite or too large, a
+/// box with fewer than two voxels along an axis.
+ImagePlane MakeImagePlane(
+  const Matrix4& indexToWorld, const std::array<int, 3>& size, const ViewSettings& view);
+}
+#endif

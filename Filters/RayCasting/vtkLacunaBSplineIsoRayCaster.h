@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaBSplineIsoRayCaster
+ * @brief depth map of an iso-surface of a volume, seen from one direction
+ *
+ * Casts one ray per pixel of an image plane into a volume and reports where it first passes into
+ * the solid, and the surface normal there. Between the voxels the field is a tensor product of
+ * uniform cubic B-splines (C2 continuous; with BSpline the voxels are the control points, which
+ * smooths partial-volume ripple) or trilinear. The first hit is certified: inside a cell the field
+ * along the ray is a polynomial whose Bernstein coefficients exclude or isolate every crossing, so
+ * no wall is missed however thin, and there is no step size. Hits lie on the field's surface to
+ * 1e-9 of a voxel.
+ *
+ * Input: vtkImageData, at least two voxels along each axis, point scalars of one component and any
+ * real type; any origin, spacing, direction matrix and extent.
+ *
+ * Output: a depth map, see vtkLacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
+ * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
+ * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
+ * x 3, unit, world, towards the viewer), Depth_1, Depth_2, ... for the second iso-value and so on.
+ * Field data: ImageToWorld, IsoValues, Provenance. Requested extents are honoured.
+ *
+ * Rules. A field equal to the iso-value is solid. A ray that is inside the solid where it enters
+ * the volume has not met a surface there (a head cut by the scan field is open): it goes on until
+ * it has left the solid and enters it again. The field ends at the centres of the outermost voxels;
+ * beyond them control points are extrapolated linearly. Voxels that are not finite are empty (they
+ * take the least solid value of the volume); their number is given in a warning. An iso-value
+ * outside the volume's values gives an empty map and a warning with their range.
+ *
+ * Errors: no scalars or several components, fewer than two voxels along an axis, a zero
+ * ViewDirection or ViewUp, ViewUp parallel to ViewDirection, a negative or not finite PixelSpacing,
+ * more than 2^28 pixels.
+ *
+ * Source: Carr 1996, 3.2 and 3.3.3.
+ *
+ * @sa vtkLacunaDepthMapSurface
+ */
+#ifndef vtkLacunaBSplineIsoRayCaster_h
+#define vtkLacunaBSplineIsoRayCaster_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersRayCastingModule.h" // for export macro
+
+#include <memory> // for std::unique_ptr
+#include <vector> // for std::vector
+
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaBSplineIsoRayCaster* New();
+  vtkTypeMacro(vtkLacunaBSplineIsoRayCaster, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum InterpolationType
+  {
+    BSpline = 0,          ///< cubic, the voxels are the control points: smooths
+    InterpolatingBSpline, ///< cubic, goes through the voxels; needs one more float per voxel
+    Trilinear
+  };
+
+  enum SolidSideType
+  {
+    Above = 0, ///< solid where the field is at or above the iso-value
+    Below
+  };
+
+  ///@{
+  /**
+   * Grey levels of the surfaces to find, in any order; default one of 500 (bone in Hounsfield
+   * units). The first gives Depth, the mask and the normals, the others Depth_1, Depth_2, ...
+   */
+  void SetNumberOfIsoValues(int number);
+  int GetNumberOfIsoValues() const { return static_cast<int>(this->IsoValues.size()); }
+  void SetIsoValue(int i, double value);
+  double GetIsoValue(int i) const;
+  ///@}
+
+  ///@{
+  /** The field between the voxels. Default BSpline. */
+  vtkSetClampMacro(Interpolation, int, BSpline, Trilinear);
+  vtkGetMacro(Interpolation, int);
+  ///@}
+
+  ///@{
+  /** Which side of the iso-value is solid. Default Above; Below for vessels filled with fluid. */
+  vtkSetClampMacro(SolidSide, int, Above, Below);
+  vtkGetMacro(SolidSide, int);
+  ///@}
+
+  ///@{
+  /** The way the viewer looks, world, any length. Default 0 0 -1: from the top. */
+  vtkSetVector3Macro(ViewDirection, double);
+  vtkGetVector3Macro(ViewDirection, double);
+  ///@}
+
+  ///@{
+  /** What is shown upwards, world; need not be perpendicular to ViewDirection. Default 0 1 0. */
+  vtkSetVector3Macro(ViewUp, double);
+  vtkGetVector3Macro(ViewUp, double);
+  ///@}
+
+  ///@{
+  /**
+   * A point of the image plane, world mm: where depth is 0. While a coordinate is VTK_DOUBLE_MAX
+   * (the default) the plane goes through the corner of the volume nearest the viewer, so that no
+   * depth is negative. The plane does not cut: a surface before it has a negative depth.
+   */
+  vtkSetVector3Macro(PlaneOrigin, double);
+  vtkGetVector3Macro(PlaneOrigin, double);
+  ///@}
+
+  ///@{
+  /** mm between pixels. Default 0: the smallest voxel edge. */
+  vtkSetMacro(PixelSpacing, double);
+  vtkGetMacro(PixelSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * Columns and rows of the map. 0 (default): as many as show the whole volume, the first pixels
+   * on the volume's edge. Otherwise the map is centred on the volume.
+   */
+  vtkSetVector2Macro(ImageSize, int);
+  vtkGetVector2Macro(ImageSize, int);
+  ///@}
+
+protected:
+  vtkLacunaBSplineIsoRayCaster();
+  ~vtkLacunaBSplineIsoRayCaster() override;
+
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  std::vector<double> IsoValues{ 500 };
+  int Interpolation = BSpline;
+  int SolidSide = Above;
+  double ViewDirection[3] = { 0, 0, -1 };
+  double ViewUp[3] = { 0, 1, 0 };
+  double PlaneOrigin[3];
+  double PixelSpacing = 0;
+  int ImageSize[2] = { 0, 0 };
+
+private:
+  vtkLacunaBSplineIsoRayCaster(const vtkLacunaBSplineIsoRayCaster&) = delete;
+  void operator=(const vtkLacunaBSplineIsoRayCaster&) = delete;
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+#endif

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaDepthMapSurface.h"
+
+#include "lacunaDepthMapMesher.h"
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+/// First and last row of pixels of a piece; neighbouring pieces share a row. Empty: first = last.
+struct Rows
+{
+  int First;
+  int Last;
+
+  Rows(const int whole[6], vtkInformation* outInfo)
+  {
+    const std::int64_t piece = outInfo->Get(SDDP::UPDATE_PIECE_NUMBER());
+    const std::int64_t pieces = std::max(1, outInfo->Get(SDDP::UPDATE_NUMBER_OF_PIECES()));
+    const std::int64_t squares = std::max(0, whole[3] - whole[2]);
+    this->First = whole[2] + static_cast<int>(piece * squares / pieces);
+    this->Last = whole[2] + static_cast<int>((piece + 1) * squares / pieces);
+  }
+};
+
+/// The depths as double: the array itself when it is one.
+vtkSmartPointer<vtkDoubleArray> AsDouble(vtkDataArray* array)
+{
+  vtkSmartPointer<vtkDoubleArray> depth = vtkDoubleArray::SafeDownCast(array);
+  if (!depth)
+  {
+    depth = vtkSmartPointer<vtkDoubleArray>::New();
+    depth->DeepCopy(array);
+  }
+  return depth;
+}
+
+/// Copies the tuples at ids of every array of from to to.
+void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
+{
+  for (int i = 0; i < from->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = from->GetAbstractArray(i);
+    const auto carried = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+    carried->SetName(array->GetName());
+    carried->SetNumberOfComponents(array->GetNumberOfComponents());
+    carried->SetNumberOfTuples(ids->GetNumberOfIds());
+    array->GetTuples(ids, carried);
+    to->AddArray(carried);
+  }
+}
+}
+
+vtkStandardNewMacro(vtkLacunaDepthMapSurface);
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapSurface::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapSurface::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapSurface::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
+  const Rows rows(extent, outputVector->GetInformationObject(0));
+  // one more row on either side for the rule
+  extent[2] = std::max(extent[2], rows.First - 1);
+  extent[3] = std::min(extent[3], rows.Last + 1);
+  inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapSurface::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::Run(this, outputVector,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+      vtkPolyData* output = vtkPolyData::GetData(outputVector);
+      if (!input || input->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      const vtkLacunaDepthMap map(input);
+      vtkDataArray* depthArray = input->GetPointData()->GetArray(this->DepthArray.c_str());
+      if (!depthArray || depthArray->GetNumberOfComponents() != 1)
+      {
+        throw std::runtime_error("the depth map has no one-component point array '" +
+          this->DepthArray + "' to take depths from");
+      }
+      int whole[6];
+      std::copy_n(input->GetExtent(), 6, whole);
+      inputVector[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);
+      const int* extent = input->GetExtent();
+      const Rows rows(whole, outputVector->GetInformationObject(0));
+      if (rows.First == rows.Last && whole[2] != whole[3])
+      {
+        return; // more pieces than rows
+      }
+
+      const auto depth = AsDouble(depthArray);
+      lacuna::DepthGrid grid;
+      grid.Depth = depth->GetPointer(0);
+      grid.Extent = { extent[0], extent[1], extent[2], extent[3] };
+      grid.ImageToWorld = map.GetImageToWorld();
+      grid.Perspective = map.IsPerspective();
+      if (grid.Perspective)
+      {
+        vtkLacunaFieldData::Get(input, vtkLacunaDepthMap::EyePositionName, 3, 1)
+          ->GetTuple(0, grid.Eye.data());
+      }
+      execution.SetStage(0, 0.6);
+      const lacuna::DepthMapMesher mesher(grid,
+        { this->BreakAtDiscontinuities, this->MaximumAngle, this->MaximumAngleChange }, rows.First,
+        rows.Last, execution);
+
+      execution.SetStage(0.6, 0.8);
+      const vtkIdType numberOfPoints = mesher.GetNumberOfPoints();
+      vtkNew<vtkDoubleArray> coordinates;
+      coordinates->SetNumberOfComponents(3);
+      coordinates->SetNumberOfTuples(numberOfPoints);
+      std::vector<std::int64_t> pixels(numberOfPoints);
+      mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
+      vtkNew<vtkPoints> points;
+      points->SetData(coordinates);
+      output->SetPoints(points);
+
+      execution.SetStage(0.8, 1);
+      vtkNew<vtkTypeInt64Array> corners;
+      corners->SetNumberOfValues(3 * mesher.GetNumberOfTriangles());
+      mesher.FillTriangles(corners->GetPointer(0), execution);
+      vtkNew<vtkTypeInt64Array> offsets;
+      offsets->SetNumberOfValues(mesher.GetNumberOfTriangles() + 1);
+      for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
+      {
+        offsets->SetValue(i, 3 * i);
+      }
+      vtkNew<vtkCellArray> triangles;
+      triangles->SetData(offsets, corners);
+      output->SetPolys(triangles);
+
+      vtkNew<vtkIdList> ids;
+      ids->SetNumberOfIds(numberOfPoints);
+      vtkNew<vtkIdTypeArray> pixelIds;
+      pixelIds->SetName(PixelIdName);
+      pixelIds->SetNumberOfValues(numberOfPoints);
+      const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
+      const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
+      for (vtkIdType i = 0; i < numberOfPoints; ++i)
+      {
+        const std::int64_t column = pixels[i] % columns + extent[0] - whole[0];
+        const std::int64_t row = pixels[i] / columns + extent[2] - whole[2];
+        ids->SetId(i, pixels[i]);
+        pixelIds->SetValue(i, column + row * wholeColumns);
+      }
+      vtkPointData* pointData = output->GetPointData();
+      CarryArrays(input->GetPointData(), ids, pointData);
+      pointData->SetPedigreeIds(pixelIds);
+      pointData->SetActiveScalars(this->DepthArray.c_str());
+      if (this->DepthArray == vtkLacunaDepthMap::DepthName)
+      {
+        pointData->SetActiveNormals(vtkLacunaDepthMap::NormalsName);
+      }
+
+      std::ostringstream parameters;
+      parameters.precision(17);
+      parameters << "DepthArray=" << this->DepthArray
+                 << " BreakAtDiscontinuities=" << this->BreakAtDiscontinuities
+                 << " MaximumAngle=" << this->MaximumAngle
+                 << " MaximumAngleChange=" << this->MaximumAngleChange;
+      vtkLacunaProvenance::Record(output, this, { input }, parameters.str());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMapSurface::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "DepthArray: " << this->DepthArray << "\n"
+     << indent << "BreakAtDiscontinuities: " << this->BreakAtDiscontinuities << "\n"
+     << indent << "MaximumAngle: " << this->MaximumAngle << "\n"
+     << indent << "MaximumAngleChange: " << this->MaximumAngleChange << "\n";
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaDepthMapSurface
+ * @brief triangulated surface of a depth map, in world coordinates
+ *
+ * One point per pixel that has a depth, one or two triangles per square of pixels. Front faces and
+ * normals are towards the viewer. Neighbours are not joined across a discontinuity of depth, so
+ * that no skin hangs between what is near and what is far.
+ *
+ * The rule is the one of the nine-case method for depth-map normals. The angle of an edge is that
+ * between it and the plane perpendicular to the view. An edge steeper than MaximumAngle is kept
+ * only if the surface goes on alike beyond both of its ends: the next edge on the same line differs
+ * by less than MaximumAngleChange, or is steeper than MaximumAngle the same way, or there is none.
+ * A steep side of a skull, which bends smoothly, stays whole.
+ *
+ * Input: a depth map, see vtkLacunaDepthMap.h. Output: vtkPolyData with points in double precision;
+ * all point arrays of the map are carried along, DepthArray being the active scalars and, if
+ * DepthArray is Depth, Normals the active normals; PixelId (vtkIdType, pedigree ids): column + row
+ * * W, counted from the corner of the map's whole extent, so that a selection made with the mouse
+ * means pixels. Pieces split the map into bands of rows.
+ *
+ * Errors: the input is not a depth map, it has no such DepthArray, an angle is out of range.
+ *
+ * Source: Carr 1996, 3.3.2.
+ *
+ * @sa vtkLacunaBSplineIsoRayCaster
+ */
+#ifndef vtkLacunaDepthMapSurface_h
+#define vtkLacunaDepthMapSurface_h
+
+#include "vtkLacunaFiltersRayCastingModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // for std::string
+
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapSurface : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaDepthMapSurface* New();
+  vtkTypeMacro(vtkLacunaDepthMapSurface, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Name of the pedigree ids.
+  static constexpr const char* PixelIdName = "PixelId";
+
+  ///@{
+  /** The point array with the depths in mm. Default Depth; Fitted shows the fit of a filled map. */
+  vtkSetMacro(DepthArray, std::string);
+  vtkGetMacro(DepthArray, std::string);
+  ///@}
+
+  ///@{
+  /** Whether neighbours are left apart at discontinuities. Default on. */
+  vtkSetMacro(BreakAtDiscontinuities, bool);
+  vtkGetMacro(BreakAtDiscontinuities, bool);
+  vtkBooleanMacro(BreakAtDiscontinuities, bool);
+  ///@}
+
+  ///@{
+  /** Edges up to this angle are always kept. Degrees, 0..90, default 65. */
+  vtkSetMacro(MaximumAngle, double);
+  vtkGetMacro(MaximumAngle, double);
+  ///@}
+
+  ///@{
+  /** How far a steep edge may differ from the next. Degrees, 0..180, default 20. */
+  vtkSetMacro(MaximumAngleChange, double);
+  vtkGetMacro(MaximumAngleChange, double);
+  ///@}
+
+protected:
+  vtkLacunaDepthMapSurface() = default;
+  ~vtkLacunaDepthMapSurface() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  std::string DepthArray = "Depth";
+  bool BreakAtDiscontinuities = true;
+  double MaximumAngle = 65;
+  double MaximumAngleChange = 20;
+
+private:
+  vtkLacunaDepthMapSurface(const vtkLacunaDepthMapSurface&) = delete;
+  void operator=(const vtkLacunaDepthMapSurface&) = delete;
+};
+#endif
