@@ -277,6 +277,9 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
   inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  // this very extent: a producer of sub-extents would split it once more by piece
+  inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
   return 1;
 }
 

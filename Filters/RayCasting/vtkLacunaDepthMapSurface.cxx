@@ -107,6 +107,9 @@ int vtkLacunaDepthMapSurface::RequestUpdateExtent(
   extent[2] = std::max(extent[2], rows.First - 1);
   extent[3] = std::min(extent[3], rows.Last + 1);
   inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  // this very extent: a producer of sub-extents would split it once more by piece
+  inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
   return 1;
 }
 
@@ -161,7 +164,7 @@ int vtkLacunaDepthMapSurface::RequestData(
       vtkNew<vtkDoubleArray> coordinates;
       coordinates->SetNumberOfComponents(3);
       coordinates->SetNumberOfTuples(numberOfPoints);
-      std::vector<std::int64_t> pixels(numberOfPoints);
+      std::vector<long long> pixels(numberOfPoints);
       mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
       vtkNew<vtkPoints> points;
       points->SetData(coordinates);

@@ -7,11 +7,12 @@
  * normals are towards the viewer. Neighbours are not joined across a discontinuity of depth, so
  * that no skin hangs between what is near and what is far.
  *
- * The rule is the one of the nine-case method for depth-map normals. The angle of an edge is that
- * between it and the plane perpendicular to the view. An edge steeper than MaximumAngle is kept
- * only if the surface goes on alike beyond both of its ends: the next edge on the same line differs
- * by less than MaximumAngleChange, or is steeper than MaximumAngle the same way, or there is none.
- * A steep side of a skull, which bends smoothly, stays whole.
+ * The rule uses the angles of the nine-case method for depth-map normals. The angle of an edge is
+ * that between it and the plane perpendicular to the view. An edge steeper than MaximumAngle is
+ * kept only if the surface goes on alike beyond both of its ends: the next edge on the same line
+ * differs by less than MaximumAngleChange or is steeper than MaximumAngle the same way, and its
+ * step of depth is at least a third of this one's; or there is no next edge. A steep side of a
+ * skull, which bends smoothly, stays whole.
  *
  * Input: a depth map, see vtkLacunaDepthMap.h. Output: vtkPolyData with points in double precision;
  * all point arrays of the map are carried along, DepthArray being the active scalars and, if

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace lacuna
 {
@@ -14,6 +15,8 @@ namespace
 /// / 2 3. Wound so that their normal is towards the viewer: columns go right and rows down.
 constexpr int Corners[4][3] = { { 0, 2, 3 }, { 0, 3, 1 }, { 0, 2, 1 }, { 1, 2, 3 } };
 constexpr int RowGrain = 16;
+constexpr double MaximumStepRatio = 3;
+constexpr double RadiansPerDegree = 3.14159265358979323846 / 180;
 
 void CheckAngle(const char* name, double degrees, double limit)
 {
@@ -38,7 +41,9 @@ DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& r
   const auto& e = grid.Extent;
   if (firstRow < e[2] || lastRow > e[3] || e[1] < e[0])
   {
-    throw std::invalid_argument("rows to mesh are not within the depth map");
+    throw std::invalid_argument("rows " + std::to_string(firstRow) + " to " +
+      std::to_string(lastRow) + " are not within the depth map, which has rows " +
+      std::to_string(e[2]) + " to " + std::to_string(e[3]));
   }
   const std::int64_t columns = static_cast<std::int64_t>(e[1]) - e[0] + 1;
   const std::int64_t rows = std::int64_t(lastRow) - firstRow + 1;
@@ -121,14 +126,20 @@ double DepthMapMesher::Angle(int column, int row, int right, int down) const
                                                      : this->Grid.ImageToWorld.Column(2));
   const Vec3 edge = to - from;
   const double along = Dot(edge, ray);
-  return std::atan2(along, Norm(edge - along * ray)) * (180 / 3.14159265358979323846);
+  return std::atan2(along, Norm(edge - along * ray)) / RadiansPerDegree;
 }
 
 bool DepthMapMesher::GoesOn(double angle, int column, int row, int right, int down) const
 {
   const double beyond = this->Angle(column, row, right, down);
-  return std::isnan(beyond) || std::abs(beyond - angle) < this->Rule.MaximumAngleChange ||
+  if (std::isnan(beyond))
+  {
+    return true;
+  }
+  const bool alike = std::abs(beyond - angle) < this->Rule.MaximumAngleChange ||
     (std::abs(beyond) > this->Rule.MaximumAngle && (beyond > 0) == (angle > 0));
+  const auto step = [](double degrees) { return std::tan(std::abs(degrees) * RadiansPerDegree); };
+  return alike && step(angle) <= MaximumStepRatio * step(beyond);
 }
 
 bool DepthMapMesher::IsJoined(int column, int row, int right, int down) const
@@ -175,7 +186,7 @@ unsigned char DepthMapMesher::ChooseTriangles(int column, int row) const
   return std::abs(rise) < std::abs(fall) ? alongRising : alongFalling;
 }
 
-void DepthMapMesher::FillPoints(double* points, std::int64_t* pixels, Execution& execution) const
+void DepthMapMesher::FillPoints(double* points, long long* pixels, Execution& execution) const
 {
   const auto& e = this->Grid.Extent;
   execution.For(static_cast<std::int64_t>(this->PointOffsets.size()) - 1, RowGrain,
@@ -201,7 +212,7 @@ void DepthMapMesher::FillPoints(double* points, std::int64_t* pixels, Execution&
     });
 }
 
-void DepthMapMesher::FillTriangles(std::int64_t* corners, Execution& execution) const
+void DepthMapMesher::FillTriangles(long long* corners, Execution& execution) const
 {
   const auto& e = this->Grid.Extent;
   execution.For(static_cast<std::int64_t>(this->TriangleOffsets.size()) - 1, RowGrain,
@@ -213,7 +224,7 @@ void DepthMapMesher::FillTriangles(std::int64_t* corners, Execution& execution) 
         std::int64_t upper = this->PointOffsets[r];
         std::int64_t lower = this->PointOffsets[r + 1];
         const unsigned char* flags = this->Triangles.data() + r * (e[1] - e[0]);
-        std::int64_t* out = corners + 3 * this->TriangleOffsets[r];
+        long long* out = corners + 3 * this->TriangleOffsets[r];
         for (int c = e[0]; c < e[1]; ++c, ++flags)
         {
           const std::int64_t nextUpper = upper + this->IsDefined(c, row);

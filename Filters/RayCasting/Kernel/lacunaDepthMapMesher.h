@@ -27,8 +27,10 @@ struct DepthGrid
 /// When neighbours are not joined, with the angles of the nine-case method (Carr 1996, 3.3.2). The
 /// angle of an edge is that between it and the plane perpendicular to the view. An edge steeper
 /// than MaximumAngle is kept only if the surface goes on alike beyond both of its ends: the next
-/// edge on the same line differs by less than MaximumAngleChange, or is steeper than MaximumAngle
-/// the same way, or there is none. So a steep side that bends smoothly stays whole.
+/// edge on the same line differs by less than MaximumAngleChange or is steeper than MaximumAngle
+/// the same way, and its step of depth is at least a third of this one's; or there is no next edge.
+/// So a steep side that bends smoothly stays whole (towards the rim of a ball steps grow by a
+/// factor of 1 + sqrt(2) at most), while a jump from one steep side to another is seen.
 struct DiscontinuityRule
 {
   bool Break = true;              ///< false: all neighbours are joined
@@ -52,9 +54,9 @@ public:
   std::int64_t GetNumberOfTriangles() const { return this->TriangleOffsets.back(); }
 
   /// World coordinates x 3, and each point's position in the grid's array.
-  void FillPoints(double* points, std::int64_t* pixels, Execution& execution) const;
+  void FillPoints(double* points, long long* pixels, Execution& execution) const;
   /// Point numbers x 3.
-  void FillTriangles(std::int64_t* corners, Execution& execution) const;
+  void FillTriangles(long long* corners, Execution& execution) const;
 
 private:
   std::int64_t PixelOf(int column, int row) const;

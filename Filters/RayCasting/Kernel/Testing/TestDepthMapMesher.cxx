@@ -44,8 +44,8 @@ struct Map
 struct Mesh
 {
   std::vector<double> Points;
-  std::vector<std::int64_t> Pixels;
-  std::vector<std::int64_t> Corners;
+  std::vector<long long> Pixels;
+  std::vector<long long> Corners;
 
   Mesh(const Map& map, const DiscontinuityRule& rule, int threads = 1)
   {
@@ -92,7 +92,7 @@ TEST(DepthMapMesher, PlaneIsCoveredOnceTowardsTheViewer)
   std::map<std::pair<std::int64_t, std::int64_t>, int> edges;
   for (std::size_t t = 0; t < mesh.Triangles(); ++t)
   {
-    const std::int64_t* c = mesh.Corners.data() + 3 * t;
+    const long long* c = mesh.Corners.data() + 3 * t;
     const Vec3 n = Cross(mesh.Point(c[1]) - mesh.Point(c[0]), mesh.Point(c[2]) - mesh.Point(c[0]));
     EXPECT_GT(n[2], 0) << "the viewer is above";
     area += 0.5 * n[2];
@@ -120,7 +120,7 @@ TEST(DepthMapMesher, HolesStayOpen)
   EXPECT_EQ(mesh.Pixels.size(), 11u);
   // the four squares around the hole keep the triangle that avoids it
   EXPECT_EQ(mesh.Triangles(), 4u + 2 * 2);
-  for (const std::int64_t c : mesh.Corners)
+  for (const long long c : mesh.Corners)
   {
     ASSERT_LT(c, 11);
     EXPECT_NE(mesh.Pixels[c], 5);
@@ -157,6 +157,15 @@ TEST(DepthMapMesher, NoSkinBetweenNearAndFar)
     EXPECT_EQ(Mesh(map, joined).Triangles(), 2u * (map.Width - 1) * (map.Height - 1));
     EXPECT_GT(Mesh(map, joined).Longest(), 25);
   }
+}
+
+TEST(DepthMapMesher, NoSkinFromOneSteepSideToAnother)
+{
+  // 75 degrees, a jump of 20 mm the same way, 75 degrees
+  const Map map(40, 6, 1, [](double x, double) { return 3.73 * x + (x > 19.5 ? 20 : 0); });
+  const Mesh mesh(map, DiscontinuityRule());
+  EXPECT_LT(mesh.Longest(), 6);
+  EXPECT_EQ(mesh.Triangles(), 2u * 5 * 38);
 }
 
 TEST(DepthMapMesher, SteepSidesThatBendSmoothlyStayWhole)
@@ -218,7 +227,7 @@ TEST(DepthMapMesher, SameForAnyThreadsAndRows)
   }
   // bands of rows, each given one row more on either side, add up to the whole
   ThreadExecution execution(2);
-  std::vector<std::int64_t> corners;
+  std::vector<long long> corners;
   for (const auto& rows : { std::pair<int, int>(0, 17), { 17, 30 }, { 30, 49 } })
   {
     const int first = std::max(0, rows.first - 1);
@@ -227,11 +236,11 @@ TEST(DepthMapMesher, SameForAnyThreadsAndRows)
     grid.Extent = { 0, 59, first, std::min(49, rows.second + 1) };
     const DepthMapMesher mesher(grid, DiscontinuityRule(), rows.first, rows.second, execution);
     std::vector<double> points(3 * mesher.GetNumberOfPoints());
-    std::vector<std::int64_t> pixels(mesher.GetNumberOfPoints());
-    std::vector<std::int64_t> band(3 * mesher.GetNumberOfTriangles());
+    std::vector<long long> pixels(mesher.GetNumberOfPoints());
+    std::vector<long long> band(3 * mesher.GetNumberOfTriangles());
     mesher.FillPoints(points.data(), pixels.data(), execution);
     mesher.FillTriangles(band.data(), execution);
-    for (const std::int64_t c : band)
+    for (const long long c : band)
     {
       corners.push_back(pixels[c] + 60 * first);
     }
