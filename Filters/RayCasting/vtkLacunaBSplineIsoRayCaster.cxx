@@ -296,11 +296,15 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       {
         return;
       }
-      int association = vtkDataObject::FIELD_ASSOCIATION_POINTS;
-      vtkDataArray* scalars = this->GetInputArrayToProcess(0, inputVector, association);
-      if (!scalars || association != vtkDataObject::FIELD_ASSOCIATION_POINTS)
+      vtkPointData* inputData = input->GetPointData();
+      vtkDataArray* scalars = this->ScalarArray.empty()
+        ? inputData->GetScalars()
+        : inputData->GetArray(this->ScalarArray.c_str());
+      if (!scalars)
       {
-        throw std::runtime_error("the volume has no such array of point scalars: choose one");
+        throw std::runtime_error(this->ScalarArray.empty()
+            ? "the volume has no active point scalars: choose an array"
+            : "the volume has no point array '" + this->ScalarArray + "' of numbers");
       }
       const std::string name = scalars->GetName() ? scalars->GetName() : "";
       if (scalars->GetNumberOfComponents() != 1)
@@ -386,7 +390,8 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
 void vtkLacunaBSplineIsoRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "IsoValues: " << Joined(this->IsoValues.data(), this->IsoValues.size()) << "\n"
+  os << indent << "ScalarArray: " << this->ScalarArray << "\n"
+     << indent << "IsoValues: " << Joined(this->IsoValues.data(), this->IsoValues.size()) << "\n"
      << indent << "Interpolation: " << this->Interpolation << "\n"
      << indent << "SolidSide: " << this->SolidSide << "\n"
      << indent << "ViewDirection: " << Joined(this->ViewDirection, 3) << "\n"

@@ -42,6 +42,7 @@
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
 
 #include <memory> // for std::unique_ptr
+#include <string> // for std::string
 #include <vector> // for std::vector
 
 class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster : public vtkImageAlgorithm
@@ -63,6 +64,12 @@ public:
     Above = 0, ///< solid where the field is at or above the iso-value
     Below
   };
+
+  ///@{
+  /** Name of the point array with the grey levels. Default empty: the active scalars. */
+  vtkSetMacro(ScalarArray, std::string);
+  vtkGetMacro(ScalarArray, std::string);
+  ///@}
 
   ///@{
   /**
@@ -132,6 +139,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  std::string ScalarArray;
   std::vector<double> IsoValues{ 500 };
   int Interpolation = BSpline;
   int SolidSide = Above;

@@ -214,7 +214,7 @@ void TestTypes()
   caster->Update();
   vtkNew<vtkImageData> first;
   first->DeepCopy(caster->GetOutput());
-  caster->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Structure");
+  caster->SetScalarArray("Structure");
   caster->Update();
   vtkDataArray* a = first->GetPointData()->GetArray("Depth");
   vtkDataArray* b = caster->GetOutput()->GetPointData()->GetArray("Depth");
@@ -311,9 +311,7 @@ void TestBadInput()
   fails(volume, "too large", [](Caster* c) { c->SetImageSize(2000000000, 2000000000); });
   fails(volume, "-5 x 10", [](Caster* c) { c->SetImageSize(-5, 10); });
   fails(volume, "no iso-value", [](Caster* c) { c->SetNumberOfIsoValues(0); });
-  fails(volume, "no such array",
-    [](Caster* c)
-    { c->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Missing"); });
+  fails(volume, "no point array 'Missing'", [](Caster* c) { c->SetScalarArray("Missing"); });
   fails(volume, "3 components",
     [](Caster* c)
     {
@@ -322,7 +320,7 @@ void TestBadInput()
       colours->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
       c->SetInputData(colours);
     });
-  fails(volume, "no such array",
+  fails(volume, "no active point scalars",
     [](Caster* c)
     {
       vtkNew<vtkImageData> bare;
@@ -361,6 +359,7 @@ void TestDefaultsAndCache()
 {
   vtkNew<Caster> caster;
   Expect(caster->GetNumberOfIsoValues() == 1 && caster->GetIsoValue(0) == 500, "IsoValues");
+  Expect(caster->GetScalarArray().empty(), "ScalarArray");
   Expect(caster->GetInterpolation() == Caster::BSpline, "Interpolation");
   Expect(caster->GetSolidSide() == Caster::Above, "SolidSide");
   Expect(caster->GetViewDirection()[2] == -1 && caster->GetViewUp()[1] == 1, "view");

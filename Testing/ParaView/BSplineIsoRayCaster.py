@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The proxies B-Spline Iso Ray Caster and Depth Map Surface, without real data."""
+import math
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+import lacuna  # after the plugin: the wrapped classes, for the C++ defaults
+
+
+def check_defaults(proxy, algorithm, names):
+    """The panel's defaults are the class's."""
+    for name in names:
+        shown = getattr(proxy, name)
+        actual = getattr(algorithm, "Get" + name)()
+        assert (tuple(shown) if hasattr(shown, "__len__") else shown) == actual, (name, actual)
+
+
+wavelet = Wavelet(WholeExtent=[-20, 20, -20, 20, -20, 20])
+wavelet.UpdatePipeline()
+caster = BSplineIsoRayCaster(Input=wavelet)
+algorithm = lacuna.vtkLacunaBSplineIsoRayCaster()
+assert list(caster.IsoValues) == [algorithm.GetIsoValue(0)] == [500.0], caster.IsoValues
+assert algorithm.GetNumberOfIsoValues() == 1
+assert (caster.Interpolation, caster.SolidSide) == ("BSpline", "Above")
+assert (algorithm.GetInterpolation(), algorithm.GetSolidSide()) == (0, 0)
+check_defaults(caster, algorithm,
+               ["ViewDirection", "ViewUp", "PlaneOrigin", "PixelSpacing", "ImageSize"])
+assert caster.ScalarArray == algorithm.GetScalarArray() == ""
+surface = DepthMapSurface(Input=caster)
+algorithm = lacuna.vtkLacunaDepthMapSurface()
+assert surface.DepthArray == algorithm.GetDepthArray() == "Depth"
+check_defaults(surface, algorithm, ["BreakAtDiscontinuities", "MaximumAngle", "MaximumAngleChange"])
+Delete(surface)
+Delete(caster)
+
+# The sampled quadratic x^2 + y^2 + z^2 is an exact sphere: r^2 + 1.
+quadric = Calculator(Input=wavelet, Function="coordsX^2 + coordsY^2 + coordsZ^2",
+                     ResultArrayName="Square")
+caster = BSplineIsoRayCaster(Input=quadric, ScalarArray="Square", SolidSide="Below",
+                             IsoValues=[101, 226], ViewDirection=[0, 0, -1], PixelSpacing=0.5)
+caster.UpdatePipeline()
+depth_map = servermanager.Fetch(caster)
+assert depth_map.GetDimensions() == (81, 81, 1), depth_map.GetDimensions()
+point_data = depth_map.GetPointData()
+depth, further, normals = (point_data.GetArray(n) for n in ("Depth", "Depth_1", "Normals"))
+worst = hits = 0
+for i in range(depth_map.GetNumberOfPoints()):
+    x, y, z = depth_map.GetPoint(i)
+    assert z == 20, "the plane touches the volume"
+    for array, radius in ((depth, 10), (further, 15)):
+        inside = radius * radius - x * x - y * y
+        if inside == 0:
+            continue  # the ray touches the sphere
+        assert math.isnan(array.GetTuple1(i)) == (inside < 0), (x, y)
+        if inside > 0:
+            worst = max(worst, abs(array.GetTuple1(i) - (20 - math.sqrt(inside))))
+            hits += 1
+            if radius == 10:
+                n = normals.GetTuple3(i)
+                assert abs(n[0] - x / 10) + abs(n[1] - y / 10) < 1e-6, (n, x, y)
+assert hits > 3000 and worst < 1e-9, (hits, worst)
+assert depth_map.GetFieldData().GetArray("IsoValues").GetNumberOfTuples() == 2
+
+surface = DepthMapSurface(Input=caster)
+surface.UpdatePipeline()
+mesh = servermanager.Fetch(surface)
+assert mesh.GetPointData().GetPedigreeIds().GetName() == "PixelId"
+assert mesh.GetPointData().GetNormals().GetName() == "Normals"
+bounds = mesh.GetBounds()
+assert abs(bounds[5] - 10) < 1e-9 and bounds[4] > -1e-9, bounds
+
+# A selection made on the surface means pixels of the map.
+pixel = 81 * 40 + 45
+SelectPoints("id >= 0 and PixelId == %d" % pixel, surface)
+chosen = ExtractSelection(Input=surface)
+chosen.UpdatePipeline()
+assert servermanager.Fetch(chosen).GetPoint(0)[:2] == depth_map.GetPoint(pixel)[:2]
+
+# State and back: the new session's caster gives the same map.
+state = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "BSplineIsoRayCaster.pvsm")
+os.makedirs(os.path.dirname(state), exist_ok=True)
+SaveState(state)
+ResetSession()
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+LoadState(state)
+casters = [p for p in GetSources().values() if p.GetXMLName() == "LacunaBSplineIsoRayCaster"]
+assert len(casters) == 1 and list(casters[0].IsoValues) == [101, 226], casters
+assert casters[0].SolidSide == "Below" and casters[0].PixelSpacing == 0.5
+print("ok: worst error of", hits, "hits", worst)
