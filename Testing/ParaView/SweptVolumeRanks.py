@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Swept Volume under MPI: the ranks share the volume, and make the same one together.
+
+Run without arguments it is the test; it runs itself in pvbatch with the name of the slices and of
+the volume to write.
+"""
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+from paraview.simple import *
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter, vtkXMLPImageDataReader
+
+
+def reconstruct(slices, volume):
+    LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+    proxy = SweptVolume(Input=XMLImageDataReader(FileName=[slices]), OutputSpacing=[0.31] * 3)
+    proxy.UpdatePipeline()
+    SaveData(volume, proxy=proxy)
+
+
+def write_slices(name):
+    """Noise on slices that turn and intersect."""
+    n, height, width = 30, 60, 80
+    random = np.random.default_rng(1)
+    stack = vtkImageData()
+    stack.SetDimensions(width, height, n)
+    grey = numpy_to_vtk(random.integers(0, 256, n * height * width).astype(np.uint8), deep=1)
+    grey.SetName("Grey")
+    stack.GetPointData().SetScalars(grey)
+    poses = []
+    for k in range(n):
+        angle = 0.3 * np.sin(k)
+        poses.append([0.2 * np.cos(angle), 0, 0, 0, 0, 0.2, 0, 0,
+                      -0.2 * np.sin(angle), 0, 1, 0.4 * k, 0, 0, 0, 1])
+    for name_, values in (("ImageToReference", np.array(poses)),
+                          ("Timestamp", 0.1 * np.arange(n)),
+                          ("SliceStatus", np.zeros(n, np.uint8)),
+                          ("FrameNumber", np.arange(n, dtype=np.int32))):
+        array = numpy_to_vtk(values, deep=1)
+        array.SetName(name_)
+        stack.GetFieldData().AddArray(array)
+    writer = vtkXMLImageDataWriter()
+    writer.SetInputData(stack)
+    writer.SetFileName(name)
+    writer.Write()
+
+
+def read_volume(name):
+    reader = vtkXMLPImageDataReader()
+    reader.SetFileName(name)
+    reader.Update()
+    points = reader.GetOutput().GetPointData()
+    return {array: vtk_to_numpy(points.GetArray(array))
+            for array in ("Intensity", "Contributions", "vtkValidPointMask")}
+
+
+def main():
+    mpirun = shutil.which("mpirun")
+    pvbatch = shutil.which("pvbatch")
+    if not mpirun or not pvbatch:
+        print("no mpirun or pvbatch")
+        sys.exit(77)
+    folder = os.environ["LACUNA_TEST_OUTPUT"]
+    slices = os.path.join(folder, "SweptVolumeRanks.vti")
+    write_slices(slices)
+    # pvpython has started MPI for itself; its traces would confuse mpirun
+    environment = {key: value for key, value in os.environ.items()
+                   if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
+    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_rmaps_base_oversubscribe="1")
+    volumes = []
+    for ranks in (1, 3):  # three split along two axes
+        name = os.path.join(folder, "SweptVolumeRanks%d.pvti" % ranks)
+        subprocess.run([mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering",
+                        os.path.abspath(__file__), slices, name],
+                       env=environment, check=True, timeout=300)
+        with open(name) as file:
+            assert file.read().count("<Piece") == ranks
+        volumes.append(read_volume(name))
+    assert volumes[0]["vtkValidPointMask"].mean() > 0.3
+    for other in volumes[1:]:
+        for name, values in volumes[0].items():
+            assert values.dtype == other[name].dtype and (values == other[name]).all(), name
+    print("ok")
+
+
+if len(sys.argv) == 3:
+    reconstruct(sys.argv[1], sys.argv[2])
+else:
+    main()
