@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Radial basis functions on Franke's function in the unit square: fit, and evaluation on a grid,
-// beside the direct sum that one would write first.
+// beside the direct sum that one would write first. CPU is processor time over all threads.
 #include "lacunaExecution.h"
 #include "lacunaRadialBasis.h"
 
@@ -131,18 +131,21 @@ BENCHMARK(Fit)
   ->Args({ ThinPlate, 700 })
   ->Args({ Linear, 700 })
   ->Args({ ThinPlate, 2700 })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK(PlainSum)
   ->ArgNames({ "nodes", "grid" })
   ->Args({ 700, 205 })
   ->Args({ 700, 512 })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK(Evaluate)
   ->ArgNames({ "kernel", "nodes", "grid", "threads", "set" })
   ->ArgsProduct({ { ThinPlate }, { 700 }, { 205, 512 }, { 1, 2 }, { 0, 1, 2 } })
   ->Args({ Linear, 700, 512, 1, 1 })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK_MAIN();

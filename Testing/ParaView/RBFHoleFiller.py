@@ -25,7 +25,7 @@ for name in ("SupportMargin", "NodeSpacing", "Smoothing", "OutputMargin"):
     assert filler.GetPropertyValue(name) == getattr(direct, "Get" + name)(), name
 assert filler.Kernel == "ThinPlate" and direct.GetKernel() == direct.ThinPlate
 assert direct.GetDefectRegion() is None
-assert not filler.DefectRegion
+assert type(filler.DefectRegion).__name__ == "None"
 for name in ("DefectArray", "SupportArray"):
     assert filler.GetPropertyValue(name) in ("", "None", None), name
     assert getattr(direct, "Get" + name)() == ""
