@@ -41,7 +41,7 @@
  *
  * An empty defect is no error: the output is the input with empty arrays, with a warning.
  *
- * Source: Carr 1996, §6.3 and §6.4. @sa lacuna::FillHole
+ * Source: Carr 1996, sections 6.3 and 6.4. @sa lacuna::FillHole
  */
 #ifndef vtkLacunaRBFHoleFiller_h
 #define vtkLacunaRBFHoleFiller_h
@@ -107,8 +107,9 @@ public:
   ///@{
   /**
    * Nodes are the pixels nearest to a lattice of this spacing, mm, > 0. Smooth bone needs about 1
-   * (Carr 1996, §6.1.5). Time grows with the third power of the number of nodes, memory (8 bytes)
-   * with the second; above 4 GiB, about 23 000 nodes, the filter stops with an error. Default 1.
+   * (Carr 1996, section 6.1.5). Time grows with the third power of the number of nodes, memory (8
+   * bytes) with the second; above 4 GiB, about 23 000 nodes, the filter stops with an error.
+   * Default 1.
    */
   vtkSetMacro(NodeSpacing, double);
   vtkGetMacro(NodeSpacing, double);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Fills a hole in a depth map with a radial basis function fitted to the surface around it (Carr
-/// 1996, §6.4).
+/// 1996, section 6.4).
 #ifndef lacunaHoleFill_h
 #define lacunaHoleFill_h
 
@@ -38,8 +38,8 @@ struct HoleFillOptions
 };
 
 /// Two edge neighbours of the support whose depths differ by more than this times their distance
-/// are taken to lie on different surfaces: 79 degrees, where Gordon's weights (Carr 1996, §3.5)
-/// also stop trusting a difference.
+/// are taken to lie on different surfaces: 79 degrees, where Gordon's weights (Carr 1996,
+/// section 3.3.2.1) also stop trusting a difference.
 constexpr double MaximumSupportSlope = 5;
 
 struct HoleFillResult

@@ -16,7 +16,8 @@ namespace lacuna
 {
 namespace
 {
-// Relative to the values: what one asks of a backward stable solve. Carr 1996, §6.4 reports 2e-13.
+// Relative to the values: what one asks of a backward stable solve. Carr 1996, section 6.4 reports
+// 2e-13.
 constexpr double ResidualWanted = 1e-13;
 // Relative to the extent of the nodes: flatter than this is a line (plane).
 constexpr double FlatnessLimit = 1e-9;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Interpolation of scattered data by radial basis functions (Carr 1996, §6.3 and §6.4).
+/// Interpolation of scattered data by radial basis functions (Carr 1996, sections 6.3 and 6.4).
 #ifndef lacunaRadialBasis_h
 #define lacunaRadialBasis_h
 

@@ -436,8 +436,8 @@ TEST(RadialBasis, ErrorsOnFrankesFunctionFall)
 
 TEST(RadialBasis, IsAsWellConditionedAsPublished)
 {
-  // Carr 1996, §6.4: about 700 nodes around a hole, scaled to the unit square: condition number
-  // "typically around 6e6", initial relative residual around 2e-13.
+  // Carr 1996, section 6.4: about 700 nodes around a hole, scaled to the unit square: condition
+  // number "typically around 6e6", initial relative residual around 2e-13.
   std::vector<Point2> nodes;
   std::vector<double> values;
   for (int j = -30; j <= 30; ++j)
@@ -457,6 +457,13 @@ TEST(RadialBasis, IsAsWellConditionedAsPublished)
   EXPECT_GT(report.ConditionEstimate, 6e5);
   EXPECT_LT(report.ConditionEstimate, 6e7);
   EXPECT_LT(report.Residual, 2e-13 * 90);
+
+  // The cubic is worse conditioned: one step of refinement brings its residual down, too.
+  lacuna::RadialBasisOptions options;
+  options.Kernel = RadialKernel::Cubic;
+  const lacuna::RadialBasisReport cubic = Fit<2>(nodes, values, options).GetReport();
+  EXPECT_TRUE(cubic.Refined);
+  EXPECT_LT(cubic.Residual, 2e-14 * 90);
 }
 
 TEST(RadialBasis, DoesNotDependOnThreadsOrInstructionSet)

@@ -316,7 +316,7 @@ void TestKernels()
     }
   }
   LACUNA_CHECK(worst[0] < 0.1);
-  LACUNA_CHECK(worst[1] > 2 * worst[0]); // the linear one is too flat (Carr 1996, §6.3)
+  LACUNA_CHECK(worst[1] > 2 * worst[0]); // the linear one is too flat (Carr 1996, section 6.3)
   LACUNA_CHECK(worst[3] < 0.1);
 }
 }
