@@ -131,10 +131,13 @@ Result FitMap(
   {
     std::vector<lacuna::Vec3> points;
     points.reserve(rectangle.Depths.size());
-    for (std::int64_t k = 0; k < static_cast<std::int64_t>(rectangle.Depths.size()); ++k)
+    for (std::int64_t j = 0; j < rectangle.Size.Rows; ++j)
     {
-      points.push_back(map.GetPoint(column + static_cast<double>(k % rectangle.Size.Columns),
-        row + static_cast<double>(k / rectangle.Size.Columns), rectangle.Depths[k]));
+      for (std::int64_t i = 0; i < rectangle.Size.Columns; ++i)
+      {
+        points.push_back(map.GetPoint(column + static_cast<double>(i), row + static_cast<double>(j),
+          rectangle.Depths[points.size()]));
+      }
     }
     result.Fit = lacuna::FitPoints(execution, rectangle.Size, points, options);
   }

@@ -344,14 +344,17 @@ SurfaceFit FitHeights(Execution& execution, GridSize size, const std::vector<dou
   problem.Components = 1;
   problem.ByV = heights;
   std::vector<Vec3> points(heights.size());
-  for (std::size_t i = 0; i < heights.size(); ++i)
+  std::size_t k = 0;
+  for (const double row : problem.V)
   {
-    const auto k = static_cast<std::int64_t>(i);
-    points[i] = toWorld.Point(
-      { static_cast<double>(k % size.Columns), static_cast<double>(k / size.Columns), heights[i] });
-    if (!IsFinite(points[i]))
+    for (const double column : problem.U)
     {
-      ThrowAt(size, i, "the height is not a number");
+      points[k] = toWorld.Point({ column, row, heights[k] });
+      if (!IsFinite(points[k]))
+      {
+        ThrowAt(size, k, "the height is not a number");
+      }
+      ++k;
     }
   }
   return FitComponents(

@@ -170,7 +170,7 @@ TEST(IGESDocument, StrictParserReadsASurfaceBack)
 TEST(IGESDocument, SaysWhichSurfacesAreClosed)
 {
   BSplineSurface surface = RandomSurface(5, 4, 2);
-  for (int j = 0; j < 4; ++j)
+  for (std::size_t j = 0; j < 4; ++j)
   {
     surface.ControlPoints[5 * j + 4] = surface.ControlPoints[5 * j];
   }

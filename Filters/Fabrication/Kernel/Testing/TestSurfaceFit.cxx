@@ -38,7 +38,9 @@ struct Grid
     {
       for (std::int64_t i = 0; i < columns; ++i)
       {
-        this->Heights.push_back(f(0.7 * (i - columns / 2), 0.9 * (j - rows / 2)));
+        const std::int64_t x = i - columns / 2;
+        const std::int64_t y = j - rows / 2;
+        this->Heights.push_back(f(0.7 * double(x), 0.9 * double(y)));
         this->Points.push_back(this->ToWorld.Point({ double(i), double(j), this->Heights.back() }));
       }
     }
@@ -48,12 +50,13 @@ struct Grid
 double LargestDeviation(const SurfaceFit& fit, const Grid& grid)
 {
   double largest = 0;
-  for (std::size_t k = 0; k < grid.Points.size(); ++k)
+  auto point = grid.Points.begin();
+  for (std::int64_t j = 0; j < grid.Size.Rows; ++j)
   {
-    const auto at = static_cast<std::int64_t>(k);
-    const Vec3 p = fit.Surface.Evaluate(
-      static_cast<double>(at % grid.Size.Columns), static_cast<double>(at / grid.Size.Columns));
-    largest = std::max(largest, Norm(p - grid.Points[k]));
+    for (std::int64_t i = 0; i < grid.Size.Columns; ++i)
+    {
+      largest = std::max(largest, Norm(fit.Surface.Evaluate(double(i), double(j)) - *point++));
+    }
   }
   return largest;
 }
@@ -328,9 +331,9 @@ TEST(SurfaceFit, NoiseIsInterpolated)
   Grid grid(80, 70);
   std::mt19937 random(5);
   std::normal_distribution<double> noise;
-  for (std::size_t i = 0; i < grid.Heights.size(); ++i)
+  for (double& height : grid.Heights)
   {
-    grid.Heights[i] = noise(random);
+    height = noise(random);
   }
   ThreadExecution execution(1);
   const SurfaceFit fit = FitHeights(execution, grid.Size, grid.Heights, grid.ToWorld);

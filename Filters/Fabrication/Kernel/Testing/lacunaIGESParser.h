@@ -99,7 +99,7 @@ private:
     }
     Require(this->Sections['T'].size() == 1, "one terminate line");
     const std::string& last = this->Sections['T'][0];
-    for (int i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < 4; ++i)
     {
       Require(last[8 * i] == order[i] &&
           Number(last.substr(8 * i + 1, 7)) == static_cast<long>(this->Sections[order[i]].size()),
@@ -163,12 +163,13 @@ private:
     long expected = 1;
     for (std::size_t i = 0; i < directory.size(); i += 2)
     {
-      const auto field = [&](int f) { return directory[i + f / 10].substr(8 * (f % 10), 8); };
+      const auto field = [&](std::size_t f)
+      { return directory[i + f / 10].substr(8 * (f % 10), 8); };
       Entity entity;
       entity.Type = Number(field(0));
       Require(Number(field(10)) == entity.Type, "the same type twice");
       Require(Number(field(1)) == expected, "parameter pointer");
-      for (const int f : { 2, 3, 4, 5, 6, 7, 11, 18 })
+      for (const std::size_t f : { 2, 3, 4, 5, 6, 7, 11, 18 })
       {
         Require(Number(field(f)) == 0, "zero field");
       }
@@ -224,9 +225,9 @@ struct IGESSurface
     IGESParser::Require(bicubic, "degree 3 x 3");
     this->Closed[0] = integer();
     this->Closed[1] = integer();
-    const bool polynomial = integer() == 1;
-    const bool periodic = (integer() != 0) | (integer() != 0);
-    IGESParser::Require(polynomial && !periodic, "polynomial, not periodic");
+    IGESParser::Require(integer() == 1, "polynomial");
+    IGESParser::Require(integer() == 0, "not periodic in u");
+    IGESParser::Require(integer() == 0, "not periodic in v");
     for (const int d : { 0, 1 })
     {
       for (long k = 0; k < this->Upper[d] + 5; ++k)
@@ -254,7 +255,7 @@ struct IGESSurface
     {
       limit = real();
     }
-    for (const int d : { 0, 1 })
+    for (const std::size_t d : { 0, 1 })
     {
       IGESParser::Require(this->Limits[2 * d] == this->Knots[d].front() &&
           this->Limits[2 * d + 1] == this->Knots[d].back(),

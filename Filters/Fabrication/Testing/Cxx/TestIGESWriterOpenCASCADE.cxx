@@ -42,7 +42,7 @@ void Check(bool condition, const std::string& what)
   }
 }
 
-void CheckClean(Interface_CheckIterator checks, const std::string& stage)
+void CheckClean(const Interface_CheckIterator& checks, const std::string& stage)
 {
   for (checks.Start(); checks.More(); checks.Next())
   {
@@ -114,8 +114,8 @@ void CheckFace(const TopoDS_Face& face, const std::vector<lacuna::Vec3>& points,
   {
     const gp_Pnt sample(points[k][0], points[k][1], points[k][2]);
     expected.Add(sample);
-    const gp_Pnt p =
-      surface.Value(static_cast<double>(k % columns), static_cast<double>(k / columns));
+    const std::size_t row = k / columns;
+    const gp_Pnt p = surface.Value(static_cast<double>(k % columns), static_cast<double>(row));
     largest = std::max(largest, p.Distance(sample));
   }
   Check(largest <= tolerance + 1e-9, "deviation " + std::to_string(largest));
