@@ -130,21 +130,13 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
 {
   this->Opened.reset();
   this->SetErrorCode(vtkErrorCode::NoError);
-  const auto fail = [&](unsigned long code, const std::string& text)
-  {
-    // After an error no older slices may pass for the ones asked for.
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, 0))
-    {
-      output->Initialize();
-    }
-    this->SetErrorCode(code);
-    vtkErrorMacro(<< text);
-    return 0;
-  };
+  vtkInformation* info = outputs->GetInformationObject(0);
   if (!this->FileName || !this->FileName[0])
   {
-    return fail(vtkErrorCode::NoFileNameError,
-      "FileName is not set; it must be a tracked sequence file (.mha, .mhd)");
+    // Not yet an error: ParaView asks as soon as one of several properties is set.
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
+    return 1;
   }
   auto sequence = std::make_unique<Sequence>();
   try
@@ -153,8 +145,16 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
   }
   catch (const std::exception& e)
   {
-    const bool exists = vtksys::SystemTools::FileExists(this->FileName);
-    return fail(exists ? vtkErrorCode::FileFormatError : vtkErrorCode::FileNotFoundError, e.what());
+    // After an error no older slices may pass for the ones asked for.
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, 0))
+    {
+      output->Initialize();
+    }
+    this->SetErrorCode(vtksys::SystemTools::FileExists(this->FileName)
+        ? vtkErrorCode::FileFormatError
+        : vtkErrorCode::FileNotFoundError);
+    vtkErrorMacro(<< e.what());
+    return 0;
   }
 
   const lacuna::SequenceHeader& header = sequence->Header;
@@ -163,7 +163,6 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
   // z is the number of the slice in the file
   const double origin[3] = { 0, 0, static_cast<double>(sequence->First) };
   const double spacing[3] = { 1, 1, static_cast<double>(this->FrameStride) };
-  vtkInformation* info = outputs->GetInformationObject(0);
   info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
   info->Set(vtkDataObject::ORIGIN(), origin, 3);
   info->Set(vtkDataObject::SPACING(), spacing, 3);
@@ -270,7 +269,10 @@ int vtkLacunaTrackedSliceReader::RequestData(
 {
   if (!this->Opened)
   {
-    return 0; // RequestInformation said why
+    vtkDataObject::GetData(outputs, 0)->Initialize();
+    this->SetErrorCode(vtkErrorCode::NoFileNameError);
+    vtkErrorMacro("FileName is not set; it must be a tracked sequence file (.mha, .mhd)");
+    return 0;
   }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
