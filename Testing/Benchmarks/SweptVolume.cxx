@@ -202,16 +202,19 @@ BENCHMARK_TEMPLATE(Batch, float)
   ->ArgNames({ "slices", "spacing", "sampling", "threads" })
   ->ArgsProduct({ { 200 }, { 3, 4, 5 }, { 0, 1, 2, 3 }, { 1, 2 } })
   ->ArgsProduct({ { 600 }, { 4 }, { 0, 1 }, { 1, 2 } })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK_TEMPLATE(Batch, std::uint8_t)
   ->ArgNames({ "slices", "spacing", "sampling", "threads" })
   ->ArgsProduct({ { 200 }, { 3, 4, 5 }, { 0, 1, 2 }, { 2 } })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK(OneByOne)
   ->ArgNames({ "spacing", "sampling" })
   ->ArgsProduct({ { 4 }, { 0, 1, 2 } })
+  ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK_MAIN();
