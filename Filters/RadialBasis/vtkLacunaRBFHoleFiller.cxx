@@ -166,9 +166,8 @@ private:
     for (vtkIdType k = 0; k < count; ++k)
     {
       const std::size_t i = this->Pixels[k];
-      const lacuna::Vec3 point =
-        this->Contract.GetPoint(grid.FirstColumn + static_cast<double>(i % grid.Width),
-          grid.FirstRow + static_cast<double>(i / grid.Width), depth(i));
+      const lacuna::Vec3 point = this->Contract.GetPoint(
+        static_cast<double>(grid.GetColumn(i)), static_cast<double>(grid.GetRow(i)), depth(i));
       this->Points->SetTypedTuple(k, point.data());
     }
     this->Region->FunctionValue(this->Points, this->Values);

@@ -108,7 +108,7 @@ std::array<int, 4> FindRectangle(
     }
   }
   const int size[2] = { grid.Width, grid.Height };
-  for (int c = 0; c < 2; ++c)
+  for (std::size_t c = 0; c < 2; ++c)
   {
     // in double first: the margin may be larger than any map
     const double grow = std::min<double>(size[c], std::ceil(margin / grid.Spacing[c] - 1e-9));
@@ -120,8 +120,8 @@ std::array<int, 4> FindRectangle(
 
 std::array<double, 2> GetPosition(const MapGrid& grid, std::size_t pixel)
 {
-  return { (grid.FirstColumn + static_cast<double>(pixel % grid.Width)) * grid.Spacing[0],
-    (grid.FirstRow + static_cast<double>(pixel / grid.Width)) * grid.Spacing[1] };
+  return { static_cast<double>(grid.GetColumn(pixel)) * grid.Spacing[0],
+    static_cast<double>(grid.GetRow(pixel)) * grid.Spacing[1] };
 }
 
 RadialBasis<2> Fit(Execution& execution, const HoleFillInput& input, const HoleFillOptions& options,

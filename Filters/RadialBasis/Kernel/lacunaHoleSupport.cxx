@@ -201,9 +201,7 @@ std::vector<std::size_t> ThinNodes(const MapGrid& grid, const MapMask& support, 
     {
       continue;
     }
-    const std::int64_t index[2] = { grid.FirstColumn +
-        static_cast<std::int64_t>(pixel % grid.Width),
-      grid.FirstRow + static_cast<std::int64_t>(pixel / grid.Width) };
+    const std::int64_t index[2] = { grid.GetColumn(pixel), grid.GetRow(pixel) };
     std::int64_t lattice[2];
     double distance = 0;
     for (int c = 0; c < 2; ++c)

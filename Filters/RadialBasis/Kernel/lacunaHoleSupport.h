@@ -9,6 +9,7 @@
 #include "lacunaVector.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace lacuna
@@ -28,6 +29,15 @@ struct MapGrid
   std::size_t GetSize() const
   {
     return static_cast<std::size_t>(this->Width) * static_cast<std::size_t>(this->Height);
+  }
+  /// Column and row of a pixel of the arrays, counted from x = 0 and y = 0.
+  std::int64_t GetColumn(std::size_t pixel) const
+  {
+    return this->FirstColumn + static_cast<std::int64_t>(pixel % this->Width);
+  }
+  std::int64_t GetRow(std::size_t pixel) const
+  {
+    return this->FirstRow + static_cast<std::int64_t>(pixel / this->Width);
   }
 };
 

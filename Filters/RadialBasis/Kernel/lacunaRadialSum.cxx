@@ -95,6 +95,7 @@ struct Compiled
 {
   using Points = Coordinates<Dimension>;
 
+// An attribute cannot be put in parentheses. NOLINTBEGIN(bugprone-macro-parentheses)
 #define LACUNA_COMPILE_LOOPS(NAME, WIDTH, TARGET)                                                  \
   TARGET static void Sum##NAME(const Points& nodes, const double* weights, std::size_t count,      \
     const Points& points, double* values)                                                          \
@@ -118,6 +119,7 @@ struct Compiled
   LACUNA_COMPILE_LOOPS(AVX512, 8, __attribute__((target("avx512f,avx512dq"))))
 #endif
 #undef LACUNA_COMPILE_LOOPS
+  // NOLINTEND(bugprone-macro-parentheses)
 
   static RadialLoops<Dimension> Get(InstructionSet set)
   {

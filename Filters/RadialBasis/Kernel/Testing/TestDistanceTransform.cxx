@@ -23,8 +23,10 @@ std::vector<double> BruteForce(
     {
       if (feature[q])
       {
-        const double dx = spacing[0] * (p % width - q % width);
-        const double dy = spacing[1] * (p / width - q / width);
+        const int columns = p % width - q % width;
+        const int rows = p / width - q / width;
+        const double dx = spacing[0] * columns;
+        const double dy = spacing[1] * rows;
         result[p] = std::min(result[p], dx * dx + dy * dy);
       }
     }
@@ -42,7 +44,7 @@ TEST(DistanceTransform, AgreesWithBruteForce)
     {
       constexpr int width = 41;
       constexpr int height = 23;
-      std::vector<unsigned char> feature(width * height);
+      std::vector<unsigned char> feature(static_cast<std::size_t>(width) * height);
       for (auto& f : feature)
       {
         f = std::uniform_real_distribution<double>(0, 1)(random) < density;

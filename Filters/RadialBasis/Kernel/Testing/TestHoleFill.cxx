@@ -19,18 +19,33 @@ using lacuna::HoleFillInput;
 using lacuna::HoleFillOptions;
 using lacuna::HoleFillResult;
 
+constexpr std::size_t Width = 71;
+constexpr std::size_t Height = 61;
+
+// mm
+double GetX(std::size_t pixel)
+{
+  return 1.5 * static_cast<double>(pixel % Width);
+}
+
+double GetY(std::size_t pixel)
+{
+  const std::size_t row = pixel / Width;
+  return static_cast<double>(row);
+}
+
 // A map of 71 x 61 pixels of 1.5 x 1 mm from a surface, with an off-centre disc as defect.
 template <class Surface>
 HoleFillInput MakeMap(const Surface& surface, double radius = 15)
 {
   HoleFillInput input;
-  input.Grid.Width = 71;
-  input.Grid.Height = 61;
+  input.Grid.Width = Width;
+  input.Grid.Height = Height;
   input.Grid.Spacing = { 1.5, 1 };
   for (std::size_t i = 0; i < input.Grid.GetSize(); ++i)
   {
-    const double x = 1.5 * static_cast<double>(i % 71);
-    const double y = static_cast<double>(i / 71);
+    const double x = GetX(i);
+    const double y = GetY(i);
     input.Depth.push_back(surface(x, y));
     input.Valid.push_back(1);
     input.Defect.push_back(std::hypot(x - 45, y - 27) <= radius);
@@ -90,7 +105,7 @@ TEST(HoleFill, ReproducesAPlane)
   {
     if (input.Defect[i])
     {
-      EXPECT_NEAR(result.Fitted[i], Plane(1.5 * (i % 71), static_cast<double>(i / 71)), 1e-9);
+      EXPECT_NEAR(result.Fitted[i], Plane(GetX(i), GetY(i)), 1e-9);
       EXPECT_TRUE(std::isnan(result.Deviation[i])) << "nothing was measured there";
     }
   }
@@ -152,10 +167,12 @@ TEST(HoleFill, FittedIsCompleteOnItsRectangle)
     EXPECT_EQ(result.Rectangle[1], std::min(70, 44 + grow[0]));
     EXPECT_EQ(result.Rectangle[2], std::max(0, 6 - grow[1]));
     EXPECT_EQ(result.Rectangle[3], std::min(60, 48 + grow[1]));
-    for (int i = 0; i < 71 * 61; ++i)
+    for (std::size_t i = 0; i < result.Fitted.size(); ++i)
     {
-      const bool inside = i % 71 >= result.Rectangle[0] && i % 71 <= result.Rectangle[1] &&
-        i / 71 >= result.Rectangle[2] && i / 71 <= result.Rectangle[3];
+      const int column = static_cast<int>(i % Width);
+      const int row = static_cast<int>(i / Width);
+      const bool inside = column >= result.Rectangle[0] && column <= result.Rectangle[1] &&
+        row >= result.Rectangle[2] && row <= result.Rectangle[3];
       EXPECT_EQ(std::isfinite(result.Fitted[i]), inside);
     }
   }
@@ -182,14 +199,14 @@ TEST(HoleFill, UsesPaintedSupportOnly)
   painted.Painted.assign(input.Grid.GetSize(), 0);
   for (std::size_t i = 0; i < input.Depth.size(); ++i)
   {
-    const double x = 1.5 * static_cast<double>(i % 71);
+    const double x = GetX(i);
     const bool artefact = x > 62;
     painted.Depth[i] = input.Depth[i] += artefact ? 0.5 * (x - 62) : 0;
     painted.Painted[i] = !artefact && x > 20;
   }
   const HoleFillResult spoilt = Fill(input);
   const HoleFillResult sound = Fill(painted);
-  const std::size_t right = 27 * 71 + 38; // in the defect, near the artefact
+  const std::size_t right = 27 * Width + 38; // in the defect, near the artefact
   EXPECT_GT(std::abs(spoilt.Deviation[right]), 0.1);
   EXPECT_NEAR(sound.Deviation[right], 0, 1e-9);
 }
@@ -200,7 +217,7 @@ TEST(HoleFill, WarnsOfAStepAndFitsTheLargerPart)
   HoleFillInput input = MakeMap(Plane);
   for (std::size_t i = 0; i < input.Depth.size(); ++i)
   {
-    if (i % 71 > 45)
+    if (i % Width > 45)
     {
       input.Depth[i] += 40;
     }
@@ -208,20 +225,20 @@ TEST(HoleFill, WarnsOfAStepAndFitsTheLargerPart)
   const HoleFillResult result = Fill(input);
   ASSERT_EQ(result.Warnings.size(), 1u);
   ExpectContains(result.Warnings[0], "beyond a depth step");
-  EXPECT_NEAR(result.Fitted[27 * 71 + 30], Plane(45, 27), 1e-9);
+  EXPECT_NEAR(result.Fitted[27 * Width + 30], Plane(45, 27), 1e-9);
 }
 
 TEST(HoleFill, WarnsOfADefectAtTheBorder)
 {
   HoleFillInput input = MakeMap(Plane);
-  for (int j = 20; j < 30; ++j)
+  for (std::size_t j = 20; j < 30; ++j)
   {
-    input.Defect[j * 71] = 1;
+    input.Defect[j * Width] = 1;
   }
   const HoleFillResult result = Fill(input);
   ASSERT_EQ(result.Warnings.size(), 1u);
   ExpectContains(result.Warnings[0], "border");
-  EXPECT_NEAR(result.Fitted[25 * 71], Plane(0, 25), 1e-9);
+  EXPECT_NEAR(result.Fitted[25 * Width], Plane(0, 25), 1e-9);
 }
 
 TEST(HoleFill, SmoothingSuppressesRipple)
@@ -236,8 +253,7 @@ TEST(HoleFill, SmoothingSuppressesRipple)
     double error = 0;
     for (const std::size_t i : result.Filled)
     {
-      error = std::max(
-        error, std::abs(result.Fitted[i] - Sphere(1.5 * (i % 71), static_cast<double>(i / 71))));
+      error = std::max(error, std::abs(result.Fitted[i] - Sphere(GetX(i), GetY(i))));
     }
     return error;
   };
@@ -278,7 +294,7 @@ TEST(HoleFill, RefusesBadInput)
   HoleFillInput line = good;
   for (std::size_t i = 0; i < line.Valid.size(); ++i)
   {
-    line.Valid[i] = i / 71 == 5;
+    line.Valid[i] = i / Width == 5;
   }
   line.Painted.assign(line.Grid.GetSize(), 1);
   ExpectContains(ErrorOf(line), "one line");

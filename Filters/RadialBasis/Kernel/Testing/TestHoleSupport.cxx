@@ -161,7 +161,8 @@ TEST(HoleSupport, KeepsOnePixelPerLatticePoint)
   for (const std::size_t node : nodes)
   {
     const double x = 0.7 * static_cast<double>(node % 101);
-    const double y = 0.9 * static_cast<double>(node / 101);
+    const std::size_t row = node / 101;
+    const double y = 0.9 * static_cast<double>(row);
     EXPECT_LE(std::abs(x - 2 * std::round(x / 2)), 0.5 * 0.7 + 1e-9);
     EXPECT_LE(std::abs(y - 2 * std::round(y / 2)), 0.5 * 0.9 + 1e-9);
   }
