@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,16 @@ using Point2 = std::array<double, 2>;
 using Point3 = std::array<double, 3>;
 constexpr RadialKernel Kernels[] = { RadialKernel::ThinPlate, RadialKernel::Linear,
   RadialKernel::Cubic };
+
+// function(element) of each element.
+template <class Element, class Function>
+auto Transformed(const std::vector<Element>& from, const Function& function)
+{
+  std::vector<decltype(function(from[0]))> to;
+  to.reserve(from.size());
+  std::transform(from.begin(), from.end(), std::back_inserter(to), function);
+  return to;
+}
 
 double Fraction(double x)
 {
@@ -40,11 +51,10 @@ std::vector<Point3> Scatter(int n)
 
 std::vector<Point2> Scatter2(int n, double width = 1, double height = 1)
 {
-  std::vector<Point2> points;
-  for (const Point3& p : Scatter(n))
-  {
-    points.push_back({ width * p[0], height * p[1] });
-  }
+  std::vector<Point2> points = Transformed(Scatter(n),
+    [&](const Point3& p) {
+      return Point2{ width * p[0], height * p[1] };
+    });
   return points;
 }
 
@@ -86,6 +96,14 @@ std::vector<Point3> ReferenceNodes()
     p = { 80 * p[0], 50 * p[1], 30 * p[2] };
   }
   return nodes;
+}
+
+std::vector<Point3> ReferencePoints()
+{
+  return Transformed(std::vector<double>{ 0, 1, 2, 3, 4, 5, 6, 7 },
+    [](double k) {
+      return Point3{ 12 * k - 5, 9 * k - 6, 33 - 5 * k };
+    });
 }
 
 double Franke(double x, double y)
@@ -195,16 +213,14 @@ TEST(RadialBasis, AgreesWithScipyIn2D)
         48.8948797622167, 52.7710154339524, 53.964284238702 } },
   };
   const std::vector<Point3> nodes3 = ReferenceNodes();
-  std::vector<Point2> nodes;
-  for (const Point3& p : nodes3)
-  {
-    nodes.push_back({ p[0], p[1] });
-  }
-  std::vector<Point2> points;
-  for (int k = 0; k < 8; ++k)
-  {
-    points.push_back({ 12.0 * k - 5, 9.0 * k - 6 });
-  }
+  std::vector<Point2> nodes = Transformed(nodes3,
+    [&](const Point3& p) {
+      return Point2{ p[0], p[1] };
+    });
+  const std::vector<Point2> points = Transformed(ReferencePoints(),
+    [](const Point3& p) {
+      return Point2{ p[0], p[1] };
+    });
   for (const Case& c : cases)
   {
     lacuna::RadialBasisOptions options;
@@ -231,11 +247,7 @@ TEST(RadialBasis, AgreesWithScipyIn3D)
       48.6802458972429, 53.3155951917787, 56.2851044955532 },
   };
   const std::vector<Point3> nodes = ReferenceNodes();
-  std::vector<Point3> points;
-  for (int k = 0; k < 8; ++k)
-  {
-    points.push_back({ 12.0 * k - 5, 9.0 * k - 6, 33 - 5.0 * k });
-  }
+  const std::vector<Point3> points = ReferencePoints();
   for (int i = 0; i < 3; ++i)
   {
     lacuna::RadialBasisOptions options;
@@ -253,11 +265,8 @@ TEST(RadialBasis, DoesNotChangeUnderSimilarities)
 {
   const std::vector<Point2> nodes = Scatter2(80, 60, 40);
   const std::vector<Point2> points = { { 10, 10 }, { 33, 21 }, { -20, 50 }, { 90, 5 } };
-  std::vector<double> values;
-  for (const Point2& p : nodes)
-  {
-    values.push_back(Franke(p[0] / 60, p[1] / 40));
-  }
+  std::vector<double> values =
+    Transformed(nodes, [&](const Point2& p) { return Franke(p[0] / 60, p[1] / 40); });
   const auto move = [](const Point2& p) -> Point2
   {
     // turned by 0.7, seven times as large, elsewhere
@@ -344,11 +353,8 @@ TEST(RadialBasis, PolynomialIsThePlaneFarAway)
 {
   // The gradient tends to that of p, while s - p grows like (sum a_i |x_i|^2) log |x|.
   const std::vector<Point2> nodes = Scatter2(80, 60, 40);
-  std::vector<double> values;
-  for (const Point2& p : nodes)
-  {
-    values.push_back(10 * Franke(p[0] / 60, p[1] / 40) + 0.2 * p[0]);
-  }
+  std::vector<double> values = Transformed(
+    nodes, [&](const Point2& p) { return 10 * Franke(p[0] / 60, p[1] / 40) + 0.2 * p[0]; });
   const auto s = Fit<2>(nodes, values);
   lacuna::ThreadExecution execution(1);
   std::vector<double> at;
@@ -361,11 +367,10 @@ TEST(RadialBasis, PolynomialIsThePlaneFarAway)
   }
   // The constant belongs to r^2 log r in the unit of the nodes: the same problem in half the unit
   // must have a constant that differs by the known term.
-  std::vector<Point2> doubled;
-  for (const Point2& p : nodes)
-  {
-    doubled.push_back({ 2 * p[0], 2 * p[1] });
-  }
+  std::vector<Point2> doubled = Transformed(nodes,
+    [&](const Point2& p) {
+      return Point2{ 2 * p[0], 2 * p[1] };
+    });
   const auto t = Fit<2>(doubled, values);
   // s(x) = t(2x), so p_s(0) - p_t(0) = m log 2, m = sum a_i |x_i|^2, which the growth of s shows.
   std::vector<double> far;
@@ -414,11 +419,8 @@ TEST(RadialBasis, ErrorsOnFrankesFunctionFall)
     for (int c = 0; c < 3; ++c)
     {
       const std::vector<Point2> nodes = Scatter2(counts[c]);
-      std::vector<double> values;
-      for (const Point2& p : nodes)
-      {
-        values.push_back(Franke(p[0], p[1]));
-      }
+      std::vector<double> values =
+        Transformed(nodes, [&](const Point2& p) { return Franke(p[0], p[1]); });
       lacuna::RadialBasisOptions options;
       options.Kernel = Kernels[k];
       const std::vector<double> s = Evaluate<2>(Fit<2>(nodes, values, options), grid);
@@ -470,11 +472,8 @@ TEST(RadialBasis, DoesNotDependOnThreadsOrInstructionSet)
 {
   const std::vector<Point2> nodes = Scatter2(300, 60, 40);
   const std::vector<Point2> points = Scatter2(1001, 90, 70);
-  std::vector<double> values;
-  for (const Point2& p : nodes)
-  {
-    values.push_back(Franke(p[0] / 60, p[1] / 40));
-  }
+  std::vector<double> values =
+    Transformed(nodes, [&](const Point2& p) { return Franke(p[0] / 60, p[1] / 40); });
   for (const RadialKernel kernel : Kernels)
   {
     lacuna::RadialBasisOptions options;
@@ -493,11 +492,8 @@ TEST(RadialBasis, DoesNotDependOnThreadsOrInstructionSet)
 TEST(RadialBasis, MergesEqualNodesAndNamesContradictions)
 {
   std::vector<Point2> nodes = Scatter2(20);
-  std::vector<double> values;
-  for (const Point2& p : nodes)
-  {
-    values.push_back(Franke(p[0], p[1]));
-  }
+  std::vector<double> values =
+    Transformed(nodes, [&](const Point2& p) { return Franke(p[0], p[1]); });
   const std::vector<double> before = Evaluate<2>(Fit<2>(nodes, values), Scatter2(30));
   nodes.push_back(nodes[4]);
   values.push_back(values[4]);
