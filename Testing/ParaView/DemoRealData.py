@@ -6,13 +6,19 @@ from lacuna_test import data, output
 sweep = data("ultrasound_spine/SpinePhantomFreehand.igs.mha")
 calibration = data("ultrasound_spine/PlusDeviceSet_SpinePhantomFreehandReconstructionOnly.xml")
 ct = data("ct_head/head.mha")
-report = demo.main(["--output", output("demo-real-data"), "--sweep", sweep, "--calibration", calibration, "--ct", ct,
-                    "--hole", "90.2", "97.5", "100", "30"])
+ultrasound = ["--sweep", sweep, "--calibration", calibration]
 
 # the grid that PLUS makes of the same sweep
+report = demo.main(["--only", "ultrasound", "--output", output("demo-spine")] + ultrasound)
 assert report.get("volume, voxels") == "147 × 106 × 105"
 origin = [float(x) for x in report.get("origin, mm").split()]
 assert all(abs(a - b) < 2e-3 for a, b in zip(origin, (-74.5217, 165.573, 29.072))), origin
+
+# below the bright tissue near the probe: a closed surface of the vertebra, about 1.4 ml of echoes
+report = demo.main(["--output", output("demo-real-data"), "--clip", "187", "225", "445", "391", "--level", "60",
+                    "--ct", ct, "--hole", "90.2", "97.5", "100", "30"] + ultrasound)
+assert report.get("open edges of the surface") == 0
+assert 1 < float(report.get("enclosed volume, ml")) < 2
 
 # against the bone that was removed; a plain dense solution reaches 0.94 and 0.32 mm
 assert float(report.get("error against the bone that was there: largest, mm")) <= 1.0

@@ -23,13 +23,14 @@ def output(name):
 
 
 def compare_with_baseline(picture, threshold):
-    """Compares a PNG with the one of the same name in Testing/Data/Baseline.
+    """Compares a PNG with the one of the same name in the user guide, so that the guide stays true.
 
     threshold: see vtkImageDifference; 0 is equal, tens are font and driver differences.
     """
     from vtkmodules.vtkImagingCore import vtkImageDifference
     from vtkmodules.vtkIOImage import vtkPNGReader
-    baseline = os.path.join(os.path.dirname(__file__), "..", "Data", "Baseline", os.path.basename(picture))
+    pictures = os.path.join(os.path.dirname(__file__), "..", "..", "Documentation", "UserGuide", "pictures")
+    baseline = os.path.join(pictures, os.path.basename(picture))
     assert os.path.exists(baseline), f"no baseline {baseline}; look at {picture} and copy it there"
     readers = []
     for name in (picture, baseline):

@@ -21,8 +21,10 @@ def parse_arguments(arguments):
     sweep.add_argument("--sweep", metavar="FILE", help="tracked sequence (.igs.mha, .mha, .mhd); default: a phantom")
     sweep.add_argument("--calibration", metavar="XML", help="PLUS configuration with the Image-to-Probe transform")
     sweep.add_argument("--spacing", type=float, default=0.5, metavar="MM", help="voxel size of the volume (%(default)s)")
+    sweep.add_argument("--clip", type=int, nargs=4, metavar=("X", "Y", "W", "H"),
+                       help="part of the slices to use, pixels: left, top, width, height (without the scanner's frame, say)")
     sweep.add_argument("--level", type=float, metavar="GREY",
-                       help="grey level of the surface; default: the phantom's, or half-way between the mean and the brightest")
+                       help="grey level of the surface; default: the phantom's, or Otsu's threshold")
     sweep.add_argument("--median", type=int, default=5, metavar="N", help="size of the median window, voxels (%(default)s)")
 
     implant = parser.add_argument_group("cranial implant")
@@ -38,6 +40,8 @@ def parse_arguments(arguments):
     options = parser.parse_args(arguments)
     if options.calibration and not options.sweep:
         parser.error("--calibration belongs to --sweep")
+    if options.clip and not options.sweep:
+        parser.error("--clip belongs to --sweep")
     if options.hole and not options.ct:
         parser.error("--hole belongs to --ct (the phantom knows its own hole)")
     for name in ("sweep", "calibration", "ct"):

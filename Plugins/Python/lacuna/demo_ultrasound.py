@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties, vtkTri
 
 from lacuna import pictures
 
-PHANTOM = dict(NumberOfSlices=120, Motion="Twist", Anatomy="Ellipsoids", SpeckleLevel=0.15)
+PHANTOM = dict(NumberOfSlices=120, Motion="Arbitrary", Anatomy="Ellipsoids", SpeckleLevel=0.15)
 
 
 def run(options, report):
@@ -25,6 +25,8 @@ def run(options, report):
         report.add("slices", f"{slices} of {width} × {height} pixels")
     with report.stage("reconstruct the volume"):
         volume = pv.SweptVolume(Input=sweep, OutputSpacing=[options.spacing] * 3)
+        if options.clip:
+            volume.ClipRectangle = options.clip
         volume.UpdatePipeline()
         report.add("volume, voxels", " × ".join(map(str, dimensions(volume))))
         report.add("voxel, mm", f"{options.spacing:g}")
@@ -64,10 +66,17 @@ def dimensions(image):
 
 
 def surface_level(volume):
-    """Half-way between the mean and the brightest grey level of the voxels that have one."""
+    """Otsu's threshold of the voxels that have a grey level: the best split into dark and bright."""
     data = servermanager.Fetch(volume).GetPointData()
     grey = vtk_to_numpy(data.GetArray("Intensity"))[vtk_to_numpy(data.GetArray("vtkValidPointMask")) > 0]
-    return (float(grey.mean()) + float(grey.max())) / 2
+    counts, edges = np.histogram(grey, 256)
+    centers = (edges[:-1] + edges[1:]) / 2
+    dark, bright = np.cumsum(counts)[:-1], np.cumsum(counts[::-1])[::-1][1:]
+    sums = np.cumsum(counts * centers)
+    between = np.where((dark > 0) & (bright > 0),
+                       (sums[:-1] / np.maximum(dark, 1) - (sums[-1] - sums[:-1]) / np.maximum(bright, 1)) ** 2
+                       * dark * bright, 0)
+    return float(edges[1:-1][between.argmax()])
 
 
 def closed_surface(sweep, volume, level, median):
@@ -75,7 +84,8 @@ def closed_surface(sweep, volume, level, median):
     bounds = volume.GetDataInformation().GetBounds()
     rim = [median * s for s in volume.OutputSpacing]
     grown = [b + side * rim[i] for i in range(3) for b, side in ((bounds[2 * i], -1), (bounds[2 * i + 1], 1))]
-    padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown)
+    padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown,
+                            ClipRectangle=list(volume.ClipRectangle))
     smooth = pv.Median(Input=padded, SelectInputScalars=["POINTS", "Intensity"], KernelSize=[median] * 3)
     contour = pv.Contour(Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[level],
                          ComputeNormals=1, ComputeScalars=0)
@@ -99,17 +109,20 @@ def measure(surface):
     return mass.GetVolume() / 1000, edges.GetOutput().GetNumberOfCells()
 
 
-def slice_frames(sweep, step):
+def slice_poses(image):
+    """ImageToReference of all slices, N x 4 x 4."""
+    return vtk_to_numpy(image.GetFieldData().GetArray("ImageToReference")).reshape(-1, 4, 4)
+
+
+def slice_frames(image, step):
     """Outlines of every step-th slice, as lines in the reference frame."""
-    image = servermanager.Fetch(sweep)
-    poses = image.GetFieldData().GetArray("ImageToReference")
     x0, x1, y0, y1 = image.GetBounds()[:4]
     points, lines = vtkPoints(), vtkCellArray()
-    for slice_number in range(0, poses.GetNumberOfTuples(), step):
-        pose = np.array(poses.GetTuple(slice_number)).reshape(4, 4)
-        corners = [points.InsertNextPoint((pose @ (x, y, 0, 1))[:3])
-                   for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-        lines.InsertNextCell(5, corners + corners[:1])
+    for pose in slice_poses(image)[::step]:
+        if np.isfinite(pose).all():
+            corners = [points.InsertNextPoint((pose @ (x, y, 0, 1))[:3])
+                       for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+            lines.InsertNextCell(5, corners + corners[:1])
     frames = vtkPolyData()
     frames.SetPoints(points)
     frames.SetLines(lines)
@@ -120,9 +133,14 @@ def picture(sweep, surface, name):
     """The surface among the outlines of the slices that it was made from."""
     render = pictures.new_view()
     pictures.show_surface(surface, render, pictures.TISSUE)
+    image = servermanager.Fetch(sweep)
     frames = pv.TrivialProducer()
-    frames.GetClientSideObject().SetOutput(slice_frames(sweep, max(1, dimensions(sweep)[2] // 20)))
+    frames.GetClientSideObject().SetOutput(slice_frames(image, max(1, dimensions(sweep)[2] // 20)))
     display = pictures.show_surface(frames, render, (0.35, 0.45, 0.6))
     display.LineWidth = 1.5
-    pictures.look(render, (-0.6, 0.7, -0.4), (0, 0, 1), 1.1)
+    # from the probe into the tissue, a little from the side
+    middle = slice_poses(image)[dimensions(sweep)[2] // 2][:3, :2]
+    lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
+    travel = np.cross(lateral, depth)
+    pictures.look(render, depth + 0.35 * lateral + 0.5 * travel, travel - 0.5 * depth, 1.1)
     pictures.save(render, name)

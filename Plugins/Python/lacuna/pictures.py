@@ -17,13 +17,15 @@ def new_view(size=(1200, 900)):
     view.Background2 = [0.86, 0.89, 0.93]
     view.OrientationAxesLabelColor = [0.1, 0.1, 0.1]
     view.CenterAxesVisibility = 0
+    view.KeyLightElevation, view.KeyLightAzimuth = 25, -20
+    view.KeyLightWarmth, view.KeyLightIntensity = 0.55, 0.72
     return view
 
 
 def show_surface(proxy, view, color):
     """Shows a surface in one matt colour."""
     display = pv.Show(proxy, view)
-    pv.ColorBy(display, None)
+    display.ColorArrayName = [None, ""]
     display.AmbientColor = display.DiffuseColor = list(color)
     display.Specular = 0.15
     display.SpecularPower = 20
