@@ -176,13 +176,13 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::CheckMemory(const int extent[6]) const
 {
-  // Each factor is an int and the header's check bounds the product of all.
-  const auto count = [&](int axis)
-  { return static_cast<double>(extent[2 * axis + 1]) - extent[2 * axis] + 1; };
+  const double columns = static_cast<double>(extent[1]) - extent[0] + 1;
+  const double rows = static_cast<double>(extent[3]) - extent[2] + 1;
+  const double slices = static_cast<double>(extent[5]) - extent[4] + 1;
   const double mebibyte = 1024.0 * 1024.0;
   const auto elementSize =
     static_cast<double>(lacuna::GetElementSize(this->Opened->Pixels->GetElementType()));
-  const double needed = count(0) * count(1) * count(2) * elementSize / mebibyte;
+  const double needed = columns * rows * slices * elementSize / mebibyte;
   double limit = this->MemoryLimit;
   if (this->MemoryLimit == 0)
   {
@@ -193,7 +193,7 @@ void vtkLacunaTrackedSliceReader::CheckMemory(const int extent[6]) const
   if (needed > limit)
   {
     std::ostringstream message;
-    message << this->FileName << ": " << count(2) << " slices of " << count(0) << " x " << count(1)
+    message << this->FileName << ": " << slices << " slices of " << columns << " x " << rows
             << " pixels take " << static_cast<std::int64_t>(needed) + 1 << " MiB, but "
             << (this->MemoryLimit == 0 ? "the machine has " : "MemoryLimit is ") << limit
             << " MiB; read fewer slices by FrameRange or FrameStride";

@@ -30,6 +30,7 @@ auto DispatchElementType(ElementType type, const Function& f)
 {
   switch (type)
   {
+    // NOLINTNEXTLINE(bugprone-branch-clone): the branches differ in the type that f sees
     case ElementType::Int8:
       return f(std::int8_t());
     case ElementType::UInt8:

@@ -98,6 +98,13 @@ private:
 
   [[noreturn]] void Fail(const std::string& text) const { this->Lines.Fail(text, false); }
 
+  [[noreturn]] void FailTwice(
+    const std::string& field, const std::string& first, const std::string& second) const
+  {
+    this->Lines.Fail(
+      "gives " + field + " again, as '" + second + "' after '" + first + "'; remove the wrong one");
+  }
+
   const std::string* Find(const std::string& name) const
   {
     const auto found = this->Fields.find(name);
@@ -190,8 +197,7 @@ void MetaImageHeaderReader::ReadLines()
       const auto inserted = this->Fields.emplace(name, value);
       if (!inserted.second && inserted.first->second != value)
       {
-        this->Lines.Fail("gives header field " + name + " again, as '" + value + "' after '" +
-          inserted.first->second + "'; remove the wrong one");
+        this->FailTwice("header field " + name, inserted.first->second, value);
       }
       if (inserted.second && KnownFields.count(name) == 0)
       {

@@ -310,6 +310,7 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
     }
   }
   std::vector<std::string> texts;
+  texts.reserve(problems.size());
   for (const auto& [problem, frames] : problems)
   {
     texts.push_back(problem + " in " + FrameList(frames));

@@ -5,7 +5,6 @@
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -30,7 +29,7 @@ bool SweepTransform::IsConstant() const
 {
   return std::all_of(this->Matrices.begin(), this->Matrices.end(),
     [&](const Matrix4& matrix)
-    { return std::memcmp(matrix.Data(), this->Matrices[0].Data(), 16 * sizeof(double)) == 0; });
+    { return std::equal(matrix.Data(), matrix.Data() + 16, this->Matrices[0].Data()); });
 }
 
 //------------------------------------------------------------------------------
