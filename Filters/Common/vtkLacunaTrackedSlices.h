@@ -7,14 +7,13 @@
 /// Active point scalars: grey levels, one component. Field data, always one tuple for each slice of
 /// the original sweep, however cropped the stack is:
 ///
-/// | array              | type, components | meaning |
-/// |--------------------|------------------|-------------------------------------------------------|
-/// | ImageToReference   | double, 16       | (column, row, 0, 1) to mm in the reference frame; | |
-/// |                  | absent until the probe is calibrated                   | | Timestamp |
-/// double           | seconds                                               | | SliceStatus |
-/// unsigned char    | flags, see Status; 0 = valid                          | | FrameNumber | int
-/// | number in the file or of the frame grabber            | | ProbeToTracker, ...  | double, 16 |
-/// every transform of the file under its own name        |
+/// - ImageToReference (double, 16 components): (column, row, 0, 1) to mm in the reference frame;
+///   absent until the probe is calibrated. All NaN where there is no usable pose: test SliceStatus
+///   first.
+/// - SliceStatus (unsigned char): flags, see Status; 0 = valid
+/// - Timestamp (double): seconds; optional
+/// - FrameNumber (int): number in the file or of the frame grabber
+/// - ProbeToTracker, ... (double, 16 components): every transform of the file under its own name
 ///
 /// and, when known, ImageToProbe with one tuple.
 #ifndef vtkLacunaTrackedSlices_h

@@ -30,8 +30,8 @@
  * replaced; NaN elsewhere). Other arrays are passed on. Field data: that of the map, and
  * | array             | components | meaning                                                     |
  * |-------------------|------------|-------------------------------------------------------------|
- * | RBFPlane          | 3          | c0 c1 c2 of the polynomial part c0 + c1 x + c2 y, mm; x, y: mm
- * |                   |            | along the map's axes from index (0,0) |
+ * | RBFPlane          | 3          | c0 c1 c2 of the polynomial part c0 + c1 x + c2 y, mm; x, y  |
+ * |                   |            | are mm along the map's axes from index (0,0)                |
  * | PlaneNormal       | 3          | (c1, c2, -1)/length, map axes, towards the viewer           |
  * | NodeCount         | 1          |                                                             |
  * | Residual          | 1          | mm, largest at a node, of the solved equations              |

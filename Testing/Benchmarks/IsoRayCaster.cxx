@@ -55,7 +55,8 @@ const ShortVolume& Head()
   {
     ShortVolume result;
     std::ifstream file(LACUNA_TEST_DATA "/ct_head/head.mha", std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const std::string text(
+      (std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     const std::string local = "ElementDataFile = LOCAL\n";
     const std::size_t start = text.find(local);
     const auto size = HeaderNumbers(text, "DimSize");
@@ -160,8 +161,7 @@ void Cast(benchmark::State& state, const VoxelVolume& volume, FieldInterpolation
     caster.Cast(map.Plane, 500, map.Pixels(), execution);
     benchmark::DoNotOptimize(map.Depth.data());
   }
-  state.counters["hits"] =
-    static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
+  state.counters["hits"] = static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
 }
 
 void CTHead(benchmark::State& state)
@@ -171,14 +171,14 @@ void CTHead(benchmark::State& state)
     state.SkipWithError("no ct_head/head.mha in LACUNA_TEST_DATA");
     return;
   }
-  Cast(state, Head().Volume, static_cast<FieldInterpolation>(state.range(0)),
-    Views[state.range(1)], 512, static_cast<int>(state.range(2)));
+  Cast(state, Head().Volume, static_cast<FieldInterpolation>(state.range(0)), Views[state.range(1)],
+    512, static_cast<int>(state.range(2)));
 }
 
 void ShellOf(benchmark::State& state)
 {
-  Cast(state, Shell(static_cast<int>(state.range(0))).Volume, FieldInterpolation::BSpline,
-    Views[1], static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
+  Cast(state, Shell(static_cast<int>(state.range(0))).Volume, FieldInterpolation::BSpline, Views[1],
+    static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
 }
 
 /// The thesis's algorithm.
@@ -237,9 +237,8 @@ public:
           const double value = this->Value(cell, a + s * b, nullptr);
           if (value >= isoValue && before < isoValue)
           {
-            const double hit = before < -1e29
-              ? s
-              : beforeT + (s - beforeT) * (isoValue - before) / (value - before);
+            const double hit =
+              before < -1e29 ? s : beforeT + (s - beforeT) * (isoValue - before) / (value - before);
             this->Value(cell, a + hit * b, &normal);
             return hit;
           }
@@ -358,8 +357,7 @@ void CTHeadReference(benchmark::State& state)
         }
       });
   }
-  state.counters["hits"] =
-    static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
+  state.counters["hits"] = static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
 }
 }
 
