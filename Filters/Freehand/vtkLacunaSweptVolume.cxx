@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolume.h"
 
+#include "lacunaMemory.h"
 #include "lacunaSweptVolume.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
@@ -11,8 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkMatrix3x3.h"
+#include "vtkLacunaSliceImages.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -20,156 +20,10 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
-#include <type_traits>
 
 namespace
 {
-template <class T>
-lacuna::PixelType GetPixelTypeOf()
-{
-  using lacuna::PixelType;
-  if (std::is_floating_point<T>::value)
-  {
-    return sizeof(T) == 4 ? PixelType::Float32 : PixelType::Float64;
-  }
-  const bool isSigned = std::is_signed<T>::value;
-  switch (sizeof(T))
-  {
-    case 1:
-      return isSigned ? PixelType::Int8 : PixelType::UInt8;
-    case 2:
-      return isSigned ? PixelType::Int16 : PixelType::UInt16;
-    case 4:
-      return isSigned ? PixelType::Int32 : PixelType::UInt32;
-    default:
-      return isSigned ? PixelType::Int64 : PixelType::UInt64;
-  }
-}
-
-lacuna::PixelType GetPixelType(vtkDataArray* array)
-{
-  switch (array->GetDataType())
-  {
-    vtkTemplateMacro(return GetPixelTypeOf<VTK_TT>());
-    default:
-      throw std::runtime_error(
-        std::string("grey levels of type ") + array->GetDataTypeAsString() + " are not supported");
-  }
-}
-
-// The valid slices of one input.
-struct Sweep
-{
-  vtkImageData* Stack = nullptr;
-  vtkSmartPointer<vtkDataArray> GreyLevels;
-  std::vector<lacuna::SliceImage> Slices;
-};
-
-// Pixels of an axis that are used: indices relative to the stack's extent.
-struct Range
-{
-  int First, Last;
-};
-
-// Cuts one axis of a stack to a part of the clip rectangle; size 0 reaches to the edge.
-Range Clip(vtkImageData* stack, int axis, int start, int size)
-{
-  const int* extent = stack->GetExtent();
-  const double origin = stack->GetOrigin()[axis];
-  const double spacing = stack->GetSpacing()[axis];
-  Range range{ extent[2 * axis], extent[2 * axis + 1] };
-  const double first = origin + spacing * range.First;
-  const double last = origin + spacing * range.Last;
-  // compared as numbers of columns or rows: far-off requests do not overflow
-  const double wantedLast = size > 0 ? start + static_cast<double>(size) - 1 : last;
-  range.First = start > last ? range.Last + 1
-    : start > first          ? static_cast<int>(std::ceil((start - origin) / spacing - 1e-6))
-                             : range.First;
-  range.Last = wantedLast < first ? range.First - 1
-    : wantedLast < last ? static_cast<int>(std::floor((wantedLast - origin) / spacing + 1e-6))
-                        : range.Last;
-  if (range.Last - range.First + 1 < 2)
-  {
-    std::ostringstream message;
-    message << "ClipRectangle leaves " << std::max(0, range.Last - range.First + 1)
-            << (axis == 0 ? " columns" : " rows") << " of " << first << " to " << last
-            << "; at least 2 are needed";
-    throw std::runtime_error(message.str());
-  }
-  return range;
-}
-
-void CheckStack(vtkImageData* stack)
-{
-  if (!stack->GetDirectionMatrix()->IsIdentity())
-  {
-    throw std::runtime_error(
-      "the stack of slices has a direction matrix; the coordinates of tracked slices are (column, "
-      "row, slice), where they lie in space is in the field data array 'ImageToReference'");
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    if (!(stack->GetSpacing()[a] > 0))
-    {
-      throw std::runtime_error("the stack of slices has a spacing that is not positive; the "
-                               "coordinates of tracked slices are (column, row, slice)");
-    }
-  }
-}
-
-Sweep CollectSweep(vtkImageData* stack, const int clip[4], const std::string& suffix)
-{
-  Sweep sweep;
-  sweep.Stack = stack;
-  const vtkLacunaTrackedSlices tracked(stack);
-  CheckStack(stack);
-  sweep.GreyLevels = tracked.GetGreyLevels();
-  if (!sweep.GreyLevels->HasStandardMemoryLayout())
-  {
-    sweep.GreyLevels.TakeReference(
-      vtkDataArray::CreateDataArray(tracked.GetGreyLevels()->GetDataType()));
-    sweep.GreyLevels->DeepCopy(tracked.GetGreyLevels());
-  }
-  const lacuna::PixelType type = GetPixelType(sweep.GreyLevels);
-  const auto* pixels = static_cast<const unsigned char*>(sweep.GreyLevels->GetVoidPointer(0));
-  const Range columns = Clip(stack, 0, clip[0], clip[2]);
-  const Range rows = Clip(stack, 1, clip[1], clip[3]);
-  const double* origin = stack->GetOrigin();
-  const double* spacing = stack->GetSpacing();
-  const lacuna::Matrix4 windowToImage =
-    lacuna::Matrix4::Translation(
-      { origin[0] + spacing[0] * columns.First, origin[1] + spacing[1] * rows.First, 0 }) *
-    lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
-
-  const int* extent = stack->GetExtent();
-  const std::int64_t width = extent[1] - extent[0] + 1;
-  const std::int64_t height = extent[3] - extent[2] + 1;
-  for (int k = extent[4]; k <= extent[5]; ++k)
-  {
-    const vtkIdType number = tracked.GetSliceNumber(k);
-    if (tracked.GetStatus(number) != vtkLacunaTrackedSlices::Valid)
-    {
-      continue;
-    }
-    lacuna::SliceImage slice;
-    slice.Type = type;
-    slice.Pixels = pixels +
-      ((k - extent[4]) * height * width + (rows.First - extent[2]) * width + columns.First -
-        extent[0]) *
-        static_cast<std::int64_t>(lacuna::GetPixelSize(type));
-    slice.RowStride = width;
-    slice.Width = columns.Last - columns.First + 1;
-    slice.Height = rows.Last - rows.First + 1;
-    slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
-    slice.Label = "slice " + std::to_string(number) + suffix;
-    lacuna::CheckSlice(slice);
-    sweep.Slices.push_back(slice);
-  }
-  return sweep;
-}
-
 bool HasPoints(const int extent[6])
 {
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
@@ -193,7 +47,7 @@ public:
         continue;
       }
       const std::string suffix = count > 1 ? " of input " + std::to_string(i) : "";
-      this->Sweeps.push_back(CollectSweep(stack, self->ClipRectangle, suffix));
+      this->Sweeps.emplace_back(stack, self->ClipRectangle, suffix);
       const std::size_t valid = this->Sweeps.back().Slices.size();
       if (valid < needed)
       {
@@ -235,16 +89,17 @@ public:
     }
   }
 
-  std::vector<Sweep> Sweeps;
+  std::vector<vtkLacunaSliceImages> Sweeps;
   lacuna::VolumeGrid Grid;
   int ScalarType = VTK_FLOAT;
   bool DoublePrecision = false;
+  std::int64_t BytesPerVoxel = 0;
 
 private:
   void ChooseTypes(int outputScalarType)
   {
     const int first = this->Sweeps.front().GreyLevels->GetDataType();
-    for (const Sweep& sweep : this->Sweeps)
+    for (const vtkLacunaSliceImages& sweep : this->Sweeps)
     {
       this->DoublePrecision |= lacuna::NeedsDoublePrecision(sweep.Slices.front().Type);
       if (outputScalarType == vtkLacunaSweptVolume::Input &&
@@ -256,6 +111,9 @@ private:
       }
     }
     this->ScalarType = outputScalarType == vtkLacunaSweptVolume::Float ? VTK_FLOAT : first;
+    this->BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->DoublePrecision) +
+      vtkDataArray::GetDataTypeSize(this->ScalarType) +
+      static_cast<std::int64_t>(sizeof(unsigned int) + sizeof(char));
   }
 
   void ChooseGrid(vtkLacunaSweptVolume* self)
@@ -263,12 +121,10 @@ private:
     lacuna::VolumeGridRequest request;
     std::copy(self->OutputSpacing, self->OutputSpacing + 3, request.Spacing.data());
     std::copy(self->OutputBounds, self->OutputBounds + 6, request.Bounds.begin());
-    request.BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->DoublePrecision) +
-      vtkDataArray::GetDataTypeSize(this->ScalarType) +
-      static_cast<std::int64_t>(sizeof(unsigned int) + sizeof(char));
+    request.BytesPerVoxel = this->BytesPerVoxel;
     request.MemoryLimit = self->MemoryLimit * 1048576.0;
     std::vector<lacuna::SliceImage> all;
-    for (const Sweep& sweep : this->Sweeps)
+    for (const vtkLacunaSliceImages& sweep : this->Sweeps)
     {
       all.insert(all.end(), sweep.Slices.begin(), sweep.Slices.end());
     }
@@ -396,6 +252,8 @@ int vtkLacunaSweptVolume::RequestData(
       output->SetOrigin(plan.Grid.Origin.data());
       output->SetSpacing(plan.Grid.Spacing.data());
       const vtkIdType size = output->GetNumberOfPoints();
+      lacuna::RequireMemory(
+        "this part of the volume", static_cast<double>(size) * plan.BytesPerVoxel);
       vtkSmartPointer<vtkDataArray> intensity;
       intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
       intensity->SetName("Intensity");
@@ -440,7 +298,7 @@ int vtkLacunaSweptVolume::RequestData(
       output->GetPointData()->AddArray(contributions);
       output->GetPointData()->AddArray(mask);
       std::vector<vtkDataObject*> stacks;
-      for (const Sweep& sweep : plan.Sweeps)
+      for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
       {
         stacks.push_back(sweep.Stack);
       }

@@ -6,7 +6,7 @@
  * Fills a voxel grid from tracked slices (see vtkLacunaTrackedSlices.h for what these are). A voxel
  * between two consecutive slices is interpolated between the feet of its perpendiculars,
  * V = (a X2 + b X1) / (a + b), with a and b its distances from the first and the second slice and
- * X1, X2 the grey levels at the feet (Carr 1996, §4.2). A voxel is between two slices when its
+ * X1, X2 the grey levels at the feet (Carr 1996, 4.2). A voxel is between two slices when its
  * signed distances from them, along normals that turn with the probe, have opposite signs or one
  * is zero, and its feet lie on both images, between the centres of the outermost pixels.
  * Consecutive slices may intersect: what lies between them is then a double wedge. Several samples
@@ -139,8 +139,8 @@ public:
   ///@}
 
   ///@{
-  /// Memory that the volume may take, in MiB (2^20 bytes), its work space included. 0 = no limit.
-  /// Default: 4096.
+  /// Memory that the whole volume may take, in MiB (2^20 bytes), its work space included. 0 = no
+  /// limit but the machine's memory. Default: 4096.
   vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryLimit, int);
   ///@}

@@ -49,16 +49,32 @@ struct Sweep
         Matrix4::Rotation({ 1, 0, 0 }, 8 * Pi / 180 * (2 * t - 1)) *
         Matrix4::Scaling({ PixelSpacing, PixelSpacing, 1 }) *
         Matrix4::Translation({ -0.5 * (Width - 1), -0.5 * (Height - 1), 0 });
-      std::uint8_t* pixels = this->Pixels.data() + static_cast<std::size_t>(n) * Width * Height;
-      slice.Pixels = pixels;
+      slice.Pixels = this->GetPixels(n);
       this->Slices.push_back(slice);
-      for (int y = 0; y < Height; ++y)
+    }
+    ThreadExecution execution;
+    execution.For(count, 1,
+      [&](std::int64_t begin, std::int64_t end)
       {
-        for (int x = 0; x < Width; ++x)
+        for (std::int64_t n = begin; n < end; ++n)
         {
-          *pixels++ = static_cast<std::uint8_t>(
-            std::lround(Truth(slice.PixelToReference.Point({ double(x), double(y), 0 }))));
+          this->Draw(n);
         }
+      });
+  }
+
+  std::uint8_t* GetPixels(std::int64_t n) { return this->Pixels.data() + n * Width * Height; }
+
+  void Draw(std::int64_t n)
+  {
+    std::uint8_t* pixels = this->GetPixels(n);
+    const Matrix4& pose = this->Slices[n].PixelToReference;
+    for (int y = 0; y < Height; ++y)
+    {
+      for (int x = 0; x < Width; ++x)
+      {
+        const Vec3 p = pose.Point({ static_cast<double>(x), static_cast<double>(y), 0 });
+        *pixels++ = static_cast<std::uint8_t>(std::lround(Truth(p)));
       }
     }
   }

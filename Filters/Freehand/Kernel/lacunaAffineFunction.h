@@ -6,7 +6,7 @@
 
 namespace lacuna
 {
-/// I·i + J·j + K·k + C, a function of the voxel indices i, j, k.
+/// I i + J j + K k + C, a function of the voxel indices i, j, k.
 struct AffineFunction
 {
   double I, J, K, C;

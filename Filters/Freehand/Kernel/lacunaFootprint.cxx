@@ -163,6 +163,7 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): types
 #define LACUNA_INSTANTIATE(T, Real)                                                                \
   template void AverageFootprints(                                                                 \
     const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*)
@@ -182,4 +183,5 @@ LACUNA_INSTANTIATE(std::uint64_t, double);
 LACUNA_INSTANTIATE(float, double);
 LACUNA_INSTANTIATE(double, double);
 #undef LACUNA_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 }

@@ -5,9 +5,9 @@
 /// A slice is usually much finer than the volume: sampled at single pixels it would alias. Instead
 /// it is reduced once to a raster of local means, from which voxels interpolate bilinearly. Along
 /// each axis the raster's step s is about half the footprint's width w, and each mean is the exact
-/// integral of the (linearly interpolated) grey levels over a box of width sqrt(w² - 2s²). Box and
-/// interpolation between the means together weigh the pixels with the footprint's centre and
-/// second moment w²/12. Towards the border the box narrows symmetrically, so that linear grey
+/// integral of the (linearly interpolated) grey levels over a box of width sqrt(w^2 - 2 s^2). Box
+/// and interpolation between the means together weigh the pixels with the footprint's centre and
+/// second moment w^2 / 12. Towards the border the box narrows symmetrically, so that linear grey
 /// levels are reproduced exactly everywhere. A footprint narrower than sqrt(2) pixels leaves the
 /// axis as it is.
 #ifndef lacunaFootprint_h

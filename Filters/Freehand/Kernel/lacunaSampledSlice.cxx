@@ -11,7 +11,7 @@ namespace lacuna
 {
 namespace
 {
-// gradient · (voxel - point) as a function of the voxel's indices.
+// gradient . (voxel - point) as a function of the voxel's indices.
 AffineFunction MakeFunction(const VolumeGrid& grid, const Vec3& gradient, const Vec3& point)
 {
   return { gradient[0] * grid.Spacing[0], gradient[1] * grid.Spacing[1],

@@ -30,7 +30,7 @@ struct SampledSlice
 {
   std::string Label;
   std::array<Vec3, 4> Corners; ///< centres of the corner pixels, mm
-  /// Columns × rows of the image, unit: turns with the probe.
+  /// Columns x rows of the image, unit: turns with the probe.
   Vec3 Normal;
   /// Of a voxel: the foot of its perpendicular on the slice in raster coordinates, and its signed
   /// distance from the slice along Normal in mm.

@@ -12,7 +12,7 @@ namespace
 // Far above rounding and far below what a tracker resolves: voxels on a slice or on its border,
 // as in grids that fit the slices exactly, do not drop out by chance. In voxels and pixels.
 constexpr double Tolerance = 1e-6;
-// Normals at 90° but for rounding count as 90°.
+// Normals at 90 degrees but for rounding count as 90 degrees.
 constexpr double SmallestCosine = 1e-6;
 // Lines along y jump in memory: they pay when they are this many times longer.
 constexpr double TransposeRatio = 2;

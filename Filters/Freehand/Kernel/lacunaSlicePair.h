@@ -3,8 +3,8 @@
 /// Which voxels lie between two consecutive slices.
 ///
 /// Let a and b be the signed distances of a voxel from the first and the second slice, along
-/// normals that turn with the probe (columns × rows of each image). The planes
-/// (1-t)·a + t·b = 0, 0 <= t <= 1, lead from the first slice to the second one, and a voxel is
+/// normals that turn with the probe (columns x rows of each image). The planes
+/// (1-t) a + t b = 0, 0 <= t <= 1, lead from the first slice to the second one, and a voxel is
 /// passed by one of them just when a and b have opposite signs or one is zero: that is what
 /// between means. Where the probe moves along its normal a >= 0 >= b, where it moves against it
 /// a <= 0 <= b. Planes that intersect within the image have both: the region is then a double
@@ -16,8 +16,8 @@
 /// Voxels exactly on a slice belong to the pairs on both of its sides, which give them the same
 /// grey level.
 ///
-/// Slices turned by 90° or more against each other are no neighbours in a sweep; those that lie in
-/// the same plane have nothing between them.
+/// Slices turned by 90 degrees or more against each other are no neighbours in a sweep; those that
+/// lie in the same plane have nothing between them.
 #ifndef lacunaSlicePair_h
 #define lacunaSlicePair_h
 

@@ -72,7 +72,7 @@ SweptVolume::SweptVolume(
   , Extent(extent)
   , Settings(options)
 {
-  for (int a = 0; a < 3; ++a)
+  for (std::size_t a = 0; a < 3; ++a)
   {
     if (extent[2 * a] < 0 || extent[2 * a] > extent[2 * a + 1] ||
       extent[2 * a + 1] >= grid.Dimensions[a])
@@ -258,6 +258,7 @@ void SweptVolume::Write(
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void SweptVolume::Write(T*, unsigned int*, char*, Execution&) const
 LACUNA_INSTANTIATE(char);
@@ -274,4 +275,5 @@ LACUNA_INSTANTIATE(unsigned long long);
 LACUNA_INSTANTIATE(float);
 LACUNA_INSTANTIATE(double);
 #undef LACUNA_INSTANTIATE
+// NOLINTEND(bugprone-macro-parentheses)
 }

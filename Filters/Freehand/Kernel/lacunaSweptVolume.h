@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A volume made of slices, slice by slice (Carr 1996, §4.2).
+/// A volume made of slices, slice by slice (Carr 1996, 4.2).
 #ifndef lacunaSweptVolume_h
 #define lacunaSweptVolume_h
 
@@ -28,7 +28,7 @@ public:
   enum class Method
   {
     /// Voxels between consecutive slices interpolate between the feet of their perpendiculars:
-    /// V = (a·X_second + b·X_first) / (a + b), a and b the distances from the first and the second
+    /// V = (a X_second + b X_first) / (a + b), a and b the distances from the first and the second
     /// slice, X the grey levels at the feet. See lacunaSlicePair.h for what between means.
     BetweenSlices,
     /// Each pixel goes to the voxel in which its centre lies; nothing is interpolated.
@@ -69,7 +69,7 @@ public:
     const std::vector<SliceImage>& slices, Execution& execution, double first = 0, double last = 1);
 
   /// Pairs of consecutive slices so far, and those among them between which nothing was filled
-  /// because they lie in the same plane or are turned by 90° or more against each other.
+  /// because they lie in the same plane or are turned by 90 degrees or more against each other.
   struct PairCounts
   {
     std::int64_t All = 0;

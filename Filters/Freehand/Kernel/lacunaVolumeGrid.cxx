@@ -41,7 +41,7 @@ Box GetBox(const std::vector<SliceImage>& slices)
 
 void CutToBounds(Box& box, const std::array<double, 6>& bounds)
 {
-  for (int a = 0; a < 3; ++a)
+  for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = bounds[2 * a];
     const double high = bounds[2 * a + 1];
@@ -140,6 +140,7 @@ std::string DescribeWildSlice(const std::vector<SliceImage>& slices)
   for (int a = 0; a < 3; ++a)
   {
     std::vector<double> coordinates;
+    coordinates.reserve(slices.size());
     for (const SliceImage& slice : slices)
     {
       coordinates.push_back(GetCentre(slice)[a]);
@@ -147,6 +148,7 @@ std::string DescribeWildSlice(const std::vector<SliceImage>& slices)
     middle[a] = Median(coordinates);
   }
   std::vector<double> distances;
+  distances.reserve(slices.size());
   for (const SliceImage& slice : slices)
   {
     distances.push_back(Norm(GetCentre(slice) - middle));

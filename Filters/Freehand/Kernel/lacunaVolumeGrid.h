@@ -12,7 +12,7 @@
 
 namespace lacuna
 {
-/// Voxels along the reference axes; voxel (i, j, k) is the point Origin + (i, j, k)·Spacing.
+/// Voxels along the reference axes; voxel (i, j, k) is the point Origin + (i, j, k) * Spacing.
 struct VolumeGrid
 {
   Vec3 Origin{};

@@ -45,14 +45,20 @@ struct SampleBilinearly
   }
 };
 
+// The nearest whole number of one that is not negative but for a tolerance.
+std::int64_t RoundPositive(double x)
+{
+  const double shifted = x + 0.5;
+  return static_cast<std::int64_t>(shifted);
+}
+
 template <class T, class Real>
 struct SampleNearest
 {
   static Real At(const Raster<T>& raster, double column, double row)
   {
     return static_cast<Real>(
-      raster
-        .Pixels[raster.RowStride * static_cast<int>(row + 0.5) + static_cast<int>(column + 0.5)]);
+      raster.Pixels[raster.RowStride * RoundPositive(row) + RoundPositive(column)]);
   }
 };
 
@@ -98,8 +104,8 @@ template <class T, class Real, template <class, class> class Sampler, Compoundin
 void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
 {
   const std::array<int, 6>& extent = voxels.GetExtent();
-  const int iAxis = pair.IsTransposed() ? 1 : 0;
-  const int jAxis = 1 - iAxis;
+  const std::size_t iAxis = pair.IsTransposed() ? 1 : 0;
+  const std::size_t jAxis = 1 - iAxis;
   const IndexInterval columns{ extent[2 * iAxis], extent[2 * iAxis + 1] };
   const IndexInterval rows{ extent[2 * jAxis], extent[2 * jAxis + 1] };
   const std::array<std::int64_t, 2> strides{ 1, voxels.GetSize(0) };
@@ -217,8 +223,7 @@ void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& gri
       bool inside = true;
       for (int a = 0; a < 3; ++a)
       {
-        // the nearest one; not negative but for the margin, so that cutting off is rounding down
-        v[a] = static_cast<std::int64_t>(along[a].At(static_cast<double>(i)) + 0.5);
+        v[a] = RoundPositive(along[a].At(static_cast<double>(i)));
         inside &= v[a] >= range[a].First && v[a] <= range[a].Last;
       }
       if (inside)

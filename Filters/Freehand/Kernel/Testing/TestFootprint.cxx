@@ -111,7 +111,7 @@ TEST(Footprint, WeighsPixelsWithTheSecondMomentOfTheFootprint)
 TEST(Footprint, WhatIsFinerThanAVoxelAveragesOut)
 {
   // Stripes of one and of two pixels vanish in a footprint of eight; pixels alone would alias.
-  std::vector<std::uint8_t> stripes(Pixels * Pixels);
+  std::vector<std::uint8_t> stripes(std::size_t(Pixels) * Pixels);
   for (int period : { 2, 4 })
   {
     for (int y = 0; y < Pixels; ++y)
@@ -123,7 +123,7 @@ TEST(Footprint, WhatIsFinerThanAVoxelAveragesOut)
     }
     const FootprintAxis axis(Pixels, 8);
     const int samples = axis.GetNumberOfSamples();
-    std::vector<float> means(samples * samples);
+    std::vector<float> means(std::size_t(1) * samples * samples);
     AverageFootprints(stripes.data(), Pixels, axis, axis, means.data());
     for (int y = 0; y < samples; ++y)
     {
@@ -141,7 +141,7 @@ TEST(Footprint, MeansAreTheWeightedSumsOfPixels)
   const int width = 37;
   const int height = 29;
   const int stride = 41;
-  std::vector<std::int16_t> pixels(stride * height);
+  std::vector<std::int16_t> pixels(std::size_t(stride) * height);
   for (std::int16_t& p : pixels)
   {
     p = static_cast<std::int16_t>(random() % 4000 - 2000);
@@ -150,7 +150,8 @@ TEST(Footprint, MeansAreTheWeightedSumsOfPixels)
   {
     const FootprintAxis columns(width, w);
     const FootprintAxis rows(height, 0.7 * w);
-    std::vector<double> means(columns.GetNumberOfSamples() * rows.GetNumberOfSamples());
+    std::vector<double> means(
+      std::size_t(1) * columns.GetNumberOfSamples() * rows.GetNumberOfSamples());
     std::vector<float> floats(means.size());
     AverageFootprints(pixels.data(), stride, columns, rows, means.data());
     AverageFootprints(pixels.data(), stride, columns, rows, floats.data());

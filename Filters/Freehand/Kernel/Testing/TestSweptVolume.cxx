@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What the swept volume is: exact results, and the definition taken at its word, voxel by voxel.
-#include "SyntheticSweep.h"
+#include "lacunaSyntheticSweep.h"
 
 #include "lacunaSlicePair.h"
 
@@ -188,9 +188,9 @@ TEST(SweptVolume, LinearGreyLevelsBetweenParallelSlicesAreExact)
 
 TEST(SweptVolume, LinearGreyLevelsBetweenTurnedSlicesDeviateAsDerived)
 {
-  // With f linear, the foot of p on a slice has f(p) - d g·n. Two of them, weighted by |d| of the
-  // other, give f(p) - d1 d2 / (d2 - d1) g·(n1 - n2): exact on the slices, and at most a quarter
-  // of the gap times |g·(n1 - n2)| off between them.
+  // With f linear, the foot of p on a slice has f(p) - d g.n. Two of them, weighted by |d| of the
+  // other, give f(p) - d1 d2 / (d2 - d1) g.(n1 - n2): exact on the slices, and at most a quarter
+  // of the gap times |g.(n1 - n2)| off between them.
   SyntheticSweep<double> sweep(81, 61, PixelType::Float64);
   const Matrix4 pixels = Matrix4::Scaling({ 0.1, 0.1, 1 }) * Matrix4::Translation({ -40, -30, 0 });
   const std::array<Matrix4, 2> poses{ Matrix4::Rotation({ 1, 0.3, 0 }, 0.2) * pixels,
@@ -320,7 +320,7 @@ TEST(SweptVolume, GridsThatFitTheSlicesHaveNoHoles)
     sweep.Slices, grid, GetExtent(grid), MakeOptions(PixelSampling::Bilinear));
   for (std::size_t n = 0; n < volume.Mask.size(); ++n)
   {
-    const std::size_t k = n / (21 * 11);
+    const std::size_t k = n / 21 / 11;
     EXPECT_EQ(volume.Intensity[n], 5 * k);
     // on an inner slice both pairs meet
     EXPECT_EQ(volume.Contributions[n], k == 2 || k == 4 ? 2U : 1U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// How the swept volume behaves: the order and the grouping of the work, types, bad input.
-#include "SyntheticSweep.h"
+#include "lacunaSyntheticSweep.h"
 
 #include <gtest/gtest.h>
 
@@ -126,12 +126,12 @@ TEST(SweptVolumeBehaviour, PiecesMakeTheWhole)
   for (const SweptVolume::Options& options : GetAllOptions())
   {
     const auto whole = Reconstruct<float>(sweep.Slices, grid, all, options);
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
       // three unequal parts along the axis
       const int size = grid.Dimensions[axis];
       const std::array<int, 4> cuts{ 0, size / 5, size / 2, size };
-      for (int part = 0; part < 3; ++part)
+      for (std::size_t part = 0; part < 3; ++part)
       {
         std::array<int, 6> extent = all;
         extent[2 * axis] = cuts[part];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The real sweep of a spine phantom, read by a small parser of its own.
-#include "SyntheticSweep.h"
+#include "lacunaSyntheticSweep.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -427,6 +427,14 @@ void TestErrors()
                }),
     "1048576 bytes");
 
+  CheckError(with(
+               [](auto* f)
+               {
+                 f->SetMemoryLimit(0);
+                 f->SetOutputSpacing(0.0002, 0.0002, 0.0002);
+               }),
+    "this part of the volume would need");
+
   // a pair turned too far is a warning, the rest is filled
   poses = MakePoses(3);
   poses.push_back(poses[2] * Matrix4::Rotation({ 0, 1, 0 }, 2));

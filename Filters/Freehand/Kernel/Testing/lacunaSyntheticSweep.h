@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Slices and volumes for tests, and the definition of the swept volume taken at its word.
-#ifndef SyntheticSweep_h
-#define SyntheticSweep_h
+#ifndef lacunaSyntheticSweep_h
+#define lacunaSyntheticSweep_h
 
 #include "lacunaSweptVolume.h"
 
