@@ -186,6 +186,22 @@ private:
   vtkNew<vtkDoubleArray> Values;
 };
 
+// The defect when none is marked.
+MapMask FindDefect(lacuna::Execution& execution, const lacuna::HoleFillInput& input)
+{
+  if (input.Painted.empty())
+  {
+    return lacuna::FindHoles(execution, input.Grid, input.Depth, lacuna::MaximumSupportSlope,
+      lacuna::HoleRim, input.Valid);
+  }
+  MapMask sound = input.Valid;
+  for (std::size_t i = 0; i < sound.size(); ++i)
+  {
+    sound[i] = sound[i] && input.Painted[i];
+  }
+  return lacuna::FindInteriorHoles(input.Grid, sound);
+}
+
 void AddArray(vtkImageData* map, const char* name, const std::vector<double>& values)
 {
   vtkNew<vtkDoubleArray> array;
@@ -389,12 +405,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
     }
     if (!this->DefectRegion && this->DefectArray.empty())
     {
-      MapMask sound = input.Valid;
-      for (std::size_t i = 0; i < input.Painted.size(); ++i)
-      {
-        sound[i] = sound[i] && input.Painted[i];
-      }
-      input.Defect = lacuna::FindInteriorHoles(input.Grid, sound);
+      input.Defect = FindDefect(execution, input);
     }
 
     lacuna::HoleFillOptions options;
@@ -411,7 +422,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
     {
       vtkWarningMacro(
         "the defect is empty, so the map is passed on as it is: no pixel is marked by DefectRegion "
-        "or DefectArray, or (without them) the map has no interior hole");
+        "or DefectArray, or (without them) the main surface of the map encloses no hole");
       result.Fitted.assign(input.Grid.GetSize(), std::numeric_limits<double>::quiet_NaN());
       result.Deviation = result.Fitted;
     }

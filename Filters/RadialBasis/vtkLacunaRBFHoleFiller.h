@@ -13,8 +13,11 @@
  *    is where the implicit function is <= 0;
  *  - SupportArray alone: the painted pixels are the sound bone, and pixels that they enclose are
  *    the defect;
- *  - nothing: all interior holes of the map, that is pixels without depth that cannot be reached
- *    from its border over pixels without depth.
+ *  - nothing: the holes of the map, that is what its main surface encloses, grown by 2 mm because
+ *    the rim of a hole in CT is rounded by the partial volume effect. The main surface is the
+ *    largest piece of the map without depth steps (of more than 79 degrees between neighbours), so
+ * a hole may show nothing or the far side. Eye sockets are holes, too: mark the defect when the map
+ *    has other openings.
  *
  * Nodes are valid pixels within SupportMargin of the defect (map plane, centre to centre) or, with
  * a SupportArray, its painted ones, thinned to NodeSpacing; the rules are in lacunaHoleSupport.h.

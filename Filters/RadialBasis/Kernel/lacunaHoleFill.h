@@ -42,6 +42,10 @@ struct HoleFillOptions
 /// section 3.3.2.1) also stop trusting a difference.
 constexpr double MaximumSupportSlope = 5;
 
+/// The rim of a hole in CT is rounded over about a voxel by the partial volume effect: what
+/// FindHoles adds to a hole, mm.
+constexpr double HoleRim = 2;
+
 struct HoleFillResult
 {
   std::vector<double> Fitted;    ///< the fit over Rectangle, NaN elsewhere

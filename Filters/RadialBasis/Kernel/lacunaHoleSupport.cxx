@@ -78,6 +78,15 @@ std::vector<std::size_t> Label(const MapGrid& grid, const MapMask& mask, const P
   return sizes;
 }
 
+// Pieces that are connected over edges without a depth step.
+std::vector<std::size_t> LabelSmooth(const MapGrid& grid, const std::vector<double>& depth,
+  double maximumSlope, const MapMask& mask, std::vector<std::int64_t>& labels)
+{
+  const auto isSmooth = [&](std::size_t a, std::size_t b, double distance)
+  { return std::abs(depth[a] - depth[b]) <= maximumSlope * distance; };
+  return Label(grid, mask, isSmooth, labels);
+}
+
 // Number of the lattice point to whose square x = index * pixel belongs.
 std::int64_t GetLatticePoint(std::int64_t index, double pixel, double spacing)
 {
@@ -130,13 +139,27 @@ MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& r
 }
 
 //------------------------------------------------------------------------------
+MapMask FindHoles(Execution& execution, const MapGrid& grid, const std::vector<double>& depth,
+  double maximumSlope, double rim, const MapMask& valid)
+{
+  std::vector<std::int64_t> labels;
+  const std::vector<std::size_t> sizes = LabelSmooth(grid, depth, maximumSlope, valid, labels);
+  const std::int64_t largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  MapMask surface(valid.size());
+  for (std::size_t pixel = 0; pixel < surface.size(); ++pixel)
+  {
+    surface[pixel] = labels[pixel] == largest;
+  }
+  const MapMask holes = FindInteriorHoles(grid, surface);
+  return SelectWithin(execution, grid, holes, rim, MapMask(valid.size(), 1));
+}
+
+//------------------------------------------------------------------------------
 StepReport RemoveBeyondSteps(
   const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support)
 {
   std::vector<std::int64_t> labels;
-  const auto isSmooth = [&](std::size_t a, std::size_t b, double distance)
-  { return std::abs(depth[a] - depth[b]) <= maximumSlope * distance; };
-  const std::vector<std::size_t> sizes = Label(grid, support, isSmooth, labels);
+  const std::vector<std::size_t> sizes = LabelSmooth(grid, depth, maximumSlope, support, labels);
 
   // Pairs of different pieces that a step divides, with the largest step.
   std::map<std::pair<std::int64_t, std::int64_t>, double> steps;

@@ -51,6 +51,13 @@ MapMask FindInteriorHoles(const MapGrid& grid, const MapMask& mask);
 MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& region,
   double margin, const MapMask& candidates);
 
+/// The holes that a map shows: what its main surface encloses, valid or not (through a hole one
+/// mostly sees the other side), grown by rim mm. The main surface is the largest piece of valid
+/// pixels that are connected over edges without a depth step (see RemoveBeyondSteps), of equal ones
+/// the one with the first pixel.
+MapMask FindHoles(Execution& execution, const MapGrid& grid, const std::vector<double>& depth,
+  double maximumSlope, double rim, const MapMask& valid);
+
 /// What RemoveBeyondSteps did.
 struct StepReport
 {

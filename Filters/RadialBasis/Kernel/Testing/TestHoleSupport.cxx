@@ -98,6 +98,55 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
   EXPECT_EQ(report.LargestStep, 30);
 }
 
+TEST(HoleSupport, FindsHolesThatShowTheFarSide)
+{
+  // 'a' the surface, 'f' the far side 60 mm below, seen through a hole and past the edge; '.'
+  // nothing
+  const std::vector<std::string> map = {
+    "fff...........",
+    "ffaaaaaaaaaa..",
+    ".aaaaaaaaaaaa.",
+    ".aaaafffaaaaa.",
+    ".aaaaff.aaaaaf",
+    ".aaaaaaaaa.aaf",
+    "..aaaaaaaaaaff",
+  };
+  std::vector<double> depth;
+  for (const std::string& row : map)
+  {
+    for (std::size_t i = 0; i < row.size(); ++i)
+    {
+      depth.push_back((row[i] == 'f' ? 70.0 : 10.0) + static_cast<double>(i));
+    }
+  }
+  lacuna::MapMask valid = Mask(map, '.');
+  for (auto& v : valid)
+  {
+    v = !v;
+  }
+  lacuna::ThreadExecution execution(2);
+  const std::vector<std::string> holes = {
+    "..............",
+    "..............",
+    "..............",
+    ".....###......",
+    ".....###......",
+    "..........#...",
+    "..............",
+  };
+  EXPECT_EQ(lacuna::FindHoles(execution, Grid(map), depth, 5, 0, valid), Mask(holes));
+  const std::vector<std::string> grown = {
+    "..............",
+    "..............",
+    ".....###......",
+    "....#####.....",
+    "....#####.#...",
+    ".....###.###..",
+    "..........#...",
+  };
+  EXPECT_EQ(lacuna::FindHoles(execution, Grid(map), depth, 5, 1, valid), Mask(grown));
+}
+
 TEST(HoleSupport, KeepsASteepSlope)
 {
   // 4 mm per mm of map, and the same in a map of coarse pixels

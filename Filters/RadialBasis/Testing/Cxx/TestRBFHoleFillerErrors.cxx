@@ -125,7 +125,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     filler->SetSupportMargin(1000);
     const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
     filler->Update();
-    LACUNA_CHECK(messages->HasError("39599 nodes need a matrix of 12546547232 bytes") &&
+    LACUNA_CHECK(messages->HasError("39587 nodes need a matrix of 12538944800 bytes") &&
       messages->HasError("raise NodeSpacing"));
     filler->SetNodeSpacing(10);
     filler->Update();
