@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Times the iso ray caster: the CT head at 500 HU with 512 x 512 rays and normals, and how the time
-/// grows with voxels and rays. Reference is the algorithm of Carr 1996, 3.2: rays go from cell to
-/// cell, cells without a control point at the threshold are skipped, in the others eight samples of
-/// 64 taps are taken and a transition is interpolated linearly.
+/// Times the iso ray caster: the CT head at 500 HU with 512 x 512 rays and normals, and how the
+/// time grows with voxels and rays. Reference is the algorithm of Carr 1996, 3.2: rays go from cell
+/// to cell, cells without a control point at the threshold are skipped, in the others eight samples
+/// of 64 taps are taken and a transition is interpolated linearly.
 #include "lacunaIsoRayCaster.h"
 
 #include <benchmark/benchmark.h>

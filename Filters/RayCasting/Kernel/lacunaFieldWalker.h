@@ -294,13 +294,8 @@ private:
     }
     else if (p.A[0] >= 0)
     {
-      // The last cell ended outside: zero but for rounding. Rising, it is the entry; falling, it is
-      // the exit that the last cell has seen already.
-      if (p.A[1] >= p.Degree * p.A[0])
-      {
-        this->SetHit(cell, t0);
-        return true;
-      }
+      // The last cell ended outside, so this is zero but for rounding: an entry if the field rises
+      // from here, and if it falls the exit that the last cell has seen already.
       p.A[0] = -std::numeric_limits<double>::min();
     }
     this->Known = State::Outside;

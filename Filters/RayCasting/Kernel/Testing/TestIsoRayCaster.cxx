@@ -263,6 +263,39 @@ TEST(IsoRayCaster, EnteringInsideIsNoSurface)
   EXPECT_FALSE(caster.CastRay({ -1, 1.5, 1.5 }, { 1, 0, 0 }, -5, hit));
 }
 
+TEST(IsoRayCaster, CrossingsInTheFacesBetweenCells)
+{
+  // the crossing is in two cells at once, or by rounding in neither
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> uniform(1, 8);
+  std::uniform_real_distribution<double> noise(-0.1, 0.1);
+  for (int volume = 0; volume < 20; ++volume)
+  {
+    const Matrix4 frame = RandomFrame(random, { 0.7, 0.7, 0.7 }, volume % 2 != 0);
+    const Matrix4 toIndex = frame.Inverse();
+    const TestField rising(
+      { 10, 10, 10 }, frame, [&](const Vec3& p) { return toIndex.Point(p)[0] + noise(random); });
+    TestField falling = rising;
+    for (double& v : falling.Voxels)
+    {
+      v = -v;
+    }
+    const IsoRayCaster entering = MakeCaster(rising);
+    const IsoRayCaster leaving = MakeCaster(falling);
+    for (int ray = 0; ray < 1000; ++ray)
+    {
+      const Vec3 index{ 1.0 + ray % 8, uniform(random), uniform(random) };
+      const Vec3 direction = Normalized(frame.Vector({ 1, 3 * noise(random), 3 * noise(random) }));
+      const Vec3 origin = frame.Point(index) - 30 * direction;
+      const double isoValue = rising.BSpline(index);
+      RayHit hit;
+      ASSERT_TRUE(entering.CastRay(origin, direction, isoValue, hit));
+      ASSERT_NEAR(hit.Distance, 30, 1e-11);
+      ASSERT_FALSE(leaving.CastRay(origin, direction, -isoValue, hit)) << "an exit is no entry";
+    }
+  }
+}
+
 TEST(IsoRayCaster, PlateausAtTheIsoValueAreSolid)
 {
   std::vector<std::uint8_t> voxels(16 * 4 * 4, 0);
