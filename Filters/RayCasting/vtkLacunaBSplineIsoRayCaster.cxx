@@ -252,13 +252,8 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
       const int whole[6] = { 0, plane.Size[0] - 1, 0, plane.Size[1] - 1, 0, 0 };
       const double spacing[3] = { plane.PixelSpacing, plane.PixelSpacing, 1 };
-      double direction[9];
-      for (int a = 0; a < 3; ++a)
-      {
-        direction[3 * a] = plane.Right[a];
-        direction[3 * a + 1] = plane.Down[a];
-        direction[3 * a + 2] = plane.View[a];
-      }
+      const double direction[9] = { plane.Right[0], plane.Down[0], plane.View[0], plane.Right[1],
+        plane.Down[1], plane.View[1], plane.Right[2], plane.Down[2], plane.View[2] };
       outInfo->Set(SDDP::WHOLE_EXTENT(), whole, 6);
       outInfo->Set(vtkDataObject::ORIGIN(), plane.Origin.data(), 3);
       outInfo->Set(vtkDataObject::SPACING(), spacing, 3);

@@ -389,7 +389,7 @@ private:
     {
       for (int a = 0; a < 4; ++a)
       {
-        double* p = this->Cell.Points + a * u + b * v + end * stride;
+        double* p = &this->Cell.Points[a * u + b * v + end * stride];
         p[0] = 2 * p[inward * stride] - p[2 * inward * stride];
       }
     }

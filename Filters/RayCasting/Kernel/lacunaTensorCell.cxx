@@ -145,7 +145,7 @@ LACUNA_WIDE void ComposeCubic(const double* points, const double (*wx)[4], const
     alignas(32) double rows[4][4] = {};
     for (int j = 0; j < 4; ++j)
     {
-      const double* p = points + 16 * k + 4 * j;
+      const double* p = &points[16 * k + 4 * j];
       for (int m = 0; m < 4; ++m)
       {
         rows[j][m] = p[0] * wx[0][m] + p[1] * wx[1][m] + p[2] * wx[2][m] + p[3] * wx[3][m];
@@ -185,7 +185,7 @@ void ComposeLinear(const double* points, const double (*wx)[2], const double (*w
   {
     for (int j = 0; j < 2; ++j)
     {
-      const double* p = points + 4 * k + 2 * j;
+      const double* p = &points[4 * k + 2 * j];
       for (int l = 0; l < 2; ++l)
       {
         const double x = p[0] * wx[0][l] + p[1] * wx[1][l];
