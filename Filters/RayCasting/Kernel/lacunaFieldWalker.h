@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -365,7 +366,7 @@ private:
     }
     if constexpr (Support == 4)
     {
-      constexpr int strides[3] = { 1, 4, 16 };
+      constexpr std::ptrdiff_t strides[3] = { 1, 4, 16 };
       for (int a = 0; a < 3; ++a)
       {
         if (cell[a] == 0)
@@ -381,10 +382,10 @@ private:
   }
 
   /// Continues the points linearly along an axis at position end; inward leads to its neighbours.
-  void Extrapolate(int axis, int stride, int end, int inward)
+  void Extrapolate(int axis, std::ptrdiff_t stride, int end, int inward)
   {
-    const int u = axis == 0 ? 4 : 1;
-    const int v = axis == 2 ? 4 : 16;
+    const std::ptrdiff_t u = axis == 0 ? 4 : 1;
+    const std::ptrdiff_t v = axis == 2 ? 4 : 16;
     for (int b = 0; b < 4; ++b)
     {
       for (int a = 0; a < 4; ++a)
