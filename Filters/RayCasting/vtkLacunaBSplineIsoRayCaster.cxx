@@ -375,9 +375,9 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
         "Array=" + name + " IsoValues=" + Joined(this->IsoValues.data(), count) +
           " Interpolation=" + std::to_string(this->Interpolation) + " SolidSide=" +
           std::to_string(this->SolidSide) + " ViewDirection=" + Joined(this->ViewDirection, 3) +
-          " ViewUp=" + Joined(this->ViewUp, 3) + " PlaneOrigin=" + Joined(this->PlaneOrigin, 3) +
-          " PixelSpacing=" + Joined(&this->PixelSpacing, 1) + " ImageSize=" +
-          std::to_string(this->ImageSize[0]) + "," + std::to_string(this->ImageSize[1]));
+          " ViewUp=" + Joined(this->ViewUp, 3) + " PlaneOrigin=" + Joined(plane.Origin.data(), 3) +
+          " PixelSpacing=" + Joined(&plane.PixelSpacing, 1) +
+          " ImageSize=" + std::to_string(plane.Size[0]) + "," + std::to_string(plane.Size[1]));
     });
 }
 

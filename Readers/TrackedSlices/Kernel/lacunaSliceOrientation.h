@@ -23,7 +23,7 @@ struct SliceFlips
   bool Y = false; ///< rows are reversed
 };
 
-/// The flips that bring slices stored in orientation ("MF", "UNA", "US_IMG_ORIENT_MFA" …) to the
+/// The flips that bring slices stored in orientation ("MF", "UNA", "US_IMG_ORIENT_MFA" ...) to the
 /// standard one. imageType is the value of UltrasoundImageType; empty means BRIGHTNESS. Throws
 /// std::invalid_argument that says what would be right when the two do not go together, when slices
 /// would have to be transposed, or when interleaved complex data would have to be flipped.

@@ -13,7 +13,7 @@
 namespace lacuna
 {
 /// Which pixels: columns and rows are those of the standard orientation (see
-/// lacunaSliceOrientation.h), slices are FirstFrame, FirstFrame + FrameStride, …
+/// lacunaSliceOrientation.h), slices are FirstFrame, FirstFrame + FrameStride, ...
 struct SliceRegion
 {
   std::int64_t FirstColumn = 0;
