@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Helpers that declare tests.
+
 # lacuna_add_kernel_test(<name> SOURCES <file>... LIBRARIES <target>...)
-# A GoogleTest program without VTK; its cases appear in ctest as Kernel.<name>.<suite>.<case>.
+# A GoogleTest program without VTK, in ctest as Kernel.<name>.
 function (lacuna_add_kernel_test name)
   cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DBUILD=... -DSOURCE=... -DWORK=... -DFLAVOR=... -DARGUMENTS=... -P embed.cmake
+# cmake -DBUILD=... -DSOURCE=... -DWORK=... -P embed.cmake
 # Installs Lacuna into a folder of its own, moves that folder, then configures, builds and runs a
 # program that finds it there: what an embedder does, and a proof that the package is relocatable.
 function (run)
@@ -15,6 +15,6 @@ file(RENAME "${WORK}/installed" "${WORK}/moved")
 file(GLOB_RECURSE config "${WORK}/moved/*/LacunaConfig.cmake")
 get_filename_component(config "${config}" DIRECTORY)
 run("${CMAKE_COMMAND}" -GNinja -S "${SOURCE}" -B "${WORK}/program" "-DLacuna_DIR=${config}"
-  -DCMAKE_BUILD_TYPE=Release ${ARGUMENTS})
+  -DCMAKE_BUILD_TYPE=Release)
 run("${CMAKE_COMMAND}" --build "${WORK}/program")
 run("${WORK}/program/SkullDepthMap")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The demo on real data: a spine phantom's sweep and the CT of a real skull with a disc cut out."""
 from lacuna import demo
-from lacuna_test import data, output
+from lacuna_test import compare_with_baseline, data, output
 
 sweep = data("ultrasound_spine/SpinePhantomFreehand.igs.mha")
 calibration = data("ultrasound_spine/PlusDeviceSet_SpinePhantomFreehandReconstructionOnly.xml")
@@ -18,7 +18,9 @@ assert all(abs(a - b) < 2e-3 for a, b in zip(origin, (-74.5217, 165.573, 29.072)
 report = demo.main(["--output", output("demo-real-data"), "--clip", "187", "225", "445", "391", "--level", "60",
                     "--ct", ct, "--hole", "90.2", "97.5", "100", "30"] + ultrasound)
 assert report.get("open edges of the surface") == 0
-assert 1 < float(report.get("enclosed volume, ml")) < 2
+assert abs(float(report.get("enclosed volume, ml")) - 1.36) < 0.07
+compare_with_baseline(output("demo-real-data/ultrasound.png"), "spine.png", 30)
+compare_with_baseline(output("demo-real-data/implant.png"), "head.png", 30)
 
 # against the bone that was removed; a plain dense solution reaches 0.94 and 0.32 mm
 assert float(report.get("error against the bone that was there: largest, mm")) <= 1.0

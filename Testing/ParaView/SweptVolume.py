@@ -42,6 +42,7 @@ def open_slices(name, *arguments):
     """Tracked slices from a file, so that a state can find them again."""
     path = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], name + ".vti")
     writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()  # raw appended data is unreadable with recent libexpat
     writer.SetInputData(tracked_slices(*arguments))
     writer.SetFileName(path)
     writer.Write()

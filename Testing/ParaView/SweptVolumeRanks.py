@@ -20,7 +20,7 @@ def reconstruct(slices, volume):
     LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
     proxy = SweptVolume(Input=XMLImageDataReader(FileName=[slices]), OutputSpacing=[0.31] * 3)
     proxy.UpdatePipeline()
-    SaveData(volume, proxy=proxy)
+    SaveData(volume, proxy=proxy, DataMode="Binary")
 
 
 def write_slices(name):
@@ -45,6 +45,7 @@ def write_slices(name):
         array.SetName(name_)
         stack.GetFieldData().AddArray(array)
     writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()  # raw appended data is unreadable with recent libexpat
     writer.SetInputData(stack)
     writer.SetFileName(name)
     writer.Write()

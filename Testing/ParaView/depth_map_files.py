@@ -37,6 +37,7 @@ def write_map(name, depth, spacing, origin, right, down):
     image.GetFieldData().AddArray(matrix)
     path = output(name + ".vti")
     writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()  # raw appended data is unreadable with recent libexpat
     writer.SetFileName(path)
     writer.SetInputData(image)
     assert writer.Write() == 1

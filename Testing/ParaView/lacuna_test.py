@@ -22,15 +22,15 @@ def output(name):
     return os.path.join(folder, name)
 
 
-def compare_with_baseline(picture, threshold):
-    """Compares a PNG with the one of the same name in the user guide, so that the guide stays true.
+def compare_with_baseline(picture, name, threshold):
+    """Compares a PNG with one of the pictures of the user guide, so that the guide stays true.
 
     threshold: see vtkImageDifference; 0 is equal, tens are font and driver differences.
     """
     from vtkmodules.vtkImagingCore import vtkImageDifference
     from vtkmodules.vtkIOImage import vtkPNGReader
     pictures = os.path.join(os.path.dirname(__file__), "..", "..", "Documentation", "UserGuide", "pictures")
-    baseline = os.path.join(pictures, os.path.basename(picture))
+    baseline = os.path.join(pictures, name)
     assert os.path.exists(baseline), f"no baseline {baseline}; look at {picture} and copy it there"
     readers = []
     for name in (picture, baseline):
@@ -45,5 +45,5 @@ def compare_with_baseline(picture, threshold):
     difference.SetImageConnection(readers[1].GetOutputPort())
     difference.Update()
     error = difference.GetThresholdedError()
-    print(f"{os.path.basename(picture)}: image error {error:.1f} (at most {threshold})", flush=True)
+    print(f"{name}: image error {error:.1f} (at most {threshold})", flush=True)
     assert error <= threshold

@@ -36,7 +36,7 @@ def run(options, report):
         filled = fill(depth, options, skull, ct)
         image = servermanager.Fetch(filled)
         describe(image, skull, report)
-        pv.SaveData(os.path.join(options.output, "filled-depth-map.vti"), proxy=filled)
+        pv.SaveData(os.path.join(options.output, "filled-depth-map.vti"), proxy=filled, DataMode="Binary")
     with report.stage("write the implant surface"):
         writer = lacuna.vtkLacunaIGESWriter()
         writer.SetInputData(image)
@@ -108,14 +108,15 @@ def fill(depth, options, skull, ct):
 def describe(image, skull, report):
     """Numbers of the fit; adds the array Error to the filled pixels where the truth is known."""
     field = image.GetFieldData()
+    mask = image.GetPointData().GetArray("FilledMask")
+    if mask is None or not vtk_to_numpy(mask).any():
+        raise ValueError("the depth map has no surface at this level, or no hole to fill: mark it with --hole X Y Z R")
+    mask = vtk_to_numpy(mask) > 0
     report.add("depth map, pixels", "{} × {}".format(*image.GetDimensions()))
     report.add("nodes of the spline", int(field.GetArray("NodeCount").GetValue(0)))
     report.add("condition estimate", f"{field.GetArray('ConditionEstimate').GetValue(0):.2g}")
     report.add("hole, mm² of surface", f"{field.GetArray('DefectArea').GetValue(0):.0f}")
 
-    mask = vtk_to_numpy(image.GetPointData().GetArray("FilledMask")) > 0
-    if not mask.any():
-        raise ValueError("the depth map has no hole to fill; mark it with --hole X Y Z R")
     if skull:
         error = np.full(mask.shape, np.nan)
         fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted"))
@@ -156,4 +157,5 @@ def picture(image, view, name):
         limit = math.ceil(10 * np.nanmax(np.abs(error))) / 10
         pictures.color_by(display, render, ERROR, "error of the implant, mm", (-limit, limit))
     pictures.look(render, view, view_up(view), 1.1)
+    pictures.add_scale_bar(render, 50)
     pictures.save(render, name)

@@ -31,10 +31,13 @@ def run(options, report):
         report.add("volume, voxels", " × ".join(map(str, dimensions(volume))))
         report.add("voxel, mm", f"{options.spacing:g}")
         report.add("origin, mm", " ".join(f"{b:.3f}" for b in volume.GetDataInformation().GetBounds()[::2]))
-        pv.SaveData(os.path.join(options.output, "volume.vti"), proxy=volume)
+        pv.SaveData(os.path.join(options.output, "volume.vti"), proxy=volume, DataMode="Binary")
     with report.stage("filter and contour"):
         truth = None if options.sweep else sweep.GetClientSideObject()
-        level = options.level or (truth.GetTrueIsoValue() if truth else surface_level(volume))
+        if options.level is not None:
+            level = options.level
+        else:
+            level = truth.GetTrueIsoValue() if truth else surface_level(volume)
         surface = closed_surface(sweep, volume, level, options.median)
         surface.UpdatePipeline()
         pv.SaveData(os.path.join(options.output, "surface.stl"), proxy=surface)
@@ -143,4 +146,5 @@ def picture(sweep, surface, name):
     lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
     travel = np.cross(lateral, depth)
     pictures.look(render, depth + 0.35 * lateral + 0.5 * travel, travel - 0.5 * depth, 1.1)
+    pictures.add_scale_bar(render, 10)
     pictures.save(render, name)

@@ -42,10 +42,16 @@ def raising(warnings=None):
     keep.CallDataType = "string0"
     window = vtkOutputWindow.GetInstance()
     tags = [window.AddObserver(event, keep) for event in ("ErrorEvent", "WarningEvent")]
+    consequence = None
     try:
         yield
+    except Exception as exception:
+        # what an algorithm said is the cause of what Python stumbled over later
+        if not errors:
+            raise
+        consequence = exception
     finally:
         for tag in tags:
             window.RemoveObserver(tag)
     if errors:
-        raise PipelineError("; ".join(dict.fromkeys(errors)))
+        raise PipelineError("; ".join(dict.fromkeys(errors))) from consequence

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures in one style: white background, matt surfaces, scalar bars with units."""
+import numpy as np
 import paraview.simple as pv
 
 BONE = (0.93, 0.89, 0.80)
@@ -61,12 +62,22 @@ def look(view, direction, up, zoom=1.0):
     camera.Zoom(zoom)
 
 
-def add_text(view, text):
-    """A line of text in the upper left corner."""
-    display = pv.Show(pv.Text(Text=text), view)
+def add_scale_bar(view, millimetres):
+    """A bar of that length with its label at the lower edge. After look(): it holds for that view."""
+    camera = view.GetActiveCamera()
+    direction, up = np.array(camera.GetDirectionOfProjection()), np.array(camera.GetViewUp())
+    right = np.cross(direction, up)
+    right /= np.linalg.norm(right)
+    up = np.cross(right, direction)
+    # parallel projection: the window is twice ParallelScale high; in front of all that is shown
+    near = 0.9 * camera.GetClippingRange()[0] + 0.1 * camera.GetClippingRange()[1]
+    middle = np.array(camera.GetPosition()) + near * direction - 0.84 * camera.GetParallelScale() * up
+    line = pv.Line(Point1=list(middle - millimetres / 2 * right), Point2=list(middle + millimetres / 2 * right))
+    show_surface(line, view, (0.1, 0.1, 0.1)).LineWidth = 5
+    display = pv.Show(pv.Text(Text=f"{millimetres:g} mm"), view)
     display.Color = [0.1, 0.1, 0.1]
-    display.FontSize = 20
-    display.WindowLocation = "Upper Left Corner"
+    display.FontSize = 18
+    display.WindowLocation = "Lower Center"
 
 
 def save(view, name):
