@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaDepthMap.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaFieldData.h"
@@ -29,6 +30,19 @@ vtkLacunaDepthMap::vtkLacunaDepthMap(vtkImageData* map)
   {
     throw std::runtime_error(std::string("a depth map has a one-component point array '") +
       DepthName + "', which is missing here");
+  }
+  vtkPointData* arrays = map->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = arrays->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != map->GetNumberOfPoints())
+    {
+      std::ostringstream message;
+      message << "point array '" << (array->GetName() ? array->GetName() : "") << "' has "
+              << array->GetNumberOfTuples() << " tuples; the depth map has "
+              << map->GetNumberOfPoints() << " pixels";
+      throw std::runtime_error(message.str());
+    }
   }
   this->ImageToWorld =
     vtkLacunaFieldData::GetMatrix(vtkLacunaFieldData::Get(map, ImageToWorldName, 16, 1), 0);

@@ -15,6 +15,8 @@
 
 namespace
 {
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
 void EmptyOutputs(vtkInformationVector* outputs)
 {
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
@@ -25,8 +27,29 @@ void EmptyOutputs(vtkInformationVector* outputs)
     }
     // VTK forgets the combined request only after success: the next one would be united with it,
     // though the whole extent may have become smaller.
-    outputs->GetInformationObject(i)->Remove(
-      vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+    outputs->GetInformationObject(i)->Remove(SDDP::COMBINED_UPDATE_EXTENT());
+  }
+}
+
+// The text of what body throws; empty when it ran to its end. Aborted passes through.
+std::string ErrorOf(const std::function<void()>& body)
+{
+  try
+  {
+    body();
+    return {};
+  }
+  catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc&)
+  {
+    return "out of memory";
+  }
+  catch (const std::exception& e)
+  {
+    return e.what();
   }
 }
 }
@@ -35,27 +58,48 @@ void EmptyOutputs(vtkInformationVector* outputs)
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
-  std::string error;
   try
   {
-    vtkLacunaExecution execution(algorithm);
-    body(execution);
-    return 1;
+    const std::string error = ErrorOf(
+      [&]
+      {
+        vtkLacunaExecution execution(algorithm);
+        body(execution);
+      });
+    if (error.empty())
+    {
+      return 1;
+    }
+    EmptyOutputs(outputs);
+    vtkErrorWithObjectMacro(algorithm, << error);
+    return 0;
   }
   catch (const lacuna::Aborted&)
   {
     EmptyOutputs(outputs);
     return 1; // not an error: the user asked for it
   }
-  catch (const std::bad_alloc&)
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::RunInformation(
+  vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body)
+{
+  const std::string error = ErrorOf(body);
+  if (error.empty())
   {
-    error = "out of memory";
-  }
-  catch (const std::exception& e)
-  {
-    error = e.what();
+    return 1;
   }
   EmptyOutputs(outputs);
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    // Otherwise VTK keeps the input's whole extent as this algorithm's, and asks for it later.
+    vtkInformation* info = outputs->GetInformationObject(i);
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
+    info->Remove(SDDP::UPDATE_EXTENT());
+    info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
+  }
   vtkErrorWithObjectMacro(algorithm, << error);
   return 0;
 }

@@ -30,6 +30,12 @@ public:
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 
+  /// Runs the body of algorithm's RequestInformation, with the same rules. After an exception the
+  /// outputs are empty, have an empty whole extent and no remembered request, so that the next
+  /// update starts afresh when the cause is mended.
+  static int RunInformation(
+    vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body);
+
 protected:
   void Launch(std::int64_t count, std::int64_t grain, const Body& body) override;
   bool OnProgress(double fraction) override;

@@ -27,6 +27,13 @@ vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
     throw std::runtime_error("tracked slices must have one grey level per pixel, not " +
       std::to_string(this->GreyLevels->GetNumberOfComponents()) + " components");
   }
+  if (this->GreyLevels->GetNumberOfTuples() != stack->GetNumberOfPoints())
+  {
+    std::ostringstream message;
+    message << "tracked slices have " << this->GreyLevels->GetNumberOfTuples()
+            << " grey levels for " << stack->GetNumberOfPoints() << " pixels";
+    throw std::runtime_error(message.str());
+  }
   vtkDataArray* poses = vtkLacunaFieldData::Find(stack, ImageToReferenceName, 16, -1);
   if (!poses)
   {
@@ -40,7 +47,15 @@ vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
   for (vtkIdType i = 0; i < n; ++i)
   {
     this->Poses.push_back(vtkLacunaFieldData::GetMatrix(poses, i));
-    this->StatusFlags.push_back(static_cast<unsigned char>(status->GetTuple1(i)));
+    const double flags = status->GetTuple1(i);
+    if (!(flags >= 0 && flags <= 255 && flags == std::floor(flags)))
+    {
+      std::ostringstream message;
+      message << "field data array '" << SliceStatusName << "' is " << flags << " for slice " << i
+              << "; flags are whole numbers from 0 to 255";
+      throw std::runtime_error(message.str());
+    }
+    this->StatusFlags.push_back(static_cast<unsigned char>(flags));
     this->Times.push_back(times ? times->GetTuple1(i) : static_cast<double>(i));
   }
 }
@@ -49,6 +64,14 @@ vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
 vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(int k) const
 {
   const double z = this->Stack->GetOrigin()[2] + this->Stack->GetSpacing()[2] * k;
+  if (!(std::abs(z - std::round(z)) < 1e-3))
+  {
+    std::ostringstream message;
+    message << "the stack holds a slice at z = " << z
+            << ", between two slices of the sweep: a filter in between has resampled it along z "
+               "(the z coordinate of tracked slices is the slice number)";
+    throw std::runtime_error(message.str());
+  }
   const auto slice = static_cast<vtkIdType>(std::llround(z));
   if (slice < 0 || slice >= this->GetNumberOfSlices())
   {

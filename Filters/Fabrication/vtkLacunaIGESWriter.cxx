@@ -211,6 +211,20 @@ int vtkLacunaIGESWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaIGESWriter::Write()
+{
+  this->FileSize = 0;
+  this->Superclass::Write();
+  if (this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
+  {
+    // VTK does not come to WriteData when a filter upstream fails or has nothing
+    this->SetErrorCode(vtkErrorCode::UnknownError);
+    vtkErrorMacro("nothing was written: there is no input, or a filter before this one failed");
+  }
+  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaIGESWriter::WriteData()
 {
   this->MaximumDeviation = 0;

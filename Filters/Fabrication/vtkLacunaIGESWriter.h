@@ -36,6 +36,10 @@ public:
   vtkTypeMacro(vtkLacunaIGESWriter, vtkWriter);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
+   * before this one failed. */
+  int Write() override;
+
   ///@{
   /** The file to write, usually *.igs or *.iges. */
   vtkSetFilePathMacro(FileName);

@@ -188,32 +188,27 @@ int vtkLacunaSweptVolume::RequestInformation(
     connection->GetProducer()->Update(connection->GetIndex());
   }
 
-  vtkInformation* info = outputs->GetInformationObject(0);
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  try
-  {
-    const Plan plan(this, inputs[0]);
-    if (!plan.IsEmpty())
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
     {
-      for (int a = 0; a < 3; ++a)
+      vtkInformation* info = outputs->GetInformationObject(0);
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      const Plan plan(this, inputs[0]);
+      if (!plan.IsEmpty())
       {
-        extent[2 * a + 1] = plan.Grid.Dimensions[a] - 1;
+        for (int a = 0; a < 3; ++a)
+        {
+          extent[2 * a + 1] = plan.Grid.Dimensions[a] - 1;
+        }
+        info->Set(vtkDataObject::ORIGIN(), plan.Grid.Origin.data(), 3);
+        info->Set(vtkDataObject::SPACING(), plan.Grid.Spacing.data(), 3);
+        vtkDataObject::SetPointDataActiveScalarInfo(info, plan.ScalarType, 1);
       }
-      info->Set(vtkDataObject::ORIGIN(), plan.Grid.Origin.data(), 3);
-      info->Set(vtkDataObject::SPACING(), plan.Grid.Spacing.data(), 3);
-      vtkDataObject::SetPointDataActiveScalarInfo(info, plan.ScalarType, 1);
-    }
-  }
-  catch (const std::exception& e)
-  {
-    vtkErrorMacro(<< e.what());
-    return 0;
-  }
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  info->Remove(vtkDataObject::DIRECTION());
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
-  return 1;
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Remove(vtkDataObject::DIRECTION());
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
+    });
 }
 
 //------------------------------------------------------------------------------

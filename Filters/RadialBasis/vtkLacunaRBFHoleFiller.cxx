@@ -354,6 +354,10 @@ int vtkLacunaRBFHoleFiller::RequestUpdateExtent(
   int whole[6];
   info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
   info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), whole, 6);
+  // this very extent: a producer of sub-extents would split it once more by piece
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   return 1;
 }
 
@@ -370,6 +374,14 @@ int vtkLacunaRBFHoleFiller::RequestData(
   const auto body = [&](vtkLacunaExecution& execution)
   {
     const vtkLacunaDepthMap contract(map);
+    int whole[6];
+    inputVector[0]->GetInformationObject(0)->Get(
+      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    if (!std::equal(whole, whole + 6, map->GetExtent()))
+    {
+      throw std::runtime_error("only a part of the depth map has arrived, and the fit needs the "
+                               "whole; the filter before this one has divided it");
+    }
     if (contract.IsPerspective())
     {
       throw std::runtime_error("this is a perspective depth map; holes are filled in parallel maps "

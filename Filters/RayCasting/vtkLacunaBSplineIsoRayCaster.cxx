@@ -237,8 +237,8 @@ double vtkLacunaBSplineIsoRayCaster::GetIsoValue(int i) const
 int vtkLacunaBSplineIsoRayCaster::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
-    [&](vtkLacunaExecution&)
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
     {
       vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
       vtkInformation* outInfo = outputVector->GetInformationObject(0);
@@ -324,6 +324,11 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
 
       int extent[6];
       outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
+      if (extent[0] < 0 || extent[1] >= plane.Size[0] || extent[2] < 0 ||
+        extent[3] >= plane.Size[1] || extent[4] != 0 || extent[5] != 0)
+      {
+        throw std::runtime_error("pixels outside of the depth map were asked for");
+      }
       output->SetExtent(extent);
       vtkLacunaDepthMap::SetGeometry(output,
         { plane.Origin, plane.Right, plane.Down, plane.View,

@@ -138,39 +138,32 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
     info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
     return 1;
   }
-  auto sequence = std::make_unique<Sequence>();
-  try
-  {
-    this->OpenSequence(*sequence);
-  }
-  catch (const std::exception& e)
-  {
-    // After an error no older slices may pass for the ones asked for.
-    if (vtkDataObject* output = vtkDataObject::GetData(outputs, 0))
+  const int opened = vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
     {
-      output->Initialize();
-    }
+      auto sequence = std::make_unique<Sequence>();
+      this->OpenSequence(*sequence);
+      const lacuna::SequenceHeader& header = sequence->Header;
+      const int extent[6] = { 0, static_cast<int>(header.Columns) - 1, 0,
+        static_cast<int>(header.Rows) - 1, 0, sequence->Slices - 1 };
+      // z is the number of the slice in the file
+      const double origin[3] = { 0, 0, static_cast<double>(sequence->First) };
+      const double spacing[3] = { 1, 1, static_cast<double>(this->FrameStride) };
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), origin, 3);
+      info->Set(vtkDataObject::SPACING(), spacing, 3);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      vtkDataObject::SetPointDataActiveScalarInfo(
+        info, GetVTKType(sequence->Pixels->GetElementType()), 1);
+      this->Opened = std::move(sequence);
+    });
+  if (!opened)
+  {
     this->SetErrorCode(vtksys::SystemTools::FileExists(this->FileName)
         ? vtkErrorCode::FileFormatError
         : vtkErrorCode::FileNotFoundError);
-    vtkErrorMacro(<< e.what());
-    return 0;
   }
-
-  const lacuna::SequenceHeader& header = sequence->Header;
-  const int extent[6] = { 0, static_cast<int>(header.Columns) - 1, 0,
-    static_cast<int>(header.Rows) - 1, 0, sequence->Slices - 1 };
-  // z is the number of the slice in the file
-  const double origin[3] = { 0, 0, static_cast<double>(sequence->First) };
-  const double spacing[3] = { 1, 1, static_cast<double>(this->FrameStride) };
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  info->Set(vtkDataObject::ORIGIN(), origin, 3);
-  info->Set(vtkDataObject::SPACING(), spacing, 3);
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  vtkDataObject::SetPointDataActiveScalarInfo(
-    info, GetVTKType(sequence->Pixels->GetElementType()), 1);
-  this->Opened = std::move(sequence);
-  return 1;
+  return opened;
 }
 
 //------------------------------------------------------------------------------

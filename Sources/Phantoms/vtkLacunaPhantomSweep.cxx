@@ -177,26 +177,21 @@ const lacuna::PhantomScene* vtkLacunaPhantomSweep::FindScene()
 int vtkLacunaPhantomSweep::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  try
-  {
-    this->MakeMotion(nullptr);
-    this->GetScene();
-  }
-  catch (const std::exception& e)
-  {
-    vtkErrorMacro(<< e.what());
-    return 0;
-  }
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  const int extent[6] = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0,
-    this->NumberOfSlices - 1 };
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-  info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
-  info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-  vtkDataObject::SetPointDataActiveScalarInfo(
-    info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      this->MakeMotion(nullptr);
+      this->GetScene();
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      const int extent[6] = { 0, this->ImageSize[0] - 1, 0, this->ImageSize[1] - 1, 0,
+        this->NumberOfSlices - 1 };
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
+      info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
+      vtkDataObject::SetPointDataActiveScalarInfo(
+        info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -51,24 +51,19 @@ lacuna::Skull vtkLacunaSkullPhantom::MakeSkull()
 int vtkLacunaSkullPhantom::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  try
-  {
-    const lacuna::Skull skull = this->MakeSkull();
-    const std::array<int, 3> dimensions = skull.GetDimensions();
-    const int extent[6] = { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 };
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    info->Set(vtkDataObject::ORIGIN(), skull.GetOrigin().data(), 3);
-    info->Set(vtkDataObject::SPACING(), this->Spacing, 3);
-    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_SHORT, 1);
-    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    return 1;
-  }
-  catch (const std::exception& e)
-  {
-    vtkErrorMacro(<< e.what());
-    return 0;
-  }
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      const lacuna::Skull skull = this->MakeSkull();
+      const std::array<int, 3> dimensions = skull.GetDimensions();
+      const int extent[6] = { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 };
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), skull.GetOrigin().data(), 3);
+      info->Set(vtkDataObject::SPACING(), this->Spacing, 3);
+      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_SHORT, 1);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaMemory.h"
 
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -8,16 +9,34 @@
 
 namespace lacuna
 {
+namespace
+{
 double GetPhysicalMemory()
 {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const long pageSize = sysconf(_SC_PAGESIZE);
   return pages > 0 && pageSize > 0 ? static_cast<double>(pages) * static_cast<double>(pageSize) : 0;
 }
+}
+
+double GetAvailableMemory()
+{
+  // Linux says how much can be had without swapping; elsewhere all there is must do.
+  std::ifstream file("/proc/meminfo");
+  std::string name;
+  for (double kibibytes = 0; file >> name >> kibibytes; file.ignore(1000, '\n'))
+  {
+    if (name == "MemAvailable:")
+    {
+      return 1024 * kibibytes;
+    }
+  }
+  return GetPhysicalMemory();
+}
 
 void RequireMemory(const std::string& what, double bytes)
 {
-  const double available = GetPhysicalMemory();
+  const double available = GetAvailableMemory();
   if (available <= 0 || bytes <= available)
   {
     return;
@@ -26,7 +45,7 @@ void RequireMemory(const std::string& what, double bytes)
   std::ostringstream message;
   message.precision(3);
   message << what << " would need " << bytes / Gibibyte << " GiB, this machine has "
-          << available / Gibibyte << " GiB of memory";
+          << available / Gibibyte << " GiB of memory free";
   throw std::runtime_error(message.str());
 }
 }

@@ -6,6 +6,7 @@ volume (.vti), the closed surface (.stl), the filled depth map (.vti), the impla
 (.igs) and report.md with the numbers."""
 import argparse
 import contextlib
+import math
 import os
 import sys
 import time
@@ -44,6 +45,14 @@ def parse_arguments(arguments):
         parser.error("--clip belongs to --sweep")
     if options.hole and not options.ct:
         parser.error("--hole belongs to --ct (the phantom knows its own hole)")
+    for name in ("spacing", "margin", "node_spacing"):
+        value = getattr(options, name)
+        if not (math.isfinite(value) and value > 0):
+            parser.error(f"--{name.replace('_', '-')}: {value:g} is not a length above 0 mm")
+    if options.median < 1 or options.median % 2 == 0:
+        parser.error(f"--median: {options.median} is not an odd number above 0")
+    if options.hole and not options.hole[3] > 0:
+        parser.error("--hole: the radius must be above 0 mm")
     for name in ("sweep", "calibration", "ct"):
         file = getattr(options, name)
         if file and not os.path.isfile(file):
@@ -98,8 +107,9 @@ def main(arguments=None):
     options = parse_arguments(arguments)
     import lacuna.plugin
     from lacuna import demo_implant, demo_ultrasound
-    os.makedirs(options.output, exist_ok=True)
     report = Report()
+    with report.stage("make the output folder"):
+        os.makedirs(options.output, exist_ok=True)
     with report.stage("load the plugin"):
         lacuna.plugin.load()
     if options.only != "implant":

@@ -61,6 +61,9 @@ def read(options):
     if ct is None:
         raise ValueError(f"ParaView has no reader for {options.ct}")
     ct.UpdatePipeline()
+    kind = ct.GetDataInformation().GetDataSetTypeAsString()
+    if kind != "vtkImageData":
+        raise ValueError(f"{options.ct} is not a regular volume but {kind}")
     return ct, None
 
 

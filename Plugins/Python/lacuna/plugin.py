@@ -14,6 +14,11 @@ def path():
 
 
 def load():
-    """Loads the plugin into the current ParaView session: paraview.simple then has SweptVolume() etc."""
+    """Loads the plugin into the current ParaView session: paraview.simple then has SweptVolume() etc.
+
+    Connected to a server, the plugin is loaded there as well; it must be at the same place.
+    """
     import paraview.simple
-    paraview.simple.LoadPlugin(path(), remote=False, ns=vars(paraview.simple))
+    from paraview import servermanager
+    for remote in (False, True) if servermanager.ActiveConnection.IsRemote() else (False,):
+        paraview.simple.LoadPlugin(path(), remote=remote, ns=vars(paraview.simple))

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""After an error the output is empty, and once its cause is mended the result is whole: for every
+algorithm, in ParaView and for the classes alone. Also: what a filter makes of divided or damaged input."""
+import os
+
+import lacuna
+import lacuna.plugin
+import numpy as np
+import paraview.simple as pv
+from lacuna.errors import PipelineError, raising
+from lacuna_test import output
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkSphere
+
+lacuna.plugin.load()
+
+
+def points(proxy):
+    with raising():
+        proxy.UpdatePipeline()
+    return proxy.GetDataInformation().GetNumberOfPoints()
+
+
+def recovers(proxy, name, bad, good):
+    """bad gives an error, then every value of good its number of points."""
+    setattr(proxy, name, bad)
+    try:
+        points(proxy)
+        raise AssertionError(f"{proxy} accepts {name} = {bad}")
+    except PipelineError:
+        pass
+    assert proxy.GetDataInformation().GetNumberOfPoints() == 0
+    for value, expected in good:
+        setattr(proxy, name, value)
+        found = points(proxy)
+        assert found == expected, (name, value, found, expected)
+
+
+sweep = pv.PhantomSweep(NumberOfSlices=12, ImageSize=[40, 30], PixelSpacing=1.0)
+recovers(sweep, "NumberOfSlices", 0, [(5, 6000), (12, 14400), (3, 3600), (12, 14400)])
+volume = pv.SweptVolume(Input=sweep, OutputSpacing=[2, 2, 2])
+whole = points(volume)
+volume.OutputSpacing = [3, 3, 3]
+coarse = points(volume)
+assert 0 < coarse < whole
+recovers(volume, "OutputSpacing", [-2, 2, 2], [([3, 3, 3], coarse), ([2, 2, 2], whole), ([3, 3, 3], coarse)])
+
+skull = pv.SkullPhantom(Spacing=[4, 4, 4])
+voxels = points(skull)
+recovers(skull, "Spacing", [-1, 4, 4], [([4, 4, 4], voxels)])
+caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
+pixels = points(caster)
+caster.PixelSpacing = 5
+recovers(caster, "ViewUp", [0, 0, 0], [([0, 1, 0], points(pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500],
+                                                                                 PixelSpacing=5)))])
+caster.PixelSpacing = 9
+assert points(caster) == pixels < 1000
+
+# classes alone: no older result passes for the one asked for
+direct = lacuna.vtkLacunaSkullPhantom()
+direct.SetSpacing(4, 4, 4)
+direct.Update()
+assert direct.GetOutput().GetNumberOfPoints() == voxels
+direct.SetNoiseLevel(-1)
+try:
+    with raising():
+        direct.Update()
+    raise AssertionError("a negative noise was accepted")
+except PipelineError:
+    assert direct.GetOutput().GetNumberOfPoints() == 0
+direct.SetNoiseLevel(0)
+direct.Update()
+assert direct.GetOutput().GetNumberOfPoints() == voxels
+
+# every piece of a filled map comes from the fit of the whole
+cast = lacuna.vtkLacunaBSplineIsoRayCaster()
+cast.SetInputConnection(direct.GetOutputPort())
+cast.SetViewDirection(-0.4, 0.2, -0.9)
+cast.SetPixelSpacing(3)
+ball = vtkSphere()
+ball.SetCenter(28, -14, 63)
+ball.SetRadius(39)
+filler = lacuna.vtkLacunaRBFHoleFiller()
+filler.SetInputConnection(cast.GetOutputPort())
+filler.SetDefectRegion(ball)
+filler.SetNodeSpacing(4)
+filler.Update()
+image = filler.GetOutput()
+width, height, _ = image.GetDimensions()
+fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted")).reshape(height, width).copy()
+assert np.isfinite(fitted).any()
+covered = 0
+for piece in range(2):
+    filler.UpdateInformation()
+    filler.UpdatePiece(piece, 2, 0)
+    x0, x1, y0, y1, _, _ = filler.GetOutput().GetExtent()
+    part = vtk_to_numpy(filler.GetOutput().GetPointData().GetArray("Fitted")).reshape(y1 - y0 + 1, x1 - x0 + 1)
+    assert np.array_equal(part, fitted[y0:y1 + 1, x0:x1 + 1], equal_nan=True)
+    covered += part.size
+assert covered >= fitted.size
+
+# a writer whose input fails says so, and an older file does not pass for a new one
+writer = lacuna.vtkLacunaIGESWriter()
+writer.SetInputConnection(filler.GetOutputPort())
+writer.SetFileName(output("recovery.igs"))
+filler.UpdateWholeExtent()
+assert writer.Write() == 1
+written = os.path.getmtime(output("recovery.igs"))
+cast.SetViewUp(0, 0, 0)
+try:
+    with raising():
+        assert writer.Write() == 0
+    raise AssertionError("no error")
+except PipelineError:
+    assert os.path.getmtime(output("recovery.igs")) == written
+cast.SetViewUp(0, 1, 0)
+assert writer.Write() == 1
+
+
+def refused(algorithm, data, text):
+    algorithm.SetInputData(data)
+    try:
+        with raising():
+            algorithm.Update()
+    except PipelineError as error:
+        assert text in str(error), (text, str(error))
+        return
+    raise AssertionError(f"{algorithm.GetClassName()} takes input with a wrong array ({text})")
+
+
+def short(data, name):
+    """A copy of data whose point array has five tuples."""
+    copy = vtkImageData()
+    copy.DeepCopy(data)
+    old = vtk_to_numpy(copy.GetPointData().GetArray(name))
+    array = numpy_to_vtk(old[:5].copy(), deep=True)
+    array.SetName(name)
+    copy.GetPointData().AddArray(array)
+    if name == data.GetPointData().GetScalars().GetName():
+        copy.GetPointData().SetActiveScalars(name)
+    return copy
+
+
+cast.Update()
+for array in ("Depth", "vtkValidPointMask", "Normals"):
+    refused(lacuna.vtkLacunaRBFHoleFiller(), short(cast.GetOutput(), array), "5 tuples")
+    refused(lacuna.vtkLacunaDepthMapSurface(), short(cast.GetOutput(), array), "5 tuples")
+phantom = lacuna.vtkLacunaPhantomSweep()
+phantom.SetImageSize(40, 30)
+phantom.Update()
+stack = phantom.GetOutput()
+refused(lacuna.vtkLacunaSweptVolume(), short(stack, stack.GetPointData().GetScalars().GetName()), "5 grey levels")
+resampled = vtkImageData()
+resampled.DeepCopy(stack)
+resampled.SetSpacing(1, 1, 0.5)
+refused(lacuna.vtkLacunaSweptVolume(), resampled, "resampled it along z")
+flagged = vtkImageData()
+flagged.DeepCopy(stack)
+status = numpy_to_vtk(np.full(stack.GetDimensions()[2], 256.0), deep=True)
+status.SetName("SliceStatus")
+flagged.GetFieldData().AddArray(status)
+refused(lacuna.vtkLacunaSweptVolume(), flagged, "flags are whole numbers")
