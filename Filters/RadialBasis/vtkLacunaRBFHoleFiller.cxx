@@ -385,7 +385,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
     if (contract.IsPerspective())
     {
       throw std::runtime_error("this is a perspective depth map; holes are filled in parallel maps "
-                               "only: set Projection of the ray caster to Parallel");
+                               "only, such as those of B-Spline Iso Ray Caster");
     }
     if (this->Kernel != ThinPlate && this->Kernel != Linear && this->Kernel != Cubic)
     {
