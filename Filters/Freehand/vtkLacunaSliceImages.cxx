@@ -3,6 +3,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
 
@@ -10,43 +11,9 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <type_traits>
 
 namespace
 {
-template <class T>
-lacuna::PixelType GetPixelTypeOf()
-{
-  using lacuna::PixelType;
-  if (std::is_floating_point<T>::value)
-  {
-    return sizeof(T) == 4 ? PixelType::Float32 : PixelType::Float64;
-  }
-  const bool isSigned = std::is_signed<T>::value;
-  switch (sizeof(T))
-  {
-    case 1:
-      return isSigned ? PixelType::Int8 : PixelType::UInt8;
-    case 2:
-      return isSigned ? PixelType::Int16 : PixelType::UInt16;
-    case 4:
-      return isSigned ? PixelType::Int32 : PixelType::UInt32;
-    default:
-      return isSigned ? PixelType::Int64 : PixelType::UInt64;
-  }
-}
-
-lacuna::PixelType GetPixelType(vtkDataArray* array)
-{
-  switch (array->GetDataType())
-  {
-    vtkTemplateMacro(return GetPixelTypeOf<VTK_TT>());
-    default:
-      throw std::runtime_error(
-        std::string("grey levels of type ") + array->GetDataTypeAsString() + " are not supported");
-  }
-}
-
 // Pixels of an axis that are used: indices relative to the stack's extent.
 struct Range
 {
@@ -114,7 +81,7 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
       vtkDataArray::CreateDataArray(tracked.GetGreyLevels()->GetDataType()));
     this->GreyLevels->DeepCopy(tracked.GetGreyLevels());
   }
-  const lacuna::PixelType type = GetPixelType(this->GreyLevels);
+  const lacuna::ScalarType type = vtkLacunaScalarType::Get(this->GreyLevels);
   const auto* pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0));
   const Range columns = Clip(stack, 0, clip[0], clip[2]);
   const Range rows = Clip(stack, 1, clip[1], clip[3]);
@@ -140,7 +107,7 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
     slice.Pixels = pixels +
       ((k - extent[4]) * height * width + (rows.First - extent[2]) * width + columns.First -
         extent[0]) *
-        static_cast<std::int64_t>(lacuna::GetPixelSize(type));
+        static_cast<std::int64_t>(lacuna::GetScalarSize(type));
     slice.RowStride = width;
     slice.Width = columns.Last - columns.First + 1;
     slice.Height = rows.Last - rows.First + 1;

@@ -14,6 +14,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -59,44 +60,6 @@ lacuna::Matrix4 IndexToWorld(
   return lacuna::Matrix4(m->GetData()) *
     lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
       static_cast<double>(extent[4]) });
-}
-
-template <class T>
-constexpr lacuna::VoxelType IntegerType()
-{
-  using lacuna::VoxelType;
-  constexpr bool isSigned = std::numeric_limits<T>::is_signed;
-  switch (sizeof(T))
-  {
-    case 1:
-      return isSigned ? VoxelType::Int8 : VoxelType::UInt8;
-    case 2:
-      return isSigned ? VoxelType::Int16 : VoxelType::UInt16;
-    case 4:
-      return isSigned ? VoxelType::Int32 : VoxelType::UInt32;
-    default:
-      return isSigned ? VoxelType::Int64 : VoxelType::UInt64;
-  }
-}
-
-lacuna::VoxelType VoxelTypeOf(vtkDataArray* array)
-{
-  switch (array->GetDataType())
-  {
-    case VTK_FLOAT:
-      return lacuna::VoxelType::Float32;
-    case VTK_DOUBLE:
-      return lacuna::VoxelType::Float64;
-    case VTK_BIT:
-      throw std::runtime_error("a volume of bits is not supported: convert it to unsigned char");
-    default:
-      switch (array->GetDataType())
-      {
-        vtkTemplateMacro(return IntegerType<VTK_TT>());
-      }
-  }
-  throw std::runtime_error(
-    std::string("voxels of type ") + array->GetDataTypeAsString() + " are not supported");
 }
 
 std::string Joined(const double* values, std::size_t n)
@@ -158,7 +121,7 @@ public:
     vtkDataArray* scalars, vtkLacunaExecution& execution)
   {
     lacuna::VoxelVolume volume;
-    volume.Type = VoxelTypeOf(scalars);
+    volume.Type = vtkLacunaScalarType::Get(scalars);
     volume.Size = SizeOf(input->GetExtent());
     volume.IndexToWorld = IndexToWorld(input->GetOrigin(), input->GetSpacing(),
       input->GetDirectionMatrix()->GetData(), input->GetExtent());

@@ -16,13 +16,13 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
-#include "vtkTypeTraits.h"
 #include <vtksys/SystemInformation.hxx>
 #include <vtksys/SystemTools.hxx>
 
@@ -34,12 +34,6 @@
 namespace
 {
 constexpr const char* IntensityName = "Intensity";
-
-int GetVTKType(lacuna::ElementType type)
-{
-  return lacuna::DispatchElementType(
-    type, [](auto value) { return vtkTypeTraits<decltype(value)>::VTKTypeID(); });
-}
 
 std::string Text(const char* s)
 {
@@ -154,7 +148,7 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       info->Set(vtkDataObject::SPACING(), spacing, 3);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(
-        info, GetVTKType(sequence->Pixels->GetElementType()), 1);
+        info, vtkLacunaScalarType::ToVTK(sequence->Pixels->GetScalarType()), 1);
       this->Opened = std::move(sequence);
     });
   if (!opened)
@@ -174,7 +168,7 @@ void vtkLacunaTrackedSliceReader::CheckMemory(const int extent[6]) const
   const double slices = static_cast<double>(extent[5]) - extent[4] + 1;
   const double mebibyte = 1024.0 * 1024.0;
   const auto elementSize =
-    static_cast<double>(lacuna::GetElementSize(this->Opened->Pixels->GetElementType()));
+    static_cast<double>(lacuna::GetScalarSize(this->Opened->Pixels->GetScalarType()));
   const double needed = columns * rows * slices * elementSize / mebibyte;
   double limit = this->MemoryLimit;
   if (this->MemoryLimit == 0)
@@ -285,7 +279,8 @@ int vtkLacunaTrackedSliceReader::RequestData(
           return;
         }
         this->CheckMemory(extent);
-        output->AllocateScalars(GetVTKType(this->Opened->Pixels->GetElementType()), 1);
+        output->AllocateScalars(
+          vtkLacunaScalarType::ToVTK(this->Opened->Pixels->GetScalarType()), 1);
         output->GetPointData()->GetScalars()->SetName(IntensityName);
         void* pixels = output->GetScalarPointer();
         if (!pixels)

@@ -15,6 +15,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -57,15 +58,8 @@ std::unique_ptr<lacuna::PhantomScene> MakeScene(vtkImageData* volume)
   {
     throw std::runtime_error("the input volume has no active point scalars to image");
   }
-  switch (scalars->GetDataType())
-  {
-    vtkTemplateMacro(return MakeVolumeScene(
-      static_cast<const VTK_TT*>(scalars->GetVoidPointer(0)), scalars, volume););
-    default:
-      break;
-  }
-  throw std::runtime_error(std::string("the input volume has scalars of type ") +
-    scalars->GetDataTypeAsString() + "; they must be numbers");
+  return lacuna::DispatchScalars(vtkLacunaScalarType::Get(scalars), scalars->GetVoidPointer(0),
+    [&](const auto* voxels) { return MakeVolumeScene(voxels, scalars, volume); });
 }
 }
 

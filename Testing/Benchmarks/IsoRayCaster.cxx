@@ -79,7 +79,7 @@ const ShortVolume& Head()
       result.Voxels.clear();
     }
     result.Volume.Voxels = result.Voxels.data();
-    result.Volume.Type = VoxelType::Int16;
+    result.Volume.Type = ScalarType::Int16;
     return result;
   }();
   return head;
@@ -108,7 +108,7 @@ const ShortVolume& Shell(int n)
       }
     }
     shell.Volume.Voxels = shell.Voxels.data();
-    shell.Volume.Type = VoxelType::Int16;
+    shell.Volume.Type = ScalarType::Int16;
     shell.Volume.Size = { n, n, n };
     shell.Volume.IndexToWorld = Matrix4::Scaling({ spacing, spacing, spacing });
   }

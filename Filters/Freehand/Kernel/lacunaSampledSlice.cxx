@@ -32,12 +32,12 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
   sampled.Width = columns.GetNumberOfSamples();
   sampled.Height = rows.GetNumberOfSamples();
   sampled.RowStride = sampled.Width;
-  sampled.Type = std::is_same<Real, float>::value ? PixelType::Float32 : PixelType::Float64;
+  sampled.Type = std::is_same<Real, float>::value ? ScalarType::Float32 : ScalarType::Float64;
   const auto count = static_cast<std::size_t>(sampled.Width) * sampled.Height;
   sampled.Storage.reset(new std::byte[count * sizeof(Real)]);
   sampled.Pixels = sampled.Storage.get();
   auto* const means = reinterpret_cast<Real*>(sampled.Storage.get());
-  VisitPixels(slice,
+  DispatchScalars(slice.Type, slice.Pixels,
     [&](const auto* pixels)
     {
       using T = std::remove_cv_t<std::remove_pointer_t<decltype(pixels)>>;
@@ -49,17 +49,17 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
     });
 }
 
-bool HasSampler(PixelType type, bool doublePrecision)
+bool HasSampler(ScalarType type, bool doublePrecision)
 {
-  return doublePrecision ? type == PixelType::Float64
-                         : type == PixelType::UInt8 || type == PixelType::Int16 ||
-      type == PixelType::UInt16 || type == PixelType::Float32;
+  return doublePrecision ? type == ScalarType::Float64
+                         : type == ScalarType::UInt8 || type == ScalarType::Int16 ||
+      type == ScalarType::UInt16 || type == ScalarType::Float32;
 }
 }
 
-bool NeedsDoublePrecision(PixelType type)
+bool NeedsDoublePrecision(ScalarType type)
 {
-  return GetPixelSize(type) > 2 && type != PixelType::Float32;
+  return GetScalarSize(type) > 2 && type != ScalarType::Float32;
 }
 
 SampledSlice SampleSlice(
@@ -117,7 +117,7 @@ void OwnPixels(SampledSlice& slice)
   {
     return;
   }
-  const std::size_t size = GetPixelSize(slice.Type);
+  const std::size_t size = GetScalarSize(slice.Type);
   const std::size_t line = size * static_cast<std::size_t>(slice.Width);
   slice.Storage.reset(new std::byte[line * static_cast<std::size_t>(slice.Height)]);
   for (int row = 0; row < slice.Height; ++row)

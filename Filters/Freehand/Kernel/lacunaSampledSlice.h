@@ -37,7 +37,7 @@ struct SampledSlice
   AffineFunction Column, Row, Distance;
 
   /// The raster: UInt8, Int16, UInt16, Float32 or Float64.
-  PixelType Type = PixelType::UInt8;
+  ScalarType Type = ScalarType::UInt8;
   const void* Pixels = nullptr;
   std::int64_t RowStride = 0;
   int Width = 0;
@@ -55,6 +55,6 @@ SampledSlice SampleSlice(
 void OwnPixels(SampledSlice& slice);
 
 /// True when grey levels of this type need double precision.
-bool NeedsDoublePrecision(PixelType type);
+bool NeedsDoublePrecision(ScalarType type);
 }
 #endif

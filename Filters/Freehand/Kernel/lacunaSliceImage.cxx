@@ -1,30 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSliceImage.h"
 
+#include <stdexcept>
+
 namespace lacuna
 {
-std::size_t GetPixelSize(PixelType type)
-{
-  switch (type)
-  {
-    case PixelType::Int8:
-    case PixelType::UInt8:
-      return 1;
-    case PixelType::Int16:
-    case PixelType::UInt16:
-      return 2;
-    case PixelType::Int32:
-    case PixelType::UInt32:
-    case PixelType::Float32:
-      return 4;
-    case PixelType::Int64:
-    case PixelType::UInt64:
-    case PixelType::Float64:
-      return 8;
-  }
-  throw std::invalid_argument("unknown pixel type");
-}
-
 void CheckSlice(const SliceImage& slice)
 {
   if (slice.Width < 2 || slice.Height < 2)

@@ -5,38 +5,19 @@
 #define lacunaSliceImage_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaScalarType.h"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 
 namespace lacuna
 {
-/// Types of grey levels.
-enum class PixelType
-{
-  Int8,
-  UInt8,
-  Int16,
-  UInt16,
-  Int32,
-  UInt32,
-  Int64,
-  UInt64,
-  Float32,
-  Float64
-};
-
-/// Bytes of one pixel.
-std::size_t GetPixelSize(PixelType type);
-
 /// A rectangular window of a slice; does not own the pixels. What lies outside of the window (a
 /// ruler, the machine's texts) does not exist for the reconstruction.
 struct SliceImage
 {
-  PixelType Type = PixelType::UInt8;
+  ScalarType Type = ScalarType::UInt8;
   const void* Pixels = nullptr; ///< the window's pixel (0, 0)
   std::int64_t RowStride = 0;   ///< pixels from one row to the next
   int Width = 0;                ///< pixels, at least 2
@@ -53,35 +34,5 @@ void CheckSlice(const SliceImage& slice);
 
 /// Centres of the four corner pixels, mm.
 std::array<Vec3, 4> GetCorners(const SliceImage& slice);
-
-/// Calls f(const T* pixels) with the type of the slice's pixels.
-template <class F>
-void VisitPixels(const SliceImage& slice, F&& f)
-{
-  switch (slice.Type)
-  {
-    case PixelType::Int8:
-      return f(static_cast<const std::int8_t*>(slice.Pixels));
-    case PixelType::UInt8:
-      return f(static_cast<const std::uint8_t*>(slice.Pixels));
-    case PixelType::Int16:
-      return f(static_cast<const std::int16_t*>(slice.Pixels));
-    case PixelType::UInt16:
-      return f(static_cast<const std::uint16_t*>(slice.Pixels));
-    case PixelType::Int32:
-      return f(static_cast<const std::int32_t*>(slice.Pixels));
-    case PixelType::UInt32:
-      return f(static_cast<const std::uint32_t*>(slice.Pixels));
-    case PixelType::Int64:
-      return f(static_cast<const std::int64_t*>(slice.Pixels));
-    case PixelType::UInt64:
-      return f(static_cast<const std::uint64_t*>(slice.Pixels));
-    case PixelType::Float32:
-      return f(static_cast<const float*>(slice.Pixels));
-    case PixelType::Float64:
-      return f(static_cast<const double*>(slice.Pixels));
-  }
-  throw std::invalid_argument(slice.Label + ": unknown pixel type");
-}
 }
 #endif

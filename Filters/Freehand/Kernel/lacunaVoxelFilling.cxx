@@ -250,11 +250,11 @@ void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
   {
     switch (pair.GetFirst().Type)
     {
-      case PixelType::UInt8:
+      case ScalarType::UInt8:
         return FillLayerOf<std::uint8_t>(pair, k, sampling, compounding, voxels);
-      case PixelType::Int16:
+      case ScalarType::Int16:
         return FillLayerOf<std::int16_t>(pair, k, sampling, compounding, voxels);
-      case PixelType::UInt16:
+      case ScalarType::UInt16:
         return FillLayerOf<std::uint16_t>(pair, k, sampling, compounding, voxels);
       default:
         return FillLayerOf<float>(pair, k, sampling, compounding, voxels);
@@ -266,7 +266,7 @@ template <class Real>
 void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
   Compounding compounding, VoxelBlock<Real>& voxels)
 {
-  VisitPixels(slice,
+  DispatchScalars(slice.Type, slice.Pixels,
     [&](const auto* pixels)
     {
       if (compounding == Compounding::Mean)

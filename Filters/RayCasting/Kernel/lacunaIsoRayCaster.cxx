@@ -84,7 +84,7 @@ std::unique_ptr<IsoRayCaster::Field> MakeField(
       FilterToCoefficients(volume, side == SolidSide::Above, execution), volume.Size, side,
       execution);
   }
-  return DispatchVoxels(volume,
+  return DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels) -> std::unique_ptr<IsoRayCaster::Field>
     {
       using T = std::remove_cv_t<std::remove_pointer_t<decltype(voxels)>>;

@@ -89,7 +89,7 @@ SplineCoefficients FilterToCoefficients(
 {
   SplineCoefficients result;
   const std::int64_t count = volume.NumberOfVoxels();
-  DispatchVoxels(volume,
+  DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels)
     {
       FindRange(voxels, count, result, execution);

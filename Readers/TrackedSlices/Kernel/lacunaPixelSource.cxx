@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPixelSource.h"
 
+#include "lacunaByteOrder.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -238,7 +240,7 @@ void PixelSource::Divide(std::int64_t bytes)
 {
   if (this->Header.TypeIsLong && bytes >= 2 * this->FrameSize * this->Header.Frames)
   {
-    this->Type = this->Type == ElementType::Int32 ? ElementType::Int64 : ElementType::UInt64;
+    this->Type = this->Type == ScalarType::Int32 ? ScalarType::Int64 : ScalarType::UInt64;
     this->FrameSize *= 2;
   }
   const std::int64_t whole = bytes / this->FrameSize;
@@ -270,7 +272,7 @@ void PixelSource::ReadFrame(std::int64_t frame, void* pixels)
   this->ReadStored(frame, static_cast<unsigned char*>(pixels));
   if (this->Header.BigEndian != IsBigEndianMachine())
   {
-    const std::size_t elementSize = GetElementSize(this->Type);
+    const std::size_t elementSize = GetScalarSize(this->Type);
     SwapElementBytes(pixels, static_cast<std::size_t>(this->FrameSize) / elementSize, elementSize);
   }
 }

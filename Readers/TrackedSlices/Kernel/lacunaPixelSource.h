@@ -4,7 +4,7 @@
 #ifndef lacunaPixelSource_h
 #define lacunaPixelSource_h
 
-#include "lacunaElementType.h"
+#include "lacunaScalarType.h"
 #include "lacunaSequenceHeader.h"
 
 #include <cstdint>
@@ -27,7 +27,7 @@ public:
   virtual ~PixelSource() = default;
 
   /// Number type of the elements; decides between the widths of MET_LONG by the size of the data.
-  ElementType GetElementType() const { return this->Type; }
+  ScalarType GetScalarType() const { return this->Type; }
   /// Bytes of a frame.
   std::int64_t GetFrameSize() const { return this->FrameSize; }
   /// Frames whose pixels are there: fewer than the header says when the file is cut off.
@@ -48,7 +48,7 @@ protected:
   void Divide(std::int64_t bytes);
 
   const SequenceHeader& Header;
-  ElementType Type;
+  ScalarType Type;
   std::int64_t FrameSize = 0;
   std::int64_t WholeFrames = 0;
   std::string Warning;

@@ -26,16 +26,16 @@ const std::set<std::string> KnownFields = { "ObjectType", "ObjectSubType", "NDim
 struct Type
 {
   const char* Name;
-  ElementType Value;
+  ScalarType Value;
   bool IsLong;
 };
-const Type Types[] = { { "MET_CHAR", ElementType::Int8, false },
-  { "MET_UCHAR", ElementType::UInt8, false }, { "MET_SHORT", ElementType::Int16, false },
-  { "MET_USHORT", ElementType::UInt16, false }, { "MET_INT", ElementType::Int32, false },
-  { "MET_UINT", ElementType::UInt32, false }, { "MET_LONG", ElementType::Int32, true },
-  { "MET_ULONG", ElementType::UInt32, true }, { "MET_LONG_LONG", ElementType::Int64, false },
-  { "MET_ULONG_LONG", ElementType::UInt64, false }, { "MET_FLOAT", ElementType::Float32, false },
-  { "MET_DOUBLE", ElementType::Float64, false } };
+const Type Types[] = { { "MET_CHAR", ScalarType::Int8, false },
+  { "MET_UCHAR", ScalarType::UInt8, false }, { "MET_SHORT", ScalarType::Int16, false },
+  { "MET_USHORT", ScalarType::UInt16, false }, { "MET_INT", ScalarType::Int32, false },
+  { "MET_UINT", ScalarType::UInt32, false }, { "MET_LONG", ScalarType::Int32, true },
+  { "MET_ULONG", ScalarType::UInt32, true }, { "MET_LONG_LONG", ScalarType::Int64, false },
+  { "MET_ULONG_LONG", ScalarType::UInt64, false }, { "MET_FLOAT", ScalarType::Float32, false },
+  { "MET_DOUBLE", ScalarType::Float64, false } };
 
 bool SplitField(std::string_view line, std::string& name, std::string& value)
 {

@@ -4,7 +4,7 @@
 #ifndef lacunaSequenceHeader_h
 #define lacunaSequenceHeader_h
 
-#include "lacunaElementType.h"
+#include "lacunaScalarType.h"
 #include "lacunaSliceOrientation.h"
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct SequenceHeader
   std::int64_t Rows = 0;
   std::int64_t Frames = 0;
   std::int64_t Channels = 1;
-  ElementType Type = ElementType::UInt8;
+  ScalarType Type = ScalarType::UInt8;
   /// MET_LONG and MET_ULONG: four bytes by MetaImage's definition, eight when written by programs
   /// that took the machine's long. Type holds the four-byte type until the data size decides.
   bool TypeIsLong = false;
@@ -48,7 +48,7 @@ struct SequenceHeader
   std::int64_t GetFrameSize() const
   {
     return this->Columns * this->Rows * this->Channels *
-      static_cast<std::int64_t>(GetElementSize(this->Type));
+      static_cast<std::int64_t>(GetScalarSize(this->Type));
   }
 };
 

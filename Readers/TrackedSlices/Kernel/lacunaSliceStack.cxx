@@ -53,7 +53,7 @@ void ReadSliceStack(const SequenceHeader& header, PixelSource& source, const Sli
   {
     throw std::out_of_range("the requested columns, rows and slices are not all in the sequence");
   }
-  const std::size_t elementSize = GetElementSize(source.GetElementType());
+  const std::size_t elementSize = GetScalarSize(source.GetScalarType());
   const std::size_t rowSize = static_cast<std::size_t>(region.Columns) * elementSize;
   const std::size_t sliceSize = static_cast<std::size_t>(region.Rows) * rowSize;
   const std::size_t storedRowSize = static_cast<std::size_t>(header.Columns) * elementSize;
@@ -78,7 +78,7 @@ void ReadSliceStack(const SequenceHeader& header, PixelSource& source, const Sli
     source.ReadFrame(number, stored);
     if (header.Channels > 1)
     {
-      DispatchElementType(source.GetElementType(),
+      DispatchScalarType(source.GetScalarType(),
         [&](auto value)
         {
           MakeGrey(reinterpret_cast<decltype(value)*>(stored), header.Columns * header.Rows,

@@ -136,7 +136,7 @@ int CompareWithDefinition(const std::vector<SliceImage>& slices, const VolumeGri
 
 SyntheticSweep<float> MakeNoiseSweep(const std::vector<Matrix4>& poses, unsigned int seed)
 {
-  SyntheticSweep<float> sweep(31, 25, PixelType::Float32);
+  SyntheticSweep<float> sweep(31, 25, ScalarType::Float32);
   std::mt19937 random(seed);
   for (const Matrix4& pose : poses)
   {
@@ -155,7 +155,7 @@ double Linear(const Vec3& p)
 TEST(SweptVolume, LinearGreyLevelsBetweenParallelSlicesAreExact)
 {
   const Matrix4 probe = Matrix4::Translation({ 3, 5, -2 }) * Matrix4::Rotation({ 1, 2, 3 }, 0.8);
-  SyntheticSweep<double> sweep(41, 33, PixelType::Float64);
+  SyntheticSweep<double> sweep(41, 33, ScalarType::Float64);
   for (const double z : { 0.0, 1.3, 1.9, 4.0 })
   {
     sweep.AddField(
@@ -191,7 +191,7 @@ TEST(SweptVolume, LinearGreyLevelsBetweenTurnedSlicesDeviateAsDerived)
   // With f linear, the foot of p on a slice has f(p) - d g.n. Two of them, weighted by |d| of the
   // other, give f(p) - d1 d2 / (d2 - d1) g.(n1 - n2): exact on the slices, and at most a quarter
   // of the gap times |g.(n1 - n2)| off between them.
-  SyntheticSweep<double> sweep(81, 61, PixelType::Float64);
+  SyntheticSweep<double> sweep(81, 61, ScalarType::Float64);
   const Matrix4 pixels = Matrix4::Scaling({ 0.1, 0.1, 1 }) * Matrix4::Translation({ -40, -30, 0 });
   const std::array<Matrix4, 2> poses{ Matrix4::Rotation({ 1, 0.3, 0 }, 0.2) * pixels,
     Matrix4::Translation({ 0.2, 0.1, 1.5 }) * Matrix4::Rotation({ -0.2, 1, 0.1 }, 0.35) * pixels };
@@ -261,7 +261,7 @@ TEST(SweptVolume, AgreesWithTheDefinitionForEachMainDirection)
   for (const Vec3& axis : { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } })
   {
     // slices perpendicular to z, x, y in turn, not quite parallel
-    SyntheticSweep<float> sweep(31, 25, PixelType::Float32);
+    SyntheticSweep<float> sweep(31, 25, ScalarType::Float32);
     std::mt19937 random(4);
     for (int n = 0; n < 5; ++n)
     {
@@ -277,7 +277,7 @@ TEST(SweptVolume, AgreesWithTheDefinitionForEachMainDirection)
 TEST(SweptVolume, IntersectingSlicesFillADoubleWedge)
 {
   // The second slice is the first one turned by 30 degrees about its middle column.
-  SyntheticSweep<float> sweep(41, 21, PixelType::Float32);
+  SyntheticSweep<float> sweep(41, 21, ScalarType::Float32);
   const Matrix4 pixels = Matrix4::Scaling({ 0.5, 0.5, 1 }) * Matrix4::Translation({ -20, 0, 0 });
   const double angle = std::acos(-1.0) / 6;
   sweep.Add(pixels, [](int, int) { return 10; });
@@ -308,7 +308,7 @@ TEST(SweptVolume, IntersectingSlicesFillADoubleWedge)
 
 TEST(SweptVolume, GridsThatFitTheSlicesHaveNoHoles)
 {
-  SyntheticSweep<std::uint8_t> sweep(21, 11, PixelType::UInt8);
+  SyntheticSweep<std::uint8_t> sweep(21, 11, ScalarType::UInt8);
   for (int n = 0; n < 4; ++n)
   {
     sweep.Add(Matrix4::Translation({ 0.1, 0.2, 0.1 + 0.3 * n }) * Matrix4::Scaling({ 0.3, 0.3, 1 }),
@@ -333,7 +333,7 @@ TEST(SweptVolume, KeepsLeftAndRight)
   // An F, upright when columns go right and rows go down, on two slices.
   const std::array<const char*, 7> letter{ "       ", " ####  ", " #     ", " ###   ", " #     ",
     " #     ", "       " };
-  SyntheticSweep<std::uint8_t> sweep(7, 7, PixelType::UInt8);
+  SyntheticSweep<std::uint8_t> sweep(7, 7, ScalarType::UInt8);
   // columns along -y, rows along +x: x and y change places, and y its sense; travel along -z, the
   // direction of columns x rows is +z
   const Matrix4 pose = Matrix4::FromColumns({ 0, -2, 0 }, { 2, 0, 0 }, { 0, 0, 1 }, { 100, 50, 0 });
@@ -368,7 +368,7 @@ TEST(SweptVolume, KeepsLeftAndRight)
 
 TEST(SweptVolume, MaximumKeepsTheLargestContribution)
 {
-  SyntheticSweep<float> sweep(5, 5, PixelType::Float32);
+  SyntheticSweep<float> sweep(5, 5, ScalarType::Float32);
   for (const double grey : { -8.0, -4.0, -2.0 })
   {
     sweep.Add(
@@ -391,7 +391,7 @@ TEST(SweptVolume, MaximumKeepsTheLargestContribution)
 TEST(SweptVolume, MaximumGapLimitsTheDistanceOfTheSlicesAtTheVoxel)
 {
   // a fan about the column 0: 0 mm apart at x = 0, 2 mm apart at x = 10
-  SyntheticSweep<float> sweep(51, 5, PixelType::Float32);
+  SyntheticSweep<float> sweep(51, 5, ScalarType::Float32);
   const Matrix4 pixels = Matrix4::Scaling({ 0.2, 1, 1 });
   sweep.Add(Matrix4::Rotation({ 0, 1, 0 }, 0.1) * pixels, [](int, int) { return 1; });
   sweep.Add(Matrix4::Rotation({ 0, 1, 0 }, -0.1) * pixels, [](int, int) { return 1; });
@@ -411,7 +411,7 @@ TEST(SweptVolume, MaximumGapLimitsTheDistanceOfTheSlicesAtTheVoxel)
 
 TEST(SweptVolume, ThoseInOnePlaneAndThoseTurnedTooFarAreNoNeighbours)
 {
-  SyntheticSweep<float> sweep(11, 11, PixelType::Float32);
+  SyntheticSweep<float> sweep(11, 11, ScalarType::Float32);
   const auto grey = [](int, int) { return 7; };
   const double degree = std::acos(-1.0) / 180;
   sweep.Add({}, grey);

@@ -13,7 +13,7 @@ namespace
 {
 SyntheticSweep<std::uint8_t> MakeSpeckleSweep(int count, unsigned int seed)
 {
-  SyntheticSweep<std::uint8_t> sweep(61, 49, PixelType::UInt8);
+  SyntheticSweep<std::uint8_t> sweep(61, 49, ScalarType::UInt8);
   std::mt19937 random(seed);
   for (const Matrix4& pose : MakeRandomPoses(count, seed, 0.1))
   {
@@ -61,7 +61,7 @@ std::string GetError(const std::vector<SliceImage>& slices)
 template <class T>
 T WriteOne(double grey)
 {
-  SyntheticSweep<double> sweep(2, 2, PixelType::Float64);
+  SyntheticSweep<double> sweep(2, 2, ScalarType::Float64);
   sweep.Add({}, [&](int, int) { return grey; });
   sweep.Add(Matrix4::Translation({ 0, 0, 1 }), [&](int, int) { return grey; });
   const VolumeGrid grid{ { 0.5, 0.5, 0.5 }, { 1, 1, 1 }, { 1, 1, 1 } };
@@ -160,7 +160,7 @@ TEST(SweptVolumeBehaviour, PiecesMakeTheWhole)
 
 TEST(SweptVolumeBehaviour, SweepsFormNoPairWithEachOther)
 {
-  SyntheticSweep<std::uint8_t> sweep(4, 4, PixelType::UInt8);
+  SyntheticSweep<std::uint8_t> sweep(4, 4, ScalarType::UInt8);
   for (const int z : { 0, 1, 5, 6 })
   {
     sweep.Add(Matrix4::Translation({ 0, 0, static_cast<double>(z) }), [](int, int) { return 50; });
@@ -183,7 +183,7 @@ TEST(SweptVolumeBehaviour, SweepsFormNoPairWithEachOther)
 TEST(SweptVolumeBehaviour, PixelsOutsideOfTheWindowDoNotExist)
 {
   // garbage everywhere but in a window of 21 x 15 pixels at (5, 3)
-  SyntheticSweep<std::uint8_t> sweep(40, 30, PixelType::UInt8);
+  SyntheticSweep<std::uint8_t> sweep(40, 30, ScalarType::UInt8);
   const Matrix4 scale = Matrix4::Scaling({ 0.1, 0.1, 1 });
   for (const double z : { 0.0, 1.0 })
   {
@@ -279,7 +279,7 @@ TEST(SweptVolumeBehaviour, NearestVoxelPutsEachPixelIntoOneVoxel)
 
 TEST(SweptVolumeBehaviour, TakesGreyLevelsOfAnyType)
 {
-  const auto reconstruct = [](auto zero, PixelType type)
+  const auto reconstruct = [](auto zero, ScalarType type)
   {
     using T = decltype(zero);
     SyntheticSweep<T> sweep(9, 9, type);
@@ -303,15 +303,15 @@ TEST(SweptVolumeBehaviour, TakesGreyLevelsOfAnyType)
     }
     return volumes;
   };
-  const auto bytes = reconstruct(std::uint8_t(0), PixelType::UInt8);
-  for (const auto& volumes :
-    { reconstruct(std::int8_t(0), PixelType::Int8), reconstruct(std::int16_t(0), PixelType::Int16),
-      reconstruct(std::uint16_t(0), PixelType::UInt16),
-      reconstruct(std::int32_t(0), PixelType::Int32),
-      reconstruct(std::uint32_t(0), PixelType::UInt32),
-      reconstruct(std::int64_t(0), PixelType::Int64),
-      reconstruct(std::uint64_t(0), PixelType::UInt64), reconstruct(float(0), PixelType::Float32),
-      reconstruct(double(0), PixelType::Float64) })
+  const auto bytes = reconstruct(std::uint8_t(0), ScalarType::UInt8);
+  for (const auto& volumes : { reconstruct(std::int8_t(0), ScalarType::Int8),
+         reconstruct(std::int16_t(0), ScalarType::Int16),
+         reconstruct(std::uint16_t(0), ScalarType::UInt16),
+         reconstruct(std::int32_t(0), ScalarType::Int32),
+         reconstruct(std::uint32_t(0), ScalarType::UInt32),
+         reconstruct(std::int64_t(0), ScalarType::Int64),
+         reconstruct(std::uint64_t(0), ScalarType::UInt64),
+         reconstruct(float(0), ScalarType::Float32), reconstruct(double(0), ScalarType::Float64) })
   {
     for (std::size_t v = 0; v < bytes.size(); ++v)
     {
@@ -372,13 +372,13 @@ TEST(SweptVolumeBehaviour, RefusesUnusableSlicesByName)
   slices[2].Width = 1;
   EXPECT_NE(GetError(slices).find("slice 2 has 1 x 49 usable pixels"), std::string::npos);
   slices = sweep.Slices;
-  slices[2].Type = PixelType::Int8;
+  slices[2].Type = ScalarType::Int8;
   EXPECT_NE(
     GetError(slices).find("slice 2: its grey levels are of another type"), std::string::npos);
   slices = sweep.Slices;
   for (SliceImage& slice : slices)
   {
-    slice.Type = PixelType::Int32;
+    slice.Type = ScalarType::Int32;
   }
   EXPECT_NE(GetError(slices).find("double precision"), std::string::npos);
 }

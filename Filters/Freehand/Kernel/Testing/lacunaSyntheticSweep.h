@@ -22,7 +22,7 @@ template <class T>
 class SyntheticSweep
 {
 public:
-  SyntheticSweep(int width, int height, PixelType type)
+  SyntheticSweep(int width, int height, ScalarType type)
     : Width(width)
     , Height(height)
     , Type(type)
@@ -65,7 +65,7 @@ public:
 
 private:
   int Width, Height;
-  PixelType Type;
+  ScalarType Type;
   std::vector<std::shared_ptr<std::vector<T>>> Pixels;
 };
 

@@ -305,7 +305,7 @@ TEST(IsoRayCaster, PlateausAtTheIsoValueAreSolid)
   }
   VoxelVolume volume;
   volume.Voxels = voxels.data();
-  volume.Type = VoxelType::UInt8;
+  volume.Type = ScalarType::UInt8;
   volume.Size = { 16, 4, 4 };
   ThreadExecution execution(1);
   const IsoRayCaster caster(volume, FieldInterpolation::BSpline, SolidSide::Above, execution);

@@ -42,7 +42,7 @@ struct TestField
   {
     VoxelVolume volume;
     volume.Voxels = this->Voxels.data();
-    volume.Type = VoxelType::Float64;
+    volume.Type = ScalarType::Float64;
     volume.Size = this->Size;
     volume.IndexToWorld = this->IndexToWorld;
     return volume;

@@ -59,7 +59,7 @@ protected:
     all.Rows = header.Rows;
     all.Frames = header.Frames;
     const std::int64_t size = header.Columns * header.Rows * header.Frames *
-      static_cast<std::int64_t>(GetElementSize(pixels->GetElementType()));
+      static_cast<std::int64_t>(GetScalarSize(pixels->GetScalarType()));
     ASSERT_LT(size, 10000000) << "more than a file of this size can hold";
     std::vector<unsigned char> stack(static_cast<std::size_t>(size));
     ThreadExecution execution(1);

@@ -253,7 +253,7 @@ TEST(PixelSource, ByteOrderAndEveryType)
       for (const bool compress : { false, true })
       {
         OpenedSequence sequence((compress ? Compressed(file) : file).GetContent());
-        EXPECT_EQ(GetElementSize(sequence.Pixels->GetElementType()), sizeof(T)) << name;
+        EXPECT_EQ(GetScalarSize(sequence.Pixels->GetScalarType()), sizeof(T)) << name;
         const std::string bytes = sequence.Read(1);
         ASSERT_EQ(bytes.size(), 20 * sizeof(T));
         EXPECT_EQ(std::memcmp(bytes.data(), values.data() + 20, bytes.size()), 0) << name << big;

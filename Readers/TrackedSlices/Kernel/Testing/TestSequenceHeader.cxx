@@ -58,7 +58,7 @@ TEST(SequenceHeader, ReadsAGoodFile)
   EXPECT_EQ(header.Rows, 4);
   EXPECT_EQ(header.Frames, 3);
   EXPECT_EQ(header.Channels, 1);
-  EXPECT_EQ(header.Type, ElementType::UInt8);
+  EXPECT_EQ(header.Type, ScalarType::UInt8);
   EXPECT_FALSE(header.BigEndian);
   EXPECT_FALSE(header.Compressed);
   EXPECT_FALSE(header.Flips.X || header.Flips.Y);
@@ -90,13 +90,13 @@ TEST(SequenceHeader, CarriageReturnsTrailingBlanksAndLongLines)
 
 TEST(SequenceHeader, EveryElementType)
 {
-  const std::pair<const char*, ElementType> types[] = { { "MET_CHAR", ElementType::Int8 },
-    { "MET_UCHAR", ElementType::UInt8 }, { "MET_SHORT", ElementType::Int16 },
-    { "MET_USHORT", ElementType::UInt16 }, { "MET_INT", ElementType::Int32 },
-    { "MET_UINT", ElementType::UInt32 }, { "MET_LONG", ElementType::Int32 },
-    { "MET_ULONG", ElementType::UInt32 }, { "MET_LONG_LONG", ElementType::Int64 },
-    { "MET_ULONG_LONG", ElementType::UInt64 }, { "MET_FLOAT", ElementType::Float32 },
-    { "MET_DOUBLE", ElementType::Float64 } };
+  const std::pair<const char*, ScalarType> types[] = { { "MET_CHAR", ScalarType::Int8 },
+    { "MET_UCHAR", ScalarType::UInt8 }, { "MET_SHORT", ScalarType::Int16 },
+    { "MET_USHORT", ScalarType::UInt16 }, { "MET_INT", ScalarType::Int32 },
+    { "MET_UINT", ScalarType::UInt32 }, { "MET_LONG", ScalarType::Int32 },
+    { "MET_ULONG", ScalarType::UInt32 }, { "MET_LONG_LONG", ScalarType::Int64 },
+    { "MET_ULONG_LONG", ScalarType::UInt64 }, { "MET_FLOAT", ScalarType::Float32 },
+    { "MET_DOUBLE", ScalarType::Float64 } };
   for (const auto& [name, type] : types)
   {
     SequenceFile file = MakeSequence();

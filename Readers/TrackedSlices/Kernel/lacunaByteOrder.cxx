@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaElementType.h"
+#include "lacunaByteOrder.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 namespace lacuna
 {
-std::size_t GetElementSize(ElementType type)
-{
-  return DispatchElementType(type, [](auto value) { return sizeof(value); });
-}
-
 void SwapElementBytes(void* elements, std::size_t count, std::size_t elementSize)
 {
   if (elementSize < 2)
