@@ -2,19 +2,11 @@
 #include "lacunaCubicSpline.h"
 
 #include "lacunaExecution.h"
+#include "lacunaWide.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-// The inner loops once more for AVX2, chosen when the program starts; the same numbers come out,
-// since products and sums stay apart. Sanitizers do not work with such functions.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LACUNA_WIDE __attribute__((target_clones("default", "avx2")))
-#else
-#define LACUNA_WIDE
-#endif
 
 namespace lacuna
 {

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaTensorCell.h"
 
-// The sanitizers' run-time is not ready when the loader chooses between clones.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) &&                  \
-  !defined(__SANITIZE_THREAD__)
-#define LACUNA_WIDE __attribute__((target_clones("default", "avx2")))
-#else
-#define LACUNA_WIDE
-#endif
+#include "lacunaWide.h"
 
 namespace lacuna
 {

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// LACUNA_WIDE before a function compiles it once more for AVX2; the clone is chosen when the
+/// program starts. The same numbers come out, since products and sums stay apart
+/// (-ffp-contract=off). Nothing elsewhere: clang inlines no callees into clones, and the run-time
+/// of the sanitizers is not ready yet when the loader chooses.
+#ifndef lacunaWide_h
+#define lacunaWide_h
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define LACUNA_WIDE __attribute__((target_clones("default", "avx2")))
+#else
+#define LACUNA_WIDE
+#endif
+#endif
