@@ -382,7 +382,7 @@ private:
   }
 
   /// Continues the points linearly along an axis at position end; inward leads to its neighbours.
-  void Extrapolate(int axis, std::ptrdiff_t stride, int end, int inward)
+  void Extrapolate(int axis, std::ptrdiff_t stride, int end, std::ptrdiff_t inward)
   {
     const std::ptrdiff_t u = axis == 0 ? 4 : 1;
     const std::ptrdiff_t v = axis == 2 ? 4 : 16;
