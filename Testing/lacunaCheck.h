@@ -5,9 +5,12 @@
 #ifndef lacunaCheck_h
 #define lacunaCheck_h
 
+#include "vtkAlgorithm.h"
 #include "vtkCommand.h"
+#include "vtkExecutive.h"
 #include "vtkNew.h"
 #include "vtkObject.h"
+#include "vtkSmartPointer.h"
 
 #include <cmath>
 #include <exception>
@@ -65,6 +68,15 @@ public:
   std::string Errors;
   std::string Warnings;
 };
+
+/// The messages of an algorithm and of its executive, which complains of the failed request.
+inline vtkSmartPointer<Messages> Watch(vtkAlgorithm* algorithm)
+{
+  vtkNew<Messages> messages;
+  messages->Watch(algorithm);
+  messages->Watch(algorithm->GetExecutive());
+  return messages;
+}
 }
 
 #define LACUNA_CHECK(condition)                                                                    \
@@ -73,6 +85,16 @@ public:
     if (!(condition))                                                                              \
     {                                                                                              \
       lacunaCheck::Fail(__FILE__, __LINE__, "expected " #condition);                               \
+    }                                                                                              \
+  } while (false)
+
+/// The same with words of the test's own.
+#define LACUNA_CHECK_THAT(condition, what)                                                         \
+  do                                                                                               \
+  {                                                                                                \
+    if (!(condition))                                                                              \
+    {                                                                                              \
+      lacunaCheck::Fail(__FILE__, __LINE__, std::string("not so: ") + (what));                     \
     }                                                                                              \
   } while (false)
 
@@ -86,6 +108,18 @@ public:
       lacunaCheck::Fail(__FILE__, __LINE__,                                                        \
         std::string(#value " is ") + std::to_string(lacunaValue) + ", expected " +                 \
           std::to_string(lacunaExpected));                                                         \
+    }                                                                                              \
+  } while (false)
+
+/// The text must contain `part`.
+#define LACUNA_CHECK_CONTAINS(text, part)                                                          \
+  do                                                                                               \
+  {                                                                                                \
+    const std::string lacunaText = (text);                                                         \
+    if (lacunaText.find(part) == std::string::npos)                                                \
+    {                                                                                              \
+      lacunaCheck::Fail(                                                                           \
+        __FILE__, __LINE__, "expected '" + std::string(part) + "' in '" + lacunaText + "'");       \
     }                                                                                              \
   } while (false)
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestSurfaces.h"
+#include "lacunaCheck.h"
 #include "lacunaIGESParser.h"
 #include "vtkCallbackCommand.h"
 #include "vtkErrorCode.h"
@@ -14,22 +15,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
-#include <iostream>
 #include <sstream>
 
 namespace
 {
-int failures = 0;
-
-void Check(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cerr << "failed: " << what << "\n";
-    ++failures;
-  }
-}
-
 std::string Read(const std::string& path)
 {
   std::ostringstream text;
@@ -47,11 +36,11 @@ void Refuses(vtkDataObject* input, const std::string& path, const std::string& w
   writer->SetFileName(path.c_str());
   writer->SetTolerance(tolerance);
   writer->SetInputData(input);
-  Check(writer->Write() == 0, "Write() returns 0: " + words);
-  Check(observer->GetErrorMessage().find(words) != std::string::npos,
+  LACUNA_CHECK_THAT(writer->Write() == 0, "Write() returns 0: " + words);
+  LACUNA_CHECK_THAT(observer->GetErrorMessage().find(words) != std::string::npos,
     "message says '" + words + "': " + observer->GetErrorMessage());
-  Check(writer->GetErrorCode() == code, "error code: " + words);
-  Check(writer->GetFileSize() == 0 && writer->GetNumberOfControlPoints()[0] == 0,
+  LACUNA_CHECK_THAT(writer->GetErrorCode() == code, "error code: " + words);
+  LACUNA_CHECK_THAT(writer->GetFileSize() == 0 && writer->GetNumberOfControlPoints()[0] == 0,
     "no results after failure: " + words);
 }
 
@@ -69,18 +58,23 @@ void TestMaps(const std::string& path)
     for (const double tolerance : { 0.0, 0.001, 0.05 })
     {
       writer->SetTolerance(tolerance);
-      Check(writer->Write() == 1, "writes a map");
-      Check(writer->GetErrorCode() == vtkErrorCode::NoError, "no error code");
-      Check(writer->GetMaximumDeviation() <= std::max(tolerance, 1e-11), "keeps the tolerance");
+      LACUNA_CHECK_THAT(writer->Write() == 1, "writes a map");
+      LACUNA_CHECK_THAT(writer->GetErrorCode() == vtkErrorCode::NoError, "no error code");
+      LACUNA_CHECK_THAT(
+        writer->GetMaximumDeviation() <= std::max(tolerance, 1e-11), "keeps the tolerance");
       const std::string text = Read(path);
-      Check(writer->GetFileSize() == static_cast<vtkTypeInt64>(text.size()), "size of the file");
+      LACUNA_CHECK_THAT(
+        writer->GetFileSize() == static_cast<vtkTypeInt64>(text.size()), "size of the file");
       const IGESParser file(text);
       const IGESSurface surface(file.Entities.at(5));
       const int* size = writer->GetNumberOfControlPoints();
-      Check(surface.Upper[0] + 1 == size[0] && surface.Upper[1] + 1 == size[1], "control points");
-      Check(tolerance > 0 || size[0] == (fitted ? 60 : 90), "all samples when interpolating");
-      Check(tolerance == 0 || size[0] * size[1] < 500, "few when approximating");
-      Check(surface.Limits[1] == (fitted ? 59 : 89) && surface.Limits[3] == (fitted ? 39 : 69),
+      LACUNA_CHECK_THAT(
+        surface.Upper[0] + 1 == size[0] && surface.Upper[1] + 1 == size[1], "control points");
+      LACUNA_CHECK_THAT(
+        tolerance > 0 || size[0] == (fitted ? 60 : 90), "all samples when interpolating");
+      LACUNA_CHECK_THAT(tolerance == 0 || size[0] * size[1] < 500, "few when approximating");
+      LACUNA_CHECK_THAT(
+        surface.Limits[1] == (fitted ? 59 : 89) && surface.Limits[3] == (fitted ? 39 : 69),
         "parameters are pixels");
       // The corners are exact enough to tell every mirror image and exchange of axes.
       const std::vector<lacuna::Vec3> points = Points(map, fitted);
@@ -91,22 +85,24 @@ void TestMaps(const std::string& path)
       {
         for (int c = 0; c < 3; ++c)
         {
-          Check(std::abs(surface.Points[3 * control + c] - points[sample][c]) <=
+          LACUNA_CHECK_THAT(std::abs(surface.Points[3 * control + c] - points[sample][c]) <=
               std::max(tolerance, 1e-10),
             "corner");
         }
       }
-      Check(IGESParser::String(file.Entities.at(surface.Properties.at(0)).Parameters.at(1)) ==
+      LACUNA_CHECK_THAT(
+        IGESParser::String(file.Entities.at(surface.Properties.at(0)).Parameters.at(1)) ==
           (fitted ? "Fitted surface" : "Depth map surface"),
         "name");
-      Check(text.find("NodeSpacing=1") != std::string::npos, "provenance");
-      Check(IGESParser::String(file.Global[3]) == vtksys::SystemTools::GetFilenameName(path),
+      LACUNA_CHECK_THAT(text.find("NodeSpacing=1") != std::string::npos, "provenance");
+      LACUNA_CHECK_THAT(
+        IGESParser::String(file.Global[3]) == vtksys::SystemTools::GetFilenameName(path),
         "file name without folder");
-      Check(file.Global[17].size() == 18, "date");
+      LACUNA_CHECK_THAT(file.Global[17].size() == 18, "date");
     }
     std::ostringstream text;
     writer->Print(text);
-    Check(text.str().find("MaximumDeviation") != std::string::npos, "PrintSelf");
+    LACUNA_CHECK_THAT(text.str().find("MaximumDeviation") != std::string::npos, "PrintSelf");
   }
 }
 
@@ -219,7 +215,7 @@ void TestNothingIsLost(const std::string& path)
   auto map = TestSurfaces::Map(TestSurfaces::Geometry({ 0, 0, -1 }, 0), true);
   map->GetPointData()->GetArray("Fitted")->SetComponent(3000, 0, TestSurfaces::NaN);
   Refuses(map, path, "1 of the 2400", vtkErrorCode::UnknownError);
-  Check(Read(path) == "old", "an earlier file stays after an error");
+  LACUNA_CHECK_THAT(Read(path) == "old", "an earlier file stays after an error");
 
   map = TestSurfaces::Map(TestSurfaces::Geometry({ 0, 0, -1 }, 0), true);
   vtkNew<vtkLacunaIGESWriter> writer;
@@ -231,9 +227,9 @@ void TestNothingIsLost(const std::string& path)
   writer->AddObserver(vtkCommand::ProgressEvent, stop);
   writer->SetInputData(map);
   writer->SetFileName(path.c_str());
-  Check(writer->Write() == 0, "a stopped writer returns 0");
-  Check(!errors->GetError(), "being stopped is no error message");
-  Check(Read(path) == "old", "an earlier file stays when stopped");
+  LACUNA_CHECK_THAT(writer->Write() == 0, "a stopped writer returns 0");
+  LACUNA_CHECK_THAT(!errors->GetError(), "being stopped is no error message");
+  LACUNA_CHECK_THAT(Read(path) == "old", "an earlier file stays when stopped");
 }
 }
 
@@ -257,7 +253,7 @@ int TestIGESWriter(int argc, char* argv[])
   }
   catch (const std::exception& e)
   {
-    Check(false, e.what());
+    LACUNA_CHECK_THAT(false, e.what());
   }
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

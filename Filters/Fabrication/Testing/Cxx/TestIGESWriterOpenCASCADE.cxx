@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OpenCASCADE, a CAD kernel that shares no code with the writer, reads the files back.
 #include "TestSurfaces.h"
+#include "lacunaCheck.h"
 #include "vtkLacunaIGESWriter.h"
 #include "vtkLogger.h"
 
@@ -26,22 +27,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <iostream>
 #include <string>
 
 namespace
 {
-int failures = 0;
-
-void Check(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cerr << "failed: " << what << "\n";
-    ++failures;
-  }
-}
-
 void CheckClean(const Interface_CheckIterator& checks, const std::string& stage)
 {
   for (checks.Start(); checks.More(); checks.Next())
@@ -49,11 +38,11 @@ void CheckClean(const Interface_CheckIterator& checks, const std::string& stage)
     const Handle(Interface_Check)& check = checks.Value();
     for (int i = 1; i <= check->NbFails(); ++i)
     {
-      Check(false, stage + " error: " + check->CFail(i));
+      LACUNA_CHECK_THAT(false, stage + " error: " + check->CFail(i));
     }
     for (int i = 1; i <= check->NbWarnings(); ++i)
     {
-      Check(false, stage + " warning: " + check->CWarning(i));
+      LACUNA_CHECK_THAT(false, stage + " warning: " + check->CWarning(i));
     }
   }
 }
@@ -62,18 +51,19 @@ void CheckClean(const Interface_CheckIterator& checks, const std::string& stage)
 TopoDS_Face ReadFace(const std::string& path, const std::string& name)
 {
   IGESControl_Reader reader;
-  Check(reader.ReadFile(path.c_str()) == IFSelect_RetDone, "OpenCASCADE reads the file");
+  LACUNA_CHECK_THAT(
+    reader.ReadFile(path.c_str()) == IFSelect_RetDone, "OpenCASCADE reads the file");
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
-  Check(model->GlobalSection().UnitFlag() == 2, "unit flag");
-  Check(model->GlobalSection().UnitName()->String() == "MM", "unit name");
+  LACUNA_CHECK_THAT(model->GlobalSection().UnitFlag() == 2, "unit flag");
+  LACUNA_CHECK_THAT(model->GlobalSection().UnitName()->String() == "MM", "unit name");
   CheckClean(reader.WS()->ModelCheckList(), "load");
   for (int i = 1; i <= model->NbEntities(); ++i)
   {
     const Handle(IGESData_IGESEntity) entity = model->Entity(i);
     if (entity->TypeNumber() == 128)
     {
-      Check(entity->HasName() && entity->NameValue()->String() == name.c_str(), "name");
-      Check(entity->DefColor() == IGESData_DefReference, "colour");
+      LACUNA_CHECK_THAT(entity->HasName() && entity->NameValue()->String() == name.c_str(), "name");
+      LACUNA_CHECK_THAT(entity->DefColor() == IGESData_DefReference, "colour");
     }
   }
   reader.TransferRoots();
@@ -85,7 +75,7 @@ TopoDS_Face ReadFace(const std::string& path, const std::string& name)
     face = TopoDS::Face(each.Current());
     ++faces;
   }
-  Check(faces == 1, "one face");
+  LACUNA_CHECK_THAT(faces == 1, "one face");
   return face;
 }
 
@@ -93,19 +83,21 @@ TopoDS_Face ReadFace(const std::string& path, const std::string& name)
 void CheckFace(const TopoDS_Face& face, const std::vector<lacuna::Vec3>& points,
   std::size_t columns, double tolerance)
 {
-  Check(BRepCheck_Analyzer(face).IsValid(), "a valid face");
-  Check(face.Orientation() == TopAbs_FORWARD, "orientation");
+  LACUNA_CHECK_THAT(BRepCheck_Analyzer(face).IsValid(), "a valid face");
+  LACUNA_CHECK_THAT(face.Orientation() == TopAbs_FORWARD, "orientation");
   const BRepAdaptor_Surface surface(face);
-  Check(surface.GetType() == GeomAbs_BSplineSurface, "a B-spline surface");
-  Check(surface.UDegree() == 3 && surface.VDegree() == 3, "bicubic");
-  Check(!surface.IsURational() && !surface.IsVRational(), "polynomial");
-  Check(surface.UContinuity() >= GeomAbs_C2 && surface.VContinuity() >= GeomAbs_C2, "C2");
+  LACUNA_CHECK_THAT(surface.GetType() == GeomAbs_BSplineSurface, "a B-spline surface");
+  LACUNA_CHECK_THAT(surface.UDegree() == 3 && surface.VDegree() == 3, "bicubic");
+  LACUNA_CHECK_THAT(!surface.IsURational() && !surface.IsVRational(), "polynomial");
+  LACUNA_CHECK_THAT(
+    surface.UContinuity() >= GeomAbs_C2 && surface.VContinuity() >= GeomAbs_C2, "C2");
   const std::size_t rows = points.size() / columns;
   const double lastU = static_cast<double>(columns - 1);
   const double lastV = static_cast<double>(rows - 1);
-  Check(std::abs(surface.FirstUParameter()) < 1e-12 && std::abs(surface.FirstVParameter()) < 1e-12,
+  LACUNA_CHECK_THAT(
+    std::abs(surface.FirstUParameter()) < 1e-12 && std::abs(surface.FirstVParameter()) < 1e-12,
     "first parameters");
-  Check(std::abs(surface.LastUParameter() - lastU) < 1e-9 &&
+  LACUNA_CHECK_THAT(std::abs(surface.LastUParameter() - lastU) < 1e-9 &&
       std::abs(surface.LastVParameter() - lastV) < 1e-9,
     "last parameters");
   Bnd_Box expected;
@@ -118,11 +110,11 @@ void CheckFace(const TopoDS_Face& face, const std::vector<lacuna::Vec3>& points,
     const gp_Pnt p = surface.Value(static_cast<double>(k % columns), static_cast<double>(row));
     largest = std::max(largest, p.Distance(sample));
   }
-  Check(largest <= tolerance + 1e-9, "deviation " + std::to_string(largest));
+  LACUNA_CHECK_THAT(largest <= tolerance + 1e-9, "deviation " + std::to_string(largest));
   Bnd_Box box;
   BRepBndLib::AddOptimal(face, box, false, false);
   const auto corner = [](const Bnd_Box& b) { return std::make_pair(b.CornerMin(), b.CornerMax()); };
-  Check(corner(box).first.Distance(corner(expected).first) < 0.05 &&
+  LACUNA_CHECK_THAT(corner(box).first.Distance(corner(expected).first) < 0.05 &&
       corner(box).second.Distance(corner(expected).second) < 0.05,
     "bounding box");
 }
@@ -146,7 +138,7 @@ void TestMaps(const std::string& path)
           writer->SetInputData(map);
           writer->SetFileName(path.c_str());
           writer->SetTolerance(tolerance);
-          Check(writer->Write() == 1, "Write()");
+          LACUNA_CHECK_THAT(writer->Write() == 1, "Write()");
           const TopoDS_Face face = ReadFace(path, fitted ? "Fitted surface" : "Depth map surface");
           CheckFace(face, points, fitted ? 60 : 90, tolerance);
           // dS/du x dS/dv points away from the viewer, along u is the viewer's right.
@@ -158,7 +150,7 @@ void TestMaps(const std::string& path)
           const gp_Vec along(g.View[0], g.View[1], g.View[2]);
           const gp_Vec right(g.Right[0], g.Right[1], g.Right[2]);
           const gp_Vec down(g.Down[0], g.Down[1], g.Down[2]);
-          Check(
+          LACUNA_CHECK_THAT(
             du.Crossed(dv).Dot(along) > 0 && du.Dot(right) > 0 && dv.Dot(down) > 0, "laterality");
         }
       }
@@ -174,7 +166,7 @@ void TestGrids(const std::string& path)
     vtkNew<vtkLacunaIGESWriter> writer;
     writer->SetInputData(TestSurfaces::Grid(flat, points));
     writer->SetFileName(path.c_str());
-    Check(writer->Write() == 1, "Write()");
+    LACUNA_CHECK_THAT(writer->Write() == 1, "Write()");
     const TopoDS_Face face = ReadFace(path, "Structured surface");
     CheckFace(face, points, 40, 0.001);
   }
@@ -193,5 +185,5 @@ int TestIGESWriterOpenCASCADE(int argc, char* argv[])
   const std::string path = folder + "/TestIGESWriterOpenCASCADE.igs";
   TestMaps(path);
   TestGrids(path);
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

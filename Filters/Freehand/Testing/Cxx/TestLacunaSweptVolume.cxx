@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents, pieces, time, errors of vtkLacunaSweptVolume.
+#include "lacunaCheck.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -20,9 +21,7 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
-#include <iostream>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -32,17 +31,6 @@ using lacuna::Matrix4;
 
 namespace
 {
-int failures = 0;
-
-void Check(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cerr << "FAILED: " << what << "\n";
-    ++failures;
-  }
-}
-
 bool Contains(const std::string& text, const std::string& part)
 {
   return text.find(part) != std::string::npos;
@@ -90,29 +78,6 @@ vtkSmartPointer<vtkImageData> MakeStack(const std::vector<Matrix4>& poses,
   return stack;
 }
 
-// Collects errors and warnings instead of printing them.
-class Messages
-{
-public:
-  explicit Messages(vtkObject* object)
-  {
-    this->Command->SetClientData(this);
-    this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
-      { static_cast<Messages*>(self)->Text += static_cast<const char*>(text); });
-    object->AddObserver(vtkCommand::ErrorEvent, this->Command);
-    object->AddObserver(vtkCommand::WarningEvent, this->Command);
-    // the executive tells once more that the algorithm failed
-    if (auto* algorithm = vtkAlgorithm::SafeDownCast(object))
-    {
-      algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, this->Command);
-    }
-  }
-  std::string Text;
-
-private:
-  vtkNew<vtkCallbackCommand> Command;
-};
-
 double GetValue(vtkImageData* volume, const char* array, int i, int j, int k)
 {
   int ijk[3] = { i, j, k };
@@ -131,16 +96,11 @@ std::string GetError(vtkImageData* stack, const Configure& configure = {})
   {
     configure(filter);
   }
-  const Messages messages(filter);
+  const auto messages = lacunaCheck::Watch(filter);
   filter->Update();
-  Check(messages.Text.empty() || filter->GetOutput()->GetNumberOfPoints() == 0,
-    "no half result after: " + messages.Text);
-  return messages.Text;
-}
-
-void CheckError(const std::string& error, const std::string& part)
-{
-  Check(Contains(error, part), "'" + part + "' in the error: " + error);
+  LACUNA_CHECK_THAT(messages->Errors.empty() || filter->GetOutput()->GetNumberOfPoints() == 0,
+    "no half result after: " + messages->Errors);
+  return messages->Errors;
 }
 
 // A source of slices that knows how often it ran; its poses move with time.
@@ -194,35 +154,40 @@ void TestContract()
   filter->Update();
   vtkImageData* volume = filter->GetOutput();
   const int* extent = volume->GetExtent();
-  Check(extent[0] == 0 && extent[1] == 12 && extent[2] == 0 && extent[3] == 4 && extent[4] == 0 &&
-      extent[5] == 8,
+  LACUNA_CHECK_THAT(extent[0] == 0 && extent[1] == 12 && extent[2] == 0 && extent[3] == 4 &&
+      extent[4] == 0 && extent[5] == 8,
     "extent");
-  Check(volume->GetOrigin()[0] == 10 && volume->GetOrigin()[1] == 20 && volume->GetOrigin()[2] == 0,
+  LACUNA_CHECK_THAT(
+    volume->GetOrigin()[0] == 10 && volume->GetOrigin()[1] == 20 && volume->GetOrigin()[2] == 0,
     "origin");
-  Check(volume->GetSpacing()[1] == 1, "spacing");
+  LACUNA_CHECK_THAT(volume->GetSpacing()[1] == 1, "spacing");
   vtkPointData* points = volume->GetPointData();
-  Check(points->GetNumberOfArrays() == 3, "three arrays");
-  Check(points->GetScalars() && std::string(points->GetScalars()->GetName()) == "Intensity" &&
+  LACUNA_CHECK_THAT(points->GetNumberOfArrays() == 3, "three arrays");
+  LACUNA_CHECK_THAT(points->GetScalars() &&
+      std::string(points->GetScalars()->GetName()) == "Intensity" &&
       points->GetScalars()->GetDataType() == VTK_UNSIGNED_CHAR,
     "Intensity is active and of the input's type");
-  Check(vtkUnsignedIntArray::SafeDownCast(points->GetArray("Contributions")) != nullptr,
+  LACUNA_CHECK_THAT(vtkUnsignedIntArray::SafeDownCast(points->GetArray("Contributions")) != nullptr,
     "Contributions are unsigned int");
-  Check(
+  LACUNA_CHECK_THAT(
     vtkCharArray::SafeDownCast(points->GetArray("vtkValidPointMask")) != nullptr, "mask is char");
   // column 6, row 4, between slices 2 and 3: 6 + 8 + 25
-  Check(GetValue(volume, "Intensity", 6, 2, 5) == 39, "interpolated grey level");
-  Check(GetValue(volume, "Contributions", 6, 2, 5) == 1, "one sample between slices");
-  Check(GetValue(volume, "vtkValidPointMask", 12, 4, 8) == 1, "the last voxel is filled");
-  Check(volume->GetFieldData()->GetNumberOfArrays() == 1, "only Provenance in the field data");
+  LACUNA_CHECK_THAT(GetValue(volume, "Intensity", 6, 2, 5) == 39, "interpolated grey level");
+  LACUNA_CHECK_THAT(GetValue(volume, "Contributions", 6, 2, 5) == 1, "one sample between slices");
+  LACUNA_CHECK_THAT(
+    GetValue(volume, "vtkValidPointMask", 12, 4, 8) == 1, "the last voxel is filled");
+  LACUNA_CHECK_THAT(
+    volume->GetFieldData()->GetNumberOfArrays() == 1, "only Provenance in the field data");
   const std::vector<std::string> steps = vtkLacunaProvenance::Get(volume);
-  Check(steps.size() == 1 && Contains(steps[0], "vtkLacunaSweptVolume") &&
+  LACUNA_CHECK_THAT(steps.size() == 1 && Contains(steps[0], "vtkLacunaSweptVolume") &&
       Contains(steps[0], "OutputSpacing=0.5,1,0.5") &&
       Contains(steps[0], "PixelSampling=Footprint"),
     "provenance");
 
   std::ostringstream text;
   filter->Print(text);
-  Check(Contains(text.str(), "Compounding=Mean") && Contains(text.str(), "MemoryLimit: 4096"),
+  LACUNA_CHECK_THAT(
+    Contains(text.str(), "Compounding=Mean") && Contains(text.str(), "MemoryLimit: 4096"),
     "PrintSelf");
 }
 
@@ -241,9 +206,10 @@ void TestTypes()
       filter->Update();
       const std::string name = "type " + std::to_string(type);
       vtkImageData* volume = filter->GetOutput();
-      Check(volume->GetScalarType() == (output == vtkLacunaSweptVolume::Float ? VTK_FLOAT : type),
+      LACUNA_CHECK_THAT(
+        volume->GetScalarType() == (output == vtkLacunaSweptVolume::Float ? VTK_FLOAT : type),
         name + " of the output");
-      Check(GetValue(volume, "Intensity", 6, 4, 5) == 39, name);
+      LACUNA_CHECK_THAT(GetValue(volume, "Intensity", 6, 4, 5) == 39, name);
     }
   }
   // several inputs of different types
@@ -251,13 +217,14 @@ void TestTypes()
   filter->AddInputData(MakeStack(MakePoses(5), VTK_UNSIGNED_CHAR));
   filter->AddInputData(MakeStack(MakePoses(5), VTK_DOUBLE));
   filter->SetOutputSpacing(0.5, 0.5, 0.5);
-  const Messages messages(filter);
+  const auto messages = lacunaCheck::Watch(filter);
   filter->Update();
-  CheckError(messages.Text, "different types (unsigned char, double)");
+  LACUNA_CHECK_CONTAINS(messages->Errors, "different types (unsigned char, double)");
   filter->SetOutputScalarTypeToFloat();
   filter->Update();
-  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "mixed types as float");
-  Check(GetValue(filter->GetOutput(), "Contributions", 6, 4, 5) == 2, "two sweeps");
+  LACUNA_CHECK_THAT(
+    GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "mixed types as float");
+  LACUNA_CHECK_THAT(GetValue(filter->GetOutput(), "Contributions", 6, 4, 5) == 2, "two sweeps");
 }
 
 void TestPieces()
@@ -275,7 +242,7 @@ void TestPieces()
     filter->UpdatePiece(piece, 3, 0);
     vtkImageData* part = filter->GetOutput();
     points += part->GetNumberOfPoints();
-    Check(part->GetNumberOfPoints() > 0 &&
+    LACUNA_CHECK_THAT(part->GetNumberOfPoints() > 0 &&
         part->GetNumberOfPoints() < whole->GetOutput()->GetNumberOfPoints(),
       "a piece is a part");
     const int* e = part->GetExtent();
@@ -293,9 +260,9 @@ void TestPieces()
         }
       }
     }
-    Check(same, "piece " + std::to_string(piece) + " equals its part of the whole");
+    LACUNA_CHECK_THAT(same, "piece " + std::to_string(piece) + " equals its part of the whole");
   }
-  Check(points >= whole->GetOutput()->GetNumberOfPoints(), "pieces cover the whole");
+  LACUNA_CHECK_THAT(points >= whole->GetOutput()->GetNumberOfPoints(), "pieces cover the whole");
 }
 
 void TestSlicesLeftOut()
@@ -307,11 +274,14 @@ void TestSlicesLeftOut()
   filter->SetInputData(MakeStack(poses, VTK_UNSIGNED_CHAR, { 0, 0, 1, 0, 0 }));
   filter->SetOutputSpacing(0.5, 0.5, 0.5);
   filter->Update();
-  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 4) == 34, "its neighbours form the pair");
+  LACUNA_CHECK_THAT(
+    GetValue(filter->GetOutput(), "Intensity", 6, 4, 4) == 34, "its neighbours form the pair");
   filter->SetMaximumSliceGap(1.5);
   filter->Update();
-  Check(GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 4) == 0, "unless too far apart");
-  Check(GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 1) == 1, "others stay");
+  LACUNA_CHECK_THAT(
+    GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 4) == 0, "unless too far apart");
+  LACUNA_CHECK_THAT(
+    GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 1) == 1, "others stay");
 }
 
 // A part of a stack, with all tuples in the field data, as Extract Subset makes it.
@@ -331,9 +301,10 @@ void TestParts()
   clipped->SetClipRectangle(3, 2, 7, 5);
   clipped->Update();
   const double* bounds = clipped->GetOutput()->GetBounds();
-  Check(bounds[0] == 11.5 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 23,
+  LACUNA_CHECK_THAT(bounds[0] == 11.5 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 23,
     "bounds of the clip rectangle");
-  Check(GetValue(clipped->GetOutput(), "Intensity", 3, 2, 5) == 39, "grey level in the rectangle");
+  LACUNA_CHECK_THAT(
+    GetValue(clipped->GetOutput(), "Intensity", 3, 2, 5) == 39, "grey level in the rectangle");
 
   // the same pixels of slices 1..4 as a cropped stack
   int extent[6] = { 3, 9, 2, 6, 1, 4 };
@@ -342,17 +313,18 @@ void TestParts()
   cropped->SetInputData(part);
   cropped->SetOutputSpacing(0.5, 0.5, 0.5);
   cropped->Update();
-  Check(cropped->GetOutput()->GetBounds()[4] == 1, "the first slice is left out");
-  Check(GetValue(cropped->GetOutput(), "Intensity", 3, 2, 3) == 39, "cropped stack");
+  LACUNA_CHECK_THAT(cropped->GetOutput()->GetBounds()[4] == 1, "the first slice is left out");
+  LACUNA_CHECK_THAT(GetValue(cropped->GetOutput(), "Intensity", 3, 2, 3) == 39, "cropped stack");
   // a stack whose extent starts at 0 says by its origin which part it is
   part->SetExtent(0, 6, 0, 4, 0, 3);
   part->SetOrigin(3, 2, 1);
   cropped->SetClipRectangle(4, 0, 0, 5);
   cropped->Update();
   bounds = cropped->GetOutput()->GetBounds();
-  Check(bounds[0] == 12 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 22,
+  LACUNA_CHECK_THAT(bounds[0] == 12 && bounds[1] == 14.5 && bounds[2] == 21 && bounds[3] == 22,
     "the rectangle counts the pixels of the original slices");
-  Check(GetValue(cropped->GetOutput(), "Intensity", 2, 2, 3) == 39, "stack with an origin");
+  LACUNA_CHECK_THAT(
+    GetValue(cropped->GetOutput(), "Intensity", 2, 2, 3) == 39, "stack with an origin");
   // every second column and row
   vtkNew<vtkImageData> strided;
   strided->DeepCopy(MakeStack(MakePoses(5)));
@@ -361,78 +333,89 @@ void TestParts()
   wide->SetInputData(strided);
   wide->SetOutputSpacing(0.5, 0.5, 0.5);
   wide->Update();
-  Check(wide->GetOutput()->GetBounds()[1] == 22, "pixels of a strided stack lie further apart");
+  LACUNA_CHECK_THAT(
+    wide->GetOutput()->GetBounds()[1] == 22, "pixels of a strided stack lie further apart");
 }
 
 void TestErrors()
 {
   const double notANumber = std::numeric_limits<double>::quiet_NaN();
   const auto good = MakeStack(MakePoses(5));
-  Check(GetError(good).empty(), "no error");
+  LACUNA_CHECK_THAT(GetError(good).empty(), "no error");
 
   auto stack = MakeStack(MakePoses(5));
   stack->GetFieldData()->RemoveArray("ImageToReference");
-  CheckError(GetError(stack), "'ImageToReference' is missing");
+  LACUNA_CHECK_CONTAINS(GetError(stack), "'ImageToReference' is missing");
   stack = MakeStack(MakePoses(5));
   stack->GetFieldData()->RemoveArray("SliceStatus");
-  CheckError(GetError(stack), "'SliceStatus' is missing");
+  LACUNA_CHECK_CONTAINS(GetError(stack), "'SliceStatus' is missing");
   stack = MakeStack(MakePoses(5));
   stack->GetPointData()->SetActiveScalars(nullptr);
   stack->GetPointData()->RemoveArray(0);
-  CheckError(GetError(stack), "no active point scalars");
+  LACUNA_CHECK_CONTAINS(GetError(stack), "no active point scalars");
   stack = MakeStack(MakePoses(5));
   stack->SetOrigin(0, 0, 3);
-  CheckError(GetError(stack), "z = 5");
+  LACUNA_CHECK_CONTAINS(GetError(stack), "z = 5");
   stack = MakeStack(MakePoses(5));
   stack->SetDirectionMatrix(0, 1, 0, 1, 0, 0, 0, 0, 1);
-  CheckError(GetError(stack), "direction matrix");
+  LACUNA_CHECK_CONTAINS(GetError(stack), "direction matrix");
 
-  CheckError(GetError(MakeStack(MakePoses(1))), "too few: 1 of 1 are valid");
-  CheckError(GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 0, 2, 4 })), "1 of 4 are valid");
-  Check(GetError(MakeStack(MakePoses(1)),
-          [](vtkLacunaSweptVolume* f) { f->SetInterpolationToNearestVoxel(); })
-          .empty(),
+  LACUNA_CHECK_CONTAINS(GetError(MakeStack(MakePoses(1))), "too few: 1 of 1 are valid");
+  LACUNA_CHECK_CONTAINS(
+    GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 0, 2, 4 })), "1 of 4 are valid");
+  LACUNA_CHECK_THAT(GetError(MakeStack(MakePoses(1)),
+                      [](vtkLacunaSweptVolume* f) { f->SetInterpolationToNearestVoxel(); })
+                      .empty(),
     "one slice is enough for NearestVoxel");
-  CheckError(GetError(MakeStack(std::vector<Matrix4>(5, MakePoses(1)[0]))), "in the same plane");
+  LACUNA_CHECK_CONTAINS(
+    GetError(MakeStack(std::vector<Matrix4>(5, MakePoses(1)[0]))), "in the same plane");
 
   std::vector<Matrix4> poses = MakePoses(5);
   poses[3](1, 1) = notANumber;
-  CheckError(GetError(MakeStack(poses)), "slice 3: its pose has elements that are not finite");
-  CheckError(GetError(MakeStack(poses)), "mark the slice invalid (SliceStatus 1)");
+  LACUNA_CHECK_CONTAINS(
+    GetError(MakeStack(poses)), "slice 3: its pose has elements that are not finite");
+  LACUNA_CHECK_CONTAINS(GetError(MakeStack(poses)), "mark the slice invalid (SliceStatus 1)");
   poses = MakePoses(5);
   poses[1] = poses[1] * Matrix4::Scaling({ 0, 1, 1 });
-  CheckError(GetError(MakeStack(poses)), "slice 1: its pose is singular");
+  LACUNA_CHECK_CONTAINS(GetError(MakeStack(poses)), "slice 1: its pose is singular");
   poses = MakePoses(5);
   poses[4] = Matrix4::Translation({ 0, 0, 1e9 }) * poses[4];
   const std::string wild = GetError(MakeStack(poses));
-  CheckError(wild, "slice 4 lies 1e+09 mm from the middle");
-  CheckError(wild, "MemoryLimit allows 4294967296 bytes");
-  CheckError(wild, "An OutputSpacing of");
+  LACUNA_CHECK_CONTAINS(wild, "slice 4 lies 1e+09 mm from the middle");
+  LACUNA_CHECK_CONTAINS(wild, "MemoryLimit allows 4294967296 bytes");
+  LACUNA_CHECK_CONTAINS(wild, "An OutputSpacing of");
 
   const auto with = [&](const Configure& configure) { return GetError(good, configure); };
-  CheckError(with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }), "OutputSpacing along y");
-  CheckError(with([=](auto* f) { f->SetOutputSpacing(notANumber, 1, 1); }), "along x is nan");
-  CheckError(with([](auto* f) { f->SetOutputBounds(12, 11, 1, -1, 1, -1); }), "minimum first");
-  CheckError(with([](auto* f) { f->SetOutputBounds(1, -1, 90, 99, 1, -1); }), "between 20 and 24");
-  CheckError(with([](auto* f) { f->SetClipRectangle(40, 0, 0, 0); }), "0 columns of 0 to 12");
-  CheckError(with([](auto* f) { f->SetClipRectangle(0, 8, 0, 0); }), "1 rows of 0 to 8");
-  CheckError(with([](auto* f) { f->SetClipRectangle(-2147483647, 0, 5, 0); }), "0 columns");
-  CheckError(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
-  CheckError(with([](auto* f) { f->SetOutputSpacing(0.001, 0.001, 0.001); }), "MemoryLimit");
-  CheckError(with(
-               [](auto* f)
-               {
-                 f->SetMemoryLimit(1);
-                 f->SetOutputSpacing(0.05, 0.05, 0.05);
-               }),
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }), "OutputSpacing along y");
+  LACUNA_CHECK_CONTAINS(
+    with([=](auto* f) { f->SetOutputSpacing(notANumber, 1, 1); }), "along x is nan");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetOutputBounds(12, 11, 1, -1, 1, -1); }), "minimum first");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetOutputBounds(1, -1, 90, 99, 1, -1); }), "between 20 and 24");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetClipRectangle(40, 0, 0, 0); }), "0 columns of 0 to 12");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetClipRectangle(0, 8, 0, 0); }), "1 rows of 0 to 8");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetClipRectangle(-2147483647, 0, 5, 0); }), "0 columns");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetOutputSpacing(0.001, 0.001, 0.001); }), "MemoryLimit");
+  LACUNA_CHECK_CONTAINS(with(
+                          [](auto* f)
+                          {
+                            f->SetMemoryLimit(1);
+                            f->SetOutputSpacing(0.05, 0.05, 0.05);
+                          }),
     "1048576 bytes");
 
-  CheckError(with(
-               [](auto* f)
-               {
-                 f->SetMemoryLimit(0);
-                 f->SetOutputSpacing(0.0002, 0.0002, 0.0002);
-               }),
+  LACUNA_CHECK_CONTAINS(with(
+                          [](auto* f)
+                          {
+                            f->SetMemoryLimit(0);
+                            f->SetOutputSpacing(0.0002, 0.0002, 0.0002);
+                          }),
     "this part of the volume would need");
 
   // a pair turned too far is a warning, the rest is filled
@@ -441,10 +424,10 @@ void TestErrors()
   vtkNew<vtkLacunaSweptVolume> turned;
   turned->SetInputData(MakeStack(poses));
   turned->SetOutputSpacing(0.5, 0.5, 0.5);
-  const Messages messages(turned);
+  const auto messages = lacunaCheck::Watch(turned);
   turned->Update();
-  CheckError(messages.Text, "1 of 3 pairs");
-  Check(turned->GetOutput()->GetNumberOfPoints() > 0, "a warning keeps the output");
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "1 of 3 pairs");
+  LACUNA_CHECK_THAT(turned->GetOutput()->GetNumberOfPoints() > 0, "a warning keeps the output");
 
   // the second of two inputs is named
   vtkNew<vtkLacunaSweptVolume> two;
@@ -452,24 +435,24 @@ void TestErrors()
   poses = MakePoses(2);
   poses[0](2, 2) = notANumber;
   two->AddInputData(MakeStack(poses));
-  const Messages second(two);
+  const auto second = lacunaCheck::Watch(two);
   two->Update();
-  CheckError(second.Text, "slice 0 of input 1");
+  LACUNA_CHECK_CONTAINS(second->Errors, "slice 0 of input 1");
 
   // once mended, it works again
   vtkNew<vtkLacunaSweptVolume> mended;
   mended->SetInputData(good);
   mended->SetOutputSpacing(-1, 1, 1);
-  const Messages once(mended);
+  const auto once = lacunaCheck::Watch(mended);
   mended->Update();
-  Check(!once.Text.empty(), "an error first");
+  LACUNA_CHECK_THAT(!once->Errors.empty(), "an error first");
   mended->SetOutputSpacing(1, 1, 1);
   mended->Update();
-  Check(mended->GetOutput()->GetNumberOfPoints() == 7 * 5 * 5, "then the volume");
+  LACUNA_CHECK_THAT(mended->GetOutput()->GetNumberOfPoints() == 7 * 5 * 5, "then the volume");
 
   // nothing in, nothing out
   vtkNew<vtkImageData> empty;
-  Check(GetError(empty).empty(), "an empty input is no error");
+  LACUNA_CHECK_THAT(GetError(empty).empty(), "an empty input is no error");
 }
 
 void TestPipeline()
@@ -481,26 +464,28 @@ void TestPipeline()
   filter->UpdateInformation();
   int whole[6];
   filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-  Check(whole[1] == 12 && whole[3] == 8 && whole[5] == 8, "whole extent before the data");
+  LACUNA_CHECK_THAT(
+    whole[1] == 12 && whole[3] == 8 && whole[5] == 8, "whole extent before the data");
   filter->Update();
   filter->SetCompoundingToMaximum();
   filter->Update();
-  Check(source->Executions == 1, "the source runs once");
+  LACUNA_CHECK_THAT(source->Executions == 1, "the source runs once");
   source->Modified();
   filter->Update();
-  Check(source->Executions == 2, "and once more when modified");
+  LACUNA_CHECK_THAT(source->Executions == 2, "and once more when modified");
 
   // a source that moves with time
   vtkNew<SliceSource> moving;
   moving->HasTime = true;
   filter->SetInputConnection(moving->GetOutputPort());
   filter->UpdateTimeStep(0);
-  Check(filter->GetOutput()->GetOrigin()[2] == 0, "at time 0");
+  LACUNA_CHECK_THAT(filter->GetOutput()->GetOrigin()[2] == 0, "at time 0");
   filter->UpdateTimeStep(100);
-  Check(filter->GetOutput()->GetOrigin()[2] == 100, "the grid follows in time");
-  Check(GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "and so do the grey levels");
+  LACUNA_CHECK_THAT(filter->GetOutput()->GetOrigin()[2] == 100, "the grid follows in time");
+  LACUNA_CHECK_THAT(
+    GetValue(filter->GetOutput(), "Intensity", 6, 4, 5) == 39, "and so do the grey levels");
   filter->UpdateTimeStep(0);
-  Check(filter->GetOutput()->GetOrigin()[2] == 0, "and back");
+  LACUNA_CHECK_THAT(filter->GetOutput()->GetOrigin()[2] == 0, "and back");
 
   // stopped by the user
   vtkNew<vtkLacunaSweptVolume> stopped;
@@ -511,7 +496,7 @@ void TestPipeline()
     { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
   stopped->AddObserver(vtkCommand::ProgressEvent, stop);
   stopped->Update();
-  Check(stopped->GetOutput()->GetNumberOfPoints() == 0, "nothing is left when stopped");
+  LACUNA_CHECK_THAT(stopped->GetOutput()->GetNumberOfPoints() == 0, "nothing is left when stopped");
 }
 }
 
@@ -524,5 +509,5 @@ int TestLacunaSweptVolume(int, char*[])
   TestParts();
   TestErrors();
   TestPipeline();
-  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

@@ -3,7 +3,6 @@
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
 #include "vtkCallbackCommand.h"
-#include "vtkExecutive.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkSphere.h"
@@ -29,15 +28,6 @@ void InvalidateAll(TestMap& map, const std::function<bool(vtkIdType)>& keep)
       map.Invalidate(i);
     }
   }
-}
-
-// Also the executive's: it complains of the failed request.
-vtkSmartPointer<lacunaCheck::Messages> Watch(vtkAlgorithm* algorithm)
-{
-  vtkNew<lacunaCheck::Messages> messages;
-  messages->Watch(algorithm);
-  messages->Watch(algorithm->GetExecutive());
-  return messages;
 }
 
 const Case Errors[] = {
@@ -102,7 +92,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     filler->SetDefectRegion(sphere);
     filler->SetSupportMargin(30);
     c.Spoil(map, filler);
-    const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
+    const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->HasError(c.Expected));
     LACUNA_CHECK(filler->GetOutput()->GetNumberOfPoints() == 0);
@@ -123,7 +113,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     vtkNew<vtkLacunaRBFHoleFiller> filler;
     filler->SetInputData(large);
     filler->SetSupportMargin(1000);
-    const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
+    const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->HasError("39587 nodes need a matrix of 12538944800 bytes") &&
       messages->HasError("raise NodeSpacing"));
@@ -139,7 +129,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     map.Image->GetPointData()->GetArray("Depth")->SetTuple1(31 * 80 + 30, std::nan(""));
     vtkNew<vtkLacunaRBFHoleFiller> filler;
     filler->SetInputData(map.Image);
-    const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
+    const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->HasWarning("2 pixels of the depth map are flagged valid"));
     LACUNA_CHECK(
@@ -150,7 +140,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     TestMap map;
     vtkNew<vtkLacunaRBFHoleFiller> filler;
     filler->SetInputData(map.Image);
-    const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
+    const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->HasWarning("the defect is empty"));
     vtkPointData* points = filler->GetOutput()->GetPointData();
@@ -168,7 +158,7 @@ int TestRBFHoleFillerErrors(int, char*[])
     vtkNew<vtkImageData> empty;
     vtkNew<vtkLacunaRBFHoleFiller> filler;
     filler->SetInputData(empty);
-    const vtkSmartPointer<lacunaCheck::Messages> messages = Watch(filler);
+    const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->Errors.empty() && messages->Warnings.empty());
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
+#include "lacunaCheck.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
@@ -21,23 +22,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <iostream>
 #include <sstream>
 #include <string>
 
 namespace
 {
-int Failures = 0;
-
-void Expect(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cerr << "failed: " << what << std::endl;
-    ++Failures;
-  }
-}
-
 using Caster = vtkLacunaBSplineIsoRayCaster;
 
 /// A volume with values of a world position, in an awkward frame and with an awkward extent.
@@ -98,32 +87,35 @@ void TestContract()
       vtkDataArray* normals = data->GetArray("Normals");
       if (!depth || !next || !mask || !normals)
       {
-        Expect(false, "arrays of the contract");
+        LACUNA_CHECK_THAT(false, "arrays of the contract");
         return;
       }
-      Expect(depth->GetDataType() == VTK_DOUBLE && next->GetDataType() == VTK_DOUBLE, "double");
-      Expect(mask->GetDataType() == VTK_CHAR, "char mask");
-      Expect(
+      LACUNA_CHECK_THAT(
+        depth->GetDataType() == VTK_DOUBLE && next->GetDataType() == VTK_DOUBLE, "double");
+      LACUNA_CHECK_THAT(mask->GetDataType() == VTK_CHAR, "char mask");
+      LACUNA_CHECK_THAT(
         normals->GetDataType() == VTK_FLOAT && normals->GetNumberOfComponents() == 3, "normals");
-      Expect(data->GetScalars() == depth, "Depth is active");
-      Expect(data->GetNormals() == normals, "Normals are active");
+      LACUNA_CHECK_THAT(data->GetScalars() == depth, "Depth is active");
+      LACUNA_CHECK_THAT(data->GetNormals() == normals, "Normals are active");
       vtkDataArray* isoValues = map->GetFieldData()->GetArray("IsoValues");
-      Expect(
+      LACUNA_CHECK_THAT(
         isoValues && isoValues->GetNumberOfTuples() == 2 && isoValues->GetTuple1(1) == isoValue + 1,
         "IsoValues");
-      Expect(map->GetFieldData()->GetAbstractArray("Provenance") != nullptr, "Provenance");
+      LACUNA_CHECK_THAT(
+        map->GetFieldData()->GetAbstractArray("Provenance") != nullptr, "Provenance");
       const int* dimensions = map->GetDimensions();
-      Expect(
+      LACUNA_CHECK_THAT(
         dimensions[2] == 1 && map->GetExtent()[0] == 0 && map->GetExtent()[2] == 0, "W x H x 1");
 
       const vtkLacunaDepthMap checked(map);
       // the direction matrix is (right, down, view), right-handed
       vtkMatrix3x3* d = map->GetDirectionMatrix();
-      Expect(std::abs(d->Determinant() - 1) < 1e-12, "right-handed");
-      Expect(std::abs(d->GetElement(0, 2) - 1 / std::sqrt(69.0)) < 1e-12 && d->GetElement(2, 2) < 0,
+      LACUNA_CHECK_THAT(std::abs(d->Determinant() - 1) < 1e-12, "right-handed");
+      LACUNA_CHECK_THAT(
+        std::abs(d->GetElement(0, 2) - 1 / std::sqrt(69.0)) < 1e-12 && d->GetElement(2, 2) < 0,
         "z = ViewDirection");
-      Expect(d->GetElement(1, 1) < -0.9, "y is down: against ViewUp");
-      Expect(d->GetElement(0, 0) > 0.9, "x is the viewer's right");
+      LACUNA_CHECK_THAT(d->GetElement(1, 1) < -0.9, "y is down: against ViewUp");
+      LACUNA_CHECK_THAT(d->GetElement(0, 0) > 0.9, "x is the viewer's right");
       vtkIdType hits = 0;
       for (int r = 0; r < dimensions[1]; ++r)
       {
@@ -131,7 +123,7 @@ void TestContract()
         {
           const vtkIdType i = c + static_cast<vtkIdType>(r) * dimensions[0];
           const double z = depth->GetTuple1(i);
-          Expect((mask->GetTuple1(i) == 1) == !std::isnan(z), "mask tells NaN");
+          LACUNA_CHECK_THAT((mask->GetTuple1(i) == 1) == !std::isnan(z), "mask tells NaN");
           if (std::isnan(z))
           {
             continue;
@@ -139,11 +131,11 @@ void TestContract()
           ++hits;
           // The map's own point, not the kernel's, lies on the true plane.
           const lacuna::Vec3 p = checked.GetPoint(c, r, z);
-          Expect(std::abs(roof(p.data()) - isoValue) < 3e-5, "on the surface");
+          LACUNA_CHECK_THAT(std::abs(roof(p.data()) - isoValue) < 3e-5, "on the surface");
           double n[3];
           normals->GetTuple(i, n);
           const double length = std::sqrt(0.25 + 1 + 0.0625);
-          Expect(std::abs(n[0] + 0.5 / length) + std::abs(n[1] + 0.25 / length) +
+          LACUNA_CHECK_THAT(std::abs(n[0] + 0.5 / length) + std::abs(n[1] + 0.25 / length) +
                 std::abs(n[2] - 1 / length) <
               2e-5,
             "normal out of the solid");
@@ -151,11 +143,11 @@ void TestContract()
           if (!std::isnan(z1))
           {
             const lacuna::Vec3 q = checked.GetPoint(c, r, z1);
-            Expect(std::abs(roof(q.data()) - isoValue - 1) < 3e-5 && z1 > z, "Depth_1");
+            LACUNA_CHECK_THAT(std::abs(roof(q.data()) - isoValue - 1) < 3e-5 && z1 > z, "Depth_1");
           }
         }
       }
-      Expect(hits > 300, "the plane is seen");
+      LACUNA_CHECK_THAT(hits > 300, "the plane is seen");
     }
   }
 }
@@ -194,7 +186,7 @@ void TestTypes()
       hits += !std::isnan(u);
       same = u == v || (std::isnan(u) && std::isnan(v));
     }
-    Expect(same && hits > 50, std::string("type ") + vtkImageScalarTypeNameMacro(type));
+    LACUNA_CHECK_THAT(same && hits > 50, std::string("type ") + vtkImageScalarTypeNameMacro(type));
   }
   // another memory layout
   const auto volume = MakeVolume(VTK_DOUBLE, false, ball);
@@ -220,7 +212,7 @@ void TestTypes()
   vtkDataArray* b = caster->GetOutput()->GetPointData()->GetArray("Depth");
   for (vtkIdType i = 0; i < a->GetNumberOfTuples(); ++i)
   {
-    Expect(a->GetTuple1(i) == b->GetTuple1(i) ||
+    LACUNA_CHECK_THAT(a->GetTuple1(i) == b->GetTuple1(i) ||
         (std::isnan(a->GetTuple1(i)) && std::isnan(b->GetTuple1(i))),
       "structure of arrays");
   }
@@ -244,7 +236,7 @@ void TestRequestedExtent()
   other->SetIsoValue(0, -centre[2]);
   other->UpdateExtent(part);
   vtkImageData* piece = other->GetOutput();
-  Expect(piece->GetNumberOfPoints() == 7 * 11, "exactly the requested extent");
+  LACUNA_CHECK_THAT(piece->GetNumberOfPoints() == 7 * 11, "exactly the requested extent");
   vtkLacunaDepthMap checked(piece);
   vtkIdType hits = 0;
   for (int r = part[2]; r <= part[3]; ++r)
@@ -257,15 +249,16 @@ void TestRequestedExtent()
       const double a = whole->GetPointData()->GetArray("Depth")->GetTuple1(i);
       const double b = piece->GetPointData()->GetArray("Depth")->GetTuple1(j);
       hits += !std::isnan(a);
-      Expect(a == b || (std::isnan(a) && std::isnan(b)), "a piece is a part of the whole");
+      LACUNA_CHECK_THAT(
+        a == b || (std::isnan(a) && std::isnan(b)), "a piece is a part of the whole");
       double p[3];
       double q[3];
       whole->GetPoint(i, p);
       piece->GetPoint(j, q);
-      Expect(std::sqrt(vtkMath::Distance2BetweenPoints(p, q)) < 1e-12, "at its place");
+      LACUNA_CHECK_THAT(std::sqrt(vtkMath::Distance2BetweenPoints(p, q)) < 1e-12, "at its place");
     }
   }
-  Expect(hits > 40, "hits in the piece");
+  LACUNA_CHECK_THAT(hits > 40, "hits in the piece");
 }
 
 /// The error or warning that a setting gives.
@@ -283,7 +276,7 @@ std::string MessageOf(vtkImageData* volume, bool warning, const std::function<vo
   caster->Update();
   if (!warning)
   {
-    Expect(caster->GetOutput()->GetNumberOfPoints() == 0, "no stale output");
+    LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "no stale output");
   }
   return warning ? observer->GetWarningMessage() : observer->GetErrorMessage();
 }
@@ -295,13 +288,13 @@ void TestBadInput()
     [](vtkImageData* v, const std::string& text, const std::function<void(Caster*)>& set)
   {
     const std::string message = MessageOf(v, false, set);
-    Expect(message.find(text) != std::string::npos, text + ", but: " + message);
+    LACUNA_CHECK_THAT(message.find(text) != std::string::npos, text + ", but: " + message);
   };
   const auto warns =
     [](vtkImageData* v, const std::string& text, const std::function<void(Caster*)>& set)
   {
     const std::string message = MessageOf(v, true, set);
-    Expect(message.find(text) != std::string::npos, text + ", but: " + message);
+    LACUNA_CHECK_THAT(message.find(text) != std::string::npos, text + ", but: " + message);
   };
   fails(volume, "view direction (0, 0, 0)", [](Caster* c) { c->SetViewDirection(0, 0, 0); });
   fails(volume, "parallel", [](Caster* c) { c->SetViewUp(0, 0, 3); });
@@ -345,29 +338,31 @@ void TestBadInput()
   const auto holed = MakeVolume(VTK_FLOAT, false,
     [](const double* p) { return p[2] < 95 && p[0] < -4 ? vtkMath::Nan() : 420 + p[2]; });
   std::string message = MessageOf(holed, true, [](Caster* c) { c->SetIsoValue(0, 520); });
-  Expect(message.find("voxels of array 'Values' are not finite") != std::string::npos, message);
+  LACUNA_CHECK_THAT(
+    message.find("voxels of array 'Values' are not finite") != std::string::npos, message);
 
   // an empty input gives an empty output and no error
   vtkNew<Caster> caster;
   vtkNew<vtkImageData> empty;
   caster->SetInputData(empty);
   caster->Update();
-  Expect(caster->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
+  LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
 }
 
 void TestDefaultsAndCache()
 {
   vtkNew<Caster> caster;
-  Expect(caster->GetNumberOfIsoValues() == 1 && caster->GetIsoValue(0) == 500, "IsoValues");
-  Expect(caster->GetScalarArray().empty(), "ScalarArray");
-  Expect(caster->GetInterpolation() == Caster::BSpline, "Interpolation");
-  Expect(caster->GetSolidSide() == Caster::Above, "SolidSide");
-  Expect(caster->GetViewDirection()[2] == -1 && caster->GetViewUp()[1] == 1, "view");
-  Expect(caster->GetPlaneOrigin()[0] == VTK_DOUBLE_MAX, "PlaneOrigin");
-  Expect(caster->GetPixelSpacing() == 0 && caster->GetImageSize()[0] == 0, "sizes");
+  LACUNA_CHECK_THAT(
+    caster->GetNumberOfIsoValues() == 1 && caster->GetIsoValue(0) == 500, "IsoValues");
+  LACUNA_CHECK_THAT(caster->GetScalarArray().empty(), "ScalarArray");
+  LACUNA_CHECK_THAT(caster->GetInterpolation() == Caster::BSpline, "Interpolation");
+  LACUNA_CHECK_THAT(caster->GetSolidSide() == Caster::Above, "SolidSide");
+  LACUNA_CHECK_THAT(caster->GetViewDirection()[2] == -1 && caster->GetViewUp()[1] == 1, "view");
+  LACUNA_CHECK_THAT(caster->GetPlaneOrigin()[0] == VTK_DOUBLE_MAX, "PlaneOrigin");
+  LACUNA_CHECK_THAT(caster->GetPixelSpacing() == 0 && caster->GetImageSize()[0] == 0, "sizes");
   std::ostringstream text;
   caster->Print(text);
-  Expect(text.str().find("IsoValues: 500") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(text.str().find("IsoValues: 500") != std::string::npos, "PrintSelf");
 
   // values changed in place and another side: no stale preparation
   const auto volume = MakeVolume(VTK_FLOAT, false, [](const double* p) { return -p[2]; });
@@ -375,7 +370,8 @@ void TestDefaultsAndCache()
   caster->SetIsoValue(0, -95);
   caster->SetPlaneOrigin(0, 0, 95.5);
   caster->Update();
-  Expect(std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) - 0.5) < 1e-5,
+  LACUNA_CHECK_THAT(
+    std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) - 0.5) < 1e-5,
     "depth from the plane's origin");
   vtkDataArray* values = volume->GetPointData()->GetScalars();
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
@@ -385,15 +381,17 @@ void TestDefaultsAndCache()
   values->Modified();
   volume->Modified();
   caster->Update();
-  Expect(std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) + 1.5) < 1e-5,
+  LACUNA_CHECK_THAT(
+    std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) + 1.5) < 1e-5,
     "new values; before the plane depth is negative");
   caster->SetSolidSide(Caster::Below);
   caster->Update();
-  Expect(std::isnan(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20)),
+  LACUNA_CHECK_THAT(std::isnan(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20)),
     "inside the solid from the start");
   caster->SetViewDirection(0, 0, 1);
   caster->Update();
-  Expect(std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) - 1.5) < 1e-5,
+  LACUNA_CHECK_THAT(
+    std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) - 1.5) < 1e-5,
     "from below");
 }
 }
@@ -405,5 +403,5 @@ int TestBSplineIsoRayCaster(int, char*[])
   TestRequestedExtent();
   TestBadInput();
   TestDefaultsAndCache();
-  return Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaDepthMapSurface.h"
 
+#include "lacunaCheck.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
@@ -20,24 +21,12 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <iostream>
 #include <set>
 #include <sstream>
 #include <string>
 
 namespace
 {
-int Failures = 0;
-
-void Expect(bool condition, const std::string& what)
-{
-  if (!condition)
-  {
-    std::cerr << "failed: " << what << std::endl;
-    ++Failures;
-  }
-}
-
 /// Distance to two balls, one before the other as seen from the top.
 vtkSmartPointer<vtkImageData> MakeVolume()
 {
@@ -77,15 +66,18 @@ void TestSurface()
   {
     defined += !std::isnan(depth->GetTuple1(i));
   }
-  Expect(defined > 1500 && surface->GetNumberOfPoints() == defined, "a point for each depth");
+  LACUNA_CHECK_THAT(
+    defined > 1500 && surface->GetNumberOfPoints() == defined, "a point for each depth");
   auto* ids = vtkIdTypeArray::SafeDownCast(data->GetPedigreeIds());
-  Expect(ids && std::string(ids->GetName()) == "PixelId", "PixelId");
-  Expect(data->GetScalars() && std::string(data->GetScalars()->GetName()) == "Depth", "Depth");
+  LACUNA_CHECK_THAT(ids && std::string(ids->GetName()) == "PixelId", "PixelId");
+  LACUNA_CHECK_THAT(
+    data->GetScalars() && std::string(data->GetScalars()->GetName()) == "Depth", "Depth");
   vtkDataArray* normals = data->GetNormals();
-  Expect(normals && std::string(normals->GetName()) == "Normals", "Normals");
-  Expect(data->GetArray("vtkValidPointMask") != nullptr, "arrays are carried");
-  Expect(surface->GetFieldData()->GetAbstractArray("Provenance") != nullptr, "Provenance");
-  if (Failures)
+  LACUNA_CHECK_THAT(normals && std::string(normals->GetName()) == "Normals", "Normals");
+  LACUNA_CHECK_THAT(data->GetArray("vtkValidPointMask") != nullptr, "arrays are carried");
+  LACUNA_CHECK_THAT(
+    surface->GetFieldData()->GetAbstractArray("Provenance") != nullptr, "Provenance");
+  if (lacunaCheck::Failures())
   {
     return;
   }
@@ -97,8 +89,9 @@ void TestSurface()
       static_cast<double>(pixel / width), depth->GetTuple1(pixel));
     double q[3];
     surface->GetPoint(i, q);
-    Expect(vtkMath::Distance2BetweenPoints(p.data(), q) < 1e-20, "points are the map's");
-    Expect(data->GetScalars()->GetTuple1(i) == depth->GetTuple1(pixel), "values are the pixels'");
+    LACUNA_CHECK_THAT(vtkMath::Distance2BetweenPoints(p.data(), q) < 1e-20, "points are the map's");
+    LACUNA_CHECK_THAT(
+      data->GetScalars()->GetTuple1(i) == depth->GetTuple1(pixel), "values are the pixels'");
   }
   // every triangle faces the viewer, is small, and agrees with its normals
   double longest = 0;
@@ -124,10 +117,10 @@ void TestSurface()
     vtkTriangle::ComputeNormal(p[0], p[1], p[2], normal);
     const double view[3] = { checked.GetRay(0, 0)[0], checked.GetRay(0, 0)[1],
       checked.GetRay(0, 0)[2] };
-    Expect(vtkMath::Dot(normal, view) < 0, "front face towards the viewer");
-    Expect(vtkMath::Dot(normal, mean) > 0, "winding as normals");
+    LACUNA_CHECK_THAT(vtkMath::Dot(normal, view) < 0, "front face towards the viewer");
+    LACUNA_CHECK_THAT(vtkMath::Dot(normal, mean) > 0, "winding as normals");
   }
-  Expect(longest < 6, "no skin between the balls");
+  LACUNA_CHECK_THAT(longest < 6, "no skin between the balls");
   filter->BreakAtDiscontinuitiesOff();
   filter->Update();
   double bridged = 0;
@@ -135,7 +128,7 @@ void TestSurface()
   {
     bridged = std::max(bridged, filter->GetOutput()->GetCell(t)->GetLength2());
   }
-  Expect(std::sqrt(bridged) > 12, "a skin, when asked for");
+  LACUNA_CHECK_THAT(std::sqrt(bridged) > 12, "a skin, when asked for");
 }
 
 void TestPieces()
@@ -165,8 +158,8 @@ void TestPieces()
         all.insert(part->Begin(), part->End());
       }
     }
-    Expect(sum == triangles, "pieces add up to the whole: " + std::to_string(pieces));
-    Expect(all == whole, "with the same pixels");
+    LACUNA_CHECK_THAT(sum == triangles, "pieces add up to the whole: " + std::to_string(pieces));
+    LACUNA_CHECK_THAT(all == whole, "with the same pixels");
   }
 }
 
@@ -195,19 +188,22 @@ void TestOtherArrays()
   vtkNew<vtkLacunaDepthMapSurface> filter;
   filter->SetInputData(map);
   filter->Update();
-  Expect(filter->GetOutput()->GetNumberOfPoints() == 11, "Depth has a hole");
-  Expect(vtkIdTypeArray::SafeDownCast(filter->GetOutput()->GetPointData()->GetPedigreeIds())
-           ->GetValue(0) == 1,
+  LACUNA_CHECK_THAT(filter->GetOutput()->GetNumberOfPoints() == 11, "Depth has a hole");
+  LACUNA_CHECK_THAT(
+    vtkIdTypeArray::SafeDownCast(filter->GetOutput()->GetPointData()->GetPedigreeIds())
+        ->GetValue(0) == 1,
     "PixelId counts from the corner of the whole extent");
-  Expect(std::abs(filter->GetOutput()->GetPoint(0)[0] - (1 + 11 * 0.5)) < 1e-6, "at its place");
+  LACUNA_CHECK_THAT(
+    std::abs(filter->GetOutput()->GetPoint(0)[0] - (1 + 11 * 0.5)) < 1e-6, "at its place");
   filter->SetDepthArray("Fitted");
   filter->Update();
   vtkPolyData* surface = filter->GetOutput();
-  Expect(
+  LACUNA_CHECK_THAT(
     surface->GetNumberOfPoints() == 12 && surface->GetNumberOfCells() == 12, "Fitted has none");
-  Expect(std::abs(surface->GetPoint(0)[2] - (3 - 8)) < 1e-6, "depths of Fitted");
-  Expect(std::string(surface->GetPointData()->GetScalars()->GetName()) == "Fitted", "scalars");
-  Expect(surface->GetPointData()->GetNormals() == nullptr, "Normals belong to Depth");
+  LACUNA_CHECK_THAT(std::abs(surface->GetPoint(0)[2] - (3 - 8)) < 1e-6, "depths of Fitted");
+  LACUNA_CHECK_THAT(
+    std::string(surface->GetPointData()->GetScalars()->GetName()) == "Fitted", "scalars");
+  LACUNA_CHECK_THAT(surface->GetPointData()->GetNormals() == nullptr, "Normals belong to Depth");
 }
 
 void TestBadInput()
@@ -222,36 +218,41 @@ void TestBadInput()
     filter->SetDepthArray(array);
     filter->SetMaximumAngle(angle);
     filter->Update();
-    Expect(filter->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
+    LACUNA_CHECK_THAT(filter->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
     return observer->GetErrorMessage();
   };
   vtkNew<vtkImageData> map;
   map->SetDimensions(4, 4, 1);
-  Expect(errorOf(map, "Depth", 65).find("'Depth'") != std::string::npos, "not a depth map");
+  LACUNA_CHECK_THAT(
+    errorOf(map, "Depth", 65).find("'Depth'") != std::string::npos, "not a depth map");
   vtkNew<vtkDoubleArray> depth;
   depth->SetName("Depth");
   depth->SetNumberOfTuples(16);
   depth->Fill(1);
   map->GetPointData()->AddArray(depth);
-  Expect(errorOf(map, "Depth", 65).find("ImageToWorld") != std::string::npos, "no geometry");
+  LACUNA_CHECK_THAT(
+    errorOf(map, "Depth", 65).find("ImageToWorld") != std::string::npos, "no geometry");
   vtkLacunaDepthMap::SetGeometry(
     map, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 }, { 1, 1 } });
-  Expect(errorOf(map, "Fitted", 65).find("'Fitted'") != std::string::npos, "no such array");
-  Expect(errorOf(map, "Depth", 95).find("MaximumAngle is 95") != std::string::npos, "angle");
+  LACUNA_CHECK_THAT(
+    errorOf(map, "Fitted", 65).find("'Fitted'") != std::string::npos, "no such array");
+  LACUNA_CHECK_THAT(
+    errorOf(map, "Depth", 95).find("MaximumAngle is 95") != std::string::npos, "angle");
   map->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
-  Expect(errorOf(map, "Depth", 65).find("disagrees") != std::string::npos, "reset direction");
+  LACUNA_CHECK_THAT(
+    errorOf(map, "Depth", 65).find("disagrees") != std::string::npos, "reset direction");
 
   vtkNew<vtkLacunaDepthMapSurface> filter;
   vtkNew<vtkImageData> empty;
   filter->SetInputData(empty);
   filter->Update();
-  Expect(filter->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
-  Expect(filter->GetDepthArray() == "Depth" && filter->GetBreakAtDiscontinuities() &&
+  LACUNA_CHECK_THAT(filter->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
+  LACUNA_CHECK_THAT(filter->GetDepthArray() == "Depth" && filter->GetBreakAtDiscontinuities() &&
       filter->GetMaximumAngle() == 65 && filter->GetMaximumAngleChange() == 20,
     "defaults");
   std::ostringstream text;
   filter->Print(text);
-  Expect(text.str().find("MaximumAngleChange: 20") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(text.str().find("MaximumAngleChange: 20") != std::string::npos, "PrintSelf");
 }
 }
 
@@ -261,5 +262,5 @@ int TestDepthMapSurface(int, char*[])
   TestPieces();
   TestOtherArrays();
   TestBadInput();
-  return Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

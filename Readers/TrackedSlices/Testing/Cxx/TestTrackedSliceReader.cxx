@@ -21,24 +21,24 @@ namespace
 void TestDefaults()
 {
   vtkNew<vtkLacunaTrackedSliceReader> reader;
-  CHECK(reader->GetNumberOfInputPorts() == 0);
-  CHECK(reader->GetNumberOfOutputPorts() == 1);
-  CHECK(!reader->GetFileName());
-  CHECK(!reader->GetCalibrationFileName());
-  CHECK(std::string(reader->GetImageFrame()) == "Image");
-  CHECK(std::string(reader->GetReferenceFrame()) == "Reference");
-  CHECK(reader->GetFrameRange()[0] == 0 && reader->GetFrameRange()[1] == -1);
-  CHECK(reader->GetFrameStride() == 1);
-  CHECK(reader->GetDropInvalidSlices());
-  CHECK(reader->GetMemoryLimit() == 0);
+  LACUNA_CHECK(reader->GetNumberOfInputPorts() == 0);
+  LACUNA_CHECK(reader->GetNumberOfOutputPorts() == 1);
+  LACUNA_CHECK(!reader->GetFileName());
+  LACUNA_CHECK(!reader->GetCalibrationFileName());
+  LACUNA_CHECK(std::string(reader->GetImageFrame()) == "Image");
+  LACUNA_CHECK(std::string(reader->GetReferenceFrame()) == "Reference");
+  LACUNA_CHECK(reader->GetFrameRange()[0] == 0 && reader->GetFrameRange()[1] == -1);
+  LACUNA_CHECK(reader->GetFrameStride() == 1);
+  LACUNA_CHECK(reader->GetDropInvalidSlices());
+  LACUNA_CHECK(reader->GetMemoryLimit() == 0);
   reader->SetFrameStride(0);
-  CHECK(reader->GetFrameStride() == 1);
+  LACUNA_CHECK(reader->GetFrameStride() == 1);
   std::ostringstream text;
   reader->Print(text);
   for (const char* name : { "FileName", "CalibrationFileName", "ImageFrame", "ReferenceFrame",
          "FrameRange", "FrameStride", "DropInvalidSlices", "MemoryLimit" })
   {
-    CHECK_CONTAINS(text.str(), std::string(name) + ": ");
+    LACUNA_CHECK_CONTAINS(text.str(), std::string(name) + ": ");
   }
 }
 
@@ -55,7 +55,8 @@ void CheckPixels(vtkImageData* output)
     {
       for (int column = extent[0]; column <= extent[1]; ++column)
       {
-        CHECK(output->GetScalarComponentAsDouble(column, row, k, 0) == GetGrey(column, row, frame));
+        LACUNA_CHECK(
+          output->GetScalarComponentAsDouble(column, row, k, 0) == GetGrey(column, row, frame));
       }
     }
   }
@@ -76,48 +77,50 @@ void TestOutput()
   file.SetFrame(4, "ProbeToTrackerTransformStatus", "MISSING");
   ReaderOf test(file.GetContent());
   test.Reader->Update();
-  CHECK(test.Errors.empty() && test.Warnings.empty());
-  CHECK(test.Reader->GetErrorCode() == 0);
+  LACUNA_CHECK(test.Errors.empty() && test.Warnings.empty());
+  LACUNA_CHECK(test.Reader->GetErrorCode() == 0);
   vtkImageData* output = test.Reader->GetOutput();
   const int* size = output->GetDimensions();
-  CHECK(size[0] == 5 && size[1] == 4 && size[2] == 6);
+  LACUNA_CHECK(size[0] == 5 && size[1] == 4 && size[2] == 6);
   for (int axis = 0; axis < 3; ++axis)
   {
-    CHECK(output->GetOrigin()[axis] == 0 && output->GetSpacing()[axis] == 1);
+    LACUNA_CHECK(output->GetOrigin()[axis] == 0 && output->GetSpacing()[axis] == 1);
   }
   vtkDataArray* scalars = output->GetPointData()->GetScalars();
-  CHECK(scalars && std::string(scalars->GetName()) == "Intensity");
-  CHECK(scalars && scalars->GetDataType() == VTK_UNSIGNED_CHAR);
+  LACUNA_CHECK(scalars && std::string(scalars->GetName()) == "Intensity");
+  LACUNA_CHECK(scalars && scalars->GetDataType() == VTK_UNSIGNED_CHAR);
   CheckPixels(output);
 
   const vtkLacunaTrackedSlices slices(output); // throws when the contract is not met
-  CHECK(slices.GetNumberOfSlices() == 6);
+  LACUNA_CHECK(slices.GetNumberOfSlices() == 6);
   const lacuna::Vec3 p = slices.GetImageToReference(2).Point({ 10, 20, 0 });
-  CHECK(std::abs(p[0] + 76) < 1e-12 && std::abs(p[1] + 3) < 1e-12 && std::abs(p[2] - 35) < 1e-12);
-  CHECK(slices.GetStatus(2) == vtkLacunaTrackedSlices::Valid);
-  CHECK(slices.GetStatus(4) == vtkLacunaTrackedSlices::PoseInvalid);
-  CHECK(std::isnan(slices.GetImageToReference(4)(0, 0)));
-  CHECK(slices.GetTimestamp(5) == 15.25);
+  LACUNA_CHECK(
+    std::abs(p[0] + 76) < 1e-12 && std::abs(p[1] + 3) < 1e-12 && std::abs(p[2] - 35) < 1e-12);
+  LACUNA_CHECK(slices.GetStatus(2) == vtkLacunaTrackedSlices::Valid);
+  LACUNA_CHECK(slices.GetStatus(4) == vtkLacunaTrackedSlices::PoseInvalid);
+  LACUNA_CHECK(std::isnan(slices.GetImageToReference(4)(0, 0)));
+  LACUNA_CHECK(slices.GetTimestamp(5) == 15.25);
   vtkFieldData* fields = output->GetFieldData();
-  CHECK(fields->GetArray("FrameNumber")->GetTuple1(3) == 506);
-  CHECK(vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, 6)->GetComponent(4, 3) == 4);
-  CHECK(vtkLacunaFieldData::Get(output, "ReferenceToTracker", 16, 6)->GetComponent(0, 7) == 100);
-  CHECK(vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1)->GetComponent(0, 11) == 5);
+  LACUNA_CHECK(fields->GetArray("FrameNumber")->GetTuple1(3) == 506);
+  LACUNA_CHECK(vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, 6)->GetComponent(4, 3) == 4);
+  LACUNA_CHECK(
+    vtkLacunaFieldData::Get(output, "ReferenceToTracker", 16, 6)->GetComponent(0, 7) == 100);
+  LACUNA_CHECK(vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1)->GetComponent(0, 11) == 5);
   auto* notes = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Note"));
-  CHECK(notes && notes->GetNumberOfValues() == 6 && notes->GetValue(2) == "here");
-  CHECK(fields->GetAbstractArray("ProbeToTrackerTransformStatus"));
+  LACUNA_CHECK(notes && notes->GetNumberOfValues() == 6 && notes->GetValue(2) == "here");
+  LACUNA_CHECK(fields->GetAbstractArray("ProbeToTrackerTransformStatus"));
   auto* custom = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Operator"));
-  CHECK(custom && custom->GetNumberOfValues() == 1 && custom->GetValue(0) == "none");
-  CHECK(!fields->GetAbstractArray("PatientName") && !fields->GetAbstractArray("patientID"));
+  LACUNA_CHECK(custom && custom->GetNumberOfValues() == 1 && custom->GetValue(0) == "none");
+  LACUNA_CHECK(!fields->GetAbstractArray("PatientName") && !fields->GetAbstractArray("patientID"));
 
   const std::vector<std::string> steps = vtkLacunaProvenance::Get(output);
-  CHECK(steps.size() == 1);
-  CHECK_CONTAINS(steps.at(0), "FileName=sweep.igs.mha");
-  CHECK_CONTAINS(steps.at(0), "FileSize=" + std::to_string(file.GetContent().size()));
-  CHECK_CONTAINS(steps.at(0), "Chain=Image > Probe > Tracker > Reference");
+  LACUNA_CHECK(steps.size() == 1);
+  LACUNA_CHECK_CONTAINS(steps.at(0), "FileName=sweep.igs.mha");
+  LACUNA_CHECK_CONTAINS(steps.at(0), "FileSize=" + std::to_string(file.GetContent().size()));
+  LACUNA_CHECK_CONTAINS(steps.at(0), "Chain=Image > Probe > Tracker > Reference");
   const std::string folder =
     std::filesystem::path(test.File.GetPath()).parent_path().filename().string();
-  CHECK(steps.at(0).find(folder) == std::string::npos);
+  LACUNA_CHECK(steps.at(0).find(folder) == std::string::npos);
 }
 
 void TestTypes()
@@ -135,8 +138,8 @@ void TestTypes()
     file.Pixels.assign(60 * 8, '\0');
     ReaderOf test(file.GetContent());
     test.Reader->Update();
-    CHECK(test.Errors.empty());
-    CHECK(test.Reader->GetOutput()->GetScalarType() == type);
+    LACUNA_CHECK(test.Errors.empty());
+    LACUNA_CHECK(test.Reader->GetOutput()->GetScalarType() == type);
   }
 }
 
@@ -149,20 +152,20 @@ void TestRequests()
   vtkImageData* output = reader->GetOutput();
   int got[6];
   output->GetExtent(got);
-  CHECK(std::equal(extent, extent + 6, got));
+  LACUNA_CHECK(std::equal(extent, extent + 6, got));
   CheckPixels(output);
-  CHECK(output->GetFieldData()->GetArray("ImageToReference")->GetNumberOfTuples() == 20);
+  LACUNA_CHECK(output->GetFieldData()->GetArray("ImageToReference")->GetNumberOfTuples() == 20);
 
   reader->SetFrameRange(3, 15);
   reader->SetFrameStride(4);
   reader->UpdateWholeExtent();
   output->GetExtent(got);
-  CHECK(got[4] == 0 && got[5] == 3); // 3, 7, 11, 15
-  CHECK(output->GetOrigin()[2] == 3 && output->GetSpacing()[2] == 4);
+  LACUNA_CHECK(got[4] == 0 && got[5] == 3); // 3, 7, 11, 15
+  LACUNA_CHECK(output->GetOrigin()[2] == 3 && output->GetSpacing()[2] == 4);
   CheckPixels(output);
   const vtkLacunaTrackedSlices slices(output);
-  CHECK(slices.GetNumberOfSlices() == 20);
-  CHECK(slices.GetSliceNumber(2) == 11);
+  LACUNA_CHECK(slices.GetNumberOfSlices() == 20);
+  LACUNA_CHECK(slices.GetSliceNumber(2) == 11);
   const int second[6] = { 0, 4, 0, 3, 1, 1 };
   reader->UpdateExtent(second);
   CheckPixels(output);
@@ -170,14 +173,14 @@ void TestRequests()
   reader->SetFrameRange(19, -1);
   reader->SetFrameStride(1);
   reader->UpdateWholeExtent();
-  CHECK(output->GetDimensions()[2] == 1 && output->GetOrigin()[2] == 19);
+  LACUNA_CHECK(output->GetDimensions()[2] == 1 && output->GetOrigin()[2] == 19);
   CheckPixels(output);
 
   reader->SetReferenceFrame("Tracker");
   reader->UpdateWholeExtent();
   const vtkLacunaTrackedSlices inTracker(output);
-  CHECK(inTracker.GetImageToReference(7).Point({ 0, 0, 0 })[0] == 7);
-  CHECK(test.Errors.empty() && test.Warnings.empty());
+  LACUNA_CHECK(inTracker.GetImageToReference(7).Point({ 0, 0, 0 })[0] == 7);
+  LACUNA_CHECK(test.Errors.empty() && test.Warnings.empty());
 }
 
 void TestDropInvalidSlices()
@@ -189,27 +192,27 @@ void TestDropInvalidSlices()
   ReaderOf test(file.GetContent());
   test.Reader->Update();
   const vtkLacunaTrackedSlices flagged(test.Reader->GetOutput());
-  CHECK(flagged.GetStatus(0) == 0 && flagged.GetStatus(1) == 1);
-  CHECK(flagged.GetStatus(2) == 2 && flagged.GetStatus(3) == 1);
-  CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 4); // z stays the slice number
-  CHECK_CONTAINS(test.Warnings, "has 1 numbers, not 16 in frame 3");
+  LACUNA_CHECK(flagged.GetStatus(0) == 0 && flagged.GetStatus(1) == 1);
+  LACUNA_CHECK(flagged.GetStatus(2) == 2 && flagged.GetStatus(3) == 1);
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 4); // z stays the slice number
+  LACUNA_CHECK_CONTAINS(test.Warnings, "has 1 numbers, not 16 in frame 3");
   test.Reader->DropInvalidSlicesOff();
   test.Reader->Update();
   const vtkLacunaTrackedSlices trusted(test.Reader->GetOutput());
-  CHECK(trusted.GetStatus(1) == 0 && trusted.GetStatus(2) == 0 && trusted.GetStatus(3) == 1);
-  CHECK(trusted.GetImageToReference(1).IsFinite());
+  LACUNA_CHECK(trusted.GetStatus(1) == 0 && trusted.GetStatus(2) == 0 && trusted.GetStatus(3) == 1);
+  LACUNA_CHECK(trusted.GetImageToReference(1).IsFinite());
 }
 
 void TestUncalibrated()
 {
   ReaderOf test(MakeSequence().GetContent(), false);
   test.Reader->Update();
-  CHECK(test.Errors.empty());
-  CHECK_CONTAINS(test.Warnings, "CalibrationFileName");
+  LACUNA_CHECK(test.Errors.empty());
+  LACUNA_CHECK_CONTAINS(test.Warnings, "CalibrationFileName");
   vtkImageData* output = test.Reader->GetOutput();
   CheckPixels(output);
-  CHECK(!output->GetFieldData()->GetArray("ImageToReference"));
-  CHECK(output->GetFieldData()->GetArray("SliceStatus")->GetNumberOfTuples() == 3);
+  LACUNA_CHECK(!output->GetFieldData()->GetArray("ImageToReference"));
+  LACUNA_CHECK(output->GetFieldData()->GetArray("SliceStatus")->GetNumberOfTuples() == 3);
 }
 
 void TestAbort()
@@ -224,8 +227,8 @@ void TestAbort()
     });
   test.Reader->AddObserver(vtkCommand::ProgressEvent, stop);
   test.Reader->Update();
-  CHECK(test.Errors.empty());
-  CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
+  LACUNA_CHECK(test.Errors.empty());
+  LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
 }
 }
 
@@ -238,5 +241,5 @@ int TestTrackedSliceReader(int, char*[])
   TestDropInvalidSlices();
   TestUncalibrated();
   TestAbort();
-  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

@@ -7,7 +7,6 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
-#include <cstdlib>
 
 namespace
 {
@@ -15,16 +14,16 @@ void ExpectError(ReaderOf& test, unsigned long code, const std::string& part)
 {
   test.Forget();
   test.Reader->Update();
-  CHECK_CONTAINS(test.Errors, part);
-  CHECK(test.Reader->GetErrorCode() == code);
-  CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
+  LACUNA_CHECK_CONTAINS(test.Errors, part);
+  LACUNA_CHECK(test.Reader->GetErrorCode() == code);
+  LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
 }
 
 void ExpectFormatError(const std::string& content, const std::string& part)
 {
   ReaderOf test(content);
   ExpectError(test, vtkErrorCode::FileFormatError, part);
-  CHECK_CONTAINS(test.Errors, test.File.GetPath());
+  LACUNA_CHECK_CONTAINS(test.Errors, test.File.GetPath());
 }
 
 void TestFiles()
@@ -50,8 +49,8 @@ void TestFiles()
   missing.Reader->SetFileName(missing.File.GetPath().c_str());
   missing.Forget();
   missing.Reader->Update(); // recovers
-  CHECK(missing.Errors.empty());
-  CHECK(missing.Reader->GetOutput()->GetNumberOfPoints() == 60);
+  LACUNA_CHECK(missing.Errors.empty());
+  LACUNA_CHECK(missing.Reader->GetOutput()->GetNumberOfPoints() == 60);
 }
 
 void TestChains()
@@ -76,7 +75,7 @@ void TestChains()
   test.Reader->SetCalibrationFileName(name.c_str());
   test.Forget();
   test.Reader->Update();
-  CHECK(test.Errors.empty() && test.Warnings.empty());
+  LACUNA_CHECK(test.Errors.empty() && test.Warnings.empty());
 }
 
 void TestFrameRange()
@@ -100,7 +99,7 @@ void TestMemoryLimit()
   test.Reader->SetFrameStride(2);
   test.Forget();
   test.Reader->Update();
-  CHECK(test.Errors.empty());
+  LACUNA_CHECK(test.Errors.empty());
 }
 
 void TestCutOff()
@@ -108,16 +107,16 @@ void TestCutOff()
   const std::string content = MakeSequence(5).GetContent();
   ReaderOf test(content.substr(0, content.size() - 21)); // one slice and one byte
   test.Reader->Update();
-  CHECK(test.Errors.empty());
-  CHECK_CONTAINS(test.Warnings, "cut off: 3 of the 5 frames are there");
+  LACUNA_CHECK(test.Errors.empty());
+  LACUNA_CHECK_CONTAINS(test.Warnings, "cut off: 3 of the 5 frames are there");
   vtkImageData* output = test.Reader->GetOutput();
-  CHECK(output->GetDimensions()[2] == 3);
+  LACUNA_CHECK(output->GetDimensions()[2] == 3);
   vtkDataArray* status = output->GetFieldData()->GetArray("SliceStatus");
-  CHECK(status->GetNumberOfTuples() == 5); // the sweep had five
-  CHECK(status->GetTuple1(2) == 0 && status->GetTuple1(3) == 2 && status->GetTuple1(4) == 2);
+  LACUNA_CHECK(status->GetNumberOfTuples() == 5); // the sweep had five
+  LACUNA_CHECK(status->GetTuple1(2) == 0 && status->GetTuple1(3) == 2 && status->GetTuple1(4) == 2);
   test.Reader->SetFrameRange(1, 4);
   test.Reader->Update();
-  CHECK(output->GetDimensions()[2] == 2);
+  LACUNA_CHECK(output->GetDimensions()[2] == 2);
   test.Reader->SetFrameRange(3, 4);
   ExpectError(test, vtkErrorCode::FileFormatError, "the pixels of slices 0 to 2");
 }
@@ -133,15 +132,15 @@ void TestCorrupt()
 void TestCanReadFile()
 {
   vtkNew<vtkLacunaTrackedSliceReader> reader;
-  CHECK(!reader->CanReadFile(nullptr));
-  CHECK(!reader->CanReadFile(""));
-  CHECK(!reader->CanReadFile("/nonexistent.mha"));
+  LACUNA_CHECK(!reader->CanReadFile(nullptr));
+  LACUNA_CHECK(!reader->CanReadFile(""));
+  LACUNA_CHECK(!reader->CanReadFile("/nonexistent.mha"));
   const TemporaryFile tracked("sweep.mha", MakeSequence().GetContent());
-  CHECK(reader->CanReadFile(tracked.GetPath().c_str()));
+  LACUNA_CHECK(reader->CanReadFile(tracked.GetPath().c_str()));
   SequenceFile ordinary = MakeSequence(0);
   ordinary.Set("DimSize", "5 4 3");
   const TemporaryFile ct("ct.mha", ordinary.GetContent() + std::string(60, 'x'));
-  CHECK(!reader->CanReadFile(ct.GetPath().c_str()));
+  LACUNA_CHECK(!reader->CanReadFile(ct.GetPath().c_str()));
 }
 }
 
@@ -154,5 +153,5 @@ int TestTrackedSliceReaderErrors(int, char*[])
   TestCutOff();
   TestCorrupt();
   TestCanReadFile();
-  return Failures() == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

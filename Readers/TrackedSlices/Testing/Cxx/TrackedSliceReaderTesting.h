@@ -5,42 +5,23 @@
 #define TrackedSliceReaderTesting_h
 
 #include "SequenceFile.h"
+#include "lacunaCheck.h"
 #include "vtkCallbackCommand.h"
 #include "vtkExecutive.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkNew.h"
-#include "vtkObject.h"
 
-#include <iostream>
+#include <filesystem>
 #include <string>
-
-inline int& Failures()
-{
-  static int failures = 0;
-  return failures;
-}
-
-#define CHECK(condition)                                                                           \
-  if (!(condition))                                                                                \
-  {                                                                                                \
-    std::cout << __FILE__ << ":" << __LINE__ << ": failed: " #condition "\n";                      \
-    ++Failures();                                                                                  \
-  }
-
-#define CHECK_CONTAINS(text, part)                                                                 \
-  if ((text).find(part) == std::string::npos)                                                      \
-  {                                                                                                \
-    std::cout << __FILE__ << ":" << __LINE__ << ": '" << (text) << "' lacks '" << (part) << "'\n"; \
-    ++Failures();                                                                                  \
-  }
 
 /// A reader of a sequence on disk, whose errors and warnings are caught.
 struct ReaderOf
 {
   TemporaryFile File;
   vtkNew<vtkLacunaTrackedSliceReader> Reader;
-  std::string Errors;
-  std::string Warnings;
+  vtkNew<lacunaCheck::Messages> Messages;
+  std::string& Errors = Messages->Errors;
+  std::string& Warnings = Messages->Warnings;
 
   explicit ReaderOf(const std::string& content, bool calibrated = true)
     : File("sweep.igs.mha", content)
@@ -52,8 +33,7 @@ struct ReaderOf
       const std::string name = this->GetCalibrationName();
       this->Reader->SetCalibrationFileName(name.c_str());
     }
-    this->Catch(vtkCommand::ErrorEvent, this->Errors);
-    this->Catch(vtkCommand::WarningEvent, this->Warnings);
+    this->Messages->Watch(this->Reader);
     // executives repeat what algorithms report
     vtkNew<vtkCallbackCommand> nothing;
     nothing->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
@@ -67,16 +47,6 @@ struct ReaderOf
   {
     this->Errors.clear();
     this->Warnings.clear();
-  }
-
-private:
-  void Catch(unsigned long event, std::string& text)
-  {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetClientData(&text);
-    command->SetCallback([](vtkObject*, unsigned long, void* client, void* data)
-      { *static_cast<std::string*>(client) += static_cast<const char*>(data); });
-    this->Reader->AddObserver(event, command);
   }
 };
 #endif

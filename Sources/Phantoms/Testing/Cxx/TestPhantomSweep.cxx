@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCheck.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
 #include "vtkExecutive.h"
@@ -18,37 +19,27 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
-#include <iostream>
 #include <sstream>
 #include <string>
 
 namespace
 {
-int Failures = 0;
-
-void Check(bool ok, const std::string& what)
-{
-  if (!ok)
-  {
-    std::cerr << "Failed: " << what << "\n";
-    ++Failures;
-  }
-}
-
 void TestDefaults()
 {
   vtkNew<vtkLacunaPhantomSweep> sweep;
   sweep->Update();
   vtkImageData* output = sweep->GetOutput();
   const int* dimensions = output->GetDimensions();
-  Check(dimensions[0] == 320 && dimensions[1] == 240 && dimensions[2] == 60, "default size");
-  Check(output->GetScalarType() == VTK_UNSIGNED_CHAR, "default type");
+  LACUNA_CHECK_THAT(
+    dimensions[0] == 320 && dimensions[1] == 240 && dimensions[2] == 60, "default size");
+  LACUNA_CHECK_THAT(output->GetScalarType() == VTK_UNSIGNED_CHAR, "default type");
   double bounds[6];
   output->GetBounds(bounds);
-  Check(bounds[0] == 0 && bounds[1] == 319 && bounds[5] == 59, "coordinates are indices");
+  LACUNA_CHECK_THAT(
+    bounds[0] == 0 && bounds[1] == 319 && bounds[5] == 59, "coordinates are indices");
   std::ostringstream text;
   sweep->Print(text);
-  Check(text.str().find("NumberOfSlices=60") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(text.str().find("NumberOfSlices=60") != std::string::npos, "PrintSelf");
 }
 
 // The arrays of the contract, and pixels that are the truth where the arrays say they are.
@@ -69,29 +60,31 @@ void TestContract()
       sweep->Update();
       vtkImageData* output = sweep->GetOutput();
       const vtkLacunaTrackedSlices slices(output);
-      Check(slices.GetNumberOfSlices() == 7, "slices");
+      LACUNA_CHECK_THAT(slices.GetNumberOfSlices() == 7, "slices");
       vtkFieldData* field = output->GetFieldData();
       vtkDataArray* probe = field->GetArray("ProbeToReference");
       vtkDataArray* image = field->GetArray("ImageToProbe");
       vtkDataArray* frames = field->GetArray("FrameNumber");
-      Check(probe && probe->GetNumberOfTuples() == 7 && probe->GetNumberOfComponents() == 16 &&
-          probe->GetDataType() == VTK_DOUBLE,
+      LACUNA_CHECK_THAT(probe && probe->GetNumberOfTuples() == 7 &&
+          probe->GetNumberOfComponents() == 16 && probe->GetDataType() == VTK_DOUBLE,
         "ProbeToReference");
-      Check(image && image->GetNumberOfTuples() == 1 && image->GetNumberOfComponents() == 16,
+      LACUNA_CHECK_THAT(
+        image && image->GetNumberOfTuples() == 1 && image->GetNumberOfComponents() == 16,
         "ImageToProbe");
-      Check(frames && frames->GetNumberOfTuples() == 7 && frames->GetTuple1(6) == 6 &&
+      LACUNA_CHECK_THAT(frames && frames->GetNumberOfTuples() == 7 && frames->GetTuple1(6) == 6 &&
           frames->GetDataType() == VTK_INT,
         "FrameNumber");
-      Check(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
+      LACUNA_CHECK_THAT(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
       for (int k = 0; k < 7; ++k)
       {
-        Check(slices.GetStatus(k) == vtkLacunaTrackedSlices::Valid, "status");
-        Check(slices.GetTimestamp(k) == k / 25.0, "time");
+        LACUNA_CHECK_THAT(slices.GetStatus(k) == vtkLacunaTrackedSlices::Valid, "status");
+        LACUNA_CHECK_THAT(slices.GetTimestamp(k) == k / 25.0, "time");
         const lacuna::Matrix4& pose = slices.GetImageToReference(k);
         const lacuna::Matrix4 product =
           vtkLacunaFieldData::GetMatrix(probe, k) * vtkLacunaFieldData::GetMatrix(image, 0);
-        Check(std::memcmp(pose.Data(), product.Data(), 16 * sizeof(double)) == 0, "chain");
-        Check(pose.Determinant3() > 0, "no mirror");
+        LACUNA_CHECK_THAT(
+          std::memcmp(pose.Data(), product.Data(), 16 * sizeof(double)) == 0, "chain");
+        LACUNA_CHECK_THAT(pose.Determinant3() > 0, "no mirror");
         for (int j = 0; j < 21; ++j)
         {
           for (int i = 0; i < 33; ++i)
@@ -101,7 +94,7 @@ void TestContract()
             const double truth =
               std::min(255.0, std::max(0.0, sweep->EvaluateTruth(p[0], p[1], p[2])));
             const double grey = output->GetScalarComponentAsDouble(i, j, k, 0);
-            Check(std::abs(grey - truth) <= 0.5 + 1e-9, "pixel is the truth");
+            LACUNA_CHECK_THAT(std::abs(grey - truth) <= 0.5 + 1e-9, "pixel is the truth");
           }
         }
       }
@@ -121,18 +114,20 @@ void TestPoseNoise()
   sweep->Update();
   const vtkLacunaTrackedSlices before(clean);
   const vtkLacunaTrackedSlices after(sweep->GetOutput());
-  Check(std::memcmp(clean->GetScalarPointer(), sweep->GetOutput()->GetScalarPointer(), 1000) == 0,
+  LACUNA_CHECK_THAT(
+    std::memcmp(clean->GetScalarPointer(), sweep->GetOutput()->GetScalarPointer(), 1000) == 0,
     "pixels are imaged at the true pose");
   for (int k = 0; k < 5; ++k)
   {
     const lacuna::Vec3 offset = after.GetImageToReference(k).Point({ 0, 0, 0 }) -
       before.GetImageToReference(k).Point({ 0, 0, 0 });
-    Check(Norm(offset) > 1e-3 && Norm(offset) < 5, "poses are jittered");
+    LACUNA_CHECK_THAT(Norm(offset) > 1e-3 && Norm(offset) < 5, "poses are jittered");
   }
   sweep->SetSeed(1);
   sweep->Update();
   const vtkLacunaTrackedSlices other(sweep->GetOutput());
-  Check(other.GetImageToReference(0)(0, 3) != after.GetImageToReference(0)(0, 3), "seed");
+  LACUNA_CHECK_THAT(
+    other.GetImageToReference(0)(0, 3) != after.GetImageToReference(0)(0, 3), "seed");
 }
 
 void TestPieces()
@@ -146,7 +141,7 @@ void TestPieces()
   sweep->Update();
   vtkNew<vtkImageData> whole;
   whole->DeepCopy(sweep->GetOutput());
-  Check(whole->GetScalarType() == VTK_FLOAT, "float");
+  LACUNA_CHECK_THAT(whole->GetScalarType() == VTK_FLOAT, "float");
   const int extent[6] = { 5, 20, 7, 29, 3, 8 };
   vtkNew<vtkLacunaPhantomSweep> same;
   same->SetNumberOfSlices(10);
@@ -156,16 +151,17 @@ void TestPieces()
   same->SetOutputScalarType(vtkLacunaPhantomSweep::FLOAT);
   same->UpdateExtent(extent);
   vtkImageData* part = same->GetOutput();
-  Check(std::equal(extent, extent + 6, part->GetExtent()), "exactly the requested extent");
-  Check(vtkLacunaTrackedSlices(part).GetNumberOfSlices() == 10, "all tuples");
-  Check(vtkLacunaTrackedSlices(part).GetSliceNumber(3) == 3, "slice number");
+  LACUNA_CHECK_THAT(
+    std::equal(extent, extent + 6, part->GetExtent()), "exactly the requested extent");
+  LACUNA_CHECK_THAT(vtkLacunaTrackedSlices(part).GetNumberOfSlices() == 10, "all tuples");
+  LACUNA_CHECK_THAT(vtkLacunaTrackedSlices(part).GetSliceNumber(3) == 3, "slice number");
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
     for (int j = extent[2]; j <= extent[3]; ++j)
     {
       for (int i = extent[0]; i <= extent[1]; ++i)
       {
-        Check(*static_cast<float*>(part->GetScalarPointer(i, j, k)) ==
+        LACUNA_CHECK_THAT(*static_cast<float*>(part->GetScalarPointer(i, j, k)) ==
             *static_cast<float*>(whole->GetScalarPointer(i, j, k)),
           "pieces equal the whole");
       }
@@ -221,18 +217,19 @@ void TestVolumeInput()
         const bool in = index[0] >= -10 && index[0] <= 30 && index[1] >= 5 && index[1] <= 35 &&
           index[2] >= 2 && index[2] <= 32;
         const double expected = in ? 7 * index[0] - 4 * index[1] + 9 * index[2] - 300 : 0;
-        Check(std::abs(output->GetScalarComponentAsDouble(i, j, k, 0) - expected) < 1e-3,
+        LACUNA_CHECK_THAT(
+          std::abs(output->GetScalarComponentAsDouble(i, j, k, 0) - expected) < 1e-3,
           "trilinear in a turned volume");
         ++(in ? inside : outside);
       }
     }
   }
-  Check(inside > 5000 && outside > 1000, "both sides of the border are met");
-  Check(std::isnan(sweep->EvaluateTruth(0, 0, 0)) && std::isnan(sweep->GetTrueVolume()) &&
-      std::isnan(sweep->GetTrueIsoValue()),
+  LACUNA_CHECK_THAT(inside > 5000 && outside > 1000, "both sides of the border are met");
+  LACUNA_CHECK_THAT(std::isnan(sweep->EvaluateTruth(0, 0, 0)) &&
+      std::isnan(sweep->GetTrueVolume()) && std::isnan(sweep->GetTrueIsoValue()),
     "an input volume has no closed form");
   sweep->SetVolumeConnection(1, nullptr);
-  Check(sweep->EvaluateTruth(-3, 2, 1) == 180, "back to the scene");
+  LACUNA_CHECK_THAT(sweep->EvaluateTruth(-3, 2, 1) == 180, "back to the scene");
 }
 
 void TestTruth()
@@ -243,21 +240,21 @@ void TestTruth()
   grid->SetSpacing(1.5, 2, 1);
   grid->SetOrigin(-9, -20, -10);
   grid->SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0);
-  Check(sweep->AddTruth(grid), "AddTruth");
+  LACUNA_CHECK_THAT(sweep->AddTruth(grid), "AddTruth");
   vtkDataArray* truth = grid->GetPointData()->GetArray("Truth");
-  Check(truth && truth->GetDataType() == VTK_FLOAT, "Truth array");
+  LACUNA_CHECK_THAT(truth && truth->GetDataType() == VTK_FLOAT, "Truth array");
   for (vtkIdType i = 0; truth && i < grid->GetNumberOfPoints(); ++i)
   {
     double p[3];
     grid->GetPoint(i, p);
-    Check(std::abs(truth->GetTuple1(i) - sweep->EvaluateTruth(p[0], p[1], p[2])) < 1e-4,
+    LACUNA_CHECK_THAT(std::abs(truth->GetTuple1(i) - sweep->EvaluateTruth(p[0], p[1], p[2])) < 1e-4,
       "Truth is EvaluateTruth");
   }
-  Check(std::abs(sweep->GetTrueVolume() - 12817.698) < 1e-3, "TrueVolume");
-  Check(sweep->GetTrueIsoValue() == 120, "TrueIsoValue");
+  LACUNA_CHECK_THAT(std::abs(sweep->GetTrueVolume() - 12817.698) < 1e-3, "TrueVolume");
+  LACUNA_CHECK_THAT(sweep->GetTrueIsoValue() == 120, "TrueIsoValue");
   sweep->SetAnatomy(vtkLacunaPhantomSweep::LINEAR);
-  Check(sweep->EvaluateTruth(4, -2, 8) == 124, "linear");
-  Check(std::isnan(sweep->EvaluateTruth(std::nan(""), 0, 0)), "truth of nowhere");
+  LACUNA_CHECK_THAT(sweep->EvaluateTruth(4, -2, 8) == 124, "linear");
+  LACUNA_CHECK_THAT(std::isnan(sweep->EvaluateTruth(std::nan(""), 0, 0)), "truth of nowhere");
 }
 
 void TestErrors()
@@ -293,9 +290,9 @@ void TestErrors()
     sweep->AddObserver(vtkCommand::ErrorEvent, observer);
     sweep->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executiveObserver);
     sweep->Update();
-    Check(observer->GetErrorMessage().find(c.Text) != std::string::npos,
+    LACUNA_CHECK_THAT(observer->GetErrorMessage().find(c.Text) != std::string::npos,
       std::string(c.Text) + " | " + observer->GetErrorMessage());
-    Check(sweep->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
+    LACUNA_CHECK_THAT(sweep->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
   }
 
   vtkNew<vtkTest::ErrorObserver> observer;
@@ -304,17 +301,19 @@ void TestErrors()
   sweep->AddObserver(vtkCommand::ErrorEvent, observer);
   sweep->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executiveObserver);
   vtkNew<vtkImageData> empty;
-  Check(!sweep->AddTruth(empty) && !sweep->AddTruth(nullptr), "AddTruth without points");
+  LACUNA_CHECK_THAT(
+    !sweep->AddTruth(empty) && !sweep->AddTruth(nullptr), "AddTruth without points");
   empty->SetDimensions(2, 2, 2); // points, but no scalars
   sweep->SetInputData(empty);
   observer->Clear();
   sweep->Update();
-  Check(observer->GetErrorMessage().find("no active point scalars") != std::string::npos,
+  LACUNA_CHECK_THAT(
+    observer->GetErrorMessage().find("no active point scalars") != std::string::npos,
     observer->GetErrorMessage());
   observer->Clear();
   vtkNew<vtkImageData> grid;
   grid->SetDimensions(2, 2, 2);
-  Check(
+  LACUNA_CHECK_THAT(
     !sweep->AddTruth(grid) && observer->GetErrorMessage().find("input volume") != std::string::npos,
     "AddTruth with an input volume");
 }
@@ -330,7 +329,8 @@ void TestAbort()
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
   sweep->AddObserver(vtkCommand::ProgressEvent, stop);
   sweep->Update();
-  Check(sweep->GetOutput()->GetNumberOfPoints() == 0, "nothing that looks whole after an abort");
+  LACUNA_CHECK_THAT(
+    sweep->GetOutput()->GetNumberOfPoints() == 0, "nothing that looks whole after an abort");
 }
 }
 
@@ -344,5 +344,5 @@ int TestPhantomSweep(int, char*[])
   TestTruth();
   TestErrors();
   TestAbort();
-  return Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCheck.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkLacunaProvenance.h"
@@ -10,23 +11,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <iostream>
 #include <sstream>
 #include <string>
 
 namespace
 {
-int Failures = 0;
-
-void Check(bool ok, const std::string& what)
-{
-  if (!ok)
-  {
-    std::cerr << "Failed: " << what << "\n";
-    ++Failures;
-  }
-}
-
 // Voxels are the truth outside of the defect, soft tissue instead of bone inside.
 void TestTruth()
 {
@@ -35,9 +24,9 @@ void TestTruth()
   skull->Update();
   vtkImageData* output = skull->GetOutput();
   const int* dimensions = output->GetDimensions();
-  Check(dimensions[0] == 169 && dimensions[1] == 204 && dimensions[2] == 67, "size");
-  Check(output->GetScalarType() == VTK_SHORT && output->GetSpacing()[2] == 2.3, "type");
-  Check(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
+  LACUNA_CHECK_THAT(dimensions[0] == 169 && dimensions[1] == 204 && dimensions[2] == 67, "size");
+  LACUNA_CHECK_THAT(output->GetScalarType() == VTK_SHORT && output->GetSpacing()[2] == 2.3, "type");
+  LACUNA_CHECK_THAT(vtkLacunaProvenance::Get(output).size() == 1, "Provenance");
   int bone = 0;
   int missing = 0;
   for (int k = 0; k < dimensions[2]; ++k)
@@ -54,15 +43,15 @@ void TestTruth()
         const bool same = std::abs(value - truth) <= 0.5 + 1e-9;
         if (!same)
         {
-          Check(truth > value, "the defect only takes away");
+          LACUNA_CHECK_THAT(truth > value, "the defect only takes away");
           missing += truth > 500 && skull->IsInDefect(p[0], p[1], p[2]);
         }
         bone += value > 500;
       }
     }
   }
-  Check(bone > 10000, "bone");
-  Check(missing > 500, "missing bone");
+  LACUNA_CHECK_THAT(bone > 10000, "bone");
+  LACUNA_CHECK_THAT(missing > 500, "missing bone");
 
   // From the top: the ray meets 500 HU of the truth, also over the defect.
   const double down[3] = { 0, 0, -3 };
@@ -76,15 +65,15 @@ void TestTruth()
       if (!std::isnan(depth))
       {
         const double z = 200 - depth;
-        Check(std::abs(skull->EvaluateTruth(eye[0], eye[1], z) - 500) < 1e-5, "500 HU");
+        LACUNA_CHECK_THAT(std::abs(skull->EvaluateTruth(eye[0], eye[1], z) - 500) < 1e-5, "500 HU");
         holes += skull->IsInDefect(eye[0], eye[1], z);
       }
     }
   }
-  Check(holes > 80 && holes < 160, "about pi 30^2 / 25 rays meet the defect");
+  LACUNA_CHECK_THAT(holes > 80 && holes < 160, "about pi 30^2 / 25 rays meet the defect");
   const double up[3] = { 0, 0, 1 };
   const double above[3] = { 0, 0, 300 };
-  Check(std::isnan(skull->IntersectOuterSurface(above, up)), "a miss");
+  LACUNA_CHECK_THAT(std::isnan(skull->IntersectOuterSurface(above, up)), "a miss");
 }
 
 void TestPieces()
@@ -101,14 +90,15 @@ void TestPieces()
   same->SetNoiseLevel(15);
   same->UpdateExtent(extent);
   vtkImageData* part = same->GetOutput();
-  Check(std::equal(extent, extent + 6, part->GetExtent()), "exactly the requested extent");
+  LACUNA_CHECK_THAT(
+    std::equal(extent, extent + 6, part->GetExtent()), "exactly the requested extent");
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
     for (int j = extent[2]; j <= extent[3]; ++j)
     {
       for (int i = extent[0]; i <= extent[1]; ++i)
       {
-        Check(*static_cast<short*>(part->GetScalarPointer(i, j, k)) ==
+        LACUNA_CHECK_THAT(*static_cast<short*>(part->GetScalarPointer(i, j, k)) ==
             *static_cast<short*>(whole->GetScalarPointer(i, j, k)),
           "pieces equal the whole");
       }
@@ -123,10 +113,10 @@ void TestLaterality()
   const double centre[3] = { 0, 0, 0 };
   const double left[3] = { 0.42, -0.80, 0.43 };
   const double right[3] = { -0.42, -0.80, 0.43 };
-  Check(
+  LACUNA_CHECK_THAT(
     skull->IntersectOuterSurface(centre, left) > skull->IntersectOuterSurface(centre, right) + 2,
     "the bump is on the left forehead");
-  Check(skull->IsInDefect(30, -15, 60) && !skull->IsInDefect(-30, -15, 60),
+  LACUNA_CHECK_THAT(skull->IsInDefect(30, -15, 60) && !skull->IsInDefect(-30, -15, 60),
     "the defect is on the left");
 }
 
@@ -155,20 +145,20 @@ void TestErrors()
     skull->AddObserver(vtkCommand::ErrorEvent, observer);
     skull->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executiveObserver);
     skull->Update();
-    Check(observer->GetErrorMessage().find(c.Text) != std::string::npos,
+    LACUNA_CHECK_THAT(observer->GetErrorMessage().find(c.Text) != std::string::npos,
       std::string(c.Text) + " | " + observer->GetErrorMessage());
-    Check(skull->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
+    LACUNA_CHECK_THAT(skull->GetOutput()->GetNumberOfPoints() == 0, "no output after an error");
   }
   vtkNew<vtkLacunaSkullPhantom> skull;
   const double zero[3] = { 0, 0, 0 };
-  Check(std::isnan(skull->EvaluateTruth(0, nan, 0)), "truth of nowhere");
+  LACUNA_CHECK_THAT(std::isnan(skull->EvaluateTruth(0, nan, 0)), "truth of nowhere");
   skull->SetSpacing(0, 1, 1);
-  Check(std::isnan(skull->EvaluateTruth(0, 0, 0)) &&
+  LACUNA_CHECK_THAT(std::isnan(skull->EvaluateTruth(0, 0, 0)) &&
       std::isnan(skull->IntersectOuterSurface(zero, zero)) && !skull->IsInDefect(0, 0, 0),
     "no truth with a bad property");
   std::ostringstream text;
   skull->Print(text);
-  Check(text.str().find("DefectRadius=30") != std::string::npos, "PrintSelf");
+  LACUNA_CHECK_THAT(text.str().find("DefectRadius=30") != std::string::npos, "PrintSelf");
 }
 }
 
@@ -178,5 +168,5 @@ int TestSkullPhantom(int, char*[])
   TestPieces();
   TestLaterality();
   TestErrors();
-  return Failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  return lacunaCheck::Result();
 }
