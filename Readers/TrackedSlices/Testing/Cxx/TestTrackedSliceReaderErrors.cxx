@@ -7,7 +7,6 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
-
 namespace
 {
 void ExpectError(ReaderOf& test, unsigned long code, const std::string& part)
