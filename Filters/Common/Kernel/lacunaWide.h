@@ -2,8 +2,8 @@
 /// @file
 /// LACUNA_WIDE before a function compiles it once more for AVX2; the clone is chosen when the
 /// program starts. The same numbers come out, since products and sums stay apart
-/// (-ffp-contract=off). Nothing elsewhere: clang inlines no callees into clones, and the run-time
-/// of the sanitizers is not ready yet when the loader chooses.
+/// (-ffp-contract=off). It is empty in builds with sanitizers, whose run-time is not ready yet when
+/// the loader chooses, and for clang, which says by other means that it builds with them.
 #ifndef lacunaWide_h
 #define lacunaWide_h
 
