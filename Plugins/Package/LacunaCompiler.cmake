@@ -13,6 +13,11 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}"
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 
+if (NOT CMAKE_INSTALL_RPATH)
+  # Installed modules find each other wherever the tree is moved to.
+  set(CMAKE_INSTALL_RPATH "\$ORIGIN")
+endif ()
+
 add_compile_options(-Wall -Wextra -Wno-unused-parameter)
 # The same numbers whatever the compiler's default: no silent fused multiply-add.
 add_compile_options(-ffp-contract=off)
