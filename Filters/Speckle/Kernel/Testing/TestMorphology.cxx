@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SpeckleOracle.h"
+#include "lacunaMorphology.h"
+
+#include <gtest/gtest.h>
+
+using lacuna::Extreme;
+using lacuna::InstructionSet;
+using lacuna::Window;
+using lacuna::WindowShape;
+using oracle::Image;
+
+namespace
+{
+template <class T>
+Image<T> Truth(const Image<T>& image, const Window& window, Extreme extreme)
+{
+  return oracle::Filter(image, window,
+    [=](const auto& samples, T)
+    {
+      const std::vector<T> v = oracle::SortedValues(samples);
+      return extreme == Extreme::Least ? v.front() : v.back();
+    });
+}
+
+template <class T>
+void ExpectExtremesAsDefined(const Image<T>& image, const Window& window)
+{
+  lacuna::ThreadExecution execution(2);
+  for (const Extreme extreme : { Extreme::Least, Extreme::Greatest })
+  {
+    const Image<T> truth = Truth(image, window, extreme);
+    for (const InstructionSet set :
+      { InstructionSet::Baseline, InstructionSet::Avx2, InstructionSet::Avx512 })
+    {
+      if (set > lacuna::BestInstructionSet())
+      {
+        continue;
+      }
+      Image<T> result(image.Box);
+      lacuna::FilterExtreme<T>(image.View(), result.View(), window, extreme, set, execution);
+      EXPECT_EQ(oracle::Differences(result, truth), 0u)
+        << window.GetSize(0) << " " << window.GetSize(1) << " " << window.GetSize(2)
+        << (window.IsBox() ? " box" : " ellipsoid") << " set " << int(set);
+    }
+  }
+}
+}
+
+template <class T>
+class MorphologyTest : public testing::Test
+{
+};
+using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
+  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+TYPED_TEST_SUITE(MorphologyTest, AllTypes);
+
+TYPED_TEST(MorphologyTest, EqualsItsDefinition)
+{
+  const Image<TypeParam> image = oracle::Random<TypeParam>(73, 15, 6, 1);
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 1, 1, 1 }, { 3, 3, 1 },
+         { 2, 5, 1 }, { 7, 4, 3 }, { 6, 6, 6 }, { 1, 1, 5 }, { 31, 1, 1 }, { 1, 16, 1 } })
+  {
+    for (const WindowShape shape : { WindowShape::Box, WindowShape::Ellipsoid })
+    {
+      ExpectExtremesAsDefined(image, Window(size, shape));
+      ExpectExtremesAsDefined(image, Window(size, shape).Reflect());
+    }
+  }
+}
+
+TEST(Morphology, EqualsItsDefinitionAcrossBlocks)
+{
+  const Image<double> image = oracle::Random<double>(600, 140, 2, 2);
+  for (const WindowShape shape : { WindowShape::Box, WindowShape::Ellipsoid })
+  {
+    ExpectExtremesAsDefined(image, Window({ 5, 5, 1 }, shape));
+    ExpectExtremesAsDefined(image, Window({ 3, 3, 2 }, shape));
+  }
+}
+
+TEST(Morphology, CountsWindowsLargerThanTheImage)
+{
+  const Image<std::uint16_t> image = oracle::Random<std::uint16_t>(5, 4, 3, 3);
+  ExpectExtremesAsDefined(image, Window({ 60, 50, 41 }, WindowShape::Box));
+  ExpectExtremesAsDefined(image, Window({ 60, 50, 41 }, WindowShape::Ellipsoid));
+}
+
+TEST(Morphology, LeavesNaNOutAndInPlace)
+{
+  Image<float> image = oracle::Random<float>(41, 13, 4, 4);
+  oracle::SprinkleNaN(image, 3);
+  for (const WindowShape shape : { WindowShape::Box, WindowShape::Ellipsoid })
+  {
+    ExpectExtremesAsDefined(image, Window({ 2, 2, 1 }, shape));
+    ExpectExtremesAsDefined(image, Window({ 5, 5, 3 }, shape));
+  }
+}

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaMorphology.h"
+
+#include "lacunaOrderedKey.h"
+#include "lacunaSeparable.h"
+
+namespace lacuna
+{
+namespace
+{
+/// to[i] = extreme of to[i] and from[i], i < Count. from may overlap to from behind (from >= to).
+template <class Key, Extreme Which>
+struct Combine
+{
+  Key* To;
+  const Key* From;
+  std::int64_t Count;
+
+  template <int Bytes>
+  static LACUNA_INLINE void Run(const Combine& c)
+  {
+    using V = typename Vector<Key, Bytes>::Type;
+    constexpr int Lanes = Vector<Key, Bytes>::Lanes;
+    std::int64_t i = 0;
+    for (; i + Lanes <= c.Count; i += Lanes)
+    {
+      V a, b;
+      LoadVector(a, c.To + i);
+      LoadVector(b, c.From + i);
+      const V extreme = Which == Extreme::Least ? (a < b ? a : b) : (a > b ? a : b);
+      StoreVector(c.To + i, extreme);
+    }
+    for (; i < c.Count; ++i)
+    {
+      c.To[i] = Which == Extreme::Least ? std::min(c.To[i], c.From[i])
+                                        : std::max(c.To[i], c.From[i]);
+    }
+  }
+};
+
+template <class Key, Extreme Which>
+class ExtremeFilter
+{
+public:
+  ExtremeFilter(const Window& window, InstructionSet set)
+    : Shape(window)
+    , Set(set)
+  {
+  }
+
+  template <class T>
+  void Filter(const ImageView<const T>& input, const ImageView<T>& output, Execution& execution)
+  {
+    // NaN must not win, nor be brought back by the other NaN that a neighbour may be.
+    const auto load = [](T value)
+    {
+      const Key key = OrderedKey<T>::From(value);
+      return std::is_floating_point_v<T> && Which == Extreme::Greatest &&
+          key == OrderedKey<T>::NaN
+        ? Key(0)
+        : key;
+    };
+    const auto store = [&](const Key* row, int x0, int x1, int y, int z)
+    {
+      for (int x = x0; x <= x1; ++x)
+      {
+        const T centre = std::is_floating_point_v<T> ? *input.At(x, y, z) : T(0);
+        *output.At(x, y, z) = centre == centre ? OrderedKey<T>::To(row[x - x0]) : centre;
+      }
+    };
+    if (this->Shape.IsBox())
+    {
+      const auto op = [this](int axis, Key* data, std::int64_t count, std::int64_t shift,
+                        std::vector<Key>&)
+      { this->SlideRun(data, count, shift, this->Shape.GetSize(axis)); };
+      FilterSeparably<Key>(
+        input, output.Box, Reach(this->Shape), op, load, store, execution);
+    }
+    else
+    {
+      this->FilterEllipsoid(input, output.Box, load, store, execution);
+    }
+  }
+
+private:
+  /// data[i] = extreme of data[i + j * shift], 0 <= j < length, for i < count.
+  void SlideRun(Key* data, std::int64_t count, std::int64_t shift, int length) const
+  {
+    int done = 1;
+    for (; 2 * done <= length; done *= 2)
+    {
+      this->Apply(data, data + done * shift, count + (length - 2 * done) * shift);
+    }
+    if (done < length)
+    {
+      this->Apply(data, data + (length - done) * shift, count);
+    }
+  }
+
+  void Apply(Key* to, const Key* from, std::int64_t count) const
+  {
+    Combine<Key, Which> combine{ to, from, count };
+    RunWith<Combine<Key, Which>>(this->Set, combine);
+  }
+
+  template <class T, class Load, class Store>
+  void FilterEllipsoid(const ImageView<const T>& input, const Extent& box, const Load& load,
+    const Store& store, Execution& execution) const
+  {
+    const std::vector<Extent> blocks = Divide(box, { 512, 64, 1 });
+    execution.For(static_cast<std::int64_t>(blocks.size()), 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        std::vector<Key> slice, runs, result;
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const Extent& block = blocks[i];
+          this->FilterBlock(input, block, load, slice, runs, result);
+          const std::int64_t pitch = SizeOf(this->Shape.Grow(block), 0);
+          for (int y = block[2]; y <= block[3]; ++y)
+          {
+            store(result.data() + (y - block[2]) * pitch, block[0], block[1], y, block[4]);
+          }
+        }
+      });
+  }
+
+  /// Result: the rows of block, which has one slice, at the pitch of the grown block.
+  template <class T, class Load>
+  void FilterBlock(const ImageView<const T>& input, const Extent& block, const Load& load,
+    std::vector<Key>& slice, std::vector<Key>& runs, std::vector<Key>& result) const
+  {
+    Extent grown = this->Shape.Grow(block);
+    const int z0 = grown[4];
+    const std::int64_t pitch = SizeOf(grown, 0);
+    const std::int64_t size = pitch * SizeOf(grown, 1);
+    const std::int64_t count = (SizeOf(block, 1) - 1) * pitch + SizeOf(block, 0);
+    slice.resize(size);
+    result.assign(size, Which == Extreme::Least ? std::numeric_limits<Key>::max() : Key(0));
+    const std::vector<Window::Run>& rows = this->Shape.GetRuns();
+    for (std::size_t first = 0; first < rows.size();)
+    {
+      std::size_t last = first;
+      while (last < rows.size() && rows[last].Z == rows[first].Z)
+      {
+        ++last;
+      }
+      grown[4] = grown[5] = z0 + rows[first].Z;
+      CopyReplicated(input, grown, slice.data(), load);
+      // The rows of a slice of an ellipsoid grow towards its middle and are nested: each row's
+      // extremes come from the next shorter one's, and the rows at equal distance from the middle
+      // share them.
+      int begin = 0;
+      int end = 0;
+      for (std::size_t a = first, b = last; a < b--; ++a)
+      {
+        const Window::Run& run = rows[a];
+        if (begin == end)
+        {
+          runs.assign(slice.begin(), slice.end());
+          std::rotate(runs.begin(), runs.begin() + run.Begin, runs.end());
+          this->SlideRun(runs.data(), size - run.End + 1, 1, run.End - run.Begin);
+        }
+        else
+        {
+          for (int x = run.Begin; x < begin; ++x)
+          {
+            this->Apply(runs.data(), slice.data() + x, size - x);
+          }
+          for (int x = end; x < run.End; ++x)
+          {
+            this->Apply(runs.data(), slice.data() + x, size - x);
+          }
+        }
+        begin = run.Begin;
+        end = run.End;
+        this->Apply(result.data(), runs.data() + rows[a].Y * pitch, count);
+        if (b > a)
+        {
+          this->Apply(result.data(), runs.data() + rows[b].Y * pitch, count);
+        }
+      }
+      first = last;
+    }
+  }
+
+  const Window& Shape;
+  InstructionSet Set;
+};
+}
+
+template <class T>
+void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
+  const Window& window, Extreme extreme, InstructionSet set, Execution& execution)
+{
+  if (extreme == Extreme::Least)
+  {
+    ExtremeFilter<KeyOf<T>, Extreme::Least>(window, set).Filter(input, output, execution);
+  }
+  else
+  {
+    ExtremeFilter<KeyOf<T>, Extreme::Greatest>(window, set).Filter(input, output, execution);
+  }
+}
+
+#define LACUNA_INSTANTIATE(T)                                                                      \
+  template void FilterExtreme(const ImageView<const T>&, const ImageView<T>&, const Window&,       \
+    Extreme, InstructionSet, Execution&)
+LACUNA_INSTANTIATE(std::int8_t);
+LACUNA_INSTANTIATE(std::uint8_t);
+LACUNA_INSTANTIATE(std::int16_t);
+LACUNA_INSTANTIATE(std::uint16_t);
+LACUNA_INSTANTIATE(std::int32_t);
+LACUNA_INSTANTIATE(std::uint32_t);
+LACUNA_INSTANTIATE(std::int64_t);
+LACUNA_INSTANTIATE(std::uint64_t);
+LACUNA_INSTANTIATE(float);
+LACUNA_INSTANTIATE(double);
+}

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSpeckleFilter.h"
+
+#include "lacunaSpeckleFilter.h"
+#include "vtkDataObject.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSpeckleTypes.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <cmath>
+#include <sstream>
+
+vtkStandardNewMacro(vtkLacunaSpeckleFilter);
+
+namespace
+{
+const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening",
+  "Closing", "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean", "Gaussian",
+  "LaplacianOfGaussian" };
+
+lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const double spacing[3])
+{
+  lacuna::SpeckleParameters parameters;
+  parameters.Operation = static_cast<lacuna::SpeckleOperation>(self->GetOperation());
+  parameters.Shape = self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX
+    ? lacuna::WindowShape::Box
+    : lacuna::WindowShape::Ellipsoid;
+  parameters.Percentile = self->GetRank();
+  parameters.AdaptiveStrength = self->GetAdaptiveStrength();
+  parameters.StandardDeviation = self->GetStandardDeviation();
+  for (int a = 0; a < 3; ++a)
+  {
+    parameters.KernelSize[a] = self->GetKernelSize()[a];
+    parameters.Spacing[a] = std::abs(spacing[a]);
+  }
+  return parameters;
+}
+
+/// Only what the operation uses.
+std::string Describe(vtkLacunaSpeckleFilter* self)
+{
+  std::ostringstream text;
+  text.precision(17);
+  const int* size = self->GetKernelSize();
+  text << "Operation=" << OperationNames[self->GetOperation()] << " KernelSize=" << size[0] << ","
+       << size[1] << "," << size[2];
+  const int operation = self->GetOperation();
+  if (operation < vtkLacunaSpeckleFilter::MEAN)
+  {
+    text << " KernelShape="
+         << (self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX ? "Box" : "Ellipsoid");
+  }
+  if (operation == vtkLacunaSpeckleFilter::RANK)
+  {
+    text << " Rank=" << self->GetRank();
+  }
+  if (operation == vtkLacunaSpeckleFilter::ADAPTIVE_MEDIAN)
+  {
+    text << " AdaptiveStrength=" << self->GetAdaptiveStrength();
+  }
+  if (operation > vtkLacunaSpeckleFilter::MEAN)
+  {
+    text << " StandardDeviation=" << self->GetStandardDeviation();
+  }
+  return text.str();
+}
+
+bool IsTrackedSlices(vtkDataObject* data)
+{
+  return data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::ImageToReferenceName) ||
+    data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::SliceStatusName);
+}
+
+template <class T>
+void FilterArray(vtkDataArray* from, const lacuna::Extent& fromBox, vtkDataArray* to,
+  const lacuna::Extent& toBox, const lacuna::SpeckleParameters& parameters,
+  lacuna::Execution& execution)
+{
+  using Result = lacuna::LaplacianType<T>;
+  const int components = from->GetNumberOfComponents();
+  for (int c = 0; c < components; ++c)
+  {
+    const lacuna::ImageView<const T> input(
+      static_cast<const T*>(from->GetVoidPointer(0)) + c, fromBox, components);
+    if (parameters.Operation == lacuna::SpeckleOperation::LaplacianOfGaussian)
+    {
+      const lacuna::ImageView<Result> output(
+        static_cast<Result*>(to->GetVoidPointer(0)) + c, toBox, components);
+      lacuna::FilterSpeckleLaplacian(input, output, parameters, execution);
+    }
+    else
+    {
+      const lacuna::ImageView<T> output(
+        static_cast<T*>(to->GetVoidPointer(0)) + c, toBox, components);
+      lacuna::FilterSpeckle(input, output, parameters, execution);
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSpeckleFilter::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
+  {
+    vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+      inputs[0]->GetInformationObject(0), vtkDataObject::FIELD_ASSOCIATION_POINTS,
+      vtkDataSetAttributes::SCALARS);
+    const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
+    vtkDataObject::SetPointDataActiveScalarInfo(
+      outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSpeckleFilter::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  int whole[6];
+  int asked[6];
+  double spacing[3] = { 1, 1, 1 };
+  input->Get(Pipeline::WHOLE_EXTENT(), whole);
+  outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_EXTENT(), asked);
+  if (input->Has(vtkDataObject::SPACING()))
+  {
+    input->Get(vtkDataObject::SPACING(), spacing);
+  }
+  lacuna::Extent needed = vtkLacunaSpeckleTypes::GetExtent(asked);
+  try
+  {
+    if (!lacuna::IsEmpty(needed))
+    {
+      needed = lacuna::Intersect(
+        lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed),
+        vtkLacunaSpeckleTypes::GetExtent(whole));
+    }
+  }
+  catch (const std::invalid_argument&)
+  {
+    // RequestData reports it.
+  }
+  input->Set(Pipeline::UPDATE_EXTENT(), needed.data(), 6);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSpeckleFilter::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkImageData* input = vtkImageData::GetData(inputs[0]);
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      int asked[6];
+      outputs->GetInformationObject(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+      const lacuna::Extent inBox = vtkLacunaSpeckleTypes::GetExtent(input->GetExtent());
+      lacuna::Extent box =
+        lacuna::Intersect(vtkLacunaSpeckleTypes::GetExtent(asked), inBox);
+      output->SetOrigin(input->GetOrigin());
+      output->SetSpacing(input->GetSpacing());
+      output->SetDirectionMatrix(input->GetDirectionMatrix());
+      output->GetFieldData()->PassData(input->GetFieldData());
+      if (lacuna::IsEmpty(box))
+      {
+        return;
+      }
+      const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
+      lacuna::GetSpeckleInput(parameters, box); // refuses parameters that make no sense
+      vtkDataArray* chosen = this->GetInputArrayToProcess(0, inputs);
+      const vtkSmartPointer<vtkDataArray> from = vtkLacunaSpeckleTypes::GetSamples(chosen, input);
+      if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
+      {
+        vtkWarningMacro("KernelSize z is " << this->KernelSize[2]
+                                           << " on tracked slices, which are not parallel: the "
+                                              "filter mixes slices; 1 filters each by itself");
+      }
+
+      int type = from->GetDataType();
+      if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
+      {
+        type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
+      }
+      auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
+      to->SetName(from->GetName());
+      to->SetNumberOfComponents(from->GetNumberOfComponents());
+      to->SetNumberOfTuples(lacuna::NumberOfSamples(box));
+      switch (from->GetDataType())
+      {
+        vtkTemplateMacro((FilterArray<typename vtkLacunaSpeckleTypes::Fixed<VTK_TT>::Type>(
+          from, inBox, to, box, parameters, execution)));
+        default:
+          throw std::runtime_error("arrays of type " + std::string(from->GetDataTypeAsString()) +
+            " cannot be filtered; convert it to a numeric type");
+      }
+
+      output->SetExtent(box.data());
+      vtkPointData* inData = input->GetPointData();
+      vtkPointData* outData = output->GetPointData();
+      if (box == inBox)
+      {
+        outData->PassData(inData);
+      }
+      else
+      {
+        outData->CopyAllOn();
+        outData->CopyAllocate(inData, output->GetNumberOfPoints());
+        outData->CopyStructuredData(inData, input->GetExtent(), output->GetExtent());
+      }
+      const bool active = inData->GetScalars() == chosen;
+      if (chosen->GetName())
+      {
+        outData->AddArray(to); // in place of the one of that name
+      }
+      if (active)
+      {
+        outData->SetScalars(to);
+      }
+      vtkLacunaProvenance::Record(output, this, { input }, Describe(this));
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSpeckleFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Operation: " << OperationNames[this->Operation] << "\n";
+  os << indent << "KernelSize: " << this->KernelSize[0] << " " << this->KernelSize[1] << " "
+     << this->KernelSize[2] << "\n";
+  os << indent << "KernelShape: " << (this->KernelShape == BOX ? "Box" : "Ellipsoid") << "\n";
+  os << indent << "Rank: " << this->Rank << "\n";
+  os << indent << "AdaptiveStrength: " << this->AdaptiveStrength << "\n";
+  os << indent << "StandardDeviation: " << this->StandardDeviation << "\n";
+}
