@@ -114,7 +114,8 @@ private:
     }
     const double mean = c + sum / count;
     const double variance = std::max(0.0, (squares - sum * sum / count) / count);
-    const double slope = this->Strength * (variance > 0 ? variance / std::abs(mean) : 0);
+    const double slope =
+      variance > 0 && this->Strength > 0 ? this->Strength * variance / std::abs(mean) : 0;
     if (!std::isfinite(slope))
     {
       return centre;

@@ -7,7 +7,8 @@
 /// centre, in samples, has the weight w = max(0, 99 - Strength d v / |m|), rounded to a whole
 /// number. The result is the least sample such that it and those not above it weigh more than half
 /// of all (rounded down). Where v / |m| is small, in fully developed speckle, this is the median;
-/// at an edge only samples near the centre count. With m = 0 and v > 0 the sample stays.
+/// at an edge only samples near the centre count. With m = 0 and v > 0 the sample stays
+/// (unless Strength is 0: that is the plain median).
 ///
 /// NaN samples are left out and stay NaN. Borders: the nearest sample is repeated. The cost grows
 /// with the number of samples in the window.

@@ -12,7 +12,7 @@
 #ifndef lacunaBoxCounts_h
 #define lacunaBoxCounts_h
 
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaRankTile.h"
 
 #include <algorithm>

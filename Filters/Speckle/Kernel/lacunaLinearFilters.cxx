@@ -52,7 +52,7 @@ template <class S>
 struct BoxSum
 {
   std::array<int, 3> Size;
-  InstructionSet Set;
+  VectorUnit Set;
 
   void operator()(
     int axis, S* data, std::int64_t count, std::int64_t shift, std::vector<S>& spare) const
@@ -143,7 +143,7 @@ template <class S>
 struct Convolution
 {
   std::array<std::vector<S>, 3> Weights; ///< the first half and the middle one
-  InstructionSet Set;
+  VectorUnit Set;
 
   void operator()(
     int axis, S* data, std::int64_t count, std::int64_t shift, std::vector<S>& spare) const
@@ -208,7 +208,7 @@ T RoundTo(Quotient value)
 /// Mean of integers by sums S of their keys, which must hold (n + 1) times the greatest key.
 template <class S, class T>
 void FilterIntegerMean(const ImageView<const T>& input, const ImageView<T>& output,
-  const Window& window, InstructionSet set, Execution& execution)
+  const Window& window, VectorUnit set, Execution& execution)
 {
   using Key = KeyOf<T>;
   const S n = static_cast<S>(window.GetNumberOfSamples());
@@ -302,7 +302,7 @@ Reach ReachOf(const Deviations& deviations, double factor, int least)
 
 template <class T>
 void FilterMean(const ImageView<const T>& input, const ImageView<T>& output, const Window& window,
-  InstructionSet set, Execution& execution)
+  VectorUnit set, Execution& execution)
 {
   if constexpr (std::is_floating_point_v<T>)
   {
@@ -378,7 +378,7 @@ std::vector<double> SecondDerivativeWeights(double deviation, int radius)
 
 template <class T>
 void FilterGaussian(const ImageView<const T>& input, const ImageView<T>& output,
-  const Deviations& deviations, InstructionSet set, Execution& execution)
+  const Deviations& deviations, VectorUnit set, Execution& execution)
 {
   using S = LinearType<T>;
   const Reach reach = GaussianReach(deviations);
@@ -394,7 +394,7 @@ void FilterGaussian(const ImageView<const T>& input, const ImageView<T>& output,
 template <class T>
 void FilterLaplacianOfGaussian(const ImageView<const T>& input,
   const ImageView<LaplacianType<T>>& output, const Deviations& deviations,
-  const std::array<double, 3>& spacing, InstructionSet set, Execution& execution)
+  const std::array<double, 3>& spacing, VectorUnit set, Execution& execution)
 {
   using S = LinearType<T>;
   using Out = LaplacianType<T>;
@@ -440,12 +440,12 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
 
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterMean(                                                                        \
-    const ImageView<const T>&, const ImageView<T>&, const Window&, InstructionSet, Execution&);    \
+    const ImageView<const T>&, const ImageView<T>&, const Window&, VectorUnit, Execution&);    \
   template void FilterGaussian(const ImageView<const T>&, const ImageView<T>&, const Deviations&,  \
-    InstructionSet, Execution&);                                                                   \
+    VectorUnit, Execution&);                                                                   \
   template void FilterLaplacianOfGaussian(const ImageView<const T>&,                               \
     const ImageView<LaplacianType<T>>&, const Deviations&, const std::array<double, 3>&,           \
-    InstructionSet, Execution&)
+    VectorUnit, Execution&)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

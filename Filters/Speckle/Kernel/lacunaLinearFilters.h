@@ -11,7 +11,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaSeparable.h"
 #include "lacunaWindow.h"
 
@@ -33,7 +33,7 @@ using LaplacianType = std::conditional_t<std::is_same_v<T, double>, double, floa
 /// Mean of a box window: floor(sum / n + 1/2) for integers; floating samples are added in double.
 template <class T>
 void FilterMean(const ImageView<const T>& input, const ImageView<T>& output, const Window& window,
-  InstructionSet set, Execution& execution);
+  VectorUnit set, Execution& execution);
 
 /// Standard deviations in samples along x, y, z; 0 leaves an axis alone.
 using Deviations = std::array<double, 3>;
@@ -57,13 +57,13 @@ std::vector<double> SecondDerivativeWeights(double deviation, int radius);
 /// Gaussian-weighted mean, the product of GaussianWeights along the axes.
 template <class T>
 void FilterGaussian(const ImageView<const T>& input, const ImageView<T>& output,
-  const Deviations& deviations, InstructionSet set, Execution& execution);
+  const Deviations& deviations, VectorUnit set, Execution& execution);
 
 /// Sum over the axes with a deviation of the second derivative of the Gaussian-filtered image, in
 /// grey levels per mm^2 (spacing: mm between samples).
 template <class T>
 void FilterLaplacianOfGaussian(const ImageView<const T>& input,
   const ImageView<LaplacianType<T>>& output, const Deviations& deviations,
-  const std::array<double, 3>& spacing, InstructionSet set, Execution& execution);
+  const std::array<double, 3>& spacing, VectorUnit set, Execution& execution);
 }
 #endif

@@ -112,7 +112,7 @@ struct Network
 
 template <int Samples, class Key>
 void RunNetwork(
-  const Key* keys, const int size[3], const Window& window, InstructionSet set, Key* medians)
+  const Key* keys, const int size[3], const Window& window, VectorUnit set, Key* medians)
 {
   Network<Samples, Key> network{ keys, size, window, medians };
   RunWith<Network<Samples, Key>>(set, network);
@@ -127,7 +127,7 @@ bool HasMedianNetwork(const Window& window)
 
 template <class Key>
 void FilterByNetwork(
-  const Key* keys, const int size[3], const Window& window, InstructionSet set, Key* medians)
+  const Key* keys, const int size[3], const Window& window, VectorUnit set, Key* medians)
 {
   switch (window.GetNumberOfSamples())
   {
@@ -145,11 +145,11 @@ void FilterByNetwork(
 }
 
 template void FilterByNetwork(
-  const std::uint8_t*, const int[3], const Window&, InstructionSet, std::uint8_t*);
+  const std::uint8_t*, const int[3], const Window&, VectorUnit, std::uint8_t*);
 template void FilterByNetwork(
-  const std::uint16_t*, const int[3], const Window&, InstructionSet, std::uint16_t*);
+  const std::uint16_t*, const int[3], const Window&, VectorUnit, std::uint16_t*);
 template void FilterByNetwork(
-  const std::uint32_t*, const int[3], const Window&, InstructionSet, std::uint32_t*);
+  const std::uint32_t*, const int[3], const Window&, VectorUnit, std::uint32_t*);
 template void FilterByNetwork(
-  const std::uint64_t*, const int[3], const Window&, InstructionSet, std::uint64_t*);
+  const std::uint64_t*, const int[3], const Window&, VectorUnit, std::uint64_t*);
 }

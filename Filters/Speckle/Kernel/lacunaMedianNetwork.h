@@ -4,7 +4,7 @@
 #ifndef lacunaMedianNetwork_h
 #define lacunaMedianNetwork_h
 
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
 namespace lacuna
@@ -17,6 +17,6 @@ bool HasMedianNetwork(const Window& window);
 /// fastest, with room for 64 more behind. No key may mean NaN.
 template <class Key>
 void FilterByNetwork(
-  const Key* keys, const int size[3], const Window& window, InstructionSet set, Key* medians);
+  const Key* keys, const int size[3], const Window& window, VectorUnit set, Key* medians);
 }
 #endif

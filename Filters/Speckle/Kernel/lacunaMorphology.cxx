@@ -42,7 +42,7 @@ template <class Key, Extreme Which>
 class ExtremeFilter
 {
 public:
-  ExtremeFilter(const Window& window, InstructionSet set)
+  ExtremeFilter(const Window& window, VectorUnit set)
     : Shape(window)
     , Set(set)
   {
@@ -185,13 +185,13 @@ private:
   }
 
   const Window& Shape;
-  InstructionSet Set;
+  VectorUnit Set;
 };
 }
 
 template <class T>
 void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
-  const Window& window, Extreme extreme, InstructionSet set, Execution& execution)
+  const Window& window, Extreme extreme, VectorUnit set, Execution& execution)
 {
   if (extreme == Extreme::Least)
   {
@@ -205,7 +205,7 @@ void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
 
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterExtreme(const ImageView<const T>&, const ImageView<T>&, const Window&,       \
-    Extreme, InstructionSet, Execution&)
+    Extreme, VectorUnit, Execution&)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

@@ -11,7 +11,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
 namespace lacuna
@@ -26,6 +26,6 @@ enum class Extreme
 /// window.Grow(output.Box) except where the image ends. T: the fixed-width integers, float, double.
 template <class T>
 void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
-  const Window& window, Extreme extreme, InstructionSet set, Execution& execution);
+  const Window& window, Extreme extreme, VectorUnit set, Execution& execution);
 }
 #endif

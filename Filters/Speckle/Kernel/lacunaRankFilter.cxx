@@ -73,7 +73,7 @@ private:
 
 template <class Plane, class Count, class Query>
 void SlideBox(const RankTile& tile, const Window& window, std::int64_t rank, Query& query,
-  InstructionSet set)
+  VectorUnit set)
 {
   const std::array<int, 3> size = window.GetSize();
   using Slide = BoxSlide<Plane, Count, Query>;
@@ -83,7 +83,7 @@ void SlideBox(const RankTile& tile, const Window& window, std::int64_t rank, Que
 
 template <class Query>
 void SlideWindow(const RankTile& tile, const Window& window, std::int64_t rank, Query& query,
-  InstructionSet set)
+  VectorUnit set)
 {
   const std::int64_t samples = window.GetNumberOfSamples();
   const int plane = window.GetSize(1) * window.GetSize(2);

@@ -9,7 +9,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
 namespace lacuna
@@ -23,7 +23,7 @@ struct RankParameters
   /// a, greatest b and median m of the window, when m - a < b - m samples above 2 m - a are left
   /// out, when m - a > b - m those below 2 m - b; the result is the median of the rest.
   bool Mode = false;
-  InstructionSet Set = BestInstructionSet();
+  VectorUnit Set = BestVectorUnit();
 };
 
 /// Windows for ranks hold at most this many samples.

@@ -4,7 +4,7 @@
 #ifndef lacunaRankQuery_h
 #define lacunaRankQuery_h
 
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaRankFilter.h"
 #include "lacunaRankTile.h"
 

@@ -18,28 +18,26 @@ struct MorphologyStep
   bool Reflected;
 };
 
-/// The chain of an operation; empty when it is not a morphological one. The second half of an
-/// opening or closing uses the reflected window, so that windows of even size shift nothing.
+/// The chain of an operation; empty when it is not a morphological one. In openings and closings
+/// the dilation uses the reflected window, so that windows of even size shift nothing.
 std::vector<MorphologyStep> StepsOf(SpeckleOperation operation)
 {
   constexpr MorphologyStep Erode{ Extreme::Least, false };
-  constexpr MorphologyStep ErodeBack{ Extreme::Least, true };
-  constexpr MorphologyStep Dilate{ Extreme::Greatest, false };
-  constexpr MorphologyStep DilateBack{ Extreme::Greatest, true };
+  constexpr MorphologyStep Dilate{ Extreme::Greatest, true };
   switch (operation)
   {
     case SpeckleOperation::Minimum:
       return { Erode };
     case SpeckleOperation::Maximum:
-      return { Dilate };
+      return { { Extreme::Greatest, false } };
     case SpeckleOperation::Opening:
-      return { Erode, DilateBack };
+      return { Erode, Dilate };
     case SpeckleOperation::Closing:
-      return { Dilate, ErodeBack };
+      return { Dilate, Erode };
     case SpeckleOperation::OpenClose:
-      return { Erode, DilateBack, Dilate, ErodeBack };
+      return { Erode, Dilate, Dilate, Erode };
     case SpeckleOperation::CloseOpen:
-      return { Dilate, ErodeBack, Erode, DilateBack };
+      return { Dilate, Erode, Erode, Dilate };
     default:
       return {};
   }
@@ -75,7 +73,7 @@ Deviations DeviationsOf(const SpeckleParameters& parameters)
 
 template <class T>
 void FilterMorphology(const ImageView<const T>& input, const ImageView<T>& output,
-  const Window& window, const std::vector<MorphologyStep>& steps, InstructionSet set,
+  const Window& window, const std::vector<MorphologyStep>& steps, VectorUnit set,
   Execution& execution)
 {
   const auto windowOf = [&](const MorphologyStep& step)

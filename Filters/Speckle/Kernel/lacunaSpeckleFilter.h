@@ -37,7 +37,7 @@ struct SpeckleParameters
   /// Of Gaussian and LaplacianOfGaussian, in mm, along the axes whose KernelSize exceeds 1.
   double StandardDeviation = 1.4142135623730951;
   std::array<double, 3> Spacing{ 1, 1, 1 }; ///< mm between samples
-  InstructionSet Set = BestInstructionSet();
+  VectorUnit Set = BestVectorUnit();
 };
 
 /// The box of all samples that the results in box depend on. Throws std::invalid_argument when

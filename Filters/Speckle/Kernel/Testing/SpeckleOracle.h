@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <ostream>
 #include <random>
@@ -103,12 +102,10 @@ struct Neighbour
   int X, Y, Z; ///< from the centre
 };
 
-/// The numbers of the window at a sample.
-template <class T>
-std::vector<Neighbour<T>> Gather(
-  const Image<T>& image, const lacuna::Window& window, int x, int y, int z)
+/// Offsets of a window, as its definition reads.
+inline std::vector<std::array<int, 3>> Offsets(const lacuna::Window& window)
 {
-  std::vector<Neighbour<T>> values;
+  std::vector<std::array<int, 3>> offsets;
   for (int c = 0; c < window.GetSize(2); ++c)
   {
     for (int b = 0; b < window.GetSize(1); ++b)
@@ -118,28 +115,22 @@ std::vector<Neighbour<T>> Gather(
         const double u = (a - (window.GetSize(0) - 1) / 2.0) / (window.GetSize(0) / 2.0);
         const double v = (b - (window.GetSize(1) - 1) / 2.0) / (window.GetSize(1) / 2.0);
         const double w = (c - (window.GetSize(2) - 1) / 2.0) / (window.GetSize(2) / 2.0);
-        if (!window.IsBox() && u * u + v * v + w * w > 1 + 1e-12)
+        if (window.IsBox() || u * u + v * v + w * w <= 1 + 1e-12)
         {
-          continue;
-        }
-        const int dx = a - window.Lower(0);
-        const int dy = b - window.Lower(1);
-        const int dz = c - window.Lower(2);
-        const T value = image.Nearest(x + dx, y + dy, z + dz);
-        if (value == value)
-        {
-          values.push_back({ value, dx, dy, dz });
+          offsets.push_back({ a - window.Lower(0), b - window.Lower(1), c - window.Lower(2) });
         }
       }
     }
   }
-  return values;
+  return offsets;
 }
 
 /// result = rule(numbers of the window, centre) at each sample that is a number.
 template <class T, class Rule>
 Image<T> Filter(const Image<T>& image, const lacuna::Window& window, const Rule& rule)
 {
+  const auto offsets = Offsets(window);
+  std::vector<Neighbour<T>> samples;
   Image<T> result(image.Box);
   for (int z = image.Box[4]; z <= image.Box[5]; ++z)
   {
@@ -147,9 +138,17 @@ Image<T> Filter(const Image<T>& image, const lacuna::Window& window, const Rule&
     {
       for (int x = image.Box[0]; x <= image.Box[1]; ++x)
       {
+        samples.clear();
+        for (const auto& [dx, dy, dz] : offsets)
+        {
+          const T value = image.Nearest(x + dx, y + dy, z + dz);
+          if (value == value)
+          {
+            samples.push_back({ value, dx, dy, dz });
+          }
+        }
         const T centre = image.At(x, y, z);
-        *result.View().At(x, y, z) =
-          centre == centre ? rule(Gather(image, window, x, y, z), centre) : centre;
+        *result.View().At(x, y, z) = centre == centre ? rule(samples, centre) : centre;
       }
     }
   }
@@ -174,9 +173,15 @@ Image<T> Rank(const Image<T>& image, const lacuna::Window& window, double percen
   return Filter(image, window,
     [=](const auto& samples, T)
     {
-      const std::vector<T> v = SortedValues(samples);
-      const auto k = static_cast<std::size_t>(double(v.size()) * percentile / 100);
-      return v[std::min(v.size() - 1, k)];
+      std::vector<T> v;
+      for (const auto& n : samples)
+      {
+        v.push_back(n.Value);
+      }
+      const auto rank = static_cast<std::size_t>(double(v.size()) * percentile / 100);
+      const std::size_t k = std::min(v.size() - 1, rank);
+      std::nth_element(v.begin(), v.begin() + k, v.end());
+      return v[k];
     });
 }
 
@@ -223,11 +228,11 @@ Image<T> Adaptive(const Image<T>& image, const lacuna::Window& window, double st
       }
       const double mean = static_cast<double>(centre) + sum / n;
       const double variance = std::max(0.0, (squares - sum * sum / n) / n);
-      if (variance > 0 && mean == 0)
+      if (variance > 0 && strength > 0 && mean == 0)
       {
         return centre;
       }
-      const double slope = strength * (variance > 0 ? variance / std::abs(mean) : 0);
+      const double slope = variance > 0 && strength > 0 ? strength * variance / std::abs(mean) : 0;
       std::vector<std::pair<T, std::int64_t>> weighted;
       std::int64_t total = 0;
       for (const auto& s : samples)

@@ -5,19 +5,19 @@
 #include <gtest/gtest.h>
 
 using lacuna::Deviations;
-using lacuna::InstructionSet;
+using lacuna::VectorUnit;
 using lacuna::Window;
 using lacuna::WindowShape;
 using oracle::Image;
 
 namespace
 {
-std::vector<InstructionSet> Available()
+std::vector<VectorUnit> Available()
 {
-  std::vector<InstructionSet> sets{ InstructionSet::Baseline };
-  for (const InstructionSet set : { InstructionSet::Avx2, InstructionSet::Avx512 })
+  std::vector<VectorUnit> sets{ VectorUnit::Baseline };
+  for (const VectorUnit set : { VectorUnit::Avx2, VectorUnit::Avx512 })
   {
-    if (set <= lacuna::BestInstructionSet())
+    if (set <= lacuna::BestVectorUnit())
     {
       sets.push_back(set);
     }
@@ -80,7 +80,7 @@ std::array<std::vector<double>, 3> Gaussians(const Deviations& deviations)
 }
 
 template <class T>
-Image<T> Mean(const Image<T>& image, const Window& window, InstructionSet set, int threads = 2)
+Image<T> Mean(const Image<T>& image, const Window& window, VectorUnit set, int threads = 2)
 {
   Image<T> result(image.Box);
   lacuna::ThreadExecution execution(threads);
@@ -90,7 +90,7 @@ Image<T> Mean(const Image<T>& image, const Window& window, InstructionSet set, i
 
 template <class T>
 Image<T> Gaussian(
-  const Image<T>& image, const Deviations& deviations, InstructionSet set, int threads = 2)
+  const Image<T>& image, const Deviations& deviations, VectorUnit set, int threads = 2)
 {
   Image<T> result(image.Box);
   lacuna::ThreadExecution execution(threads);
@@ -132,7 +132,7 @@ TYPED_TEST(LinearFilterTest, MeanEqualsItsDefinition)
         return static_cast<T>(std::is_floating_point_v<T> ? mean : std::floor(mean + 0.5L));
       });
     Image<T> first(0, 0, 0);
-    for (const InstructionSet set : Available())
+    for (const VectorUnit set : Available())
     {
       const Image<T> result = Mean(image, window, set);
       if (std::is_same_v<T, double>)
@@ -160,9 +160,9 @@ TEST(LinearFilters, MeanRoundsHalvesUp)
   Image<std::int16_t> image(2, 1, 1);
   const Window pair({ 2, 1, 1 }, WindowShape::Box); // the sample and the one before it
   image.Samples = { -3, -2 };
-  EXPECT_EQ(Mean(image, pair, InstructionSet::Baseline).Samples[1], -2);
+  EXPECT_EQ(Mean(image, pair, VectorUnit::Baseline).Samples[1], -2);
   image.Samples = { 2, 3 };
-  EXPECT_EQ(Mean(image, pair, InstructionSet::Baseline).Samples[1], 3);
+  EXPECT_EQ(Mean(image, pair, VectorUnit::Baseline).Samples[1], 3);
 }
 
 TEST(LinearFilters, MeanOfExtremeValuesDoesNotOverflow)
@@ -170,14 +170,14 @@ TEST(LinearFilters, MeanOfExtremeValuesDoesNotOverflow)
   const Window large({ 255, 255, 255 }, WindowShape::Box);
   Image<std::uint8_t> bytes(3, 2, 2);
   std::fill(bytes.Samples.begin(), bytes.Samples.end(), std::uint8_t(255));
-  EXPECT_EQ(Mean(bytes, large, lacuna::BestInstructionSet()).Samples, bytes.Samples);
+  EXPECT_EQ(Mean(bytes, large, lacuna::BestVectorUnit()).Samples, bytes.Samples);
   Image<std::int64_t> longs(2, 2, 2);
   for (const std::int64_t value :
     { std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max() })
   {
     std::fill(longs.Samples.begin(), longs.Samples.end(), value);
     EXPECT_EQ(
-      Mean(longs, Window({ 9, 9, 9 }, WindowShape::Box), lacuna::BestInstructionSet()).Samples,
+      Mean(longs, Window({ 9, 9, 9 }, WindowShape::Box), lacuna::BestVectorUnit()).Samples,
       longs.Samples);
   }
 }
@@ -189,7 +189,7 @@ TEST(LinearFilters, MeanForgetsLargeSamplesBeyondTheirWindows)
   image.Samples[10] = 1e30f;
   image.Samples[20] = std::numeric_limits<float>::infinity();
   image.Samples[30] = std::nanf("");
-  const auto result = Mean(image, Window({ 5, 1, 1 }, WindowShape::Box), InstructionSet::Baseline);
+  const auto result = Mean(image, Window({ 5, 1, 1 }, WindowShape::Box), VectorUnit::Baseline);
   for (int i = 0; i < 60; ++i)
   {
     const bool far = std::abs(i - 10) > 2 && std::abs(i - 20) > 2;
@@ -219,7 +219,7 @@ TYPED_TEST(LinearFilterTest, GaussianEqualsItsDefinition)
   {
     const std::vector<long double> truth = Convolve(image, Gaussians(deviations));
     Image<T> first(0, 0, 0);
-    for (const InstructionSet set : Available())
+    for (const VectorUnit set : Available())
     {
       const Image<T> result = Gaussian(image, deviations, set);
       for (std::size_t i = 0; i < truth.size(); ++i)
@@ -243,7 +243,7 @@ TEST(LinearFilters, GaussianLeavesNaNOutAndInPlace)
   oracle::SprinkleNaN(image, 9);
   const Deviations deviations{ 1.2, 0.9, 0.6 };
   const std::vector<long double> truth = Convolve(image, Gaussians(deviations));
-  const Image<double> result = Gaussian(image, deviations, lacuna::BestInstructionSet());
+  const Image<double> result = Gaussian(image, deviations, lacuna::BestVectorUnit());
   for (std::size_t i = 0; i < truth.size(); ++i)
   {
     if (std::isnan(image.Samples[i]))
@@ -258,8 +258,8 @@ TEST(LinearFilters, GaussianLeavesNaNOutAndInPlace)
   // A NaN changes nothing out of its reach, not even a last digit.
   Image<double> one = whole;
   one.Samples[0] = std::nan("");
-  const auto without = Gaussian(whole, deviations, lacuna::BestInstructionSet());
-  const auto with = Gaussian(one, deviations, lacuna::BestInstructionSet());
+  const auto without = Gaussian(whole, deviations, lacuna::BestVectorUnit());
+  const auto with = Gaussian(one, deviations, lacuna::BestVectorUnit());
   for (int x = 6; x < 33; ++x)
   {
     EXPECT_EQ(with.At(x, 7, 3), without.At(x, 7, 3));
@@ -272,7 +272,7 @@ TEST(LinearFilters, GaussianKeepsConstantsAndTypeLimits)
   {
     Image<std::uint64_t> image(9, 9, 1);
     std::fill(image.Samples.begin(), image.Samples.end(), value);
-    EXPECT_EQ(Gaussian(image, { 2, 2, 0 }, lacuna::BestInstructionSet()).Samples, image.Samples);
+    EXPECT_EQ(Gaussian(image, { 2, 2, 0 }, lacuna::BestVectorUnit()).Samples, image.Samples);
   }
 }
 
@@ -313,7 +313,7 @@ TEST(LinearFilters, LaplacianOfAQuadraticInMillimetres)
   lacuna::ThreadExecution execution(2);
   const Deviations deviations{ 1 / 0.5, 1 / 0.25, 1 / 2.0 };
   lacuna::FilterLaplacianOfGaussian<double>(
-    image.View(), result.View(), deviations, spacing, lacuna::BestInstructionSet(), execution);
+    image.View(), result.View(), deviations, spacing, lacuna::BestVectorUnit(), execution);
   EXPECT_NEAR(result.At(22, 30, 10), 7, 1e-9);
   EXPECT_NEAR(result.At(25, 27, 12), 7, 1e-9);
 }
@@ -331,7 +331,7 @@ TEST(LinearFilters, LaplacianVanishesOnConstantsAndChangesSignAtAnEdge)
   Image<float> result(image.Box);
   lacuna::ThreadExecution execution(1);
   lacuna::FilterLaplacianOfGaussian<std::uint8_t>(image.View(), result.View(), { 1.5, 1.5, 0 },
-    { 1, 1, 1 }, lacuna::BestInstructionSet(), execution);
+    { 1, 1, 1 }, lacuna::BestVectorUnit(), execution);
   EXPECT_NEAR(result.At(2, 4, 0), 0, 1e-4);
   EXPECT_NEAR(result.At(38, 4, 0), 0, 1e-4);
   EXPECT_GT(result.At(19, 4, 0), 5);
@@ -348,6 +348,6 @@ TEST(LinearFilters, RefusesDeviationsThatMakeNoSense)
   Image<float> result(image.Box);
   lacuna::ThreadExecution execution(1);
   EXPECT_THROW(lacuna::FilterLaplacianOfGaussian<float>(image.View(), result.View(), { 0, 0, 0 },
-                 { 1, 1, 1 }, InstructionSet::Baseline, execution),
+                 { 1, 1, 1 }, VectorUnit::Baseline, execution),
     std::invalid_argument);
 }

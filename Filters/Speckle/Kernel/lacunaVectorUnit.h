@@ -3,8 +3,8 @@
 /// Run-time choice of the vector width of inner loops. The binary is for baseline x86-64; loops
 /// that pay are compiled again for wider vectors and picked by what the processor has. All
 /// versions do the same operations on each sample, so their results are the same bit for bit.
-#ifndef lacunaInstructionSet_h
-#define lacunaInstructionSet_h
+#ifndef lacunaVectorUnit_h
+#define lacunaVectorUnit_h
 
 #include <cstring>
 
@@ -16,7 +16,7 @@
 namespace lacuna
 {
 /// In ascending order of width: a processor that has one has those before it.
-enum class InstructionSet
+enum class VectorUnit
 {
   Baseline, ///< 16-byte vectors (SSE2 on x86-64)
   Avx2,     ///< 32-byte vectors
@@ -24,7 +24,7 @@ enum class InstructionSet
 };
 
 /// The widest one this processor has.
-InstructionSet BestInstructionSet();
+VectorUnit BestVectorUnit();
 
 /// A vector of Bytes / sizeof(T) elements with element-wise operators (a GCC and Clang extension).
 template <class T, int Bytes>
@@ -73,16 +73,16 @@ __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl"))) void RunAvx512(Arg
 /// Calls Body::Run<bytes per vector>(arguments) compiled for the instruction set. Run and all that
 /// it calls in its inner loops must be LACUNA_INLINE: only then are they compiled for that set.
 template <class Body, class Arguments>
-void RunWith(InstructionSet set, Arguments& arguments)
+void RunWith(VectorUnit set, Arguments& arguments)
 {
 #ifdef LACUNA_HAS_WIDE_VECTORS
   switch (set)
   {
-    case InstructionSet::Avx512:
+    case VectorUnit::Avx512:
       return detail::RunAvx512<Body>(arguments);
-    case InstructionSet::Avx2:
+    case VectorUnit::Avx2:
       return detail::RunAvx2<Body>(arguments);
-    case InstructionSet::Baseline:
+    case VectorUnit::Baseline:
       break;
   }
 #endif

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaInstructionSet.h"
+#include "lacunaVectorUnit.h"
 
 namespace lacuna
 {
-InstructionSet BestInstructionSet()
+VectorUnit BestVectorUnit()
 {
 #ifdef LACUNA_HAS_WIDE_VECTORS
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
     __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
   {
-    return InstructionSet::Avx512;
+    return VectorUnit::Avx512;
   }
   if (__builtin_cpu_supports("avx2"))
   {
-    return InstructionSet::Avx2;
+    return VectorUnit::Avx2;
   }
 #endif
-  return InstructionSet::Baseline;
+  return VectorUnit::Baseline;
 }
 }

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCheck.h"
+#include "vtkExecutive.h"
+#include "vtkCallbackCommand.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkImageMedian3D.h"
+#include "vtkInformation.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSpeckleFilter.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkMatrix3x3.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTrivialProducer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <sstream>
+#include <string>
+
+namespace
+{
+/// Values without order, by a hash of the position; extent and geometry of a cropped oblique image.
+vtkSmartPointer<vtkImageData> MakeImage(int type, const int extent[6])
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(const_cast<int*>(extent));
+  image->SetOrigin(-10, 20, 5);
+  image->SetSpacing(0.5, 0.7, 2);
+  const double direction[9] = { 0, 0, 1, 1, 0, 0, 0, 1, 0 };
+  image->SetDirectionMatrix(direction);
+  image->AllocateScalars(type, 1);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  scalars->SetName("Echo");
+  vtkNew<vtkUnsignedCharArray> mask;
+  mask->SetName("vtkValidPointMask");
+  unsigned hash = 12345;
+  for (vtkIdType i = 0; i < scalars->GetNumberOfTuples(); ++i)
+  {
+    hash = hash * 1664525u + 1013904223u;
+    scalars->SetComponent(i, 0, hash >> 24);
+    mask->InsertNextValue(i % 3 != 0);
+  }
+  image->GetPointData()->AddArray(mask);
+  return image;
+}
+
+double Value(vtkImageData* image, int x, int y, int z)
+{
+  return image->GetScalarComponentAsDouble(x, y, z, 0);
+}
+
+// The inner samples, where vtkImageMedian3D takes the whole window too.
+void TestEqualsVTKMedian()
+{
+  const int extent[6] = { 3, 32, -4, 19, 0, 8 };
+  const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
+  vtkNew<vtkImageMedian3D> vtk;
+  vtk->SetInputData(image);
+  vtk->SetKernelSize(5, 3, 3);
+  vtk->Update();
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->SetKernelSize(5, 3, 3);
+  filter->Update();
+  bool equal = true;
+  for (int z = 1; z <= 7; ++z)
+  {
+    for (int y = -3; y <= 18; ++y)
+    {
+      for (int x = 5; x <= 30; ++x)
+      {
+        equal = equal && Value(vtk->GetOutput(), x, y, z) == Value(filter->GetOutput(), x, y, z);
+      }
+    }
+  }
+  LACUNA_CHECK(equal);
+}
+
+void TestKeepsEverythingElse()
+{
+  const int extent[6] = { 3, 22, -4, 9, 2, 5 };
+  const auto image = MakeImage(VTK_SHORT, extent);
+  vtkNew<vtkDoubleArray> times;
+  times->SetName(vtkLacunaTrackedSlices::TimestampName);
+  times->SetNumberOfTuples(40); // all slices of the sweep, however cropped the stack is
+  times->Fill(1.5);
+  image->GetFieldData()->AddArray(times);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->Update();
+  vtkImageData* output = filter->GetOutput();
+  for (int i = 0; i < 6; ++i)
+  {
+    LACUNA_CHECK(output->GetExtent()[i] == extent[i]);
+  }
+  for (int i = 0; i < 3; ++i)
+  {
+    LACUNA_CHECK(output->GetOrigin()[i] == image->GetOrigin()[i]);
+    LACUNA_CHECK(output->GetSpacing()[i] == image->GetSpacing()[i]);
+  }
+  for (int i = 0; i < 9; ++i)
+  {
+    LACUNA_CHECK(output->GetDirectionMatrix()->GetData()[i] ==
+      image->GetDirectionMatrix()->GetData()[i]);
+  }
+  vtkDataArray* kept = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::TimestampName);
+  LACUNA_CHECK(kept && kept->GetNumberOfTuples() == 40);
+  vtkDataArray* mask = output->GetPointData()->GetArray("vtkValidPointMask");
+  LACUNA_CHECK(mask && mask->GetComponent(1, 0) == 1 && mask->GetComponent(3, 0) == 0);
+  LACUNA_CHECK(output->GetScalarType() == VTK_SHORT);
+  LACUNA_CHECK(output->GetPointData()->GetNumberOfArrays() == 2);
+  LACUNA_CHECK(std::string(output->GetPointData()->GetScalars()->GetName()) == "Echo");
+  const auto steps = vtkLacunaProvenance::Get(output);
+  LACUNA_CHECK(steps.size() == 1);
+  LACUNA_CHECK(!steps.empty() &&
+    steps[0].find("Operation=Median KernelSize=5,5,1 KernelShape=Box") != std::string::npos);
+  // The input is as it was.
+  LACUNA_CHECK(image->GetPointData()->GetScalars() != output->GetPointData()->GetScalars());
+}
+
+void TestHonoursRequestedExtents()
+{
+  const int extent[6] = { 0, 40, 0, 30, 0, 12 };
+  const auto image = MakeImage(VTK_FLOAT, extent);
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(image);
+  producer->SetWholeExtent(const_cast<int*>(extent));
+  for (int operation = 0; operation <= vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN; ++operation)
+  {
+    vtkNew<vtkLacunaSpeckleFilter> whole;
+    vtkNew<vtkLacunaSpeckleFilter> part;
+    for (vtkLacunaSpeckleFilter* filter : { whole.Get(), part.Get() })
+    {
+      filter->SetInputConnection(producer->GetOutputPort());
+      filter->SetOperation(operation);
+      filter->SetKernelSize(5, 4, 3);
+    }
+    whole->Update();
+    const int asked[6] = { 10, 25, 0, 12, 6, 12 };
+    part->UpdateExtent(asked);
+    vtkImageData* piece = part->GetOutput();
+    for (int i = 0; i < 6; ++i)
+    {
+      LACUNA_CHECK(piece->GetExtent()[i] == asked[i]);
+    }
+    LACUNA_CHECK(piece->GetPointData()->GetArray("vtkValidPointMask"));
+    LACUNA_CHECK(
+      piece->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(0, 0) ==
+      image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(
+        image->ComputePointId(const_cast<int*>(std::array<int, 3>{ 10, 0, 6 }.data())), 0));
+    bool equal = true;
+    for (int z = 6; z <= 12; ++z)
+    {
+      for (int y = 0; y <= 12; ++y)
+      {
+        for (int x = 10; x <= 25; ++x)
+        {
+          equal = equal && Value(piece, x, y, z) == Value(whole->GetOutput(), x, y, z);
+        }
+      }
+    }
+    LACUNA_CHECK(equal);
+    if (!equal)
+    {
+      std::cerr << "operation " << operation << "\n";
+    }
+  }
+}
+
+void TestAsksForNoMoreThanItNeeds()
+{
+  const int extent[6] = { 0, 99, 0, 99, 0, 9 };
+  const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(image);
+  producer->SetWholeExtent(const_cast<int*>(extent));
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputConnection(producer->GetOutputPort());
+  filter->SetOperation(vtkLacunaSpeckleFilter::OPENING);
+  filter->SetKernelSize(5, 4, 1);
+  const int asked[6] = { 0, 9, 50, 59, 3, 3 };
+  filter->UpdateExtent(asked);
+  int needed[6];
+  producer->GetOutputInformation(0)->Get(
+    vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), needed);
+  const int expected[6] = { 0, 13, 47, 62, 3, 3 };
+  for (int i = 0; i < 6; ++i)
+  {
+    LACUNA_CHECK(needed[i] == expected[i]);
+  }
+}
+
+void TestTypesAndComponents()
+{
+  const int extent[6] = { 0, 15, 0, 9, 0, 3 };
+  for (const int type : { VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNSIGNED_CHAR, VTK_SHORT,
+         VTK_UNSIGNED_SHORT, VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG, VTK_LONG_LONG,
+         VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_FLOAT, VTK_DOUBLE })
+  {
+    const auto image = MakeImage(type, extent);
+    vtkNew<vtkLacunaSpeckleFilter> filter;
+    filter->SetInputData(image);
+    filter->SetOperation(vtkLacunaSpeckleFilter::MAXIMUM);
+    filter->Update();
+    LACUNA_CHECK(filter->GetOutput()->GetScalarType() == type);
+    LACUNA_CHECK(Value(filter->GetOutput(), 5, 5, 1) >= Value(image, 6, 7, 1));
+    filter->SetOperation(vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN);
+    filter->Update();
+    LACUNA_CHECK(
+      filter->GetOutput()->GetScalarType() == (type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT));
+  }
+
+  vtkNew<vtkImageData> vectors;
+  vectors->SetDimensions(9, 8, 1);
+  vectors->AllocateScalars(VTK_FLOAT, 3);
+  for (vtkIdType i = 0; i < 72; ++i)
+  {
+    vectors->GetPointData()->GetScalars()->SetTuple3(i, i % 9, 100, i / 9);
+  }
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(vectors);
+  filter->Update();
+  const double* middle = filter->GetOutput()->GetPointData()->GetScalars()->GetTuple3(4 * 9 + 5);
+  LACUNA_CHECK(middle[0] == 5 && middle[1] == 100 && middle[2] == 4);
+}
+
+void TestFiltersTheChosenArray()
+{
+  const int extent[6] = { 0, 15, 0, 9, 0, 0 };
+  const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
+  vtkNew<vtkFloatArray> other;
+  other->SetName("Other");
+  other->SetNumberOfTuples(image->GetNumberOfPoints());
+  other->Fill(3);
+  other->SetValue(55, 1000);
+  image->GetPointData()->AddArray(other);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other");
+  filter->Update();
+  vtkPointData* data = filter->GetOutput()->GetPointData();
+  LACUNA_CHECK(data->GetArray("Other")->GetComponent(55, 0) == 3);
+  LACUNA_CHECK(data->GetScalars() == data->GetArray("Echo"));
+  LACUNA_CHECK(
+    data->GetScalars()->GetComponent(55, 0) == image->GetPointData()->GetScalars()->GetComponent(55, 0));
+}
+
+void TestMillimetres()
+{
+  // An impulse spreads as far in mm along x as along y, whatever the spacing.
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(81, 81, 1);
+  image->SetSpacing(0.5, 1, 1);
+  image->AllocateScalars(VTK_DOUBLE, 1);
+  image->GetPointData()->GetScalars()->Fill(0);
+  image->SetScalarComponentFromDouble(40, 40, 0, 0, 1);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->SetOperation(vtkLacunaSpeckleFilter::GAUSSIAN);
+  filter->SetStandardDeviation(3);
+  filter->Update();
+  vtkImageData* output = filter->GetOutput();
+  LACUNA_CHECK_NEAR(Value(output, 46, 40, 0) / Value(output, 40, 40, 0), std::exp(-0.5), 1e-12);
+  LACUNA_CHECK_NEAR(Value(output, 40, 43, 0) / Value(output, 40, 40, 0), std::exp(-0.5), 1e-12);
+}
+
+void TestErrors()
+{
+  const int extent[6] = { 0, 15, 0, 9, 0, 0 };
+  const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
+  const auto errors = [&](vtkImageData* input, const std::function<void(vtkLacunaSpeckleFilter*)>& set)
+  {
+    vtkNew<vtkLacunaSpeckleFilter> filter;
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(filter);
+    messages->Watch(filter->GetExecutive());
+    filter->SetInputData(input);
+    set(filter);
+    filter->Update();
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+    return messages->Errors;
+  };
+  const auto has = [](const std::string& text, const char* part)
+  { return text.find(part) != std::string::npos; };
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(5, 0, 1); }), "5 x 0 x 1"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(1, 1, 1000); }), "1 to 255"));
+  LACUNA_CHECK(has(errors(image,
+                     [](auto* f)
+                     {
+                       f->SetOperation(vtkLacunaSpeckleFilter::RANK);
+                       f->SetRank(101);
+                     }),
+    "percentile"));
+  LACUNA_CHECK(has(errors(image,
+                     [](auto* f)
+                     {
+                       f->SetOperation(vtkLacunaSpeckleFilter::GAUSSIAN);
+                       f->SetStandardDeviation(0);
+                     }),
+    "above 0"));
+  LACUNA_CHECK(has(errors(image,
+                     [](auto* f)
+                     {
+                       f->SetOperation(vtkLacunaSpeckleFilter::ADAPTIVE_MEDIAN);
+                       f->SetAdaptiveStrength(-1);
+                     }),
+    "adaptive strength"));
+  vtkNew<vtkImageData> bare;
+  bare->SetDimensions(4, 4, 1);
+  LACUNA_CHECK(has(errors(bare, [](auto*) {}), "no point scalars"));
+
+  // Nothing in, nothing out, no error.
+  vtkNew<vtkImageData> empty;
+  LACUNA_CHECK(errors(empty, [](auto*) {}).empty());
+}
+
+void TestWarnsWhenSlicesAreMixed()
+{
+  const int extent[6] = { 0, 15, 0, 9, 0, 4 };
+  const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
+  vtkNew<vtkUnsignedCharArray> status;
+  status->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+  status->SetNumberOfTuples(5);
+  image->GetFieldData()->AddArray(status);
+  for (const int z : { 1, 3 })
+  {
+    vtkNew<vtkLacunaSpeckleFilter> filter;
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(filter);
+    filter->SetInputData(image);
+    filter->SetKernelSize(3, 3, z);
+    filter->Update();
+    LACUNA_CHECK(messages->HasWarning("tracked slices") == (z > 1));
+  }
+}
+
+void TestAbort()
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(500, 500, 60);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  image->GetPointData()->GetScalars()->Fill(1);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->SetKernelSize(9, 9, 9);
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  filter->AddObserver(vtkCommand::ProgressEvent, stop);
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+}
+
+void TestPrint()
+{
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* name : { "Operation: Median", "KernelSize: 5 5 1", "KernelShape: Box", "Rank: 50",
+         "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
+  {
+    LACUNA_CHECK(text.str().find(name) != std::string::npos);
+  }
+}
+}
+
+int TestSpeckleFilter(int, char*[])
+{
+  TestEqualsVTKMedian();
+  TestKeepsEverythingElse();
+  TestHonoursRequestedExtents();
+  TestAsksForNoMoreThanItNeeds();
+  TestTypesAndComponents();
+  TestFiltersTheChosenArray();
+  TestMillimetres();
+  TestErrors();
+  TestWarnsWhenSlicesAreMixed();
+  TestAbort();
+  TestPrint();
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Time per sample of the speckle filters, against window size and against VTK's median.
+//   bin/BenchmarkSpeckleFilter [--benchmark_filter=...]
+// Times are wall time on all cores; ns_per_sample is the figure of the user guide.
+#include "lacunaSpeckleFilter.h"
+#include "vtkImageData.h"
+#include "vtkImageMedian3D.h"
+#include "vtkMultiThreader.h"
+#include "vtkNew.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <type_traits>
+#include <vector>
+
+namespace
+{
+using lacuna::SpeckleOperation;
+using Size = std::array<int, 3>;
+
+constexpr Size Foetus{ 220, 172, 204 }; // the thesis's volume
+constexpr Size Sweep{ 640, 480, 200 };
+
+/// Speckle: Rayleigh distributed around a few grey levels, as in an envelope-detected B-scan.
+template <class T>
+const std::vector<T>& Speckle(const Size& size)
+{
+  static std::vector<T> samples;
+  static Size made{};
+  if (made != size)
+  {
+    made = size;
+    samples.resize(std::size_t(size[0]) * size[1] * size[2]);
+    std::mt19937 generator(1);
+    std::uniform_real_distribution<float> uniform(1e-6f, 1.0f);
+    const double scale = sizeof(T) == 1 ? 1 : std::is_floating_point_v<T> ? 0.37 : 100;
+    std::size_t i = 0;
+    for (int z = 0; z < size[2]; ++z)
+    {
+      for (int y = 0; y < size[1]; ++y)
+      {
+        for (int x = 0; x < size[0]; ++x, ++i)
+        {
+          const double level = 30 + 25 * std::sin(x * 0.05) * std::cos(y * 0.04) * std::sin(z * 0.03);
+          const double envelope = level * std::sqrt(-2 * std::log(uniform(generator)));
+          samples[i] = static_cast<T>(scale * std::min(255.0, envelope));
+        }
+      }
+    }
+  }
+  return samples;
+}
+
+template <class T>
+void Filter(benchmark::State& state, const Size& size, const lacuna::SpeckleParameters& parameters)
+{
+  const lacuna::Extent box{ 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 };
+  const std::vector<T>& samples = Speckle<T>(size);
+  std::vector<T> result(samples.size());
+  const lacuna::ImageView<const T> input(samples.data(), box);
+  const lacuna::ImageView<T> output(result.data(), box);
+  lacuna::ThreadExecution execution;
+  for (auto _ : state)
+  {
+    lacuna::FilterSpeckle(input, output, parameters, execution);
+  }
+  state.counters["ns_per_sample"] = benchmark::Counter(
+    static_cast<double>(samples.size()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate |
+      benchmark::Counter::kInvert);
+}
+
+lacuna::SpeckleParameters Make(SpeckleOperation operation, int width, bool flat)
+{
+  lacuna::SpeckleParameters parameters;
+  parameters.Operation = operation;
+  parameters.KernelSize = { width, width, flat ? 1 : width };
+  return parameters;
+}
+
+void VTKMedian(benchmark::State& state, const Size& size, int width)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(size.data());
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  const std::vector<std::uint8_t>& samples = Speckle<std::uint8_t>(size);
+  std::memcpy(image->GetScalarPointer(), samples.data(), samples.size());
+  vtkNew<vtkImageMedian3D> median;
+  median->SetInputData(image);
+  median->SetKernelSize(width, width, width);
+  median->SetNumberOfThreads(vtkMultiThreader::GetGlobalDefaultNumberOfThreads());
+  for (auto _ : state)
+  {
+    median->Modified();
+    median->Update();
+  }
+  state.counters["ns_per_sample"] = benchmark::Counter(
+    static_cast<double>(samples.size()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate |
+      benchmark::Counter::kInvert);
+}
+
+template <class Body>
+void Register(const std::string& name, const Body& body)
+{
+  benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+}
+
+int main(int argc, char* argv[])
+{
+  // The goals: against VTK on 40 slices, where whole windows dominate.
+  const Size slab{ Foetus[0], Foetus[1], 40 };
+  Register("Goal/VTKMedian_9x9x9_uint8_40slices",
+    [=](benchmark::State& state) { VTKMedian(state, slab, 9); });
+  Register("Goal/Median_9x9x9_uint8_40slices", [=](benchmark::State& state)
+    { Filter<std::uint8_t>(state, slab, Make(SpeckleOperation::Median, 9, false)); });
+  Register("Goal/Median_9x9x9_uint8", [=](benchmark::State& state)
+    { Filter<std::uint8_t>(state, Foetus, Make(SpeckleOperation::Median, 9, false)); });
+  Register("Goal/Median_11x11_uint8", [=](benchmark::State& state)
+    { Filter<std::uint8_t>(state, Sweep, Make(SpeckleOperation::Median, 11, true)); });
+  for (const double deviation : { 1.0, 1.4142, 2.0, 3.0, 4.0 })
+  {
+    Register("Goal/Gaussian_3D_uint8/" + std::to_string(deviation).substr(0, 4),
+      [=](benchmark::State& state)
+      {
+        auto parameters = Make(SpeckleOperation::Gaussian, 3, false);
+        parameters.StandardDeviation = deviation;
+        Filter<std::uint8_t>(state, Foetus, parameters);
+      });
+  }
+
+  // Cost against window size.
+  const std::vector<std::pair<std::string, SpeckleOperation>> operations{
+    { "Median", SpeckleOperation::Median }, { "Rank", SpeckleOperation::Rank },
+    { "Mode", SpeckleOperation::Mode }, { "Minimum", SpeckleOperation::Minimum },
+    { "Opening", SpeckleOperation::Opening }, { "OpenClose", SpeckleOperation::OpenClose },
+    { "Mean", SpeckleOperation::Mean }, { "AdaptiveMedian", SpeckleOperation::AdaptiveMedian }
+  };
+  for (const auto& [name, operation] : operations)
+  {
+    const bool slow = operation == SpeckleOperation::AdaptiveMedian;
+    const SpeckleOperation what = operation;
+    for (const int width : { 3, 5, 7, 9, 11, 15, 21, 31 })
+    {
+      if (width > 11 && slow)
+      {
+        continue;
+      }
+      const Size flatSize{ 640, 480, slow ? 4 : 40 };
+      Register("Size2D/" + name + "_uint8/" + std::to_string(width),
+        [=](benchmark::State& state) { Filter<std::uint8_t>(state, flatSize, Make(what, width, true)); });
+      Register("Size3D/" + name + "_uint8/" + std::to_string(width), [=](benchmark::State& state)
+        { Filter<std::uint8_t>(state, slow ? Size{ 64, 64, 64 } : slab, Make(what, width, false)); });
+    }
+  }
+  for (const int width : { 3, 5, 9, 15 })
+  {
+    for (const SpeckleOperation what : { SpeckleOperation::Median, SpeckleOperation::Opening })
+    {
+      const std::string name = what == SpeckleOperation::Median ? "Median" : "Opening";
+      Register("Ellipsoid3D/" + name + "_uint8/" + std::to_string(width),
+        [=](benchmark::State& state)
+        {
+          auto parameters = Make(what, width, false);
+          parameters.Shape = lacuna::WindowShape::Ellipsoid;
+          Filter<std::uint8_t>(state, slab, parameters);
+        });
+    }
+  }
+
+  // Other types.
+  for (const int width : { 3, 5, 9 })
+  {
+    const std::string suffix = "_" + std::to_string(width);
+    const auto parameters = Make(SpeckleOperation::Median, width, false);
+    Register("Types3D/Median_int16" + suffix,
+      [=](benchmark::State& state) { Filter<std::int16_t>(state, slab, parameters); });
+    Register("Types3D/Median_float" + suffix,
+      [=](benchmark::State& state) { Filter<float>(state, slab, parameters); });
+    Register("Types3D/Median_double" + suffix,
+      [=](benchmark::State& state) { Filter<double>(state, slab, parameters); });
+  }
+
+  // Vector widths.
+  for (int set = 0; set <= static_cast<int>(lacuna::BestVectorUnit()); ++set)
+  {
+    auto parameters = Make(SpeckleOperation::Median, 9, false);
+    parameters.Set = static_cast<lacuna::VectorUnit>(set);
+    const char* const names[] = { "Baseline", "AVX2", "AVX512" };
+    Register(std::string("Vectors/Median_9x9x9_uint8_") + names[set],
+      [=](benchmark::State& state) { Filter<std::uint8_t>(state, slab, parameters); });
+    parameters.KernelSize = { 11, 11, 1 };
+    Register(std::string("Vectors/Median_11x11_uint8_") + names[set],
+      [=](benchmark::State& state) { Filter<std::uint8_t>(state, slab, parameters); });
+  }
+
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+  {
+    return 1;
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
