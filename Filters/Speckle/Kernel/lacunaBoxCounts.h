@@ -19,13 +19,14 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <type_traits>
 #include <vector>
 
 namespace lacuna
 {
 /// -128 ... 127: the levels 0 ... 255 for signed comparison.
-inline constexpr std::array<std::int8_t, 256> LevelRamp = []
+alignas(64) inline constexpr std::array<std::int8_t, 256> LevelRamp = []
 {
   std::array<std::int8_t, 256> ramp{};
   for (int i = 0; i < 256; ++i)
@@ -34,6 +35,26 @@ inline constexpr std::array<std::int8_t, 256> LevelRamp = []
   }
   return ramp;
 }();
+
+/// Zeroed memory that begins at a cache line, so that no vector of a table straddles two.
+template <class T>
+class AlignedTable
+{
+public:
+  explicit AlignedTable(std::size_t size)
+    : Memory(size + Line / sizeof(T), T(0))
+  {
+    void* begin = this->Memory.data();
+    std::size_t space = this->Memory.size() * sizeof(T);
+    this->Begin = static_cast<T*>(std::align(Line, size * sizeof(T), begin, space));
+  }
+  T* data() { return this->Begin; }
+
+private:
+  static constexpr std::size_t Line = 64;
+  std::vector<T> Memory;
+  T* Begin;
+};
 
 /// Sum of the lanes of a vector whose lanes are small and not negative.
 template <class T, int Bytes>
@@ -221,10 +242,10 @@ private:
     const int outY = ny - this->Size[1] + 1;
     const int outZ = this->Tile.Size[2] - this->Size[2] + 1;
     const bool deep = this->Size[2] > 1;
-    std::vector<std::uint8_t> columns(deep ? std::size_t(nx) * ny * levels : 0);
-    std::vector<Plane> planes(std::size_t(nx) * levels);
-    const std::vector<Plane> zeros(levels);
-    std::vector<Count> table(levels);
+    AlignedTable<std::uint8_t> columns(deep ? std::size_t(nx) * ny * levels : 0);
+    AlignedTable<Plane> planes(std::size_t(nx) * levels);
+    AlignedTable<Plane> zeros(levels);
+    AlignedTable<Count> table(levels);
     BoxCounts<Count, Bytes> counts(this->Tile, this->Size, table.data());
 
     for (int z = 0; z < outZ; ++z)
@@ -245,7 +266,7 @@ private:
         }
         counts.Corner[1] = static_cast<std::uint8_t>(y);
         counts.Corner[2] = static_cast<std::uint8_t>(z);
-        std::fill(table.begin(), table.end(), std::numeric_limits<Count>::min());
+        std::fill_n(table.data(), levels, std::numeric_limits<Count>::min());
         for (int x = 0; x < this->Size[0] - 1; ++x)
         {
           AddTable<Bytes>(table.data(), planes.data() + std::size_t(x) * levels, levels);

@@ -118,11 +118,15 @@ Extent GetSpeckleInput(const SpeckleParameters& parameters, const Extent& box)
       "; it must be a percentile from 0 (the least) to 100 (the greatest)");
   }
   const Window window = WindowOf(parameters);
-  Extent grown = window.Grow(box);
   const std::vector<MorphologyStep> steps = StepsOf(parameters.Operation);
-  for (std::size_t i = 1; i < steps.size(); ++i)
+  if (steps.empty())
   {
-    grown = (steps[i].Reflected ? window.Reflect() : window).Grow(grown);
+    return window.Grow(box);
+  }
+  Extent grown = box;
+  for (const MorphologyStep& step : steps)
+  {
+    grown = (step.Reflected ? window.Reflect() : window).Grow(grown);
   }
   return grown;
 }
