@@ -148,8 +148,10 @@ int vtkLacunaContrastToSpeckle::RequestData(
     {
       vtkImageData* image = vtkImageData::GetData(inputs[0]);
       vtkTable* table = vtkTable::GetData(outputs);
-      const vtkSmartPointer<vtkDataArray> samples =
-        vtkLacunaSpeckleTypes::GetSamples(this->GetInputArrayToProcess(0, inputs), image);
+      const vtkSmartPointer<vtkDataArray> samples = vtkLacunaSpeckleTypes::GetSamples(
+        vtkLacunaSpeckleTypes::Choose(
+          this->GetInputArrayToProcess(0, inputs), this->GetInputArrayInformation(0), image),
+        image);
       if (samples->GetNumberOfComponents() != 1)
       {
         throw std::runtime_error("the array has " +
@@ -173,8 +175,8 @@ int vtkLacunaContrastToSpeckle::RequestData(
       switch (samples->GetDataType())
       {
         vtkTemplateMacro((Measure<typename vtkLacunaSpeckleTypes::Fixed<VTK_TT>::Type>(samples,
-          vtkLacunaSpeckleTypes::GetExtent(image->GetExtent()), regions, this->IsoValue,
-          statistics, count, execution)));
+          vtkLacunaSpeckleTypes::GetExtent(image->GetExtent()), regions, this->IsoValue, statistics,
+          count, execution)));
         default:
           throw std::runtime_error("arrays of type " + std::string(samples->GetDataTypeAsString()) +
             " cannot be measured; convert it to a numeric type");

@@ -20,9 +20,8 @@ vtkStandardNewMacro(vtkLacunaSpeckleFilter);
 
 namespace
 {
-const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening",
-  "Closing", "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean", "Gaussian",
-  "LaplacianOfGaussian" };
+const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening", "Closing",
+  "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian" };
 
 lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const double spacing[3])
 {
@@ -110,9 +109,9 @@ int vtkLacunaSpeckleFilter::RequestInformation(
 {
   if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
   {
-    vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-      inputs[0]->GetInformationObject(0), vtkDataObject::FIELD_ASSOCIATION_POINTS,
-      vtkDataSetAttributes::SCALARS);
+    vtkInformation* scalars =
+      vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
+        vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
     const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
     vtkDataObject::SetPointDataActiveScalarInfo(
       outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
@@ -140,8 +139,7 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     if (!lacuna::IsEmpty(needed))
     {
-      needed = lacuna::Intersect(
-        lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed),
+      needed = lacuna::Intersect(lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed),
         vtkLacunaSpeckleTypes::GetExtent(whole));
     }
   }
@@ -166,8 +164,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       outputs->GetInformationObject(0)->Get(
         vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
       const lacuna::Extent inBox = vtkLacunaSpeckleTypes::GetExtent(input->GetExtent());
-      lacuna::Extent box =
-        lacuna::Intersect(vtkLacunaSpeckleTypes::GetExtent(asked), inBox);
+      lacuna::Extent box = lacuna::Intersect(vtkLacunaSpeckleTypes::GetExtent(asked), inBox);
       output->SetOrigin(input->GetOrigin());
       output->SetSpacing(input->GetSpacing());
       output->SetDirectionMatrix(input->GetDirectionMatrix());
@@ -178,7 +175,8 @@ int vtkLacunaSpeckleFilter::RequestData(
       }
       const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
       lacuna::GetSpeckleInput(parameters, box); // refuses parameters that make no sense
-      vtkDataArray* chosen = this->GetInputArrayToProcess(0, inputs);
+      vtkDataArray* chosen = vtkLacunaSpeckleTypes::Choose(
+        this->GetInputArrayToProcess(0, inputs), this->GetInputArrayInformation(0), input);
       const vtkSmartPointer<vtkDataArray> from = vtkLacunaSpeckleTypes::GetSamples(chosen, input);
       if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
       {

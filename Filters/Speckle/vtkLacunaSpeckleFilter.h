@@ -7,18 +7,18 @@
  * percentile, least, greatest, estimated mode), morphological openings and closings, an adaptive
  * weighted median, a mean or a Gaussian. LaplacianOfGaussian marks edges instead.
  *
- * Input: vtkImageData of any extent with a point array of numbers (default: the active scalars; each
- * component is filtered by itself). Output: the same image with that array filtered and of the same
- * type, except LaplacianOfGaussian: float (double for double). All other point arrays and all field
- * data are carried along. With KernelSize z = 1 (default) each slice is filtered by itself: right
- * for tracked slices, whose stack has a spacing of 1 along all axes, so that lengths there are in
- * pixels instead of mm.
+ * Input: vtkImageData of any extent with a point array of numbers (default: the active scalars;
+ * each component is filtered by itself). Output: the same image with that array filtered and of the
+ * same type, except LaplacianOfGaussian: float (double for double). All other point arrays and all
+ * field data are carried along. With KernelSize z = 1 (default) each slice is filtered by itself:
+ * right for tracked slices, whose stack has a spacing of 1 along all axes, so that lengths there
+ * are in pixels instead of mm.
  *
- * Windows cover the offsets -n/2 ... n - 1 - n/2 for a size of n samples (n/2 rounded down). Outside
- * of the image the nearest sample is repeated (scipy.ndimage's mode 'nearest'). NaN samples are left
- * out of their neighbours' windows and stay NaN (a Laplacian is NaN wherever NaN is in reach). Mean
- * and Gaussian of integers are rounded once, halves upwards. Results are the same bit for bit for
- * any number of threads and pieces and on any x86-64 processor.
+ * Windows cover the offsets -n/2 ... n - 1 - n/2 for a size of n samples (n/2 rounded down).
+ * Outside of the image the nearest sample is repeated (scipy.ndimage's mode 'nearest'). NaN samples
+ * are left out of their neighbours' windows and stay NaN (a Laplacian is NaN wherever NaN is in
+ * reach). Mean and Gaussian of integers are rounded once, halves upwards. Results are the same bit
+ * for bit for any number of threads and pieces and on any x86-64 processor.
  *
  * J. C. Carr, Surface Reconstruction in 3D Medical Imaging, 1996, sections 4.4 and 4.5.
  */
@@ -58,8 +58,8 @@ public:
   ///@}
 
   ///@{
-  /// Samples of the window along x, y, z, 1 to 255 each; at most 2^20 in all for ranks. GAUSSIAN and
-  /// LAPLACIAN_OF_GAUSSIAN work along the axes where this exceeds 1. Default: 5 5 1.
+  /// Samples of the window along x, y, z, 1 to 255 each; at most 2^20 in all for ranks. GAUSSIAN
+  /// and LAPLACIAN_OF_GAUSSIAN work along the axes where this exceeds 1. Default: 5 5 1.
   vtkSetVector3Macro(KernelSize, int);
   vtkGetVector3Macro(KernelSize, int);
   ///@}

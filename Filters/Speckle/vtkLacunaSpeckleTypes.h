@@ -6,7 +6,10 @@
 
 #include "lacunaImageView.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 
 #include <cstdint>
@@ -71,14 +74,29 @@ struct Fixed<T, false>
   using Type = typename Integer<sizeof(T), std::is_signed_v<T>>::Type;
 };
 
-/// The point array of image that algorithm's caller chose, as contiguous numbers. Throws
-/// std::runtime_error when there is none or it does not fit the image.
-inline vtkSmartPointer<vtkDataArray> GetSamples(vtkDataArray* array, vtkImageData* image)
+/// Which array to filter or measure: chosen, if there is one, else the active scalars when no name
+/// was given (ParaView sets an empty one when a script makes a filter before its input has run).
+/// Throws std::runtime_error when there is none. choice: the algorithm's input array information.
+inline vtkDataArray* Choose(vtkDataArray* chosen, vtkInformation* choice, vtkImageData* image)
 {
+  const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+  if (!chosen && name && *name)
+  {
+    throw std::runtime_error("the image has no point array '" + std::string(name) +
+      "' of numbers; choose one that it has");
+  }
+  vtkDataArray* array = chosen ? chosen : image->GetPointData()->GetScalars();
   if (!array)
   {
     throw std::runtime_error("the image has no point scalars; choose a point array of numbers");
   }
+  return array;
+}
+
+/// The values of a point array of image as contiguous numbers. Throws std::runtime_error when they
+/// do not fit the image.
+inline vtkSmartPointer<vtkDataArray> GetSamples(vtkDataArray* array, vtkImageData* image)
+{
   const std::string name = array->GetName() ? array->GetName() : "(unnamed)";
   if (array->GetNumberOfTuples() != image->GetNumberOfPoints())
   {

@@ -45,7 +45,8 @@ const std::vector<T>& Speckle(const Size& size)
       {
         for (int x = 0; x < size[0]; ++x, ++i)
         {
-          const double level = 30 + 25 * std::sin(x * 0.05) * std::cos(y * 0.04) * std::sin(z * 0.03);
+          const double level =
+            30 + 25 * std::sin(x * 0.05) * std::cos(y * 0.04) * std::sin(z * 0.03);
           const double envelope = level * std::sqrt(-2 * std::log(uniform(generator)));
           samples[i] = static_cast<T>(scale * std::min(255.0, envelope));
         }
@@ -137,11 +138,14 @@ int main(int argc, char* argv[])
   const Size slab{ Foetus[0], Foetus[1], 40 };
   Register("Goal/VTKMedian_9x9x9_uint8_40slices",
     [=](benchmark::State& state) { VTKMedian(state, slab, 9); });
-  Register("Goal/Median_9x9x9_uint8_40slices", [=](benchmark::State& state)
+  Register("Goal/Median_9x9x9_uint8_40slices",
+    [=](benchmark::State& state)
     { Filter<std::uint8_t>(state, slab, Make(SpeckleOperation::Median, 9, false)); });
-  Register("Goal/Median_9x9x9_uint8", [=](benchmark::State& state)
+  Register("Goal/Median_9x9x9_uint8",
+    [=](benchmark::State& state)
     { Filter<std::uint8_t>(state, Foetus, Make(SpeckleOperation::Median, 9, false)); });
-  Register("Goal/Median_11x11_uint8", [=](benchmark::State& state)
+  Register("Goal/Median_11x11_uint8",
+    [=](benchmark::State& state)
     { Filter<std::uint8_t>(state, Sweep, Make(SpeckleOperation::Median, 11, true)); });
   for (const double deviation : { 1.0, 1.4142, 2.0, 3.0, 4.0 })
   {
@@ -173,9 +177,12 @@ int main(int argc, char* argv[])
       }
       const Size flatSize{ 640, 480, slow ? 4 : 40 };
       Register("Size2D/" + name + "_uint8/" + std::to_string(width),
-        [=](benchmark::State& state) { Filter<std::uint8_t>(state, flatSize, Make(what, width, true)); });
-      Register("Size3D/" + name + "_uint8/" + std::to_string(width), [=](benchmark::State& state)
-        { Filter<std::uint8_t>(state, slow ? Size{ 64, 64, 64 } : slab, Make(what, width, false)); });
+        [=](benchmark::State& state)
+        { Filter<std::uint8_t>(state, flatSize, Make(what, width, true)); });
+      Register("Size3D/" + name + "_uint8/" + std::to_string(width),
+        [=](benchmark::State& state) {
+          Filter<std::uint8_t>(state, slow ? Size{ 64, 64, 64 } : slab, Make(what, width, false));
+        });
     }
   }
   for (const int width : { 3, 5, 9, 15 })

@@ -1,61 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Counts of levels in a box that slides over a RankTile, in constant time per sample.
-///
-/// For each window the table of all cumulative counts, #{samples <= level}, is kept. It is the sum
-/// of the tables of the window's x positions ("planes"), so a step along x adds one plane and
-/// takes one away; each plane is likewise a sum of columns along z; and a column changes by one
-/// sample when z does. All of it is adding tables, which vectors do well, without a branch: the
-/// cost depends neither on the window nor on the data. (The scheme of Perreault & Hebert 2007,
-/// one dimension up, with cumulative instead of plain histograms so that a rank is found by
-/// counting the levels not above it.)
+/// Counts of levels in a box that lies in a RankTile, and what can be asked of them.
 #ifndef lacunaBoxCounts_h
 #define lacunaBoxCounts_h
 
-#include "lacunaVectorUnit.h"
 #include "lacunaRankTile.h"
+#include "lacunaVectorUnit.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <type_traits>
-#include <vector>
 
 namespace lacuna
 {
-/// -128 ... 127: the levels 0 ... 255 for signed comparison.
-alignas(64) inline constexpr std::array<std::int8_t, 256> LevelRamp = []
-{
-  std::array<std::int8_t, 256> ramp{};
-  for (int i = 0; i < 256; ++i)
-  {
-    ramp[i] = static_cast<std::int8_t>(i - 128);
-  }
-  return ramp;
-}();
-
-/// Zeroed memory that begins at a cache line, so that no vector of a table straddles two.
-template <class T>
-class AlignedTable
-{
-public:
-  explicit AlignedTable(std::size_t size)
-    : Memory(size + Line / sizeof(T), T(0))
-  {
-    void* begin = this->Memory.data();
-    std::size_t space = this->Memory.size() * sizeof(T);
-    this->Begin = static_cast<T*>(std::align(Line, size * sizeof(T), begin, space));
-  }
-  T* data() { return this->Begin; }
-
-private:
-  static constexpr std::size_t Line = 64;
-  std::vector<T> Memory;
-  T* Begin;
-};
-
 /// Sum of the lanes of a vector whose lanes are small and not negative.
 template <class T, int Bytes>
 LACUNA_INLINE int SumLanes(const typename Vector<T, Bytes>::Type& v)
@@ -206,247 +162,14 @@ private:
     }
     // Bytes whose running count is at most k come before the lane: none exceeds 8, so bit 7 of
     // 128 + k - running tells without borrowing from a neighbour.
-    const std::uint64_t before = ((Ones * static_cast<std::uint64_t>(128 + k)) - running) >> 7 & Ones;
+    const std::uint64_t before =
+      ((Ones * static_cast<std::uint64_t>(128 + k)) - running) >> 7 & Ones;
     return 8 * word + static_cast<int>((before * Ones) >> 56);
   }
 
   const RankTile& Tile;
   const int* Size;
   Count* Table;
-};
-
-/// Slides a box over a tile. Plane is the unsigned type of the planes' counts (ky * kz samples at
-/// most), Count the signed type that holds the window's.
-template <class Plane, class Count, class Query>
-struct BoxSlide
-{
-  const RankTile& Tile;
-  const int* Size; ///< of the window
-  std::int64_t Rank; ///< looked up on the way; the queries that need others look for themselves
-  Query& Visitor; ///< Visit(counts, x, y, z, level of Rank) for each place of the window
-
-  template <int Bytes>
-  static LACUNA_INLINE void Run(BoxSlide& slide)
-  {
-    slide.template Slide<Bytes>();
-  }
-
-private:
-  template <int Bytes>
-  LACUNA_INLINE void Slide()
-  {
-    const int levels = this->Tile.Levels;
-    const int nx = this->Tile.Size[0];
-    const int ny = this->Tile.Size[1];
-    const int outX = nx - this->Size[0] + 1;
-    const int outY = ny - this->Size[1] + 1;
-    const int outZ = this->Tile.Size[2] - this->Size[2] + 1;
-    const bool deep = this->Size[2] > 1;
-    AlignedTable<std::uint8_t> columns(deep ? std::size_t(nx) * ny * levels : 0);
-    AlignedTable<Plane> planes(std::size_t(nx) * levels);
-    AlignedTable<Plane> zeros(levels);
-    AlignedTable<Count> table(levels);
-    BoxCounts<Count, Bytes> counts(this->Tile, this->Size, table.data());
-
-    for (int z = 0; z < outZ; ++z)
-    {
-      if (deep)
-      {
-        this->template MoveColumns<Bytes>(z, columns.data());
-      }
-      for (int y = 0; y < outY; ++y)
-      {
-        if (deep)
-        {
-          this->template MovePlanes<Bytes>(y, columns.data(), planes.data());
-        }
-        else
-        {
-          this->template MoveFlatPlanes<Bytes>(y, z, planes.data());
-        }
-        counts.Corner[1] = static_cast<std::uint8_t>(y);
-        counts.Corner[2] = static_cast<std::uint8_t>(z);
-        std::fill_n(table.data(), levels, std::numeric_limits<Count>::min());
-        for (int x = 0; x < this->Size[0] - 1; ++x)
-        {
-          AddTable<Bytes>(table.data(), planes.data() + std::size_t(x) * levels, levels);
-        }
-        const Plane* out = zeros.data();
-        const Plane* in = planes.data() + std::size_t(this->Size[0] - 1) * levels;
-        for (int x = 0; x < outX; ++x, in += levels)
-        {
-          const int level = this->template Step<Bytes>(table.data(), in, out);
-          counts.Corner[0] = static_cast<std::uint8_t>(x);
-          this->Visitor.Visit(counts, x, y, z, level);
-          out = planes.data() + std::size_t(x) * levels;
-        }
-      }
-    }
-  }
-
-  /// Adds in, takes away out, returns the level of Rank.
-  template <int Bytes>
-  LACUNA_INLINE int Step(Count* table, const Plane* in, const Plane* out) const
-  {
-    using Counts = typename Vector<Count, Bytes>::Type;
-    constexpr int Lanes = Vector<Count, Bytes>::Lanes;
-    using Planes = typename Vector<Plane, Lanes * sizeof(Plane)>::Type;
-    Counts above{};
-    const Counts limit = Counts{} +
-      static_cast<Count>(this->Rank + std::numeric_limits<Count>::min());
-    for (int i = 0; i < this->Tile.Levels; i += Lanes)
-    {
-      Planes a, b;
-      Counts c;
-      LoadVector(a, in + i);
-      LoadVector(b, out + i);
-      LoadVector(c, table + i);
-      c += __builtin_convertvector(a, Counts) - __builtin_convertvector(b, Counts);
-      StoreVector(table + i, c);
-      above -= (Counts)(c > limit);
-    }
-    return this->Tile.Levels - SumLanes<Count, Bytes>(above);
-  }
-
-  template <int Bytes>
-  static LACUNA_INLINE void AddTable(Count* table, const Plane* in, int levels)
-  {
-    using Counts = typename Vector<Count, Bytes>::Type;
-    constexpr int Lanes = Vector<Count, Bytes>::Lanes;
-    using Planes = typename Vector<Plane, Lanes * sizeof(Plane)>::Type;
-    for (int i = 0; i < levels; i += Lanes)
-    {
-      Planes a;
-      Counts c;
-      LoadVector(a, in + i);
-      LoadVector(c, table + i);
-      c += __builtin_convertvector(a, Counts);
-      StoreVector(table + i, c);
-    }
-  }
-
-  /// Cumulative counts of single samples: table[t] += [level <= t].
-  template <int Bytes, class T>
-  LACUNA_INLINE void AddSample(T* table, std::uint8_t level) const
-  {
-    this->template ExchangeSample<Bytes, T, false>(table, level, 0);
-  }
-
-  template <int Bytes, class T, bool TakeAway>
-  LACUNA_INLINE void ExchangeSample(T* table, std::uint8_t in, std::uint8_t out) const
-  {
-    using Flags = typename Vector<std::int8_t, Bytes / sizeof(T)>::Type;
-    using Table = typename Vector<T, Bytes>::Type;
-    using Signed = typename Vector<std::make_signed_t<T>, Bytes>::Type;
-    constexpr int Lanes = Vector<T, Bytes>::Lanes;
-    const Flags inLevel = Flags{} + static_cast<std::int8_t>(in ^ 0x80);
-    const Flags outLevel = Flags{} + static_cast<std::int8_t>(out ^ 0x80);
-    for (int i = 0; i < this->Tile.Levels; i += Lanes)
-    {
-      Flags level;
-      LoadVector(level, LevelRamp.data() + i);
-      Table c;
-      LoadVector(c, table + i);
-      // A comparison gives -1 where true: [in <= t] = 1 + (in > t).
-      Flags change = (Flags)(inLevel > level);
-      if constexpr (TakeAway)
-      {
-        change -= (Flags)(outLevel > level);
-      }
-      else
-      {
-        change += 1;
-      }
-      c += (Table) __builtin_convertvector(change, Signed);
-      StoreVector(table + i, c);
-    }
-  }
-
-  template <int Bytes>
-  LACUNA_INLINE void MoveColumns(int z, std::uint8_t* columns) const
-  {
-    const std::size_t slice = std::size_t(this->Tile.Size[0]) * this->Tile.Size[1];
-    const std::uint8_t* first = this->Tile.Level.data();
-    const int depth = this->Size[2];
-    for (std::size_t i = 0; i < slice; ++i, columns += this->Tile.Levels)
-    {
-      if (z == 0)
-      {
-        for (int k = 0; k < depth; ++k)
-        {
-          this->template AddSample<Bytes>(columns, first[i + k * slice]);
-        }
-      }
-      else
-      {
-        this->template ExchangeSample<Bytes, std::uint8_t, true>(
-          columns, first[i + (z + depth - 1) * slice], first[i + (z - 1) * slice]);
-      }
-    }
-  }
-
-  template <int Bytes>
-  LACUNA_INLINE void MovePlanes(int y, const std::uint8_t* columns, Plane* planes) const
-  {
-    using Planes = typename Vector<Plane, Bytes>::Type;
-    constexpr int Lanes = Vector<Plane, Bytes>::Lanes;
-    using Columns = typename Vector<std::uint8_t, Lanes>::Type;
-    const std::size_t row = std::size_t(this->Tile.Size[0]) * this->Tile.Levels;
-    const int height = this->Size[1];
-    if (y == 0)
-    {
-      std::fill(planes, planes + row, Plane(0));
-    }
-    const int from = y == 0 ? 0 : height - 1;
-    for (int j = from; j < height; ++j)
-    {
-      const std::uint8_t* in = columns + (y + j) * row;
-      const std::uint8_t* out = columns + (y - 1) * row;
-      for (std::size_t i = 0; i < row; i += Lanes)
-      {
-        Planes p;
-        Columns c;
-        LoadVector(p, planes + i);
-        LoadVector(c, in + i);
-        p += __builtin_convertvector(c, Planes);
-        if (y > 0)
-        {
-          LoadVector(c, out + i);
-          p -= __builtin_convertvector(c, Planes);
-        }
-        StoreVector(planes + i, p);
-      }
-    }
-  }
-
-  /// As MovePlanes for a window of one slice: the columns are single samples.
-  template <int Bytes>
-  LACUNA_INLINE void MoveFlatPlanes(int y, int z, Plane* planes) const
-  {
-    const int nx = this->Tile.Size[0];
-    const std::uint8_t* row = this->Tile.Level.data() +
-      (std::size_t(z) * this->Tile.Size[1] + y) * nx;
-    if (y == 0)
-    {
-      std::fill(planes, planes + std::size_t(nx) * this->Tile.Levels, Plane(0));
-    }
-    for (int x = 0; x < nx; ++x, planes += this->Tile.Levels)
-    {
-      if (y == 0)
-      {
-        for (int j = 0; j < this->Size[1]; ++j)
-        {
-          this->template AddSample<Bytes>(planes, row[x + std::ptrdiff_t(j) * nx]);
-        }
-      }
-      else
-      {
-        this->template ExchangeSample<Bytes, Plane, true>(
-          planes, row[x + std::ptrdiff_t(this->Size[1] - 1) * nx], row[x - nx]);
-      }
-    }
-  }
-
 };
 }
 #endif

@@ -41,8 +41,8 @@ std::array<RegionStatistics, 2> MeasureRegions(
 /// ratio, equation 4.2. Infinite when both regions are constant and differ, 0 when they do not.
 double ContrastToSpeckle(const RegionStatistics& inside, const RegionStatistics& outside);
 
-/// The number of separate regions of samples at or above isoValue, neighbours being those that share
-/// a face (4 in an image of one slice, 6 in a volume).
+/// The number of separate regions of samples at or above isoValue, neighbours being those that
+/// share a face (4 in an image of one slice, 6 in a volume).
 template <class T>
 std::int64_t CountThresholdedRegions(
   const ImageView<const T>& view, double isoValue, Execution& execution);

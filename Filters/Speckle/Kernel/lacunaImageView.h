@@ -26,9 +26,8 @@ inline bool IsEmpty(const Extent& extent)
 
 inline std::int64_t NumberOfSamples(const Extent& extent)
 {
-  return IsEmpty(extent)
-    ? 0
-    : std::int64_t(SizeOf(extent, 0)) * SizeOf(extent, 1) * SizeOf(extent, 2);
+  return IsEmpty(extent) ? 0
+                         : std::int64_t(SizeOf(extent, 0)) * SizeOf(extent, 1) * SizeOf(extent, 2);
 }
 
 /// True when inner lies in outer.

@@ -306,8 +306,7 @@ void FilterMean(const ImageView<const T>& input, const ImageView<T>& output, con
 {
   if constexpr (std::is_floating_point_v<T>)
   {
-    FilterNumbers<double>(input, output, Reach(window),
-      BoxSum<double>{ window.GetSize(), set },
+    FilterNumbers<double>(input, output, Reach(window), BoxSum<double>{ window.GetSize(), set },
       static_cast<double>(window.GetNumberOfSamples()), execution);
   }
   else if constexpr (sizeof(T) == 8)
@@ -440,9 +439,9 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
 
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterMean(                                                                        \
-    const ImageView<const T>&, const ImageView<T>&, const Window&, VectorUnit, Execution&);    \
-  template void FilterGaussian(const ImageView<const T>&, const ImageView<T>&, const Deviations&,  \
-    VectorUnit, Execution&);                                                                   \
+    const ImageView<const T>&, const ImageView<T>&, const Window&, VectorUnit, Execution&);        \
+  template void FilterGaussian(                                                                    \
+    const ImageView<const T>&, const ImageView<T>&, const Deviations&, VectorUnit, Execution&);    \
   template void FilterLaplacianOfGaussian(const ImageView<const T>&,                               \
     const ImageView<LaplacianType<T>>&, const Deviations&, const std::array<double, 3>&,           \
     VectorUnit, Execution&)

@@ -3,16 +3,17 @@
 /// Box mean, Gaussian and Laplacian of Gaussian.
 ///
 /// Sums are exact for integers; integer results are rounded once, halves upwards. NaN samples are
-/// left out of the means and Gaussians of their neighbours (the weights of the others are scaled up)
-/// and stay NaN themselves; a Laplacian is NaN wherever NaN is in reach. Borders: the nearest sample
-/// is repeated. No step depends on where a block begins: results are the same for any division.
+/// left out of the means and Gaussians of their neighbours (the weights of the others are scaled
+/// up) and stay NaN themselves; a Laplacian is NaN wherever NaN is in reach. Borders: the nearest
+/// sample is repeated. No step depends on where a block begins: results are the same for any
+/// division.
 #ifndef lacunaLinearFilters_h
 #define lacunaLinearFilters_h
 
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
-#include "lacunaVectorUnit.h"
 #include "lacunaSeparable.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
 #include <array>
@@ -23,8 +24,7 @@ namespace lacuna
 {
 /// What Gaussians of T are computed in: float holds 8 and 16 bit integers exactly.
 template <class T>
-using LinearType =
-  std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
+using LinearType = std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
 
 /// The type of a Laplacian of T: it has fractions and both signs.
 template <class T>

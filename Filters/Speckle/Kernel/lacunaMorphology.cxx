@@ -32,8 +32,8 @@ struct Combine
     }
     for (; i < c.Count; ++i)
     {
-      c.To[i] = Which == Extreme::Least ? std::min(c.To[i], c.From[i])
-                                        : std::max(c.To[i], c.From[i]);
+      c.To[i] =
+        Which == Extreme::Least ? std::min(c.To[i], c.From[i]) : std::max(c.To[i], c.From[i]);
     }
   }
 };
@@ -55,8 +55,7 @@ public:
     const auto load = [](T value)
     {
       const Key key = OrderedKey<T>::From(value);
-      return std::is_floating_point_v<T> && Which == Extreme::Greatest &&
-          key == OrderedKey<T>::NaN
+      return std::is_floating_point_v<T> && Which == Extreme::Greatest && key == OrderedKey<T>::NaN
         ? Key(0)
         : key;
     };
@@ -70,11 +69,10 @@ public:
     };
     if (this->Shape.IsBox())
     {
-      const auto op = [this](int axis, Key* data, std::int64_t count, std::int64_t shift,
-                        std::vector<Key>&)
+      const auto op =
+        [this](int axis, Key* data, std::int64_t count, std::int64_t shift, std::vector<Key>&)
       { this->SlideRun(data, count, shift, this->Shape.GetSize(axis)); };
-      FilterSeparably<Key>(
-        input, output.Box, Reach(this->Shape), op, load, store, execution);
+      FilterSeparably<Key>(input, output.Box, Reach(this->Shape), op, load, store, execution);
     }
     else
     {

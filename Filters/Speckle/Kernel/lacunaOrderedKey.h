@@ -50,7 +50,8 @@ struct OrderedKey
     if constexpr (std::is_floating_point_v<T>)
     {
       // Magnitudes of negative numbers run downwards: turn them round.
-      const Key ordered = (key & SignBit) ? static_cast<Key>(~key) : static_cast<Key>(key | SignBit);
+      const Key ordered =
+        (key & SignBit) ? static_cast<Key>(~key) : static_cast<Key>(key | SignBit);
       return value == value ? ordered : NaN;
     }
     else

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaRankFilter.h"
 
-#include "lacunaBoxCounts.h"
+#include "lacunaBoxSlide.h"
 #include "lacunaEllipsoidCounts.h"
 #include "lacunaMedianNetwork.h"
 #include "lacunaOrderedKey.h"
@@ -72,8 +72,8 @@ private:
 };
 
 template <class Plane, class Count, class Query>
-void SlideBox(const RankTile& tile, const Window& window, std::int64_t rank, Query& query,
-  VectorUnit set)
+void SlideBox(
+  const RankTile& tile, const Window& window, std::int64_t rank, Query& query, VectorUnit set)
 {
   const std::array<int, 3> size = window.GetSize();
   using Slide = BoxSlide<Plane, Count, Query>;
@@ -82,8 +82,8 @@ void SlideBox(const RankTile& tile, const Window& window, std::int64_t rank, Que
 }
 
 template <class Query>
-void SlideWindow(const RankTile& tile, const Window& window, std::int64_t rank, Query& query,
-  VectorUnit set)
+void SlideWindow(
+  const RankTile& tile, const Window& window, std::int64_t rank, Query& query, VectorUnit set)
 {
   const std::int64_t samples = window.GetNumberOfSamples();
   const int plane = window.GetSize(1) * window.GetSize(2);
@@ -235,8 +235,8 @@ std::array<int, 3> ChooseRankBlock(const Window& window, std::size_t sampleSize)
   const bool flat = window.GetSize(2) == 1;
   // Samples of a byte need no sorting, which is what favours small blocks.
   const int large = sampleSize == 1 ? 2 : 1;
-  const std::array<int, 3> least = flat ? std::array<int, 3>{ 64, 64 * large, 1 }
-                                        : std::array<int, 3>{ 32, 32, 32 * large };
+  const std::array<int, 3> least =
+    flat ? std::array<int, 3>{ 64, 64 * large, 1 } : std::array<int, 3>{ 32, 32, 32 * large };
   std::array<int, 3> block;
   for (int a = 0; a < 3; ++a)
   {

@@ -4,9 +4,9 @@
 #ifndef lacunaRankQuery_h
 #define lacunaRankQuery_h
 
-#include "lacunaVectorUnit.h"
 #include "lacunaRankFilter.h"
 #include "lacunaRankTile.h"
+#include "lacunaVectorUnit.h"
 
 #include <algorithm>
 #include <cstdint>

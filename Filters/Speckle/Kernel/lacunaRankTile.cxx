@@ -80,8 +80,7 @@ void SortedTile<Key>::Assign(const Key* keys, const int size[3], bool floating)
       this->Level[(std::size_t(z) * size[1] + y) * size[0] + x] = static_cast<std::uint8_t>(level);
     }
   }
-  this->Numbers =
-    floating ? this->LowerBound(std::numeric_limits<Key>::max()) : this->Places;
+  this->Numbers = floating ? this->LowerBound(std::numeric_limits<Key>::max()) : this->Places;
 }
 
 // Radix sort from the lowest digit, which keeps the order of equal keys; digits that all keys

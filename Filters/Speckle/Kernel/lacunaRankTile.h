@@ -31,8 +31,8 @@ struct RankTile
   std::uint32_t Numbers;           ///< the places before this one are numbers, the others NaN
 
   // Unless Exact:
-  std::vector<std::uint32_t> First;         ///< place where each level begins, and the end
-  std::vector<std::uint8_t> Position[3];    ///< of the sample at each place, padded
+  std::vector<std::uint32_t> First;      ///< place where each level begins, and the end
+  std::vector<std::uint8_t> Position[3]; ///< of the sample at each place, padded
   std::uint32_t LevelOf(std::uint32_t place) const
   {
     return this->Exact

@@ -128,8 +128,8 @@ void FilterSeparably(const ImageView<const T>& input, const Extent& box, const R
     return;
   }
 
-  const Extent slices = Intersect(reach.Grow(box, false, true),
-    { box[0], box[1], box[2], box[3], input.Box[4], input.Box[5] });
+  const Extent slices = Intersect(
+    reach.Grow(box, false, true), { box[0], box[1], box[2], box[3], input.Box[4], input.Box[5] });
   std::vector<S> between(NumberOfSamples(slices));
   const ImageView<S> view(between.data(), slices);
   forEach(Divide(slices, strip),

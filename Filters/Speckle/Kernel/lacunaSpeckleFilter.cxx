@@ -64,9 +64,8 @@ Deviations DeviationsOf(const SpeckleParameters& parameters)
       throw std::invalid_argument("the spacing of the image along axis " + std::to_string(a) +
         " is " + std::to_string(parameters.Spacing[a]) + " mm; it must be above 0");
     }
-    deviations[a] = parameters.KernelSize[a] > 1
-      ? parameters.StandardDeviation / parameters.Spacing[a]
-      : 0;
+    deviations[a] =
+      parameters.KernelSize[a] > 1 ? parameters.StandardDeviation / parameters.Spacing[a] : 0;
   }
   return deviations;
 }

@@ -5,9 +5,11 @@
 #define SpeckleOracle_h
 
 #include "lacunaImageView.h"
+#include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -17,6 +19,21 @@
 
 namespace oracle
 {
+/// Those of this machine.
+inline std::vector<lacuna::VectorUnit> VectorUnits()
+{
+  using lacuna::VectorUnit;
+  std::vector<VectorUnit> units{ VectorUnit::Baseline };
+  for (const VectorUnit unit : { VectorUnit::Avx2, VectorUnit::Avx512 })
+  {
+    if (unit <= lacuna::BestVectorUnit())
+    {
+      units.push_back(unit);
+    }
+  }
+  return units;
+}
+
 /// Bitwise equality, any NaN equal to any other, -0 equal to 0.
 template <class T>
 bool Same(T a, T b)

@@ -12,19 +12,6 @@ using oracle::Image;
 
 namespace
 {
-std::vector<VectorUnit> Available()
-{
-  std::vector<VectorUnit> sets{ VectorUnit::Baseline };
-  for (const VectorUnit set : { VectorUnit::Avx2, VectorUnit::Avx512 })
-  {
-    if (set <= lacuna::BestVectorUnit())
-    {
-      sets.push_back(set);
-    }
-  }
-  return sets;
-}
-
 /// Weighted mean of the numbers in reach, in long double.
 template <class T>
 std::vector<long double> Convolve(
@@ -132,7 +119,7 @@ TYPED_TEST(LinearFilterTest, MeanEqualsItsDefinition)
         return static_cast<T>(std::is_floating_point_v<T> ? mean : std::floor(mean + 0.5L));
       });
     Image<T> first(0, 0, 0);
-    for (const VectorUnit set : Available())
+    for (const VectorUnit set : oracle::VectorUnits())
     {
       const Image<T> result = Mean(image, window, set);
       if (std::is_same_v<T, double>)
@@ -176,8 +163,7 @@ TEST(LinearFilters, MeanOfExtremeValuesDoesNotOverflow)
     { std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max() })
   {
     std::fill(longs.Samples.begin(), longs.Samples.end(), value);
-    EXPECT_EQ(
-      Mean(longs, Window({ 9, 9, 9 }, WindowShape::Box), lacuna::BestVectorUnit()).Samples,
+    EXPECT_EQ(Mean(longs, Window({ 9, 9, 9 }, WindowShape::Box), lacuna::BestVectorUnit()).Samples,
       longs.Samples);
   }
 }
@@ -219,7 +205,7 @@ TYPED_TEST(LinearFilterTest, GaussianEqualsItsDefinition)
   {
     const std::vector<long double> truth = Convolve(image, Gaussians(deviations));
     Image<T> first(0, 0, 0);
-    for (const VectorUnit set : Available())
+    for (const VectorUnit set : oracle::VectorUnits())
     {
       const Image<T> result = Gaussian(image, deviations, set);
       for (std::size_t i = 0; i < truth.size(); ++i)
@@ -330,8 +316,8 @@ TEST(LinearFilters, LaplacianVanishesOnConstantsAndChangesSignAtAnEdge)
   }
   Image<float> result(image.Box);
   lacuna::ThreadExecution execution(1);
-  lacuna::FilterLaplacianOfGaussian<std::uint8_t>(image.View(), result.View(), { 1.5, 1.5, 0 },
-    { 1, 1, 1 }, lacuna::BestVectorUnit(), execution);
+  lacuna::FilterLaplacianOfGaussian<std::uint8_t>(
+    image.View(), result.View(), { 1.5, 1.5, 0 }, { 1, 1, 1 }, lacuna::BestVectorUnit(), execution);
   EXPECT_NEAR(result.At(2, 4, 0), 0, 1e-4);
   EXPECT_NEAR(result.At(38, 4, 0), 0, 1e-4);
   EXPECT_GT(result.At(19, 4, 0), 5);

@@ -31,13 +31,8 @@ void ExpectExtremesAsDefined(const Image<T>& image, const Window& window)
   for (const Extreme extreme : { Extreme::Least, Extreme::Greatest })
   {
     const Image<T> truth = Truth(image, window, extreme);
-    for (const VectorUnit set :
-      { VectorUnit::Baseline, VectorUnit::Avx2, VectorUnit::Avx512 })
+    for (const VectorUnit set : oracle::VectorUnits())
     {
-      if (set > lacuna::BestVectorUnit())
-      {
-        continue;
-      }
       Image<T> result(image.Box);
       lacuna::FilterExtreme<T>(image.View(), result.View(), window, extreme, set, execution);
       EXPECT_EQ(oracle::Differences(result, truth), 0u)

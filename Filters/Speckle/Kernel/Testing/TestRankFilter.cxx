@@ -12,19 +12,6 @@ using oracle::Image;
 
 namespace
 {
-std::vector<VectorUnit> Available()
-{
-  std::vector<VectorUnit> sets{ VectorUnit::Baseline };
-  for (const VectorUnit set : { VectorUnit::Avx2, VectorUnit::Avx512 })
-  {
-    if (set <= lacuna::BestVectorUnit())
-    {
-      sets.push_back(set);
-    }
-  }
-  return sets;
-}
-
 template <class T>
 Image<T> Filtered(const Image<T>& image, const Window& window, lacuna::RankParameters parameters,
   VectorUnit set, int threads = 2)
@@ -45,7 +32,7 @@ void ExpectRanksAsDefined(const Image<T>& image, const Window& window)
   lacuna::RankParameters mode;
   mode.Mode = true;
   const Image<T> trueMode = oracle::Mode(image, window);
-  for (const VectorUnit set : Available())
+  for (const VectorUnit set : oracle::VectorUnits())
   {
     EXPECT_EQ(oracle::Differences(Filtered(image, window, mode, set), trueMode), 0u)
       << "mode " << what << " set " << int(set);
@@ -55,7 +42,7 @@ void ExpectRanksAsDefined(const Image<T>& image, const Window& window)
     lacuna::RankParameters parameters;
     parameters.Percentile = percentile;
     const Image<T> truth = oracle::Rank(image, window, percentile);
-    for (const VectorUnit set : Available())
+    for (const VectorUnit set : oracle::VectorUnits())
     {
       EXPECT_EQ(oracle::Differences(Filtered(image, window, parameters, set), truth), 0u)
         << percentile << " % " << what << " set " << int(set);
@@ -111,7 +98,7 @@ TYPED_TEST(RankFilterTest, EqualsItsDefinitionAcrossBlocks)
   {
     const Window window(size, WindowShape::Box);
     const Image<TypeParam> truth = oracle::Rank(flat, window, 50);
-    for (const VectorUnit set : Available())
+    for (const VectorUnit set : oracle::VectorUnits())
     {
       EXPECT_EQ(oracle::Differences(Filtered(flat, window, median, set), truth), 0u) << size[0];
     }
@@ -125,16 +112,16 @@ TYPED_TEST(RankFilterTest, EqualsItsDefinitionAcrossBlocks)
 
 TEST(RankFilter, CountsWindowsLargerThanTheImage)
 {
-  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 255, 255, 1 },
-         { 41, 41, 41 }, { 3, 101, 101 }, { 255, 3, 3 }, { 3, 255, 255 } })
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{
+         { 255, 255, 1 }, { 41, 41, 41 }, { 3, 101, 101 }, { 255, 3, 3 }, { 3, 255, 255 } })
   {
     const Window window(size, WindowShape::Box);
     const Image<std::uint8_t> bytes = oracle::Random<std::uint8_t>(3, 3, 2, 6);
     const Image<float> floats = oracle::Random<float>(3, 3, 2, 6);
-    for (const VectorUnit set : Available())
+    for (const VectorUnit set : oracle::VectorUnits())
     {
-      EXPECT_EQ(oracle::Differences(
-                  Filtered(bytes, window, {}, set, 1), oracle::Rank(bytes, window, 50)),
+      EXPECT_EQ(
+        oracle::Differences(Filtered(bytes, window, {}, set, 1), oracle::Rank(bytes, window, 50)),
         0u)
         << size[0] << " " << size[1] << " " << size[2];
     }
@@ -190,7 +177,8 @@ TEST(RankFilter, ModeFindsThePeakOfASkewedDistribution)
 TEST(RankFilter, RefusesKernelsWithTooManySamples)
 {
   const Image<float> image(3, 3, 3);
-  EXPECT_THROW(Filtered(image, Window({ 255, 255, 255 }, WindowShape::Box), {}, VectorUnit::Baseline),
+  EXPECT_THROW(
+    Filtered(image, Window({ 255, 255, 255 }, WindowShape::Box), {}, VectorUnit::Baseline),
     std::invalid_argument);
 }
 

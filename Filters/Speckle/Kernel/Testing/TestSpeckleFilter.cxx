@@ -38,8 +38,8 @@ Image<lacuna::LaplacianType<T>> Laplacian(
   return result;
 }
 
-SpeckleParameters Make(SpeckleOperation operation, const std::array<int, 3>& size,
-  WindowShape shape = WindowShape::Box)
+SpeckleParameters Make(
+  SpeckleOperation operation, const std::array<int, 3>& size, WindowShape shape = WindowShape::Box)
 {
   SpeckleParameters parameters;
   parameters.Operation = operation;
@@ -95,8 +95,7 @@ TEST(SpeckleFilter, DoesNotDependOnThreadsAndPieces)
     EXPECT_EQ(oracle::Differences(Filtered(image, parameters, 5), whole), 0u);
     // A piece, from the part of the image that it says it needs.
     const Extent piece{ 20, 38, 0, 17, 9, 18 };
-    const Extent needed =
-      lacuna::Intersect(lacuna::GetSpeckleInput(parameters, piece), image.Box);
+    const Extent needed = lacuna::Intersect(lacuna::GetSpeckleInput(parameters, piece), image.Box);
     Image<T> part(needed);
     for (int z = needed[4]; z <= needed[5]; ++z)
     {
@@ -110,8 +109,7 @@ TEST(SpeckleFilter, DoesNotDependOnThreadsAndPieces)
     }
     Image<T> result(piece);
     lacuna::ThreadExecution execution(2);
-    lacuna::FilterSpeckle<T>(
-      std::as_const(part).View(), result.View(), parameters, execution);
+    lacuna::FilterSpeckle<T>(std::as_const(part).View(), result.View(), parameters, execution);
     for (int z = piece[4]; z <= piece[5]; ++z)
     {
       for (int y = piece[2]; y <= piece[3]; ++y)

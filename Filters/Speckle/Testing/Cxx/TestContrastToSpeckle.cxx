@@ -15,7 +15,8 @@
 
 namespace
 {
-/// 10 x 6 samples 1 mm apart from (100, 0, 0): 10 and 12 alternately, the left four columns 50 more.
+/// 10 x 6 samples 1 mm apart from (100, 0, 0): 10 and 12 alternately, the left four columns 50
+/// more.
 vtkSmartPointer<vtkImageData> MakeImage()
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -94,7 +95,8 @@ void TestMasksAndBoxes()
 void TestErrors()
 {
   const auto image = MakeImage();
-  const auto fails = [&](const char* part, const std::function<void(vtkLacunaContrastToSpeckle*)>& set)
+  const auto fails =
+    [&](const char* part, const std::function<void(vtkLacunaContrastToSpeckle*)>& set)
   {
     vtkNew<vtkLacunaContrastToSpeckle> contrast;
     vtkNew<lacunaCheck::Messages> messages;
@@ -117,8 +119,8 @@ void TestPrint()
   vtkNew<vtkLacunaContrastToSpeckle> contrast;
   std::ostringstream text;
   contrast->Print(text);
-  for (const char* name : { "InsideArray:", "OutsideArray:", "InsideBounds: 1 -1", "OutsideBounds:",
-         "IsoValue: 128" })
+  for (const char* name :
+    { "InsideArray:", "OutsideArray:", "InsideBounds: 1 -1", "OutsideBounds:", "IsoValue: 128" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
-#include "vtkExecutive.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImageMedian3D.h"
@@ -106,8 +106,8 @@ void TestKeepsEverythingElse()
   }
   for (int i = 0; i < 9; ++i)
   {
-    LACUNA_CHECK(output->GetDirectionMatrix()->GetData()[i] ==
-      image->GetDirectionMatrix()->GetData()[i]);
+    LACUNA_CHECK(
+      output->GetDirectionMatrix()->GetData()[i] == image->GetDirectionMatrix()->GetData()[i]);
   }
   vtkDataArray* kept = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::TimestampName);
   LACUNA_CHECK(kept && kept->GetNumberOfTuples() == 40);
@@ -150,10 +150,11 @@ void TestHonoursRequestedExtents()
       LACUNA_CHECK(piece->GetExtent()[i] == asked[i]);
     }
     LACUNA_CHECK(piece->GetPointData()->GetArray("vtkValidPointMask"));
-    LACUNA_CHECK(
-      piece->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(0, 0) ==
-      image->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(
-        image->ComputePointId(const_cast<int*>(std::array<int, 3>{ 10, 0, 6 }.data())), 0));
+    LACUNA_CHECK(piece->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(0, 0) ==
+      image->GetPointData()
+        ->GetArray("vtkValidPointMask")
+        ->GetComponent(
+          image->ComputePointId(const_cast<int*>(std::array<int, 3>{ 10, 0, 6 }.data())), 0));
     bool equal = true;
     for (int z = 6; z <= 12; ++z)
     {
@@ -187,8 +188,7 @@ void TestAsksForNoMoreThanItNeeds()
   const int asked[6] = { 0, 9, 50, 59, 3, 3 };
   filter->UpdateExtent(asked);
   int needed[6];
-  producer->GetOutputInformation(0)->Get(
-    vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), needed);
+  producer->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), needed);
   const int expected[6] = { 0, 13, 47, 62, 3, 3 };
   for (int i = 0; i < 6; ++i)
   {
@@ -247,8 +247,8 @@ void TestFiltersTheChosenArray()
   vtkPointData* data = filter->GetOutput()->GetPointData();
   LACUNA_CHECK(data->GetArray("Other")->GetComponent(55, 0) == 3);
   LACUNA_CHECK(data->GetScalars() == data->GetArray("Echo"));
-  LACUNA_CHECK(
-    data->GetScalars()->GetComponent(55, 0) == image->GetPointData()->GetScalars()->GetComponent(55, 0));
+  LACUNA_CHECK(data->GetScalars()->GetComponent(55, 0) ==
+    image->GetPointData()->GetScalars()->GetComponent(55, 0));
 }
 
 void TestMillimetres()
@@ -274,7 +274,8 @@ void TestErrors()
 {
   const int extent[6] = { 0, 15, 0, 9, 0, 0 };
   const auto image = MakeImage(VTK_UNSIGNED_CHAR, extent);
-  const auto errors = [&](vtkImageData* input, const std::function<void(vtkLacunaSpeckleFilter*)>& set)
+  const auto errors =
+    [&](vtkImageData* input, const std::function<void(vtkLacunaSpeckleFilter*)>& set)
   {
     vtkNew<vtkLacunaSpeckleFilter> filter;
     vtkNew<lacunaCheck::Messages> messages;
@@ -314,6 +315,20 @@ void TestErrors()
   vtkNew<vtkImageData> bare;
   bare->SetDimensions(4, 4, 1);
   LACUNA_CHECK(has(errors(bare, [](auto*) {}), "no point scalars"));
+
+  LACUNA_CHECK(has(errors(image,
+                     [](auto* f) {
+                       f->SetInputArrayToProcess(
+                         0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Elsewhere");
+                     }),
+    "no point array 'Elsewhere'"));
+
+  // An empty name, which ParaView sets when the input has not run yet, means the active scalars.
+  vtkNew<vtkLacunaSpeckleFilter> unnamed;
+  unnamed->SetInputData(image);
+  unnamed->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
+  unnamed->Update();
+  LACUNA_CHECK(unnamed->GetOutput()->GetNumberOfPoints() == image->GetNumberOfPoints());
 
   // Nothing in, nothing out, no error.
   vtkNew<vtkImageData> empty;
@@ -362,8 +377,8 @@ void TestPrint()
   vtkNew<vtkLacunaSpeckleFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "Operation: Median", "KernelSize: 5 5 1", "KernelShape: Box", "Rank: 50",
-         "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
+  for (const char* name : { "Operation: Median", "KernelSize: 5 5 1", "KernelShape: Box",
+         "Rank: 50", "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }
