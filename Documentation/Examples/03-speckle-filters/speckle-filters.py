@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every operation of Speckle Filter on one phantom slice: pictures, and a table of what each one gains.
 
-    pvpython speckle_filters.py [folder for the pictures, default: .]
+    pvpython speckle-filters.py [folder for the pictures, default: .]
 
 Red: the border of what is at or above the threshold, as in Carr 1996, figures 4.11 and 4.12.
 """
 import os
 import sys
 
-import numpy as np
 import lacuna.plugin
+import numpy as np
+
+lacuna.plugin.load()
 from lacuna import speckle
 from paraview.simple import *
 from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
-
-lacuna.plugin.load()
 
 ISO_VALUE = 120  # half-way between tissue (60) and object (180)
 DISC = dict(KernelSize=[5, 5, 1], KernelShape="Ellipsoid")
@@ -48,10 +48,10 @@ def pixels(proxy):
 
 
 def write(name, grey, border):
-    """A PNG, row 0 on top, with border pixels in red, at twice the size."""
+    """A PNG, row 0 on top, with border pixels in red."""
     rgb = np.repeat(grey.clip(0, 255).astype(np.uint8)[:, :, None], 3, axis=2)
     rgb[border] = (230, 40, 40)
-    rgb = rgb[::-1].repeat(2, axis=0).repeat(2, axis=1)
+    rgb = rgb[::-1]
     image = vtkImageData()
     image.SetDimensions(rgb.shape[1], rgb.shape[0], 1)
     image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(rgb).reshape(-1, 3), deep=1))
