@@ -103,6 +103,7 @@ lacuna::SpeckleParameters Make(SpeckleOperation operation, int width, bool flat)
   lacuna::SpeckleParameters parameters;
   parameters.Operation = operation;
   parameters.KernelSize = { width, width, flat ? 1 : width };
+  parameters.Percentile = 30;
   return parameters;
 }
 
