@@ -70,9 +70,10 @@ void Mark(vtkImageData* image, const std::string& name, const double bounds[6],
         {
           double p[3];
           image->TransformIndexToPhysicalPoint(i, j, k, p);
-          for (int a = 0; a < 3; ++a)
+          const double* range = bounds;
+          for (int a = 0; a < 3; ++a, range += 2)
           {
-            in = in && bounds[2 * a] <= p[a] && p[a] <= bounds[2 * a + 1];
+            in = in && range[0] <= p[a] && p[a] <= range[1];
           }
         }
         if (in)

@@ -208,9 +208,11 @@ void FilterAdaptiveMedian(const ImageView<const T>& input, const ImageView<T>& o
     });
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterAdaptiveMedian(                                                              \
     const ImageView<const T>&, const ImageView<T>&, const Window&, double, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

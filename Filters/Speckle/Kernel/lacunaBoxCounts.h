@@ -53,7 +53,8 @@ template <class Count, int Bytes>
 class BoxCounts
 {
 public:
-  static constexpr std::int64_t Bias = std::numeric_limits<Count>::min();
+  static constexpr std::int64_t Bias =
+    -(std::int64_t(1) << (8 * sizeof(Count) - 1)); ///< the least value of Count
   using Counts = typename Vector<Count, Bytes>::Type;
   static constexpr int Lanes = Vector<Count, Bytes>::Lanes;
 

@@ -196,10 +196,12 @@ std::int64_t CountThresholdedRegions(
   return sets.GetCount();
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template std::array<RegionStatistics, 2> MeasureRegions(                                         \
     const ImageView<const T>&, const std::uint8_t*, Execution&);                                   \
   template std::int64_t CountThresholdedRegions(const ImageView<const T>&, double, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

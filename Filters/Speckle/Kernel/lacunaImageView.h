@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -14,9 +15,27 @@ namespace lacuna
 /// A box of whole-number coordinates, both ends included, as VTK's extents: x0 x1 y0 y1 z0 z1.
 using Extent = std::array<int, 6>;
 
+/// The least and the greatest coordinate along an axis.
+inline int& First(Extent& extent, int axis)
+{
+  return extent[std::size_t(2) * axis];
+}
+inline int First(const Extent& extent, int axis)
+{
+  return extent[std::size_t(2) * axis];
+}
+inline int& Last(Extent& extent, int axis)
+{
+  return extent[std::size_t(2) * axis + 1];
+}
+inline int Last(const Extent& extent, int axis)
+{
+  return extent[std::size_t(2) * axis + 1];
+}
+
 inline int SizeOf(const Extent& extent, int axis)
 {
-  return extent[2 * axis + 1] - extent[2 * axis] + 1;
+  return Last(extent, axis) - First(extent, axis) + 1;
 }
 
 inline bool IsEmpty(const Extent& extent)
@@ -36,7 +55,7 @@ inline bool Contains(const Extent& outer, const Extent& inner)
   bool inside = true;
   for (int a = 0; a < 3; ++a)
   {
-    inside = inside && outer[2 * a] <= inner[2 * a] && inner[2 * a + 1] <= outer[2 * a + 1];
+    inside = inside && First(outer, a) <= First(inner, a) && Last(inner, a) <= Last(outer, a);
   }
   return inside;
 }

@@ -100,14 +100,15 @@ struct ConvolveShifted
     using V = typename Vector<S, Bytes>::Type;
     constexpr int Lanes = Vector<S, Bytes>::Lanes;
     constexpr int Unrolled = 4; // sums on their way at once
-    const std::int64_t span = 2 * c.Radius * c.Shift;
+    const std::int64_t span = 2 * c.Shift * c.Radius;
     std::int64_t i = 0;
-    for (; i + Unrolled * Lanes <= c.Count; i += Unrolled * Lanes)
+    constexpr std::int64_t Step = std::int64_t(Unrolled) * Lanes;
+    for (; i + Step <= c.Count; i += Step)
     {
       V sum[Unrolled];
       for (int u = 0; u < Unrolled; ++u)
       {
-        LoadVector(sum[u], c.From + i + u * Lanes + c.Radius * c.Shift);
+        LoadVector(sum[u], c.From + i + std::int64_t(u) * Lanes + c.Radius * c.Shift);
         sum[u] *= c.Weights[c.Radius];
       }
       const S* low = c.From + i;
@@ -117,14 +118,14 @@ struct ConvolveShifted
         for (int u = 0; u < Unrolled; ++u)
         {
           V a, b;
-          LoadVector(a, low + u * Lanes);
-          LoadVector(b, high + u * Lanes);
+          LoadVector(a, low + std::int64_t(u) * Lanes);
+          LoadVector(b, high + std::int64_t(u) * Lanes);
           sum[u] += c.Weights[j] * (a + b);
         }
       }
       for (int u = 0; u < Unrolled; ++u)
       {
-        StoreVector(c.To + i + u * Lanes, sum[u]);
+        StoreVector(c.To + i + std::int64_t(u) * Lanes, sum[u]);
       }
     }
     for (; i < c.Count; ++i)
@@ -337,7 +338,7 @@ Reach LaplacianReach(const Deviations& deviations)
 
 std::vector<double> GaussianWeights(double deviation, int radius)
 {
-  std::vector<double> weights(2 * radius + 1);
+  std::vector<double> weights(std::size_t(2) * radius + 1);
   double sum = 0;
   for (int i = -radius; i <= radius; ++i)
   {
@@ -437,6 +438,7 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterMean(                                                                        \
     const ImageView<const T>&, const ImageView<T>&, const Window&, VectorUnit, Execution&);        \
@@ -445,6 +447,7 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
   template void FilterLaplacianOfGaussian(const ImageView<const T>&,                               \
     const ImageView<LaplacianType<T>>&, const Deviations&, const std::array<double, 3>&,           \
     VectorUnit, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

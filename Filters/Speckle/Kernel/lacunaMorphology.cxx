@@ -201,9 +201,11 @@ void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
   }
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterExtreme(const ImageView<const T>&, const ImageView<T>&, const Window&,       \
     Extreme, VectorUnit, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

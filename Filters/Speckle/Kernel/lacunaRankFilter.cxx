@@ -263,9 +263,11 @@ void FilterRank(const ImageView<const T>& input, const ImageView<T>& output, con
     });
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterRank(const ImageView<const T>&, const ImageView<T>&, const Window&,          \
     const RankParameters&, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

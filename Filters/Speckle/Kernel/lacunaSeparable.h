@@ -43,8 +43,8 @@ struct Reach
     {
       if (a < 2 ? xy : z)
       {
-        grown[2 * a] -= this->Lower[a];
-        grown[2 * a + 1] += this->Upper[a];
+        First(grown, a) -= this->Lower[a];
+        Last(grown, a) += this->Upper[a];
       }
     }
     return grown;

@@ -175,11 +175,13 @@ void FilterSpeckleLaplacian(const ImageView<const T>& input,
     input, output, DeviationsOf(parameters), parameters.Spacing, parameters.Set, execution);
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterSpeckle(                                                                     \
     const ImageView<const T>&, const ImageView<T>&, const SpeckleParameters&, Execution&);         \
   template void FilterSpeckleLaplacian(const ImageView<const T>&,                                  \
     const ImageView<LaplacianType<T>>&, const SpeckleParameters&, Execution&)
+// NOLINTEND(bugprone-macro-parentheses)
 LACUNA_INSTANTIATE(std::int8_t);
 LACUNA_INSTANTIATE(std::uint8_t);
 LACUNA_INSTANTIATE(std::int16_t);

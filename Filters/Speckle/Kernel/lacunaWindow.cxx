@@ -61,8 +61,8 @@ Extent Window::Grow(const Extent& box) const
   Extent grown = box;
   for (int a = 0; a < 3; ++a)
   {
-    grown[2 * a] -= this->Lower(a);
-    grown[2 * a + 1] += this->Upper(a);
+    First(grown, a) -= this->Lower(a);
+    Last(grown, a) += this->Upper(a);
   }
   return grown;
 }
@@ -72,8 +72,8 @@ Extent Intersect(const Extent& box, const Extent& bounds)
   Extent common;
   for (int a = 0; a < 3; ++a)
   {
-    common[2 * a] = std::max(box[2 * a], bounds[2 * a]);
-    common[2 * a + 1] = std::min(box[2 * a + 1], bounds[2 * a + 1]);
+    First(common, a) = std::max(First(box, a), First(bounds, a));
+    Last(common, a) = std::min(Last(box, a), Last(bounds, a));
   }
   return common;
 }
@@ -90,8 +90,9 @@ std::vector<Extent> Divide(const Extent& box, const std::array<int, 3>& size)
   {
     count[a] = std::max(1, (SizeOf(box, a) + size[a] - 1) / size[a]);
   }
-  const auto edge = [&](int axis, int i)
-  { return box[2 * axis] + static_cast<int>(std::int64_t(SizeOf(box, axis)) * i / count[axis]); };
+  const auto edge = [&](int axis, int i) {
+    return First(box, axis) + static_cast<int>(std::int64_t(SizeOf(box, axis)) * i / count[axis]);
+  };
   for (int z = 0; z < count[2]; ++z)
   {
     for (int y = 0; y < count[1]; ++y)
