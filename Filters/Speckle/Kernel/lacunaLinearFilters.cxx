@@ -198,11 +198,21 @@ T RoundTo(Quotient value)
   }
   else
   {
-    // A weighted mean of T lies in T's range, but its double may be rounded up out of it.
-    const Quotient rounded = std::floor(value + Quotient(0.5));
-    return rounded >= static_cast<Quotient>(std::numeric_limits<T>::max())
-      ? std::numeric_limits<T>::max()
-      : static_cast<T>(rounded);
+    // A weighted mean of T lies in T's range, but its rounding may be just out of it.
+    const Quotient shifted = value + Quotient(0.5);
+    if constexpr (sizeof(T) <= 2)
+    {
+      const int whole = static_cast<int>(shifted); // towards 0; std::floor is a call without SSE4
+      return static_cast<T>(std::min<int>(
+        whole - (static_cast<Quotient>(whole) > shifted), std::numeric_limits<T>::max()));
+    }
+    else
+    {
+      const Quotient rounded = std::floor(shifted);
+      return rounded >= static_cast<Quotient>(std::numeric_limits<T>::max())
+        ? std::numeric_limits<T>::max()
+        : static_cast<T>(rounded);
+    }
   }
 }
 
@@ -246,8 +256,8 @@ void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, 
   const Op& op, const Total& total, Execution& execution)
 {
   const bool nan = AnyNaN(input, execution);
-  std::vector<S> weights(nan ? NumberOfSamples(output.Box) : 0);
-  const ImageView<S> weightView(weights.data(), output.Box);
+  std::vector<S> weightMemory(nan ? NumberOfSamples(output.Box) : 0);
+  const ImageView<S> weightView(weightMemory.data(), output.Box);
   if (nan)
   {
     FilterSeparably<S>(
@@ -261,17 +271,28 @@ void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, 
     [](T value) { return value == value ? static_cast<S>(value) : S(0); },
     [&](const S* row, int x0, int x1, int y, int z)
     {
-      for (int x = x0; x <= x1; ++x)
+      T* to = output.At(x0, y, z);
+      const std::int64_t step = output.Stride[0];
+      if (!nan)
+      {
+        for (int i = 0; i <= x1 - x0; ++i)
+        {
+          to[i * step] = RoundTo<T>(total == S(1) ? row[i] : row[i] / total);
+        }
+        return;
+      }
+      const T* centre = input.At(x0, y, z);
+      const S* weights = weightView.At(x0, y, z);
+      for (int i = 0; i <= x1 - x0; ++i)
       {
         // Weights in reach of no NaN add up to the total but for rounding, which must not make a
         // difference between an image with NaN elsewhere and one without.
-        S weight = nan ? *weightView.At(x, y, z) : total;
-        weight = std::abs(weight - total) <= 64 * std::numeric_limits<S>::epsilon() * total
-          ? total
-          : weight;
-        const S mean = weight == S(1) ? row[x - x0] : row[x - x0] / weight;
-        const T centre = std::is_floating_point_v<T> ? *input.At(x, y, z) : T(0);
-        *output.At(x, y, z) = centre == centre ? RoundTo<T>(mean) : centre;
+        const bool whole =
+          std::abs(weights[i] - total) <= 64 * std::numeric_limits<S>::epsilon() * total;
+        const S weight = whole ? total : weights[i];
+        const T original = centre[i * input.Stride[0]];
+        to[i * step] =
+          original == original ? RoundTo<T>(weight == S(1) ? row[i] : row[i] / weight) : original;
       }
     },
     execution);
