@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Occluded angles of images (Carr 1996, chapter 5).
+#ifndef lacunaOccludedAngle_h
+#define lacunaOccludedAngle_h
+
+#include "lacunaAttenuationField.h"
+#include "lacunaExecution.h"
+
+namespace lacuna
+{
+/// How rays see.
+struct OccludedAngleOptions
+{
+  /// A ray is hidden as soon as it meets a voxel that attenuates; else by 1 - exp(-path).
+  bool Binary = false;
+  /// In all directions, even: a line serves both of its directions.
+  int Directions = 1000;
+  /// Rays end at this distance (mm); 0: at the end of the reconstruction space.
+  double Radius = 0;
+};
+
+/// 2 pi for a flat field, else 4 pi.
+double GetFullAngle(const AttenuationField& field);
+
+/// The angle (radians, or steradians when the field is not flat) under which each voxel centre is
+/// hidden from the boundary of the reconstruction space: the whole grid, less the voxels that hold
+/// AttenuationField::OutsideSpace().
+///
+/// For each line the rays run one voxel apart along the grid axis nearest to it. Their path
+/// lengths through voxels are exact; what a voxel's centre sees is interpolated bilinearly between
+/// the four rays that enclose it, where they enter its layer, and weakened by the exact path
+/// through its own half voxel. A voxel outside the space gets 0.
+///
+/// angle has a value per voxel, x fastest. The field is unchanged in the end (its axes are swapped
+/// meanwhile). Cost: voxels times directions; memory: a few megabytes per thread. The
+/// result does not depend on the number of threads. Throws std::invalid_argument for an odd or
+/// non-positive number of directions and for a radius below the shortest voxel edge.
+void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
+  float* angle, Execution& execution);
+}
+#endif

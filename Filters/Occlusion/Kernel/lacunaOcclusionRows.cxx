@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaOcclusionRows.h"
+
+#include <cmath>
+#include <cstring>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#define LACUNA_WIDE_VECTORS 1
+#endif
+
+#define LACUNA_INLINE inline __attribute__((always_inline))
+
+namespace lacuna
+{
+namespace
+{
+/// exp(-x) for x >= 0 to a relative error of 2e-7 up to 10, 6e-6 up to LargestPath; exactly 1 at 0.
+LACUNA_INLINE float ExpMinus(float x)
+{
+  const float bounded = x < LargestPath ? x : LargestPath;
+  const float y = bounded * -1.44269504F; // exp(-x) = 2^y
+  const float magic = 12582912.0F;        // 1.5 * 2^23: the sum's low bits are y rounded
+  const float shifted = y + magic;
+  const float f = y - (shifted - magic);
+  // 2^f for |f| <= 1/2, relative error 9e-8
+  float p = 0.00132647250F;
+  p = p * f + 0.00967151299F;
+  p = p * f + 0.0555073358F;
+  p = p * f + 0.240222424F;
+  p = p * f + 0.693147004F;
+  p = p * f + 1.0F;
+  std::uint32_t bits;
+  std::uint32_t exponent;
+  std::memcpy(&bits, &p, sizeof bits);
+  std::memcpy(&exponent, &shifted, sizeof exponent);
+  bits += exponent << 23;
+  float result;
+  std::memcpy(&result, &bits, sizeof result);
+  return result;
+}
+
+template <bool Binary>
+LACUNA_INLINE float LetThrough(float path)
+{
+  return Binary ? (path > 0 ? 0.0F : 1.0F) : ExpMinus(path);
+}
+
+LACUNA_INLINE float LayerPath(
+  const float* m0, const float* m1, const PathLengths& w, std::int64_t i)
+{
+  return (w[0] * m0[i] + w[1] * m0[i + 1]) + (w[2] * m1[i] + w[3] * m1[i + 1]);
+}
+
+LACUNA_INLINE void AddPathBody(const float* path, float* next, const float* m0, const float* m1,
+  const PathLengths& lengths, std::int64_t n)
+{
+  const PathLengths w = lengths;
+#pragma GCC ivdep
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    next[i] = path[i] + LayerPath(m0, m1, w, i);
+  }
+}
+
+template <bool Binary>
+LACUNA_INLINE void SeeBothWaysBody(float* __restrict path, const float* __restrict total,
+  const float* __restrict m0, const float* __restrict m1, const PathLengths& lengths,
+  float* __restrict through, std::int64_t n)
+{
+  const PathLengths w = lengths;
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    const float before = path[i];
+    const float after = before + LayerPath(m0, m1, w, i);
+    path[i] = after;
+    through[i] = LetThrough<Binary>(before) + LetThrough<Binary>(total[i] - after);
+  }
+}
+
+template <bool Binary>
+LACUNA_INLINE void SeeBody(const float* __restrict path, const float* __restrict first,
+  float* __restrict through, std::int64_t n)
+{
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    const float length = path[i] - first[i];
+    through[i] = LetThrough<Binary>(length > 0 ? length : 0.0F);
+  }
+}
+
+template <bool Binary>
+LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict own, float half,
+  const float* __restrict below, const float* __restrict above, float fx, float fy, float whole,
+  std::int64_t n)
+{
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    // Written so that equal neighbours give exactly their value.
+    const float left = above[i - 1] + fy * (below[i - 1] - above[i - 1]);
+    const float right = above[i] + fy * (below[i] - above[i]);
+    const float through = right + fx * (left - right);
+    hidden[i] += whole - LetThrough<Binary>(half * own[i]) * through;
+  }
+}
+
+// One set of functions per instruction set, all from the bodies above.
+#define LACUNA_ROWS(NAME, TARGET)                                                                  \
+  template <bool Binary>                                                                           \
+  struct NAME                                                                                      \
+  {                                                                                                \
+    TARGET static void AddPath(const float* path, float* next, const float* m0, const float* m1,   \
+      const PathLengths& lengths, std::int64_t n)                                                  \
+    {                                                                                              \
+      AddPathBody(path, next, m0, m1, lengths, n);                                                 \
+    }                                                                                              \
+    TARGET static void SeeBothWays(float* path, const float* total, const float* m0,               \
+      const float* m1, const PathLengths& lengths, float* through, std::int64_t n)                 \
+    {                                                                                              \
+      SeeBothWaysBody<Binary>(path, total, m0, m1, lengths, through, n);                           \
+    }                                                                                              \
+    TARGET static void See(                                                                        \
+      const float* path, const float* first, float* through, std::int64_t n)                       \
+    {                                                                                              \
+      SeeBody<Binary>(path, first, through, n);                                                    \
+    }                                                                                              \
+    TARGET static void Hide(float* hidden, const float* own, float half, const float* below,       \
+      const float* above, float fx, float fy, float whole, std::int64_t n)                         \
+    {                                                                                              \
+      HideBody<Binary>(hidden, own, half, below, above, fx, fy, whole, n);                         \
+    }                                                                                              \
+    static OcclusionRows Get()                                                                     \
+    {                                                                                              \
+      return { AddPath, SeeBothWays, See, Hide };                                                  \
+    }                                                                                              \
+  };
+
+LACUNA_ROWS(PlainRows, )
+#ifdef LACUNA_WIDE_VECTORS
+LACUNA_ROWS(Avx2Rows, __attribute__((target("avx2"))))
+LACUNA_ROWS(Avx512Rows, __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))))
+#endif
+
+template <bool Binary>
+std::vector<OcclusionRows> Available()
+{
+  std::vector<OcclusionRows> rows{ PlainRows<Binary>::Get() };
+#ifdef LACUNA_WIDE_VECTORS
+  if (__builtin_cpu_supports("avx2"))
+  {
+    rows.push_back(Avx2Rows<Binary>::Get());
+  }
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+    __builtin_cpu_supports("avx512dq"))
+  {
+    rows.push_back(Avx512Rows<Binary>::Get());
+  }
+#endif
+  return rows;
+}
+}
+
+const OcclusionRows& GetOcclusionRows(bool binary)
+{
+  static const OcclusionRows Continuous = Available<false>().back();
+  static const OcclusionRows Opaque = Available<true>().back();
+  return binary ? Opaque : Continuous;
+}
+
+std::vector<OcclusionRows> GetAllOcclusionRows(bool binary)
+{
+  return binary ? Available<true>() : Available<false>();
+}
+}

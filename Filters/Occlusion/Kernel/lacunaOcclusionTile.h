@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// One line of sight direction marched through one tile of parallel rays.
+#ifndef lacunaOcclusionTile_h
+#define lacunaOcclusionTile_h
+
+#include "lacunaOcclusionRows.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lacuna
+{
+/// A grid seen along the axis a line runs along most steeply: layers across that axis, rows within
+/// a layer, Length voxels within a row. Field has a border of one voxel around it (not across
+/// rows when Rows is 1).
+struct MarchFrame
+{
+  std::int64_t Length;
+  std::int64_t Rows;
+  std::int64_t Layers;
+  const float* Field; ///< attenuation at voxel (0, 0, 0)
+  std::int64_t FieldRowStride;
+  std::int64_t FieldLayerStride;
+  float* Hidden; ///< sum over directions of the fraction that is hidden, not bordered
+  std::int64_t HiddenRowStride;
+  std::int64_t HiddenLayerStride;
+
+  const float* FieldAt(std::int64_t i, std::int64_t j, std::int64_t k) const
+  {
+    return this->Field + k * this->FieldLayerStride + j * this->FieldRowStride + i;
+  }
+};
+
+/// Where the parallel rays of a line are. Ray (r, q) crosses the centre plane of layer k at
+/// (r + ShiftX + FractionX, q + ShiftY + FractionY) in voxels: rays lie one voxel apart, and all of
+/// them have the same fractions in a layer.
+class LinePath
+{
+public:
+  struct Layer
+  {
+    std::int64_t ShiftX;
+    std::int64_t ShiftY;
+    float FractionX;
+    float FractionY;
+    PathLengths Lengths; ///< through the up to three voxels met in this layer, exact
+  };
+
+  /// Slopes in voxels per layer, at most 1 in size; step is the path length per layer in mm.
+  LinePath(double slopeX, double slopeY, double step, std::int64_t layers);
+
+  Layer GetLayer(std::int64_t k) const;
+  double GetStep() const { return this->Step; }
+  /// The rays that some voxel of the frame needs: First <= r < Last.
+  void GetRays(std::int64_t length, double slope, std::int64_t& first, std::int64_t& last) const;
+  double GetSlopeX() const { return this->SlopeX; }
+  double GetSlopeY() const { return this->SlopeY; }
+
+private:
+  double SlopeX;
+  double SlopeY;
+  double Step;
+  std::int64_t Layers;
+};
+
+/// The voxels that lie between rays r - 1 and r, FirstX <= r < LastX, and q - 1 and q.
+struct RayTile
+{
+  std::int64_t FirstX;
+  std::int64_t LastX;
+  std::int64_t FirstY;
+  std::int64_t LastY;
+};
+
+/// Marches tiles. Holds scratch memory: one object per thread.
+class TileMarch
+{
+public:
+  /// radius (mm) > 0: rays end there, 0: they do not. space: some voxels are outside the
+  /// reconstruction space.
+  TileMarch(bool binary, double radius, bool space);
+
+  /// Adds to frame.Hidden, for each voxel of the tile, the hidden fraction along the line in both
+  /// of its directions.
+  void March(const MarchFrame& frame, const LinePath& line, const RayTile& tile);
+
+private:
+  struct Span;
+
+  void MarchWhole();
+  void MarchWindowed();
+  void Forward(double reach);
+  void Backward(double reach);
+  void StorePaths();
+  void UpdateSpace(const Span& span, std::int64_t q, const float* path);
+  void PathAt(double plane, const Span& span, std::int64_t q, float* path) const;
+  template <class See>
+  void ForRows(std::int64_t k, float whole, See&& see);
+
+  float* State(std::vector<float>& plane, std::int64_t q, std::int64_t x);
+  const float* Stored(std::int64_t plane, std::int64_t q, std::int64_t x) const;
+
+  bool Windowed;
+  double Radius;
+  bool Space;
+  const OcclusionRows& Rows;
+
+  const MarchFrame* Frame = nullptr;
+  const LinePath* Line = nullptr;
+  RayTile Tile{};
+  std::int64_t FirstRow = 0; ///< of the rays of the tile, with the neighbours that voxels need
+  std::int64_t Width = 0;
+  std::int64_t Height = 0;
+  float OwnHalf = 0;
+  std::vector<float> Path;
+  std::vector<float> Total;
+  std::vector<float> Store;
+  std::vector<float> Bound;
+  std::vector<float> Through[2];
+};
+}
+#endif
