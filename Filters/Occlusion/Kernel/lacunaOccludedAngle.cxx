@@ -184,7 +184,6 @@ private:
       this->Runner.For(static_cast<std::int64_t>(tiles.size()), 1,
         [&](std::int64_t begin, std::int64_t end)
         {
-          thread_local std::vector<float> unused;
           TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
           marchTiles(march, line, this->Hidden, tiles, begin, end);
         });

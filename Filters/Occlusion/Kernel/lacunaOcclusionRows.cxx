@@ -51,55 +51,41 @@ LACUNA_INLINE float LayerPath(
   return (w[0] * m0[i] + w[1] * m0[i + 1]) + (w[2] * m1[i] + w[3] * m1[i + 1]);
 }
 
-LACUNA_INLINE void AddPathBody(const float* path, float* next, const float* m0, const float* m1,
-  const PathLengths& lengths, std::int64_t n)
-{
-  const PathLengths w = lengths;
-#pragma GCC ivdep
-  for (std::int64_t i = 0; i < n; ++i)
-  {
-    next[i] = path[i] + LayerPath(m0, m1, w, i);
-  }
-}
-
-template <bool Binary>
-LACUNA_INLINE void SeeBothWaysBody(float* __restrict path, const float* __restrict total,
-  const float* __restrict m0, const float* __restrict m1, const PathLengths& lengths,
-  float* __restrict through, std::int64_t n)
+LACUNA_INLINE void AddPathBody(float* __restrict path, const float* __restrict m0,
+  const float* __restrict m1, const PathLengths& lengths, std::int64_t n)
 {
   const PathLengths w = lengths;
   for (std::int64_t i = 0; i < n; ++i)
   {
-    const float before = path[i];
-    const float after = before + LayerPath(m0, m1, w, i);
-    path[i] = after;
-    through[i] = LetThrough<Binary>(before) + LetThrough<Binary>(total[i] - after);
+    path[i] += LayerPath(m0, m1, w, i);
   }
 }
 
 template <bool Binary>
 LACUNA_INLINE void SeeBody(const float* __restrict path, const float* __restrict first,
-  float* __restrict through, std::int64_t n)
+  float* __restrict root, std::int64_t n)
 {
   for (std::int64_t i = 0; i < n; ++i)
   {
-    const float length = path[i] - first[i];
-    through[i] = LetThrough<Binary>(length > 0 ? length : 0.0F);
+    const float length = 0.5F * (path[i] - first[i]);
+    root[i] = LetThrough<Binary>(length > 0 ? length : 0.0F);
   }
 }
 
 template <bool Binary>
 LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const float* __restrict below, const float* __restrict above, float fx, float fy, float whole,
-  std::int64_t n)
+  const float* __restrict m0, const float* __restrict m1, const PathLengths& lengths,
+  const float* __restrict near, const float* __restrict far, float fx, float fy, std::int64_t n)
 {
+  const PathLengths w = lengths;
   for (std::int64_t i = 0; i < n; ++i)
   {
     // Written so that equal neighbours give exactly their value.
-    const float left = above[i - 1] + fy * (below[i - 1] - above[i - 1]);
-    const float right = above[i] + fy * (below[i] - above[i]);
-    const float through = right + fx * (left - right);
-    hidden[i] += whole - LetThrough<Binary>(half * own[i]) * through;
+    const float left = near[i - 1] + fy * (far[i - 1] - near[i - 1]);
+    const float right = near[i] + fy * (far[i] - near[i]);
+    const float root = right + fx * (left - right);
+    const float path = half * own[i] + LayerPath(m0, m1, w, i);
+    hidden[i] += 1.0F - LetThrough<Binary>(path) * (root * root);
   }
 }
 
@@ -108,30 +94,22 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
   template <bool Binary>                                                                           \
   struct NAME                                                                                      \
   {                                                                                                \
-    TARGET static void AddPath(const float* path, float* next, const float* m0, const float* m1,   \
+    TARGET static void AddPath(float* path, const float* m0, const float* m1,                      \
       const PathLengths& lengths, std::int64_t n)                                                  \
     {                                                                                              \
-      AddPathBody(path, next, m0, m1, lengths, n);                                                 \
+      AddPathBody(path, m0, m1, lengths, n);                                                       \
     }                                                                                              \
-    TARGET static void SeeBothWays(float* path, const float* total, const float* m0,               \
-      const float* m1, const PathLengths& lengths, float* through, std::int64_t n)                 \
+    TARGET static void See(const float* path, const float* first, float* root, std::int64_t n)     \
     {                                                                                              \
-      SeeBothWaysBody<Binary>(path, total, m0, m1, lengths, through, n);                           \
+      SeeBody<Binary>(path, first, root, n);                                                       \
     }                                                                                              \
-    TARGET static void See(                                                                        \
-      const float* path, const float* first, float* through, std::int64_t n)                       \
+    TARGET static void Hide(float* hidden, const float* own, float half, const float* m0,          \
+      const float* m1, const PathLengths& lengths, const float* near, const float* far, float fx,  \
+      float fy, std::int64_t n)                                                                    \
     {                                                                                              \
-      SeeBody<Binary>(path, first, through, n);                                                    \
+      HideBody<Binary>(hidden, own, half, m0, m1, lengths, near, far, fx, fy, n);                  \
     }                                                                                              \
-    TARGET static void Hide(float* hidden, const float* own, float half, const float* below,       \
-      const float* above, float fx, float fy, float whole, std::int64_t n)                         \
-    {                                                                                              \
-      HideBody<Binary>(hidden, own, half, below, above, fx, fy, whole, n);                         \
-    }                                                                                              \
-    static OcclusionRows Get()                                                                     \
-    {                                                                                              \
-      return { AddPath, SeeBothWays, See, Hide };                                                  \
-    }                                                                                              \
+    static OcclusionRows Get() { return { AddPath, See, Hide }; }                                  \
   };
 
 LACUNA_ROWS(PlainRows, )

@@ -18,27 +18,23 @@ using PathLengths = std::array<float, 4>;
 constexpr float LargestPath = 80;
 
 /// Operations on rows of n values. `m0` and `m1` are the attenuations of the two voxel rows that
-/// rays pass, from voxel i on (n + 1 values are read). Let through T is exp(-path), in Binary mode
-/// 0 where path > 0 and else 1. Rows do not overlap. All implementations give the same bits.
+/// rays pass, from voxel i on (n + 1 values are read). What a path lets through is T = exp(-path),
+/// in Binary mode 0 where path > 0 and else 1. All implementations give the same bits.
 struct OcclusionRows
 {
-  /// next = path + what the layer adds. next may be path.
-  void (*AddPath)(const float* path, float* next, const float* m0, const float* m1,
-    const PathLengths& lengths, std::int64_t n);
+  /// path += what the layer adds.
+  void (*AddPath)(
+    float* path, const float* m0, const float* m1, const PathLengths& lengths, std::int64_t n);
 
-  /// through = T(path before this layer) + T(path after this layer up to total); path then becomes
-  /// the one after this layer.
-  void (*SeeBothWays)(float* path, const float* total, const float* m0, const float* m1,
-    const PathLengths& lengths, float* through, std::int64_t n);
+  /// root = square root of T(path - first, at least 0).
+  void (*See)(const float* path, const float* first, float* root, std::int64_t n);
 
-  /// through = T(|path - first|, at least 0).
-  void (*See)(const float* path, const float* first, float* through, std::int64_t n);
-
-  /// hidden += whole - T(half * own) * (through interpolated to the voxels): voxel i lies the
-  /// fraction fx of a ray spacing beyond ray i - 1 towards... see the source; below and above are
-  /// the rays of the two neighbouring rows, from ray i on, read from -1.
-  void (*Hide)(float* hidden, const float* own, float half, const float* below, const float* above,
-    float fx, float fy, float whole, std::int64_t n);
+  /// hidden += 1 - T(half * own + path through the next layer) * root^2, root being interpolated
+  /// to the voxels: voxel i lies fy of the way from ray row `near` to `far`, and fx of the way from
+  /// ray i to ray i - 1 (the rows are read from -1 on).
+  void (*Hide)(float* hidden, const float* own, float half, const float* m0, const float* m1,
+    const PathLengths& lengths, const float* near, const float* far, float fx, float fy,
+    std::int64_t n);
 };
 
 /// The operations for this processor's widest vectors.

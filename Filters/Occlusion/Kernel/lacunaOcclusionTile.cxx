@@ -23,32 +23,45 @@ LinePath::Layer LinePath::GetLayer(std::int64_t k) const
   const double fromMiddle = static_cast<double>(k) - 0.5 * static_cast<double>(this->Layers - 1);
   const double x = this->SlopeX * fromMiddle;
   const double y = this->SlopeY * fromMiddle;
-  Layer layer{};
-  layer.ShiftX = static_cast<std::int64_t>(std::floor(x));
-  layer.ShiftY = static_cast<std::int64_t>(std::floor(y));
   const double fx = x - std::floor(x);
   const double fy = y - std::floor(y);
-  layer.FractionX = static_cast<float>(fx);
-  layer.FractionY = static_cast<float>(fy);
+  return { static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)),
+    static_cast<float>(fx), static_cast<float>(fy), this->GetLengths(fx, fy) };
+}
 
-  // Over the layer, -1/2 <= t <= 1/2, the ray is at (fx + SlopeX t, fy + SlopeY t). It changes
-  // voxel where that is 1/2, at most once in x and once in y.
+LinePath::Layer LinePath::GetNeighborLayer(int side) const
+{
+  const double x = side * this->SlopeX;
+  const double y = side * this->SlopeY;
+  const int shiftX = x < 0 ? -1 : 0;
+  const int shiftY = y < 0 ? -1 : 0;
+  const double fx = x - shiftX;
+  const double fy = y - shiftY;
+  return { shiftX, shiftY, static_cast<float>(fx), static_cast<float>(fy),
+    this->GetLengths(fx, fy) };
+}
+
+/// Over the layer, -1/2 <= t <= 1/2, the ray is at (fx + SlopeX t, fy + SlopeY t). It changes
+/// voxel where that is 1/2, at most once in x and once in y.
+PathLengths LinePath::GetLengths(double fractionX, double fractionY) const
+{
   const auto change = [](double fraction, double slope)
   {
     const double t = slope != 0 ? (0.5 - fraction) / slope : 1;
     return std::abs(t) < 0.5 ? t : 0.5;
   };
-  const double changeX = change(fx, this->SlopeX);
-  const double changeY = change(fy, this->SlopeY);
+  const double changeX = change(fractionX, this->SlopeX);
+  const double changeY = change(fractionY, this->SlopeY);
   const double cuts[4] = { -0.5, std::min(changeX, changeY), std::max(changeX, changeY), 0.5 };
+  PathLengths lengths{};
   for (int i = 0; i < 3; ++i)
   {
     const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
-    const int voxel = (fx + this->SlopeX * middle > 0.5 ? 1 : 0) +
-      (fy + this->SlopeY * middle > 0.5 ? 2 : 0);
-    layer.Lengths[voxel] += static_cast<float>(this->Step * (cuts[i + 1] - cuts[i]));
+    const int voxel = (fractionX + this->SlopeX * middle > 0.5 ? 1 : 0) +
+      (fractionY + this->SlopeY * middle > 0.5 ? 2 : 0);
+    lengths[voxel] += static_cast<float>(this->Step * (cuts[i + 1] - cuts[i]));
   }
-  return layer;
+  return lengths;
 }
 
 void LinePath::GetRays(
@@ -61,15 +74,6 @@ void LinePath::GetRays(
 }
 
 //------------------------------------------------------------------------------
-/// The rays of the tile that pass the grid in a layer.
-struct TileMarch::Span
-{
-  LinePath::Layer Layer;
-  std::int64_t Index; ///< of the layer
-  std::int64_t FirstX;
-  std::int64_t Count;
-};
-
 TileMarch::TileMarch(bool binary, double radius, bool space)
   : Windowed(radius > 0 || space)
   , Radius(radius)
@@ -84,213 +88,234 @@ void TileMarch::March(const MarchFrame& frame, const LinePath& line, const RayTi
   this->Line = &line;
   this->Tile = tile;
   this->FirstRow = frame.Rows == 1 ? 0 : tile.FirstY - 1;
-  this->Height = tile.LastY - this->FirstRow;
   this->Width = tile.LastX - tile.FirstX + 1;
-  const double half = 0.5 * line.GetStep();
-  this->OwnHalf = static_cast<float>(this->Radius > 0 ? std::min(half, this->Radius) : half);
-  for (std::vector<float>& through : this->Through)
+  this->Plane = this->Width * (tile.LastY - this->FirstRow);
+  this->Zero.assign(this->Width, 0);
+  for (auto& side : this->Roots)
   {
-    through.resize(this->Width);
+    side[0].resize(this->Width);
+    side[1].resize(this->Width);
   }
-  this->Windowed ? this->MarchWindowed() : this->MarchWhole();
+  // A voxel's own ray is followed exactly through half the voxel and the next layer, as far as
+  // the radius reaches.
+  const double step = line.GetStep();
+  const double own = this->Radius > 0 ? std::min(0.5 * step, this->Radius) : 0.5 * step;
+  const double next = this->Radius > 0 ? std::min(step, this->Radius - own) : step;
+  this->OwnHalf = static_cast<float>(own);
+  for (int side : { 0, 1 })
+  {
+    this->Neighbors[side] = line.GetNeighborLayer(side == 0 ? -1 : 1);
+    for (float& length : this->Neighbors[side].Lengths)
+    {
+      length *= static_cast<float>(next / step);
+    }
+  }
+  if (this->Windowed)
+  {
+    this->StorePaths();
+    this->MarchWindowed(0);
+    this->MarchWindowed(1);
+  }
+  else
+  {
+    this->MarchWhole();
+  }
 }
 
-float* TileMarch::State(std::vector<float>& plane, std::int64_t q, std::int64_t x)
+/// From a plane of rays to the first ray of span.
+std::int64_t TileMarch::GetOffset(const Span& span) const
 {
-  return plane.data() + (q - this->FirstRow) * this->Width + (x - this->Tile.FirstX + 1);
+  return (span.Q - this->FirstRow) * this->Width + (span.FirstX - this->Tile.FirstX + 1);
 }
 
-const float* TileMarch::Stored(std::int64_t plane, std::int64_t q, std::int64_t x) const
+const float* TileMarch::GetStored(std::int64_t plane) const
 {
-  return this->Store.data() + (plane * this->Height + q - this->FirstRow) * this->Width +
-    (x - this->Tile.FirstX + 1);
+  const std::int64_t last = this->Frame->Layers;
+  return this->Store.data() + std::min(std::max<std::int64_t>(plane, 0), last) * this->Plane;
 }
 
-/// see(span, q, through) computes what the rays of row q let through; then the voxels between rows
-/// q - 1 and q are served.
-template <class See>
-void TileMarch::ForRows(std::int64_t k, float whole, See&& see)
+template <class Body>
+void TileMarch::ForRows(std::int64_t k, Body&& body)
 {
   const MarchFrame& frame = *this->Frame;
-  const bool flat = frame.Rows == 1;
-  Span span{ this->Line->GetLayer(k), k, 0, 0 };
+  Span span{ this->Line->GetLayer(k), k, 0, 0, 0 };
   const LinePath::Layer& layer = span.Layer;
   span.FirstX = std::max(this->Tile.FirstX - 1, -1 - layer.ShiftX);
   span.Count = std::min(this->Tile.LastX, frame.Length - layer.ShiftX) - span.FirstX;
-  const std::int64_t firstVoxel = std::max(this->Tile.FirstX, -layer.ShiftX);
-  const std::int64_t voxels =
-    std::min(this->Tile.LastX, frame.Length - layer.ShiftX) - firstVoxel;
   if (span.Count <= 0)
   {
     return;
   }
-  const std::int64_t firstRow = flat ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
-  const std::int64_t lastRow = std::min(this->Tile.LastY, frame.Rows - layer.ShiftY);
-  for (std::int64_t q = firstRow; q < lastRow; ++q)
+  const std::int64_t first =
+    frame.Rows == 1 ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
+  const std::int64_t last = std::min(this->Tile.LastY, frame.Rows - layer.ShiftY);
+  for (span.Q = first; span.Q < last; ++span.Q)
   {
-    std::swap(this->Through[0], this->Through[1]);
-    float* through = this->Through[1].data() + (span.FirstX - this->Tile.FirstX + 1);
-    see(span, q, through);
-    const std::int64_t j = q + layer.ShiftY;
-    if (whole > 0 && voxels > 0 && j >= 0 && q >= this->Tile.FirstY)
-    {
-      const std::int64_t i = firstVoxel + layer.ShiftX;
-      const std::int64_t offset = firstVoxel - this->Tile.FirstX + 1;
-      const float* above = this->Through[1].data() + offset;
-      const float* below = flat ? above : this->Through[0].data() + offset;
-      this->Rows.Hide(
-        frame.Hidden + k * frame.HiddenLayerStride + j * frame.HiddenRowStride + i,
-        frame.FieldAt(i, j, k), this->OwnHalf, below, above, layer.FractionX, layer.FractionY,
-        whole, voxels);
-    }
+    body(span);
   }
 }
 
-/// Two passes: the whole path of each ray, then, with the path so far, what both directions see.
+/// Adds a layer to the path of each ray.
+void TileMarch::Advance(float* plane, std::int64_t k)
+{
+  const std::int64_t next = this->Frame->Rows == 1 ? 0 : 1;
+  this->ForRows(k,
+    [&](const Span& span)
+    {
+      const std::int64_t i = span.FirstX + span.Layer.ShiftX;
+      const std::int64_t j = span.Q + span.Layer.ShiftY;
+      this->Rows.AddPath(plane + this->GetOffset(span), this->Frame->FieldAt(i, j, k),
+        this->Frame->FieldAt(i, j + next, k), span.Layer.Lengths, span.Count);
+    });
+}
+
+/// Serves the voxels between the rows of rays span.Q - 1 and span.Q. side 0: what lies at lower
+/// layers, 1: at higher ones.
+void TileMarch::Hide(const Span& span, int side)
+{
+  const MarchFrame& frame = *this->Frame;
+  const bool flat = frame.Rows == 1;
+  const LinePath::Layer& layer = span.Layer;
+  const std::int64_t first = std::max(this->Tile.FirstX, -layer.ShiftX);
+  const std::int64_t count = std::min(this->Tile.LastX, frame.Length - layer.ShiftX) - first;
+  const std::int64_t j = span.Q + layer.ShiftY;
+  if (count <= 0 || j < 0 || span.Q < this->Tile.FirstY)
+  {
+    return;
+  }
+  const std::int64_t i = first + layer.ShiftX;
+  const std::int64_t offset = first - this->Tile.FirstX + 1;
+  const float* near = this->Roots[side][1].data() + offset;
+  const float* far = flat ? near : this->Roots[side][0].data() + offset;
+  const LinePath::Layer& next = this->Neighbors[side];
+  const std::int64_t k = side == 0 ? span.K - 1 : span.K + 1;
+  const std::int64_t row = flat ? j : j + next.ShiftY;
+  this->Rows.Hide(
+    frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i,
+    frame.FieldAt(i, j, span.K), this->OwnHalf, frame.FieldAt(i + next.ShiftX, row, k),
+    frame.FieldAt(i + next.ShiftX, flat ? row : row + 1, k), next.Lengths, near, far,
+    layer.FractionX, layer.FractionY, count);
+}
+
+/// One pass for the whole path of each ray; then, with the path before and after each layer, what
+/// both directions see.
 void TileMarch::MarchWhole()
 {
-  const MarchFrame& frame = *this->Frame;
-  const std::int64_t next = frame.Rows == 1 ? 0 : 1;
-  this->Total.assign(this->Width * this->Height, 0);
-  this->Path.assign(this->Width * this->Height, 0);
-  for (std::int64_t k = 0; k < frame.Layers; ++k)
+  const std::int64_t layers = this->Frame->Layers;
+  this->Total.assign(this->Plane, 0);
+  this->Before.assign(this->Plane, 0);
+  this->After.assign(this->Plane, 0);
+  for (std::int64_t k = 0; k < layers; ++k)
   {
-    this->ForRows(k, 0,
-      [&](const Span& span, std::int64_t q, float*)
-      {
-        const std::int64_t i = span.FirstX + span.Layer.ShiftX;
-        const std::int64_t j = q + span.Layer.ShiftY;
-        float* path = this->State(this->Total, q, span.FirstX);
-        this->Rows.AddPath(path, path, frame.FieldAt(i, j, k), frame.FieldAt(i, j + next, k),
-          span.Layer.Lengths, span.Count);
-      });
+    this->Advance(this->Total.data(), k);
   }
-  for (std::int64_t k = 0; k < frame.Layers; ++k)
+  this->Advance(this->After.data(), 0);
+  for (std::int64_t k = 0; k < layers; ++k)
   {
-    this->ForRows(k, 2,
-      [&](const Span& span, std::int64_t q, float* through)
+    if (k >= 2)
+    {
+      this->Advance(this->Before.data(), k - 2);
+    }
+    if (k + 1 < layers)
+    {
+      this->Advance(this->After.data(), k + 1);
+    }
+    this->ForRows(k,
+      [&](const Span& span)
       {
-        const std::int64_t i = span.FirstX + span.Layer.ShiftX;
-        const std::int64_t j = q + span.Layer.ShiftY;
-        this->Rows.SeeBothWays(this->State(this->Path, q, span.FirstX),
-          this->State(this->Total, q, span.FirstX), frame.FieldAt(i, j, k),
-          frame.FieldAt(i, j + next, k), span.Layer.Lengths, through, span.Count);
+        const std::int64_t offset = this->GetOffset(span);
+        const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
+        for (auto& side : this->Roots)
+        {
+          std::swap(side[0], side[1]);
+        }
+        this->Rows.See(this->Before.data() + offset, this->Zero.data(),
+          this->Roots[0][1].data() + column, span.Count);
+        this->Rows.See(this->Total.data() + offset, this->After.data() + offset,
+          this->Roots[1][1].data() + column, span.Count);
+        this->Hide(span, 0);
+        this->Hide(span, 1);
       });
   }
 }
 
-/// Rays that end: the path up to each plane between layers is kept, and a ray's part of it is a
-/// difference of two.
-void TileMarch::MarchWindowed()
-{
-  const double layers = static_cast<double>(this->Frame->Layers);
-  const double reach = this->Radius > 0 ? this->Radius / this->Line->GetStep() : layers + 1;
-  this->StorePaths();
-  this->Forward(reach);
-  this->Backward(reach);
-}
-
+/// Rays that end need the path up to each plane between layers: a ray's part of it is a difference
+/// of two.
 void TileMarch::StorePaths()
 {
-  const MarchFrame& frame = *this->Frame;
-  const std::int64_t next = frame.Rows == 1 ? 0 : 1;
-  const std::int64_t plane = this->Width * this->Height;
-  this->Store.resize(plane * (frame.Layers + 1));
-  std::fill_n(this->Store.begin(), plane, 0.0F);
-  for (std::int64_t k = 0; k < frame.Layers; ++k)
+  this->Store.resize(this->Plane * (this->Frame->Layers + 1));
+  std::fill_n(this->Store.begin(), this->Plane, 0.0F);
+  for (std::int64_t k = 0; k < this->Frame->Layers; ++k)
   {
-    std::copy_n(this->Store.begin() + k * plane, plane, this->Store.begin() + (k + 1) * plane);
-    this->ForRows(k, 0,
-      [&](const Span& span, std::int64_t q, float*)
-      {
-        const std::int64_t i = span.FirstX + span.Layer.ShiftX;
-        const std::int64_t j = q + span.Layer.ShiftY;
-        float* path = const_cast<float*>(this->Stored(k + 1, q, span.FirstX));
-        this->Rows.AddPath(path, path, frame.FieldAt(i, j, k), frame.FieldAt(i, j + next, k),
-          span.Layer.Lengths, span.Count);
-      });
+    float* next = this->Store.data() + (k + 1) * this->Plane;
+    std::copy_n(next - this->Plane, this->Plane, next);
+    this->Advance(next, k);
   }
 }
 
 /// The path up to a place between two planes; planes are counted from the grid's first face.
-void TileMarch::PathAt(double plane, const Span& span, std::int64_t q, float* path) const
+void TileMarch::PathAt(double plane, const Span& span, float* path) const
 {
-  const double inside =
-    std::min(std::max(plane, 0.0), static_cast<double>(this->Frame->Layers));
-  const std::int64_t first =
-    std::min(static_cast<std::int64_t>(inside), this->Frame->Layers - 1);
+  const double inside = std::min(std::max(plane, 0.0), static_cast<double>(this->Frame->Layers));
+  const std::int64_t first = std::min(static_cast<std::int64_t>(inside), this->Frame->Layers - 1);
   const float fraction = static_cast<float>(inside - static_cast<double>(first));
-  const float* a = this->Stored(first, q, span.FirstX);
-  const float* b = this->Stored(first + 1, q, span.FirstX);
+  const float* a = this->GetStored(first) + this->GetOffset(span);
+  const float* b = this->GetStored(first + 1) + this->GetOffset(span);
   for (std::int64_t i = 0; i < span.Count; ++i)
   {
     path[i] = a[i] + fraction * (b[i] - a[i]);
   }
 }
 
-/// A ray whose nearest voxel is outside the reconstruction space starts anew from here: path.
-void TileMarch::UpdateSpace(const Span& span, std::int64_t q, const float* path)
+/// A ray whose nearest voxel is outside the reconstruction space starts anew, with path.
+void TileMarch::UpdateSpace(const Span& span, const float* path)
 {
   const LinePath::Layer& layer = span.Layer;
   const bool flat = this->Frame->Rows == 1;
-  const std::int64_t j = q + layer.ShiftY + (!flat && layer.FractionY > 0.5F ? 1 : 0);
-  const float* nearest = this->Frame->FieldAt(
-    span.FirstX + layer.ShiftX + (layer.FractionX > 0.5F ? 1 : 0), j, span.Index);
-  float* bound = this->State(this->Bound, q, span.FirstX);
-  for (std::int64_t i = 0; i < span.Count; ++i)
+  const std::int64_t i = span.FirstX + layer.ShiftX + (layer.FractionX > 0.5F ? 1 : 0);
+  const std::int64_t j = span.Q + layer.ShiftY + (!flat && layer.FractionY > 0.5F ? 1 : 0);
+  const float* nearest = this->Frame->FieldAt(i, j, span.K);
+  float* bound = this->Bound.data() + this->GetOffset(span);
+  for (std::int64_t r = 0; r < span.Count; ++r)
   {
-    bound[i] = AttenuationField::IsOutsideSpace(nearest[i]) ? path[i] : bound[i];
+    bound[r] = AttenuationField::IsOutsideSpace(nearest[r]) ? path[r] : bound[r];
   }
 }
 
-void TileMarch::Forward(double reach)
+/// side 0: what lies at lower layers, in ascending order; 1: at higher ones, in descending order.
+void TileMarch::MarchWindowed(int side)
 {
-  const std::int64_t plane = this->Width * this->Height;
-  this->Path.resize(this->Width);
-  this->Bound.assign(plane, 0);
-  for (std::int64_t k = 0; k < this->Frame->Layers; ++k)
+  const std::int64_t layers = this->Frame->Layers;
+  const double all = static_cast<double>(layers) + 1;
+  const double reach = this->Radius > 0 ? this->Radius / this->Line->GetStep() : all;
+  const float* start = this->GetStored(side == 0 ? 0 : layers);
+  this->Bound.assign(start, start + this->Plane);
+  this->Before.resize(this->Width);
+  float* end = this->Before.data();
+  const auto serve = [&](const Span& span)
   {
-    this->ForRows(k, 1,
-      [&](const Span& span, std::int64_t q, float* through)
+    std::swap(this->Roots[side][0], this->Roots[side][1]);
+    const std::int64_t offset = this->GetOffset(span);
+    const double middle = static_cast<double>(span.K) + 0.5;
+    this->PathAt(side == 0 ? middle - reach : middle + reach, span, end);
+    if (this->Space)
+    {
+      const float* bound = this->Bound.data() + offset;
+      for (std::int64_t i = 0; i < span.Count; ++i)
       {
-        float* from = this->Path.data();
-        this->PathAt(static_cast<double>(k) + 0.5 - reach, span, q, from);
-        if (this->Space)
-        {
-          const float* bound = this->State(this->Bound, q, span.FirstX);
-          for (std::int64_t i = 0; i < span.Count; ++i)
-          {
-            from[i] = std::max(from[i], bound[i]);
-          }
-          this->UpdateSpace(span, q, this->Stored(k + 1, q, span.FirstX));
-        }
-        this->Rows.See(this->Stored(k, q, span.FirstX), from, through, span.Count);
-      });
-  }
-}
-
-void TileMarch::Backward(double reach)
-{
-  const std::int64_t plane = this->Width * this->Height;
-  this->Bound.assign(this->Store.end() - plane, this->Store.end());
-  for (std::int64_t k = this->Frame->Layers - 1; k >= 0; --k)
+        end[i] = side == 0 ? std::max(end[i], bound[i]) : std::min(end[i], bound[i]);
+      }
+      this->UpdateSpace(span, this->GetStored(side == 0 ? span.K + 1 : span.K) + offset);
+    }
+    // from beyond the neighbour layer
+    const float* begin = this->GetStored(side == 0 ? span.K - 1 : span.K + 2) + offset;
+    float* roots = this->Roots[side][1].data() + (span.FirstX - this->Tile.FirstX + 1);
+    this->Rows.See(side == 0 ? begin : end, side == 0 ? end : begin, roots, span.Count);
+    this->Hide(span, side);
+  };
+  for (std::int64_t n = 0; n < layers; ++n)
   {
-    this->ForRows(k, 1,
-      [&](const Span& span, std::int64_t q, float* through)
-      {
-        float* to = this->Path.data();
-        this->PathAt(static_cast<double>(k) + 0.5 + reach, span, q, to);
-        if (this->Space)
-        {
-          const float* bound = this->State(this->Bound, q, span.FirstX);
-          for (std::int64_t i = 0; i < span.Count; ++i)
-          {
-            to[i] = std::min(to[i], bound[i]);
-          }
-          this->UpdateSpace(span, q, this->Stored(k, q, span.FirstX));
-        }
-        this->Rows.See(to, this->Stored(k + 1, q, span.FirstX), through, span.Count);
-      });
+    this->ForRows(side == 0 ? n : layers - 1 - n, serve);
   }
 }
 }

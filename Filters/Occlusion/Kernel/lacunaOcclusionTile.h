@@ -51,6 +51,9 @@ public:
   LinePath(double slopeX, double slopeY, double step, std::int64_t layers);
 
   Layer GetLayer(std::int64_t k) const;
+  /// The ray through a voxel's centre one layer later (side 1) or earlier (side -1), relative to
+  /// that voxel: shifts in -1, 0.
+  Layer GetNeighborLayer(int side) const;
   double GetStep() const { return this->Step; }
   /// The rays that some voxel of the frame needs: First <= r < Last.
   void GetRays(std::int64_t length, double slope, std::int64_t& first, std::int64_t& last) const;
@@ -58,6 +61,8 @@ public:
   double GetSlopeY() const { return this->SlopeY; }
 
 private:
+  PathLengths GetLengths(double fractionX, double fractionY) const;
+
   double SlopeX;
   double SlopeY;
   double Step;
@@ -86,20 +91,28 @@ public:
   void March(const MarchFrame& frame, const LinePath& line, const RayTile& tile);
 
 private:
-  struct Span;
+  /// The part of a row of rays that passes the grid in a layer.
+  struct Span
+  {
+    LinePath::Layer Layer;
+    std::int64_t K; ///< of the layer
+    std::int64_t Q; ///< of the row of rays
+    std::int64_t FirstX;
+    std::int64_t Count;
+  };
 
   void MarchWhole();
-  void MarchWindowed();
-  void Forward(double reach);
-  void Backward(double reach);
+  void MarchWindowed(int side);
   void StorePaths();
-  void UpdateSpace(const Span& span, std::int64_t q, const float* path);
-  void PathAt(double plane, const Span& span, std::int64_t q, float* path) const;
-  template <class See>
-  void ForRows(std::int64_t k, float whole, See&& see);
+  void Advance(float* plane, std::int64_t k);
+  void PathAt(double plane, const Span& span, float* path) const;
+  void UpdateSpace(const Span& span, const float* path);
+  void Hide(const Span& span, int side);
+  template <class Body>
+  void ForRows(std::int64_t k, Body&& body);
 
-  float* State(std::vector<float>& plane, std::int64_t q, std::int64_t x);
-  const float* Stored(std::int64_t plane, std::int64_t q, std::int64_t x) const;
+  std::int64_t GetOffset(const Span& span) const;
+  const float* GetStored(std::int64_t plane) const;
 
   bool Windowed;
   double Radius;
@@ -112,12 +125,16 @@ private:
   std::int64_t FirstRow = 0; ///< of the rays of the tile, with the neighbours that voxels need
   std::int64_t Width = 0;
   std::int64_t Height = 0;
+  std::int64_t Plane = 0;    ///< rays of the tile
   float OwnHalf = 0;
-  std::vector<float> Path;
-  std::vector<float> Total;
-  std::vector<float> Store;
-  std::vector<float> Bound;
-  std::vector<float> Through[2];
+  LinePath::Layer Neighbors[2];    ///< before and after
+  std::vector<float> Zero;         ///< a row
+  std::vector<float> Before;       ///< path of each ray before the neighbour layer
+  std::vector<float> After;        ///< path up to and with the neighbour layer after
+  std::vector<float> Total;        ///< path through everything
+  std::vector<float> Store;        ///< path of each ray up to each plane between layers
+  std::vector<float> Bound;        ///< path where a ray entered the space last
+  std::vector<float> Roots[2][2];  ///< per side, what two rows of rays let through
 };
 }
 #endif
