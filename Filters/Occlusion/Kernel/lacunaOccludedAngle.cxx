@@ -24,7 +24,7 @@ constexpr std::int64_t FlatTileLength = 512;
 constexpr std::int64_t TileRows = 16;
 constexpr std::int64_t StoreSize = 1 << 19; // floats: the paths of a tile stay in the cache
 
-/// The hidden sums and how to march over them along each axis.
+/// The sums over lines, and how to march along each axis.
 class Accumulator
 {
 public:
@@ -37,22 +37,26 @@ public:
     , Runner(execution)
   {
     const std::int64_t voxels = field.GetNumberOfVoxels();
+    std::fill_n(hidden, voxels, 0.0F);
     if (voxels <= SmallGrid)
     {
       this->Parts.assign(LineParts * voxels, 0.0F);
     }
-    std::fill_n(hidden, voxels, 0.0F);
     this->SortLines();
   }
 
   void Run()
   {
-    this->March(2);
-    this->March(1);
-    this->SwapXY();
-    this->March(1); // the former x axis
+    const std::int64_t nz = this->Field.GetDimensions()[2];
+    this->March(2, this->Lines[2], false);
+    this->March(1, this->Lines[1], false);
+    // Rows shall be contiguous in memory: lines along x march along y of the swapped grid.
+    float* sums = this->Parts.empty() ? this->Hidden : this->Parts.data();
+    const std::int64_t planes = this->Parts.empty() ? nz : LineParts * nz;
+    this->SwapXY(sums, planes);
+    this->March(1, this->Lines[0], true);
     this->AddParts();
-    this->SwapXY();
+    this->SwapXY(this->Hidden, nz);
   }
 
 private:
@@ -70,31 +74,18 @@ private:
       }
       this->Lines[axis].push_back(voxels);
     }
-    this->LineCount = count;
   }
 
-  void SwapXY()
+  void SwapXY(float* sums, std::int64_t planes)
   {
-    const auto n = this->Field.GetDimensions();
-    if (this->Parts.empty())
-    {
-      lacuna::SwapXY(this->Hidden, n[0], n[1], n[2], this->Runner);
-    }
-    else if (!this->Added)
-    {
-      lacuna::SwapXY(this->Parts.data(), n[0], n[1], n[2] * LineParts, this->Runner);
-    }
-    else
-    {
-      lacuna::SwapXY(this->Hidden, n[0], n[1], n[2], this->Runner);
-    }
+    const auto& n = this->Field.GetDimensions();
+    lacuna::SwapXY(sums, n[0], n[1], planes, this->Runner);
     this->Field.SwapXY(this->Runner);
-    this->Swapped = !this->Swapped;
   }
 
   MarchFrame GetFrame(int axis, float* hidden) const
   {
-    const auto n = this->Field.GetDimensions();
+    const auto& n = this->Field.GetDimensions();
     const int row = axis == 2 ? 1 : 2;
     const std::int64_t strides[3] = { 1, n[0], n[0] * n[1] };
     return { n[0], n[row], n[axis], this->Field.Row(0, 0), this->Field.GetStride(row),
@@ -114,96 +105,86 @@ private:
     path.GetRays(frame.Length, path.GetSlopeX(), all.FirstX, all.LastX);
     path.GetRays(frame.Rows, path.GetSlopeY(), all.FirstY, all.LastY);
     const bool flat = frame.Rows == 1;
-    if (flat)
-    {
-      all.FirstY = 0;
-      all.LastY = 1;
-    }
-    const std::int64_t plane = (all.LastX - all.FirstX) * (frame.Layers + 1);
+    const std::int64_t width = all.LastX - all.FirstX;
+    const std::int64_t length = flat ? std::min(width, FlatTileLength) : width;
     const bool stored = this->Space || this->Options.Radius > 0;
     const std::int64_t rows =
-      stored ? std::min(TileRows, std::max<std::int64_t>(2, StoreSize / plane)) : TileRows;
-    const std::int64_t length = flat ? FlatTileLength : all.LastX - all.FirstX;
+      stored ? std::clamp<std::int64_t>(StoreSize / (width * frame.Layers), 2, TileRows) : TileRows;
     std::vector<RayTile> tiles;
     for (std::int64_t q = all.FirstY; q < all.LastY; q += rows)
     {
       for (std::int64_t r = all.FirstX; r < all.LastX; r += length)
       {
-        tiles.push_back(
-          { r, std::min(all.LastX, r + length), q, std::min(all.LastY, q + rows) });
+        tiles.push_back({ r, std::min(all.LastX, r + length), q, std::min(all.LastY, q + rows) });
       }
     }
     return tiles;
   }
 
-  void March(int axis)
+  void SetStage(std::int64_t lines)
   {
-    const std::vector<Vec3>& lines = this->Lines[this->Swapped ? 0 : axis];
-    const auto marchTiles = [&](TileMarch& march, const Vec3& line, float* hidden,
-                              const std::vector<RayTile>& tiles, std::int64_t b, std::int64_t e)
-    {
-      const MarchFrame frame = this->GetFrame(axis, hidden);
-      const LinePath path = GetPath(line, axis, this->Swapped, frame.Layers);
-      for (std::int64_t t = b; t < e; ++t)
-      {
-        march.March(frame, path, tiles[t]);
-      }
-    };
-    const auto tilesOf = [&](const Vec3& line)
-    {
-      const MarchFrame frame = this->GetFrame(axis, nullptr);
-      return this->GetTiles(frame, GetPath(line, axis, this->Swapped, frame.Layers));
-    };
-    const double first = this->LinesDone / this->LineCount;
+    const double all = this->Options.Directions / 2;
+    const double length = this->Options.LastProgress - this->Options.FirstProgress;
+    const double first = this->Options.FirstProgress + length * this->LinesDone / all;
+    this->LinesDone += static_cast<double>(lines);
+    this->Runner.SetStage(first, this->Options.FirstProgress + length * this->LinesDone / all);
+  }
+
+  /// Marches lines along an axis of the field as it lies now.
+  void March(int axis, const std::vector<Vec3>& lines, bool swapped)
+  {
     const std::int64_t count = static_cast<std::int64_t>(lines.size());
-    if (!this->Parts.empty())
+    const std::int64_t layers = this->Field.GetDimensions()[axis];
+    if (this->Parts.empty())
     {
-      this->Runner.SetStage(first, (this->LinesDone + count) / this->LineCount);
-      this->Runner.For(LineParts, 1,
-        [&](std::int64_t begin, std::int64_t end)
-        {
-          TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
-          for (std::int64_t part = begin; part < end; ++part)
+      for (const Vec3& line : lines)
+      {
+        const MarchFrame frame = this->GetFrame(axis, this->Hidden);
+        const LinePath path = GetPath(line, axis, swapped, layers);
+        const std::vector<RayTile> tiles = this->GetTiles(frame, path);
+        this->SetStage(1);
+        this->Runner.For(static_cast<std::int64_t>(tiles.size()), 1,
+          [&](std::int64_t begin, std::int64_t end)
           {
-            float* hidden = this->Parts.data() + part * this->Field.GetNumberOfVoxels();
-            for (std::int64_t i = part; i < count; i += LineParts)
+            TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
+            for (std::int64_t t = begin; t < end; ++t)
             {
-              const std::vector<RayTile> tiles = tilesOf(lines[i]);
-              marchTiles(march, lines[i], hidden, tiles, 0, static_cast<std::int64_t>(tiles.size()));
+              march.March(frame, path, tiles[t]);
             }
-          }
-        });
-      this->LinesDone += count;
+          });
+      }
       return;
     }
-    for (const Vec3& line : lines)
-    {
-      const std::vector<RayTile> tiles = tilesOf(line);
-      this->Runner.SetStage(
-        this->LinesDone / this->LineCount, (this->LinesDone + 1) / this->LineCount);
-      this->Runner.For(static_cast<std::int64_t>(tiles.size()), 1,
-        [&](std::int64_t begin, std::int64_t end)
+    this->SetStage(count);
+    this->Runner.For(LineParts, 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
+        for (std::int64_t part = begin; part < end; ++part)
         {
-          TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
-          marchTiles(march, line, this->Hidden, tiles, begin, end);
-        });
-      this->LinesDone += 1;
-    }
+          const MarchFrame frame =
+            this->GetFrame(axis, this->Parts.data() + part * this->Field.GetNumberOfVoxels());
+          for (std::int64_t i = part; i < count; i += LineParts)
+          {
+            const LinePath path = GetPath(lines[i], axis, swapped, layers);
+            for (const RayTile& tile : this->GetTiles(frame, path))
+            {
+              march.March(frame, path, tile);
+            }
+          }
+        }
+      });
   }
 
   void AddParts()
   {
     const std::int64_t voxels = this->Field.GetNumberOfVoxels();
-    for (std::int64_t part = 0; part * voxels < static_cast<std::int64_t>(this->Parts.size());
-         ++part)
+    const std::int64_t all = static_cast<std::int64_t>(this->Parts.size());
+    for (std::int64_t first = 0; first < all; first += voxels)
     {
-      const float* sums = this->Parts.data() + part * voxels;
-      for (std::int64_t i = 0; i < voxels; ++i)
-      {
-        this->Hidden[i] += sums[i];
-      }
+      std::transform(this->Parts.begin() + first, this->Parts.begin() + first + voxels,
+        this->Hidden, this->Hidden, [](float part, float sum) { return sum + part; });
     }
-    this->Added = true;
   }
 
   AttenuationField& Field;
@@ -212,12 +193,24 @@ private:
   float* Hidden;
   Execution& Runner;
   std::vector<float> Parts;
-  bool Added = false;
-  bool Swapped = false;
   std::vector<Vec3> Lines[3];
-  double LineCount = 1;
   double LinesDone = 0;
 };
+
+void Check(const AttenuationField& field, const OccludedAngleOptions& options)
+{
+  if (options.Directions < 2 || options.Directions % 2 != 0)
+  {
+    throw std::invalid_argument("the number of directions is " +
+      std::to_string(options.Directions) + "; it must be even (a line serves two) and at least 2");
+  }
+  if (options.Radius != 0 && !(options.Radius >= field.GetShortestEdge()))
+  {
+    throw std::invalid_argument("a local radius of " + std::to_string(options.Radius) +
+      " mm is smaller than a voxel; give at least " + std::to_string(field.GetShortestEdge()) +
+      " mm, or 0 for the whole reconstruction space");
+  }
+}
 }
 
 double GetFullAngle(const AttenuationField& field)
@@ -228,23 +221,24 @@ double GetFullAngle(const AttenuationField& field)
 void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
   float* angle, Execution& execution)
 {
-  const auto& n = field.GetDimensions();
+  Check(field, options);
+  const auto n = field.GetDimensions();
   bool space = false;
-  for (std::int64_t k = 0; k < n[2]; ++k)
-    for (std::int64_t j = 0; j < n[1]; ++j)
-    {
-      const float* row = field.Row(j, k);
-      space = space || std::any_of(row, row + n[0], AttenuationField::IsOutsideSpace);
-    }
+  for (std::int64_t row = 0; row < n[1] * n[2]; ++row)
+  {
+    const float* values = field.Row(row % n[1], row / n[1]);
+    space = space || std::any_of(values, values + n[0], AttenuationField::IsOutsideSpace);
+  }
   Accumulator(field, options, space, angle, execution).Run();
   const float scale = static_cast<float>(GetFullAngle(field) / options.Directions);
-  for (std::int64_t k = 0; k < n[2]; ++k)
-    for (std::int64_t j = 0; j < n[1]; ++j)
+  for (std::int64_t row = 0; row < n[1] * n[2]; ++row)
+  {
+    const float* values = field.Row(row % n[1], row / n[1]);
+    float* out = angle + row * n[0];
+    for (std::int64_t i = 0; i < n[0]; ++i)
     {
-      const float* row = field.Row(j, k);
-      float* out = angle + (k * n[1] + j) * n[0];
-      for (std::int64_t i = 0; i < n[0]; ++i)
-        out[i] = AttenuationField::IsOutsideSpace(row[i]) ? 0.0F : scale * out[i];
+      out[i] = AttenuationField::IsOutsideSpace(values[i]) ? 0.0F : scale * out[i];
     }
+  }
 }
 }

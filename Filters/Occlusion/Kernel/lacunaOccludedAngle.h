@@ -18,6 +18,9 @@ struct OccludedAngleOptions
   int Directions = 1000;
   /// Rays end at this distance (mm); 0: at the end of the reconstruction space.
   double Radius = 0;
+  /// The part of the whole progress that this is.
+  double FirstProgress = 0;
+  double LastProgress = 1;
 };
 
 /// 2 pi for a flat field, else 4 pi.

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The method: against a brute-force oracle, and what must not change the result.
+#include "OcclusionCases.h"
+#include "lacunaDirections.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+using Dimensions = std::array<std::int64_t, 3>;
+
+// Exact path integral from a voxel's centre along a unit direction: voxel by voxel.
+double GetPath(
+  const AttenuationField& field, const Dimensions& voxel, const Vec3& direction, double radius)
+{
+  const auto& n = field.GetDimensions();
+  std::vector<double> cuts{ 0 };
+  double end = radius > 0 ? radius : 1e9;
+  double exit = 1e9;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double speed = direction[axis] / field.GetSpacing()[axis];
+    if (std::abs(speed) < 1e-12)
+    {
+      continue;
+    }
+    for (std::int64_t face = 0; face <= n[axis]; ++face)
+    {
+      const double t = (static_cast<double>(face - voxel[axis]) - 0.5) / speed;
+      if (t > 0)
+      {
+        cuts.push_back(t);
+      }
+    }
+    const double last = speed > 0 ? static_cast<double>(n[axis] - voxel[axis]) - 0.5
+                                  : static_cast<double>(voxel[axis]) + 0.5;
+    exit = std::min(exit, last / std::abs(speed));
+  }
+  end = std::min(end, exit);
+  cuts.push_back(end);
+  std::sort(cuts.begin(), cuts.end());
+  double path = 0;
+  for (std::size_t c = 1; c < cuts.size() && cuts[c] <= end; ++c)
+  {
+    const double middle = 0.5 * (cuts[c] + cuts[c - 1]);
+    Dimensions at{};
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double x =
+        static_cast<double>(voxel[axis]) + middle * direction[axis] / field.GetSpacing()[axis];
+      at[axis] = std::min(n[axis] - 1, std::max<std::int64_t>(0, std::llround(x)));
+    }
+    const float value = field.Row(at[1], at[2])[at[0]];
+    if (AttenuationField::IsOutsideSpace(value))
+    {
+      break;
+    }
+    path += value * (cuts[c] - cuts[c - 1]);
+  }
+  return path;
+}
+
+std::vector<double> GetOracle(const AttenuationField& field, const OccludedAngleOptions& options)
+{
+  const auto& n = field.GetDimensions();
+  const int count = options.Directions / 2;
+  const auto lines = field.IsFlat() ? EqualAngleLines(count) : EqualAreaLines(count);
+  std::vector<double> angle;
+  for (std::int64_t k = 0; k < n[2]; ++k)
+  {
+    for (std::int64_t j = 0; j < n[1]; ++j)
+    {
+      for (std::int64_t i = 0; i < n[0]; ++i)
+      {
+        double sum = 0;
+        for (const Vec3& line : lines)
+        {
+          for (double sign : { 1.0, -1.0 })
+          {
+            const double path = GetPath(field, { i, j, k }, sign * line, options.Radius);
+            sum += options.Binary ? (path > 0 ? 1 : 0) : 1 - std::exp(-path);
+          }
+        }
+        angle.push_back(AttenuationField::IsOutsideSpace(field.Row(j, k)[i])
+            ? 0
+            : sum * GetFullAngle(field) / options.Directions);
+      }
+    }
+  }
+  return angle;
+}
+
+struct Case
+{
+  Dimensions Size;
+  Vec3 Spacing;
+  double Density; // of attenuating voxels
+  double Largest; // attenuation
+  OccludedAngleOptions Options;
+  double MostBias; // of the full angle
+  double MostRms;
+  bool Space = false;
+};
+
+void CheckCase(const Case& c)
+{
+  AttenuationField field(c.Size, c.Spacing);
+  Numbers numbers(7);
+  FillField(field,
+    [&](std::int64_t i, std::int64_t j, std::int64_t k) -> double
+    {
+      const double value = numbers() < c.Density ? c.Largest * numbers() : 0;
+      const double x = static_cast<double>(i) - 5;
+      const double y = static_cast<double>(j) - 4;
+      const double z = c.Size[2] == 1 ? 0 : static_cast<double>(k) - 4;
+      const bool outside = c.Space && (x * x + y * y + z * z < 5 || i == 0 || j > 8);
+      return outside ? AttenuationField::OutsideSpace() : value;
+    });
+  const std::vector<float> angle = GetAngle(field, c.Options);
+  const std::vector<double> oracle = GetOracle(field, c.Options);
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < oracle.size(); ++i)
+  {
+    const double error = (angle[i] - oracle[i]) / GetFullAngle(field);
+    sum += error;
+    squares += error * error;
+  }
+  const double count = static_cast<double>(oracle.size());
+  EXPECT_LT(std::abs(sum / count), c.MostBias);
+  EXPECT_LT(std::sqrt(squares / count), c.MostRms);
+}
+}
+
+TEST(OccludedAngle, AgreesWithTheOracle)
+{
+  const OccludedAngleOptions whole{ false, 60, 0 };
+  // dense weak data and sparse strong data, square and oblong voxels
+  CheckCase({ { 13, 11, 1 }, { 1, 1, 1 }, 1, 0.5, whole, 0.003, 0.006 });
+  CheckCase({ { 13, 11, 1 }, { 1, 1, 1 }, 0.1, 3, whole, 0.02, 0.022 });
+  CheckCase({ { 13, 11, 1 }, { 1, 0.6, 1 }, 0.1, 3, whole, 0.02, 0.025 });
+  CheckCase({ { 11, 10, 9 }, { 1, 1, 1 }, 1, 0.3, whole, 0.004, 0.009 });
+  CheckCase({ { 11, 10, 9 }, { 1, 1, 1 }, 0.1, 3, whole, 0.015, 0.025 });
+  CheckCase({ { 11, 10, 9 }, { 0.5, 1.2, 0.8 }, 0.1, 3, whole, 0.015, 0.025 });
+  // fewer voxels along the last axis than rays shift
+  CheckCase({ { 3, 12, 4 }, { 2, 1, 0.5 }, 0.2, 2, whole, 0.015, 0.025 });
+}
+
+TEST(OccludedAngle, BinaryAgreesWithTheOracle)
+{
+  const OccludedAngleOptions binary{ true, 60, 0 };
+  CheckCase({ { 13, 11, 1 }, { 1, 1, 1 }, 0.08, 3, binary, 0.04, 0.05 });
+  CheckCase({ { 11, 10, 9 }, { 1, 1, 1 }, 0.05, 3, binary, 0.04, 0.05 });
+  CheckCase({ { 11, 10, 9 }, { 0.5, 1.2, 0.8 }, 0.05, 3, binary, 0.04, 0.05 });
+}
+
+TEST(OccludedAngle, RadiusAgreesWithTheOracle)
+{
+  for (double radius : { 1.0, 2.5, 4.0 })
+  {
+    const OccludedAngleOptions local{ false, 60, radius };
+    CheckCase({ { 13, 11, 1 }, { 1, 1, 1 }, 0.1, 3, local, 0.02, 0.03 });
+    CheckCase({ { 11, 10, 9 }, { 1, 1, 1 }, 0.1, 3, local, 0.015, 0.025 });
+    CheckCase({ { 11, 10, 9 }, { 0.5, 1.2, 0.8 }, 0.1, 3, local, 0.015, 0.025 });
+  }
+}
+
+TEST(OccludedAngle, SpaceAgreesWithTheOracle)
+{
+  for (double radius : { 0.0, 3.0 })
+  {
+    const OccludedAngleOptions options{ false, 60, radius };
+    CheckCase({ { 13, 11, 1 }, { 1, 1, 1 }, 0.2, 2, options, 0.03, 0.06, true });
+    CheckCase({ { 11, 10, 9 }, { 1, 1, 1 }, 0.2, 2, options, 0.03, 0.06, true });
+  }
+}
+
+TEST(OccludedAngle, LargeRadiusIsTheWholeSpace)
+{
+  AttenuationField field({ 21, 17, 13 }, { 1, 0.8, 1.5 });
+  Numbers numbers(3);
+  FillField(field, [&](auto...) { return numbers() < 0.2 ? numbers() : 0; });
+  const auto whole = GetAngle(field, { false, 100, 0 });
+  const auto local = GetAngle(field, { false, 100, 1000 });
+  for (std::size_t i = 0; i < whole.size(); ++i)
+  {
+    ASSERT_NEAR(whole[i], local[i], 2e-5) << i;
+  }
+}
+
+// Small grids divide the lines among threads, large ones the rays; flat ones divide rays by length.
+TEST(OccludedAngle, DoesNotDependOnThreads)
+{
+  for (const Dimensions& size :
+    { Dimensions{ 20, 23, 17 }, Dimensions{ 70, 66, 68 }, Dimensions{ 700, 500, 1 } })
+  {
+    AttenuationField field(size, { 1, 1.3, 0.7 });
+    Numbers numbers(11);
+    FillField(field, [&](auto...) { return 0.1 * numbers(); });
+    for (double radius : { 0.0, 9.0 })
+    {
+      const OccludedAngleOptions options{ false, 14, radius };
+      const auto one = GetAngle(field, options, 1);
+      EXPECT_EQ(GetAngle(field, options, 2), one);
+      EXPECT_EQ(GetAngle(field, options, 5), one);
+    }
+  }
+}
+
+TEST(OccludedAngle, LeavesTheFieldAsItWas)
+{
+  AttenuationField field({ 9, 7, 5 }, { 1, 2, 3 });
+  FillField(field,
+    [](std::int64_t i, std::int64_t j, std::int64_t k)
+    { return 0.001 * static_cast<double>(i + 10 * j + 100 * k); });
+  GetAngle(field, { false, 20, 0 });
+  EXPECT_EQ(field.GetDimensions(), (Dimensions{ 9, 7, 5 }));
+  EXPECT_EQ(field.GetSpacing(), (Vec3{ 1, 2, 3 }));
+  EXPECT_FLOAT_EQ(field.Row(4, 3)[7], 0.347F);
+}
+
+// A shape without symmetry: a mirrored axis or swapped axes would show.
+TEST(OccludedAngle, DoesNotMirror)
+{
+  AttenuationField field({ 15, 17, 19 }, { 1, 1, 1 });
+  field.Row(4, 6)[3] = 5;
+  const auto angle = GetAngle(field, { false, 200, 0 });
+  const auto at = [&](int i, int j, int k) { return angle[(k * 17 + j) * 15 + i]; };
+  const float highest = *std::max_element(angle.begin(), angle.end());
+  EXPECT_EQ(at(3, 4, 6), highest);
+  EXPECT_GT(at(4, 4, 6), 2 * at(11, 4, 6));
+  EXPECT_GT(at(3, 5, 6), 2 * at(3, 12, 6));
+  EXPECT_GT(at(3, 4, 7), 2 * at(3, 4, 12));
+}
+
+TEST(OccludedAngle, EmptyAndFullAreExact)
+{
+  AttenuationField field({ 12, 9, 7 }, { 1, 1, 1 });
+  for (float angle : GetAngle(field, { false, 50, 0 }))
+  {
+    ASSERT_EQ(angle, 0.0F);
+  }
+  FillField(field, [](auto...) { return 12.0; });
+  for (float angle : GetAngle(field, { true, 50, 0 }))
+  {
+    ASSERT_FLOAT_EQ(angle, static_cast<float>(4 * Pi));
+  }
+}
+
+TEST(OccludedAngle, RefusesBadOptions)
+{
+  AttenuationField field({ 12, 9, 7 }, { 1, 2, 0.5 });
+  EXPECT_THROW(GetAngle(field, { false, 0, 0 }), std::invalid_argument);
+  EXPECT_THROW(GetAngle(field, { false, 7, 0 }), std::invalid_argument);
+  EXPECT_THROW(GetAngle(field, { false, 8, 0.4 }), std::invalid_argument);
+  EXPECT_THROW(GetAngle(field, { false, 8, -1 }), std::invalid_argument);
+  EXPECT_THROW(GetAngle(field, { false, 8, std::nan("") }), std::invalid_argument);
+  EXPECT_NO_THROW(GetAngle(field, { false, 8, 0.5 }));
+  EXPECT_THROW(AttenuationField({ 12, 1, 1 }, { 1, 1, 1 }), std::invalid_argument);
+  EXPECT_THROW(AttenuationField({ 12, 5, 1 }, { 1, 0, 1 }), std::invalid_argument);
+}
+
+TEST(OccludedAngle, StopsWhenAsked)
+{
+  AttenuationField field({ 100, 100, 100 }, { 1, 1, 1 });
+  std::vector<float> angle(field.GetNumberOfVoxels());
+  ThreadExecution execution(1, [](double fraction) { return fraction < 0.05; });
+  EXPECT_THROW(ComputeOccludedAngle(field, { false, 2000, 0 }, angle.data(), execution), Aborted);
+}
+
+TEST(OccludedAngle, LinesAreUniform)
+{
+  const auto lines = EqualAreaLines(2000);
+  Vec3 squares{ 0, 0, 0 };
+  for (const Vec3& line : lines)
+  {
+    ASSERT_NEAR(Norm(line), 1, 1e-12);
+    for (int axis : { 0, 1, 2 })
+    {
+      squares[axis] += line[axis] * line[axis] / 2000;
+    }
+  }
+  for (int axis : { 0, 1, 2 })
+  {
+    EXPECT_NEAR(squares[axis], 1.0 / 3, 1e-3);
+  }
+  // every cap of a hundredth of the sphere has its share of lines
+  Numbers numbers(5);
+  for (int trial = 0; trial < 200; ++trial)
+  {
+    const double z = 2 * numbers() - 1;
+    const double turn = 2 * Pi * numbers();
+    const double r = std::sqrt(1 - z * z);
+    const Vec3 centre{ r * std::cos(turn), r * std::sin(turn), z };
+    const auto inside = std::count_if(lines.begin(), lines.end(),
+      [&](const Vec3& line) { return std::abs(Dot(line, centre)) > 0.98; });
+    ASSERT_NEAR(static_cast<double>(inside), 40, 8);
+  }
+}
+}

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The closed forms of Carr 1996, section 5.3, and how fast they are approached.
+#include "OcclusionCases.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+// Mean error over the pixels at which truth gives a number, for a curve of radius r pixels in an
+// image of 4 r pixels. present(angle) says whether the circle exists in that direction.
+struct Circle
+{
+  std::function<bool(double)> Present;
+  std::function<double(double x, double y)> Truth; // in units of the radius; NaN: not looked at
+
+  double GetError(int r, int directions) const
+  {
+    const int n = 4 * r + 1;
+    AttenuationField field({ n, n, 1 }, { 1, 1, 1 });
+    const int steps = 16 * r; // a closed curve of pixels
+    for (int s = 0; s < steps; ++s)
+    {
+      const double a = 2 * Pi * (s + 0.5) / steps;
+      if (this->Present(a))
+      {
+        field.Row(std::lround(2 * r + r * std::sin(a)), 0)[std::lround(2 * r + r * std::cos(a))] =
+          1;
+      }
+    }
+    const auto angle = GetAngle(field, { true, directions, 0 });
+    double sum = 0;
+    int count = 0;
+    for (int j = 0; j < n; ++j)
+    {
+      for (int i = 0; i < n; ++i)
+      {
+        const double truth = this->Truth(double(i - 2 * r) / r, double(j - 2 * r) / r);
+        if (!std::isnan(truth))
+        {
+          sum += std::abs(angle[j * n + i] - truth);
+          ++count;
+        }
+      }
+    }
+    return sum / count;
+  }
+};
+
+const double None = std::nan("");
+
+// The angle of the gap of half width h around the direction +x, seen from (x, y) inside.
+double GetGap(double h, double x, double y)
+{
+  const double a = std::atan2(std::sin(h) - y, std::cos(h) - x);
+  const double b = std::atan2(-std::sin(h) - y, std::cos(h) - x);
+  return a - b;
+}
+
+double Radius(double x, double y)
+{
+  return std::sqrt(x * x + y * y);
+}
+}
+
+TEST(OccludedAngleTruth, InsideAClosedCircleIsTheFullAngle)
+{
+  const Circle circle{ [](double) { return true; },
+    [](double x, double y) { return Radius(x, y) < 0.95 ? 2 * Pi : None; } };
+  EXPECT_LT(circle.GetError(30, 100), 0.002);
+  EXPECT_LT(circle.GetError(30, 36), 0.002);
+}
+
+TEST(OccludedAngleTruth, OutsideAClosedCircle)
+{
+  const Circle circle{ [](double) { return true; },
+    [](double x, double y)
+    {
+      const double r = Radius(x, y);
+      return r > 1.2 && r < 1.9 ? 2 * std::asin(1 / r) : None;
+    } };
+  // A curve of pixels is half a pixel thick on either side: first order.
+  const double coarse = circle.GetError(20, 400);
+  const double fine = circle.GetError(80, 400);
+  EXPECT_LT(coarse, 0.13);
+  EXPECT_LT(fine, 0.032);
+  EXPECT_NEAR(coarse / fine, 4, 0.8);
+  // so is the angle's sampling
+  EXPECT_LT(circle.GetError(80, 40), 0.06);
+}
+
+TEST(OccludedAngleTruth, OneGap)
+{
+  const double half = Pi / 9; // a gap of 40 degrees, Carr 1996, figure 5.13
+  const Circle circle{ [=](double a) { return std::cos(a) < std::cos(half); },
+    [=](double x, double y) { return Radius(x, y) < 0.8 ? 2 * Pi - GetGap(half, x, y) : None; } };
+  // The ends of the gap are uncertain by a pixel together: first order.
+  const double coarse = circle.GetError(25, 400);
+  const double fine = circle.GetError(100, 400);
+  EXPECT_LT(fine, 0.025);
+  EXPECT_NEAR(coarse / fine, 4, 2);
+  // along the chord it is pi
+  const Circle chord{ circle.Present, [=](double x, double y) {
+                       return std::abs(x - std::cos(half)) < 0.006 && std::abs(y) < 0.2 ? Pi : None;
+                     } };
+  EXPECT_LT(chord.GetError(100, 400), 0.06);
+}
+
+TEST(OccludedAngleTruth, SeveralGapsAdd)
+{
+  const double half = Pi / 18;
+  const auto turned = [](double x, double y, int i)
+  {
+    const double a = 2 * Pi * i / 3;
+    return std::pair(std::cos(a) * x + std::sin(a) * y, -std::sin(a) * x + std::cos(a) * y);
+  };
+  const Circle circle{ [=](double a) { return std::cos(3 * a) < std::cos(3 * half); },
+    [=](double x, double y)
+    {
+      double truth = 2 * Pi;
+      for (int i = 0; i < 3; ++i)
+      {
+        const auto [u, v] = turned(x, y, i);
+        truth -= GetGap(half, u, v);
+      }
+      return Radius(x, y) < 0.7 ? truth : None;
+    } };
+  const double coarse = circle.GetError(25, 400);
+  const double fine = circle.GetError(100, 400);
+  EXPECT_LT(fine, 0.06);
+  EXPECT_NEAR(coarse / fine, 4, 1);
+}
+
+// Narrow gaps, evenly spread: the angle inside is 2 pi times the fraction of the circle that the
+// pixels cover as seen from the middle, outside it is reduced by 2 p - p^2.
+TEST(OccludedAngleTruth, EvenGaps)
+{
+  const int parts = 60;
+  const int r = 300;
+  const double open = 0.5; // of the circle, before pixels make the parts longer
+  const auto present = [=](double a) { return std::fmod(a * parts / (2 * Pi), 1.0) < 1 - open; };
+  const double longer = parts * 1.0 / (2 * Pi * r); // a pixel per part
+  const double p = 1 - open + longer;
+  const Circle inside{ present,
+    [=](double x, double y) { return Radius(x, y) < 0.6 ? 2 * Pi * p : None; } };
+  EXPECT_LT(inside.GetError(r, 500), 0.2);
+  const Circle outside{ present,
+    [=](double x, double y)
+    {
+      const double d = Radius(x, y);
+      return d > 1.4 && d < 1.8 ? (2 * p - p * p) * 2 * std::asin(1 / d) : None;
+    } };
+  EXPECT_LT(outside.GetError(r, 500), 0.1);
+}
+
+TEST(OccludedAngleTruth, Sphere)
+{
+  double errors[2];
+  for (int level : { 0, 1 })
+  {
+    const int r = level == 0 ? 8 : 16;
+    const int n = 4 * r + 1;
+    AttenuationField field({ n, n, n }, { 1, 1, 1 });
+    const auto radius = [=](std::int64_t i, std::int64_t j, std::int64_t k)
+    {
+      const double x = static_cast<double>(i - 2 * r);
+      const double y = static_cast<double>(j - 2 * r);
+      const double z = static_cast<double>(k - 2 * r);
+      return std::sqrt(x * x + y * y + z * z) / r;
+    };
+    FillField(field,
+      [=](std::int64_t i, std::int64_t j, std::int64_t k)
+      { return std::abs(radius(i, j, k) - 1) * r <= 0.75 ? 1 : 0; });
+    const auto angle = GetAngle(field, { true, 400, 0 }, 0);
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < n; ++k)
+    {
+      for (int j = 0; j < n; ++j)
+      {
+        for (int i = 0; i < n; ++i)
+        {
+          const double distance = radius(i, j, k);
+          const float value = angle[(k * n + j) * n + i];
+          if (distance < 0.8)
+          {
+            ASSERT_NEAR(value, 4 * Pi, 0.02);
+          }
+          else if (distance > 1.3 && distance < 1.8)
+          {
+            sum += std::abs(value - 2 * Pi * (1 - std::sqrt(1 - 1 / (distance * distance))));
+            ++count;
+          }
+        }
+      }
+    }
+    errors[level] = sum / count;
+  }
+  EXPECT_LT(errors[1], 0.35);
+  EXPECT_NEAR(errors[0] / errors[1], 2, 0.35);
+}
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCheck.h"
+#include "vtkDataArray.h"
+#include "vtkExecutive.h"
+#include "vtkImageData.h"
+#include "vtkLacunaOccludedAngle.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSphere.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace
+{
+// What the filter says about an image of 0 with one voxel of 1, after change.
+void Expect(const std::string& message,
+  const std::function<void(vtkLacunaOccludedAngle*, vtkImageData*)>& change)
+{
+  vtkNew<vtkImageData> image;
+  image->SetExtent(5, 14, 0, 11, 0, 7);
+  image->SetSpacing(1, 0.5, 2);
+  image->AllocateScalars(VTK_FLOAT, 1);
+  image->GetPointData()->GetScalars()->Fill(0);
+  image->SetScalarComponentFromDouble(9, 4, 3, 0, 1);
+  vtkNew<vtkLacunaOccludedAngle> filter;
+  filter->SetNumberOfDirections(10);
+  filter->SetInputData(image);
+  change(filter, image);
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  vtkNew<lacunaCheck::Messages> rest;
+  rest->Watch(filter->GetExecutive());
+  filter->Update();
+  if (!messages->HasError(message))
+  {
+    lacunaCheck::Fail(
+      __FILE__, __LINE__, "expected '" + message + "', got '" + messages->Errors + "'");
+  }
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+}
+}
+
+int TestOccludedAngleErrors(int, char*[])
+{
+  using Filter = vtkLacunaOccludedAngle;
+  Expect("all grey levels are 0",
+    [](Filter*, vtkImageData* image) { image->GetPointData()->GetScalars()->Fill(0); });
+  Expect(
+    "no point scalars", [](Filter*, vtkImageData* image) { image->GetPointData()->Initialize(); });
+  Expect("more than one component",
+    [](Filter*, vtkImageData* image) { image->AllocateScalars(VTK_FLOAT, 3); });
+  Expect("at least two voxels wide",
+    [](Filter* filter, vtkImageData*)
+    {
+      vtkNew<vtkImageData> line;
+      line->SetDimensions(9, 1, 1);
+      line->AllocateScalars(VTK_FLOAT, 1);
+      line->GetPointData()->GetScalars()->Fill(1);
+      filter->SetInputData(line);
+    });
+  Expect("not a finite number at voxel (9, 4, 3)",
+    [](Filter*, vtkImageData* image)
+    {
+      image->SetScalarComponentFromDouble(5, 0, 0, 0, 1);
+      image->SetScalarComponentFromDouble(9, 4, 3, 0, std::numeric_limits<double>::quiet_NaN());
+    });
+  Expect("negative or not a number at voxel (6, 2, 1)",
+    [](Filter* filter, vtkImageData* image)
+    {
+      filter->SetAttenuation(Filter::ARRAY);
+      image->SetScalarComponentFromDouble(6, 2, 1, 0, -0.25);
+    });
+  Expect("no OpacityFunction",
+    [](Filter* filter, vtkImageData*) { filter->SetAttenuation(Filter::OPACITY_FUNCTION); });
+  Expect("there is no threshold",
+    [](Filter* filter, vtkImageData*) { filter->SetNumberOfThresholdsOverPi(0); });
+  Expect("LocalRadii has 2 values and ThresholdsOverPi 3",
+    [](Filter* filter, vtkImageData*)
+    {
+      filter->SetThresholdsOverPi(2, 2);
+      filter->SetLocalRadii(1, 5);
+    });
+  Expect("iteration 2 has the threshold 4.5 pi",
+    [](Filter* filter, vtkImageData*) { filter->SetThresholdsOverPi(1, 4.5); });
+  Expect(
+    "a radius not negative", [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, -3); });
+  Expect("smaller than a voxel; give at least 0.5",
+    [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, 0.4); });
+  Expect(
+    "ObjectOpacity is 1.5", [](Filter* filter, vtkImageData*) { filter->SetObjectOpacity(1.5); });
+  Expect("MedianKernel is 4", [](Filter* filter, vtkImageData*) { filter->SetMedianKernel(4); });
+  Expect("contains none of the data",
+    [](Filter* filter, vtkImageData*)
+    {
+      vtkNew<vtkSphere> elsewhere;
+      elsewhere->SetCenter(100, 100, 100);
+      filter->SetReconstructionSpace(elsewhere);
+    });
+  Expect("the reconstruction space (second input)",
+    [](Filter* filter, vtkImageData* image)
+    {
+      vtkNew<vtkImageData> mask;
+      mask->DeepCopy(image);
+      mask->SetSpacing(1, 0.5, 2.1);
+      filter->SetInputData(1, mask);
+    });
+
+  // Everything object is no error: every voxel is hidden from everywhere.
+  vtkNew<vtkImageData> full;
+  full->SetDimensions(6, 6, 6);
+  full->AllocateScalars(VTK_FLOAT, 1);
+  full->GetPointData()->GetScalars()->Fill(50);
+  vtkNew<vtkLacunaOccludedAngle> filter;
+  filter->SetInputData(full);
+  filter->SetMode(Filter::BINARY);
+  filter->SetAttenuation(Filter::ARRAY);
+  filter->SetNumberOfDirections(10);
+  filter->Update();
+  double range[2];
+  filter->GetOutput()->GetPointData()->GetArray("Object")->GetRange(range);
+  LACUNA_CHECK(range[0] == 1);
+  return lacunaCheck::Result();
+}

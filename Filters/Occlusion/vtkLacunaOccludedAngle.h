@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @class vtkLacunaOccludedAngle
+/// @brief how much of its surroundings each point is hidden from, and the shape that follows
+///
+/// Tells inside from outside of incomplete, noisy surface data without normals, adjacency or a
+/// model: a point inside is hidden in most directions, one outside in few. The angle is thresholded
+/// and the result taken as data again, once per threshold, so that gaps close step by step
+/// (Carr 1996, chapter 5).
+///
+/// Input 0: vtkImageData, 2-D or 3-D, any point scalars with one component. Input 1 (optional): an
+/// image of the same geometry whose scalars are not 0 inside the reconstruction space; rays end
+/// where they leave it.
+///
+/// Output: vtkImageData with the point arrays
+/// - `OccludedAngle` (float, the scalars): radians 0...2 pi (2-D) or steradians 0...4 pi (3-D), the
+///   last iteration's, computed from the object of the iteration before;
+/// - `Object` (unsigned char): 1 where that angle reaches the last threshold,
+///
+/// and the field data, one tuple per iteration done: `ThresholdOverPi`, `LocalRadius` (mm),
+/// `ObjectVoxels`, `ObjectVolume` (ml; 2-D: area in mm^2), `MeanAngle`, `SuggestedThresholdOverPi`
+/// (0: none; from the histogram of the angle over the voxels that were not object before).
+///
+/// The whole input is needed for any part of the output; under MPI each rank computes it all. The
+/// result does not depend on the number of threads. See lacunaOccludedAngle.h for the method.
+///
+/// Errors: no data, equal grey levels, NaN or negative attenuation, a radius smaller than a voxel,
+/// a schedule of radii of another length than that of thresholds, a reconstruction space of another
+/// geometry or without data.
+#ifndef vtkLacunaOccludedAngle_h
+#define vtkLacunaOccludedAngle_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersOcclusionModule.h" // for export macro
+#include "vtkSmartPointer.h"                 // for ownership
+
+#include <vector> // for the schedule
+
+class vtkImageData;
+class vtkImplicitFunction;
+class vtkPiecewiseFunction;
+
+class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOccludedAngle : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaOccludedAngle* New();
+  vtkTypeMacro(vtkLacunaOccludedAngle, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Modes
+  {
+    CONTINUOUS = 0,
+    BINARY = 1
+  };
+  enum Attenuations
+  {
+    LINEAR_IN_RANGE = 0,
+    OPACITY_FUNCTION = 1,
+    ARRAY = 2
+  };
+
+  ///@{
+  /// CONTINUOUS: a ray is hidden by 1 - exp(-attenuation along it). BINARY: by the first voxel it
+  /// meets that is at least half opaque; such voxels are hidden themselves. Default CONTINUOUS.
+  vtkSetClampMacro(Mode, int, CONTINUOUS, BINARY);
+  vtkGetMacro(Mode, int);
+  ///@}
+
+  ///@{
+  /// How grey levels become attenuation. LINEAR_IN_RANGE: opacity 0 at the lowest to 1 at the
+  /// highest level of the input. OPACITY_FUNCTION: by OpacityFunction. ARRAY: the scalars are
+  /// attenuation coefficients per mm. A voxel of opacity o attenuates by o ln 20 over its shortest
+  /// edge: one of opacity 1 takes 95 % of a ray (Carr 1996, section 5.6). Default LINEAR_IN_RANGE.
+  vtkSetClampMacro(Attenuation, int, LINEAR_IN_RANGE, ARRAY);
+  vtkGetMacro(Attenuation, int);
+  ///@}
+
+  ///@{
+  /// Opacity (0...1) as a function of grey level, for Attenuation OPACITY_FUNCTION. Default none.
+  void SetOpacityFunction(vtkPiecewiseFunction* function);
+  vtkPiecewiseFunction* GetOpacityFunction() const;
+  ///@}
+
+  ///@{
+  /// Over the whole circle or sphere; an odd number is raised by one, since a line serves two.
+  /// Default 1000. The thesis uses 100 in 2-D and 1000 in 3-D.
+  vtkSetClampMacro(NumberOfDirections, int, 2, 10000000);
+  vtkGetMacro(NumberOfDirections, int);
+  ///@}
+
+  ///@{
+  /// One threshold per iteration, in units of pi; 0 stands for half the full angle (pi in 2-D, 2 pi
+  /// in 3-D). Default one, 0.
+  void SetNumberOfThresholdsOverPi(int count);
+  int GetNumberOfThresholdsOverPi() const;
+  void SetThresholdsOverPi(int i, double value);
+  double GetThresholdsOverPi(int i) const;
+  ///@}
+
+  ///@{
+  /// How far rays go, mm: one value for all iterations, or one per iteration; 0: to the end of the
+  /// reconstruction space. Default one, 0.
+  void SetNumberOfLocalRadii(int count);
+  int GetNumberOfLocalRadii() const;
+  void SetLocalRadii(int i, double value);
+  double GetLocalRadii(int i) const;
+  ///@}
+
+  ///@{
+  /// The fraction of a ray that an object voxel of the second and later iterations takes over its
+  /// shortest edge, above 0 and at most 1 (opaque). Default 0.95.
+  vtkSetMacro(ObjectOpacity, double);
+  vtkGetMacro(ObjectOpacity, double);
+  ///@}
+
+  ///@{
+  /// Keep data voxels that are at least half opaque as object in every iteration. Default off.
+  vtkSetMacro(KeepData, bool);
+  vtkGetMacro(KeepData, bool);
+  vtkBooleanMacro(KeepData, bool);
+  ///@}
+
+  ///@{
+  /// Edge length in voxels, odd, of a median filter on the angle before it is thresholded; 1: none.
+  /// Default 1.
+  vtkSetMacro(MedianKernel, int);
+  vtkGetMacro(MedianKernel, int);
+  ///@}
+
+  ///@{
+  /// The part of space that is seen through, besides input 1: where the function is negative.
+  /// Default none: the whole image.
+  void SetReconstructionSpace(vtkImplicitFunction* function);
+  vtkImplicitFunction* GetReconstructionSpace() const;
+  ///@}
+
+  ///@{
+  /// Keep the result of each iteration: the output then has time steps 1...n. Costs 5 bytes per
+  /// voxel and iteration. Default off.
+  vtkSetMacro(KeepIterations, bool);
+  vtkGetMacro(KeepIterations, bool);
+  vtkBooleanMacro(KeepIterations, bool);
+  ///@}
+
+  /// Input 1.
+  void SetReconstructionSpaceConnection(vtkAlgorithmOutput* output);
+
+  vtkMTimeType GetMTime() override;
+
+protected:
+  vtkLacunaOccludedAngle();
+  ~vtkLacunaOccludedAngle() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int Mode = CONTINUOUS;
+  int Attenuation = LINEAR_IN_RANGE;
+  vtkSmartPointer<vtkPiecewiseFunction> OpacityFunction;
+  int NumberOfDirections = 1000;
+  std::vector<double> ThresholdsOverPi = { 0 };
+  std::vector<double> LocalRadii = { 0 };
+  double ObjectOpacity = 0.95;
+  bool KeepData = false;
+  int MedianKernel = 1;
+  vtkSmartPointer<vtkImplicitFunction> ReconstructionSpace;
+  bool KeepIterations = false;
+
+private:
+  vtkLacunaOccludedAngle(const vtkLacunaOccludedAngle&) = delete;
+  void operator=(const vtkLacunaOccludedAngle&) = delete;
+
+  class Run;
+
+  /// The iterations kept, and what they were made from.
+  std::vector<vtkSmartPointer<vtkImageData>> Iterations;
+  vtkMTimeType IterationsTime = 0;
+};
+#endif
