@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaIncompleteShape.h"
+
+#include "lacunaIncompleteShape.h"
+#include "lacunaMemory.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+vtkStandardNewMacro(vtkLacunaIncompleteShape);
+
+//------------------------------------------------------------------------------
+vtkLacunaIncompleteShape::vtkLacunaIncompleteShape()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+vtkLacunaIncompleteShape::~vtkLacunaIncompleteShape() = default;
+
+//------------------------------------------------------------------------------
+lacuna::IncompleteShape vtkLacunaIncompleteShape::MakeShape()
+{
+  lacuna::IncompleteShape::Parameters p;
+  p.Shape = static_cast<lacuna::IncompleteShape::Kind>(this->Shape);
+  std::copy_n(this->Dimensions, 3, p.Dimensions.begin());
+  p.PresentFraction = this->PresentFraction;
+  p.Patches = this->Patches;
+  p.GapAngle = this->GapAngle;
+  p.OutlierFraction = this->OutlierFraction;
+  p.Seed = static_cast<std::uint64_t>(this->Seed);
+  return lacuna::IncompleteShape(p);
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaIncompleteShape::EvaluateDistance(double x, double y, double z)
+{
+  try
+  {
+    return this->MakeShape().GetDistance(x, y, z);
+  }
+  catch (const std::invalid_argument&)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaIncompleteShape::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  try
+  {
+    const std::array<int, 3> n = this->MakeShape().GetDimensions();
+    const int extent[6] = { 0, n[0] - 1, 0, n[1] - 1, 0, n[2] - 1 };
+    const double origin[3] = { -0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1) };
+    const double spacing[3] = { 1, 1, 1 };
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    info->Set(vtkDataObject::ORIGIN(), origin, 3);
+    info->Set(vtkDataObject::SPACING(), spacing, 3);
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
+    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    return 1;
+  }
+  catch (const std::exception& e)
+  {
+    vtkErrorMacro(<< e.what());
+    return 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaIncompleteShape::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::Run(this, outputVector,
+    [&](vtkLacunaExecution& execution)
+    {
+      const lacuna::IncompleteShape shape = this->MakeShape();
+      const std::array<int, 3> n = shape.GetDimensions();
+      std::ostringstream what;
+      what << "an image of " << n[0] << " x " << n[1] << " x " << n[2] << " voxels";
+      lacuna::RequireMemory(what.str(), 2.0 * n[0] * n[1] * n[2]);
+      const std::vector<unsigned char> voxels = shape.Sample(execution);
+
+      vtkImageData* output = vtkImageData::GetData(outputVector);
+      output->SetOrigin(-0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1));
+      output->SetSpacing(1, 1, 1);
+      output->SetDimensions(n.data());
+      vtkNew<vtkUnsignedCharArray> data;
+      data->SetName("Data");
+      data->SetNumberOfTuples(static_cast<vtkIdType>(voxels.size()));
+      std::copy(voxels.begin(), voxels.end(), data->GetPointer(0));
+      output->GetPointData()->SetScalars(data);
+      // what is missing is chosen from the whole, so the whole is made and cut to what was asked
+      int extent[6];
+      outputVector->GetInformationObject(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+      output->Crop(extent);
+      const double unit = shape.IsFlat() ? 1 : 0.001;
+      vtkLacunaFieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
+      std::ostringstream parameters;
+      parameters << "Shape=" << this->Shape << " Dimensions=" << this->Dimensions[0] << ","
+                 << this->Dimensions[1] << "," << this->Dimensions[2]
+                 << " PresentFraction=" << this->PresentFraction << " Patches=" << this->Patches
+                 << " GapAngle=" << this->GapAngle << " OutlierFraction=" << this->OutlierFraction
+                 << " Seed=" << this->Seed;
+      vtkLacunaProvenance::Record(output, this, {}, parameters.str());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIncompleteShape::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Shape: " << this->Shape << "\n";
+  os << indent << "Dimensions: " << this->Dimensions[0] << " " << this->Dimensions[1] << " "
+     << this->Dimensions[2] << "\n";
+  os << indent << "PresentFraction: " << this->PresentFraction << "\n";
+  os << indent << "Patches: " << this->Patches << "\n";
+  os << indent << "GapAngle: " << this->GapAngle << "\n";
+  os << indent << "OutlierFraction: " << this->OutlierFraction << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @class vtkLacunaIncompleteShape
+/// @brief the outline or surface of a known shape in voxels, of which parts are missing
+///
+/// Output: vtkImageData, spacing 1 mm, centred at the origin, point scalars `Data` (unsigned char):
+/// 1 where the shape was seen, 0 elsewhere. Field data: `CompleteVolume` (one tuple: ml; mm^2 for
+/// curves), the truth. Test data for vtkLacunaOccludedAngle (Carr 1996, chapter 5). See
+/// lacunaIncompleteShape.h for the shapes.
+///
+/// The output depends neither on the number of threads nor on the requested piece. Bad property
+/// values are errors that say what would be right.
+#ifndef vtkLacunaIncompleteShape_h
+#define vtkLacunaIncompleteShape_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaSourcesPhantomsModule.h" // for export macro
+
+namespace lacuna
+{
+class IncompleteShape;
+}
+
+class VTKLACUNASOURCESPHANTOMS_EXPORT vtkLacunaIncompleteShape : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaIncompleteShape* New();
+  vtkTypeMacro(vtkLacunaIncompleteShape, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Shapes
+  {
+    CIRCLE = 0,
+    CAVITY = 1,
+    BLOB = 2,
+    CUBE = 3,
+    SPHERE = 4,
+    KUMARA = 5
+  };
+
+  ///@{
+  /// CIRCLE, CAVITY and BLOB are curves in a 2-D image. Default CIRCLE.
+  vtkSetClampMacro(Shape, int, CIRCLE, KUMARA);
+  vtkGetMacro(Shape, int);
+  ///@}
+
+  ///@{
+  /// Voxels of the image; the shape fills it but for 12 voxels on every side. Curves use the first
+  /// two. At least 28. Default 200 200 200.
+  vtkSetVector3Macro(Dimensions, int);
+  vtkGetVector3Macro(Dimensions, int);
+  ///@}
+
+  ///@{
+  /// Fraction of the shape's voxels that are seen, above 0 and at most 1. Default 1.
+  vtkSetMacro(PresentFraction, double);
+  vtkGetMacro(PresentFraction, double);
+  ///@}
+
+  ///@{
+  /// Missing in patches (3 to 8 voxels in radius), not voxel by voxel. Default off.
+  vtkSetMacro(Patches, bool);
+  vtkGetMacro(Patches, bool);
+  vtkBooleanMacro(Patches, bool);
+  ///@}
+
+  ///@{
+  /// Nothing is seen within this angle (degrees, full width) about the +x axis. Default 0.
+  vtkSetMacro(GapAngle, double);
+  vtkGetMacro(GapAngle, double);
+  ///@}
+
+  ///@{
+  /// Wrong voxels anywhere in the image, as a fraction of the right ones, 0 to 10. Default 0.
+  vtkSetMacro(OutlierFraction, double);
+  vtkGetMacro(OutlierFraction, double);
+  ///@}
+
+  ///@{
+  /// Chooses what is missing and where outliers are. Default 0.
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  /// Signed distance in mm of a point to the complete shape, negative inside: the truth. Exact for
+  /// CIRCLE, CUBE and SPHERE, else to first order near the shape. NaN for bad property values.
+  double EvaluateDistance(double x, double y, double z);
+
+protected:
+  vtkLacunaIncompleteShape();
+  ~vtkLacunaIncompleteShape() override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  int Shape = CIRCLE;
+  int Dimensions[3] = { 200, 200, 200 };
+  double PresentFraction = 1;
+  bool Patches = false;
+  double GapAngle = 0;
+  double OutlierFraction = 0;
+  int Seed = 0;
+
+private:
+  vtkLacunaIncompleteShape(const vtkLacunaIncompleteShape&) = delete;
+  void operator=(const vtkLacunaIncompleteShape&) = delete;
+
+  // Throws std::invalid_argument when a property is out of range.
+  lacuna::IncompleteShape MakeShape();
+};
+#endif
