@@ -72,20 +72,44 @@ LACUNA_INLINE void SeeBody(const float* __restrict path, const float* __restrict
   }
 }
 
+/// What reaches voxel i from one side.
+template <bool Binary>
+LACUNA_INLINE float Reach(float ownPath, const float* m0, const float* m1, const PathLengths& w,
+  const float* near, const float* far, float fx, float fy, std::int64_t i)
+{
+  // Written so that equal neighbours give exactly their value.
+  const float left = near[i - 1] + fy * (far[i - 1] - near[i - 1]);
+  const float right = near[i] + fy * (far[i] - near[i]);
+  const float root = right + fx * (left - right);
+  return LetThrough<Binary>(ownPath + LayerPath(m0, m1, w, i)) * (root * root);
+}
+
 template <bool Binary>
 LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const float* __restrict m0, const float* __restrict m1, const PathLengths& lengths,
-  const float* __restrict near, const float* __restrict far, float fx, float fy, std::int64_t n)
+  const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float fy,
+  std::int64_t n)
 {
-  const PathLengths w = lengths;
+  const OcclusionRows::Side a = before;
+  const OcclusionRows::Side b = after;
+#pragma GCC ivdep
   for (std::int64_t i = 0; i < n; ++i)
   {
-    // Written so that equal neighbours give exactly their value.
-    const float left = near[i - 1] + fy * (far[i - 1] - near[i - 1]);
-    const float right = near[i] + fy * (far[i] - near[i]);
-    const float root = right + fx * (left - right);
-    const float path = half * own[i] + LayerPath(m0, m1, w, i);
-    hidden[i] += 1.0F - LetThrough<Binary>(path) * (root * root);
+    const float path = half * own[i];
+    hidden[i] += (1.0F - Reach<Binary>(path, a.M0, a.M1, a.Lengths, a.Near, a.Far, fx, fy, i)) +
+      (1.0F - Reach<Binary>(path, b.M0, b.M1, b.Lengths, b.Near, b.Far, fx, fy, i));
+  }
+}
+
+template <bool Binary>
+LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restrict own, float half,
+  const OcclusionRows::Side& side, float fx, float fy, std::int64_t n)
+{
+  const OcclusionRows::Side a = side;
+#pragma GCC ivdep
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    hidden[i] +=
+      1.0F - Reach<Binary>(half * own[i], a.M0, a.M1, a.Lengths, a.Near, a.Far, fx, fy, i);
   }
 }
 
@@ -94,8 +118,8 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
   template <bool Binary>                                                                           \
   struct NAME                                                                                      \
   {                                                                                                \
-    TARGET static void AddPath(float* path, const float* m0, const float* m1,                      \
-      const PathLengths& lengths, std::int64_t n)                                                  \
+    TARGET static void AddPath(                                                                    \
+      float* path, const float* m0, const float* m1, const PathLengths& lengths, std::int64_t n)   \
     {                                                                                              \
       AddPathBody(path, m0, m1, lengths, n);                                                       \
     }                                                                                              \
@@ -103,19 +127,25 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
     {                                                                                              \
       SeeBody<Binary>(path, first, root, n);                                                       \
     }                                                                                              \
-    TARGET static void Hide(float* hidden, const float* own, float half, const float* m0,          \
-      const float* m1, const PathLengths& lengths, const float* near, const float* far, float fx,  \
-      float fy, std::int64_t n)                                                                    \
+    TARGET static void Hide(float* hidden, const float* own, float half,                           \
+      const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float fy,     \
+      std::int64_t n)                                                                              \
     {                                                                                              \
-      HideBody<Binary>(hidden, own, half, m0, m1, lengths, near, far, fx, fy, n);                  \
+      HideBody<Binary>(hidden, own, half, before, after, fx, fy, n);                               \
     }                                                                                              \
-    static OcclusionRows Get() { return { AddPath, See, Hide }; }                                  \
+    TARGET static void HideSide(float* hidden, const float* own, float half,                       \
+      const OcclusionRows::Side& side, float fx, float fy, std::int64_t n)                         \
+    {                                                                                              \
+      HideSideBody<Binary>(hidden, own, half, side, fx, fy, n);                                    \
+    }                                                                                              \
+    static OcclusionRows Get() { return { AddPath, See, Hide, HideSide }; }                        \
   };
 
 LACUNA_ROWS(PlainRows, )
 #ifdef LACUNA_WIDE_VECTORS
 LACUNA_ROWS(Avx2Rows, __attribute__((target("avx2"))))
-LACUNA_ROWS(Avx512Rows, __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))))
+LACUNA_ROWS(
+  Avx512Rows, __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))))
 #endif
 
 template <bool Binary>

@@ -29,12 +29,25 @@ struct OcclusionRows
   /// root = square root of T(path - first, at least 0).
   void (*See)(const float* path, const float* first, float* root, std::int64_t n);
 
-  /// hidden += 1 - T(half * own + path through the next layer) * root^2, root being interpolated
-  /// to the voxels: voxel i lies fy of the way from ray row `near` to `far`, and fx of the way from
-  /// ray i to ray i - 1 (the rows are read from -1 on).
-  void (*Hide)(float* hidden, const float* own, float half, const float* m0, const float* m1,
-    const PathLengths& lengths, const float* near, const float* far, float fx, float fy,
-    std::int64_t n);
+  /// What a voxel's ray meets on one side: the next layer, then what the rays around it let
+  /// through. Voxel i lies fy of the way from ray row near to far, and fx of the way from ray i to
+  /// ray i - 1 (the rows are read from -1 on).
+  struct Side
+  {
+    const float* M0;
+    const float* M1;
+    PathLengths Lengths;
+    const float* Near;
+    const float* Far;
+  };
+
+  /// hidden += sum over both sides of 1 - T(half * own + path through the next layer) * root^2,
+  /// root being interpolated bilinearly to the voxels.
+  void (*Hide)(float* hidden, const float* own, float half, const Side& before, const Side& after,
+    float fx, float fy, std::int64_t n);
+  /// The same for one side.
+  void (*HideSide)(float* hidden, const float* own, float half, const Side& side, float fx,
+    float fy, std::int64_t n);
 };
 
 /// The operations for this processor's widest vectors.

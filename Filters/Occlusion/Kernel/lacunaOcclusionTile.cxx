@@ -146,8 +146,7 @@ void TileMarch::ForRows(std::int64_t k, Body&& body)
   {
     return;
   }
-  const std::int64_t first =
-    frame.Rows == 1 ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
+  const std::int64_t first = frame.Rows == 1 ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
   const std::int64_t last = std::min(this->Tile.LastY, frame.Rows - layer.ShiftY);
   for (span.Q = first; span.Q < last; ++span.Q)
   {
@@ -169,9 +168,9 @@ void TileMarch::Advance(float* plane, std::int64_t k)
     });
 }
 
-/// Serves the voxels between the rows of rays span.Q - 1 and span.Q. side 0: what lies at lower
-/// layers, 1: at higher ones.
-void TileMarch::Hide(const Span& span, int side)
+/// Serves the voxels between the rows of rays span.Q - 1 and span.Q, with what lies at lower
+/// layers (BeforeSide), at higher ones or both.
+void TileMarch::Hide(const Span& span, int sides)
 {
   const MarchFrame& frame = *this->Frame;
   const bool flat = frame.Rows == 1;
@@ -185,16 +184,28 @@ void TileMarch::Hide(const Span& span, int side)
   }
   const std::int64_t i = first + layer.ShiftX;
   const std::int64_t offset = first - this->Tile.FirstX + 1;
-  const float* near = this->Roots[side][1].data() + offset;
-  const float* far = flat ? near : this->Roots[side][0].data() + offset;
-  const LinePath::Layer& next = this->Neighbors[side];
-  const std::int64_t k = side == 0 ? span.K - 1 : span.K + 1;
-  const std::int64_t row = flat ? j : j + next.ShiftY;
-  this->Rows.Hide(
-    frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i,
-    frame.FieldAt(i, j, span.K), this->OwnHalf, frame.FieldAt(i + next.ShiftX, row, k),
-    frame.FieldAt(i + next.ShiftX, flat ? row : row + 1, k), next.Lengths, near, far,
-    layer.FractionX, layer.FractionY, count);
+  const auto getSide = [&](int side) -> OcclusionRows::Side
+  {
+    const LinePath::Layer& next = this->Neighbors[side];
+    const std::int64_t k = side == BeforeSide ? span.K - 1 : span.K + 1;
+    const std::int64_t row = flat ? j : j + next.ShiftY;
+    const float* near = this->Roots[side][1].data() + offset;
+    const float* far = flat ? near : this->Roots[side][0].data() + offset;
+    return { frame.FieldAt(i + next.ShiftX, row, k),
+      frame.FieldAt(i + next.ShiftX, flat ? row : row + 1, k), next.Lengths, near, far };
+  };
+  float* hidden = frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i;
+  const float* own = frame.FieldAt(i, j, span.K);
+  if (sides == BothSides)
+  {
+    this->Rows.Hide(hidden, own, this->OwnHalf, getSide(BeforeSide), getSide(AfterSide),
+      layer.FractionX, layer.FractionY, count);
+  }
+  else
+  {
+    this->Rows.HideSide(
+      hidden, own, this->OwnHalf, getSide(sides), layer.FractionX, layer.FractionY, count);
+  }
 }
 
 /// One pass for the whole path of each ray; then, with the path before and after each layer, what
@@ -233,8 +244,7 @@ void TileMarch::MarchWhole()
           this->Roots[0][1].data() + column, span.Count);
         this->Rows.See(this->Total.data() + offset, this->After.data() + offset,
           this->Roots[1][1].data() + column, span.Count);
-        this->Hide(span, 0);
-        this->Hide(span, 1);
+        this->Hide(span, BothSides);
       });
   }
 }

@@ -107,7 +107,13 @@ private:
   void Advance(float* plane, std::int64_t k);
   void PathAt(double plane, const Span& span, float* path) const;
   void UpdateSpace(const Span& span, const float* path);
-  void Hide(const Span& span, int side);
+  enum Sides
+  {
+    BeforeSide = 0,
+    AfterSide = 1,
+    BothSides = 2
+  };
+  void Hide(const Span& span, int sides);
   template <class Body>
   void ForRows(std::int64_t k, Body&& body);
 
@@ -125,16 +131,16 @@ private:
   std::int64_t FirstRow = 0; ///< of the rays of the tile, with the neighbours that voxels need
   std::int64_t Width = 0;
   std::int64_t Height = 0;
-  std::int64_t Plane = 0;    ///< rays of the tile
+  std::int64_t Plane = 0; ///< rays of the tile
   float OwnHalf = 0;
-  LinePath::Layer Neighbors[2];    ///< before and after
-  std::vector<float> Zero;         ///< a row
-  std::vector<float> Before;       ///< path of each ray before the neighbour layer
-  std::vector<float> After;        ///< path up to and with the neighbour layer after
-  std::vector<float> Total;        ///< path through everything
-  std::vector<float> Store;        ///< path of each ray up to each plane between layers
-  std::vector<float> Bound;        ///< path where a ray entered the space last
-  std::vector<float> Roots[2][2];  ///< per side, what two rows of rays let through
+  LinePath::Layer Neighbors[2];   ///< before and after
+  std::vector<float> Zero;        ///< a row
+  std::vector<float> Before;      ///< path of each ray before the neighbour layer
+  std::vector<float> After;       ///< path up to and with the neighbour layer after
+  std::vector<float> Total;       ///< path through everything
+  std::vector<float> Store;       ///< path of each ray up to each plane between layers
+  std::vector<float> Bound;       ///< path where a ray entered the space last
+  std::vector<float> Roots[2][2]; ///< per side, what two rows of rays let through
 };
 }
 #endif

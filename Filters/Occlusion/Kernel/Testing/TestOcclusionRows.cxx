@@ -66,8 +66,12 @@ TEST(OcclusionRows, AllInstructionSetsGiveTheSameBits)
         std::vector<float> root(n);
         rows.See(result.data(), m1.data(), root.data(), n);
         std::vector<float> hidden = Random(n, 3, 6);
-        rows.Hide(hidden.data(), m0.data() + 1, 0.6F, m0.data(), m1.data(), lengths,
-          near.data() + 1, far.data() + 1, 0.3F, 0.8F, n);
+        const OcclusionRows::Side before{ m0.data(), m1.data(), lengths, near.data() + 1,
+          far.data() + 1 };
+        const OcclusionRows::Side after{ m1.data(), m0.data(), lengths, far.data() + 1,
+          near.data() + 1 };
+        rows.Hide(hidden.data(), m0.data() + 1, 0.6F, before, after, 0.3F, 0.8F, n);
+        rows.HideSide(hidden.data(), m0.data() + 1, 0.6F, after, 0.1F, 0.4F, n);
         result.insert(result.end(), root.begin(), root.end());
         result.insert(result.end(), hidden.begin(), hidden.end());
         if (first.empty())

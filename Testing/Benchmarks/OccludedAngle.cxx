@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Occluded angles beside the time that memory alone needs: 12 bytes per voxel (read the data,
+// update the sums), in the same run.
+#include "lacunaOccludedAngle.h"
+
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+namespace
+{
+lacuna::AttenuationField MakeField(std::int64_t nx, std::int64_t ny, std::int64_t nz)
+{
+  lacuna::AttenuationField field({ nx, ny, nz }, { 1, 1, 1 });
+  std::uint32_t state = 1;
+  for (std::int64_t k = 0; k < nz; ++k)
+  {
+    for (std::int64_t j = 0; j < ny; ++j)
+    {
+      float* row = field.Row(j, k);
+      for (std::int64_t i = 0; i < nx; ++i)
+      {
+        state = state * 1664525U + 1013904223U;
+        row[i] = static_cast<float>(state >> 8) * (0.02F / (1 << 24));
+      }
+    }
+  }
+  return field;
+}
+
+void PerDirection(benchmark::State& state, double voxels, double directions)
+{
+  state.counters["ns_per_voxel_and_direction"] =
+    benchmark::Counter(voxels * directions * 1e-9, // seconds / (this * 1e9): in ns
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+// The anchor: sums += data.
+void Stream(benchmark::State& state)
+{
+  const std::int64_t n = state.range(0) * state.range(0) * state.range(0);
+  const std::vector<float> data(n, 0.5F);
+  std::vector<float> sums(n, 0.0F);
+  for (auto _ : state)
+  {
+    for (std::int64_t i = 0; i < n; ++i)
+    {
+      sums[i] += data[i];
+    }
+    benchmark::ClobberMemory();
+  }
+  PerDirection(state, static_cast<double>(n), 1);
+}
+BENCHMARK(Stream)->Arg(192)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+// edge, threads, Binary, local radius in voxels
+void Cube(benchmark::State& state)
+{
+  const std::int64_t n = state.range(0);
+  lacuna::AttenuationField field = MakeField(n, n, n);
+  lacuna::OccludedAngleOptions options;
+  options.Directions = 60;
+  options.Binary = state.range(2) != 0;
+  options.Radius = static_cast<double>(state.range(3));
+  std::vector<float> angle(field.GetNumberOfVoxels());
+  lacuna::ThreadExecution execution(static_cast<int>(state.range(1)));
+  for (auto _ : state)
+  {
+    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+  }
+  PerDirection(state, static_cast<double>(angle.size()), options.Directions);
+}
+BENCHMARK(Cube)
+  ->Args({ 192, 1, 0, 0 })
+  ->Args({ 192, 2, 0, 0 })
+  ->Args({ 192, 1, 1, 0 })
+  ->Args({ 192, 1, 0, 15 })
+  ->Args({ 64, 1, 0, 0 })
+  ->Args({ 128, 1, 0, 0 })
+  ->Args({ 256, 1, 0, 0 })
+  ->Args({ 512, 1, 0, 0 })
+  ->Unit(benchmark::kMillisecond)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime();
+
+// The thesis's kumara: 190 x 80 x 90 voxels, two iterations of 1000 directions.
+void Kumara(benchmark::State& state)
+{
+  lacuna::AttenuationField field = MakeField(190, 80, 90);
+  lacuna::OccludedAngleOptions options;
+  options.Directions = 1000;
+  std::vector<float> angle(field.GetNumberOfVoxels());
+  lacuna::ThreadExecution execution(2);
+  for (auto _ : state)
+  {
+    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+  }
+  PerDirection(state, static_cast<double>(angle.size()), 2.0 * options.Directions);
+}
+BENCHMARK(Kumara)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+
+BENCHMARK_MAIN();
