@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The thesis's 2-D cases of the occluded angle (Carr 1996, chapter 5), each with its picture.
+
+Usage: pvpython occluded_angle_2d.py [folder for the pictures]
+"""
+import math
+import os
+import sys
+
+import lacuna.plugin
+from lacuna import occlusion, pictures
+from paraview.simple import *
+from vtkmodules.numpy_interface import dataset_adapter
+from vtkmodules.vtkCommonDataModel import vtkImageData
+import numpy as np
+
+lacuna.plugin.load()
+folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+SIZE = [200, 200, 200]
+
+
+def show(name, title, angle):
+    """The angle in grey, the data in blue, the closed outline in red."""
+    surface = occlusion.closed_surface(angle)
+    view = pictures.new_view((700, 700))
+    display = Show(angle, view)
+    display.SetRepresentationType("Slice")
+    pictures.color_by(display, view, "OccludedAngle", "angle / rad", (0, 2 * math.pi), "Grayscale")
+    seen = Show(Threshold(Input=angle.Input, Scalars=["POINTS", "Data"], LowerThreshold=0.5, UpperThreshold=2,
+                          AllScalars=0), view)
+    seen.SetRepresentationType("Points")
+    ColorBy(seen, None)
+    seen.AmbientColor = seen.DiffuseColor = [0.2, 0.5, 1.0]
+    seen.PointSize = 3
+    outline = TrivialProducer()
+    outline.GetClientSideObject().SetOutput(surface.data)
+    line = Show(outline, view)
+    ColorBy(line, None)
+    line.AmbientColor = line.DiffuseColor = [0.9, 0.1, 0.1]
+    line.LineWidth = 3
+    line.Translation = [0, 0, 1]
+    pictures.add_text(view, title)
+    pictures.look(view, (0, 0, -1), (0, 1, 0), 1.3)
+    pictures.save(view, os.path.join(folder, name + ".png"))
+    suggestion = occlusion.suggested_threshold(angle)
+    print(f"{name}: area {surface.volume:.0f} mm2, suggested threshold {suggestion:.2f} pi", flush=True)
+    Delete(view)
+
+
+gap = IncompleteShape(Dimensions=SIZE, GapAngle=40)
+show("gap", "Gap of 40 degrees, threshold pi",
+     OccludedAngle(Input=gap, Mode="Binary", NumberOfDirections=100, ThresholdsOverPi=[1]))
+
+quarter = IncompleteShape(Dimensions=SIZE, PresentFraction=0.25)
+show("quarter", "A quarter of the pixels, 0.5 pi, median",
+     OccludedAngle(Input=quarter, Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.5], MedianKernel=5))
+
+blob = IncompleteShape(Shape="Blob", Dimensions=SIZE, PresentFraction=0.4, OutlierFraction=0.1, Seed=2)
+show("blob", "Noisy blob, 1.6 1.6 1.3 1.3 pi",
+     OccludedAngle(Input=blob, NumberOfDirections=100, ThresholdsOverPi=[1.6, 1.6, 1.3, 1.3]))
+
+cavity = IncompleteShape(Shape="Cavity", Dimensions=SIZE, PresentFraction=0.6)
+doughnut = vtkImageData()  # a ring that leaves the bay out
+doughnut.CopyStructure(servermanager.Fetch(cavity))
+x, y = np.meshgrid(np.arange(200) - 99.5, np.arange(200) - 99.5)
+bay = (np.abs(y) < 10) & (x > 5)
+dataset_adapter.WrapDataObject(doughnut).PointData.append((~bay).astype(np.uint8).ravel(), "Space")
+doughnut.GetPointData().SetActiveScalars("Space")
+space = TrivialProducer()
+space.GetClientSideObject().SetOutput(doughnut)
+show("cavity-doughnut", "Cavity, reconstruction space without the bay, 1.6 pi x 3",
+     OccludedAngle(Input=cavity, SpaceMask=space, NumberOfDirections=100, ThresholdsOverPi=[1.6] * 3))
+show("cavity-local", "Cavity, local radii, 1.4 pi x 3 at 10 mm, 1.5 pi x 2 at 15 mm",
+     OccludedAngle(Input=cavity, NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2,
+                   LocalRadii=[10] * 3 + [15] * 2))

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The thesis's 3-D cases of the occluded angle (Carr 1996, section 5.8), each with its picture.
+
+Usage: pvpython occluded_angle_3d.py [folder for the pictures]
+"""
+import os
+import sys
+
+import lacuna.plugin
+from lacuna import occlusion, pictures
+from paraview.simple import *
+
+lacuna.plugin.load()
+folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+
+
+def show(name, title, data, schedule, direction):
+    """The data in blue, the closed surface made of them."""
+    angle = OccludedAngle(Input=data, NumberOfDirections=400, **schedule)
+    surface = occlusion.closed_surface(angle)
+    view = pictures.new_view((900, 700))
+    producer = TrivialProducer()
+    producer.GetClientSideObject().SetOutput(surface.data)
+    body = pictures.show_surface(producer, view, pictures.TISSUE)
+    body.Opacity = 0.7
+    seen = Show(Threshold(Input=data, Scalars=["POINTS", "Data"], LowerThreshold=0.5, UpperThreshold=2, AllScalars=0),
+                view)
+    seen.SetRepresentationType("Points")
+    ColorBy(seen, None)
+    seen.AmbientColor = seen.DiffuseColor = [0.1, 0.3, 0.8]
+    seen.PointSize = 4
+    pictures.add_text(view, title)
+    pictures.look(view, direction, (0, 0, 1), 1.3)
+    pictures.save(view, os.path.join(folder, name + ".png"))
+    truth = servermanager.Fetch(data).GetFieldData().GetArray("CompleteVolume").GetValue(0)
+    print(f"{name}: {surface.volume:.2f} ml, truth {truth:.2f} ml ({100 * (surface.volume / truth - 1):+.1f} %), "
+          f"suggested threshold {occlusion.suggested_threshold(angle):.2f} pi", flush=True)
+    occlusion.plot_volume(angle, os.path.join(folder, name + "-volume.png"))
+    Delete(view)
+
+
+show("cube", "20-cube, 80 % missing: 2.5 2.5 2 2 pi",
+     IncompleteShape(Shape="Cube", Dimensions=[44, 44, 44], PresentFraction=0.2), occlusion.CUBE, (-1, -2, -0.8))
+show("sparse-cube", "20-cube, 90 % missing",
+     IncompleteShape(Shape="Cube", Dimensions=[44, 44, 44], PresentFraction=0.1), occlusion.SPARSE_CUBE, (-1, -2, -0.8))
+show("kumara", "Kumara, 60 % missing in patches, 2 % outliers",
+     IncompleteShape(Shape="Kumara", Dimensions=[105, 75, 53], PresentFraction=0.4, Patches=1, OutlierFraction=0.02),
+     occlusion.GROW_AND_SNAP, (-0.5, -2, -1))
