@@ -126,6 +126,12 @@ public:
     , Grid(input)
   {
     this->Scalars = self->GetInputArrayToProcess(0, input);
+    // ParaView gives an empty name while it does not know the input's arrays yet.
+    const char* name = self->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+    if (!this->Scalars && name && !*name)
+    {
+      this->Scalars = input->GetPointData()->GetScalars();
+    }
     if (!this->Scalars)
     {
       throw std::runtime_error("the input has no point scalars; choose an array");

@@ -44,12 +44,12 @@ chord = int(round(99.5 + radius * math.cos(math.radians(20))))
 assert abs(values[100, chord] - math.pi) < 0.3, values[100, chord]
 suggestion = occlusion.suggested_threshold(angle)
 assert 1 < suggestion < 2, suggestion
-thresholds, areas = occlusion.volume_against_threshold(angle, [1.2, 1.7])
-assert np.all(np.abs(areas / (math.pi * radius ** 2) - 1) < 0.06), areas
+thresholds, areas = occlusion.volume_against_threshold(angle, [1.1, 1.2])
+assert np.all(np.abs(areas / (math.pi * radius ** 2) - 1) < 0.03), areas
 surface = occlusion.closed_surface(angle)
 # the disc less the segment beyond the chord
 truth = radius ** 2 * (math.pi - 0.5 * (math.radians(40) - math.sin(math.radians(40))))
-assert abs(surface.volume / truth - 1) < 0.01, (surface.volume, truth)
+assert abs(surface.volume - truth) < 2 * math.pi * radius, (surface.volume, truth)  # within a pixel all round
 
 # Iterations are time steps.
 angle.ThresholdsOverPi = [1.6, 1.3, 1.0]
@@ -71,8 +71,8 @@ function.OpacityFunction.Points = [0, 0, 0.5, 0, 1, 1, 0.5, 0]
 function.UpdatePipeline()
 assert function.PointData["OccludedAngle"].GetRange(0)[1] > 5
 
-# A sphere of which 30 % is seen: a closed surface whose volume is right.
-ball = IncompleteShape(Shape="Sphere", Dimensions=[65, 65, 65], PresentFraction=0.3, Seed=3)
+# A sphere of which 10 % is seen: a closed surface whose volume is right.
+ball = IncompleteShape(Shape="Sphere", Dimensions=[65, 65, 65], PresentFraction=0.1, Seed=3)
 shape = OccludedAngle(Input=ball, NumberOfDirections=400, **occlusion.GROW_AND_SNAP)
 surface = occlusion.closed_surface(shape)
 truth = servermanager.Fetch(ball).GetFieldData().GetArray("CompleteVolume").GetValue(0)

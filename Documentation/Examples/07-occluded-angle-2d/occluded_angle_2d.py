@@ -11,6 +11,7 @@ import lacuna.plugin
 from lacuna import occlusion, pictures
 from paraview.simple import *
 from vtkmodules.numpy_interface import dataset_adapter
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 import numpy as np
 
@@ -26,19 +27,17 @@ def show(name, title, angle):
     display = Show(angle, view)
     display.SetRepresentationType("Slice")
     pictures.color_by(display, view, "OccludedAngle", "angle / rad", (0, 2 * math.pi), "Grayscale")
-    seen = Show(Threshold(Input=angle.Input, Scalars=["POINTS", "Data"], LowerThreshold=0.5, UpperThreshold=2,
-                          AllScalars=0), view)
-    seen.SetRepresentationType("Points")
-    ColorBy(seen, None)
+    points = TrivialProducer()
+    points.GetClientSideObject().SetOutput(occlusion.data_points(angle.Input))
+    seen = Show(points, view)
     seen.AmbientColor = seen.DiffuseColor = [0.2, 0.5, 1.0]
     seen.PointSize = 3
+    vtk_to_numpy(surface.data.GetPoints().GetData())[:, 2] += 1  # in front of the image
     outline = TrivialProducer()
     outline.GetClientSideObject().SetOutput(surface.data)
     line = Show(outline, view)
-    ColorBy(line, None)
     line.AmbientColor = line.DiffuseColor = [0.9, 0.1, 0.1]
     line.LineWidth = 3
-    line.Translation = [0, 0, 1]
     pictures.add_text(view, title)
     pictures.look(view, (0, 0, -1), (0, 1, 0), 1.3)
     pictures.save(view, os.path.join(folder, name + ".png"))

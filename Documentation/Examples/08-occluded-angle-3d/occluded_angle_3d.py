@@ -21,12 +21,12 @@ def show(name, title, data, schedule, direction):
     view = pictures.new_view((900, 700))
     producer = TrivialProducer()
     producer.GetClientSideObject().SetOutput(surface.data)
-    body = pictures.show_surface(producer, view, pictures.TISSUE)
+    body = Show(producer, view)
+    body.AmbientColor = body.DiffuseColor = list(pictures.TISSUE)
     body.Opacity = 0.7
-    seen = Show(Threshold(Input=data, Scalars=["POINTS", "Data"], LowerThreshold=0.5, UpperThreshold=2, AllScalars=0),
-                view)
-    seen.SetRepresentationType("Points")
-    ColorBy(seen, None)
+    points = TrivialProducer()
+    points.GetClientSideObject().SetOutput(occlusion.data_points(data))
+    seen = Show(points, view)
     seen.AmbientColor = seen.DiffuseColor = [0.1, 0.3, 0.8]
     seen.PointSize = 4
     pictures.add_text(view, title)

@@ -106,6 +106,18 @@ def _shrink(surface, distance):
     return moved
 
 
+def data_points(source):
+    """The voxels whose scalars are not 0 as points (vtkPolyData), for pictures."""
+    image = _image(source)
+    points, data = vtkPoints(), vtkPolyData()
+    for i in np.flatnonzero(vtk_to_numpy(image.GetPointData().GetScalars())):
+        points.InsertNextPoint(image.GetPoint(int(i)))
+    data.SetPoints(points)
+    data.AllocateEstimate(1, points.GetNumberOfPoints())
+    data.InsertNextCell(2, points.GetNumberOfPoints(), list(range(points.GetNumberOfPoints())))  # VTK_POLY_VERTEX
+    return data
+
+
 def _loops(curve):
     """Closed loops of points, each an array (n, 3)."""
     stripper = vtkStripper()
