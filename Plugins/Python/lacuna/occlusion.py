@@ -67,6 +67,8 @@ def _solid_angle(image, directions):
     angle.SetInputData(data)
     angle.SetMode(angle.BINARY)
     angle.SetNumberOfDirections(directions)
+    # Near by only, so that bays wider than that stay open.
+    angle.SetLocalRadii(0, 4 * max(s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1))
     angle.Update()
     return angle.GetOutput()
 
@@ -151,8 +153,8 @@ def _inward(loop, distance):
 def closed_surface(source, largest=True, compensate=True, directions=400):
     """The closed surface of the array Object of Occluded Angle.
 
-    The object is taken as solid; just outside of a flat face its angle is half the full one, inside it is the full
-    one, so the contour at three quarters runs along the voxels' faces, smoothed by the angle. Opaque voxels mark the
+    The object is taken as solid, seen within four voxels; just outside of a flat face its angle is half the full one,
+    inside it is the full one, so the contour at three quarters runs along the voxels' faces, smoothed by the angle. Opaque voxels mark the
     surface at their centres: with compensate the contour is moved inwards by half a voxel (Carr 1996 does not; it
     makes a sphere of radius 20 by 7.7 % too large).
 
