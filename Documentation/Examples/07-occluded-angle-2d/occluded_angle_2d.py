@@ -61,6 +61,7 @@ cavity = IncompleteShape(Shape="Cavity", Dimensions=SIZE, PresentFraction=0.6)
 space = Calculator(Input=cavity, ResultArrayName="Space", Function="if(abs(coordsY) < 10 & coordsX > 5, 0, 1)")
 show("cavity-doughnut", "Cavity, reconstruction space without the bay, 1.6 pi x 3",
      OccludedAngle(Input=cavity, SpaceMask=space, NumberOfDirections=100, ThresholdsOverPi=[1.6] * 3))
+small = IncompleteShape(Shape="Cavity", Dimensions=[60, 60, 60], PresentFraction=0.8)  # arms within the radii
 show("cavity-local", "Cavity, local radii, 1.4 pi x 3 at 10 mm, 1.5 pi x 2 at 15 mm",
-     OccludedAngle(Input=cavity, NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2,
+     OccludedAngle(Input=small, NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2,
                    LocalRadii=[10] * 3 + [15] * 2))
