@@ -77,15 +77,15 @@ const float* AttenuationField::Row(std::int64_t j, std::int64_t k) const
 void AttenuationField::SwapXY(Execution& execution)
 {
   const std::int64_t planes = this->Dimensions[2] + (this->Flat ? 0 : 2);
-  lacuna::SwapXY(this->Values.data(), this->Dimensions[0] + 2, this->Dimensions[1] + 2, planes,
-    execution);
+  lacuna::SwapXY(
+    this->Values.data(), this->Dimensions[0] + 2, this->Dimensions[1] + 2, planes, execution);
   std::swap(this->Dimensions[0], this->Dimensions[1]);
   std::swap(this->Spacing[0], this->Spacing[1]);
   this->Strides[1] = this->Dimensions[0] + 2;
 }
 
-void SwapXY(float* values, std::int64_t nx, std::int64_t ny, std::int64_t planes,
-  Execution& execution)
+void SwapXY(
+  float* values, std::int64_t nx, std::int64_t ny, std::int64_t planes, Execution& execution)
 {
   execution.For(planes, 4,
     [&](std::int64_t begin, std::int64_t end)

@@ -218,8 +218,8 @@ double GetFullAngle(const AttenuationField& field)
   return field.IsFlat() ? 2 * Pi : 4 * Pi;
 }
 
-void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
-  float* angle, Execution& execution)
+void ComputeOccludedAngle(
+  AttenuationField& field, const OccludedAngleOptions& options, float* angle, Execution& execution)
 {
   Check(field, options);
   const auto n = field.GetDimensions();

@@ -39,7 +39,7 @@ double GetFullAngle(const AttenuationField& field);
 /// meanwhile). Cost: voxels times directions; memory: a few megabytes per thread. The
 /// result does not depend on the number of threads. Throws std::invalid_argument for an odd or
 /// non-positive number of directions and for a radius below the shortest voxel edge.
-void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
-  float* angle, Execution& execution);
+void ComputeOccludedAngle(
+  AttenuationField& field, const OccludedAngleOptions& options, float* angle, Execution& execution);
 }
 #endif

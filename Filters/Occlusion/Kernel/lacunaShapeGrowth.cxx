@@ -93,9 +93,8 @@ void FilterMedian(const AttenuationField& field, int kernel, float* angle, Execu
 }
 
 /// Counts in integers and in planes summed in order: the same for any number of threads.
-GrowthStatistics Threshold(AttenuationField& field, double threshold,
-  const std::vector<bool>& kept, const float* angle, unsigned char* object,
-  std::vector<std::int64_t>& histogram)
+GrowthStatistics Threshold(AttenuationField& field, double threshold, const std::vector<bool>& kept,
+  const float* angle, unsigned char* object, std::vector<std::int64_t>& histogram)
 {
   const auto& n = field.GetDimensions();
   const double full = GetFullAngle(field);
@@ -161,8 +160,7 @@ double SuggestThreshold(const std::vector<std::int64_t>& counts, double full)
   {
     for (int i = 0; i < n; ++i)
     {
-      smooth[i] =
-        0.25 * h[std::max(0, i - 1)] + 0.5 * h[i] + 0.25 * h[std::min(n - 1, i + 1)];
+      smooth[i] = 0.25 * h[std::max(0, i - 1)] + 0.5 * h[i] + 0.25 * h[std::min(n - 1, i + 1)];
     }
     h.swap(smooth);
     std::vector<int> peaks;
@@ -228,8 +226,8 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
     for (std::int64_t r = 0; r < n[1] * n[2]; ++r)
     {
       const float* row = field.Row(r % n[1], r / n[1]);
-      std::transform(row, row + n[0], std::back_inserter(kept),
-        [half](float value) { return value >= half; });
+      std::transform(
+        row, row + n[0], std::back_inserter(kept), [half](float value) { return value >= half; });
     }
   }
   std::vector<std::int64_t> histogram;
@@ -248,8 +246,7 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
       FilterMedian(field, options.MedianKernel, angle, execution);
     }
     GrowthStatistics statistics =
-      Threshold(
-      field, options.Steps[iteration].Threshold, kept, angle, object, histogram);
+      Threshold(field, options.Steps[iteration].Threshold, kept, angle, object, histogram);
     statistics.SuggestedThreshold = SuggestThreshold(histogram, GetFullAngle(field));
     ForRows(field, execution,
       [&](std::int64_t j, std::int64_t k, std::int64_t first)
