@@ -41,7 +41,7 @@ case $what in
     chroot "$folder" env -i PATH="$PATH" HOME=/root DEBIAN_FRONTEND=noninteractive bash -ec "
       apt-get -qq update && apt-get -y -qq install --no-install-recommends libvtk9-dev $packages >/dev/null
       cd /lacuna && cmake --preset vtk -DLACUNA_TEST_DATA=/data && cmake --build --preset vtk
-      xvfb-run -a ctest --preset vtk"
+      xvfb-run -a -s -noreset ctest --preset vtk"
     ;;
   *)
     echo "usage: $0 FOLDER fresh|vtk" >&2

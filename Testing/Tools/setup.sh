@@ -42,7 +42,8 @@ lacuna_build() {
     { grep -E -A8 'error|FAILED' "$log" | head -n 60 >&2; lacuna_fail "building" "see $log"; }
 }
 
-# lacuna_display <command>...: runs it with a display, a virtual one if there is none.
+# lacuna_display <command>...: runs it with a display, a virtual one if there is none. -noreset: the
+# server would otherwise restart whenever its last client leaves, and refuse one that comes just then.
 lacuna_display() {
-  if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a -s "-screen 0 1600x1200x24" "$@"; fi
+  if [ -n "${DISPLAY:-}" ]; then "$@"; else xvfb-run -a -s "-screen 0 1600x1200x24 -noreset" "$@"; fi
 }
