@@ -46,11 +46,8 @@ def run(name, source):
     script = folder + ".py"
     with open(script, "w", encoding="utf-8") as file:
         file.write(source)
-    # as lacuna-env.sh has it: ParaView loads the plugins of this folder when it starts
-    plugins = os.path.dirname(os.path.dirname(os.environ["LACUNA_PLUGIN"]))
     done = subprocess.run(
-        [PVPYTHON, "--force-offscreen-rendering", script], cwd=folder, text=True, check=False,
-        env={**os.environ, "PV_PLUGIN_PATH": plugins}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
+        [PVPYTHON, "--force-offscreen-rendering", script], cwd=folder, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
     print(f"{name}: exit code {done.returncode}, {time.monotonic() - start:.1f} s", flush=True)
     # VTK reports an error and goes on; an example of raising() makes one on purpose
     reported = re.search(r"ERR\||ERROR: In ", done.stdout) and "raising()" not in source

@@ -14,11 +14,15 @@ def path():
 
 
 def load():
-    """Loads the plugin into the current ParaView session: paraview.simple then has SweptVolume() etc.
+    """Loads the plugin into the current ParaView session, unless ParaView has done so when it started.
 
-    Connected to a server, the plugin is loaded there as well; it must be at the same place.
+    Call it before `from paraview.simple import *`: then SweptVolume() and the others are there. Connected to a
+    server, the plugin is loaded there as well; it must be at the same place.
     """
     import paraview.simple
     from paraview import servermanager
-    for remote in (False, True) if servermanager.ActiveConnection.IsRemote() else (False,):
-        paraview.simple.LoadPlugin(path(), remote=remote, ns=vars(paraview.simple))
+    remote = servermanager.ActiveConnection is not None and servermanager.ActiveConnection.IsRemote()
+    if not remote and hasattr(paraview.simple, "SweptVolume"):
+        return
+    for on_server in (False, True) if remote else (False,):
+        paraview.simple.LoadPlugin(path(), remote=on_server, ns=vars(paraview.simple))
