@@ -9,7 +9,7 @@
  * smooths partial-volume ripple) or trilinear. The first hit is certified: inside a cell the field
  * along the ray is a polynomial whose Bernstein coefficients exclude or isolate every crossing, so
  * no wall is missed however thin, and there is no step size. Hits lie on the field's surface to
- * 1e-9 of a voxel.
+ * 1e-9 of a voxel (InterpolatingBSpline, whose coefficients are floats: to 2e-5).
  *
  * Input: vtkImageData, at least two voxels along each axis, point scalars of one component and any
  * real type; any origin, spacing, direction matrix and extent.
