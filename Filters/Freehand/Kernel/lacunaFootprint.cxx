@@ -119,11 +119,11 @@ void WeighLines(
     }
   }
 }
-}
 
-template <class T, class Real>
-void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
-  const FootprintAxis& rows, Real* means)
+// weighRows(i, width, line) makes line i of the raster, still with all columns.
+template <class Real, class WeighRows>
+void Reduce(
+  const FootprintAxis& columns, const FootprintAxis& rows, const WeighRows& weighRows, Real* means)
 {
   const int lastColumn = columns.GetNumberOfSamples() - 1;
   const int width = columns.GetStart(lastColumn) + columns.GetNumberOfTaps();
@@ -135,8 +135,7 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
     const int lines = std::min(BlockSize, numberOfLines - first);
     for (int l = 0; l < lines; ++l)
     {
-      WeighLines(pixels + rowStride * rows.GetStart(first + l), rowStride, width,
-        rows.GetWeights(first + l), rows.GetNumberOfTaps(), line.data());
+      weighRows(first + l, width, line.data());
       for (int x = 0; x < width; ++x)
       {
         block[static_cast<std::size_t>(x) * BlockSize + l] = line[x];
@@ -163,10 +162,71 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
   }
 }
 
+// line = weighted sum of value(row, column) over the pixels of line i of the raster in the fan.
+template <class Real, class Value>
+void WeighRuns(
+  const FootprintAxis& rows, int i, const FanMask& fan, int width, Real* line, const Value& value)
+{
+  std::fill(line, line + width, Real(0));
+  for (int t = 0; t < rows.GetNumberOfTaps(); ++t)
+  {
+    const int row = rows.GetStart(i) + t;
+    const auto weight = static_cast<Real>(rows.GetWeights(i)[t]);
+    if (weight == 0)
+    {
+      continue;
+    }
+    for (const IndexInterval& run : fan.GetRuns(row))
+    {
+      const auto last = static_cast<int>(std::min<std::int64_t>(run.Last, width - 1));
+      for (auto x = static_cast<int>(run.First); x <= last; ++x)
+      {
+        line[x] += weight * value(row, x);
+      }
+    }
+  }
+}
+}
+
+template <class T, class Real>
+void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
+  const FootprintAxis& rows, Real* means)
+{
+  Reduce(
+    columns, rows,
+    [&](int i, int width, Real* line)
+    {
+      WeighLines(pixels + rowStride * rows.GetStart(i), rowStride, width, rows.GetWeights(i),
+        rows.GetNumberOfTaps(), line);
+    },
+    means);
+}
+
+template <class T, class Real>
+void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
+  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights)
+{
+  Reduce(
+    columns, rows,
+    [&](int i, int width, Real* line)
+    {
+      WeighRuns(rows, i, fan, width, line,
+        [=](int row, int x) { return static_cast<Real>(pixels[rowStride * row + x]); });
+    },
+    sums);
+  Reduce(
+    columns, rows,
+    [&](int i, int width, Real* line)
+    { WeighRuns(rows, i, fan, width, line, [](int, int) { return Real(1); }); },
+    weights);
+}
+
 // NOLINTBEGIN(bugprone-macro-parentheses): types
 #define LACUNA_INSTANTIATE(T, Real)                                                                \
   template void AverageFootprints(                                                                 \
-    const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*)
+    const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*);                    \
+  template void AverageFootprintsInFan(const T*, std::int64_t, const FootprintAxis&,               \
+    const FootprintAxis&, const FanMask&, Real*, Real*)
 LACUNA_INSTANTIATE(std::int8_t, float);
 LACUNA_INSTANTIATE(std::uint8_t, float);
 LACUNA_INSTANTIATE(std::int16_t, float);

@@ -13,6 +13,8 @@
 #ifndef lacunaFootprint_h
 #define lacunaFootprint_h
 
+#include "lacunaFan.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -48,5 +50,12 @@ private:
 template <class T, class Real>
 void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
   const FootprintAxis& rows, Real* means);
+
+/// The same for the pixels in a fan alone: sums gets their weighted sums and weights the sums of
+/// their weights, which are 1 where a footprint lies in the fan, and 0 where none of it does. The
+/// mean between samples is the quotient of the two, interpolated each for itself.
+template <class T, class Real>
+void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
+  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights);
 }
 #endif

@@ -34,9 +34,10 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
   sampled.RowStride = sampled.Width;
   sampled.Type = std::is_same<Real, float>::value ? ScalarType::Float32 : ScalarType::Float64;
   const auto count = static_cast<std::size_t>(sampled.Width) * sampled.Height;
-  sampled.Storage.reset(new std::byte[count * sizeof(Real)]);
+  sampled.Storage.reset(new std::byte[(slice.Fan ? 2 : 1) * count * sizeof(Real)]);
   sampled.Pixels = sampled.Storage.get();
   auto* const means = reinterpret_cast<Real*>(sampled.Storage.get());
+  sampled.Weights = slice.Fan ? means + count : nullptr;
   DispatchScalars(slice.Type, slice.Pixels,
     [&](const auto* pixels)
     {
@@ -44,7 +45,9 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
       if constexpr (std::is_same<Real, double>::value || sizeof(T) <= 2 ||
         std::is_same<T, float>::value)
       {
-        AverageFootprints(pixels, slice.RowStride, columns, rows, means);
+        slice.Fan ? AverageFootprintsInFan(
+                      pixels, slice.RowStride, columns, rows, *slice.Fan, means, means + count)
+                  : AverageFootprints(pixels, slice.RowStride, columns, rows, means);
       }
     });
 }
@@ -87,7 +90,7 @@ SampledSlice SampleSlice(
   const bool footprint = sampling == PixelSampling::Footprint;
   // Footprints of some slices of a sweep may be narrower than a pixel: all get a raster, so that
   // all are of one type.
-  if (!footprint && HasSampler(slice.Type, doublePrecision))
+  if (!footprint && !slice.Fan && HasSampler(slice.Type, doublePrecision))
   {
     sampled.Type = slice.Type;
     sampled.Pixels = slice.Pixels;
@@ -95,6 +98,14 @@ SampledSlice SampleSlice(
     sampled.Width = slice.Width;
     sampled.Height = slice.Height;
     return sampled;
+  }
+  if (slice.Fan)
+  {
+    const Fan& fan = slice.Fan->GetFan();
+    const Vec2& spacing = slice.Fan->GetPixelSpacing();
+    sampled.Fan = slice.Fan;
+    sampled.FanX = spacing[0] * (sampled.Column + -fan.Origin[0]);
+    sampled.FanY = spacing[1] * (sampled.Row + -fan.Origin[1]);
   }
   const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
   const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);

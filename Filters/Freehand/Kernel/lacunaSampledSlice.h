@@ -42,10 +42,16 @@ struct SampledSlice
   std::int64_t RowStride = 0;
   int Width = 0;
   int Height = 0;
+  /// With a fan: how much of each sample's weight lies in it. Pixels holds sums then, not means; see
+  /// AverageFootprintsInFan. Laid out like Pixels; null without a fan.
+  const void* Weights = nullptr;
+  std::shared_ptr<const FanMask> Fan;
+  /// Of a voxel: its foot in mm from the fan's origin along columns and along rows.
+  AffineFunction FanX{}, FanY{};
   std::unique_ptr<std::byte[]> Storage; ///< holds Pixels when they are the slice's own copy
 };
 
-/// Makes slice ready. Without doublePrecision the raster's values are such as a float holds.
+/// Makes slice ready. All slices with a fan get a raster of their own. Without doublePrecision the raster's values are such as a float holds.
 /// The result refers to the slice's pixels when it can.
 /// Throws std::invalid_argument when the slice is unusable, see CheckSlice.
 SampledSlice SampleSlice(

@@ -12,6 +12,12 @@ void CheckSlice(const SliceImage& slice)
     throw std::invalid_argument(slice.Label + " has " + std::to_string(slice.Width) + " x " +
       std::to_string(slice.Height) + " usable pixels; at least 2 x 2 are needed");
   }
+  if (slice.Fan && (slice.Fan->GetWidth() != slice.Width || slice.Fan->GetHeight() != slice.Height))
+  {
+    throw std::invalid_argument(slice.Label + " has " + std::to_string(slice.Width) + " x " +
+      std::to_string(slice.Height) + " pixels, its fan was made for " +
+      std::to_string(slice.Fan->GetWidth()) + " x " + std::to_string(slice.Fan->GetHeight()));
+  }
   const char* const advice =
     "; mark the slice invalid (SliceStatus 1) to leave it out, or mend its transform";
   const Matrix4& pose = slice.PixelToReference;

@@ -4,11 +4,13 @@
 #ifndef lacunaSliceImage_h
 #define lacunaSliceImage_h
 
+#include "lacunaFan.h"
 #include "lacunaMatrix4.h"
 #include "lacunaScalarType.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace lacuna
@@ -25,11 +27,14 @@ struct SliceImage
   /// (column, row, 0, 1) in the window to mm; the third column is not used. Pixel centres lie at
   /// whole numbers.
   Matrix4 PixelToReference;
+  /// When set, only what lies in the fan exists; made for the window's size and pixel spacing.
+  std::shared_ptr<const FanMask> Fan;
   std::string Label; ///< what errors call it, for example "slice 17"
 };
 
 /// Throws std::invalid_argument, saying which slice, what is wrong and what to do, unless the
-/// window is at least 2 x 2 pixels and its pose is finite, affine and spans a plane.
+/// window is at least 2 x 2 pixels, its pose is finite, affine and spans a plane, and its fan, if it
+/// has one, was made for a window of its size.
 void CheckSlice(const SliceImage& slice);
 
 /// Centres of the four corner pixels, mm.

@@ -19,12 +19,13 @@ constexpr double TransposeRatio = 2;
 
 SlicePair::Functions GetFunctions(const SampledSlice& slice, bool transposed)
 {
-  SlicePair::Functions f{ slice.Column, slice.Row, slice.Distance };
+  SlicePair::Functions f{ slice.Column, slice.Row, slice.Distance, slice.FanX, slice.FanY };
   if (transposed)
   {
-    std::swap(f.Column.I, f.Column.J);
-    std::swap(f.Row.I, f.Row.J);
-    std::swap(f.Distance.I, f.Distance.J);
+    for (AffineFunction* g : { &f.Column, &f.Row, &f.Distance, &f.FanX, &f.FanY })
+    {
+      std::swap(g->I, g->J);
+    }
   }
   return f;
 }

@@ -12,7 +12,7 @@
 /// slice, |a|/(|a|+|b|), is the t of the plane that passes the voxel.
 ///
 /// The voxel must also see both slices: its feet lie on both images (between the centres of their
-/// outermost pixels), and the slices are not further apart at the voxel, |a|+|b|, than a limit.
+/// outermost pixels) and in their fans, if they have any, and the slices are not further apart at the voxel, |a|+|b|, than a limit.
 /// Voxels exactly on a slice belong to the pairs on both of its sides, which give them the same
 /// grey level.
 ///
@@ -57,7 +57,7 @@ public:
   /// The functions of SampledSlice, for the first and the second slice.
   struct Functions
   {
-    AffineFunction Column, Row, Distance;
+    AffineFunction Column, Row, Distance, FanX, FanY;
   };
   const Functions& GetFirstFunctions() const { return this->FirstFunctions; }
   const Functions& GetSecondFunctions() const { return this->SecondFunctions; }

@@ -17,6 +17,7 @@ namespace
 constexpr std::size_t SlicesAtATime = 16;
 // Layers that a thread takes at a time when it places pixels: each time it looks at all slices.
 constexpr std::int64_t PixelLayersAtATime = 8;
+constexpr const char* MixedFans = "either all slices of a sweep have a fan, or none has";
 
 // Rounds half away from zero and cuts to the range of an integer type.
 template <class T>
@@ -112,6 +113,10 @@ void SweptVolume::AddSlices(
       throw std::invalid_argument(
         slice.Label + ": its grey levels are of another type than those of the slices before");
     }
+    if (!slice.Fan != !slices.front().Fan)
+    {
+      throw std::invalid_argument(slice.Label + ": " + MixedFans);
+    }
   }
   if (this->Settings.Interpolation == Method::NearestVoxel)
   {
@@ -160,6 +165,10 @@ void SweptVolume::AddPairs(
     {
       if (previous)
       {
+        if (!previous->Fan != !slice.Fan)
+        {
+          throw std::invalid_argument(slice.Label + ": " + MixedFans);
+        }
         if (previous->Type != slice.Type)
         {
           throw std::invalid_argument(

@@ -13,7 +13,11 @@ template <class T>
 struct Raster
 {
   explicit Raster(const SampledSlice& slice)
-    : Pixels(static_cast<const T*>(slice.Pixels))
+    : Raster(slice, slice.Pixels)
+  {
+  }
+  Raster(const SampledSlice& slice, const void* pixels)
+    : Pixels(static_cast<const T*>(pixels))
     , RowStride(slice.RowStride)
     , LastColumn(slice.Width - 2)
     , LastRow(slice.Height - 2)
@@ -72,13 +76,27 @@ struct Line
 struct Lines
 {
   Lines(const SlicePair::Functions& f, double j, double k)
-    : Column{ f.Column.C + f.Column.K * k + f.Column.J * j, f.Column.I }
-    , Row{ f.Row.C + f.Row.K * k + f.Row.J * j, f.Row.I }
-    , Distance{ f.Distance.C + f.Distance.K * k + f.Distance.J * j, f.Distance.I }
+    : Column(GetLine(f.Column, j, k))
+    , Row(GetLine(f.Row, j, k))
+    , Distance(GetLine(f.Distance, j, k))
+    , FanX(GetLine(f.FanX, j, k))
+    , FanY(GetLine(f.FanY, j, k))
   {
   }
-  Line Column, Row, Distance;
+  static Line GetLine(const AffineFunction& f, double j, double k)
+  {
+    return { f.C + f.K * k + f.J * j, f.I };
+  }
+  Line Column, Row, Distance, FanX, FanY;
 };
+
+// The weight of the second slice for a voxel at these distances from the two.
+double GetWeight(double first, double second, double tolerance)
+{
+  const double a = std::abs(first);
+  const double gap = a + std::abs(second);
+  return gap > tolerance ? a / gap : 0.5;
+}
 
 // Voxels first..last of a line. Everything is computed from the voxel's own index, not from its
 // predecessor, so that it does not matter where a piece of the volume begins.
@@ -92,11 +110,55 @@ void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const
     const auto i = static_cast<double>(static_cast<int>(n));
     const Real x = Sampler<T, Real>::At(firstRaster, first.Column.At(i), first.Row.At(i));
     const Real y = Sampler<T, Real>::At(secondRaster, second.Column.At(i), second.Row.At(i));
-    const double a = std::abs(first.Distance.At(i));
-    const double b = std::abs(second.Distance.At(i));
-    const double gap = a + b;
-    const double weight = gap > tolerance ? a / gap : 0.5;
+    const double weight = GetWeight(first.Distance.At(i), second.Distance.At(i), tolerance);
     voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+  }
+}
+
+// The grey level at a foot in a slice with a fan, from the raster of sums and that of weights.
+// Returns false where there is none.
+template <class Real, template <class, class> class Sampler>
+bool SampleInFan(const Raster<Real>& sums, const Raster<Real>& weights, const FanMask& fan,
+  const Lines& lines, double i, Real& grey)
+{
+  if (!fan.ContainsOffset(lines.FanX.At(i), lines.FanY.At(i)))
+  {
+    return false;
+  }
+  const double column = lines.Column.At(i);
+  const double row = lines.Row.At(i);
+  const Real weight = Sampler<Real, Real>::At(weights, column, row);
+  if (!(weight > 0)) // a tip of the fan between the pixels
+  {
+    return false;
+  }
+  grey = Sampler<Real, Real>::At(sums, column, row) / weight;
+  return true;
+}
+
+// FillLine for slices with fans.
+template <class Real, template <class, class> class Sampler, Compounding compounding>
+void FillLineInFans(const SlicePair& pair, const Lines& first, const Lines& second,
+  IndexInterval interval, Voxel<Real>* voxel, std::int64_t stride)
+{
+  const SampledSlice& firstSlice = pair.GetFirst();
+  const SampledSlice& secondSlice = pair.GetSecond();
+  const Raster<Real> firstSums(firstSlice);
+  const Raster<Real> secondSums(secondSlice);
+  const Raster<Real> firstWeights(firstSlice, firstSlice.Weights);
+  const Raster<Real> secondWeights(secondSlice, secondSlice.Weights);
+  for (std::int64_t n = interval.First; n <= interval.Last; ++n, voxel += stride)
+  {
+    const auto i = static_cast<double>(static_cast<int>(n));
+    Real x;
+    Real y;
+    if (SampleInFan<Real, Sampler>(firstSums, firstWeights, *firstSlice.Fan, first, i, x) &&
+      SampleInFan<Real, Sampler>(secondSums, secondWeights, *secondSlice.Fan, second, i, y))
+    {
+      const double weight =
+        GetWeight(first.Distance.At(i), second.Distance.At(i), pair.GetTolerance());
+      voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+    }
   }
 }
 
@@ -130,6 +192,7 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
     }
   }
 
+  const bool hasFans = pair.GetFirst().Fan && pair.GetSecond().Fan;
   const Raster<T> firstRaster(pair.GetFirst());
   const Raster<T> secondRaster(pair.GetSecond());
   for (std::int64_t j = all.First; j <= all.Last; ++j)
@@ -161,9 +224,17 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
     Voxel<Real>* const start = corner + (j - rows.First) * strides[jAxis];
     for (const IndexInterval& part : parts)
     {
-      FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second,
-        pair.GetTolerance(), part, start + (part.First - columns.First) * strides[iAxis],
-        strides[iAxis]);
+      Voxel<Real>* const voxel = start + (part.First - columns.First) * strides[iAxis];
+      if (hasFans)
+      {
+        FillLineInFans<Real, Sampler, compounding>(
+          pair, first, second, part, voxel, strides[iAxis]);
+      }
+      else
+      {
+        FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second,
+          pair.GetTolerance(), part, voxel, strides[iAxis]);
+      }
     }
   }
 }
@@ -211,13 +282,15 @@ void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& gri
   for (std::int64_t j = rows.First; j <= rows.Last; ++j)
   {
     const IndexInterval columns = layer.GetRow(j, { 0, slice.Width - 1 });
+    const FanMask::Runs runs =
+      slice.Fan ? slice.Fan->GetRuns(j) : FanMask::Runs{ &columns, &columns + 1 };
     const T* const line = pixels + slice.RowStride * j;
     std::array<Line, 3> along;
     for (int a = 0; a < 3; ++a)
     {
       along[a] = { index[a].C + index[a].J * static_cast<double>(j), index[a].I };
     }
-    for (std::int64_t i = columns.First; i <= columns.Last; ++i)
+    const auto put = [&](std::int64_t i)
     {
       std::array<std::int64_t, 3> v;
       bool inside = true;
@@ -232,6 +305,14 @@ void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& gri
           .GetData()[(v[2] - extent[4]) * layerSize + (v[1] - extent[2]) * lineSize +
             (v[0] - extent[0])]
           .template Put<compounding>(static_cast<Real>(line[i]));
+      }
+    };
+    for (const IndexInterval& run : runs)
+    {
+      const std::int64_t last = std::min(run.Last, columns.Last);
+      for (std::int64_t i = std::max(run.First, columns.First); i <= last; ++i)
+      {
+        put(i);
       }
     }
   }

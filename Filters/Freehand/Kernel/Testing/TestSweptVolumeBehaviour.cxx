@@ -11,13 +11,19 @@ using namespace lacuna;
 
 namespace
 {
-SyntheticSweep<std::uint8_t> MakeSpeckleSweep(int count, unsigned int seed)
+SyntheticSweep<std::uint8_t> MakeSpeckleSweep(int count, unsigned int seed, bool hasFan = false)
 {
   SyntheticSweep<std::uint8_t> sweep(61, 49, ScalarType::UInt8);
+  const auto fan = std::make_shared<const FanMask>(
+    Fan{ { 30, -10 }, { -35, 40 }, { 2, 6.5 } }, 61, 49, Vec2{ 0.155, 0.115 });
   std::mt19937 random(seed);
   for (const Matrix4& pose : MakeRandomPoses(count, seed, 0.1))
   {
     sweep.Add(pose * Matrix4::Scaling({ 0.5, 0.5, 1 }), [&](int, int) { return random() % 256; });
+    if (hasFan)
+    {
+      sweep.Slices.back().Fan = fan;
+    }
   }
   return sweep;
 }
@@ -76,83 +82,92 @@ T WriteOne(double grey)
 
 TEST(SweptVolumeBehaviour, TheNumberOfThreadsDoesNotMatter)
 {
-  const auto sweep = MakeSpeckleSweep(40, 1);
-  const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
-  for (const SweptVolume::Options& options : GetAllOptions())
+  for (const bool hasFan : { false, true })
   {
-    const auto one = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 1);
-    EXPECT_GT(std::count(one.Mask.begin(), one.Mask.end(), 1), 2000);
-    EXPECT_TRUE(one == Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 2));
-    EXPECT_TRUE(one == Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 5));
+    const auto sweep = MakeSpeckleSweep(40, 1, hasFan);
+    const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
+    for (const SweptVolume::Options& options : GetAllOptions())
+    {
+      const auto one = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 1);
+      EXPECT_GT(std::count(one.Mask.begin(), one.Mask.end(), 1), 2000);
+      EXPECT_TRUE(one == Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 2));
+      EXPECT_TRUE(one == Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 5));
+    }
   }
 }
 
 TEST(SweptVolumeBehaviour, SlicesMayComeOneByOneOrTogether)
 {
-  const auto sweep = MakeSpeckleSweep(40, 2);
-  const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
-  for (const SweptVolume::Options& options : GetAllOptions())
+  for (const bool hasFan : { false, true })
   {
-    const auto together = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options);
-    for (const std::size_t group : { 1, 7 })
+    const auto sweep = MakeSpeckleSweep(40, 2, hasFan);
+    const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
+    for (const SweptVolume::Options& options : GetAllOptions())
     {
-      ThreadExecution execution(2);
-      SweptVolume volume(grid, GetExtent(grid), options);
-      for (std::size_t begin = 0; begin < sweep.Slices.size(); begin += group)
+      const auto together = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options);
+      for (const std::size_t group : { 1, 7 })
       {
-        const std::size_t end = std::min(begin + group, sweep.Slices.size());
-        // pixels that are gone after the call
-        std::vector<SliceImage> slices(sweep.Slices.begin() + static_cast<std::ptrdiff_t>(begin),
-          sweep.Slices.begin() + static_cast<std::ptrdiff_t>(end));
-        std::vector<std::vector<std::uint8_t>> pixels;
-        for (SliceImage& slice : slices)
+        ThreadExecution execution(2);
+        SweptVolume volume(grid, GetExtent(grid), options);
+        for (std::size_t begin = 0; begin < sweep.Slices.size(); begin += group)
         {
-          const auto* source = static_cast<const std::uint8_t*>(slice.Pixels);
-          pixels.emplace_back(source, source + slice.RowStride * slice.Height);
-          slice.Pixels = pixels.back().data();
+          const std::size_t end = std::min(begin + group, sweep.Slices.size());
+          // pixels that are gone after the call
+          std::vector<SliceImage> slices(sweep.Slices.begin() + static_cast<std::ptrdiff_t>(begin),
+            sweep.Slices.begin() + static_cast<std::ptrdiff_t>(end));
+          std::vector<std::vector<std::uint8_t>> pixels;
+          for (SliceImage& slice : slices)
+          {
+            const auto* source = static_cast<const std::uint8_t*>(slice.Pixels);
+            pixels.emplace_back(source, source + slice.RowStride * slice.Height);
+            slice.Pixels = pixels.back().data();
+          }
+          volume.AddSlices(slices, execution);
         }
-        volume.AddSlices(slices, execution);
+        EXPECT_TRUE(together == Write<float>(volume, GetExtent(grid)));
       }
-      EXPECT_TRUE(together == Write<float>(volume, GetExtent(grid)));
     }
   }
 }
 
 TEST(SweptVolumeBehaviour, PiecesMakeTheWhole)
 {
-  const auto sweep = MakeSpeckleSweep(20, 3);
-  const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
-  const std::array<int, 6> all = GetExtent(grid);
-  for (const SweptVolume::Options& options : GetAllOptions())
+  for (const bool hasFan : { false, true })
   {
-    const auto whole = Reconstruct<float>(sweep.Slices, grid, all, options);
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    const auto sweep = MakeSpeckleSweep(20, 3, hasFan);
+    const VolumeGrid grid = MakeGrid(sweep.Slices, { 0.3, 0.3, 0.3 });
+    const std::array<int, 6> all = GetExtent(grid);
+    for (const SweptVolume::Options& options : GetAllOptions())
     {
-      // three unequal parts along the axis
-      const int size = grid.Dimensions[axis];
-      const std::array<int, 4> cuts{ 0, size / 5, size / 2, size };
-      for (std::size_t part = 0; part < 3; ++part)
+      const auto whole = Reconstruct<float>(sweep.Slices, grid, all, options);
+      for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        std::array<int, 6> extent = all;
-        extent[2 * axis] = cuts[part];
-        extent[2 * axis + 1] = cuts[part + 1] - 1;
-        const auto piece = Reconstruct<float>(sweep.Slices, grid, extent, options);
-        std::size_t n = 0;
-        bool same = true;
-        for (int k = extent[4]; k <= extent[5]; ++k)
+        // three unequal parts along the axis
+        const int size = grid.Dimensions[axis];
+        const std::array<int, 4> cuts{ 0, size / 5, size / 2, size };
+        for (std::size_t part = 0; part < 3; ++part)
         {
-          for (int j = extent[2]; j <= extent[3]; ++j)
+          std::array<int, 6> extent = all;
+          extent[2 * axis] = cuts[part];
+          extent[2 * axis + 1] = cuts[part + 1] - 1;
+          const auto piece = Reconstruct<float>(sweep.Slices, grid, extent, options);
+          std::size_t n = 0;
+          bool same = true;
+          for (int k = extent[4]; k <= extent[5]; ++k)
           {
-            for (int i = extent[0]; i <= extent[1]; ++i, ++n)
+            for (int j = extent[2]; j <= extent[3]; ++j)
             {
-              const std::size_t m =
-                (static_cast<std::size_t>(k) * grid.Dimensions[1] + j) * grid.Dimensions[0] + i;
-              same &= piece.Intensity[n] == whole.Intensity[m] &&
-                piece.Contributions[n] == whole.Contributions[m];
+              for (int i = extent[0]; i <= extent[1]; ++i, ++n)
+              {
+                const std::size_t m =
+                  (static_cast<std::size_t>(k) * grid.Dimensions[1] + j) * grid.Dimensions[0] + i;
+                same &= piece.Intensity[n] == whole.Intensity[m] &&
+                  piece.Contributions[n] == whole.Contributions[m];
+              }
             }
           }
+          EXPECT_TRUE(same) << axis << " " << part;
         }
-        EXPECT_TRUE(same) << axis << " " << part;
       }
     }
   }
