@@ -8,7 +8,7 @@
  * V = (a X2 + b X1) / (a + b), with a and b its distances from the first and the second slice and
  * X1, X2 the grey levels at the feet (Carr 1996, 4.2). A voxel is between two slices when its
  * signed distances from them, along normals that turn with the probe, have opposite signs or one
- * is zero, and its feet lie on both images, between the centres of the outermost pixels.
+ * is zero, and its feet lie on both images, whose pixels the voxel's footprint overlaps.
  * Consecutive slices may intersect: what lies between them is then a double wedge. Several samples
  * of one voxel, within a sweep or from several sweeps, are averaged or the largest one is kept;
  * they are collected in floating point and rounded once. The result does not depend on threads,

@@ -14,11 +14,12 @@ assert report.get("volume, voxels") == "147 × 106 × 105"
 origin = [float(x) for x in report.get("origin, mm").split()]
 assert all(abs(a - b) < 2e-3 for a, b in zip(origin, (-74.5217, 165.573, 29.072))), origin
 
-# below the bright tissue near the probe: a closed surface of the vertebra, about 1.4 ml of echoes
+# below the bright tissue near the probe: a closed surface of the vertebra, about 1.5 ml of echoes
+# (1.36 ml when the volume ends at the outermost pixel centres: the clip cuts through echoes)
 report = demo.main(["--output", output("demo-real-data"), "--clip", "187", "225", "445", "391", "--level", "60",
                     "--ct", ct, "--hole", "90.2", "97.5", "100", "30"] + ultrasound)
 assert report.get("open edges of the surface") == 0
-assert abs(float(report.get("enclosed volume, ml")) - 1.36) < 0.07
+assert abs(float(report.get("enclosed volume, ml")) - 1.47) < 0.07
 compare_with_baseline(output("demo-real-data/ultrasound.png"), "spine.png", 30)
 compare_with_baseline(output("demo-real-data/implant.png"), "head.png", 30)
 

@@ -11,6 +11,9 @@ namespace
 // Finer rasters come closer to an even mean, and cost their square. 2 halves an aliasing
 // frequency's remainder already to what the box itself leaves.
 constexpr double SamplesPerFootprint = 2;
+// Steps that feet may lie outside of the outermost pixels. The raster goes on by one, and voxels
+// extrapolate less than one more. Only images of few footprints would ask for more.
+constexpr double LargestMargin = 1.75;
 // Lines reduced together, so that the inner loops run over neighbouring values.
 constexpr int BlockSize = 8;
 
@@ -51,6 +54,7 @@ FootprintAxis::FootprintAxis(int n, double width)
     this->Step = length / steps;
     box = std::sqrt(std::max(0.0, width * width - 2 * this->Step * this->Step));
   }
+  this->Margin = std::min(0.5 + width / 2, LargestMargin * this->Step);
   this->Taps = box > 0 ? std::min(n, static_cast<int>(std::ceil(box)) + 2) : 1;
   this->Starts.resize(steps + 1);
   this->Weights.assign(static_cast<std::size_t>(steps + 1) * this->Taps, 0.0);
@@ -122,8 +126,8 @@ void WeighLines(
 
 // weighRows(i, width, line) makes line i of the raster, still with all columns.
 template <class Real, class WeighRows>
-void Reduce(
-  const FootprintAxis& columns, const FootprintAxis& rows, const WeighRows& weighRows, Real* means)
+void Reduce(const FootprintAxis& columns, const FootprintAxis& rows, const WeighRows& weighRows,
+  Real* means, std::int64_t meanStride)
 {
   const int lastColumn = columns.GetNumberOfSamples() - 1;
   const int width = columns.GetStart(lastColumn) + columns.GetNumberOfTaps();
@@ -156,7 +160,7 @@ void Reduce(
       }
       for (int l = 0; l < lines; ++l)
       {
-        means[static_cast<std::size_t>(first + l) * (lastColumn + 1) + i] = sum[l];
+        means[(first + l) * meanStride + i] = sum[l];
       }
     }
   }
@@ -190,7 +194,7 @@ void WeighRuns(
 
 template <class T, class Real>
 void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
-  const FootprintAxis& rows, Real* means)
+  const FootprintAxis& rows, Real* means, std::int64_t meanStride)
 {
   Reduce(
     columns, rows,
@@ -199,12 +203,12 @@ void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintA
       WeighLines(pixels + rowStride * rows.GetStart(i), rowStride, width, rows.GetWeights(i),
         rows.GetNumberOfTaps(), line);
     },
-    means);
+    means, meanStride);
 }
 
 template <class T, class Real>
 void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
-  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights)
+  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights, std::int64_t meanStride)
 {
   Reduce(
     columns, rows,
@@ -213,20 +217,75 @@ void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const Footp
       WeighRuns(rows, i, fan, width, line,
         [=](int row, int x) { return static_cast<Real>(pixels[rowStride * row + x]); });
     },
-    sums);
+    sums, meanStride);
   Reduce(
     columns, rows,
     [&](int i, int width, Real* line)
     { WeighRuns(rows, i, fan, width, line, [](int, int) { return Real(1); }); },
-    weights);
+    weights, meanStride);
 }
+
+namespace
+{
+// What comes before a, b, c.
+template <class Real>
+Real GoOn(Real a, Real b, Real c)
+{
+  const Real last = a - b;
+  const Real before = b - c;
+  return last * before > 0 ? a + (std::abs(last) < std::abs(before) ? last : before) : a;
+}
+
+// Fills count values of a raster's border, stride apart; inside leads from each to its neighbour
+// inside of the border. There are at least two such neighbours, samples in all.
+template <class Real>
+void ContinueLine(
+  Real* raster, Real* weights, std::int64_t stride, std::int64_t inside, int count, int samples)
+{
+  // two samples have but one difference: no slope
+  const std::int64_t third = std::min(samples, 3) * inside;
+  for (std::int64_t n = 0; n < count * stride; n += stride)
+  {
+    const Real* const v = raster + n;
+    if (!weights)
+    {
+      raster[n] = GoOn(v[inside], v[2 * inside], v[third]);
+      continue;
+    }
+    const Real* const w = weights + n;
+    weights[n] = w[inside];
+    raster[n] = w[inside] > 0 && w[2 * inside] > 0 && w[third] > 0
+      ? w[inside] * GoOn(v[inside] / w[inside], v[2 * inside] / w[2 * inside], v[third] / w[third])
+      : v[inside];
+  }
+}
+}
+
+template <class Real>
+void ContinueRaster(Real* raster, Real* weights, int width, int height)
+{
+  const std::int64_t down = width;
+  const auto fill =
+    [&](std::int64_t first, std::int64_t stride, std::int64_t inside, int count, int samples)
+  {
+    ContinueLine(
+      raster + first, weights ? weights + first : nullptr, stride, inside, count, samples);
+  };
+  fill(down, down, 1, height - 2, width - 2);
+  fill(2 * down - 1, down, -1, height - 2, width - 2);
+  fill(0, 1, down, width, height - 2);
+  fill(down * (height - 1), 1, -down, width, height - 2);
+}
+
+template void ContinueRaster(float*, float*, int, int);
+template void ContinueRaster(double*, double*, int, int);
 
 // NOLINTBEGIN(bugprone-macro-parentheses): types
 #define LACUNA_INSTANTIATE(T, Real)                                                                \
   template void AverageFootprints(                                                                 \
-    const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*);                    \
+    const T*, std::int64_t, const FootprintAxis&, const FootprintAxis&, Real*, std::int64_t);      \
   template void AverageFootprintsInFan(const T*, std::int64_t, const FootprintAxis&,               \
-    const FootprintAxis&, const FanMask&, Real*, Real*)
+    const FootprintAxis&, const FanMask&, Real*, Real*, std::int64_t)
 LACUNA_INSTANTIATE(std::int8_t, float);
 LACUNA_INSTANTIATE(std::uint8_t, float);
 LACUNA_INSTANTIATE(std::int16_t, float);

@@ -10,6 +10,12 @@
 /// second moment w^2 / 12. Towards the border the box narrows symmetrically, so that linear grey
 /// levels are reproduced exactly everywhere. A footprint narrower than sqrt(2) pixels leaves the
 /// axis as it is.
+///
+/// A voxel whose centre lies outside of the image still covers a part of it, as long as it lies
+/// less than half a footprint from the pixels' area. For such voxels the raster goes on by one
+/// sample along its slope: linear grey levels are exact there too. The slope is that one of the
+/// last two differences which is smaller, and none where they have opposite signs, so that edges
+/// and speckle next to the border are not carried on.
 #ifndef lacunaFootprint_h
 #define lacunaFootprint_h
 
@@ -30,6 +36,9 @@ public:
   int GetNumberOfSamples() const { return static_cast<int>(this->Starts.size()); }
   /// Pixels from one sample to the next; sample 0 lies at pixel 0, the last one at pixel n - 1.
   double GetStep() const { return this->Step; }
+  /// Pixels that the foot of a voxel may lie outside of the first and the last pixel: half of the
+  /// footprint and half a pixel, but less than two steps.
+  double GetMargin() const { return this->Margin; }
   /// Sample i is the sum of GetNumberOfTaps() pixels from GetStart(i), weighted by GetWeights(i).
   int GetNumberOfTaps() const { return this->Taps; }
   int GetStart(int i) const { return this->Starts[i]; }
@@ -40,22 +49,30 @@ public:
 
 private:
   double Step = 1;
+  double Margin = 0;
   int Taps = 1;
   std::vector<int> Starts;
   std::vector<double> Weights;
 };
 
-/// Fills means (rows.GetNumberOfSamples() lines of columns.GetNumberOfSamples() values). T is any
-/// pixel type, Real is double, or float for pixels that a float holds exactly.
+/// Fills means: rows.GetNumberOfSamples() lines of columns.GetNumberOfSamples() values, one line
+/// meanStride values after the other. T is any pixel type, Real is double, or float for pixels that
+/// a float holds exactly.
 template <class T, class Real>
 void AverageFootprints(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
-  const FootprintAxis& rows, Real* means);
+  const FootprintAxis& rows, Real* means, std::int64_t meanStride);
 
 /// The same for the pixels in a fan alone: sums gets their weighted sums and weights the sums of
 /// their weights, which are 1 where a footprint lies in the fan, and 0 where none of it does. The
 /// mean between samples is the quotient of the two, interpolated each for itself.
 template <class T, class Real>
 void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const FootprintAxis& columns,
-  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights);
+  const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights,
+  std::int64_t meanStride);
+
+/// Fills the outermost values of a raster of width x height from those inside of them. weights is
+/// null, or laid out like the raster; it goes on without a slope, and the raster then holds sums.
+template <class Real>
+void ContinueRaster(Real* raster, Real* weights, int width, int height);
 }
 #endif

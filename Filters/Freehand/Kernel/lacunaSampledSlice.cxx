@@ -25,31 +25,39 @@ double GetFootprintWidth(const AffineFunction& f)
   return std::sqrt(f.I * f.I + f.J * f.J + f.K * f.K);
 }
 
+// The raster of a slice; with margin samples more on each side.
 template <class Real>
 void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const FootprintAxis& rows,
-  SampledSlice& sampled)
+  int margin, SampledSlice& sampled)
 {
-  sampled.Width = columns.GetNumberOfSamples();
-  sampled.Height = rows.GetNumberOfSamples();
+  sampled.Width = columns.GetNumberOfSamples() + 2 * margin;
+  sampled.Height = rows.GetNumberOfSamples() + 2 * margin;
   sampled.RowStride = sampled.Width;
   sampled.Type = std::is_same<Real, float>::value ? ScalarType::Float32 : ScalarType::Float64;
   const auto count = static_cast<std::size_t>(sampled.Width) * sampled.Height;
   sampled.Storage.reset(new std::byte[(slice.Fan ? 2 : 1) * count * sizeof(Real)]);
-  sampled.Pixels = sampled.Storage.get();
-  auto* const means = reinterpret_cast<Real*>(sampled.Storage.get());
-  sampled.Weights = slice.Fan ? means + count : nullptr;
+  auto* const pixels = reinterpret_cast<Real*>(sampled.Storage.get());
+  Real* const weights = slice.Fan ? pixels + count : nullptr;
+  sampled.Pixels = pixels;
+  sampled.Weights = weights;
+  const std::int64_t start = margin * (sampled.RowStride + 1);
   DispatchScalars(slice.Type, slice.Pixels,
-    [&](const auto* pixels)
+    [&](const auto* source)
     {
-      using T = std::remove_cv_t<std::remove_pointer_t<decltype(pixels)>>;
+      using T = std::remove_cv_t<std::remove_pointer_t<decltype(source)>>;
       if constexpr (std::is_same<Real, double>::value || sizeof(T) <= 2 ||
         std::is_same<T, float>::value)
       {
-        slice.Fan ? AverageFootprintsInFan(
-                      pixels, slice.RowStride, columns, rows, *slice.Fan, means, means + count)
-                  : AverageFootprints(pixels, slice.RowStride, columns, rows, means);
+        slice.Fan ? AverageFootprintsInFan(source, slice.RowStride, columns, rows, *slice.Fan,
+                      pixels + start, weights + start, sampled.RowStride)
+                  : AverageFootprints(
+                      source, slice.RowStride, columns, rows, pixels + start, sampled.RowStride);
       }
     });
+  if (margin > 0)
+  {
+    ContinueRaster(pixels, weights, sampled.Width, sampled.Height);
+  }
 }
 
 bool HasSampler(ScalarType type, bool doublePrecision)
@@ -80,7 +88,6 @@ SampledSlice SampleSlice(
 
   SampledSlice sampled;
   sampled.Label = slice.Label;
-  sampled.Corners = GetCorners(slice);
   sampled.Normal = Normalized(area);
   // the basis dual to (x, y, normal): rows and columns need not be at right angles
   sampled.Column = MakeFunction(grid, 1 / Norm(area) * Cross(y, sampled.Normal), origin);
@@ -88,17 +95,17 @@ SampledSlice SampleSlice(
   sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
 
   const bool footprint = sampling == PixelSampling::Footprint;
-  // Footprints of some slices of a sweep may be narrower than a pixel: all get a raster, so that
-  // all are of one type.
-  if (!footprint && !slice.Fan && HasSampler(slice.Type, doublePrecision))
-  {
-    sampled.Type = slice.Type;
-    sampled.Pixels = slice.Pixels;
-    sampled.RowStride = slice.RowStride;
-    sampled.Width = slice.Width;
-    sampled.Height = slice.Height;
-    return sampled;
-  }
+  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
+  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
+  const double right = slice.Width - 1;
+  const double bottom = slice.Height - 1;
+  // pixels that feet may lie outside
+  const double dx = footprint ? columns.GetMargin() : 0.5;
+  const double dy = footprint ? rows.GetMargin() : 0.5;
+  sampled.Corners = { slice.PixelToReference.Point({ -dx, -dy, 0 }),
+    slice.PixelToReference.Point({ right + dx, -dy, 0 }),
+    slice.PixelToReference.Point({ -dx, bottom + dy, 0 }),
+    slice.PixelToReference.Point({ right + dx, bottom + dy, 0 }) };
   if (slice.Fan)
   {
     const Fan& fan = slice.Fan->GetFan();
@@ -107,18 +114,32 @@ SampledSlice SampleSlice(
     sampled.FanX = spacing[0] * (sampled.Column + -fan.Origin[0]);
     sampled.FanY = spacing[1] * (sampled.Row + -fan.Origin[1]);
   }
-  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
-  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
-  if (doublePrecision)
+
+  // Footprints of some slices of a sweep may be narrower than a pixel: all get a raster, so that
+  // all are of one type.
+  const int margin = footprint ? 1 : 0;
+  if (!footprint && !slice.Fan && HasSampler(slice.Type, doublePrecision))
   {
-    FillRaster<double>(slice, columns, rows, sampled);
+    sampled.Type = slice.Type;
+    sampled.Pixels = slice.Pixels;
+    sampled.RowStride = slice.RowStride;
+    sampled.Width = slice.Width;
+    sampled.Height = slice.Height;
+  }
+  else if (doublePrecision)
+  {
+    FillRaster<double>(slice, columns, rows, margin, sampled);
   }
   else
   {
-    FillRaster<float>(slice, columns, rows, sampled);
+    FillRaster<float>(slice, columns, rows, margin, sampled);
   }
-  sampled.Column = 1 / columns.GetStep() * sampled.Column;
-  sampled.Row = 1 / rows.GetStep() * sampled.Row;
+  const double columnStep = columns.GetStep();
+  const double rowStep = rows.GetStep();
+  sampled.Column = 1 / columnStep * sampled.Column + margin;
+  sampled.Row = 1 / rowStep * sampled.Row + margin;
+  sampled.Columns = { margin - dx / columnStep, margin + (right + dx) / columnStep };
+  sampled.Rows = { margin - dy / rowStep, margin + (bottom + dy) / rowStep };
   return sampled;
 }
 

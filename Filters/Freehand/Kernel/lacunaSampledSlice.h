@@ -16,12 +16,17 @@
 
 namespace lacuna
 {
-/// How the grey level at the foot of a perpendicular is found.
+/// How the grey level at the foot of a perpendicular is found, and how far outside of the centres
+/// of the outermost pixels a foot may lie: as far as what the voxel covers of the slice still
+/// overlaps the area of the pixels.
 enum class PixelSampling
 {
-  Footprint, ///< mean over the voxel's footprint (lacunaFootprint.h)
+  /// Mean over the voxel's footprint (lacunaFootprint.h). Feet count up to half a footprint and
+  /// half a pixel outside; grey levels go on there along their slope.
+  Footprint,
+  /// Up to half a pixel outside, where the grey level of the border goes on.
   Bilinear,
-  Nearest
+  Nearest ///< that of the pixel in whose area the foot lies
 };
 
 /// Where a slice lies seen from the voxels, and its grey levels: the slice's own pixels, or a
@@ -29,7 +34,8 @@ enum class PixelSampling
 struct SampledSlice
 {
   std::string Label;
-  std::array<Vec3, 4> Corners; ///< centres of the corner pixels, mm
+  /// Corners of the area in which feet count, mm.
+  std::array<Vec3, 4> Corners;
   /// Columns x rows of the image, unit: turns with the probe.
   Vec3 Normal;
   /// Of a voxel: the foot of its perpendicular on the slice in raster coordinates, and its signed
@@ -42,6 +48,8 @@ struct SampledSlice
   std::int64_t RowStride = 0;
   int Width = 0;
   int Height = 0;
+  /// The area in which feet count, first and last, in raster coordinates.
+  Vec2 Columns, Rows;
   /// With a fan: how much of each sample's weight lies in it. Pixels holds sums then, not means; see
   /// AverageFootprintsInFan. Laid out like Pixels; null without a fan.
   const void* Weights = nullptr;

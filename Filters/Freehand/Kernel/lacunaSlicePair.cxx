@@ -55,10 +55,10 @@ double GetLargestMagnitude(const std::array<double, 4>& values)
 void AddImageBounds(
   VoxelRegion& region, const SampledSlice& slice, const SlicePair::Functions& functions)
 {
-  region.Add(functions.Column + Tolerance);
-  region.Add(-functions.Column + (slice.Width - 1 + Tolerance));
-  region.Add(functions.Row + Tolerance);
-  region.Add(-functions.Row + (slice.Height - 1 + Tolerance));
+  region.Add(functions.Column + (Tolerance - slice.Columns[0]));
+  region.Add(-functions.Column + (slice.Columns[1] + Tolerance));
+  region.Add(functions.Row + (Tolerance - slice.Rows[0]));
+  region.Add(-functions.Row + (slice.Rows[1] + Tolerance));
 }
 }
 

@@ -30,10 +30,11 @@ struct Raster
   int LastRow;
 };
 
-// Grey level at (column, row), which lies on the raster but for the tolerance of SlicePair: a
-// truncated column is in range, or one too far.
+// Grey level at (column, row) of a raster that goes on beyond the image: less than one sample before
+// the first one, or as far after the last one, both continue linearly. A truncated column is in
+// range then, or one too far.
 template <class T, class Real>
-struct SampleBilinearly
+struct SampleFootprint
 {
   static Real At(const Raster<T>& raster, double column, double row)
   {
@@ -49,11 +50,22 @@ struct SampleBilinearly
   }
 };
 
-// The nearest whole number of one that is not negative but for a tolerance.
-std::int64_t RoundPositive(double x)
+// Outside of the outermost pixel centres their grey level goes on.
+template <class T, class Real>
+struct SampleBilinearly
 {
-  const double shifted = x + 0.5;
-  return static_cast<std::int64_t>(shifted);
+  static Real At(const Raster<T>& raster, double column, double row)
+  {
+    return SampleFootprint<T, Real>::At(raster,
+      std::min(std::max(column, 0.0), raster.LastColumn + 1.0),
+      std::min(std::max(row, 0.0), raster.LastRow + 1.0));
+  }
+};
+
+// The nearest whole number of one that is at least -0.5 but for a tolerance.
+int RoundPositive(double x)
+{
+  return static_cast<int>(x + 0.5);
 }
 
 template <class T, class Real>
@@ -61,8 +73,9 @@ struct SampleNearest
 {
   static Real At(const Raster<T>& raster, double column, double row)
   {
-    return static_cast<Real>(
-      raster.Pixels[raster.RowStride * RoundPositive(row) + RoundPositive(column)]);
+    const int c = std::min(RoundPositive(column), raster.LastColumn + 1);
+    const int r = std::min(RoundPositive(row), raster.LastRow + 1);
+    return static_cast<Real>(raster.Pixels[raster.RowStride * r + c]);
   }
 };
 
@@ -243,16 +256,27 @@ template <class T, class Real>
 void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
   Compounding compounding, VoxelBlock<Real>& voxels)
 {
-  const bool nearest = sampling == PixelSampling::Nearest;
+  const auto fill = [&](auto compounded)
+  {
+    constexpr Compounding how = decltype(compounded)::value;
+    switch (sampling)
+    {
+      case PixelSampling::Footprint:
+        // its rasters are always of type Real
+        return FillLayer<Real, Real, SampleFootprint, how>(pair, k, voxels);
+      case PixelSampling::Bilinear:
+        return FillLayer<T, Real, SampleBilinearly, how>(pair, k, voxels);
+      case PixelSampling::Nearest:
+        return FillLayer<T, Real, SampleNearest, how>(pair, k, voxels);
+    }
+  };
   if (compounding == Compounding::Mean)
   {
-    nearest ? FillLayer<T, Real, SampleNearest, Compounding::Mean>(pair, k, voxels)
-            : FillLayer<T, Real, SampleBilinearly, Compounding::Mean>(pair, k, voxels);
+    fill(std::integral_constant<Compounding, Compounding::Mean>{});
   }
   else
   {
-    nearest ? FillLayer<T, Real, SampleNearest, Compounding::Maximum>(pair, k, voxels)
-            : FillLayer<T, Real, SampleBilinearly, Compounding::Maximum>(pair, k, voxels);
+    fill(std::integral_constant<Compounding, Compounding::Maximum>{});
   }
 }
 

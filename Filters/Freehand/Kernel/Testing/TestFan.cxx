@@ -248,7 +248,8 @@ TEST(Fan, MeansAreThoseOfThePixelsInIt)
       std::size_t(1) * columns.GetNumberOfSamples() * rows.GetNumberOfSamples();
     std::vector<double> sums(size);
     std::vector<double> weights(size);
-    AverageFootprintsInFan(pixels.data(), 41, columns, rows, mask, sums.data(), weights.data());
+    AverageFootprintsInFan(pixels.data(), 41, columns, rows, mask, sums.data(), weights.data(),
+      columns.GetNumberOfSamples());
     double most = 0;
     double least = 1;
     for (int r = 0; r < rows.GetNumberOfSamples(); ++r)

@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 
 using lacuna::AverageFootprints;
+using lacuna::ContinueRaster;
 using lacuna::FootprintAxis;
 
 namespace
@@ -124,7 +126,7 @@ TEST(Footprint, WhatIsFinerThanAVoxelAveragesOut)
     const FootprintAxis axis(Pixels, 8);
     const int samples = axis.GetNumberOfSamples();
     std::vector<float> means(std::size_t(1) * samples * samples);
-    AverageFootprints(stripes.data(), Pixels, axis, axis, means.data());
+    AverageFootprints(stripes.data(), Pixels, axis, axis, means.data(), samples);
     for (int y = 0; y < samples; ++y)
     {
       for (int x = 2; x < samples - 2; ++x)
@@ -153,8 +155,10 @@ TEST(Footprint, MeansAreTheWeightedSumsOfPixels)
     std::vector<double> means(
       std::size_t(1) * columns.GetNumberOfSamples() * rows.GetNumberOfSamples());
     std::vector<float> floats(means.size());
-    AverageFootprints(pixels.data(), stride, columns, rows, means.data());
-    AverageFootprints(pixels.data(), stride, columns, rows, floats.data());
+    AverageFootprints(
+      pixels.data(), stride, columns, rows, means.data(), columns.GetNumberOfSamples());
+    AverageFootprints(
+      pixels.data(), stride, columns, rows, floats.data(), columns.GetNumberOfSamples());
     for (int r = 0; r < rows.GetNumberOfSamples(); ++r)
     {
       for (int c = 0; c < columns.GetNumberOfSamples(); ++c)
@@ -194,4 +198,89 @@ TEST(Footprint, SamplesAreIntegralsOfTheInterpolatedLine)
     }
     EXPECT_NEAR(axis.GetWeights(sample)[t], integral, 1e-7);
   }
+}
+
+TEST(Footprint, MarginIsHalfAFootprintAndHalfAPixel)
+{
+  for (const double width : { 0.3, 1.0, 1.5, 4.0, 5.85, 17.0 })
+  {
+    EXPECT_NEAR(FootprintAxis(Pixels, width).GetMargin(), 0.5 + width / 2, 1e-12);
+  }
+  // never so far that the continued raster does not reach
+  for (const int n : { 2, 3, 5, 20 })
+  {
+    for (const double width : { 1.5, 3.0, 17.0, 400.0 })
+    {
+      const FootprintAxis axis(n, width);
+      EXPECT_LE(axis.GetMargin(), 1.75 * axis.GetStep() + 1e-12);
+    }
+  }
+}
+
+TEST(Footprint, RasterGoesOnAlongItsSlope)
+{
+  const int width = 7;
+  const int height = 6;
+  const auto plane = [](int x, int y) { return 3 + 1.5 * x - 2.25 * y; };
+  std::vector<double> raster(std::size_t(1) * width * height, 1e9);
+  std::vector<double> sums(raster.size(), 1e9);
+  std::vector<double> weights(raster.size(), 1e9);
+  for (int y = 1; y < height - 1; ++y)
+  {
+    for (int x = 1; x < width - 1; ++x)
+    {
+      raster[y * width + x] = plane(x, y);
+      weights[y * width + x] = 0.25 * (1 + x % 3);
+      sums[y * width + x] = plane(x, y) * weights[y * width + x];
+    }
+  }
+  ContinueRaster<double>(raster.data(), nullptr, width, height);
+  ContinueRaster(sums.data(), weights.data(), width, height);
+  for (int y = 0; y < height; ++y)
+  {
+    for (int x = 0; x < width; ++x)
+    {
+      EXPECT_NEAR(raster[y * width + x], plane(x, y), 1e-12) << x << " " << y;
+      EXPECT_NEAR(sums[y * width + x] / weights[y * width + x], plane(x, y), 1e-12);
+    }
+  }
+}
+
+TEST(Footprint, RasterGoesOnNoSteeperThanBefore)
+{
+  // one line: first two inner values, the third, and what must come before the first
+  struct Case
+  {
+    std::array<double, 3> Inner;
+    double Expected;
+  };
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::nan("");
+  for (const Case& c : { Case{ { 5, 4, 2 }, 6 }, Case{ { 5, 3, 2 }, 6 }, Case{ { -5, -3, -2 }, -6 },
+         Case{ { 0, 200, 200 }, 0 }, Case{ { 0, 0, 200 }, 0 }, Case{ { 5, 9, 2 }, 5 },
+         Case{ { 5, 1, 2 }, 5 }, Case{ { 5, nan, 2 }, 5 }, Case{ { inf, 1, 0 }, inf } })
+  {
+    std::vector<double> raster(25, 0);
+    for (int y = 1; y < 4; ++y)
+    {
+      std::copy(c.Inner.begin(), c.Inner.end(), raster.begin() + 5 * y + 1);
+    }
+    ContinueRaster<double>(raster.data(), nullptr, 5, 5);
+    for (int y = 0; y < 5; ++y)
+    {
+      EXPECT_EQ(raster[5 * y], c.Expected);
+    }
+  }
+  // where the next ones lie outside of the fan, and where there are but two
+  std::vector<float> sums(25, 7);
+  std::vector<float> weights(25, 0.5F);
+  sums[6] = 9;
+  sums[7] = 8;
+  weights[8] = 0;
+  ContinueRaster(sums.data(), weights.data(), 5, 5);
+  EXPECT_EQ(sums[5], 9);
+  EXPECT_EQ(weights[5], 0.5F);
+  std::vector<float> two{ 0, 0, 0, 0, 0, 4, 3, 0, 0, 2, 1, 0, 0, 0, 0, 0 };
+  ContinueRaster<float>(two.data(), nullptr, 4, 4);
+  EXPECT_EQ(two, (std::vector<float>{ 4, 4, 3, 3, 4, 4, 3, 3, 2, 2, 1, 1, 2, 2, 1, 1 }));
 }

@@ -224,8 +224,11 @@ TEST(SweptVolumeBehaviour, PixelsOutsideOfTheWindowDoNotExist)
       {
         for (int i = 0; i < grid.Dimensions[0]; ++i, ++n)
         {
-          // pixel centres in the window: 0.5..2.5 mm and 0.3..1.7 mm
-          const bool inside = i >= 2 && i <= 8 && j >= 1 && j <= 5;
+          // pixel centres in the window: 0.5..2.5 mm and 0.3..1.7 mm. Voxels overlap the pixels
+          // 0.05 mm further outside, their footprints 0.2 mm.
+          const bool inside = options.Sampling == PixelSampling::Footprint
+            ? i >= 1 && i <= 9 && j >= 1 && j <= 6
+            : i >= 2 && i <= 8 && j >= 1 && j <= 5;
           if (options.Interpolation == SweptVolume::Method::BetweenSlices)
           {
             EXPECT_EQ(volume.Mask[n], inside ? 1 : 0) << i << " " << j << " " << k;
