@@ -12,7 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaSliceImages.h"
+#include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -28,109 +28,24 @@ bool HasPoints(const int extent[6])
 {
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
 }
-}
 
-// What there is to do: which slices go into which grid.
-class vtkLacunaSweptVolume::Plan
+// Says what is wrong with slices between which nothing could be filled.
+void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
 {
-public:
-  // Throws std::exception with a text for the user.
-  Plan(vtkLacunaSweptVolume* self, vtkInformationVector* inputs)
+  const lacuna::SweptVolume::PairCounts& pairs = volume.GetPairCounts();
+  if (pairs.All > 0 && pairs.All == pairs.Coincident)
   {
-    const int count = inputs->GetNumberOfInformationObjects();
-    const std::size_t needed = self->Interpolation == NearestVoxel ? 1 : 2;
-    for (int i = 0; i < count; ++i)
-    {
-      vtkImageData* stack = vtkImageData::GetData(inputs, i);
-      if (!stack || stack->GetNumberOfPoints() == 0)
-      {
-        continue;
-      }
-      const std::string suffix = count > 1 ? " of input " + std::to_string(i) : "";
-      this->Sweeps.emplace_back(stack, self->ClipRectangle, suffix);
-      const std::size_t valid = this->Sweeps.back().Slices.size();
-      if (valid < needed)
-      {
-        std::ostringstream message;
-        message << "the slices" << suffix << " are too few: " << valid << " of "
-                << stack->GetDimensions()[2] << " are valid (SliceStatus 0), at least " << needed
-                << " are needed";
-        throw std::runtime_error(message.str());
-      }
-    }
-    if (this->Sweeps.empty())
-    {
-      return;
-    }
-    if (!(self->MaximumSliceGap >= 0))
-    {
-      throw std::runtime_error("MaximumSliceGap must be positive, or 0 for no limit");
-    }
-    this->ChooseTypes(self->OutputScalarType);
-    this->ChooseGrid(self);
+    throw std::runtime_error("all slices lie in the same plane: there is nothing between them");
   }
-
-  bool IsEmpty() const { return this->Sweeps.empty(); }
-
-  // Says what is wrong with slices between which nothing could be filled.
-  static void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
+  if (pairs.Turned > 0)
   {
-    const lacuna::SweptVolume::PairCounts& pairs = volume.GetPairCounts();
-    if (pairs.All > 0 && pairs.All == pairs.Coincident)
-    {
-      throw std::runtime_error("all slices lie in the same plane: there is nothing between them");
-    }
-    if (pairs.Turned > 0)
-    {
-      vtkWarningWithObjectMacro(self,
-        << pairs.Turned << " of " << pairs.All
-        << " pairs of consecutive slices are turned by 90 degrees or more against each other; "
-           "nothing was filled between them. The order of the slices or their poses may be wrong.");
-    }
+    vtkWarningWithObjectMacro(self,
+      << pairs.Turned << " of " << pairs.All
+      << " pairs of consecutive slices are turned by 90 degrees or more against each other; "
+         "nothing was filled between them. The order of the slices or their poses may be wrong.");
   }
-
-  std::vector<vtkLacunaSliceImages> Sweeps;
-  lacuna::VolumeGrid Grid;
-  int ScalarType = VTK_FLOAT;
-  bool DoublePrecision = false;
-  std::int64_t BytesPerVoxel = 0;
-
-private:
-  void ChooseTypes(int outputScalarType)
-  {
-    const int first = this->Sweeps.front().GreyLevels->GetDataType();
-    for (const vtkLacunaSliceImages& sweep : this->Sweeps)
-    {
-      this->DoublePrecision |= lacuna::NeedsDoublePrecision(sweep.Slices.front().Type);
-      if (outputScalarType == vtkLacunaSweptVolume::Input &&
-        sweep.GreyLevels->GetDataType() != first)
-      {
-        throw std::runtime_error(std::string("the inputs have grey levels of different types (") +
-          this->Sweeps.front().GreyLevels->GetDataTypeAsString() + ", " +
-          sweep.GreyLevels->GetDataTypeAsString() + "); set OutputScalarType to Float");
-      }
-    }
-    this->ScalarType = outputScalarType == vtkLacunaSweptVolume::Float ? VTK_FLOAT : first;
-    this->BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->DoublePrecision) +
-      vtkDataArray::GetDataTypeSize(this->ScalarType) +
-      static_cast<std::int64_t>(sizeof(unsigned int) + sizeof(char));
-  }
-
-  void ChooseGrid(vtkLacunaSweptVolume* self)
-  {
-    lacuna::VolumeGridRequest request;
-    std::copy(self->OutputSpacing, self->OutputSpacing + 3, request.Spacing.data());
-    std::copy(self->OutputBounds, self->OutputBounds + 6, request.Bounds.begin());
-    request.BytesPerVoxel = this->BytesPerVoxel;
-    request.MemoryLimit = self->MemoryLimit * 1048576.0;
-    std::vector<lacuna::SliceImage> all;
-    for (const vtkLacunaSliceImages& sweep : this->Sweeps)
-    {
-      all.insert(all.end(), sweep.Slices.begin(), sweep.Slices.end());
-    }
-    this->Grid = lacuna::MakeVolumeGrid(all, request);
-  }
-};
+}
+}
 
 vtkStandardNewMacro(vtkLacunaSweptVolume);
 
@@ -193,7 +108,7 @@ int vtkLacunaSweptVolume::RequestInformation(
     {
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      const Plan plan(this, inputs[0]);
+      const vtkLacunaSweptVolumePlan plan(this, inputs[0]);
       if (!plan.IsEmpty())
       {
         for (int a = 0; a < 3; ++a)
@@ -221,7 +136,7 @@ int vtkLacunaSweptVolume::RequestData(
       vtkInformation* info = outputs->GetInformationObject(0);
       vtkImageData* output = vtkImageData::GetData(outputs);
       output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      const Plan plan(this, inputs[0]);
+      const vtkLacunaSweptVolumePlan plan(this, inputs[0]);
       if (plan.IsEmpty())
       {
         output->Initialize();
@@ -262,18 +177,9 @@ int vtkLacunaSweptVolume::RequestData(
 
       if (HasPoints(updateExtent))
       {
-        lacuna::SweptVolume::Options options;
-        options.Interpolation = this->Interpolation == NearestVoxel
-          ? lacuna::SweptVolume::Method::NearestVoxel
-          : lacuna::SweptVolume::Method::BetweenSlices;
-        options.Sampling = static_cast<lacuna::PixelSampling>(this->PixelSampling);
-        options.Compound =
-          this->Compounding == Maximum ? lacuna::Compounding::Maximum : lacuna::Compounding::Mean;
-        options.MaximumSliceGap = this->MaximumSliceGap;
-        options.DoublePrecision = plan.DoublePrecision;
         std::array<int, 6> extent;
         std::copy(updateExtent, updateExtent + 6, extent.begin());
-        lacuna::SweptVolume volume(plan.Grid, extent, options);
+        lacuna::SweptVolume volume(plan.Grid, extent, plan.Options);
         const auto count = static_cast<double>(plan.Sweeps.size());
         for (std::size_t s = 0; s < plan.Sweeps.size(); ++s)
         {
@@ -281,7 +187,7 @@ int vtkLacunaSweptVolume::RequestData(
           volume.AddSlices(plan.Sweeps[s].Slices, execution, 0.9 * static_cast<double>(s) / count,
             0.9 * static_cast<double>(s + 1) / count);
         }
-        Plan::CheckPairs(this, volume);
+        CheckPairs(this, volume);
         execution.SetStage(0.9, 1);
         switch (plan.ScalarType)
         {

@@ -164,7 +164,6 @@ private:
   vtkLacunaSweptVolume(const vtkLacunaSweptVolume&) = delete;
   void operator=(const vtkLacunaSweptVolume&) = delete;
 
-  class Plan;
   std::string DescribeParameters() const;
 
   double OutputSpacing[3] = { 0, 0, 0 };

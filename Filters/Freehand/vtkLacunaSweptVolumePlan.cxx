@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSweptVolumePlan.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaSweptVolume.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+//------------------------------------------------------------------------------
+vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
+  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
+  : ScalarType(VTK_FLOAT)
+{
+  this->ReadSweeps(filter, inputs);
+  if (!this->IsEmpty())
+  {
+    this->ChooseOptions(filter);
+    this->ChooseGrid(filter);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSweptVolumePlan::ReadSweeps(
+  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
+{
+  const int count = inputs->GetNumberOfInformationObjects();
+  const std::size_t needed =
+    filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
+  for (int i = 0; i < count; ++i)
+  {
+    vtkImageData* stack = vtkImageData::GetData(inputs, i);
+    if (!stack || stack->GetNumberOfPoints() == 0)
+    {
+      continue;
+    }
+    const std::string suffix = count > 1 ? " of input " + std::to_string(i) : "";
+    this->Sweeps.emplace_back(stack, filter->GetClipRectangle(), suffix);
+    const std::size_t valid = this->Sweeps.back().Slices.size();
+    if (valid < needed)
+    {
+      std::ostringstream message;
+      message << "the slices" << suffix << " are too few: " << valid << " of "
+              << stack->GetDimensions()[2] << " are valid (SliceStatus 0), at least " << needed
+              << " are needed";
+      throw std::runtime_error(message.str());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
+{
+  if (!(filter->GetMaximumSliceGap() >= 0))
+  {
+    throw std::runtime_error("MaximumSliceGap must be positive, or 0 for no limit");
+  }
+  this->Options.Interpolation = filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel
+    ? lacuna::SweptVolume::Method::NearestVoxel
+    : lacuna::SweptVolume::Method::BetweenSlices;
+  this->Options.Sampling = static_cast<lacuna::PixelSampling>(filter->GetPixelSampling());
+  this->Options.Compound = filter->GetCompounding() == vtkLacunaSweptVolume::Maximum
+    ? lacuna::Compounding::Maximum
+    : lacuna::Compounding::Mean;
+  this->Options.MaximumSliceGap = filter->GetMaximumSliceGap();
+
+  const int first = this->Sweeps.front().GreyLevels->GetDataType();
+  const bool ofInput = filter->GetOutputScalarType() == vtkLacunaSweptVolume::Input;
+  for (const vtkLacunaSliceImages& sweep : this->Sweeps)
+  {
+    this->Options.DoublePrecision |= lacuna::NeedsDoublePrecision(sweep.Slices.front().Type);
+    if (ofInput && sweep.GreyLevels->GetDataType() != first)
+    {
+      throw std::runtime_error(std::string("the inputs have grey levels of different types (") +
+        this->Sweeps.front().GreyLevels->GetDataTypeAsString() + ", " +
+        sweep.GreyLevels->GetDataTypeAsString() + "); set OutputScalarType to Float");
+    }
+  }
+  this->ScalarType = ofInput ? first : VTK_FLOAT;
+  this->BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->Options.DoublePrecision) +
+    vtkDataArray::GetDataTypeSize(this->ScalarType) +
+    static_cast<std::int64_t>(sizeof(unsigned int) + sizeof(char));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
+{
+  lacuna::VolumeGridRequest request;
+  std::copy_n(filter->GetOutputSpacing(), 3, request.Spacing.data());
+  std::copy_n(filter->GetOutputBounds(), 6, request.Bounds.begin());
+  request.BytesPerVoxel = this->BytesPerVoxel;
+  request.MemoryLimit = filter->GetMemoryLimit() * 1048576.0;
+  std::vector<lacuna::SliceImage> all;
+  for (const vtkLacunaSliceImages& sweep : this->Sweeps)
+  {
+    all.insert(all.end(), sweep.Slices.begin(), sweep.Slices.end());
+  }
+  this->Grid = lacuna::MakeVolumeGrid(all, request);
+}

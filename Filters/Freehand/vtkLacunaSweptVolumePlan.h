@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a vtkLacunaSweptVolume has to do: which slices go into which grid.
+#ifndef vtkLacunaSweptVolumePlan_h
+#define vtkLacunaSweptVolumePlan_h
+
+#include "lacunaSweptVolume.h"
+#include "lacunaVolumeGrid.h"
+#include "vtkLacunaSliceImages.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkInformationVector;
+class vtkLacunaSweptVolume;
+
+/// Made anew for each request, from the filter's properties and inputs, which must outlive it. Not a
+/// part of the module's interface.
+class vtkLacunaSweptVolumePlan
+{
+public:
+  /// inputs: of port 0. Throws std::exception with a text for the user.
+  vtkLacunaSweptVolumePlan(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
+
+  /// True when there is nothing in the inputs.
+  bool IsEmpty() const { return this->Sweeps.empty(); }
+
+  std::vector<vtkLacunaSliceImages> Sweeps;
+  lacuna::VolumeGrid Grid;
+  lacuna::SweptVolume::Options Options;
+  int ScalarType; ///< of Intensity, VTK_FLOAT, ...
+  std::int64_t BytesPerVoxel = 0;
+
+private:
+  void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
+  void ChooseOptions(vtkLacunaSweptVolume* filter);
+  void ChooseGrid(vtkLacunaSweptVolume* filter);
+};
+#endif
