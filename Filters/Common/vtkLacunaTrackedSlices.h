@@ -60,6 +60,13 @@ public:
   /// (column, row, 0, 1) to mm in the reference frame.
   const lacuna::Matrix4& GetImageToReference(vtkIdType slice) const { return this->Poses[slice]; }
   unsigned char GetStatus(vtkIdType slice) const { return this->StatusFlags[slice]; }
+  /// True for a valid slice, and for one that only has flags of acceptedFlags. A pose that is
+  /// invalid is never usable.
+  bool IsUsable(vtkIdType slice, unsigned char acceptedFlags = Valid) const
+  {
+    const int refused = PoseInvalid | (0xff & ~acceptedFlags);
+    return (this->StatusFlags[slice] & refused) == 0;
+  }
   /// Seconds; the slice number when the stack has no Timestamp.
   double GetTimestamp(vtkIdType slice) const { return this->Times[slice]; }
   /// Grey levels, one component, the points of the stack's extent.

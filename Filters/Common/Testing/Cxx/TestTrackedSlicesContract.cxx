@@ -34,8 +34,23 @@ int TestTrackedSlicesContract(int, char*[])
     LACUNA_CHECK(slices.GetSliceNumber(1) == 2);
     LACUNA_CHECK_THROWS(slices.GetSliceNumber(3), "z = 4");
     LACUNA_CHECK(slices.GetStatus(1) == vtkLacunaTrackedSlices::TooFast);
+    LACUNA_CHECK(slices.IsUsable(0) && !slices.IsUsable(1));
+    LACUNA_CHECK(slices.IsUsable(1, vtkLacunaTrackedSlices::TooFast));
+    LACUNA_CHECK(!slices.IsUsable(1, vtkLacunaTrackedSlices::GatedOut));
     LACUNA_CHECK_NEAR(slices.GetTimestamp(2), 0.08, 0);
     LACUNA_CHECK_NEAR(slices.GetImageToReference(3)(2, 3), 1.5, 0);
+  }
+  {
+    vtkNew<vtkImageData> stack;
+    Make(stack);
+    vtkDataArray* status = stack->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName);
+    status->SetTuple1(1, vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut);
+    status->SetTuple1(2, vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::TooFast);
+    const vtkLacunaTrackedSlices slices(stack);
+    LACUNA_CHECK(!slices.IsUsable(1, vtkLacunaTrackedSlices::TooFast));
+    LACUNA_CHECK(
+      slices.IsUsable(1, vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut));
+    LACUNA_CHECK(!slices.IsUsable(2, 0xff)); // without a pose there is no place
   }
   {
     vtkNew<vtkImageData> stack;
