@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceImages.h"
 
+#include "lacunaPoseOutliers.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
@@ -65,11 +67,35 @@ void CheckStack(vtkImageData* stack)
     }
   }
 }
+
+// The name of slice number, with the frame's number where it is another one.
+std::string MakeLabel(vtkIdType number, vtkDataArray* frames, const std::string& suffix)
+{
+  std::ostringstream label;
+  label << "slice " << number;
+  if (frames && frames->GetTuple1(number) != static_cast<double>(number))
+  {
+    label << " (frame " << frames->GetTuple1(number) << ")";
+  }
+  label << suffix;
+  return label.str();
 }
+
+constexpr std::array<const char*, 4> FlagNames{ "pose invalid", "image invalid", "too fast",
+  "gated out" };
+}
+
+// A slice of the sweep whose status is good enough.
+struct vtkLacunaSliceImages::Candidate
+{
+  vtkIdType Number;
+  bool IsInStack;
+  lacuna::SliceImage Slice;
+};
 
 //------------------------------------------------------------------------------
 vtkLacunaSliceImages::vtkLacunaSliceImages(
-  vtkImageData* stack, const int clip[4], const std::string& suffix)
+  vtkImageData* stack, const vtkLacunaSliceSelection& selection)
   : Stack(stack)
 {
   const vtkLacunaTrackedSlices tracked(stack);
@@ -81,39 +107,165 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
       vtkDataArray::CreateDataArray(tracked.GetGreyLevels()->GetDataType()));
     this->GreyLevels->DeepCopy(tracked.GetGreyLevels());
   }
+  std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
+  this->DropUnusable(candidates, selection);
+  this->DropOutliers(candidates, selection);
+  for (const Candidate& candidate : candidates)
+  {
+    (candidate.IsInStack ? this->Slices : this->Others).push_back(candidate.Slice);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidates(
+  const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection)
+{
+  vtkImageData* const stack = this->Stack;
   const lacuna::ScalarType type = vtkLacunaScalarType::Get(this->GreyLevels);
   const auto* pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0));
-  const Range columns = Clip(stack, 0, clip[0], clip[2]);
-  const Range rows = Clip(stack, 1, clip[1], clip[3]);
+  const Range columns = Clip(stack, 0, selection.Clip[0], selection.Clip[2]);
+  const Range rows = Clip(stack, 1, selection.Clip[1], selection.Clip[3]);
   const double* origin = stack->GetOrigin();
   const double* spacing = stack->GetSpacing();
   const lacuna::Matrix4 windowToImage =
     lacuna::Matrix4::Translation(
       { origin[0] + spacing[0] * columns.First, origin[1] + spacing[1] * rows.First, 0 }) *
     lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
+  vtkDataArray* const frames = vtkLacunaFieldData::Find(
+    stack, vtkLacunaTrackedSlices::FrameNumberName, 1, tracked.GetNumberOfSlices());
 
   const int* extent = stack->GetExtent();
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
+  std::vector<std::int64_t> layers(tracked.GetNumberOfSlices(), -1); // of the stack
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
-    const vtkIdType number = tracked.GetSliceNumber(k);
-    if (tracked.GetStatus(number) != vtkLacunaTrackedSlices::Valid)
+    std::int64_t& layer = layers[tracked.GetSliceNumber(k)];
+    if (layer >= 0)
     {
-      continue;
+      throw std::runtime_error("the stack holds slice " +
+        std::to_string(tracked.GetSliceNumber(k)) + " twice; its z spacing must be 1 or more");
     }
-    lacuna::SliceImage slice;
-    slice.Type = type;
-    slice.Pixels = pixels +
-      ((k - extent[4]) * height * width + (rows.First - extent[2]) * width + columns.First -
-        extent[0]) *
-        static_cast<std::int64_t>(lacuna::GetScalarSize(type));
-    slice.RowStride = width;
-    slice.Width = columns.Last - columns.First + 1;
-    slice.Height = rows.Last - rows.First + 1;
-    slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
-    slice.Label = "slice " + std::to_string(number) + suffix;
-    lacuna::CheckSlice(slice);
-    this->Slices.push_back(slice);
+    layer = k - extent[4];
   }
+  std::vector<Candidate> candidates;
+  for (vtkIdType number = 0; number < tracked.GetNumberOfSlices(); ++number)
+  {
+    const std::int64_t layer = layers[number];
+    if (!tracked.IsUsable(number, selection.AcceptedFlags))
+    {
+      for (std::size_t flag = 0; flag < FlagNames.size() && layer >= 0; ++flag)
+      {
+        this->FlagCounts[flag] += (tracked.GetStatus(number) >> flag) & 1;
+      }
+      this->NumberLeftOut += layer >= 0 ? 1 : 0;
+    }
+    else if (layer >= 0 || selection.WholeSweep)
+    {
+      Candidate candidate;
+      candidate.Number = number;
+      candidate.IsInStack = layer >= 0;
+      lacuna::SliceImage& slice = candidate.Slice;
+      slice.Type = type;
+      if (candidate.IsInStack)
+      {
+        slice.Pixels = pixels +
+          (layer * height * width + (rows.First - extent[2]) * width + columns.First - extent[0]) *
+            static_cast<std::int64_t>(lacuna::GetScalarSize(type));
+      }
+      slice.RowStride = width;
+      slice.Width = columns.Last - columns.First + 1;
+      slice.Height = rows.Last - rows.First + 1;
+      slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
+      slice.Label = MakeLabel(number, frames, selection.Suffix);
+      candidates.push_back(candidate);
+    }
+  }
+  return candidates;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::DropUnusable(
+  std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection)
+{
+  std::vector<Candidate> kept;
+  for (const Candidate& candidate : candidates)
+  {
+    try
+    {
+      lacuna::CheckSlice(candidate.Slice);
+      kept.push_back(candidate);
+    }
+    catch (const std::invalid_argument& error)
+    {
+      const std::string text = error.what();
+      if (selection.BadPoses != vtkLacunaSliceSelection::LeaveOut)
+      {
+        throw std::runtime_error(text + " (field data array '" +
+          vtkLacunaTrackedSlices::ImageToReferenceName + "'), or set BadPoses to LeaveOut");
+      }
+      this->LeftOut.push_back(text.substr(0, text.find(';')));
+    }
+  }
+  candidates = kept;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::DropOutliers(
+  std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection)
+{
+  if (selection.BadPoses == vtkLacunaSliceSelection::KeepOutliers)
+  {
+    return;
+  }
+  std::vector<lacuna::SlicePlace> places;
+  for (const Candidate& candidate : candidates)
+  {
+    places.push_back({ candidate.Number, lacuna::GetCorners(candidate.Slice) });
+  }
+  const lacuna::PoseOutliers found = lacuna::FindPoseOutliers(places);
+  std::vector<Candidate> kept;
+  std::size_t next = 0;
+  for (const lacuna::PoseOutliers::Outlier& outlier : found.Outliers)
+  {
+    kept.insert(kept.end(), candidates.begin() + static_cast<std::ptrdiff_t>(next),
+      candidates.begin() + static_cast<std::ptrdiff_t>(outlier.Index));
+    next = outlier.Index + 1;
+    std::ostringstream text;
+    text << candidates[outlier.Index].Slice.Label << ": its pose is an outlier, it lies "
+         << outlier.Distance << " mm from the slices beside it; the median step of the sweep is "
+         << found.MedianStep << " mm, more than " << found.LongestStep << " mm is a jump";
+    if (selection.BadPoses == vtkLacunaSliceSelection::Refuse)
+    {
+      text << " (field data array '" << vtkLacunaTrackedSlices::ImageToReferenceName << "'";
+      if (found.Outliers.size() > 1)
+      {
+        text << ", " << found.Outliers.size() << " slices in all";
+      }
+      text << "). Set BadPoses to LeaveOut or KeepOutliers, or mark the slice invalid (SliceStatus "
+              "1)";
+      throw std::runtime_error(text.str());
+    }
+    this->LeftOut.push_back(text.str());
+  }
+  kept.insert(kept.end(), candidates.begin() + static_cast<std::ptrdiff_t>(next), candidates.end());
+  candidates = kept;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribeFlags() const
+{
+  std::ostringstream text;
+  text << this->NumberLeftOut << " of " << this->Stack->GetDimensions()[2]
+       << " are flagged in SliceStatus";
+  const char* separator = ": ";
+  for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)
+  {
+    if (this->FlagCounts[flag] > 0)
+    {
+      text << separator << this->FlagCounts[flag] << " " << FlagNames[flag];
+      separator = ", ";
+    }
+  }
+  return text.str();
 }

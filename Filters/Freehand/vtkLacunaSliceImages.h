@@ -6,26 +6,69 @@
 
 #include "lacunaSliceImage.h"
 #include "vtkSmartPointer.h"
+#include "vtkType.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 class vtkDataArray;
 class vtkImageData;
+class vtkLacunaTrackedSlices;
 
-/// The valid slices of one stack (SliceStatus 0), in the order of the stack. Not a part of the
-/// module's interface.
+/// Which slices of a stack to take, and which part of them.
+struct vtkLacunaSliceSelection
+{
+  /// What to do with slices whose status says that their pose is fine, but it is not: poses that
+  /// are unusable (not finite, not affine, singular), and outliers (see lacunaPoseOutliers.h).
+  enum BadPoseRule
+  {
+    Refuse = 0,
+    LeaveOut = 1,
+    KeepOutliers = 2 ///< unusable ones are refused
+  };
+
+  /// First column, first row, width and height, in pixels of the original slices; a width or height
+  /// of 0 reaches to the edge.
+  std::array<int, 4> Clip{ 0, 0, 0, 0 };
+  /// Flags of SliceStatus that do not matter.
+  unsigned char AcceptedFlags = 0;
+  int BadPoses = Refuse;
+  /// Where slices lie is asked of the whole sweep, also of slices that are not in the stack (yet).
+  bool WholeSweep = false;
+  /// Ends the name of a slice in errors.
+  std::string Suffix;
+};
+
+/// The slices of one stack that are taken, in the order of the stack. Not a part of the module's
+/// interface.
 struct vtkLacunaSliceImages
 {
-  /// clip: first column, first row, width and height of the part to use, in pixels of the original
-  /// slices; a width or height of 0 reaches to the edge. suffix ends the name of a slice in errors.
   /// Refers to the pixels of stack, which must outlive this object. Throws std::exception with a
-  /// text for the user when stack is not what vtkLacunaTrackedSlices.h wants, when a valid slice
-  /// has an unusable pose, and when clip leaves less than 2 x 2 pixels.
-  vtkLacunaSliceImages(vtkImageData* stack, const int clip[4], const std::string& suffix);
+  /// text for the user when stack is not what vtkLacunaTrackedSlices.h wants, for bad poses as
+  /// selection says, and when its clip leaves less than 2 x 2 pixels.
+  vtkLacunaSliceImages(vtkImageData* stack, const vtkLacunaSliceSelection& selection);
+
+  /// How many slices of the stack are flagged with what, for a message: "20 of 21 are left out: 18
+  /// pose invalid, 2 gated out".
+  std::string DescribeFlags() const;
 
   vtkImageData* Stack;
   vtkSmartPointer<vtkDataArray> GreyLevels; ///< in one piece of memory
   std::vector<lacuna::SliceImage> Slices;
+  /// Slices of the sweep that are not in the stack; without pixels, only if asked for.
+  std::vector<lacuna::SliceImage> Others;
+  /// One sentence for each slice that is left out because of a bad pose.
+  std::vector<std::string> LeftOut;
+
+private:
+  struct Candidate;
+  std::vector<Candidate> FindCandidates(
+    const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);
+  void DropUnusable(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
+  void DropOutliers(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
+
+  std::array<int, 4> FlagCounts{ 0, 0, 0, 0 };
+  int NumberLeftOut = 0;
 };
 #endif

@@ -29,6 +29,23 @@ bool HasPoints(const int extent[6])
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
 }
 
+void WarnOfLeftOut(vtkLacunaSweptVolume* self, const std::vector<std::string>& leftOut)
+{
+  if (!leftOut.empty())
+  {
+    std::ostringstream text;
+    text << leftOut.size() << (leftOut.size() == 1 ? " slice was" : " slices were")
+         << " left out because of bad poses.";
+    constexpr std::size_t most = 10;
+    for (std::size_t i = 0; i < leftOut.size() && i < most; ++i)
+    {
+      text << "\n" << leftOut[i];
+    }
+    text << (leftOut.size() > most ? "\n..." : "");
+    vtkWarningWithObjectMacro(self, << text.str());
+  }
+}
+
 // Says what is wrong with slices between which nothing could be filled.
 void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
 {
@@ -142,6 +159,7 @@ int vtkLacunaSweptVolume::RequestData(
         output->Initialize();
         return;
       }
+      WarnOfLeftOut(this, plan.LeftOut);
       int whole[6];
       info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
       for (int a = 0; a < 3; ++a)
@@ -213,6 +231,7 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
   constexpr std::array<const char*, 3> samplings{ "Footprint", "Bilinear", "Nearest" };
   constexpr std::array<const char*, 2> interpolations{ "BetweenSlices", "NearestVoxel" };
   constexpr std::array<const char*, 2> compoundings{ "Mean", "Maximum" };
+  constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
   constexpr std::array<const char*, 2> types{ "Input", "Float" };
   std::ostringstream text;
   const auto list = [&](const char* name, const auto& values)
@@ -233,6 +252,8 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
        << " Compounding=" << compoundings[this->Compounding]
        << " MaximumSliceGap=" << this->MaximumSliceGap << " ";
   list("ClipRectangle", this->ClipRectangle);
+  text << "UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
+       << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses] << " ";
   text << "OutputScalarType=" << types[this->OutputScalarType];
   return text.str();
 }

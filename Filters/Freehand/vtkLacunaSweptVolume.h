@@ -15,7 +15,7 @@
  * pieces or ranks, bit by bit.
  *
  * Input (repeatable): tracked slices, taken in the order of the stack. Slices whose SliceStatus is
- * not 0 are left out; their neighbours then form the pair. Different inputs form no pairs.
+ * not 0 are left out, but for flags taken by choice; their neighbours then form the pair. Different inputs form no pairs.
  *
  * Output: an image along the axes of the reference frame, mm, whose whole extent starts at 0:
  * voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of OutputBounds),
@@ -31,8 +31,7 @@
  * brought up to date already when information about the output is asked for.
  *
  * It is an error when an array of the input is missing, when fewer than two slices of an input are
- * valid (one for NearestVoxel), when a valid slice has a pose that is singular or not a number,
- * when all slices lie in one plane, and when the volume would need more than MemoryLimit.
+ * left (one for NearestVoxel), when a slice has a pose that cannot be true (see BadPoses), when all slices lie in one plane, and when the volume would need more than MemoryLimit.
  *
  * @sa lacunaSweptVolume.h, lacunaSlicePair.h, lacunaFootprint.h, lacunaVolumeGrid.h
  */
@@ -66,6 +65,12 @@ public:
   {
     Mean = 0,
     Maximum = 1
+  };
+  enum BadPoseRules
+  {
+    Refuse = 0,
+    LeaveOut = 1,
+    KeepOutliers = 2
   };
   enum OutputScalarTypes
   {
@@ -131,6 +136,33 @@ public:
   ///@}
 
   ///@{
+  /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
+  /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
+  /// Default: off.
+  vtkSetMacro(UseImageInvalid, bool);
+  vtkGetMacro(UseImageInvalid, bool);
+  vtkBooleanMacro(UseImageInvalid, bool);
+  vtkSetMacro(UseTooFast, bool);
+  vtkGetMacro(UseTooFast, bool);
+  vtkBooleanMacro(UseTooFast, bool);
+  vtkSetMacro(UseGatedOut, bool);
+  vtkGetMacro(UseGatedOut, bool);
+  vtkBooleanMacro(UseGatedOut, bool);
+  ///@}
+
+  ///@{
+  /// What to do with slices that are to be taken, but whose pose cannot be true: it is not finite,
+  /// not affine or singular, or an outlier, far away from the slices beside it (lacunaPoseOutliers.h
+  /// says which). Refuse: an error names the slice. LeaveOut: a warning names the slices, the rest is
+  /// used. KeepOutliers: outliers are taken, unusable poses are refused. Default: Refuse.
+  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
+  vtkGetMacro(BadPoses, int);
+  void SetBadPosesToRefuse() { this->SetBadPoses(Refuse); }
+  void SetBadPosesToLeaveOut() { this->SetBadPoses(LeaveOut); }
+  void SetBadPosesToKeepOutliers() { this->SetBadPoses(KeepOutliers); }
+  ///@}
+
+  ///@{
   /// Type of Intensity: that of the input, or Float. Default: Input.
   vtkSetClampMacro(OutputScalarType, int, Input, Float);
   vtkGetMacro(OutputScalarType, int);
@@ -173,6 +205,10 @@ private:
   int Compounding = Mean;
   double MaximumSliceGap = 0;
   int ClipRectangle[4] = { 0, 0, 0, 0 };
+  bool UseImageInvalid = false;
+  bool UseTooFast = false;
+  bool UseGatedOut = false;
+  int BadPoses = Refuse;
   int OutputScalarType = Input;
   int MemoryLimit = 4096;
 };

@@ -5,6 +5,7 @@
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaSweptVolume.h"
+#include "vtkLacunaTrackedSlices.h"
 
 #include <algorithm>
 #include <sstream>
@@ -30,6 +31,13 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
   const int count = inputs->GetNumberOfInformationObjects();
   const std::size_t needed =
     filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
+  vtkLacunaSliceSelection selection;
+  std::copy_n(filter->GetClipRectangle(), 4, selection.Clip.begin());
+  selection.BadPoses = filter->GetBadPoses();
+  selection.AcceptedFlags =
+    (filter->GetUseImageInvalid() ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
+    (filter->GetUseTooFast() ? vtkLacunaTrackedSlices::TooFast : 0) |
+    (filter->GetUseGatedOut() ? vtkLacunaTrackedSlices::GatedOut : 0);
   for (int i = 0; i < count; ++i)
   {
     vtkImageData* stack = vtkImageData::GetData(inputs, i);
@@ -37,15 +45,21 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     {
       continue;
     }
-    const std::string suffix = count > 1 ? " of input " + std::to_string(i) : "";
-    this->Sweeps.emplace_back(stack, filter->GetClipRectangle(), suffix);
-    const std::size_t valid = this->Sweeps.back().Slices.size();
-    if (valid < needed)
+    selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";
+    this->Sweeps.emplace_back(stack, selection);
+    const vtkLacunaSliceImages& sweep = this->Sweeps.back();
+    this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
+    if (sweep.Slices.size() < needed)
     {
       std::ostringstream message;
-      message << "the slices" << suffix << " are too few: " << valid << " of "
-              << stack->GetDimensions()[2] << " are valid (SliceStatus 0), at least " << needed
-              << " are needed";
+      message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()
+              << " of " << stack->GetDimensions()[2] << " can be used, at least " << needed
+              << " are needed (" << sweep.DescribeFlags();
+      if (!sweep.LeftOut.empty())
+      {
+        message << "; " << sweep.LeftOut.size() << " have bad poses";
+      }
+      message << ")";
       throw std::runtime_error(message.str());
     }
   }

@@ -9,6 +9,7 @@
 #include "vtkLacunaSliceImages.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 class vtkInformationVector;
@@ -26,6 +27,7 @@ public:
   bool IsEmpty() const { return this->Sweeps.empty(); }
 
   std::vector<vtkLacunaSliceImages> Sweeps;
+  std::vector<std::string> LeftOut; ///< a sentence for each slice with a bad pose
   lacuna::VolumeGrid Grid;
   lacuna::SweptVolume::Options Options;
   int ScalarType; ///< of Intensity, VTK_FLOAT, ...

@@ -22,9 +22,11 @@ def check_defaults():
         "Interpolation": ["BetweenSlices", "NearestVoxel"],
         "Compounding": ["Mean", "Maximum"],
         "OutputScalarType": ["Input", "Float"],
+        "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
     }
     for name in ("OutputSpacing", "OutputBounds", "PixelSampling", "Interpolation", "Compounding",
-                 "MaximumSliceGap", "ClipRectangle", "OutputScalarType", "MemoryLimit"):
+                 "MaximumSliceGap", "ClipRectangle", "BadPoses", "UseTooFast", "UseGatedOut",
+                 "UseImageInvalid", "OutputScalarType", "MemoryLimit"):
         default = getattr(own, "Get" + name)()
         if name in enumerations:
             default = enumerations[name][default]

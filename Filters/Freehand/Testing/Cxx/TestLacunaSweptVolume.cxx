@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents, pieces, time, errors of vtkLacunaSweptVolume.
 #include "lacunaCheck.h"
+#include "lacunaTestStacks.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -28,81 +29,10 @@
 #include <vector>
 
 using lacuna::Matrix4;
+using namespace lacunaTestStacks;
 
 namespace
 {
-bool Contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
-// Poses of slices of 0.5 mm pixels, 1 mm apart along z.
-std::vector<Matrix4> MakePoses(int count, double start = 0)
-{
-  std::vector<Matrix4> poses;
-  for (int n = 0; n < count; ++n)
-  {
-    poses.push_back(
-      Matrix4::Translation({ 10, 20, start + n }) * Matrix4::Scaling({ 0.5, 0.5, 1 }));
-  }
-  return poses;
-}
-
-// Columns 0..12, rows 0..8; grey level = column + 2 row + 10 slice.
-vtkSmartPointer<vtkImageData> MakeStack(const std::vector<Matrix4>& poses,
-  int type = VTK_UNSIGNED_CHAR, const std::vector<unsigned char>& status = {})
-{
-  const auto count = static_cast<int>(poses.size());
-  auto stack = vtkSmartPointer<vtkImageData>::New();
-  stack->SetDimensions(13, 9, count);
-  stack->AllocateScalars(type, 1);
-  for (int k = 0; k < count; ++k)
-  {
-    for (int j = 0; j < 9; ++j)
-    {
-      for (int i = 0; i < 13; ++i)
-      {
-        stack->SetScalarComponentFromDouble(i, j, k, 0, i + 2 * j + 10 * k);
-      }
-    }
-  }
-  std::vector<double> times;
-  std::vector<int> frames;
-  for (int k = 0; k < count; ++k)
-  {
-    times.push_back(0.1 * k);
-    frames.push_back(k);
-  }
-  vtkLacunaTrackedSlices::Write(stack, poses, times,
-    status.empty() ? std::vector<unsigned char>(poses.size(), 0) : status, frames);
-  return stack;
-}
-
-double GetValue(vtkImageData* volume, const char* array, int i, int j, int k)
-{
-  int ijk[3] = { i, j, k };
-  return volume->GetPointData()->GetArray(array)->GetTuple1(volume->ComputePointId(ijk));
-}
-
-using Configure = std::function<void(vtkLacunaSweptVolume*)>;
-
-// The error of a filter on stack.
-std::string GetError(vtkImageData* stack, const Configure& configure = {})
-{
-  vtkNew<vtkLacunaSweptVolume> filter;
-  filter->SetInputDataObject(stack);
-  filter->SetOutputSpacing(0.5, 0.5, 0.5);
-  if (configure)
-  {
-    configure(filter);
-  }
-  const auto messages = lacunaCheck::Watch(filter);
-  filter->Update();
-  LACUNA_CHECK_THAT(messages->Errors.empty() || filter->GetOutput()->GetNumberOfPoints() == 0,
-    "no half result after: " + messages->Errors);
-  return messages->Errors;
-}
-
 // A source of slices that knows how often it ran; its poses move with time.
 class SliceSource : public vtkImageAlgorithm
 {
@@ -265,25 +195,6 @@ void TestPieces()
   LACUNA_CHECK_THAT(points >= whole->GetOutput()->GetNumberOfPoints(), "pieces cover the whole");
 }
 
-void TestSlicesLeftOut()
-{
-  // The middle slice is garbage and marked; its pose is not even a number.
-  std::vector<Matrix4> poses = MakePoses(5);
-  poses[2](0, 3) = std::numeric_limits<double>::quiet_NaN();
-  vtkNew<vtkLacunaSweptVolume> filter;
-  filter->SetInputData(MakeStack(poses, VTK_UNSIGNED_CHAR, { 0, 0, 1, 0, 0 }));
-  filter->SetOutputSpacing(0.5, 0.5, 0.5);
-  filter->Update();
-  LACUNA_CHECK_THAT(
-    GetValue(filter->GetOutput(), "Intensity", 6, 4, 4) == 34, "its neighbours form the pair");
-  filter->SetMaximumSliceGap(1.5);
-  filter->Update();
-  LACUNA_CHECK_THAT(
-    GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 4) == 0, "unless too far apart");
-  LACUNA_CHECK_THAT(
-    GetValue(filter->GetOutput(), "vtkValidPointMask", 6, 4, 1) == 1, "others stay");
-}
-
 // A part of a stack, with all tuples in the field data, as Extract Subset makes it.
 vtkSmartPointer<vtkImageData> Crop(vtkImageData* stack, int extent[6])
 {
@@ -360,31 +271,6 @@ void TestErrors()
   stack->SetDirectionMatrix(0, 1, 0, 1, 0, 0, 0, 0, 1);
   LACUNA_CHECK_CONTAINS(GetError(stack), "direction matrix");
 
-  LACUNA_CHECK_CONTAINS(GetError(MakeStack(MakePoses(1))), "too few: 1 of 1 are valid");
-  LACUNA_CHECK_CONTAINS(
-    GetError(MakeStack(MakePoses(4), VTK_SHORT, { 1, 0, 2, 4 })), "1 of 4 are valid");
-  LACUNA_CHECK_THAT(GetError(MakeStack(MakePoses(1)),
-                      [](vtkLacunaSweptVolume* f) { f->SetInterpolationToNearestVoxel(); })
-                      .empty(),
-    "one slice is enough for NearestVoxel");
-  LACUNA_CHECK_CONTAINS(
-    GetError(MakeStack(std::vector<Matrix4>(5, MakePoses(1)[0]))), "in the same plane");
-
-  std::vector<Matrix4> poses = MakePoses(5);
-  poses[3](1, 1) = notANumber;
-  LACUNA_CHECK_CONTAINS(
-    GetError(MakeStack(poses)), "slice 3: its pose has elements that are not finite");
-  LACUNA_CHECK_CONTAINS(GetError(MakeStack(poses)), "mark the slice invalid (SliceStatus 1)");
-  poses = MakePoses(5);
-  poses[1] = poses[1] * Matrix4::Scaling({ 0, 1, 1 });
-  LACUNA_CHECK_CONTAINS(GetError(MakeStack(poses)), "slice 1: its pose is singular");
-  poses = MakePoses(5);
-  poses[4] = Matrix4::Translation({ 0, 0, 1e9 }) * poses[4];
-  const std::string wild = GetError(MakeStack(poses));
-  LACUNA_CHECK_CONTAINS(wild, "slice 4 lies 1e+09 mm from the middle");
-  LACUNA_CHECK_CONTAINS(wild, "MemoryLimit allows 4294967296 bytes");
-  LACUNA_CHECK_CONTAINS(wild, "An OutputSpacing of");
-
   const auto with = [&](const Configure& configure) { return GetError(good, configure); };
   LACUNA_CHECK_CONTAINS(
     with([](auto* f) { f->SetOutputSpacing(0.5, -1, 0.5); }), "OutputSpacing along y");
@@ -419,7 +305,7 @@ void TestErrors()
     "this part of the volume would need");
 
   // a pair turned too far is a warning, the rest is filled
-  poses = MakePoses(3);
+  std::vector<Matrix4> poses = MakePoses(3);
   poses.push_back(poses[2] * Matrix4::Rotation({ 0, 1, 0 }, 2));
   vtkNew<vtkLacunaSweptVolume> turned;
   turned->SetInputData(MakeStack(poses));
@@ -505,7 +391,6 @@ int TestLacunaSweptVolume(int, char*[])
   TestContract();
   TestTypes();
   TestPieces();
-  TestSlicesLeftOut();
   TestParts();
   TestErrors();
   TestPipeline();
