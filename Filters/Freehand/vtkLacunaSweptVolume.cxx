@@ -126,18 +126,20 @@ int vtkLacunaSweptVolume::RequestInformation(
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       const vtkLacunaSweptVolumePlan plan(this, inputs[0]);
+      info->Remove(vtkDataObject::DIRECTION());
       if (!plan.IsEmpty())
       {
+        const lacuna::Vec3 origin = plan.GetOrigin();
         for (int a = 0; a < 3; ++a)
         {
           extent[2 * a + 1] = plan.Grid.Dimensions[a] - 1;
         }
-        info->Set(vtkDataObject::ORIGIN(), plan.Grid.Origin.data(), 3);
+        info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
+        info->Set(vtkDataObject::DIRECTION(), plan.GetDirection().data(), 9);
         info->Set(vtkDataObject::SPACING(), plan.Grid.Spacing.data(), 3);
         vtkDataObject::SetPointDataActiveScalarInfo(info, plan.ScalarType, 1);
       }
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Remove(vtkDataObject::DIRECTION());
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
     });
@@ -160,13 +162,16 @@ int vtkLacunaSweptVolume::RequestData(
         return;
       }
       WarnOfLeftOut(this, plan.LeftOut);
+      const lacuna::Vec3 origin = plan.GetOrigin();
+      const std::array<double, 9> direction = plan.GetDirection();
       int whole[6];
       info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
       for (int a = 0; a < 3; ++a)
       {
         if (whole[2 * a + 1] != plan.Grid.Dimensions[a] - 1 ||
-          info->Get(vtkDataObject::ORIGIN())[a] != plan.Grid.Origin[a] ||
-          info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a])
+          info->Get(vtkDataObject::ORIGIN())[a] != origin[a] ||
+          info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
+          !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
         {
           throw std::runtime_error("the slices have changed since the volume was announced (a "
                                    "source that changes with time?); set OutputBounds and "
@@ -177,7 +182,8 @@ int vtkLacunaSweptVolume::RequestData(
       int updateExtent[6];
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), updateExtent);
       output->SetExtent(updateExtent);
-      output->SetOrigin(plan.Grid.Origin.data());
+      output->SetOrigin(origin.data());
+      output->SetDirectionMatrix(direction.data());
       output->SetSpacing(plan.Grid.Spacing.data());
       const vtkIdType size = output->GetNumberOfPoints();
       lacuna::RequireMemory(
@@ -228,6 +234,7 @@ int vtkLacunaSweptVolume::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkLacunaSweptVolume::DescribeParameters() const
 {
+  constexpr std::array<const char*, 2> frames{ "Reference", "Principal" };
   constexpr std::array<const char*, 3> samplings{ "Footprint", "Bilinear", "Nearest" };
   constexpr std::array<const char*, 2> interpolations{ "BetweenSlices", "NearestVoxel" };
   constexpr std::array<const char*, 2> compoundings{ "Mean", "Maximum" };
@@ -246,6 +253,7 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
     text << " ";
   };
   list("OutputSpacing", this->OutputSpacing);
+  text << "OutputFrame=" << frames[this->OutputFrame] << " ";
   list("OutputBounds", this->OutputBounds);
   text << "PixelSampling=" << samplings[this->PixelSampling]
        << " Interpolation=" << interpolations[this->Interpolation]

@@ -17,8 +17,8 @@
  * Input (repeatable): tracked slices, taken in the order of the stack. Slices whose SliceStatus is
  * not 0 are left out, but for flags taken by choice; their neighbours then form the pair. Different inputs form no pairs.
  *
- * Output: an image along the axes of the reference frame, mm, whose whole extent starts at 0:
- * voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of OutputBounds),
+ * Output: an image along the axes of OutputFrame, mm in the reference frame, whose whole extent
+ * starts at 0: voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of OutputBounds),
  * and there are round(length / spacing) + 1 voxels along each axis. Point data:
  * | array             | type                  | meaning                                          |
  * |-------------------|-----------------------|--------------------------------------------------|
@@ -50,6 +50,11 @@ public:
   vtkTypeMacro(vtkLacunaSweptVolume, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum OutputFrames
+  {
+    Reference = 0,
+    Principal = 1
+  };
   enum PixelSamplings
   {
     Footprint = 0,
@@ -87,8 +92,19 @@ public:
   ///@}
 
   ///@{
-  /// Box of the volume in the reference frame, mm: x, y, z minimum and maximum. 1 -1 on an axis
-  /// takes all that the slices cover. Default: 1 -1 1 -1 1 -1.
+  /// Axes of the volume: those of the Reference frame, or Principal: the mean axes of the slices
+  /// (columns, rows, normals; see lacunaPrincipalFrame.h), so that the volume is hardly larger than
+  /// what was swept. The output then has a direction matrix, and still lies in the reference frame.
+  /// Default: Reference.
+  vtkSetClampMacro(OutputFrame, int, Reference, Principal);
+  vtkGetMacro(OutputFrame, int);
+  void SetOutputFrameToReference() { this->SetOutputFrame(Reference); }
+  void SetOutputFrameToPrincipal() { this->SetOutputFrame(Principal); }
+  ///@}
+
+  ///@{
+  /// Box of the volume along the axes of OutputFrame, mm from the reference frame's origin: x, y, z
+  /// minimum and maximum. 1 -1 on an axis takes all that the slices cover. Default: 1 -1 1 -1 1 -1.
   vtkSetVector6Macro(OutputBounds, double);
   vtkGetVector6Macro(OutputBounds, double);
   ///@}
@@ -200,6 +216,7 @@ private:
 
   double OutputSpacing[3] = { 0, 0, 0 };
   double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
+  int OutputFrame = Reference;
   int PixelSampling = Footprint;
   int Interpolation = BetweenSlices;
   int Compounding = Mean;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolumePlan.h"
 
+#include "lacunaPrincipalFrame.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
@@ -20,6 +21,7 @@ vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
   if (!this->IsEmpty())
   {
     this->ChooseOptions(filter);
+    this->ChooseFrame(filter);
     this->ChooseGrid(filter);
   }
 }
@@ -100,6 +102,53 @@ void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
 }
 
 //------------------------------------------------------------------------------
+std::vector<lacuna::SliceImage> vtkLacunaSweptVolumePlan::GetAllSlices() const
+{
+  std::vector<lacuna::SliceImage> all;
+  for (const vtkLacunaSliceImages& sweep : this->Sweeps)
+  {
+    all.insert(all.end(), sweep.Slices.begin(), sweep.Slices.end());
+    all.insert(all.end(), sweep.Others.begin(), sweep.Others.end());
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSweptVolumePlan::ChooseFrame(vtkLacunaSweptVolume* filter)
+{
+  if (filter->GetOutputFrame() == vtkLacunaSweptVolume::Reference)
+  {
+    return;
+  }
+  this->FrameToReference = lacuna::GetPrincipalFrame(this->GetAllSlices());
+  const lacuna::Matrix4 referenceToFrame = this->FrameToReference.Inverse();
+  for (vtkLacunaSliceImages& sweep : this->Sweeps)
+  {
+    for (std::vector<lacuna::SliceImage>* slices : { &sweep.Slices, &sweep.Others })
+    {
+      for (lacuna::SliceImage& slice : *slices)
+      {
+        slice.PixelToReference = referenceToFrame * slice.PixelToReference;
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 9> vtkLacunaSweptVolumePlan::GetDirection() const
+{
+  std::array<double, 9> direction;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 3; ++column)
+    {
+      direction[static_cast<std::size_t>(3 * row + column)] = this->FrameToReference(row, column);
+    }
+  }
+  return direction;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
 {
   lacuna::VolumeGridRequest request;
@@ -107,10 +156,5 @@ void vtkLacunaSweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
   std::copy_n(filter->GetOutputBounds(), 6, request.Bounds.begin());
   request.BytesPerVoxel = this->BytesPerVoxel;
   request.MemoryLimit = filter->GetMemoryLimit() * 1048576.0;
-  std::vector<lacuna::SliceImage> all;
-  for (const vtkLacunaSliceImages& sweep : this->Sweeps)
-  {
-    all.insert(all.end(), sweep.Slices.begin(), sweep.Slices.end());
-  }
-  this->Grid = lacuna::MakeVolumeGrid(all, request);
+  this->Grid = lacuna::MakeVolumeGrid(this->GetAllSlices(), request);
 }

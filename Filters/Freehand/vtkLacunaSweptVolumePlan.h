@@ -4,10 +4,12 @@
 #ifndef vtkLacunaSweptVolumePlan_h
 #define vtkLacunaSweptVolumePlan_h
 
+#include "lacunaMatrix4.h"
 #include "lacunaSweptVolume.h"
 #include "lacunaVolumeGrid.h"
 #include "vtkLacunaSliceImages.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,9 +28,15 @@ public:
   /// True when there is nothing in the inputs.
   bool IsEmpty() const { return this->Sweeps.empty(); }
 
-  std::vector<vtkLacunaSliceImages> Sweeps;
+  std::vector<vtkLacunaSliceImages> Sweeps; ///< poses lead to the output's frame
+  /// Voxel (0, 0, 0) in the reference frame, mm.
+  lacuna::Vec3 GetOrigin() const { return this->FrameToReference.Point(this->Grid.Origin); }
+  /// As vtkImageData::SetDirectionMatrix takes it.
+  std::array<double, 9> GetDirection() const;
+
   std::vector<std::string> LeftOut; ///< a sentence for each slice with a bad pose
-  lacuna::VolumeGrid Grid;
+  lacuna::Matrix4 FrameToReference; ///< a rotation: the axes of the output
+  lacuna::VolumeGrid Grid;          ///< in the output's frame
   lacuna::SweptVolume::Options Options;
   int ScalarType; ///< of Intensity, VTK_FLOAT, ...
   std::int64_t BytesPerVoxel = 0;
@@ -36,6 +44,8 @@ public:
 private:
   void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
   void ChooseOptions(vtkLacunaSweptVolume* filter);
+  void ChooseFrame(vtkLacunaSweptVolume* filter);
+  std::vector<lacuna::SliceImage> GetAllSlices() const;
   void ChooseGrid(vtkLacunaSweptVolume* filter);
 };
 #endif

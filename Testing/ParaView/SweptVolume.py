@@ -18,13 +18,15 @@ def check_defaults():
     proxy = SweptVolume(Input=source)
     own = vtkLacunaSweptVolume()
     enumerations = {
+        "OutputFrame": ["Reference", "Principal"],
         "PixelSampling": ["Footprint", "Bilinear", "Nearest"],
         "Interpolation": ["BetweenSlices", "NearestVoxel"],
         "Compounding": ["Mean", "Maximum"],
         "OutputScalarType": ["Input", "Float"],
         "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
     }
-    for name in ("OutputSpacing", "OutputBounds", "PixelSampling", "Interpolation", "Compounding",
+    for name in ("OutputSpacing", "OutputBounds", "OutputFrame", "PixelSampling", "Interpolation",
+                 "Compounding",
                  "MaximumSliceGap", "ClipRectangle", "BadPoses", "UseTooFast", "UseGatedOut",
                  "UseImageInvalid", "OutputScalarType", "MemoryLimit"):
         default = getattr(own, "Get" + name)()
