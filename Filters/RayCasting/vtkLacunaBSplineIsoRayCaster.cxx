@@ -3,6 +3,7 @@
 
 #include "lacunaIsoRayCaster.h"
 
+#include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -101,9 +102,14 @@ public:
     {
       inInfo->Get(vtkDataObject::SPACING(), spacing);
     }
+    vtkImageData* data = vtkImageData::GetData(inInfo);
     if (inInfo->Has(vtkDataObject::DIRECTION()))
     {
       inInfo->Get(vtkDataObject::DIRECTION(), direction);
+    }
+    else if (data && !IsEmpty(data->GetExtent()))
+    {
+      std::copy_n(data->GetDirectionMatrix()->GetData(), 9, direction);
     }
     lacuna::ViewSettings view;
     std::copy_n(self->ViewDirection, 3, view.Direction.data());
@@ -198,7 +204,7 @@ double vtkLacunaBSplineIsoRayCaster::GetIsoValue(int i) const
 
 //------------------------------------------------------------------------------
 int vtkLacunaBSplineIsoRayCaster::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
@@ -211,6 +217,14 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       {
         outInfo->Set(SDDP::WHOLE_EXTENT(), extent, 6);
         return;
+      }
+      if (!inInfo->Has(vtkDataObject::DIRECTION()))
+      {
+        // ParaView's filter between any two proxies drops the direction from the information: then
+        // only the data know it. When they are up to date, as they usually are, this does nothing.
+        this->RequestUpdateExtent(request, inputVector, outputVector);
+        vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
+        connection->GetProducer()->Update(connection->GetIndex());
       }
       const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
       const int whole[6] = { 0, plane.Size[0] - 1, 0, plane.Size[1] - 1, 0, 0 };
