@@ -11,6 +11,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImagePlane.h"
+#include "lacunaSolidSide.h"
 #include "lacunaVoxelVolume.h"
 
 #include <cstdint>
@@ -25,26 +26,10 @@ enum class FieldInterpolation
   Trilinear
 };
 
-/// Where the solid is. A field equal to the iso-value is solid.
-enum class SolidSide
-{
-  Above,
-  Below
-};
-
 struct RayHit
 {
   double Distance; ///< along the unit ray, mm
   Vec3 Normal;     ///< unit, world, out of the solid and so towards the viewer
-};
-
-/// Where a part of a depth map goes. Arrays are row-major over the extent.
-struct DepthPixels
-{
-  std::array<int, 4> Extent; ///< first and last column, first and last row
-  double* Depth;             ///< mm; NaN where nothing is hit
-  char* Valid;               ///< 1 where Depth is a number; may be null
-  float* Normals;            ///< x 3, 0 where nothing is hit; may be null
 };
 
 /// Rules. The surface is where a ray passes from outside into the solid. A ray that is inside the

@@ -4,6 +4,7 @@
 #ifndef lacunaVoxelVolume_h
 #define lacunaVoxelVolume_h
 
+#include "lacunaImagePlane.h"
 #include "lacunaMatrix4.h"
 #include "lacunaScalarType.h"
 
@@ -39,5 +40,10 @@ inline void CheckVolumeSize(const std::array<int, 3>& size)
       " voxels has no inside: at least two voxels are needed along each axis");
   }
 }
+
+/// The plane for looking at a box of size voxels: the centres of the outermost voxels are its
+/// corners, its smallest voxel edge is the finest spacing. Throws also what CheckVolumeSize throws.
+ImagePlane MakeImagePlane(
+  const Matrix4& indexToWorld, const std::array<int, 3>& size, const ViewSettings& view);
 }
 #endif

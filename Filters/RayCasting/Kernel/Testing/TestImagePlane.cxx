@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaImagePlane.h"
 #include "lacunaTestField.h"
+#include "lacunaVoxelVolume.h"
 
 #include <gtest/gtest.h>
 

@@ -8,20 +8,21 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace lacuna
 {
-/// How a volume is looked at (parallel projection).
+/// How data are looked at (parallel projection).
 struct ViewSettings
 {
   Vec3 Direction{ 0, 0, -1 }; ///< the way the viewer looks, any length
   Vec3 Up{ 0, 1, 0 };         ///< shown upwards; need not be perpendicular to Direction
   bool HasPlaneOrigin = false;
   /// A point of the image plane, where depth is 0. Without it the plane goes through the corner of
-  /// the volume nearest the viewer, so that no depth is negative.
+  /// the data nearest the viewer, so that no depth is negative.
   Vec3 PlaneOrigin{ 0, 0, 0 };
-  double PixelSpacing = 0;             ///< mm; 0 = the smallest voxel edge
-  std::array<int, 2> Size{ { 0, 0 } }; ///< columns, rows; 0 = as many as show the whole volume
+  double PixelSpacing = 0;             ///< mm; 0 = the finest spacing of the data
+  std::array<int, 2> Size{ { 0, 0 } }; ///< columns, rows; 0 = as many as show all data
 };
 
 /// The pixels of a depth map: W columns along Right, H rows along Down, (0,0) top left. Right, Down
@@ -42,15 +43,24 @@ struct ImagePlane
   }
 };
 
+/// Where a part of a depth map goes. Arrays are row-major over the extent.
+struct DepthPixels
+{
+  std::array<int, 4> Extent; ///< first and last column, first and last row
+  double* Depth;             ///< mm; NaN where nothing is hit
+  char* Valid;               ///< 1 where Depth is a number; may be null
+  float* Normals;            ///< x 3, 0 where nothing is hit; may be null
+};
+
 /// More pixels than this are refused: 2^28, a map of 16384 x 16384 and of 5.6 GB.
 constexpr std::int64_t MaximumNumberOfPixels = std::int64_t(1) << 28;
 
-/// The plane for looking at a box of size voxels (the centres of the outermost voxels are its
-/// corners). An image that fits the volume has its first pixels in the box's edge; one of a given
-/// size is centred on the box. Throws std::invalid_argument for what cannot be seen: a zero
-/// direction, Up along Direction, a spacing or size that is negative, not finite or too large, a
-/// box with fewer than two voxels along an axis.
+/// The plane for looking at data within the convex hull of points (at least one), whose samples are
+/// finestSpacing mm apart where they are closest. An image that fits the data has its first pixels
+/// on their edge; one of a given size is centred on them. Throws std::invalid_argument for what
+/// cannot be seen: a zero direction, Up along Direction, a spacing or size that is negative, not
+/// finite or too large.
 ImagePlane MakeImagePlane(
-  const Matrix4& indexToWorld, const std::array<int, 3>& size, const ViewSettings& view);
+  const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view);
 }
 #endif

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaImagePlane.h"
 
-#include "lacunaVoxelVolume.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,30 +19,22 @@ std::string Text(const Vec3& v)
   return text.str();
 }
 
-/// Least and greatest coordinate of the box's corners along a direction.
+/// Least and greatest coordinate of points along a direction.
 struct Span
 {
   double First = std::numeric_limits<double>::infinity();
   double Last = -std::numeric_limits<double>::infinity();
 
-  Span(const Matrix4& indexToWorld, const std::array<int, 3>& size, const Vec3& direction)
+  Span(const std::vector<Vec3>& points, const Vec3& direction)
   {
-    for (int corner = 0; corner < 8; ++corner)
+    for (const Vec3& point : points)
     {
-      const Vec3 index{ corner & 1 ? size[0] - 1.0 : 0.0, corner & 2 ? size[1] - 1.0 : 0.0,
-        corner & 4 ? size[2] - 1.0 : 0.0 };
-      const double x = Dot(indexToWorld.Point(index), direction);
+      const double x = Dot(point, direction);
       this->First = std::min(this->First, x);
       this->Last = std::max(this->Last, x);
     }
   }
 };
-
-double SmallestVoxelEdge(const Matrix4& indexToWorld)
-{
-  return std::min(
-    { Norm(indexToWorld.Column(0)), Norm(indexToWorld.Column(1)), Norm(indexToWorld.Column(2)) });
-}
 
 /// Position of the first pixel along an axis and the number of pixels.
 void Place(const Span& span, double spacing, int wanted, double& first, double& count)
@@ -62,9 +52,8 @@ void Place(const Span& span, double spacing, int wanted, double& first, double& 
 }
 
 ImagePlane MakeImagePlane(
-  const Matrix4& indexToWorld, const std::array<int, 3>& size, const ViewSettings& view)
+  const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view)
 {
-  CheckVolumeSize(size);
   if (!IsFinite(view.Direction) || !(Norm(view.Direction) > 0))
   {
     throw std::invalid_argument(
@@ -83,14 +72,14 @@ ImagePlane MakeImagePlane(
   {
     std::ostringstream message;
     message << "a pixel spacing of " << view.PixelSpacing
-            << " mm is not possible: give a positive number, or 0 for the smallest voxel edge";
+            << " mm is not possible: give a positive number, or 0 to take it from the data";
     throw std::invalid_argument(message.str());
   }
   if (view.Size[0] < 0 || view.Size[1] < 0)
   {
     std::ostringstream message;
     message << "an image of " << view.Size[0] << " x " << view.Size[1]
-            << " pixels is not possible: give positive numbers, or 0 to fit the volume";
+            << " pixels is not possible: give positive numbers, or 0 to fit the data";
     throw std::invalid_argument(message.str());
   }
 
@@ -107,13 +96,13 @@ ImagePlane MakeImagePlane(
   plane.Down = Normalized(down);
   plane.Right = Cross(plane.Down, plane.View);
 
-  plane.PixelSpacing = view.PixelSpacing > 0 ? view.PixelSpacing : SmallestVoxelEdge(indexToWorld);
+  plane.PixelSpacing = view.PixelSpacing > 0 ? view.PixelSpacing : finestSpacing;
   double x;
   double y;
   double columns;
   double rows;
-  Place(Span(indexToWorld, size, plane.Right), plane.PixelSpacing, view.Size[0], x, columns);
-  Place(Span(indexToWorld, size, plane.Down), plane.PixelSpacing, view.Size[1], y, rows);
+  Place(Span(points, plane.Right), plane.PixelSpacing, view.Size[0], x, columns);
+  Place(Span(points, plane.Down), plane.PixelSpacing, view.Size[1], y, rows);
   if (!(columns * rows <= static_cast<double>(MaximumNumberOfPixels)))
   {
     std::ostringstream message;
@@ -123,8 +112,8 @@ ImagePlane MakeImagePlane(
     throw std::invalid_argument(message.str());
   }
   plane.Size = { static_cast<int>(columns), static_cast<int>(rows) };
-  const double z = view.HasPlaneOrigin ? Dot(view.PlaneOrigin, plane.View)
-                                       : Span(indexToWorld, size, plane.View).First;
+  const double z =
+    view.HasPlaneOrigin ? Dot(view.PlaneOrigin, plane.View) : Span(points, plane.View).First;
   plane.Origin = x * plane.Right + y * plane.Down + z * plane.View;
   return plane;
 }
