@@ -2,13 +2,17 @@
 #include "vtkLacunaDepthMap.h"
 
 #include "vtkAbstractArray.h"
+#include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -99,4 +103,33 @@ void vtkLacunaDepthMap::SetGeometry(vtkImageData* map, const Geometry& g)
   vtkLacunaFieldData::SetMatrices(map, ImageToWorldName,
     { lacuna::Matrix4::FromColumns(
       g.PixelSpacing[0] * g.Right, g.PixelSpacing[1] * g.Down, g.View, g.Origin) });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMap::SetGeometry(vtkImageData* map, const lacuna::ImagePlane& plane)
+{
+  SetGeometry(map,
+    Geometry{ plane.Origin, plane.Right, plane.Down, plane.View,
+      { plane.PixelSpacing, plane.PixelSpacing } });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMap::SetInformation(vtkInformation* info, const lacuna::ImagePlane& plane)
+{
+  const int whole[6] = { 0, plane.Size[0] - 1, 0, plane.Size[1] - 1, 0, 0 };
+  const double spacing[3] = { plane.PixelSpacing, plane.PixelSpacing, 1 };
+  const double direction[9] = { plane.Right[0], plane.Down[0], plane.View[0], plane.Right[1],
+    plane.Down[1], plane.View[1], plane.Right[2], plane.Down[2], plane.View[2] };
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole, 6);
+  info->Set(vtkDataObject::ORIGIN(), plane.Origin.data(), 3);
+  info->Set(vtkDataObject::SPACING(), spacing, 3);
+  info->Set(vtkDataObject::DIRECTION(), direction, 9);
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaDepthMap::IsGiven(const double point[3])
+{
+  return std::none_of(point, point + 3, [](double x) { return x >= VTK_DOUBLE_MAX; });
 }

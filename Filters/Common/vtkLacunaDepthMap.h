@@ -14,12 +14,14 @@
 #ifndef vtkLacunaDepthMap_h
 #define vtkLacunaDepthMap_h
 
+#include "lacunaImagePlane.h"
 #include "lacunaMatrix4.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"
 
 class vtkDataArray;
 class vtkImageData;
+class vtkInformation;
 
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaDepthMap
 {
@@ -63,6 +65,14 @@ public:
 
   /// Sets origin, spacing, direction matrix and ImageToWorld of a map whose extent starts anywhere.
   static void SetGeometry(vtkImageData* map, const Geometry& geometry);
+  static void SetGeometry(vtkImageData* map, const lacuna::ImagePlane& plane);
+
+  /// What RequestInformation says of a map on plane: whole extent, geometry, type of the scalars.
+  static void SetInformation(vtkInformation* info, const lacuna::ImagePlane& plane);
+
+  /// True unless point is left open: a coordinate is VTK_DOUBLE_MAX, the default of the points of
+  /// ViewSettings in filters that make maps.
+  static bool IsGiven(const double point[3]);
 
 private:
   lacuna::Matrix4 ImageToWorld;

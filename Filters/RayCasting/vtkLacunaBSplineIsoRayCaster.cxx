@@ -114,9 +114,10 @@ public:
     lacuna::ViewSettings view;
     std::copy_n(self->ViewDirection, 3, view.Direction.data());
     std::copy_n(self->ViewUp, 3, view.Up.data());
+    std::copy_n(self->FocalPoint, 3, view.FocalPoint.data());
+    view.HasFocalPoint = vtkLacunaDepthMap::IsGiven(self->FocalPoint);
     std::copy_n(self->PlaneOrigin, 3, view.PlaneOrigin.data());
-    view.HasPlaneOrigin = std::none_of(
-      self->PlaneOrigin, self->PlaneOrigin + 3, [](double x) { return x >= VTK_DOUBLE_MAX; });
+    view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
     view.PixelSpacing = self->PixelSpacing;
     view.Size = { self->ImageSize[0], self->ImageSize[1] };
     return lacuna::MakeImagePlane(
@@ -160,6 +161,7 @@ vtkStandardNewMacro(vtkLacunaBSplineIsoRayCaster);
 vtkLacunaBSplineIsoRayCaster::vtkLacunaBSplineIsoRayCaster()
   : Internal(std::make_unique<Internals>())
 {
+  std::fill_n(this->FocalPoint, 3, VTK_DOUBLE_MAX);
   std::fill_n(this->PlaneOrigin, 3, VTK_DOUBLE_MAX);
 }
 
@@ -227,16 +229,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
         connection->GetProducer()->Update(connection->GetIndex());
       }
       const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
-      const int whole[6] = { 0, plane.Size[0] - 1, 0, plane.Size[1] - 1, 0, 0 };
-      const double spacing[3] = { plane.PixelSpacing, plane.PixelSpacing, 1 };
-      const double direction[9] = { plane.Right[0], plane.Down[0], plane.View[0], plane.Right[1],
-        plane.Down[1], plane.View[1], plane.Right[2], plane.Down[2], plane.View[2] };
-      outInfo->Set(SDDP::WHOLE_EXTENT(), whole, 6);
-      outInfo->Set(vtkDataObject::ORIGIN(), plane.Origin.data(), 3);
-      outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
-      outInfo->Set(vtkDataObject::DIRECTION(), direction, 9);
-      outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_DOUBLE, 1);
+      vtkLacunaDepthMap::SetInformation(outInfo, plane);
     });
 }
 
@@ -307,9 +300,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
         throw std::runtime_error("pixels outside of the depth map were asked for");
       }
       output->SetExtent(extent);
-      vtkLacunaDepthMap::SetGeometry(output,
-        { plane.Origin, plane.Right, plane.Down, plane.View,
-          { plane.PixelSpacing, plane.PixelSpacing } });
+      vtkLacunaDepthMap::SetGeometry(output, plane);
       const vtkIdType pixels = output->GetNumberOfPoints();
       vtkNew<vtkCharArray> mask;
       mask->SetName(vtkLacunaDepthMap::MaskName);
@@ -373,6 +364,7 @@ void vtkLacunaBSplineIsoRayCaster::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "SolidSide: " << this->SolidSide << "\n"
      << indent << "ViewDirection: " << Joined(this->ViewDirection, 3) << "\n"
      << indent << "ViewUp: " << Joined(this->ViewUp, 3) << "\n"
+     << indent << "FocalPoint: " << Joined(this->FocalPoint, 3) << "\n"
      << indent << "PlaneOrigin: " << Joined(this->PlaneOrigin, 3) << "\n"
      << indent << "PixelSpacing: " << this->PixelSpacing << "\n"
      << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";

@@ -108,6 +108,15 @@ public:
 
   ///@{
   /**
+   * What is shown in the middle of the map, world mm. While a coordinate is VTK_DOUBLE_MAX (the
+   * default), the middle of the volume.
+   */
+  vtkSetVector3Macro(FocalPoint, double);
+  vtkGetVector3Macro(FocalPoint, double);
+  ///@}
+
+  ///@{
+  /**
    * A point of the image plane, world mm: where depth is 0. While a coordinate is VTK_DOUBLE_MAX
    * (the default) the plane goes through the corner of the volume nearest the viewer, so that no
    * depth is negative. The plane does not cut: a surface before it has a negative depth.
@@ -125,7 +134,8 @@ public:
   ///@{
   /**
    * Columns and rows of the map. 0 (default): as many as show the whole volume, the first pixels
-   * on the volume's edge. Otherwise the map is centred on the volume.
+   * on the volume's edge (with a FocalPoint, the middle one on it). Otherwise the map is centred on
+   * the volume or the FocalPoint.
    */
   vtkSetVector2Macro(ImageSize, int);
   vtkGetVector2Macro(ImageSize, int);
@@ -145,6 +155,7 @@ protected:
   int SolidSide = Above;
   double ViewDirection[3] = { 0, 0, -1 };
   double ViewUp[3] = { 0, 1, 0 };
+  double FocalPoint[3];
   double PlaneOrigin[3];
   double PixelSpacing = 0;
   int ImageSize[2] = { 0, 0 };

@@ -27,7 +27,7 @@ assert algorithm.GetNumberOfIsoValues() == 1
 assert (caster.Interpolation, caster.SolidSide) == ("BSpline", "Above")
 assert (algorithm.GetInterpolation(), algorithm.GetSolidSide()) == (0, 0)
 check_defaults(caster, algorithm,
-               ["ViewDirection", "ViewUp", "PlaneOrigin", "PixelSpacing", "ImageSize"])
+               ["ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin", "PixelSpacing", "ImageSize"])
 assert caster.ScalarArray == algorithm.GetScalarArray() == ""
 surface = DepthMapSurface(Input=caster)
 algorithm = lacuna.vtkLacunaDepthMapSurface()

@@ -36,18 +36,30 @@ struct Span
   }
 };
 
-/// Position of the first pixel along an axis and the number of pixels.
-void Place(const Span& span, double spacing, int wanted, double& first, double& count)
+/// Position of the first pixel along an axis and the number of pixels. focus: what is shown in the
+/// middle, or null.
+void Place(
+  const Span& span, const double* focus, double spacing, int wanted, double& first, double& count)
 {
+  // A last pixel that misses the edge by rounding only is not doubled.
+  const auto steps = [&](double length) { return std::ceil(length / spacing - 1e-6); };
+  const double middle = focus ? *focus : 0.5 * (span.First + span.Last);
   if (wanted > 0)
   {
     count = wanted;
-    first = 0.5 * (span.First + span.Last) - 0.5 * (count - 1) * spacing;
-    return;
+    first = middle - 0.5 * (count - 1) * spacing;
   }
-  first = span.First;
-  // A last pixel that misses the edge by rounding only is not doubled.
-  count = std::ceil((span.Last - span.First) / spacing - 1e-6) + 1;
+  else if (focus)
+  {
+    const double half = steps(std::max(span.Last - middle, middle - span.First));
+    count = 2 * half + 1;
+    first = middle - half * spacing;
+  }
+  else
+  {
+    count = steps(span.Last - span.First) + 1;
+    first = span.First;
+  }
 }
 }
 
@@ -63,6 +75,10 @@ ImagePlane MakeImagePlane(
   {
     throw std::invalid_argument(
       "the view-up vector " + Text(view.Up) + " has no direction: give a non-zero vector");
+  }
+  if (view.HasFocalPoint && !IsFinite(view.FocalPoint))
+  {
+    throw std::invalid_argument("the focal point " + Text(view.FocalPoint) + " is not a point");
   }
   if (view.HasPlaneOrigin && !IsFinite(view.PlaneOrigin))
   {
@@ -101,8 +117,14 @@ ImagePlane MakeImagePlane(
   double y;
   double columns;
   double rows;
-  Place(Span(points, plane.Right), plane.PixelSpacing, view.Size[0], x, columns);
-  Place(Span(points, plane.Down), plane.PixelSpacing, view.Size[1], y, rows);
+  const auto place = [&](const Vec3& axis, std::size_t dimension, double& first, double& count)
+  {
+    const double focus = Dot(view.FocalPoint, axis);
+    Place(Span(points, axis), view.HasFocalPoint ? &focus : nullptr, plane.PixelSpacing,
+      view.Size[dimension], first, count);
+  };
+  place(plane.Right, 0, x, columns);
+  place(plane.Down, 1, y, rows);
   if (!(columns * rows <= static_cast<double>(MaximumNumberOfPixels)))
   {
     std::ostringstream message;

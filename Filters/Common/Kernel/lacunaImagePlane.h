@@ -17,6 +17,9 @@ struct ViewSettings
 {
   Vec3 Direction{ 0, 0, -1 }; ///< the way the viewer looks, any length
   Vec3 Up{ 0, 1, 0 };         ///< shown upwards; need not be perpendicular to Direction
+  bool HasFocalPoint = false;
+  /// What is shown in the middle of the image. Without it, the middle of the data.
+  Vec3 FocalPoint{ 0, 0, 0 };
   bool HasPlaneOrigin = false;
   /// A point of the image plane, where depth is 0. Without it the plane goes through the corner of
   /// the data nearest the viewer, so that no depth is negative.
@@ -57,9 +60,10 @@ constexpr std::int64_t MaximumNumberOfPixels = std::int64_t(1) << 28;
 
 /// The plane for looking at data within the convex hull of points (at least one), whose samples are
 /// finestSpacing mm apart where they are closest. An image that fits the data has its first pixels
-/// on their edge; one of a given size is centred on them. Throws std::invalid_argument for what
-/// cannot be seen: a zero direction, Up along Direction, a spacing or size that is negative, not
-/// finite or too large.
+/// on their edge; one with a focal point has an odd number of pixels along each axis that it fits
+/// to the data, the middle one on the focal point. An image of a given size is centred on the focal
+/// point or on the data. Throws std::invalid_argument for what cannot be seen: a zero direction, Up
+/// along Direction, a spacing or size that is negative, not finite or too large.
 ImagePlane MakeImagePlane(
   const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view);
 }

@@ -358,6 +358,7 @@ void TestDefaultsAndCache()
   LACUNA_CHECK_THAT(caster->GetInterpolation() == Caster::BSpline, "Interpolation");
   LACUNA_CHECK_THAT(caster->GetSolidSide() == Caster::Above, "SolidSide");
   LACUNA_CHECK_THAT(caster->GetViewDirection()[2] == -1 && caster->GetViewUp()[1] == 1, "view");
+  LACUNA_CHECK_THAT(caster->GetFocalPoint()[0] == VTK_DOUBLE_MAX, "FocalPoint");
   LACUNA_CHECK_THAT(caster->GetPlaneOrigin()[0] == VTK_DOUBLE_MAX, "PlaneOrigin");
   LACUNA_CHECK_THAT(caster->GetPixelSpacing() == 0 && caster->GetImageSize()[0] == 0, "sizes");
   std::ostringstream text;
@@ -373,6 +374,17 @@ void TestDefaultsAndCache()
   LACUNA_CHECK_THAT(
     std::abs(caster->GetOutput()->GetPointData()->GetScalars()->GetTuple1(20) - 0.5) < 1e-5,
     "depth from the plane's origin");
+  double middle[3];
+  caster->SetFocalPoint(101, 202, 303);
+  caster->SetImageSize(5, 3);
+  caster->Update();
+  caster->GetOutput()->TransformIndexToPhysicalPoint(2, 1, 0, middle);
+  LACUNA_CHECK_THAT(std::abs(middle[0] - 101) < 1e-9 && std::abs(middle[1] - 202) < 1e-9 &&
+      std::abs(middle[2] - 95.5) < 1e-9,
+    "the focal point is in the middle of the map");
+  caster->SetFocalPoint(VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
+  caster->SetImageSize(0, 0);
+  caster->Update();
   vtkDataArray* values = volume->GetPointData()->GetScalars();
   for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
   {
