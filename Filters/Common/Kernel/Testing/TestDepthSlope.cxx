@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDepthSlope.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+using namespace lacuna;
+
+namespace
+{
+constexpr double Nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double Degree = 3.14159265358979323846 / 180;
+
+// The slope between pixels that lie at the given angles from the one in the middle.
+double FromAngles(double backward, double forward, double spacing = 1)
+{
+  return GetDepthSlope(5 - spacing * std::tan(backward * Degree), 5,
+    5 + spacing * std::tan(forward * Degree), spacing);
+}
+
+// The nine cases in the thesis's own words.
+double ByTheBook(double before, double here, double after, double spacing)
+{
+  const double b = std::atan((here - before) / spacing) / Degree;
+  const double f = std::atan((after - here) / spacing) / Degree;
+  const double c = std::atan((after - before) / (2 * spacing)) / Degree;
+  const bool noBefore = std::isnan(before);
+  const bool noAfter = std::isnan(after);
+  const auto tangent = [](double degrees) { return std::tan(degrees * Degree); };
+  if (noBefore && noAfter)
+  {
+    return 0;
+  }
+  if (noBefore)
+  {
+    return tangent(f);
+  }
+  if (noAfter)
+  {
+    return tangent(b);
+  }
+  if (std::abs(b - f) < 20)
+  {
+    return tangent(c);
+  }
+  if (std::abs(f) > 65 && std::abs(b) > 65)
+  {
+    return f * b < 0 ? 0 : tangent(c);
+  }
+  if (std::abs(f) > 65)
+  {
+    return tangent(b);
+  }
+  return tangent(std::abs(b) > 65 ? f : c);
+}
+}
+
+TEST(DepthSlope, NineCases)
+{
+  const auto tangent = [](double degrees) { return std::tan(degrees * Degree); };
+  EXPECT_EQ(GetDepthSlope(Nothing, 5, Nothing, 0.5), 0);
+  EXPECT_DOUBLE_EQ(GetDepthSlope(Nothing, 5, 8, 0.5), 6);
+  EXPECT_DOUBLE_EQ(GetDepthSlope(3, 5, Nothing, 0.5), 4);
+  EXPECT_NEAR(FromAngles(70, 80), 0.5 * (tangent(70) + tangent(80)), 1e-12);
+  EXPECT_EQ(FromAngles(-70, 80), 0);
+  EXPECT_NEAR(FromAngles(-88, -66), 0.5 * (tangent(-88) + tangent(-66)), 1e-9);
+  EXPECT_NEAR(FromAngles(10, 80), tangent(10), 1e-12);
+  EXPECT_NEAR(FromAngles(10, -80), tangent(10), 1e-12);
+  EXPECT_NEAR(FromAngles(-89, -5), tangent(-5), 1e-12);
+  EXPECT_NEAR(FromAngles(-30, 60), 0.5 * (tangent(-30) + tangent(60)), 1e-12);
+}
+
+TEST(DepthSlope, LimitsAreWhereTheyAreSaidToBe)
+{
+  // between 20 and 65 degrees all is central; so the limits show only near 65
+  EXPECT_NEAR(FromAngles(50, 69.9), 0.5 * (std::tan(50 * Degree) + std::tan(69.9 * Degree)), 1e-12);
+  EXPECT_NEAR(FromAngles(49.8, 69.9), std::tan(49.8 * Degree), 1e-12);
+  EXPECT_NEAR(FromAngles(20, 64.9), 0.5 * (std::tan(20 * Degree) + std::tan(64.9 * Degree)), 1e-12);
+  EXPECT_NEAR(FromAngles(20, 65.1), std::tan(20 * Degree), 1e-12);
+}
+
+TEST(DepthSlope, SameAsByAngles)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> angle(-89.9, 89.9);
+  for (int n = 0; n < 100000; ++n)
+  {
+    const double spacing = 0.1 + n % 7;
+    const double before = n % 11 == 0 ? Nothing : spacing * std::tan(angle(random) * Degree);
+    const double after = n % 13 == 0 ? Nothing : spacing * std::tan(angle(random) * Degree);
+    const double expected = ByTheBook(before, 0.25, after, spacing);
+    ASSERT_NEAR(
+      GetDepthSlope(before, 0.25, after, spacing), expected, 1e-9 * (1 + expected * expected))
+      << before << " " << after << " " << spacing;
+  }
+}

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSliceRayCaster.h"
+
+#include "lacunaDepthSlope.h"
+#include "lacunaMemory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double NoDepth = std::numeric_limits<double>::max();
+// The depth of a front sample that is still to be found: deeper than any sample, so that no sample
+// replaces it but every new solid one looks at it again.
+constexpr double ToBeFound = std::numeric_limits<double>::infinity();
+// Rows that are worked on together: their state stays in the cache while the slices pass by.
+constexpr std::int64_t RowsAtOnce = 8;
+}
+
+/// The state of a row of pixels; the first one is that of the extent's first column.
+struct SliceRayCaster::Row
+{
+  double* SolidDepth;
+  double* SolidLevel;
+  double* FrontDepth;
+  double* FrontLevel;
+  double* NearestDepth;
+};
+
+SliceRayCaster::SliceRayCaster(
+  const ImagePlane& plane, const std::array<int, 4>& extent, double isoValue, SolidSide side)
+  : Plane(plane)
+  , Wanted(extent)
+  , Sign(side == SolidSide::Above ? 1 : -1)
+  , Threshold(this->Sign * isoValue)
+{
+  if (std::isnan(isoValue))
+  {
+    throw std::invalid_argument("the iso-value is not a number");
+  }
+  if (extent[0] < 0 || extent[1] >= plane.Size[0] || extent[2] < 0 || extent[3] >= plane.Size[1] ||
+    extent[0] > extent[1] || extent[2] > extent[3])
+  {
+    throw std::invalid_argument("pixels outside of the depth map were asked for");
+  }
+  this->Extent = { std::max(extent[0] - 1, 0), std::min(extent[1] + 1, plane.Size[0] - 1),
+    std::max(extent[2] - 1, 0), std::min(extent[3] + 1, plane.Size[1] - 1) };
+  const auto size = static_cast<std::size_t>(this->Extent[1] - this->Extent[0] + 1) *
+    static_cast<std::size_t>(this->Extent[3] - this->Extent[2] + 1);
+  RequireMemory("this part of the depth map",
+    static_cast<double>(size) * static_cast<double>(GetBytesPerPixel()));
+  this->SolidDepth.assign(size, NoDepth);
+  this->SolidLevel.resize(size);
+  this->FrontDepth.assign(size, -NoDepth);
+  this->FrontLevel.resize(size);
+  this->NearestDepth.assign(size, NoDepth);
+}
+
+SliceRayCaster::Row SliceRayCaster::GetRow(std::int64_t j)
+{
+  const std::int64_t start =
+    (j - this->Extent[2]) * (static_cast<std::int64_t>(this->Extent[1]) - this->Extent[0] + 1);
+  return { this->SolidDepth.data() + start, this->SolidLevel.data() + start,
+    this->FrontDepth.data() + start, this->FrontLevel.data() + start,
+    this->NearestDepth.data() + start };
+}
+
+void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution& execution)
+{
+  std::vector<SliceProjection> added;
+  std::vector<std::int64_t> numbers;
+  std::int64_t number = this->NumberOfSlices;
+  for (const SliceImage& slice : slices)
+  {
+    CheckSlice(slice);
+    if (!SliceProjection::IsEdgeOn(slice, this->Plane))
+    {
+      added.emplace_back(slice, this->Plane);
+      numbers.push_back(number);
+    }
+    ++number;
+  }
+  this->NumberOfSlices = number;
+  const std::size_t first = this->Projections.size();
+  this->Projections.insert(this->Projections.end(), added.begin(), added.end());
+  this->Numbers.insert(this->Numbers.end(), numbers.begin(), numbers.end());
+  if (added.empty())
+  {
+    return;
+  }
+
+  const std::int64_t rows = this->Extent[3] - this->Extent[2] + 1;
+  execution.For(rows, RowsAtOnce,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<char> incomplete(static_cast<std::size_t>(end - begin));
+      for (std::size_t s = first; s < this->Projections.size(); ++s)
+      {
+        const SliceProjection& projection = this->Projections[s];
+        DispatchScalarType(projection.GetSlice().Type,
+          [&](auto zero)
+          {
+            for (std::int64_t y = begin; y < end; ++y)
+            {
+              incomplete[y - begin] |=
+                this->AddToRow<decltype(zero)>(projection, this->Extent[2] + y) ? 1 : 0;
+            }
+          });
+      }
+      for (std::int64_t y = begin; y < end; ++y)
+      {
+        if (incomplete[y - begin])
+        {
+          this->FindFronts(this->Extent[2] + y);
+        }
+      }
+    });
+}
+
+// Returns true when front samples are to be found.
+template <class T>
+bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
+{
+  const IndexInterval columns = projection.GetRow(j, { this->Extent[0], this->Extent[1] });
+  if (columns.IsEmpty())
+  {
+    return false;
+  }
+  const Row row = this->GetRow(j);
+  const PixelFunction depths = projection.GetDepth();
+  const double depthAtRow = depths.AtRow(j);
+  const SliceProjection::RowSampler<T> sample(projection, j);
+  const double sign = this->Sign;
+  const double threshold = this->Threshold;
+  bool incomplete = false;
+  for (std::int64_t i = columns.First; i <= columns.Last; ++i)
+  {
+    const std::int64_t x = i - this->Extent[0];
+    const double depth = depths.At(depthAtRow, i);
+    const double solid = row.SolidDepth[x];
+    if (!(depth <= solid))
+    {
+      continue; // what lies behind the solid does not matter
+    }
+    const double level = sign * sample(i);
+    if constexpr (std::is_floating_point_v<T>)
+    {
+      if (!std::isfinite(level))
+      {
+        continue;
+      }
+    }
+    if (level >= threshold)
+    {
+      if (depth < solid)
+      {
+        if (row.FrontDepth[x] >= depth)
+        {
+          const bool hasFront = row.NearestDepth[x] < depth;
+          row.FrontDepth[x] = hasFront ? ToBeFound : -NoDepth;
+          incomplete |= hasFront;
+        }
+        row.SolidDepth[x] = depth;
+        row.SolidLevel[x] = level;
+      }
+      else
+      {
+        row.SolidLevel[x] = std::max(row.SolidLevel[x], level);
+      }
+    }
+    else if (depth < solid && depth >= row.FrontDepth[x])
+    {
+      row.FrontLevel[x] = depth > row.FrontDepth[x] ? level : std::max(row.FrontLevel[x], level);
+      row.FrontDepth[x] = depth;
+    }
+    row.NearestDepth[x] = std::min(row.NearestDepth[x], depth);
+  }
+  return incomplete;
+}
+
+// Searches all slices for the front samples of row j that are to be found.
+void SliceRayCaster::FindFronts(std::int64_t j)
+{
+  const Row row = this->GetRow(j);
+  const std::size_t count = this->Projections.size();
+  std::vector<double> depthAtRow(count);
+  std::vector<double> depthStep(count);
+  for (std::size_t s = 0; s < count; ++s)
+  {
+    const PixelFunction& depths = this->Projections[s].GetDepth();
+    depthAtRow[s] = depths.AtRow(j);
+    depthStep[s] = depths.I;
+  }
+  for (std::int64_t i = this->Extent[0]; i <= this->Extent[1]; ++i)
+  {
+    const std::int64_t x = i - this->Extent[0];
+    double limit = row.SolidDepth[x];
+    const auto column = static_cast<double>(i);
+    // Once at most, but where all samples at the depth found are not finite.
+    while (row.FrontDepth[x] == ToBeFound)
+    {
+      double front = -NoDepth;
+      for (std::size_t s = 0; s < count; ++s)
+      {
+        const double depth = depthAtRow[s] + depthStep[s] * column;
+        if (depth < limit && depth > front && this->Projections[s].Meets(i, j))
+        {
+          front = depth;
+        }
+      }
+      double level = -NoDepth;
+      for (std::size_t s = 0; s < count && front > -NoDepth; ++s)
+      {
+        if (depthAtRow[s] + depthStep[s] * column == front && this->Projections[s].Meets(i, j))
+        {
+          const double sample = DispatchScalarType(this->Projections[s].GetSlice().Type,
+            [&](auto zero)
+            { return SliceProjection::RowSampler<decltype(zero)>(this->Projections[s], j)(i); });
+          level = std::isfinite(sample) ? std::max(level, this->Sign * sample) : level;
+        }
+      }
+      if (level > -NoDepth || front == -NoDepth)
+      {
+        row.FrontDepth[x] = front;
+        row.FrontLevel[x] = level;
+      }
+      limit = front;
+    }
+  }
+}
+
+void SliceRayCaster::MoveSlices(const std::vector<SliceImage>& slices)
+{
+  if (static_cast<std::int64_t>(slices.size()) != this->NumberOfSlices)
+  {
+    throw std::invalid_argument("MoveSlices needs all slices that were added");
+  }
+  for (std::size_t s = 0; s < this->Projections.size(); ++s)
+  {
+    this->Projections[s].SetPixels(slices[this->Numbers[s]].Pixels);
+  }
+}
+
+double SliceRayCaster::GetDepth(std::size_t pixel, double maximumGap) const
+{
+  const double solid = this->SolidDepth[pixel];
+  const double front = this->FrontDepth[pixel];
+  if (solid == NoDepth)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (front == -NoDepth || (maximumGap > 0 && solid - front > maximumGap))
+  {
+    return solid;
+  }
+  const double level = this->FrontLevel[pixel];
+  const double part = (this->Threshold - level) / (this->SolidLevel[pixel] - level);
+  return front + part * (solid - front);
+}
+
+void SliceRayCaster::Write(double maximumGap, const DepthPixels& pixels, Execution& execution) const
+{
+  if (pixels.Extent != this->Wanted)
+  {
+    throw std::invalid_argument("a slice ray caster writes all of its extent");
+  }
+  const std::int64_t width = this->Extent[1] - this->Extent[0] + 1;
+  const std::int64_t wantedWidth = this->Wanted[1] - this->Wanted[0] + 1;
+  const double spacing = this->Plane.PixelSpacing;
+  execution.For(this->Wanted[3] - this->Wanted[2] + 1, RowsAtOnce,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      // The rows with one more on each side, of depths with one more on each side: NaN outside.
+      const double nothing = std::numeric_limits<double>::quiet_NaN();
+      const std::int64_t lineLength = wantedWidth + 2;
+      std::vector<double> depths(static_cast<std::size_t>((end - begin + 2) * lineLength), nothing);
+      for (std::int64_t y = begin - 1; y <= end; ++y)
+      {
+        const std::int64_t j = this->Wanted[2] + y;
+        if (j < this->Extent[2] || j > this->Extent[3])
+        {
+          continue;
+        }
+        double* line = depths.data() + (y - begin + 1) * lineLength;
+        for (std::int64_t i = this->Extent[0]; i <= this->Extent[1]; ++i)
+        {
+          line[i - this->Wanted[0] + 1] = this->GetDepth(
+            static_cast<std::size_t>((j - this->Extent[2]) * width + i - this->Extent[0]),
+            maximumGap);
+        }
+      }
+      for (std::int64_t y = begin; y < end; ++y)
+      {
+        const double* line = depths.data() + (y - begin + 1) * lineLength + 1;
+        for (std::int64_t x = 0; x < wantedWidth; ++x)
+        {
+          const std::int64_t pixel = y * wantedWidth + x;
+          const double depth = line[x];
+          const bool valid = !std::isnan(depth);
+          pixels.Depth[pixel] = depth;
+          if (pixels.Valid)
+          {
+            pixels.Valid[pixel] = valid ? 1 : 0;
+          }
+          if (pixels.Normals)
+          {
+            Vec3 normal{ 0, 0, 0 };
+            if (valid)
+            {
+              const double right = GetDepthSlope(line[x - 1], depth, line[x + 1], spacing);
+              const double down =
+                GetDepthSlope(line[x - lineLength], depth, line[x + lineLength], spacing);
+              normal =
+                Normalized(right * this->Plane.Right + down * this->Plane.Down - this->Plane.View);
+            }
+            for (int a = 0; a < 3; ++a)
+            {
+              pixels.Normals[3 * pixel + a] = static_cast<float>(normal[a]);
+            }
+          }
+        }
+      }
+    });
+}
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A depth map made directly of slices, slice by slice (Carr 1996, 4.3).
+///
+/// The parallel ray of a pixel meets each slice at most once: that gives a sample, a depth and a
+/// grey level. The surface lies where the samples, taken in the order of their depths, first turn
+/// solid: between the nearest solid sample and the sample just in front of it. No volume is made,
+/// and the slices may come in any order and orientation.
+///
+/// A pixel's state is the nearest solid sample, the sample just in front of it and the depth of the
+/// nearest sample of all. A new slice changes only the pixels whose rays it meets in front of what
+/// is solid there. When a new solid sample comes to lie in front of the front sample, then the
+/// sample in front of it may be one that an earlier front sample has displaced (the nearest sample
+/// of all tells whether there can be one): the earlier slices are searched once more at this pixel.
+/// For the depths alone decide there, since all that lies in front of the nearest solid sample is
+/// not solid, this takes some nanoseconds per slice. So the state, and the map, depend on the set
+/// of slices only, bit by bit.
+#ifndef lacunaSliceRayCaster_h
+#define lacunaSliceRayCaster_h
+
+#include "lacunaExecution.h"
+#include "lacunaImagePlane.h"
+#include "lacunaSliceImage.h"
+#include "lacunaSliceProjection.h"
+#include "lacunaSolidSide.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lacuna
+{
+/// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice samples it
+/// bilinearly; samples that are not finite do not exist. Of several samples at the same depth of a
+/// ray only the most solid one counts. Slices seen edge-on (SliceProjection::IsEdgeOn) are left
+/// out. A ray whose nearest sample of all is solid has its surface there.
+class SliceRayCaster
+{
+public:
+  /// extent: first and last column, first and last row of the part of the map that is wanted.
+  /// Throws std::invalid_argument when it is not inside the map or isoValue is not a number,
+  /// std::runtime_error when memory does not suffice.
+  SliceRayCaster(
+    const ImagePlane& plane, const std::array<int, 4>& extent, double isoValue, SolidSide side);
+
+  /// Memory that this class takes per pixel.
+  static constexpr std::int64_t GetBytesPerPixel() { return 5 * sizeof(double); }
+
+  /// Adds slices. Their pixels are referred to as long as there is this object, or until
+  /// MoveSlices. Throws std::invalid_argument for unusable slices (none is added then), Aborted
+  /// when stopped (this object is then to be thrown away).
+  void AddSlices(const std::vector<SliceImage>& slices, Execution& execution);
+
+  /// Says that the pixels of all slices so far, in the order in which they were added, now lie
+  /// elsewhere: slices are the same slices, of which only Pixels may differ.
+  void MoveSlices(const std::vector<SliceImage>& slices);
+
+  std::int64_t GetNumberOfSlices() const { return this->NumberOfSlices; }
+  /// How many of them were left out because they are seen edge-on.
+  std::int64_t GetNumberOfEdgeOnSlices() const
+  {
+    return this->NumberOfSlices - static_cast<std::int64_t>(this->Projections.size());
+  }
+
+  /// Writes the depth map as it is now. Where the two samples are further apart than maximumGap mm
+  /// (0 = no limit), or nothing lies in front of the solid one, the depth is that of the solid
+  /// sample, otherwise the crossing of the iso-value on the straight line between them. Normals
+  /// come from the slopes of the depth (lacunaDepthSlope.h), also across the border of the extent.
+  /// pixels.Extent must be the extent of this object.
+  void Write(double maximumGap, const DepthPixels& pixels, Execution& execution) const;
+
+private:
+  struct Row;
+
+  Row GetRow(std::int64_t j);
+  template <class T>
+  bool AddToRow(const SliceProjection& projection, std::int64_t j);
+  void FindFronts(std::int64_t j);
+  double GetDepth(std::size_t pixel, double maximumGap) const;
+
+  ImagePlane Plane;
+  std::array<int, 4> Wanted;
+  /// Wanted and one pixel more on each side where the map goes on: normals need the neighbours.
+  std::array<int, 4> Extent;
+  /// Grey levels times Sign are solid when they are at least Threshold.
+  double Sign;
+  double Threshold;
+  std::int64_t NumberOfSlices = 0;
+  std::vector<SliceProjection> Projections; ///< not those seen edge-on
+  std::vector<std::int64_t> Numbers;        ///< of their slices
+
+  // The state of each pixel of Extent; grey levels times Sign.
+  std::vector<double> SolidDepth, SolidLevel; ///< the nearest solid sample; NoDepth = none
+  std::vector<double> FrontDepth, FrontLevel; ///< the sample just in front of it; -NoDepth = none
+  std::vector<double> NearestDepth;           ///< of all samples in front of or at the solid one
+};
+}
+#endif
