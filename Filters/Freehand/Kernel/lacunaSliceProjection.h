@@ -9,6 +9,7 @@
 #include "lacunaVoxelRegion.h" // for IndexInterval
 
 #include <algorithm>
+#include <limits>
 
 namespace lacuna
 {
@@ -23,8 +24,8 @@ struct PixelFunction
   double At(double atRow, std::int64_t i) const { return atRow + this->I * static_cast<double>(i); }
 };
 
-/// Where the rays of a depth map's pixels meet a slice. A ray meets it between the centres of its
-/// outermost pixels, with a millionth of a pixel to spare for rounding.
+/// Where the rays of a depth map's pixels meet a slice. A ray meets its window between the centres
+/// of the outermost pixels, with a millionth of a pixel to spare for rounding.
 class SliceProjection
 {
 public:
@@ -41,15 +42,18 @@ public:
   /// mm along the ray of a pixel to the slice's plane.
   const PixelFunction& GetDepth() const { return this->Depth; }
 
-  /// The columns of row j whose rays meet the slice, cut to columns.
+  /// The columns of row j whose rays meet the slice's window, cut to columns.
   IndexInterval GetRow(std::int64_t j, IndexInterval columns) const;
-  /// The same for one pixel.
+  /// True when the ray of one pixel meets the slice: its window, and its fan if it has one.
   bool Meets(std::int64_t i, std::int64_t j) const
   {
     const double column = this->Column.At(this->Column.AtRow(j), i);
     const double row = this->Row.At(this->Row.AtRow(j), i);
     return column >= -Tolerance && column <= this->LastColumn + Tolerance && row >= -Tolerance &&
-      row <= this->LastRow + Tolerance;
+      row <= this->LastRow + Tolerance &&
+      (!this->Slice.Fan ||
+        this->Slice.Fan->Contains(
+          std::clamp(column, 0.0, this->LastColumn), std::clamp(row, 0.0, this->LastRow)));
   }
 
   const SliceImage& GetSlice() const { return this->Slice; }
@@ -72,32 +76,65 @@ public:
     {
     }
 
-    /// Of a pixel whose ray meets the slice. Not finite when a grey level that it needs is not.
+    /// Of a pixel whose ray meets the window of a slice without a fan. Not finite when a grey level
+    /// that it needs is not.
     double operator()(std::int64_t i) const
     {
-      double x;
-      double y;
-      const int left = this->Column.Split(i, x);
-      const int top = this->Row.Split(i, y);
-      const T* upper = this->Pixels + top * this->RowStride + left;
+      const Place column = this->Column.At(i);
+      const Place row = this->Row.At(i);
+      const T* upper = this->Pixels + row.Start * this->RowStride + column.Start;
       const T* lower = upper + this->RowStride;
-      return Mix(Mix(upper[0], upper[1], x), Mix(lower[0], lower[1], x), y);
+      return Mix(
+        Mix(upper[0], upper[1], column.Rest), Mix(lower[0], lower[1], column.Rest), row.Rest);
+    }
+
+    /// The same for a slice with a fan; from the pixels in the fan alone. NaN when the ray does not
+    /// meet the fan, or meets a tip of it between the pixels.
+    double InFan(std::int64_t i, const FanMask& fan) const
+    {
+      const Place column = this->Column.At(i);
+      const Place row = this->Row.At(i);
+      double sum = 0;
+      double weights = 0;
+      int inside = 0;
+      const int corners = fan.Contains(column.Whole, row.Whole) ? 4 : 0;
+      for (int corner = 0; corner < corners; ++corner)
+      {
+        const int x = corner & 1;
+        const int y = corner >> 1;
+        if (fan.Contains(column.Start + x, row.Start + y))
+        {
+          const double weight = (x ? column.Rest : 1 - column.Rest) * (y ? row.Rest : 1 - row.Rest);
+          const T* pixel = this->Pixels + (row.Start + y) * this->RowStride + column.Start + x;
+          sum += weight * static_cast<double>(*pixel);
+          weights += weight;
+          ++inside;
+        }
+      }
+      return inside == 4 ? (*this)(i)
+        : weights > 0    ? sum / weights
+                         : std::numeric_limits<double>::quiet_NaN();
     }
 
   private:
+    /// A coordinate: the pixel before it and the way from there to the next one, 0 to 1.
+    struct Place
+    {
+      double Whole;
+      int Start;
+      double Rest;
+    };
     struct Coordinate
     {
       double AtRow, Step, Last;
       int LastStart;
 
-      /// The pixel before the coordinate and the way from there to the next one, 0 to 1.
-      int Split(std::int64_t i, double& rest) const
+      Place At(std::int64_t i) const
       {
         const double x =
           std::clamp(this->AtRow + this->Step * static_cast<double>(i), 0.0, this->Last);
         const int start = std::min(static_cast<int>(x), this->LastStart);
-        rest = x - start;
-        return start;
+        return { x, start, x - start };
       }
     };
 

@@ -20,6 +20,18 @@ constexpr double NoDepth = std::numeric_limits<double>::max();
 constexpr double ToBeFound = std::numeric_limits<double>::infinity();
 // Rows that are worked on together: their state stays in the cache while the slices pass by.
 constexpr std::int64_t RowsAtOnce = 8;
+
+// The grey level at a pixel whose ray meets the slice.
+double Sample(const SliceProjection& projection, std::int64_t i, std::int64_t j)
+{
+  const SliceImage& slice = projection.GetSlice();
+  return DispatchScalarType(slice.Type,
+    [&](auto zero)
+    {
+      const SliceProjection::RowSampler<decltype(zero)> sample(projection, j);
+      return slice.Fan ? sample.InFan(i, *slice.Fan) : sample(i);
+    });
+}
 }
 
 /// The state of a row of pixels; the first one is that of the extent's first column.
@@ -107,8 +119,11 @@ void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution&
           {
             for (std::int64_t y = begin; y < end; ++y)
             {
-              incomplete[y - begin] |=
-                this->AddToRow<decltype(zero)>(projection, this->Extent[2] + y) ? 1 : 0;
+              const std::int64_t j = this->Extent[2] + y;
+              const bool displaced = projection.GetSlice().Fan
+                ? this->AddToRow<decltype(zero), true>(projection, j)
+                : this->AddToRow<decltype(zero), false>(projection, j);
+              incomplete[y - begin] |= displaced ? 1 : 0;
             }
           });
       }
@@ -123,7 +138,7 @@ void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution&
 }
 
 // Returns true when front samples are to be found.
-template <class T>
+template <class T, bool HasFan>
 bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
 {
   const IndexInterval columns = projection.GetRow(j, { this->Extent[0], this->Extent[1] });
@@ -147,8 +162,16 @@ bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
     {
       continue; // what lies behind the solid does not matter
     }
-    const double level = sign * sample(i);
-    if constexpr (std::is_floating_point_v<T>)
+    double level;
+    if constexpr (HasFan)
+    {
+      level = sign * sample.InFan(i, *projection.GetSlice().Fan);
+    }
+    else
+    {
+      level = sign * sample(i);
+    }
+    if constexpr (HasFan || std::is_floating_point_v<T>)
     {
       if (!std::isfinite(level))
       {
@@ -218,9 +241,7 @@ void SliceRayCaster::FindFronts(std::int64_t j)
       {
         if (depthAtRow[s] + depthStep[s] * column == front && this->Projections[s].Meets(i, j))
         {
-          const double sample = DispatchScalarType(this->Projections[s].GetSlice().Type,
-            [&](auto zero)
-            { return SliceProjection::RowSampler<decltype(zero)>(this->Projections[s], j)(i); });
+          const double sample = Sample(this->Projections[s], i, j);
           level = std::isfinite(sample) ? std::max(level, this->Sign * sample) : level;
         }
       }

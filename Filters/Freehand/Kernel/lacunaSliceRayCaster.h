@@ -30,8 +30,8 @@
 
 namespace lacuna
 {
-/// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice samples it
-/// bilinearly; samples that are not finite do not exist. Of several samples at the same depth of a
+/// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice, inside its fan if
+/// it has one, samples it bilinearly; samples that are not finite do not exist. Of several samples at the same depth of a
 /// ray only the most solid one counts. Slices seen edge-on (SliceProjection::IsEdgeOn) are left
 /// out. A ray whose nearest sample of all is solid has its surface there.
 class SliceRayCaster
@@ -73,7 +73,7 @@ private:
   struct Row;
 
   Row GetRow(std::int64_t j);
-  template <class T>
+  template <class T, bool HasFan>
   bool AddToRow(const SliceProjection& projection, std::int64_t j);
   void FindFronts(std::int64_t j);
   double GetDepth(std::size_t pixel, double maximumGap) const;

@@ -111,12 +111,19 @@ TEST(SliceRayCasterBehaviour, EveryOrderOfSixSlices)
 
 TEST(SliceRayCasterBehaviour, AnyOrderAndGroupingOfManySlices)
 {
-  for (unsigned int seed = 2; seed < 5; ++seed)
+  for (unsigned int seed = 2; seed < 4; ++seed)
   {
     const auto bytes = MakeSpeckle<std::uint8_t>(50, seed, ScalarType::UInt8, false);
     const auto floats = MakeSpeckle<float>(50, seed, ScalarType::Float32, true);
+    auto fans = bytes.Slices;
+    const auto fan = std::make_shared<FanMask>(
+      Fan{ { 18, -5 }, { -40, 45 }, { 2, 7 } }, 37, 29, Vec2{ 0.31, 0.23 });
+    for (SliceImage& slice : fans)
+    {
+      slice.Fan = fan;
+    }
     std::mt19937 random(seed);
-    for (const std::vector<SliceImage>& slices : { bytes.Slices, floats.Slices })
+    for (const std::vector<SliceImage>& slices : { bytes.Slices, floats.Slices, fans })
     {
       for (const Vec3& direction : { Vec3{ 0, 0, 1 }, Vec3{ 0, 0, -1 }, Vec3{ 1, 0.2, 0.1 } })
       {
@@ -128,7 +135,7 @@ TEST(SliceRayCasterBehaviour, AnyOrderAndGroupingOfManySlices)
           EXPECT_GT(expected.CountValid(), 150);
           std::vector<int> order(slices.size());
           std::iota(order.begin(), order.end(), 0);
-          for (int trial = 0; trial < 6; ++trial)
+          for (int trial = 0; trial < 5; ++trial)
           {
             if (trial == 1)
             {

@@ -113,7 +113,12 @@ bool IntersectRay(
   {
     return false;
   }
+  if (slice.Fan && !slice.Fan->Contains(column, row))
+  {
+    return false;
+  }
   level = 0;
+  double weights = 0;
   for (int y = std::max(0, static_cast<int>(row) - 1);
        y < std::min(slice.Height, static_cast<int>(row) + 3); ++y)
   {
@@ -123,13 +128,15 @@ bool IntersectRay(
       // a tent over each pixel
       const double weight =
         std::max(0.0, 1 - std::abs(column - x)) * std::max(0.0, 1 - std::abs(row - y));
-      if (weight > 0)
+      if (weight > 0 && (!slice.Fan || slice.Fan->Contains(x, y)))
       {
+        weights += weight;
         level += weight *
           static_cast<double>(static_cast<const T*>(slice.Pixels)[y * slice.RowStride + x]);
       }
     }
   }
+  level /= weights;
   return std::isfinite(level);
 }
 
