@@ -26,8 +26,28 @@ Aborted::Aborted()
 
 void Execution::SetStage(double first, double last)
 {
-  this->StageFirst = first;
-  this->StageLast = last;
+  const double length = this->WholeLast - this->WholeFirst;
+  this->StageFirst = this->WholeFirst + first * length;
+  this->StageLast = this->WholeFirst + last * length;
+}
+
+Execution::NestedStages::NestedStages(Execution& execution)
+  : Outer(execution)
+  , WholeFirst(execution.WholeFirst)
+  , WholeLast(execution.WholeLast)
+  , StageFirst(execution.StageFirst)
+  , StageLast(execution.StageLast)
+{
+  execution.WholeFirst = execution.StageFirst;
+  execution.WholeLast = execution.StageLast;
+}
+
+Execution::NestedStages::~NestedStages()
+{
+  this->Outer.WholeFirst = this->WholeFirst;
+  this->Outer.WholeLast = this->WholeLast;
+  this->Outer.StageFirst = this->StageFirst;
+  this->Outer.StageLast = this->StageLast;
 }
 
 void Execution::Report(double fraction)

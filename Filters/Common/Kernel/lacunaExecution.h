@@ -33,8 +33,27 @@ public:
   /// The set-up costs some 50 microseconds: for loops of a millisecond or more.
   void For(std::int64_t count, std::int64_t grain, const Body& body);
 
-  /// The next loops and reports cover this part of the whole progress, 0 <= first <= last <= 1.
+  /// The next loops and reports cover this part of the whole progress, 0 <= first <= last <= 1; of
+  /// the caller's stage while a NestedStages lives.
   void SetStage(double first, double last);
+
+  /// Gives a function that is itself a stage of its caller stages of its own: while it lives,
+  /// SetStage divides the stage there was before; then that one is back.
+  class NestedStages
+  {
+  public:
+    explicit NestedStages(Execution& execution);
+    ~NestedStages();
+    NestedStages(const NestedStages&) = delete;
+    NestedStages& operator=(const NestedStages&) = delete;
+
+  private:
+    Execution& Outer;
+    double WholeFirst;
+    double WholeLast;
+    double StageFirst;
+    double StageLast;
+  };
 
   /// Says how far a serial part of the current stage is, 0..1. Throws Aborted when stopped.
   void Report(double fraction);
@@ -46,6 +65,8 @@ protected:
   virtual bool OnProgress(double fraction) = 0;
 
 private:
+  double WholeFirst = 0; ///< what SetStage divides
+  double WholeLast = 1;
   double StageFirst = 0;
   double StageLast = 1;
 };

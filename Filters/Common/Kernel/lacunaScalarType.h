@@ -25,6 +25,12 @@ enum class ScalarType
   Float64
 };
 
+/// Expands Macro for each number type: for explicit instantiations of a kernel's templates.
+#define LACUNA_FOR_EACH_SCALAR(Macro)                                                              \
+  Macro(std::int8_t) Macro(std::uint8_t) Macro(std::int16_t) Macro(std::uint16_t)                  \
+    Macro(std::int32_t) Macro(std::uint32_t) Macro(std::int64_t) Macro(std::uint64_t) Macro(float) \
+      Macro(double)
+
 /// The type of numbers that are stored as T is: integers by size and sign, whatever their name.
 template <class T>
 constexpr ScalarType GetScalarType()

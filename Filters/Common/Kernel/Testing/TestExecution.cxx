@@ -83,3 +83,31 @@ TEST(Execution, ReportsOnTheCallingThreadWithinTheStage)
   }
   EXPECT_DOUBLE_EQ(reports.back(), 0.5);
 }
+
+TEST(Execution, StagesOfAStageStayWithinIt)
+{
+  std::vector<double> reports;
+  lacuna::ThreadExecution execution(1,
+    [&](double fraction)
+    {
+      reports.push_back(fraction);
+      return true;
+    });
+  execution.SetStage(0.5, 1);
+  {
+    const lacuna::Execution::NestedStages stages(execution);
+    execution.Report(0);
+    execution.SetStage(0.5, 1);
+    execution.Report(0);
+    {
+      const lacuna::Execution::NestedStages inner(execution);
+      execution.SetStage(0, 0.5);
+      execution.Report(1);
+    }
+    execution.Report(1);
+  }
+  execution.Report(0.5);
+  execution.SetStage(0, 0.5);
+  execution.Report(1);
+  EXPECT_EQ(reports, (std::vector<double>{ 0.5, 0.75, 0.875, 1, 0.75, 0.5 }));
+}

@@ -56,3 +56,14 @@ TEST(ScalarType, RefusesWhatIsNone)
   EXPECT_THROW(lacuna::GetScalarSize(none), std::invalid_argument);
   EXPECT_THROW(lacuna::DispatchScalars(none, nullptr, [](const auto*) {}), std::invalid_argument);
 }
+
+TEST(ScalarType, TheListNamesEachTypeOnce)
+{
+  int type = 0;
+#define LACUNA_EXPECT_NEXT(T)                                                                      \
+  EXPECT_EQ(static_cast<int>(lacuna::GetScalarType<T>()), type);                                   \
+  ++type;
+  LACUNA_FOR_EACH_SCALAR(LACUNA_EXPECT_NEXT)
+#undef LACUNA_EXPECT_NEXT
+  EXPECT_EQ(type, 10);
+}
