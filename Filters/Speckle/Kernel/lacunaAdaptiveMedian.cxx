@@ -2,10 +2,12 @@
 #include "lacunaAdaptiveMedian.h"
 
 #include "lacunaOrderedKey.h"
-#include "lacunaRankFilter.h"
+#include "lacunaRankBlocks.h"
 #include "lacunaRankTile.h"
+#include "lacunaScalarType.h"
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -195,32 +197,14 @@ void FilterAdaptiveMedian(const ImageView<const T>& input, const ImageView<T>& o
     throw std::invalid_argument(
       "the adaptive strength is " + std::to_string(strength) + "; it must be 0 or more");
   }
-  RequireRankable(window);
-  const std::vector<Extent> blocks = Divide(output.Box, ChooseRankBlock(window, sizeof(T)));
-  execution.For(static_cast<std::int64_t>(blocks.size()), 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      BlockFilter<T> filter(input, output, window, strength);
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        filter.Filter(blocks[i]);
-      }
-    });
+  FilterRankBlocks(output.Box, window, sizeof(T), execution,
+    [&] { return std::make_unique<BlockFilter<T>>(input, output, window, strength); });
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterAdaptiveMedian(                                                              \
-    const ImageView<const T>&, const ImageView<T>&, const Window&, double, Execution&)
+    const ImageView<const T>&, const ImageView<T>&, const Window&, double, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }

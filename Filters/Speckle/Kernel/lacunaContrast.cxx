@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaContrast.h"
 
+#include "lacunaScalarType.h"
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 namespace lacuna
@@ -105,6 +109,39 @@ struct RowRun
   std::int64_t Set;
 };
 
+/// Samples at or above a value: those not below the least sample that T has there.
+template <class T>
+class Threshold
+{
+public:
+  explicit Threshold(double value)
+  {
+    if (value != value)
+    {
+      throw std::invalid_argument("the iso-value is not a number");
+    }
+    if constexpr (std::is_integral_v<T>)
+    {
+      using Limits = std::numeric_limits<T>;
+      const double whole = std::ceil(value);
+      this->OutOfReach = whole >= std::ldexp(1.0, Limits::digits); // the greatest T, plus 1
+      this->Least = this->OutOfReach || whole <= static_cast<double>(Limits::lowest())
+        ? Limits::lowest()
+        : static_cast<T>(whole);
+    }
+    else
+    {
+      this->Least = value;
+    }
+  }
+
+  bool IsReached(T sample) const { return sample >= this->Least && !this->OutOfReach; }
+
+private:
+  std::conditional_t<std::is_integral_v<T>, T, double> Least;
+  bool OutOfReach = false;
+};
+
 void JoinOverlaps(const std::vector<RowRun>& a, const std::vector<RowRun>& b, DisjointSets& sets)
 {
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();)
@@ -128,6 +165,7 @@ std::array<RegionStatistics, 2> MeasureRegions(
   const ImageView<const T>& view, const std::uint8_t* regions, Execution& execution)
 {
   // Twice through the data: the variance about the mean itself loses no digits.
+  const Execution::NestedStages stages(execution);
   execution.SetStage(0, 0.5);
   const Sums sums = SumRegions(view, regions, { 0, 0 }, false, execution);
   std::array<RegionStatistics, 2> statistics;
@@ -159,19 +197,21 @@ std::int64_t CountThresholdedRegions(
   const std::int64_t nx = SizeOf(view.Box, 0);
   const int ny = SizeOf(view.Box, 1);
   const int nz = SizeOf(view.Box, 2);
+  const Threshold<T> threshold(isoValue);
   DisjointSets sets;
   std::vector<std::vector<RowRun>> before(ny); // the rows of the slice before
+  std::vector<RowRun> runs;
   for (int k = 0; k < nz; ++k)
   {
     execution.Report(double(k) / nz);
     for (int j = 0; j < ny; ++j)
     {
       const T* row = view.Data + k * view.Stride[2] + j * view.Stride[1];
-      std::vector<RowRun> runs;
+      runs.clear();
       bool above = false;
       for (std::int64_t i = 0; i < nx; ++i)
       {
-        const bool now = static_cast<double>(row[i * view.Stride[0]]) >= isoValue;
+        const bool now = threshold.IsReached(row[i * view.Stride[0]]);
         if (now && !above)
         {
           runs.push_back({ i, nx, sets.Add() });
@@ -200,16 +240,7 @@ std::int64_t CountThresholdedRegions(
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template std::array<RegionStatistics, 2> MeasureRegions(                                         \
     const ImageView<const T>&, const std::uint8_t*, Execution&);                                   \
-  template std::int64_t CountThresholdedRegions(const ImageView<const T>&, double, Execution&)
+  template std::int64_t CountThresholdedRegions(const ImageView<const T>&, double, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }

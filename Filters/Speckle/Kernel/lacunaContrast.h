@@ -6,6 +6,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
+#include "lacunaRegions.h"
 
 #include <array>
 #include <cstdint>
@@ -18,17 +19,9 @@ struct RegionStatistics
   double Mean = 0;
   double Variance = 0; ///< of the population: divided by Count
 
-  /// Mean / standard deviation; infinite for a constant region. 1.91 for the envelope of fully
+  /// Mean / standard deviation; infinite for a constant region (NaN where it is 0). 1.91 for the envelope of fully
   /// developed speckle (Burckhardt 1978).
   double SignalToNoise() const;
-};
-
-/// Which region a sample belongs to.
-enum Region : std::uint8_t
-{
-  InsideRegion = 0,
-  OutsideRegion = 1,
-  NoRegion = 2
 };
 
 /// Statistics of the samples inside and outside; NaN is passed over. regions has a Region for each
@@ -42,7 +35,8 @@ std::array<RegionStatistics, 2> MeasureRegions(
 double ContrastToSpeckle(const RegionStatistics& inside, const RegionStatistics& outside);
 
 /// The number of separate regions of samples at or above isoValue, neighbours being those that
-/// share a face (4 in an image of one slice, 6 in a volume).
+/// share a face (4 in an image of one slice, 6 in a volume). 64-bit integers are compared exactly.
+/// Throws std::invalid_argument when isoValue is NaN.
 template <class T>
 std::int64_t CountThresholdedRegions(
   const ImageView<const T>& view, double isoValue, Execution& execution);

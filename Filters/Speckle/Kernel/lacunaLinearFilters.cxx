@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaLinearFilters.h"
 
+#include "lacunaMemory.h"
 #include "lacunaOrderedKey.h"
+#include "lacunaScalarType.h"
 
 #include <atomic>
 #include <cmath>
@@ -255,17 +257,24 @@ template <class S, class T, class Op, class Total>
 void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, const Reach& reach,
   const Op& op, const Total& total, Execution& execution)
 {
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0, 0.1);
   const bool nan = AnyNaN(input, execution);
-  std::vector<S> weightMemory(nan ? NumberOfSamples(output.Box) : 0);
+  const std::int64_t weightCount = nan ? NumberOfSamples(output.Box) : 0;
+  RequireMemory("the weights of samples that are numbers",
+    static_cast<double>(sizeof(S)) * static_cast<double>(weightCount));
+  std::vector<S> weightMemory(weightCount);
   const ImageView<S> weightView(weightMemory.data(), output.Box);
   if (nan)
   {
+    execution.SetStage(0.1, 0.5);
     FilterSeparably<S>(
       input, output.Box, reach, op, [](T value) { return S(value == value ? 1 : 0); },
       [&](const S* row, int x0, int x1, int y, int z)
       { std::copy(row, row + (x1 - x0 + 1), weightView.At(x0, y, z)); },
       execution);
   }
+  execution.SetStage(nan ? 0.5 : 0.1, 1);
   FilterSeparably<S>(
     input, output.Box, reach, op,
     [](T value) { return value == value ? static_cast<S>(value) : S(0); },
@@ -359,11 +368,13 @@ Reach LaplacianReach(const Deviations& deviations)
 
 std::vector<double> GaussianWeights(double deviation, int radius)
 {
+  // Narrower ones are the same impulse, but their squares and exponentials vanish.
+  const double s = std::max(deviation, 0.05);
   std::vector<double> weights(std::size_t(2) * radius + 1);
   double sum = 0;
   for (int i = -radius; i <= radius; ++i)
   {
-    weights[i + radius] = radius > 0 ? std::exp(-0.5 * i * i / (deviation * deviation)) : 1;
+    weights[i + radius] = radius > 0 ? std::exp(-0.5 * i * i / (s * s)) : 1;
     sum += weights[i + radius];
   }
   for (double& w : weights)
@@ -375,19 +386,17 @@ std::vector<double> GaussianWeights(double deviation, int radius)
 
 std::vector<double> SecondDerivativeWeights(double deviation, int radius)
 {
-  const std::vector<double> gaussian = GaussianWeights(deviation, radius);
-  std::vector<double> weights(gaussian.size());
-  const double s2 = deviation * deviation;
-  double sum = 0;
+  // With the sum taken away, (i^2 / s^4 - 1 / s^2) g leaves (i^2 - the variance of g) g / s^4.
+  std::vector<double> weights = GaussianWeights(deviation, radius);
+  double variance = 0;
   for (int i = -radius; i <= radius; ++i)
   {
-    weights[i + radius] = (i * i / s2 - 1) / s2 * gaussian[i + radius];
-    sum += weights[i + radius];
+    variance += weights[i + radius] * i * i;
   }
   double moment = 0;
   for (int i = -radius; i <= radius; ++i)
   {
-    weights[i + radius] -= sum * gaussian[i + radius];
+    weights[i + radius] *= i * i - variance;
     moment += weights[i + radius] * i * i;
   }
   for (double& w : weights)
@@ -420,9 +429,11 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
   using S = LinearType<T>;
   using Out = LaplacianType<T>;
   const Reach reach = LaplacianReach(deviations);
+  const Execution::NestedStages stages(execution);
   bool first = true;
   for (int axis = 0; axis < 3; ++axis)
   {
+    execution.SetStage(axis / 3.0, (axis + 1) / 3.0);
     if (!reach.Along(axis))
     {
       continue;
@@ -467,16 +478,7 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
     const ImageView<const T>&, const ImageView<T>&, const Deviations&, VectorUnit, Execution&);    \
   template void FilterLaplacianOfGaussian(const ImageView<const T>&,                               \
     const ImageView<LaplacianType<T>>&, const Deviations&, const std::array<double, 3>&,           \
-    VectorUnit, Execution&)
+    VectorUnit, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }

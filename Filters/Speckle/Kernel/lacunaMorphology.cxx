@@ -2,6 +2,7 @@
 #include "lacunaMorphology.h"
 
 #include "lacunaOrderedKey.h"
+#include "lacunaScalarType.h"
 #include "lacunaSeparable.h"
 
 namespace lacuna
@@ -105,29 +106,32 @@ private:
   void FilterEllipsoid(const ImageView<const T>& input, const Extent& box, const Load& load,
     const Store& store, Execution& execution) const
   {
-    const std::vector<Extent> blocks = Divide(box, { 512, 64, 1 });
-    execution.For(static_cast<std::int64_t>(blocks.size()), 1,
-      [&](std::int64_t begin, std::int64_t end)
+    ForEachBlock(
+      box, { 512, 64, 1 }, execution, [] { return std::make_unique<Buffers>(); },
+      [&](Buffers& buffers, const Extent& block)
       {
-        std::vector<Key> slice, runs, result;
-        for (std::int64_t i = begin; i < end; ++i)
+        this->FilterBlock(input, block, load, buffers);
+        const std::int64_t pitch = SizeOf(this->Shape.Grow(block), 0);
+        for (int y = block[2]; y <= block[3]; ++y)
         {
-          const Extent& block = blocks[i];
-          this->FilterBlock(input, block, load, slice, runs, result);
-          const std::int64_t pitch = SizeOf(this->Shape.Grow(block), 0);
-          for (int y = block[2]; y <= block[3]; ++y)
-          {
-            store(result.data() + (y - block[2]) * pitch, block[0], block[1], y, block[4]);
-          }
+          store(buffers.Result.data() + (y - block[2]) * pitch, block[0], block[1], y, block[4]);
         }
       });
   }
 
+  struct Buffers
+  {
+    std::vector<Key> Slice;
+    std::vector<Key> Runs;
+    std::vector<Key> Result;
+  };
+
   /// Result: the rows of block, which has one slice, at the pitch of the grown block.
   template <class T, class Load>
-  void FilterBlock(const ImageView<const T>& input, const Extent& block, const Load& load,
-    std::vector<Key>& slice, std::vector<Key>& runs, std::vector<Key>& result) const
+  void FilterBlock(
+    const ImageView<const T>& input, const Extent& block, const Load& load, Buffers& buffers) const
   {
+    auto& [slice, runs, result] = buffers;
     Extent grown = this->Shape.Grow(block);
     const int z0 = grown[4];
     const std::int64_t pitch = SizeOf(grown, 0);
@@ -204,16 +208,7 @@ void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterExtreme(const ImageView<const T>&, const ImageView<T>&, const Window&,       \
-    Extreme, VectorUnit, Execution&)
+    Extreme, VectorUnit, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }

@@ -12,33 +12,12 @@
 
 namespace lacuna
 {
-template <std::size_t Size>
-struct UnsignedOfSize;
-template <>
-struct UnsignedOfSize<1>
-{
-  using Type = std::uint8_t;
-};
-template <>
-struct UnsignedOfSize<2>
-{
-  using Type = std::uint16_t;
-};
-template <>
-struct UnsignedOfSize<4>
-{
-  using Type = std::uint32_t;
-};
-template <>
-struct UnsignedOfSize<8>
-{
-  using Type = std::uint64_t;
-};
-
 template <class T>
 struct OrderedKey
 {
-  using Key = typename UnsignedOfSize<sizeof(T)>::Type;
+  using Key = std::conditional_t<sizeof(T) == 1, std::uint8_t,
+    std::conditional_t<sizeof(T) == 2, std::uint16_t,
+      std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
   static constexpr Key SignBit = static_cast<Key>(Key(1) << (8 * sizeof(T) - 1));
   /// The key of NaN; for integer types it is that of the greatest value.
   static constexpr Key NaN = std::numeric_limits<Key>::max();

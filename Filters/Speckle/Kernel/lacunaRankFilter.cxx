@@ -5,10 +5,11 @@
 #include "lacunaEllipsoidCounts.h"
 #include "lacunaMedianNetwork.h"
 #include "lacunaOrderedKey.h"
+#include "lacunaRankBlocks.h"
 #include "lacunaRankQuery.h"
+#include "lacunaScalarType.h"
 
-#include <stdexcept>
-#include <string>
+#include <memory>
 #include <vector>
 
 namespace lacuna
@@ -217,65 +218,20 @@ private:
   std::vector<std::uint32_t> Places;
   SortedTile<Key> Tile;
 };
-
-}
-
-void RequireRankable(const Window& window)
-{
-  if (window.GetNumberOfSamples() > MaximumRankSamples)
-  {
-    throw std::invalid_argument("the kernel holds " + std::to_string(window.GetNumberOfSamples()) +
-      " samples; for medians and other ranks at most " + std::to_string(MaximumRankSamples) +
-      " are possible");
-  }
-}
-
-std::array<int, 3> ChooseRankBlock(const Window& window, std::size_t sampleSize)
-{
-  const bool flat = window.GetSize(2) == 1;
-  // Samples of a byte need no sorting, which is what favours small blocks.
-  const int large = sampleSize == 1 ? 2 : 1;
-  const std::array<int, 3> least =
-    flat ? std::array<int, 3>{ 64, 64 * large, 1 } : std::array<int, 3>{ 32, 32, 32 * large };
-  std::array<int, 3> block;
-  for (int a = 0; a < 3; ++a)
-  {
-    const int size = window.GetSize(a);
-    block[a] = std::max(1, std::min(size == 1 ? least[a] : std::max(least[a], size), 256 - size));
-  }
-  return block;
 }
 
 template <class T>
 void FilterRank(const ImageView<const T>& input, const ImageView<T>& output, const Window& window,
   const RankParameters& parameters, Execution& execution)
 {
-  RequireRankable(window);
-  const std::vector<Extent> blocks = Divide(output.Box, ChooseRankBlock(window, sizeof(T)));
-  execution.For(static_cast<std::int64_t>(blocks.size()), 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      BlockFilter<T> filter(input, output, window, parameters);
-      for (std::int64_t i = begin; i < end; ++i)
-      {
-        filter.Filter(blocks[i]);
-      }
-    });
+  FilterRankBlocks(output.Box, window, sizeof(T), execution,
+    [&] { return std::make_unique<BlockFilter<T>>(input, output, window, parameters); });
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T is a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
   template void FilterRank(const ImageView<const T>&, const ImageView<T>&, const Window&,          \
-    const RankParameters&, Execution&)
+    const RankParameters&, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }

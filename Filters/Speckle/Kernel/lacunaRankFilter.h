@@ -26,19 +26,9 @@ struct RankParameters
   VectorUnit Set = BestVectorUnit();
 };
 
-/// Windows for ranks hold at most this many samples.
-constexpr std::int64_t MaximumRankSamples = std::int64_t(1) << 20;
-/// Throws std::invalid_argument for a window of more than MaximumRankSamples.
-void RequireRankable(const Window& window);
-
-/// Blocks small enough for the tables of a block to stay in the cache, large enough for the margin
-/// that a block shares with its neighbours to be small; with its margin a block has at most 256
-/// samples along each axis.
-std::array<int, 3> ChooseRankBlock(const Window& window, std::size_t sampleSize);
-
 /// Filters the samples of output.Box from those of input, whose box contains it; input must reach
 /// window.Grow(output.Box) except where the image ends. T: the fixed-width integers, float, double.
-/// Throws std::invalid_argument for a window of more than MaximumRankSamples.
+/// Throws std::invalid_argument for a window of more than MaximumRankSamples (lacunaRankBlocks.h).
 template <class T>
 void FilterRank(const ImageView<const T>& input, const ImageView<T>& output, const Window& window,
   const RankParameters& parameters, Execution& execution);

@@ -7,12 +7,15 @@
 #ifndef lacunaSeparable_h
 #define lacunaSeparable_h
 
+#include "lacunaBlocks.h"
 #include "lacunaExecution.h"
 #include "lacunaImageView.h"
+#include "lacunaMemory.h"
 #include "lacunaWindow.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace lacuna
@@ -102,25 +105,19 @@ void FilterSeparably(const ImageView<const T>& input, const Extent& box, const R
   const Op& op, const Load& load, const Store& store, Execution& execution)
 {
   using Buffers = detail::SeparableBuffers<S>;
-  const auto forEach = [&execution](const std::vector<Extent>& blocks, const auto& body)
+  const auto forEach = [&execution](
+                         const Extent& all, const std::array<int, 3>& size, const auto& work)
   {
-    execution.For(static_cast<std::int64_t>(blocks.size()), 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        Buffers buffers;
-        for (std::int64_t i = begin; i < end; ++i)
-        {
-          body(blocks[i], buffers);
-        }
-      });
+    ForEachBlock(
+      all, size, execution, [] { return std::make_unique<Buffers>(); }, work);
   };
   // Strips of rows that fit the second-level cache with what they reach.
   const std::array<int, 3> strip = { 4096 / static_cast<int>(sizeof(S)),
     std::max(64, 2 * (reach.Lower[1] + reach.Upper[1])), 1 };
   if (!reach.Along(2))
   {
-    forEach(Divide(box, strip),
-      [&](const Extent& block, Buffers& buffers)
+    forEach(box, strip,
+      [&](Buffers& buffers, const Extent& block)
       {
         detail::FilterSlices(input, block, reach, op, load, buffers,
           [&](const S* row, int y, int z) { store(row, block[0], block[1], y, z); });
@@ -130,10 +127,14 @@ void FilterSeparably(const ImageView<const T>& input, const Extent& box, const R
 
   const Extent slices = Intersect(
     reach.Grow(box, false, true), { box[0], box[1], box[2], box[3], input.Box[4], input.Box[5] });
+  RequireMemory("the image between two steps of the filter",
+    static_cast<double>(sizeof(S)) * static_cast<double>(NumberOfSamples(slices)));
   std::vector<S> between(NumberOfSamples(slices));
   const ImageView<S> view(between.data(), slices);
-  forEach(Divide(slices, strip),
-    [&](const Extent& block, Buffers& buffers)
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0, 0.5);
+  forEach(slices, strip,
+    [&](Buffers& buffers, const Extent& block)
     {
       detail::FilterSlices(input, block, reach, op, load, buffers,
         [&](const S* row, int y, int z)
@@ -142,8 +143,9 @@ void FilterSeparably(const ImageView<const T>& input, const Extent& box, const R
 
   const int along = std::max(1, 2048 / static_cast<int>(sizeof(S)));
   const ImageView<const S> readable(between.data(), slices);
-  forEach(Divide(box, { along, std::max(1, along / SizeOf(box, 0)), SizeOf(box, 2) }),
-    [&](const Extent& block, Buffers& buffers)
+  execution.SetStage(0.5, 1);
+  forEach(box, { along, std::max(1, along / SizeOf(box, 0)), SizeOf(box, 2) },
+    [&](Buffers& buffers, const Extent& block)
     {
       const Extent grown = reach.Grow(block, false, true);
       const std::int64_t slice = std::int64_t(SizeOf(block, 0)) * SizeOf(block, 1);

@@ -2,6 +2,8 @@
 #include "lacunaSpeckleFilter.h"
 
 #include "lacunaAdaptiveMedian.h"
+#include "lacunaMemory.h"
+#include "lacunaScalarType.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -85,12 +87,17 @@ void FilterMorphology(const ImageView<const T>& input, const ImageView<T>& outpu
   }
   std::vector<T> last;
   std::vector<T> next;
+  const Execution::NestedStages stages(execution);
   ImageView<const T> from = input;
   for (std::size_t i = 0; i < steps.size(); ++i)
   {
-    execution.SetStage(double(i) / steps.size(), double(i + 1) / steps.size());
+    const auto count = static_cast<double>(steps.size());
+    execution.SetStage(static_cast<double>(i) / count, static_cast<double>(i + 1) / count);
     const bool final = i + 1 == steps.size();
-    next.resize(final ? 0 : NumberOfSamples(boxes[i]));
+    const std::int64_t samples = final ? 0 : NumberOfSamples(boxes[i]);
+    RequireMemory("the image between two steps of the filter",
+      static_cast<double>(sizeof(T)) * static_cast<double>(samples));
+    next.resize(samples);
     const ImageView<T> to = final ? output : ImageView<T>(next.data(), boxes[i]);
     FilterExtreme(from, to, windowOf(steps[i]), steps[i].Which, set, execution);
     last.swap(next);
@@ -180,16 +187,7 @@ void FilterSpeckleLaplacian(const ImageView<const T>& input,
   template void FilterSpeckle(                                                                     \
     const ImageView<const T>&, const ImageView<T>&, const SpeckleParameters&, Execution&);         \
   template void FilterSpeckleLaplacian(const ImageView<const T>&,                                  \
-    const ImageView<LaplacianType<T>>&, const SpeckleParameters&, Execution&)
+    const ImageView<LaplacianType<T>>&, const SpeckleParameters&, Execution&);
 // NOLINTEND(bugprone-macro-parentheses)
-LACUNA_INSTANTIATE(std::int8_t);
-LACUNA_INSTANTIATE(std::uint8_t);
-LACUNA_INSTANTIATE(std::int16_t);
-LACUNA_INSTANTIATE(std::uint16_t);
-LACUNA_INSTANTIATE(std::int32_t);
-LACUNA_INSTANTIATE(std::uint32_t);
-LACUNA_INSTANTIATE(std::int64_t);
-LACUNA_INSTANTIATE(std::uint64_t);
-LACUNA_INSTANTIATE(float);
-LACUNA_INSTANTIATE(double);
+LACUNA_FOR_EACH_SCALAR(LACUNA_INSTANTIATE)
 }
