@@ -2,122 +2,157 @@
 #include "vtkLacunaContrastToSpeckle.h"
 
 #include "lacunaContrast.h"
+#include "lacunaMemory.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaSpeckleTypes.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaSpeckleInput.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaContrastToSpeckle);
 
 namespace
 {
-bool IsGiven(const double bounds[6])
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+const char* const RegionNames[2] = { "Inside", "Outside" };
+
+bool HasBounds(const double bounds[6])
 {
-  return bounds[0] <= bounds[1] && bounds[2] <= bounds[3] && bounds[4] <= bounds[5];
+  lacuna::RegionRule rule;
+  std::copy_n(bounds, 6, rule.Bounds.begin());
+  return rule.HasBounds();
 }
 
-bool IsGiven(const std::string& array, const double bounds[6])
+vtkDataArray* FindNumbers(vtkImageData* image, const std::string& name)
 {
-  return !array.empty() || IsGiven(bounds);
-}
-
-/// The named point array; null for an empty name. Throws when it is not there.
-vtkDataArray* GetMask(vtkImageData* image, const std::string& name)
-{
-  if (name.empty())
+  vtkDataArray* array = vtkLacunaSpeckleInput::FindArray(image, name);
+  if (array->GetNumberOfComponents() != 1)
   {
-    return nullptr;
-  }
-  vtkDataArray* array = image->GetPointData()->GetArray(name.c_str());
-  if (!array || array->GetNumberOfTuples() != image->GetNumberOfPoints())
-  {
-    throw std::runtime_error("the image has no point array '" + name +
-      "' of numbers; choose one that is not 0 in the region");
+    throw std::runtime_error(vtkLacunaSpeckleInput::Name(array) + " has " +
+      std::to_string(array->GetNumberOfComponents()) +
+      " components; choose one with a single component, for example a Calculator's result");
   }
   return array;
 }
 
-/// Marks the points of a region that no region has yet.
-void Mark(vtkImageData* image, const std::string& name, const double bounds[6],
+/// Sets to region the points that an array and bounds say, of those that no region has yet.
+void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
   lacuna::Region region, std::vector<std::uint8_t>& regions, lacuna::Execution& execution)
 {
-  vtkDataArray* mask = GetMask(image, name);
-  vtkDataArray* valid = image->GetPointData()->GetArray("vtkValidPointMask");
-  const bool bounded = IsGiven(bounds);
-  const lacuna::Extent box = vtkLacunaSpeckleTypes::GetExtent(image->GetExtent());
-  vtkIdType id = 0;
-  for (int k = box[4]; k <= box[5]; ++k)
+  constexpr const char* ValidMask = "vtkValidPointMask";
+  std::vector<vtkSmartPointer<vtkDataArray>> values;
+  lacuna::RegionRule rule;
+  std::copy_n(bounds, 6, rule.Bounds.begin());
+  for (const std::string& name : { array, std::string(ValidMask) })
   {
-    execution.Report(double(k - box[4]) / lacuna::SizeOf(box, 2));
-    for (int j = box[2]; j <= box[3]; ++j)
+    if (name.empty() || (name == ValidMask && !image->GetPointData()->HasArray(ValidMask)))
     {
-      for (int i = box[0]; i <= box[1]; ++i, ++id)
-      {
-        bool in = regions[id] == lacuna::NoRegion && (!mask || mask->GetComponent(id, 0) != 0) &&
-          (!valid || valid->GetComponent(id, 0) != 0);
-        if (in && bounded)
-        {
-          double p[3];
-          image->TransformIndexToPhysicalPoint(i, j, k, p);
-          const double* range = bounds;
-          for (int a = 0; a < 3; ++a, range += 2)
-          {
-            in = in && range[0] <= p[a] && p[a] <= range[1];
-          }
-        }
-        if (in)
-        {
-          regions[id] = region;
-        }
-      }
+      continue;
     }
+    vtkDataArray* mask = FindNumbers(image, name);
+    values.push_back(vtkLacunaSpeckleInput::MakeContiguous(mask));
+    rule.Masks.push_back({ vtkLacunaScalarType::Get(mask), values.back()->GetVoidPointer(0) });
+  }
+  const lacuna::Matrix4 indexToWorld(image->GetIndexToPhysicalMatrix()->GetData());
+  lacuna::MarkRegion(vtkLacunaSpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
+    region, regions.data(), execution);
+}
+
+template <class Number>
+std::string Join(const Number numbers[6])
+{
+  std::ostringstream text;
+  text.precision(17);
+  for (int i = 0; i < 6; ++i)
+  {
+    text << (i > 0 ? " " : "") << numbers[i];
+  }
+  return text.str();
+}
+
+/// Regions may reach anywhere, and a part of an image would give the numbers of that part.
+void RequireWhole(vtkImageData* image, vtkInformation* info)
+{
+  int whole[6];
+  info->Get(Pipeline::WHOLE_EXTENT(), whole);
+  const int* extent = image->GetExtent();
+  if (!std::equal(whole, whole + 6, extent))
+  {
+    throw std::runtime_error("only the part " + Join(extent) + " of the image " + Join(whole) +
+      " arrived; the filter before this one does not give the whole of it when asked to");
   }
 }
 
-template <class T>
-void Measure(vtkDataArray* array, const lacuna::Extent& box,
-  const std::vector<std::uint8_t>& regions, double isoValue,
-  std::array<lacuna::RegionStatistics, 2>& statistics, std::int64_t& count,
-  lacuna::Execution& execution)
+/// A table of one row that grows column by column; of none when there shall be no row.
+class Row
 {
-  const lacuna::ImageView<const T> view(static_cast<const T*>(array->GetVoidPointer(0)), box);
-  statistics = lacuna::MeasureRegions(view, regions.data(), execution);
-  count = lacuna::CountThresholdedRegions(view, isoValue, execution);
-}
+public:
+  Row(vtkTable* table, bool there)
+    : Table(table)
+    , There(there)
+  {
+  }
 
-void AddNumber(vtkTable* table, const std::string& name, double value)
-{
-  vtkNew<vtkDoubleArray> column;
-  column->SetName(name.c_str());
-  column->InsertNextValue(value);
-  table->AddColumn(column);
-}
+  void Add(const std::string& name, double value) { this->AddTo<vtkDoubleArray>(name, value); }
+  void AddCount(const std::string& name, std::int64_t value)
+  {
+    this->AddTo<vtkIdTypeArray>(name, static_cast<vtkIdType>(value));
+  }
 
-void AddCount(vtkTable* table, const std::string& name, std::int64_t value)
-{
-  vtkNew<vtkIdTypeArray> column;
-  column->SetName(name.c_str());
-  column->InsertNextValue(static_cast<vtkIdType>(value));
-  table->AddColumn(column);
-}
-}
+private:
+  template <class Array, class Value>
+  void AddTo(const std::string& name, Value value)
+  {
+    vtkNew<Array> column;
+    column->SetName(name.c_str());
+    if (this->There)
+    {
+      column->InsertNextValue(value);
+    }
+    this->Table->AddColumn(column);
+  }
 
-//------------------------------------------------------------------------------
-vtkLacunaContrastToSpeckle::vtkLacunaContrastToSpeckle()
+  vtkTable* Table;
+  bool There;
+};
+
+struct Measures
 {
-  this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  std::array<lacuna::RegionStatistics, 2> Statistics;
+  std::int64_t Regions = 0;
+};
+
+void Write(const Measures& measures, double isoValue, Row row)
+{
+  row.Add("CSR", lacuna::ContrastToSpeckle(measures.Statistics[0], measures.Statistics[1]));
+  for (int r = 0; r < 2; ++r)
+  {
+    const std::string name = RegionNames[r];
+    const lacuna::RegionStatistics& statistics = measures.Statistics[r];
+    row.Add(name + "Mean", statistics.Mean);
+    row.Add(name + "Variance", statistics.Variance);
+    row.Add(name + "SNR", statistics.SignalToNoise());
+    row.AddCount(name + "Count", statistics.Count);
+  }
+  row.Add("IsoValue", isoValue);
+  row.AddCount("Regions", measures.Regions);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -131,12 +166,13 @@ int vtkLacunaContrastToSpeckle::FillInputPortInformation(int, vtkInformation* in
 int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  // Regions may reach anywhere: every rank needs the whole image.
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  // All of the image, on every rank: what is upstream may need all ranks to make it.
   vtkInformation* input = inputs[0]->GetInformationObject(0);
   int whole[6];
   input->Get(Pipeline::WHOLE_EXTENT(), whole);
   input->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
   return 1;
 }
 
@@ -147,86 +183,85 @@ int vtkLacunaContrastToSpeckle::RequestData(
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
-      vtkImageData* image = vtkImageData::GetData(inputs[0]);
       vtkTable* table = vtkTable::GetData(outputs);
-      const vtkSmartPointer<vtkDataArray> samples = vtkLacunaSpeckleTypes::GetSamples(
-        vtkLacunaSpeckleTypes::Choose(
-          this->GetInputArrayToProcess(0, inputs), this->GetInputArrayInformation(0), image),
-        image);
-      if (samples->GetNumberOfComponents() != 1)
+      if (outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_PIECE_NUMBER()) > 0)
       {
-        throw std::runtime_error("the array has " +
-          std::to_string(samples->GetNumberOfComponents()) +
-          " components; choose one with a single component");
+        Write(Measures(), this->IsoValue, Row(table, false));
+        return;
       }
-      if (!IsGiven(this->InsideArray, this->InsideBounds))
+      vtkImageData* image = vtkImageData::GetData(inputs[0]);
+      RequireWhole(image, inputs[0]->GetInformationObject(0));
+      vtkDataArray* array = FindNumbers(image, this->ScalarArray);
+      const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);
+      const auto samples = vtkLacunaSpeckleInput::MakeContiguous(array);
+      if (this->InsideArray.empty() && !HasBounds(this->InsideBounds))
       {
         throw std::runtime_error("no inside region: give InsideArray or InsideBounds");
       }
 
+      lacuna::RequireMemory(
+        "the regions of the image", static_cast<double>(image->GetNumberOfPoints()));
       std::vector<std::uint8_t> regions(image->GetNumberOfPoints(), lacuna::NoRegion);
-      execution.SetStage(0, 0.3);
+      execution.SetStage(0, 0.2);
       Mark(image, this->InsideArray, this->InsideBounds, lacuna::InsideRegion, regions, execution);
-      execution.SetStage(0.3, 0.6);
+      execution.SetStage(0.2, 0.4);
       Mark(
         image, this->OutsideArray, this->OutsideBounds, lacuna::OutsideRegion, regions, execution);
-      std::array<lacuna::RegionStatistics, 2> statistics;
-      std::int64_t count = 0;
-      execution.SetStage(0.6, 1);
-      switch (samples->GetDataType())
-      {
-        vtkTemplateMacro((Measure<typename vtkLacunaSpeckleTypes::Fixed<VTK_TT>::Type>(samples,
-          vtkLacunaSpeckleTypes::GetExtent(image->GetExtent()), regions, this->IsoValue, statistics,
-          count, execution)));
-        default:
-          throw std::runtime_error("arrays of type " + std::string(samples->GetDataTypeAsString()) +
-            " cannot be measured; convert it to a numeric type");
-      }
-      const char* const names[2] = { "Inside", "Outside" };
+      Measures measures;
+      const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
+      lacuna::DispatchScalars(type, samples->GetVoidPointer(0),
+        [&](const auto* values)
+        {
+          const lacuna::ImageView view(values, box);
+          execution.SetStage(0.4, 0.7);
+          measures.Statistics = lacuna::MeasureRegions(view, regions.data(), execution);
+          execution.SetStage(0.7, 1);
+          measures.Regions = lacuna::CountThresholdedRegions(view, this->IsoValue, execution);
+        });
       for (int r = 0; r < 2; ++r)
       {
-        if (statistics[r].Count == 0)
+        if (measures.Statistics[r].Count == 0)
         {
           throw std::runtime_error(std::string("no sample is ") + (r == 0 ? "inside" : "outside") +
-            ": check " + names[r] + "Array and " + names[r] + "Bounds against the image");
+            ": check " + RegionNames[r] + "Array and " + RegionNames[r] +
+            "Bounds against the image");
         }
       }
-
-      AddNumber(table, "CSR", lacuna::ContrastToSpeckle(statistics[0], statistics[1]));
-      for (int r = 0; r < 2; ++r)
-      {
-        const std::string name = names[r];
-        AddNumber(table, name + "Mean", statistics[r].Mean);
-        AddNumber(table, name + "Variance", statistics[r].Variance);
-        AddNumber(table, name + "SNR", statistics[r].SignalToNoise());
-        AddCount(table, name + "Count", statistics[r].Count);
-      }
-      AddNumber(table, "IsoValue", this->IsoValue);
-      AddCount(table, "Regions", count);
-      std::ostringstream parameters;
-      parameters.precision(17);
-      parameters << "InsideArray=" << this->InsideArray << " OutsideArray=" << this->OutsideArray
-                 << " IsoValue=" << this->IsoValue;
-      vtkLacunaProvenance::Record(table, this, { image }, parameters.str());
+      Write(measures, this->IsoValue, Row(table, true));
+      vtkLacunaProvenance::Record(table, this, { image }, this->Describe());
     });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaContrastToSpeckle::Describe() const
+{
+  std::ostringstream text;
+  text.precision(17);
+  const auto region = [&](const char* name, const std::string& array, const double bounds[6])
+  {
+    if (!array.empty())
+    {
+      text << name << "Array=" << array << " ";
+    }
+    if (HasBounds(bounds))
+    {
+      text << name << "Bounds=" << Join(bounds) << " ";
+    }
+  };
+  region("Inside", this->InsideArray, this->InsideBounds);
+  region("Outside", this->OutsideArray, this->OutsideBounds);
+  text << "IsoValue=" << this->IsoValue;
+  return text.str();
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaContrastToSpeckle::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto print = [&](const char* name, const double bounds[6])
-  {
-    os << indent << name << ":";
-    for (int i = 0; i < 6; ++i)
-    {
-      os << " " << bounds[i];
-    }
-    os << "\n";
-  };
+  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
   os << indent << "InsideArray: " << this->InsideArray << "\n";
   os << indent << "OutsideArray: " << this->OutsideArray << "\n";
-  print("InsideBounds", this->InsideBounds);
-  print("OutsideBounds", this->OutsideBounds);
+  os << indent << "InsideBounds: " << Join(this->InsideBounds) << "\n";
+  os << indent << "OutsideBounds: " << Join(this->OutsideBounds) << "\n";
   os << indent << "IsoValue: " << this->IsoValue << "\n";
 }

@@ -3,14 +3,15 @@
  * @class vtkLacunaContrastToSpeckle
  * @brief how well a region stands out against speckle
  *
- * Input: vtkImageData with a point array of numbers, one component (default: the active scalars).
+ * Input: vtkImageData with a point array of numbers, one component (ScalarArray).
  * Two regions are compared. A point is inside where InsideArray is not 0 and where it lies in
  * InsideBounds, whichever of the two are given (at least one must be); outside likewise. Without
  * OutsideArray and OutsideBounds everything else is outside. Points inside are not outside; points
- * whose vtkValidPointMask is 0 and NaN samples belong to no region. A selection becomes an array
- * by Extract Selection with Preserve Topology (array vtkInsidedness).
+ * whose vtkValidPointMask is 0 and NaN samples belong to no region, nor do points where an array is
+ * NaN. A selection becomes an array by Extract Selection with Preserve Topology (vtkInsidedness).
  *
- * Output: vtkTable of one row:
+ * Output: vtkTable of one row (of no rows but the column names in all pieces after the first: under
+ * MPI the row is on rank 0):
  * | column                         | type    | meaning                                            |
  * |--------------------------------|---------|----------------------------------------------------|
  * | CSR                            | double  | abs(difference of means) / sqrt(sum of variances)  |
@@ -42,6 +43,12 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
+  /// The point array of numbers; empty: the active scalars. Default: empty.
+  vtkSetMacro(ScalarArray, std::string);
+  vtkGetMacro(ScalarArray, std::string);
+  ///@}
+
+  ///@{
   /// Point arrays that are not 0 in the region. Default: none.
   vtkSetMacro(InsideArray, std::string);
   vtkGetMacro(InsideArray, std::string);
@@ -50,8 +57,9 @@ public:
   ///@}
 
   ///@{
-  /// Boxes (xmin xmax ymin ymax zmin zmax) in the image's physical coordinates, borders included;
-  /// a minimum above its maximum means no box. Default: 1 -1 1 -1 1 -1.
+  /// Boxes (xmin xmax ymin ymax zmin zmax) in the image's physical coordinates, borders included
+  /// (give or take a millionth of the spacing); a minimum above its maximum means no box. Default:
+  /// 1 -1 1 -1 1 -1.
   vtkSetVector6Macro(InsideBounds, double);
   vtkGetVector6Macro(InsideBounds, double);
   vtkSetVector6Macro(OutsideBounds, double);
@@ -65,7 +73,7 @@ public:
   ///@}
 
 protected:
-  vtkLacunaContrastToSpeckle();
+  vtkLacunaContrastToSpeckle() = default;
   ~vtkLacunaContrastToSpeckle() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
@@ -78,6 +86,9 @@ private:
   vtkLacunaContrastToSpeckle(const vtkLacunaContrastToSpeckle&) = delete;
   void operator=(const vtkLacunaContrastToSpeckle&) = delete;
 
+  std::string Describe() const;
+
+  std::string ScalarArray;
   std::string InsideArray;
   std::string OutsideArray;
   double InsideBounds[6] = { 1, -1, 1, -1, 1, -1 };

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSpeckleFilter.h"
 
+#include "lacunaMemory.h"
 #include "lacunaSpeckleFilter.h"
 #include "vtkDataObject.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaSpeckleTypes.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -76,17 +79,18 @@ bool IsTrackedSlices(vtkDataObject* data)
     data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::SliceStatusName);
 }
 
+/// from: the samples of a component after the other at each point of fromBox.
 template <class T>
-void FilterArray(vtkDataArray* from, const lacuna::Extent& fromBox, vtkDataArray* to,
+void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
   const lacuna::Extent& toBox, const lacuna::SpeckleParameters& parameters,
   lacuna::Execution& execution)
 {
   using Result = lacuna::LaplacianType<T>;
-  const int components = from->GetNumberOfComponents();
+  const int components = to->GetNumberOfComponents();
   for (int c = 0; c < components; ++c)
   {
-    const lacuna::ImageView<const T> input(
-      static_cast<const T*>(from->GetVoidPointer(0)) + c, fromBox, components);
+    execution.SetStage(double(c) / components, double(c + 1) / components);
+    const lacuna::ImageView<const T> input(from + c, fromBox, components);
     if (parameters.Operation == lacuna::SpeckleOperation::LaplacianOfGaussian)
     {
       const lacuna::ImageView<Result> output(
@@ -107,11 +111,13 @@ void FilterArray(vtkDataArray* from, const lacuna::Extent& fromBox, vtkDataArray
 int vtkLacunaSpeckleFilter::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (this->Operation == LAPLACIAN_OF_GAUSSIAN)
+  vtkInformation* scalars =
+    vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
+      vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
+    (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
   {
-    vtkInformation* scalars =
-      vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
-        vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
     const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
     vtkDataObject::SetPointDataActiveScalarInfo(
       outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
@@ -134,13 +140,13 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     input->Get(vtkDataObject::SPACING(), spacing);
   }
-  lacuna::Extent needed = vtkLacunaSpeckleTypes::GetExtent(asked);
+  lacuna::Extent needed = vtkLacunaSpeckleInput::GetExtent(asked);
   try
   {
     if (!lacuna::IsEmpty(needed))
     {
       needed = lacuna::Intersect(lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed),
-        vtkLacunaSpeckleTypes::GetExtent(whole));
+        vtkLacunaSpeckleInput::GetExtent(whole));
     }
   }
   catch (const std::invalid_argument&)
@@ -163,8 +169,8 @@ int vtkLacunaSpeckleFilter::RequestData(
       int asked[6];
       outputs->GetInformationObject(0)->Get(
         vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
-      const lacuna::Extent inBox = vtkLacunaSpeckleTypes::GetExtent(input->GetExtent());
-      lacuna::Extent box = lacuna::Intersect(vtkLacunaSpeckleTypes::GetExtent(asked), inBox);
+      const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
+      lacuna::Extent box = lacuna::Intersect(vtkLacunaSpeckleInput::GetExtent(asked), inBox);
       output->SetOrigin(input->GetOrigin());
       output->SetSpacing(input->GetSpacing());
       output->SetDirectionMatrix(input->GetDirectionMatrix());
@@ -175,9 +181,9 @@ int vtkLacunaSpeckleFilter::RequestData(
       }
       const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
       lacuna::GetSpeckleInput(parameters, box); // refuses parameters that make no sense
-      vtkDataArray* chosen = vtkLacunaSpeckleTypes::Choose(
-        this->GetInputArrayToProcess(0, inputs), this->GetInputArrayInformation(0), input);
-      const vtkSmartPointer<vtkDataArray> from = vtkLacunaSpeckleTypes::GetSamples(chosen, input);
+      vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
+      const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
+      const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);
       if (this->KernelSize[2] > 1 && IsTrackedSlices(input))
       {
         vtkWarningMacro("KernelSize z is " << this->KernelSize[2]
@@ -190,18 +196,15 @@ int vtkLacunaSpeckleFilter::RequestData(
       {
         type = type == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
       }
+      lacuna::RequireMemory("the filtered " + vtkLacunaSpeckleInput::Name(chosen),
+        static_cast<double>(lacuna::NumberOfSamples(box)) * from->GetNumberOfComponents() *
+          vtkDataArray::GetDataTypeSize(type));
       auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
       to->SetName(from->GetName());
       to->SetNumberOfComponents(from->GetNumberOfComponents());
       to->SetNumberOfTuples(lacuna::NumberOfSamples(box));
-      switch (from->GetDataType())
-      {
-        vtkTemplateMacro((FilterArray<typename vtkLacunaSpeckleTypes::Fixed<VTK_TT>::Type>(
-          from, inBox, to, box, parameters, execution)));
-        default:
-          throw std::runtime_error("arrays of type " + std::string(from->GetDataTypeAsString()) +
-            " cannot be filtered; convert it to a numeric type");
-      }
+      lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
+        [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
 
       output->SetExtent(box.data());
       vtkPointData* inData = input->GetPointData();
@@ -233,6 +236,7 @@ int vtkLacunaSpeckleFilter::RequestData(
 void vtkLacunaSpeckleFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
   os << indent << "Operation: " << OperationNames[this->Operation] << "\n";
   os << indent << "KernelSize: " << this->KernelSize[0] << " " << this->KernelSize[1] << " "
      << this->KernelSize[2] << "\n";

@@ -7,8 +7,8 @@
  * percentile, least, greatest, estimated mode), morphological openings and closings, an adaptive
  * weighted median, a mean or a Gaussian. LaplacianOfGaussian marks edges instead.
  *
- * Input: vtkImageData of any extent with a point array of numbers (default: the active scalars;
- * each component is filtered by itself). Output: the same image with that array filtered and of the
+ * Input: vtkImageData of any extent with a point array of numbers (ScalarArray; each component is
+ * filtered by itself). Output: the same image with that array filtered and of the
  * same type, except LaplacianOfGaussian: float (double for double). All other point arrays and all
  * field data are carried along. With KernelSize z = 1 (default) each slice is filtered by itself:
  * right for tracked slices, whose stack has a spacing of 1 along all axes, so that lengths there
@@ -28,12 +28,20 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersSpeckleModule.h" // for export macro
 
+#include <string> // for the array's name
+
 class VTKLACUNAFILTERSSPECKLE_EXPORT vtkLacunaSpeckleFilter : public vtkImageAlgorithm
 {
 public:
   static vtkLacunaSpeckleFilter* New();
   vtkTypeMacro(vtkLacunaSpeckleFilter, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// The point array of numbers; empty: the active scalars. Default: empty.
+  vtkSetMacro(ScalarArray, std::string);
+  vtkGetMacro(ScalarArray, std::string);
+  ///@}
 
   enum OperationType
   {
@@ -110,6 +118,7 @@ private:
   vtkLacunaSpeckleFilter(const vtkLacunaSpeckleFilter&) = delete;
   void operator=(const vtkLacunaSpeckleFilter&) = delete;
 
+  std::string ScalarArray;
   int Operation = MEDIAN;
   int KernelSize[3] = { 5, 5, 1 };
   int KernelShape = BOX;

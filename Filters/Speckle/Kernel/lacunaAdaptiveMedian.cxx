@@ -197,7 +197,8 @@ void FilterAdaptiveMedian(const ImageView<const T>& input, const ImageView<T>& o
     throw std::invalid_argument(
       "the adaptive strength is " + std::to_string(strength) + "; it must be 0 or more");
   }
-  FilterRankBlocks(output.Box, window, sizeof(T), execution,
+  RequireRankable(window);
+  FilterBlocks(output.Box, ChooseExhaustiveBlock(window, sizeof(T)), execution,
     [&] { return std::make_unique<BlockFilter<T>>(input, output, window, strength); });
 }
 

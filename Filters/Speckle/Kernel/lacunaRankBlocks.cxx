@@ -32,4 +32,18 @@ std::array<int, 3> ChooseRankBlock(const Window& window, std::size_t sampleSize)
   }
   return block;
 }
+
+std::array<int, 3> ChooseExhaustiveBlock(const Window& window, std::size_t sampleSize)
+{
+  constexpr std::int64_t MostVisits = std::int64_t(1) << 25; // a tenth of a second
+  std::array<int, 3> block = ChooseRankBlock(window, sampleSize);
+  const auto visits = [&] { return window.GetNumberOfSamples() * block[0] * block[1] * block[2]; };
+  for (auto largest = std::max_element(block.begin(), block.end());
+       visits() > MostVisits && *largest > 1;
+       largest = std::max_element(block.begin(), block.end()))
+  {
+    *largest = (*largest + 1) / 2;
+  }
+  return block;
+}
 }

@@ -21,15 +21,17 @@ void RequireRankable(const Window& window);
 /// samples along each axis.
 std::array<int, 3> ChooseRankBlock(const Window& window, std::size_t sampleSize);
 
-/// Calls Filter(block) of what make() returns a std::unique_ptr to, for blocks that cover box.
-/// Throws std::invalid_argument for a window of more than MaximumRankSamples.
+/// Those for filters that look at each sample of each window: small enough to be stopped promptly.
+std::array<int, 3> ChooseExhaustiveBlock(const Window& window, std::size_t sampleSize);
+
+/// Calls Filter(block) of what make() returns a std::unique_ptr to, for blocks of about the given
+/// size that cover box.
 template <class Make>
-void FilterRankBlocks(const Extent& box, const Window& window, std::size_t sampleSize,
-  Execution& execution, const Make& make)
+void FilterBlocks(
+  const Extent& box, const std::array<int, 3>& size, Execution& execution, const Make& make)
 {
-  RequireRankable(window);
-  ForEachBlock(box, ChooseRankBlock(window, sampleSize), execution, make,
-    [](auto& filter, const Extent& block) { filter.Filter(block); });
+  ForEachBlock(
+    box, size, execution, make, [](auto& filter, const Extent& block) { filter.Filter(block); });
 }
 }
 #endif

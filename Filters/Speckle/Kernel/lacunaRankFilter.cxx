@@ -224,7 +224,8 @@ template <class T>
 void FilterRank(const ImageView<const T>& input, const ImageView<T>& output, const Window& window,
   const RankParameters& parameters, Execution& execution)
 {
-  FilterRankBlocks(output.Box, window, sizeof(T), execution,
+  RequireRankable(window);
+  FilterBlocks(output.Box, ChooseRankBlock(window, sizeof(T)), execution,
     [&] { return std::make_unique<BlockFilter<T>>(input, output, window, parameters); });
 }
 

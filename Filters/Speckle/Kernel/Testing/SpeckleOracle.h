@@ -8,6 +8,8 @@
 #include "lacunaVectorUnit.h"
 #include "lacunaWindow.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +21,9 @@
 
 namespace oracle
 {
+using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
+  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+
 /// Those of this machine.
 inline std::vector<lacuna::VectorUnit> VectorUnits()
 {

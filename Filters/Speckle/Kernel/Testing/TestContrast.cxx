@@ -119,3 +119,81 @@ TEST(Contrast, RegionsThatTouchAtACornerAreSeparate)
   image.Samples = { 1, 1, 1, 0, 0, 1, 1, 1, 1 }; // a U on its side
   EXPECT_EQ(lacuna::CountThresholdedRegions<std::int16_t>(image.View(), 1, execution), 1);
 }
+
+TEST(Contrast, ComparesLargeIntegersExactly)
+{
+  // 2^53 + 1 is no double: as one it would reach 2^53 + 2, or 2^53 would reach it.
+  const std::int64_t odd = (std::int64_t(1) << 53) + 1;
+  Image<std::int64_t> image(5, 1, 1);
+  image.Samples = { odd - 1, 0, odd, 0, odd + 1 };
+  lacuna::ThreadExecution execution(1);
+  const auto count = [&](double isoValue)
+  { return lacuna::CountThresholdedRegions<std::int64_t>(image.View(), isoValue, execution); };
+  EXPECT_EQ(count(9007199254740992.0), 3);
+  EXPECT_EQ(count(9007199254740994.0), 1);
+  EXPECT_EQ(count(-1e300), 1);
+  EXPECT_EQ(count(9223372036854775808.0), 0);
+  image.Samples[0] = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(count(9223372036854774784.0), 1); // the greatest double below 2^63
+  EXPECT_EQ(count(std::numeric_limits<double>::infinity()), 0);
+  EXPECT_THROW(count(std::nan("")), std::invalid_argument);
+  Image<std::uint8_t> bytes(3, 1, 1);
+  bytes.Samples = { 255, 0, 255 };
+  EXPECT_EQ(lacuna::CountThresholdedRegions<std::uint8_t>(bytes.View(), 254.5, execution), 2);
+  EXPECT_EQ(lacuna::CountThresholdedRegions<std::uint8_t>(bytes.View(), 255.5, execution), 0);
+}
+
+TEST(Contrast, MarksRegionsByMasksAndBounds)
+{
+  const lacuna::Extent box{ -3, 4, 2, 6, 10, 12 };
+  const std::int64_t n = lacuna::NumberOfSamples(box);
+  std::vector<float> floats(n);
+  std::vector<std::int64_t> longs(n);
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    floats[i] = i % 3 == 0 ? 0.0f : i % 3 == 1 ? std::nanf("") : -0.25f;
+    longs[i] = i % 2 == 0 ? std::int64_t(1) << 40 : 0;
+  }
+  // An image that is turned: x runs along world y, y along world -x.
+  const lacuna::Matrix4 turned =
+    lacuna::Matrix4::FromColumns({ 0, 0.1, 0 }, { -0.1, 0, 0 }, { 0, 0, 2 }, { 5, 0.3, -1 });
+  lacuna::RegionRule rule;
+  rule.Masks = { { lacuna::ScalarType::Float32, floats.data() },
+    { lacuna::ScalarType::Int64, longs.data() } };
+  rule.Bounds = { 4.4, 4.7, 0.1, 0.3, 19, 21 };
+  for (const int threads : { 1, 2, 5 })
+  {
+    lacuna::ThreadExecution execution(threads);
+    std::vector<std::uint8_t> regions(n, lacuna::NoRegion);
+    regions[17] = lacuna::InsideRegion;
+    lacuna::MarkRegion(box, turned, rule, lacuna::OutsideRegion, regions.data(), execution);
+    std::int64_t i = 0;
+    int marked = 0;
+    for (int z = box[4]; z <= box[5]; ++z)
+    {
+      for (int y = box[2]; y <= box[3]; ++y)
+      {
+        for (int x = box[0]; x <= box[1]; ++x, ++i)
+        {
+          // 5 - 0.1 y in 4.4 ... 4.7, 0.3 + 0.1 x in 0.1 ... 0.3, 2 z - 1 in 19 ... 21
+          const bool in = y >= 3 && y <= 6 && x >= -2 && x <= 0 && z >= 10 && z <= 11;
+          const bool masked = floats[i] == -0.25f && longs[i] != 0;
+          const int expected = i == 17 ? lacuna::InsideRegion
+            : in && masked             ? lacuna::OutsideRegion
+                                       : lacuna::NoRegion;
+          EXPECT_EQ(regions[i], expected) << x << " " << y << " " << z;
+          marked += regions[i] == lacuna::OutsideRegion;
+        }
+      }
+    }
+    EXPECT_GE(marked, 3);
+  }
+}
+
+TEST(Contrast, ARuleOfNothingHoldsEverything)
+{
+  std::vector<std::uint8_t> regions(12, lacuna::NoRegion);
+  lacuna::ThreadExecution execution(1);
+  lacuna::MarkRegion({ 0, 3, 0, 2, 0, 0 }, {}, {}, lacuna::InsideRegion, regions.data(), execution);
+  EXPECT_EQ(regions, std::vector<std::uint8_t>(12, lacuna::InsideRegion));
+}

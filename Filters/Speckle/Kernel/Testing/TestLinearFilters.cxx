@@ -90,9 +90,7 @@ template <class T>
 class LinearFilterTest : public testing::Test
 {
 };
-using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
-  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
-TYPED_TEST_SUITE(LinearFilterTest, AllTypes);
+TYPED_TEST_SUITE(LinearFilterTest, oracle::AllTypes);
 
 // Exactly: a long double holds the sums of up to 64 samples of 58 bits.
 TYPED_TEST(LinearFilterTest, MeanEqualsItsDefinition)
@@ -264,7 +262,7 @@ TEST(LinearFilters, GaussianKeepsConstantsAndTypeLimits)
 
 TEST(LinearFilters, SecondDerivativeWeightsAreExactOnQuadratics)
 {
-  for (const double deviation : { 0.3, 0.7, 1.0, 1.4142, 5.0 })
+  for (const double deviation : { 1e-200, 0.02, 0.15, 0.3, 0.7, 1.0, 1.4142, 5.0 })
   {
     const int radius = lacuna::LaplacianReach({ deviation, 0, 0 }).Lower[0];
     const std::vector<double> w = lacuna::SecondDerivativeWeights(deviation, radius);
@@ -276,6 +274,22 @@ TEST(LinearFilters, SecondDerivativeWeightsAreExactOnQuadratics)
     }
     EXPECT_NEAR(zeroth, 0, 1e-14);
     EXPECT_NEAR(second, 2, 1e-12);
+  }
+}
+
+TEST(LinearFilters, NarrowGaussiansAreImpulsesAndTheirLaplaciansSecondDifferences)
+{
+  // As along the slices of a stack whose distance is many standard deviations.
+  for (const double deviation : { 1e-200, 1e-8, 0.02, 0.04 })
+  {
+    const std::vector<double> g = lacuna::GaussianWeights(deviation, 2);
+    EXPECT_EQ(g, (std::vector<double>{ 0, g[1], 1, g[1], 0 }));
+    EXPECT_LT(g[1], 1e-80);
+    const std::vector<double> w = lacuna::SecondDerivativeWeights(deviation, 2);
+    EXPECT_NEAR(w[0], 0, 1e-80);
+    EXPECT_DOUBLE_EQ(w[1], 1);
+    EXPECT_DOUBLE_EQ(w[2], -2);
+    EXPECT_DOUBLE_EQ(w[3], 1);
   }
 }
 

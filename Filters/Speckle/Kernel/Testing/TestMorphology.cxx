@@ -47,9 +47,7 @@ template <class T>
 class MorphologyTest : public testing::Test
 {
 };
-using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
-  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
-TYPED_TEST_SUITE(MorphologyTest, AllTypes);
+TYPED_TEST_SUITE(MorphologyTest, oracle::AllTypes);
 
 TYPED_TEST(MorphologyTest, EqualsItsDefinition)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SpeckleOracle.h"
 #include "lacunaAdaptiveMedian.h"
+#include "lacunaRankBlocks.h"
 #include "lacunaRankFilter.h"
 
 #include <gtest/gtest.h>
@@ -59,9 +60,7 @@ template <class T>
 class RankFilterTest : public testing::Test
 {
 };
-using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
-  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
-TYPED_TEST_SUITE(RankFilterTest, AllTypes);
+TYPED_TEST_SUITE(RankFilterTest, oracle::AllTypes);
 
 TYPED_TEST(RankFilterTest, EqualsItsDefinition)
 {
@@ -112,8 +111,11 @@ TYPED_TEST(RankFilterTest, EqualsItsDefinitionAcrossBlocks)
 
 TEST(RankFilter, CountsWindowsLargerThanTheImage)
 {
-  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{
-         { 255, 255, 1 }, { 41, 41, 41 }, { 3, 101, 101 }, { 255, 3, 3 }, { 3, 255, 255 } })
+  for (const std::array<int, 3>& size : std::vector<std::array<int, 3>>{ { 255, 255, 1 },
+         { 41, 41, 41 }, { 3, 101, 101 }, { 255, 3, 3 }, { 3, 255, 255 },
+         // on both sides of the limits of the counters: 255 | 256 samples, 255 | 256 in a plane,
+         // 65025 | 65536 samples
+         { 15, 17, 1 }, { 16, 16, 1 }, { 3, 15, 17 }, { 3, 16, 16 }, { 64, 32, 32 } })
   {
     const Window window(size, WindowShape::Box);
     const Image<std::uint8_t> bytes = oracle::Random<std::uint8_t>(3, 3, 2, 6);
@@ -208,5 +210,16 @@ TYPED_TEST(RankFilterTest, AdaptiveMedianEqualsItsDefinition)
         }
       }
     }
+  }
+}
+
+TEST(RankFilter, BlocksAreSmallWhereEachWindowCosts)
+{
+  for (const int width : { 3, 9, 31, 101 })
+  {
+    const Window window({ width, width, width }, WindowShape::Box);
+    const std::array<int, 3> block = lacuna::ChooseExhaustiveBlock(window, 1);
+    EXPECT_LE(window.GetNumberOfSamples() * block[0] * block[1] * block[2], 1 << 25);
+    EXPECT_GE(std::min({ block[0], block[1], block[2] }), 2);
   }
 }

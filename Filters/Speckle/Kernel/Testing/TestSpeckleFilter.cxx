@@ -273,6 +273,139 @@ TEST(SpeckleFilter, StopsWhenAskedTo)
   }
 }
 
+TEST(SpeckleFilter, ProgressOnlyGrows)
+{
+  Image<float> image = oracle::Random<float>(60, 50, 12, 8);
+  oracle::SprinkleNaN(image, 100);
+  for (int o = 0; o <= static_cast<int>(SpeckleOperation::LaplacianOfGaussian); ++o)
+  {
+    std::vector<double> reports{ 0 };
+    lacuna::ThreadExecution execution(2,
+      [&](double fraction)
+      {
+        reports.push_back(fraction);
+        return true;
+      });
+    const SpeckleParameters parameters = Make(static_cast<SpeckleOperation>(o), { 5, 5, 5 });
+    Image<float> result(image.Box);
+    execution.SetStage(0, 0.5);
+    if (parameters.Operation == SpeckleOperation::LaplacianOfGaussian)
+    {
+      lacuna::FilterSpeckleLaplacian<float>(
+        std::as_const(image).View(), result.View(), parameters, execution);
+    }
+    else
+    {
+      lacuna::FilterSpeckle<float>(
+        std::as_const(image).View(), result.View(), parameters, execution);
+    }
+    EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end())) << "operation " << o;
+    EXPECT_DOUBLE_EQ(reports.back(), 0.5) << "operation " << o;
+  }
+}
+
+TEST(SpeckleFilter, TakesSinglePixelsAndWindowsBeyondTheImage)
+{
+  for (const Extent& box :
+    std::vector<Extent>{ { 7, 7, -3, -3, 0, 0 }, { 0, 0, 0, 4, 0, 0 }, { -2, 1, 5, 5, 9, 11 } })
+  {
+    Image<std::int16_t> image(box);
+    for (std::size_t i = 0; i < image.Samples.size(); ++i)
+    {
+      image.Samples[i] = static_cast<std::int16_t>(37 * i % 11 - 5);
+    }
+    for (const SpeckleOperation operation : Operations)
+    {
+      for (const WindowShape shape : { WindowShape::Box, WindowShape::Ellipsoid })
+      {
+        const auto result = Filtered(image, Make(operation, { 30, 31, 32 }, shape));
+        const auto range = std::minmax_element(image.Samples.begin(), image.Samples.end());
+        for (const std::int16_t sample : result.Samples)
+        {
+          EXPECT_GE(sample, *range.first) << int(operation);
+          EXPECT_LE(sample, *range.second) << int(operation);
+        }
+      }
+    }
+    const auto flat = Laplacian(image, Make(SpeckleOperation::LaplacianOfGaussian, { 9, 9, 9 }));
+    EXPECT_TRUE(std::all_of(
+      flat.Samples.begin(), flat.Samples.end(), [](float value) { return std::isfinite(value); }));
+  }
+}
+
+// Far from 0 and across it: results move with the image.
+TEST(SpeckleFilter, DoesNotCareWhereAnImageLies)
+{
+  const Image<float> image = oracle::Random<float>(40, 13, 5, 11);
+  for (const int shift : { -23, -1000000000, 1000000000 })
+  {
+    Image<float> moved(Extent{ shift, shift + 39, -shift, 12 - shift, shift / 2, shift / 2 + 4 });
+    moved.Samples = image.Samples;
+    for (const SpeckleOperation operation : Operations)
+    {
+      const SpeckleParameters parameters = Make(operation, { 4, 5, 3 });
+      EXPECT_EQ(Filtered(moved, parameters).Samples, Filtered(image, parameters).Samples)
+        << int(operation);
+    }
+  }
+}
+
+template <class T>
+class SpeckleTypeTest : public testing::Test
+{
+};
+TYPED_TEST_SUITE(SpeckleTypeTest, oracle::AllTypes);
+
+TYPED_TEST(SpeckleTypeTest, ConstantsStayConstant)
+{
+  using Limits = std::numeric_limits<TypeParam>;
+  for (const TypeParam value : { TypeParam(0), TypeParam(93), Limits::lowest(), Limits::max() })
+  {
+    Image<TypeParam> image(33, 12, 5);
+    std::fill(image.Samples.begin(), image.Samples.end(), value);
+    for (const SpeckleOperation operation : Operations)
+    {
+      const bool sums =
+        operation == SpeckleOperation::Mean || operation == SpeckleOperation::Gaussian;
+      const bool extreme = value == Limits::lowest() || value == Limits::max();
+      if (std::is_floating_point_v<TypeParam> && sums && extreme)
+      {
+        continue; // their sums leave the type
+      }
+      const auto result = Filtered(image, Make(operation, { 7, 4, 3 }));
+      if (std::is_floating_point_v<TypeParam> && operation == SpeckleOperation::Gaussian)
+      {
+        for (const TypeParam sample : result.Samples)
+        {
+          ASSERT_NEAR(sample, value, 4e-7 * static_cast<double>(value));
+        }
+        continue;
+      }
+      EXPECT_EQ(result.Samples, image.Samples) << int(operation) << " " << double(value);
+    }
+  }
+}
+
+// Neighbouring integers that are one and the same double.
+TEST(SpeckleFilter, RanksAndMeansOf64BitsAreExact)
+{
+  const std::int64_t large = (std::int64_t(1) << 60) + 1;
+  Image<std::int64_t> image(9, 1, 1);
+  for (int i = 0; i < 9; ++i)
+  {
+    image.Samples[i] = large + 7 * i % 9; // 0 7 5 3 1 8 6 4 2
+  }
+  const auto middle = [&](SpeckleOperation operation) {
+    return Filtered(image, Make(operation, { 9, 1, 1 })).Samples[4] - large;
+  };
+  EXPECT_EQ(middle(SpeckleOperation::Median), 4);
+  EXPECT_EQ(middle(SpeckleOperation::Rank), 2); // 30 % of 9
+  EXPECT_EQ(middle(SpeckleOperation::Minimum), 0);
+  EXPECT_EQ(middle(SpeckleOperation::Maximum), 8);
+  EXPECT_EQ(middle(SpeckleOperation::Mode), 4);
+  EXPECT_EQ(middle(SpeckleOperation::Mean), 4);
+}
+
 TEST(SpeckleFilter, SaysWhatIsWrongWithItsParameters)
 {
   const auto message = [](SpeckleParameters parameters)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SpeckleOracle.h"
 #include "lacunaOrderedKey.h"
 #include "lacunaWindow.h"
 
@@ -73,9 +74,7 @@ template <class T>
 class OrderedKeyTest : public testing::Test
 {
 };
-using AllTypes = testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t,
-  std::int32_t, std::uint32_t, std::int64_t, std::uint64_t, float, double>;
-TYPED_TEST_SUITE(OrderedKeyTest, AllTypes);
+TYPED_TEST_SUITE(OrderedKeyTest, oracle::AllTypes);
 
 TYPED_TEST(OrderedKeyTest, KeepsOrderAndValue)
 {

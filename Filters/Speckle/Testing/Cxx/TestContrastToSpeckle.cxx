@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "vtkCallbackCommand.h"
 #include "vtkExecutive.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaContrastToSpeckle.h"
@@ -8,8 +10,10 @@
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
+#include "vtkTrivialProducer.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cmath>
 #include <functional>
 #include <sstream>
 
@@ -92,9 +96,69 @@ void TestMasksAndBoxes()
   LACUNA_CHECK(Get(table, "OutsideCount") == 58);
 }
 
+void TestPieces()
+{
+  // Under MPI each rank asks for a piece: all of the row is in the first.
+  vtkNew<vtkLacunaContrastToSpeckle> contrast;
+  contrast->SetInputData(MakeImage());
+  contrast->SetInsideArray("Left");
+  for (const int piece : { 1, 0, 2 })
+  {
+    contrast->UpdatePiece(piece, 3, 0);
+    vtkTable* table = contrast->GetOutput();
+    LACUNA_CHECK(table->GetNumberOfColumns() == 11);
+    LACUNA_CHECK(table->GetNumberOfRows() == (piece == 0 ? 1 : 0));
+  }
+}
+
+void TestProvenance()
+{
+  vtkNew<vtkLacunaContrastToSpeckle> contrast;
+  contrast->SetInputData(MakeImage());
+  contrast->SetInsideArray("Left");
+  contrast->SetOutsideBounds(104, 200, 0, 5.5, 0, 0);
+  contrast->Update();
+  const auto steps = vtkLacunaProvenance::Get(contrast->GetOutput());
+  LACUNA_CHECK(steps.size() == 1);
+  LACUNA_CHECK_CONTAINS(
+    steps.at(0), "InsideArray=Left OutsideBounds=104 200 0 5.5 0 0 IsoValue=128");
+}
+
+void TestAbort()
+{
+  vtkNew<vtkLacunaContrastToSpeckle> contrast;
+  contrast->SetInputData(MakeImage());
+  contrast->SetInsideArray("Left");
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  const unsigned long tag = contrast->AddObserver(vtkCommand::ProgressEvent, stop);
+  contrast->Update();
+  LACUNA_CHECK(contrast->GetOutput()->GetNumberOfRows() == 0);
+  contrast->RemoveObserver(tag);
+  contrast->SetAbortExecute(0);
+  contrast->Modified();
+  contrast->Update();
+  LACUNA_CHECK(contrast->GetOutput()->GetNumberOfRows() == 1);
+}
+
 void TestErrors()
 {
   const auto image = MakeImage();
+  vtkNew<vtkIntArray> short5;
+  short5->SetName("Short");
+  short5->SetNumberOfTuples(5);
+  image->GetPointData()->AddArray(short5);
+  vtkNew<vtkIntArray> triple;
+  triple->SetName("Triple");
+  triple->SetNumberOfComponents(3);
+  triple->SetNumberOfTuples(60);
+  image->GetPointData()->AddArray(triple);
+  vtkNew<vtkFloatArray> nothing;
+  nothing->SetName("Nothing");
+  nothing->SetNumberOfTuples(60);
+  nothing->Fill(std::nan(""));
+  image->GetPointData()->AddArray(nothing);
   const auto fails =
     [&](const char* part, const std::function<void(vtkLacunaContrastToSpeckle*)>& set)
   {
@@ -112,6 +176,46 @@ void TestErrors()
   fails("no point array 'Elsewhere'", [](auto* c) { c->SetInsideArray("Elsewhere"); });
   fails("no sample is inside", [](auto* c) { c->SetInsideBounds(0, 1, 0, 1, 0, 1); });
   fails("no sample is outside", [](auto* c) { c->SetInsideBounds(0, 1000, 0, 10, 0, 0); });
+  fails("no sample is inside", [](auto* c) { c->SetInsideArray("Nothing"); });
+  fails(
+    "array 'Short' has 5 values, the image 60 points", [](auto* c) { c->SetInsideArray("Short"); });
+  fails("array 'Triple' has 3 components", [](auto* c) { c->SetInsideArray("Triple"); });
+  const auto inside = [](auto* c) { c->SetInsideArray("Left"); };
+  fails("array 'Triple' has 3 components",
+    [&](auto* c)
+    {
+      inside(c);
+      c->SetScalarArray("Triple");
+    });
+  fails("no point array 'Elsewhere'",
+    [&](auto* c)
+    {
+      inside(c);
+      c->SetScalarArray("Elsewhere");
+    });
+  fails("iso-value is not a number",
+    [&](auto* c)
+    {
+      inside(c);
+      c->SetIsoValue(std::nan(""));
+    });
+
+  // A damaged mask of valid points must not be read beyond its end.
+  short5->SetName("vtkValidPointMask");
+  fails("array 'vtkValidPointMask' has 5 values", inside);
+  short5->SetName("Short");
+
+  // An image of which a part is missing.
+  vtkNew<vtkTrivialProducer> producer;
+  const int whole[6] = { 0, 19, 0, 5, 0, 0 };
+  producer->SetOutput(image);
+  producer->SetWholeExtent(const_cast<int*>(whole));
+  fails("only the part 0 9 0 5 0 0 of the image 0 19 0 5 0 0 arrived",
+    [&](auto* c)
+    {
+      inside(c);
+      c->SetInputConnection(producer->GetOutputPort());
+    });
 }
 
 void TestPrint()
@@ -119,8 +223,8 @@ void TestPrint()
   vtkNew<vtkLacunaContrastToSpeckle> contrast;
   std::ostringstream text;
   contrast->Print(text);
-  for (const char* name :
-    { "InsideArray:", "OutsideArray:", "InsideBounds: 1 -1", "OutsideBounds:", "IsoValue: 128" })
+  for (const char* name : { "ScalarArray:", "InsideArray:", "OutsideArray:", "InsideBounds: 1 -1",
+         "OutsideBounds:", "IsoValue: 128" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }
@@ -130,6 +234,9 @@ void TestPrint()
 int TestContrastToSpeckle(int, char*[])
 {
   TestMasksAndBoxes();
+  TestPieces();
+  TestProvenance();
+  TestAbort();
   TestErrors();
   TestPrint();
   return lacunaCheck::Result();

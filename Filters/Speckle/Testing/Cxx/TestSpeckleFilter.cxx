@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
+#include "vtkBitArray.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
@@ -12,8 +13,10 @@
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPointData.h"
+#include "vtkSOADataArrayTemplate.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkTrivialProducer.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -242,13 +245,44 @@ void TestFiltersTheChosenArray()
   image->GetPointData()->AddArray(other);
   vtkNew<vtkLacunaSpeckleFilter> filter;
   filter->SetInputData(image);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Other");
+  filter->SetScalarArray("Other");
   filter->Update();
   vtkPointData* data = filter->GetOutput()->GetPointData();
   LACUNA_CHECK(data->GetArray("Other")->GetComponent(55, 0) == 3);
   LACUNA_CHECK(data->GetScalars() == data->GetArray("Echo"));
   LACUNA_CHECK(data->GetScalars()->GetComponent(55, 0) ==
     image->GetPointData()->GetScalars()->GetComponent(55, 0));
+}
+
+void TestArraysThatAreNotContiguous()
+{
+  const int extent[6] = { 0, 15, 0, 9, 0, 0 };
+  const auto image = MakeImage(VTK_FLOAT, extent);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  vtkNew<vtkSOADataArrayTemplate<float>> apart; // one component after the other
+  apart->SetName("Apart");
+  apart->SetNumberOfComponents(2);
+  apart->SetNumberOfTuples(scalars->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < scalars->GetNumberOfTuples(); ++i)
+  {
+    apart->SetTypedComponent(i, 0, 7);
+    apart->SetTypedComponent(i, 1, static_cast<float>(scalars->GetComponent(i, 0)));
+  }
+  image->GetPointData()->AddArray(apart);
+  vtkNew<vtkLacunaSpeckleFilter> single;
+  vtkNew<vtkLacunaSpeckleFilter> both;
+  single->SetInputData(image);
+  both->SetInputData(image);
+  both->SetScalarArray("Apart");
+  single->Update();
+  both->Update();
+  vtkDataArray* truth = single->GetOutput()->GetPointData()->GetScalars();
+  vtkDataArray* filtered = both->GetOutput()->GetPointData()->GetArray("Apart");
+  for (vtkIdType i = 0; i < truth->GetNumberOfTuples(); ++i)
+  {
+    LACUNA_CHECK(filtered->GetComponent(i, 0) == 7);
+    LACUNA_CHECK(filtered->GetComponent(i, 1) == truth->GetComponent(i, 0));
+  }
 }
 
 void TestMillimetres()
@@ -314,21 +348,42 @@ void TestErrors()
     "adaptive strength"));
   vtkNew<vtkImageData> bare;
   bare->SetDimensions(4, 4, 1);
-  LACUNA_CHECK(has(errors(bare, [](auto*) {}), "no point scalars"));
+  LACUNA_CHECK(has(errors(bare, [](auto*) {}), "no active point scalars"));
 
+  LACUNA_CHECK(has(
+    errors(image, [](auto* f) { f->SetScalarArray("Elsewhere"); }), "no point array 'Elsewhere'"));
   LACUNA_CHECK(has(errors(image,
-                     [](auto* f) {
-                       f->SetInputArrayToProcess(
-                         0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Elsewhere");
+                     [](auto* f)
+                     {
+                       f->SetOperation(vtkLacunaSpeckleFilter::LAPLACIAN_OF_GAUSSIAN);
+                       f->SetStandardDeviation(1e300);
                      }),
-    "no point array 'Elsewhere'"));
+    "must be 0 to 166"));
+  LACUNA_CHECK(has(errors(image, [](auto* f) { f->SetKernelSize(255, 255, 255); }),
+    "at most 1048576 are possible"));
 
-  // An empty name, which ParaView sets when the input has not run yet, means the active scalars.
-  vtkNew<vtkLacunaSpeckleFilter> unnamed;
-  unnamed->SetInputData(image);
-  unnamed->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "");
-  unnamed->Update();
-  LACUNA_CHECK(unnamed->GetOutput()->GetNumberOfPoints() == image->GetNumberOfPoints());
+  // Arrays that are damaged or no numbers.
+  vtkNew<vtkImageData> other;
+  other->DeepCopy(image);
+  vtkNew<vtkFloatArray> five;
+  five->SetName("Five");
+  five->SetNumberOfTuples(5);
+  vtkNew<vtkBitArray> bits;
+  bits->SetName("Bits");
+  bits->SetNumberOfTuples(image->GetNumberOfPoints());
+  vtkNew<vtkStringArray> words;
+  words->SetName("Words");
+  words->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkAbstractArray* array :
+    std::initializer_list<vtkAbstractArray*>{ five.Get(), bits.Get(), words.Get() })
+  {
+    other->GetPointData()->AddArray(array);
+  }
+  LACUNA_CHECK(has(errors(other, [](auto* f) { f->SetScalarArray("Five"); }),
+    "array 'Five' has 5 values, the image 160 points"));
+  LACUNA_CHECK(has(errors(other, [](auto* f) { f->SetScalarArray("Bits"); }), "of type bit"));
+  LACUNA_CHECK(
+    has(errors(other, [](auto* f) { f->SetScalarArray("Words"); }), "no point array 'Words'"));
 
   // Nothing in, nothing out, no error.
   vtkNew<vtkImageData> empty;
@@ -377,8 +432,8 @@ void TestPrint()
   vtkNew<vtkLacunaSpeckleFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "Operation: Median", "KernelSize: 5 5 1", "KernelShape: Box",
-         "Rank: 50", "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
+  for (const char* name : { "ScalarArray: ", "Operation: Median", "KernelSize: 5 5 1",
+         "KernelShape: Box", "Rank: 50", "AdaptiveStrength: 10", "StandardDeviation: 1.4" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }
@@ -393,6 +448,7 @@ int TestSpeckleFilter(int, char*[])
   TestAsksForNoMoreThanItNeeds();
   TestTypesAndComponents();
   TestFiltersTheChosenArray();
+  TestArraysThatAreNotContiguous();
   TestMillimetres();
   TestErrors();
   TestWarnsWhenSlicesAreMixed();
