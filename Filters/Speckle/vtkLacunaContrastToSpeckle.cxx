@@ -74,8 +74,7 @@ void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
     region, regions.data(), execution);
 }
 
-template <class Number>
-std::string Join(const Number numbers[6])
+std::string Join(const double numbers[6])
 {
   std::ostringstream text;
   text.precision(17);
@@ -89,12 +88,14 @@ std::string Join(const Number numbers[6])
 /// Regions may reach anywhere, and a part of an image would give the numbers of that part.
 void RequireWhole(vtkImageData* image, vtkInformation* info)
 {
-  int whole[6];
-  info->Get(Pipeline::WHOLE_EXTENT(), whole);
-  const int* extent = image->GetExtent();
-  if (!std::equal(whole, whole + 6, extent))
+  int numbers[6];
+  info->Get(Pipeline::WHOLE_EXTENT(), numbers);
+  const lacuna::Extent whole = vtkLacunaSpeckleInput::GetExtent(numbers);
+  const lacuna::Extent extent = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
+  if (extent != whole)
   {
-    throw std::runtime_error("only the part " + Join(extent) + " of the image " + Join(whole) +
+    throw std::runtime_error("only the part " + vtkLacunaSpeckleInput::Text(extent) +
+      " of the image " + vtkLacunaSpeckleInput::Text(whole) +
       " arrived; the filter before this one does not give the whole of it when asked to");
   }
 }

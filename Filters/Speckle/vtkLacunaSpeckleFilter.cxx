@@ -4,14 +4,17 @@
 #include "lacunaMemory.h"
 #include "lacunaSpeckleFilter.h"
 #include "vtkDataObject.h"
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -23,6 +26,8 @@ vtkStandardNewMacro(vtkLacunaSpeckleFilter);
 
 namespace
 {
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
 const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening", "Closing",
   "OpenClose", "CloseOpen", "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian" };
 
@@ -79,6 +84,45 @@ bool IsTrackedSlices(vtkDataObject* data)
     data->GetFieldData()->HasArray(vtkLacunaTrackedSlices::SliceStatusName);
 }
 
+lacuna::Extent GetWhole(vtkInformation* info)
+{
+  int whole[6];
+  info->Get(Pipeline::WHOLE_EXTENT(), whole);
+  return vtkLacunaSpeckleInput::GetExtent(whole);
+}
+
+/// The extent that an output is asked for. VTK divides the extent into pieces only when it executes
+/// the algorithm, too late to ask the input for what their borders need: so here in the same way.
+lacuna::Extent GetAsked(vtkInformation* info)
+{
+  int asked[6];
+  info->Get(Pipeline::UPDATE_EXTENT(), asked);
+  const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
+  if (pieces > 1)
+  {
+    const int mode = info->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+      ? info->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+      : vtkExtentTranslator::BLOCK_MODE;
+    int part[6];
+    vtkNew<vtkExtentTranslator> translator;
+    translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces,
+      info->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()), asked, part, mode, 0);
+    return vtkLacunaSpeckleInput::GetExtent(part);
+  }
+  return vtkLacunaSpeckleInput::GetExtent(asked);
+}
+
+/// Without what is beyond its border a part of an image would be filtered as if it were all.
+void RequirePart(const lacuna::Extent& needed, const lacuna::Extent& arrived)
+{
+  if (!lacuna::Contains(arrived, needed))
+  {
+    throw std::runtime_error("only the part " + vtkLacunaSpeckleInput::Text(arrived) +
+      " of the image arrived, " + vtkLacunaSpeckleInput::Text(needed) +
+      " is needed; the filter before this one does not give what it is asked for");
+  }
+}
+
 /// from: the samples of a component after the other at each point of fromBox.
 template <class T>
 void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
@@ -111,6 +155,8 @@ void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
 int vtkLacunaSpeckleFilter::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  // VTK turns the piece that a rank is asked for into its extent.
+  outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   vtkInformation* scalars =
     vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
       vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
@@ -129,24 +175,19 @@ int vtkLacunaSpeckleFilter::RequestInformation(
 int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* input = inputs[0]->GetInformationObject(0);
-  int whole[6];
-  int asked[6];
   double spacing[3] = { 1, 1, 1 };
-  input->Get(Pipeline::WHOLE_EXTENT(), whole);
-  outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_EXTENT(), asked);
   if (input->Has(vtkDataObject::SPACING()))
   {
     input->Get(vtkDataObject::SPACING(), spacing);
   }
-  lacuna::Extent needed = vtkLacunaSpeckleInput::GetExtent(asked);
+  lacuna::Extent needed = GetAsked(outputs->GetInformationObject(0));
   try
   {
     if (!lacuna::IsEmpty(needed))
     {
-      needed = lacuna::Intersect(lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed),
-        vtkLacunaSpeckleInput::GetExtent(whole));
+      needed = lacuna::Intersect(
+        lacuna::GetSpeckleInput(MakeParameters(this, spacing), needed), GetWhole(input));
     }
   }
   catch (const std::invalid_argument&)
@@ -154,6 +195,10 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
     // RequestData reports it.
   }
   input->Set(Pipeline::UPDATE_EXTENT(), needed.data(), 6);
+  // This very extent: a producer of sub-extents would divide it once more by piece.
+  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
   return 1;
 }
 
@@ -167,10 +212,9 @@ int vtkLacunaSpeckleFilter::RequestData(
       vtkImageData* input = vtkImageData::GetData(inputs[0]);
       vtkImageData* output = vtkImageData::GetData(outputs);
       int asked[6];
-      outputs->GetInformationObject(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+      outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_EXTENT(), asked);
       const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
-      lacuna::Extent box = lacuna::Intersect(vtkLacunaSpeckleInput::GetExtent(asked), inBox);
+      const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(asked);
       output->SetOrigin(input->GetOrigin());
       output->SetSpacing(input->GetSpacing());
       output->SetDirectionMatrix(input->GetDirectionMatrix());
@@ -180,7 +224,9 @@ int vtkLacunaSpeckleFilter::RequestData(
         return;
       }
       const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
-      lacuna::GetSpeckleInput(parameters, box); // refuses parameters that make no sense
+      RequirePart(lacuna::Intersect(lacuna::GetSpeckleInput(parameters, box),
+                    GetWhole(inputs[0]->GetInformationObject(0))),
+        inBox);
       vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
       const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
       const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);
@@ -206,7 +252,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
         [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
 
-      output->SetExtent(box.data());
+      output->SetExtent(asked);
       vtkPointData* inData = input->GetPointData();
       vtkPointData* outData = output->GetPointData();
       if (box == inBox)

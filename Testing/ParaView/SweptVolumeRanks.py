@@ -5,11 +5,10 @@ Run without arguments it is the test; it runs itself in pvbatch with the name of
 the volume to write.
 """
 import os
-import shutil
-import subprocess
 import sys
 
 import numpy as np
+from lacuna_test import output, run_ranks
 from paraview.simple import *
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -61,25 +60,12 @@ def read_volume(name):
 
 
 def main():
-    mpirun = shutil.which("mpirun")
-    pvbatch = shutil.which("pvbatch")
-    if not mpirun or not pvbatch:
-        print("no mpirun or pvbatch")
-        sys.exit(77)
-    folder = os.environ["LACUNA_TEST_OUTPUT"]
-    slices = os.path.join(folder, "SweptVolumeRanks.vti")
+    slices = output("SweptVolumeRanks.vti")
     write_slices(slices)
-    # pvpython has started MPI for itself; its traces would confuse mpirun
-    environment = {key: value for key, value in os.environ.items()
-                   if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
-    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
     volumes = []
     for ranks in (1, 3):  # three split along two axes
-        name = os.path.join(folder, "SweptVolumeRanks%d.pvti" % ranks)
-        subprocess.run([mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering",
-                        os.path.abspath(__file__), slices, name],
-                       env=environment, check=True, timeout=300)
+        name = output("SweptVolumeRanks%d.pvti" % ranks)
+        run_ranks(ranks, __file__, slices, name)
         with open(name) as file:
             assert file.read().count("<Piece") == ranks
         volumes.append(read_volume(name))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the scripts in this folder share."""
 import os
+import shutil
+import subprocess
 import sys
 
 SKIPPED = 77  # ctest counts this exit code as skipped
@@ -20,6 +22,22 @@ def output(name):
     folder = os.environ.get("LACUNA_TEST_OUTPUT", ".")
     os.makedirs(folder, exist_ok=True)
     return os.path.join(folder, name)
+
+
+def run_ranks(ranks, script, *arguments):
+    """Runs a script in pvbatch with so many MPI ranks, or leaves the test as skipped."""
+    mpirun = shutil.which("mpirun")
+    pvbatch = shutil.which("pvbatch")
+    if not mpirun or not pvbatch:
+        print("skipped: no mpirun or pvbatch", flush=True)
+        sys.exit(SKIPPED)
+    # pvpython has started MPI for itself; its traces would confuse mpirun
+    environment = {key: value for key, value in os.environ.items()
+                   if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
+    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_rmaps_base_oversubscribe="1")
+    subprocess.run([mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering",
+                    os.path.abspath(script), *arguments], env=environment, check=True, timeout=300)
 
 
 def compare_with_baseline(picture, name, threshold):

@@ -4,6 +4,7 @@
 #include "vtkCallbackCommand.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
+#include "vtkExtentTranslator.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImageMedian3D.h"
@@ -20,6 +21,7 @@
 #include "vtkTrivialProducer.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -196,6 +198,60 @@ void TestAsksForNoMoreThanItNeeds()
   for (int i = 0; i < 6; ++i)
   {
     LACUNA_CHECK(needed[i] == expected[i]);
+  }
+}
+
+/// What each rank of several makes, and asks for, under MPI.
+void TestPieces()
+{
+  const int extent[6] = { -3, 40, 5, 30, 0, 12 };
+  const auto image = MakeImage(VTK_SHORT, extent);
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(image);
+  producer->SetWholeExtent(const_cast<int*>(extent));
+  vtkNew<vtkLacunaSpeckleFilter> whole;
+  whole->SetInputConnection(producer->GetOutputPort());
+  whole->SetKernelSize(5, 3, 3);
+  whole->Update();
+  vtkNew<vtkExtentTranslator> translator;
+  for (const int ghosts : { 0, 1 })
+  {
+    for (int piece = 0; piece < 3; ++piece)
+    {
+      vtkNew<vtkLacunaSpeckleFilter> part;
+      part->SetInputConnection(producer->GetOutputPort());
+      part->SetKernelSize(5, 3, 3);
+      part->UpdatePiece(piece, 3, ghosts);
+      vtkImageData* output = part->GetOutput();
+      int expected[6];
+      translator->PieceToExtentThreadSafe(
+        piece, 3, ghosts, const_cast<int*>(extent), expected, vtkExtentTranslator::BLOCK_MODE, 0);
+      LACUNA_CHECK(std::equal(expected, expected + 6, output->GetExtent()));
+      int asked[6];
+      producer->GetOutputInformation(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+      const int reach[3] = { 2, 1, 1 };
+      for (int i = 0; i < 6; ++i)
+      {
+        const int margin = i % 2 == 0 ? -reach[i / 2] : reach[i / 2];
+        LACUNA_CHECK(asked[i] ==
+          (i % 2 == 0 ? std::max(extent[i], expected[i] + margin)
+                      : std::min(extent[i], expected[i] + margin)));
+      }
+      LACUNA_CHECK(output->GetPointData()->HasArray("vtkGhostType") == ghosts);
+      bool equal = true;
+      for (int z = expected[4]; z <= expected[5]; ++z)
+      {
+        for (int y = expected[2]; y <= expected[3]; ++y)
+        {
+          for (int x = expected[0]; x <= expected[1]; ++x)
+          {
+            equal = equal && Value(output, x, y, z) == Value(whole->GetOutput(), x, y, z);
+          }
+        }
+      }
+      LACUNA_CHECK(equal);
+    }
   }
 }
 
@@ -385,6 +441,15 @@ void TestErrors()
   LACUNA_CHECK(
     has(errors(other, [](auto* f) { f->SetScalarArray("Words"); }), "no point array 'Words'"));
 
+  // A part of an image would be filtered as if it ended there.
+  vtkNew<vtkTrivialProducer> producer;
+  const int whole[6] = { 0, 30, 0, 9, 0, 0 };
+  producer->SetOutput(image);
+  producer->SetWholeExtent(const_cast<int*>(whole));
+  LACUNA_CHECK(
+    has(errors(image, [&](auto* f) { f->SetInputConnection(producer->GetOutputPort()); }),
+      "only the part 0 15 0 9 0 0 of the image arrived, 0 30 0 9 0 0 is needed"));
+
   // Nothing in, nothing out, no error.
   vtkNew<vtkImageData> empty;
   LACUNA_CHECK(errors(empty, [](auto*) {}).empty());
@@ -446,6 +511,7 @@ int TestSpeckleFilter(int, char*[])
   TestKeepsEverythingElse();
   TestHonoursRequestedExtents();
   TestAsksForNoMoreThanItNeeds();
+  TestPieces();
   TestTypesAndComponents();
   TestFiltersTheChosenArray();
   TestArraysThatAreNotContiguous();
