@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaAtomicFile.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace lacuna
+{
+//------------------------------------------------------------------------------
+AtomicFile::AtomicFile(const std::string& path)
+  : Path(path)
+  , Target(path)
+{
+  namespace fs = std::filesystem;
+  std::error_code code;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(this->Target, code)); ++links)
+  {
+    const fs::path next = fs::read_symlink(this->Target, code);
+    if (code || links == 40)
+    {
+      throw FileError::Make("cannot write", path, code ? code.value() : ELOOP);
+    }
+    this->Target =
+      (fs::path(this->Target).parent_path() / next).string(); // next alone if it is absolute
+  }
+  const fs::file_status status = fs::status(this->Target, code);
+  if (fs::is_directory(status))
+  {
+    throw FileError::Make("cannot write", path, EISDIR);
+  }
+  if (fs::exists(status) && !fs::is_regular_file(status))
+  {
+    this->Stream = true;
+    this->File = std::make_unique<OutputFile>(this->Target, OutputFile::Mode::Existing, path);
+    return;
+  }
+  if (fs::exists(status) && faccessat(AT_FDCWD, this->Target.c_str(), W_OK, AT_EACCESS) != 0)
+  {
+    throw FileError::Make("cannot overwrite", path, errno); // a rename would not ask
+  }
+  const std::string temporary = this->Target + ".part" + std::to_string(getpid());
+  // One may be left over by a dead process of the same number.
+  unlink(temporary.c_str());
+  this->File = std::make_unique<OutputFile>(temporary, OutputFile::Mode::CreateNew, path);
+  this->Temporary = temporary;
+}
+
+//------------------------------------------------------------------------------
+AtomicFile::~AtomicFile()
+{
+  if (!this->Temporary.empty())
+  {
+    unlink(this->Temporary.c_str());
+  }
+}
+
+//------------------------------------------------------------------------------
+void AtomicFile::Write(const void* bytes, std::size_t size)
+{
+  this->File->Write(bytes, size);
+}
+
+//------------------------------------------------------------------------------
+void AtomicFile::WriteAt(std::int64_t offset, std::string_view bytes)
+{
+  this->File->WriteAt(offset, bytes);
+}
+
+//------------------------------------------------------------------------------
+void AtomicFile::Finish()
+{
+  if (!this->File)
+  {
+    return;
+  }
+  if (!this->IsStream())
+  {
+    this->File->Sync();
+  }
+  this->File->Close();
+  this->File.reset();
+}
+
+//------------------------------------------------------------------------------
+void AtomicFile::Commit()
+{
+  this->Finish();
+  if (this->IsStream())
+  {
+    return;
+  }
+  if (rename(this->Temporary.c_str(), this->Target.c_str()) != 0)
+  {
+    throw FileError::Make("cannot write", this->Path, errno);
+  }
+  this->Temporary.clear();
+}
+
+//------------------------------------------------------------------------------
+void WriteFileAtomically(const std::string& path, const std::string& content)
+{
+  AtomicFile file(path);
+  file.Write(content);
+  file.Commit();
+}
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Files that appear whole or not at all.
+#ifndef lacunaAtomicFile_h
+#define lacunaAtomicFile_h
+
+#include "lacunaOutputFile.h"
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace lacuna
+{
+/// A file that takes its name when it is complete: it is written under another name beside its
+/// place, seen on the disk and renamed, so that path is either what it was before or the whole new
+/// content, also after a crash. A symbolic link is followed; a device or pipe is written to
+/// directly. All functions throw FileError.
+class AtomicFile
+{
+public:
+  explicit AtomicFile(const std::string& path);
+  /// Throws away what was written unless Commit came before.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void Write(const void* bytes, std::size_t size);
+  void Write(std::string_view text) { this->Write(text.data(), text.size()); }
+  /// Writes over what is at offset already. Not for devices and pipes.
+  void WriteAt(std::int64_t offset, std::string_view bytes);
+  /// Whether path is a device or a pipe, where WriteAt cannot be used.
+  bool IsStream() const { return this->Stream; }
+  /// Puts the content on the disk under its temporary name, so that little is left to fail.
+  void Finish();
+  /// Finishes, and gives the file its name.
+  void Commit();
+
+private:
+  std::string Path;      ///< as the caller knows it
+  std::string Target;    ///< the file itself, links followed
+  std::string Temporary; ///< empty when there is nothing to remove
+  bool Stream = false;
+  std::unique_ptr<OutputFile> File;
+};
+
+/// Writes content as an AtomicFile.
+void WriteFileAtomically(const std::string& path, const std::string& content);
+}
+#endif

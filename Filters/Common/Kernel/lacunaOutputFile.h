@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Writing files so that nothing goes wrong in silence.
+#ifndef lacunaOutputFile_h
+#define lacunaOutputFile_h
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace lacuna
+{
+/// Why a file could not be written; the text names the file.
+class FileError : public std::runtime_error
+{
+public:
+  enum class Kind
+  {
+    CannotOpen, ///< no such folder, read-only, is a folder
+    NoSpace,    ///< the disk or the quota is full
+    Other
+  };
+  FileError(Kind kind, const std::string& message)
+    : std::runtime_error(message)
+    , Reason(kind)
+  {
+  }
+  Kind GetKind() const { return this->Reason; }
+
+  /// The error with the system's number error: "<what> '<path>': No space left on device".
+  static FileError Make(const std::string& what, const std::string& path, int error);
+
+private:
+  Kind Reason;
+};
+
+/// A file open for writing, without a buffer: what a function has written has left the program, so
+/// that the program's end, however sudden, does not lose it. Offsets are 64 bits wide. All
+/// functions throw FileError, with the name that errors shall show.
+class OutputFile
+{
+public:
+  enum class Mode
+  {
+    CreateNew, ///< an error when the file exists
+    Existing   ///< a device, pipe or file that is there; not truncated
+  };
+  OutputFile(const std::string& path, Mode mode, const std::string& shownName);
+  /// Closes, without a word about errors.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Writes at the current place and moves it on.
+  void Write(const void* bytes, std::size_t size);
+  /// Writes at offset; the current place stays. Not for pipes.
+  void WriteAt(std::int64_t offset, std::string_view bytes);
+  void WriteAt(std::int64_t offset, const void* bytes, std::size_t size);
+  /// Cuts the file off at size.
+  void Truncate(std::int64_t size);
+  /// Waits until the disk has it all.
+  void Sync();
+  /// Closes; the last chance for an error.
+  void Close();
+
+private:
+  [[noreturn]] void Throw(int error) const;
+
+  std::string Name;
+  int Descriptor = -1;
+};
+}
+#endif
