@@ -93,13 +93,13 @@ vtkLacunaTrackedSliceReader::~vtkLacunaTrackedSliceReader()
 //------------------------------------------------------------------------------
 int vtkLacunaTrackedSliceReader::CanReadFile(const char* fileName)
 {
-  return fileName && lacuna::IsTrackedMetaImage(fileName) ? 1 : 0;
+  return fileName && lacuna::IsTrackedSequence(fileName) ? 1 : 0;
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 {
-  sequence.Header = lacuna::ReadMetaImageHeader(this->FileName);
+  sequence.Header = lacuna::ReadSequenceHeader(this->FileName);
   sequence.Pixels = lacuna::PixelSource::Open(sequence.Header);
 
   const auto frames = static_cast<int>(sequence.Header.Frames);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderLines.h"
 
-#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -67,9 +66,10 @@ bool HeaderLines::Next(std::string& line)
     this->Position += size + (ended ? 1 : 0);
     if (line.size() > LongestLine || std::memchr(begin, '\0', size))
     {
-      this->Fail("is not text; the file has no header, or the header lacks ElementDataFile");
+      this->Fail("is not text; the file has no header, or its header has no end");
     }
   }
+  this->Terminated = ended;
   this->Offset += static_cast<std::int64_t>(line.size()) + (ended ? 1 : 0);
   if (!line.empty() && line.back() == '\r')
   {

@@ -4,9 +4,11 @@
 #ifndef lacunaHeaderLines_h
 #define lacunaHeaderLines_h
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lacuna
@@ -21,6 +23,15 @@ public:
   /// std::runtime_error when the line is not text: it holds a zero byte or is over 1 MiB long.
   bool Next(std::string& line);
 
+  /// The first bytes of the file, fewer when it is shorter. Only before the first call of Next.
+  std::string_view Peek(std::size_t size) const
+  {
+    return { this->Buffer.data(), std::min(size, this->Filled) };
+  }
+
+  /// Whether the line that Next gave last has an end: the last line of a file that is cut off has
+  /// none.
+  bool IsTerminated() const { return this->Terminated; }
   /// 1-based number of the line that Next gave last.
   std::int64_t GetLineNumber() const { return this->LineNumber; }
   /// Bytes from the start of the file to the end of that line, its LF included.
@@ -37,6 +48,7 @@ private:
   std::vector<char> Buffer;
   std::size_t Position = 0;
   std::size_t Filled = 0;
+  bool Terminated = true;
   std::int64_t LineNumber = 0;
   std::int64_t Offset = 0;
 };

@@ -2,13 +2,13 @@
 #include "lacunaPixelSource.h"
 
 #include "lacunaByteOrder.h"
-
-#include <zlib.h>
+#include "lacunaByteStream.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <stdexcept>
 #include <vector>
 
@@ -27,15 +27,50 @@ std::int64_t FileSize(const std::string& name)
 }
 
 //------------------------------------------------------------------------------
+// Where the encoded pixels begin, after the lines to be skipped.
+std::int64_t FindDataStart(const SequenceHeader& header)
+{
+  if (header.SkippedLines == 0)
+  {
+    return header.DataOffset;
+  }
+  std::ifstream stream(header.DataFileName, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(header.DataOffset));
+  std::vector<char> buffer(1 << 16);
+  std::int64_t offset = header.DataOffset;
+  std::int64_t lines = 0;
+  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount())
+  {
+    const char* const end = buffer.data() + stream.gcount();
+    for (const char* p = buffer.data(); p < end; ++p, ++offset)
+    {
+      if (lines == header.SkippedLines)
+      {
+        return offset;
+      }
+      lines += *p == '\n' ? 1 : 0;
+    }
+  }
+  if (lines < header.SkippedLines)
+  {
+    throw std::runtime_error(header.DataFileName + ": has " + std::to_string(lines) +
+      " lines, but line skip says that the pixels follow after " +
+      std::to_string(header.SkippedLines));
+  }
+  return offset;
+}
+
+//------------------------------------------------------------------------------
 class RawPixelSource : public PixelSource
 {
 public:
   RawPixelSource(const SequenceHeader& header, std::int64_t fileSize)
     : PixelSource(header)
-    , Offset(std::max<std::int64_t>(0, header.DataOffset))
+    , Offset(FindDataStart(header) +
+        std::clamp<std::int64_t>(header.SkippedBytes, 0, fileSize)) // at most all there is
   {
     this->Divide(std::max<std::int64_t>(0, fileSize - this->Offset));
-    if (header.DataOffset < 0)
+    if (header.SkippedBytes < 0)
     {
       this->Offset = std::max<std::int64_t>(0, fileSize - this->FrameSize * header.Frames);
     }
@@ -65,56 +100,37 @@ private:
 };
 
 //------------------------------------------------------------------------------
-class Inflater
+class StreamPixelSource : public PixelSource
 {
 public:
-  z_stream Stream{};
-
-  Inflater()
-  {
-    // + 32: the stream may have zlib's or gzip's wrapping
-    if (inflateInit2(&this->Stream, MAX_WBITS + 32) != Z_OK)
-    {
-      throw std::bad_alloc();
-    }
-  }
-  ~Inflater() { inflateEnd(&this->Stream); }
-  Inflater(const Inflater&) = delete;
-  Inflater& operator=(const Inflater&) = delete;
-};
-
-class ZlibPixelSource : public PixelSource
-{
-public:
-  ZlibPixelSource(const SequenceHeader& header, std::int64_t fileSize)
+  StreamPixelSource(const SequenceHeader& header, std::int64_t fileSize)
     : PixelSource(header)
-    , Input(1 << 18)
   {
-    this->Stream.open(header.DataFileName, std::ios::binary);
-    if (!this->Stream)
+    const std::int64_t start = FindDataStart(header);
+    switch (header.Encoding)
     {
-      this->Fail("cannot be opened for reading");
+      case PixelEncoding::Hex:
+        this->Stream = MakeHexStream(header.DataFileName, start);
+        break;
+      case PixelEncoding::Text:
+        this->Stream = MakeTextStream(header.DataFileName, start, header.Type);
+        break;
+      default:
+        this->Stream = MakeInflateStream(header.DataFileName, start);
+        this->Name = "the compressed pixels";
+        this->SizeKnown = this->IsSizeKnown(std::max<std::int64_t>(0, fileSize - start));
     }
-    const std::int64_t there = std::max<std::int64_t>(0, fileSize - header.DataOffset);
-    this->Whole = header.CompressedDataSize <= there;
-    const std::int64_t stated = header.CompressedDataSize > 0 ? header.CompressedDataSize : there;
-    if (static_cast<double>(header.GetFrameSize() * header.Frames) >
-      (static_cast<double>(stated) + 16) * BestCompression)
-    {
-      this->Fail(std::to_string(stated) + " bytes of compressed data cannot hold the " +
-        std::to_string(header.Frames) + " frames of " + std::to_string(header.GetFrameSize()) +
-        " bytes that DimSize and ElementType call for");
-    }
-    this->Rewind();
-    if (this->Whole && !header.TypeIsLong)
+    if (this->SizeKnown && !header.TypeIsLong)
     {
       this->Divide(header.GetFrameSize() * header.Frames);
     }
     else
     {
-      this->Divide(this->CountBytes());
-      this->Rewind();
+      this->SkipBytes();
+      const std::int64_t bytes = this->Stream->CountBytes();
+      this->Divide(bytes, this->Stream->GetDamage());
     }
+    this->Restart();
   }
 
 protected:
@@ -122,94 +138,112 @@ protected:
   {
     if (frame < this->Next)
     {
-      this->Rewind();
+      this->Restart();
     }
     for (; this->Next <= frame; ++this->Next) // the frames before this one are overwritten by it
     {
-      if (this->Inflate(pixels, this->FrameSize) < this->FrameSize)
+      if (this->Stream->Read(pixels, this->FrameSize) < this->FrameSize)
       {
+        const std::string& damage = this->Stream->GetDamage();
         const std::string last = std::to_string(this->Next - 1);
-        this->Fail("the compressed pixels " +
-          std::string(this->Corrupt ? "are corrupt" : "end too early") + " in frame " +
+        this->Fail(this->Name + " " + (damage.empty() ? "end too early" : damage) + " in frame " +
           std::to_string(this->Next) +
           (this->Next > 0 ? "; FrameRange 0 " + last + " reads the frames before it" : ""));
       }
     }
-    if (this->Next == this->Header.Frames)
+    if (this->SizeKnown && this->Next == this->Header.Frames)
     {
       this->CheckEnd();
     }
   }
 
 private:
-  void Rewind()
+  /// Whether the file as it is should give all frames. Fails when there are by far too few bytes.
+  bool IsSizeKnown(std::int64_t bytes) const
   {
-    this->Stream.clear();
-    this->Stream.seekg(static_cast<std::streamoff>(this->Header.DataOffset));
-    inflateReset(&this->Zlib.Stream);
-    this->Zlib.Stream.avail_in = 0;
-    this->Next = 0;
-    this->Ended = false;
-    this->Corrupt = false;
-    this->Complete = false;
+    const SequenceHeader& header = this->Header;
+    const std::int64_t wanted = header.GetFrameSize() * header.Frames;
+    const bool sizeGiven = header.CompressedDataSize > 0;
+    if (!sizeGiven && !this->EndsWithGzipSize(wanted))
+    {
+      return false;
+    }
+    const std::int64_t stated = sizeGiven ? header.CompressedDataSize : bytes;
+    if (static_cast<double>(wanted) > (static_cast<double>(stated) + 16) * BestCompression)
+    {
+      this->Fail(std::to_string(stated) + " bytes of compressed data cannot hold the " +
+        std::to_string(header.Frames) + " frames of " + std::to_string(header.GetFrameSize()) +
+        " bytes that the size and the element type call for");
+    }
+    return stated <= bytes;
   }
 
-  /// Puts up to size bytes into output and returns how many there were.
-  std::int64_t Inflate(unsigned char* output, std::int64_t size)
+  /// A gzip stream ends with the size of its content, modulo 2^32.
+  bool EndsWithGzipSize(std::int64_t size) const
   {
-    z_stream& zlib = this->Zlib.Stream;
-    std::int64_t done = 0;
-    while (done < size && !this->Ended)
+    const auto all =
+      static_cast<std::uint64_t>(size) + static_cast<std::uint64_t>(this->Header.SkippedBytes);
+    std::ifstream stream(this->Header.DataFileName, std::ios::binary);
+    std::array<unsigned char, 4> end{};
+    stream.seekg(-4, std::ios::end);
+    stream.read(reinterpret_cast<char*>(end.data()), 4);
+    std::uint32_t stated = 0;
+    for (std::size_t i = 4; i-- > 0;)
     {
-      if (zlib.avail_in == 0)
-      {
-        this->Stream.read(reinterpret_cast<char*>(this->Input.data()),
-          static_cast<std::streamsize>(this->Input.size()));
-        zlib.next_in = this->Input.data();
-        zlib.avail_in = static_cast<uInt>(this->Stream.gcount());
-      }
-      const auto room = static_cast<uInt>(std::min<std::int64_t>(size - done, 1 << 30));
-      zlib.next_out = output + done;
-      zlib.avail_out = room;
-      const int result = inflate(&zlib, Z_NO_FLUSH);
-      done += room - zlib.avail_out;
-      this->Corrupt = result == Z_DATA_ERROR || result == Z_NEED_DICT;
-      this->Complete = result == Z_STREAM_END;
-      this->Ended = result != Z_OK; // Z_BUF_ERROR: the file ends before the stream
+      stated = stated << 8 | end[i];
     }
-    return done;
+    return stream && stated == static_cast<std::uint32_t>(all);
+  }
+
+  void SkipBytes()
+  {
+    std::vector<unsigned char> scratch(1 << 16);
+    for (std::int64_t left = this->Header.SkippedBytes; left > 0;)
+    {
+      const std::int64_t part =
+        this->Stream->Read(scratch.data(), std::min<std::int64_t>(left, 1 << 16));
+      left = part > 0 ? left - part : 0;
+    }
+  }
+
+  void Restart()
+  {
+    this->Stream->Rewind();
+    this->SkipBytes();
+    this->Next = 0;
   }
 
   /// After the last frame: damage may show only in what follows, at the latest in the check sum.
   void CheckEnd()
   {
-    this->CountBytes();
-    if (this->Corrupt || (this->Whole && !this->Complete))
+    this->Stream->CountBytes();
+    if (!this->Stream->IsComplete())
     {
-      this->Fail("the compressed pixels are corrupt: their check sum is wrong or missing");
+      this->Fail(this->Name + " are corrupt: their check sum is wrong or missing");
     }
   }
 
-  /// Inflates what is left and returns how many bytes that was.
-  std::int64_t CountBytes()
+  std::unique_ptr<ByteStream> Stream;
+  std::string Name = "the pixels";
+  bool SizeKnown = false; ///< without decoding
+  std::int64_t Next = 0;  ///< frame at which the stream stands
+};
+
+//------------------------------------------------------------------------------
+class BlankPixelSource : public PixelSource
+{
+public:
+  explicit BlankPixelSource(const SequenceHeader& header)
+    : PixelSource(header)
   {
-    std::vector<unsigned char> scratch(1 << 18);
-    std::int64_t bytes = 0;
-    while (!this->Ended)
-    {
-      bytes += this->Inflate(scratch.data(), static_cast<std::int64_t>(scratch.size()));
-    }
-    return bytes;
+    this->WholeFrames = header.Frames;
   }
 
-  std::ifstream Stream;
-  std::vector<unsigned char> Input;
-  Inflater Zlib;
-  bool Whole = false;    ///< the file is as long as the header says
-  bool Ended = false;    ///< nothing more to be had, for whatever reason
-  bool Corrupt = false;  ///< because the data are wrong
-  bool Complete = false; ///< because the stream came to its proper end
-  std::int64_t Next = 0; ///< frame at which the inflater stands
+protected:
+  void ReadStored(std::int64_t, unsigned char* pixels) override
+  {
+    std::memset(pixels, 0, static_cast<std::size_t>(this->FrameSize));
+  }
 };
 }
 
@@ -221,22 +255,28 @@ PixelSource::PixelSource(const SequenceHeader& header)
 {
 }
 
+//------------------------------------------------------------------------------
 std::unique_ptr<PixelSource> PixelSource::Open(const SequenceHeader& header)
 {
+  if (header.PosesOnly)
+  {
+    return std::make_unique<BlankPixelSource>(header);
+  }
   const std::int64_t size = FileSize(header.DataFileName);
   if (size < 0)
   {
     throw std::runtime_error(header.FileName + ": the file of its pixels, '" + header.DataFileName +
-      "' (ElementDataFile), does not exist or cannot be read");
+      "' (ElementDataFile or data file), does not exist or cannot be read");
   }
-  if (header.Compressed)
+  if (header.Encoding == PixelEncoding::Raw)
   {
-    return std::make_unique<ZlibPixelSource>(header, size);
+    return std::make_unique<RawPixelSource>(header, size);
   }
-  return std::make_unique<RawPixelSource>(header, size);
+  return std::make_unique<StreamPixelSource>(header, size);
 }
 
-void PixelSource::Divide(std::int64_t bytes)
+//------------------------------------------------------------------------------
+void PixelSource::Divide(std::int64_t bytes, const std::string& damage)
 {
   if (this->Header.TypeIsLong && bytes >= 2 * this->FrameSize * this->Header.Frames)
   {
@@ -247,21 +287,25 @@ void PixelSource::Divide(std::int64_t bytes)
   this->WholeFrames = std::min(this->Header.Frames, whole);
   if (this->WholeFrames == 0)
   {
-    this->Fail("there are " + std::to_string(bytes) + " bytes of pixels, but one frame has " +
-      std::to_string(this->FrameSize) + " (DimSize, ElementType)");
+    this->Fail(damage.empty()
+        ? "there are " + std::to_string(bytes) + " bytes of pixels, but one frame has " +
+          std::to_string(this->FrameSize) + " (by the size and the element type in the header)"
+        : "the pixels " + damage + " in frame 0");
   }
   if (whole < this->Header.Frames)
   {
-    this->Warning = "the pixels are cut off: " + std::to_string(whole) + " of the " +
-      std::to_string(this->Header.Frames) + " frames are there";
+    this->Warning = "the pixels " + (damage.empty() ? "are cut off" : damage) + ": " +
+      std::to_string(whole) + " of the " + std::to_string(this->Header.Frames) +
+      " frames are there";
   }
-  else if (bytes > this->FrameSize * this->Header.Frames && this->Header.DataOffset >= 0)
+  else if (bytes > this->FrameSize * this->Header.Frames && this->Header.SkippedBytes >= 0)
   {
     this->Warning = std::to_string(bytes - this->FrameSize * this->Header.Frames) +
       " bytes after the last frame are ignored; are DimSize and ElementType right?";
   }
 }
 
+//------------------------------------------------------------------------------
 void PixelSource::ReadFrame(std::int64_t frame, void* pixels)
 {
   if (frame < 0 || frame >= this->WholeFrames)
@@ -270,13 +314,15 @@ void PixelSource::ReadFrame(std::int64_t frame, void* pixels)
       std::to_string(this->WholeFrames) + " frames in the file");
   }
   this->ReadStored(frame, static_cast<unsigned char*>(pixels));
-  if (this->Header.BigEndian != IsBigEndianMachine())
+  if (this->Header.Encoding != PixelEncoding::Text &&
+    this->Header.BigEndian != IsBigEndianMachine())
   {
     const std::size_t elementSize = GetScalarSize(this->Type);
     SwapElementBytes(pixels, static_cast<std::size_t>(this->FrameSize) / elementSize, elementSize);
   }
 }
 
+//------------------------------------------------------------------------------
 void PixelSource::Fail(const std::string& text) const
 {
   throw std::runtime_error(this->Header.DataFileName + ": " + text);

@@ -14,14 +14,16 @@
 namespace lacuna
 {
 /// Reads frames one at a time, as they are stored but in this machine's byte order. Offsets are 64
-/// bits wide. Uncompressed frames are read from where they are. Compressed ones are one zlib stream
-/// over all frames: going forward inflates only what lies between, going back starts afresh.
+/// bits wide. Raw frames are read from where they are. Compressed ones are one stream over all
+/// frames, and text is read in order, too: going forward decodes only what lies between, going back
+/// starts afresh.
 class PixelSource
 {
 public:
   /// Finds the data of header and compares their size with what header says, before anything is
-  /// allocated. header must outlive the source. Throws std::runtime_error when the data file is
-  /// missing, holds not even one frame, or cannot hold as many as the header says.
+  /// allocated. Where the size of the decoded data is not known from the file, they are decoded
+  /// once to count them. header must outlive the source. Throws std::runtime_error when the data
+  /// file is missing, holds not even one frame, or cannot hold as many as the header says.
   static std::unique_ptr<PixelSource> Open(const SequenceHeader& header);
 
   virtual ~PixelSource() = default;
@@ -30,7 +32,8 @@ public:
   ScalarType GetScalarType() const { return this->Type; }
   /// Bytes of a frame.
   std::int64_t GetFrameSize() const { return this->FrameSize; }
-  /// Frames whose pixels are there: fewer than the header says when the file is cut off.
+  /// Frames whose pixels are there: fewer than the header says when the file is cut off. The blank
+  /// frames of a file of poses are there.
   std::int64_t GetNumberOfWholeFrames() const { return this->WholeFrames; }
 
   /// A sentence when there are fewer or more data than the header says; otherwise empty.
@@ -44,8 +47,8 @@ protected:
   explicit PixelSource(const SequenceHeader& header);
   virtual void ReadStored(std::int64_t frame, unsigned char* pixels) = 0;
   [[noreturn]] void Fail(const std::string& text) const;
-  /// Sets the members below from the number of bytes there are.
-  void Divide(std::int64_t bytes);
+  /// Sets the members below from the number of bytes there are. damage: why there are no more.
+  void Divide(std::int64_t bytes, const std::string& damage = {});
 
   const SequenceHeader& Header;
   ScalarType Type;

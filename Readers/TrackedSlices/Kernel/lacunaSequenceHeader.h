@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The header of a tracked sequence file: an image of many slices with named fields for each.
+/// The header of a tracked sequence: slices of one size, stored back to back, with named text
+/// fields for each frame, as written by PLUS, 3D Slicer and their kin.
 #ifndef lacunaSequenceHeader_h
 #define lacunaSequenceHeader_h
 
@@ -15,6 +16,14 @@
 
 namespace lacuna
 {
+enum class PixelEncoding
+{
+  Raw,
+  Zlib, ///< one zlib or gzip stream over all frames
+  Hex,  ///< two digits for each byte
+  Text  ///< numbers between blanks
+};
+
 /// What the header says, checked in itself but not yet against the pixel data. Whichever format it
 /// comes from, the pixels are frames back to back, x fastest.
 struct SequenceHeader
@@ -25,21 +34,28 @@ struct SequenceHeader
   std::int64_t Rows = 0;
   std::int64_t Frames = 0;
   std::int64_t Channels = 1;
+  /// A file of poses without pictures (DimSize 0 0 0, or 1 x 1 dummy pixels and no ImageStatus):
+  /// frames count as one pixel, which is blank.
+  bool PosesOnly = false;
   ScalarType Type = ScalarType::UInt8;
   /// MET_LONG and MET_ULONG: four bytes by MetaImage's definition, eight when written by programs
   /// that took the machine's long. Type holds the four-byte type until the data size decides.
   bool TypeIsLong = false;
   bool BigEndian = false;
-  bool Compressed = false;
+  PixelEncoding Encoding = PixelEncoding::Raw;
   SliceFlips Flips;
+  std::string ImageType = "BRIGHTNESS"; ///< of the file, without the prefix US_IMG_
 
   std::string DataFileName;            ///< the file itself when the pixels follow the header
-  std::int64_t DataOffset = 0;         ///< first byte of the pixels; -1: they end the file
+  std::int64_t DataOffset = 0;         ///< first byte of the pixels as they are encoded
+  std::int64_t SkippedLines = 0;       ///< lines to be skipped there
+  std::int64_t SkippedBytes = 0;       ///< decoded bytes before the pixels; -1: they end the file
   std::int64_t CompressedDataSize = 0; ///< bytes; 0 when the header does not say
 
   /// Fields that the format does not define, in the file's order.
   std::vector<std::pair<std::string, std::string>> CustomFields;
-  /// For each field that frames have, its text in every frame; empty where a frame lacks it.
+  /// For each field that frames have, its text in every frame; empty where a frame lacks it. The
+  /// state of a frame's image is ImageStatus, also in NRRD files, where it is called Status.
   std::map<std::string, std::vector<std::string>> FrameFields;
   /// What was odd but could be read, one sentence each.
   std::vector<std::string> Warnings;
@@ -52,14 +68,16 @@ struct SequenceHeader
   }
 };
 
-/// Reads the header of a MetaImage (.mha, .mhd) sequence. Throws std::runtime_error that names the
-/// file, the line or field, what is wrong with it and what would be right. Frame fields are kept as
-/// text; a bad one spoils its frame, not the file.
-SequenceHeader ReadMetaImageHeader(const std::string& fileName);
+/// Reads the header of a MetaImage (.mha, .mhd) or NRRD (.nrrd, .nhdr) sequence; the content tells
+/// which, not the name. Throws std::runtime_error that names the file, the line or field, what is
+/// wrong with it and what would be right. Frame fields are kept as text; a bad one spoils its
+/// frame, not the file. The header of a recording that is cut off (see lacunaSequenceRecorder.h)
+/// is read up to its last whole frame.
+SequenceHeader ReadSequenceHeader(const std::string& fileName);
 
-/// Whether fileName is a MetaImage with fields for its frames and frames that are slices: not an
-/// ordinary image, and not a reconstructed volume, which has frame fields too. Reads no further
-/// than the first frame field and does not throw.
-bool IsTrackedMetaImage(const std::string& fileName);
+/// Whether fileName is a MetaImage or NRRD file with fields for its frames and frames that are
+/// slices: not an ordinary image, and not a reconstructed volume, which has frame fields too. Reads
+/// no further than the first frame field and does not throw.
+bool IsTrackedSequence(const std::string& fileName);
 }
 #endif

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 namespace lacuna
 {
@@ -33,10 +32,17 @@ void ReverseRow(unsigned char* row, std::int64_t columns, std::size_t pixelSize)
 }
 }
 
+std::string GetImageTypeName(std::string_view imageType)
+{
+  return WithoutPrefix(imageType, "US_IMG_");
+}
+
 SliceFlips GetSliceFlips(std::string_view orientation, std::string_view imageType)
 {
-  const std::string letters = WithoutPrefix(orientation, "US_IMG_ORIENT_");
-  const std::string type = WithoutPrefix(imageType, "US_IMG_");
+  std::string letters = WithoutPrefix(orientation, "US_IMG_ORIENT_");
+  std::transform(letters.begin(), letters.end(), letters.begin(),
+    [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  const std::string type = GetImageTypeName(imageType);
   const bool complex = type == "RF_IQ_LINE" || type == "RF_I_LINE_Q_LINE";
   const bool lines = complex || type == "RF_REAL";
   if (!lines && !type.empty() && type != "BRIGHTNESS" && type != "RGB_COLOR")

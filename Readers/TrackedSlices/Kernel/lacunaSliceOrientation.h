@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace lacuna
@@ -22,6 +23,9 @@ struct SliceFlips
   bool X = false; ///< columns are reversed
   bool Y = false; ///< rows are reversed
 };
+
+/// The image type without blanks around it and without the prefix US_IMG_.
+std::string GetImageTypeName(std::string_view imageType);
 
 /// The flips that bring slices stored in orientation ("MF", "UNA", "US_IMG_ORIENT_MFA" ...) to the
 /// standard one. imageType is the value of UltrasoundImageType; empty means BRIGHTNESS. Throws

@@ -47,8 +47,9 @@ public:
     this->FlagImages();
     this->FindImageToProbe();
     this->BuildPoses();
+    const int accepted = this->Header.PosesOnly ? Sweep::ImageInvalid : Sweep::Valid;
     const bool none = std::none_of(this->Result.Status.begin(), this->Result.Status.end(),
-      [](unsigned char status) { return status == Sweep::Valid; });
+      [&](unsigned char status) { return status == accepted; });
     if (none)
     {
       this->Warn("not one of the " + std::to_string(this->Count) +
@@ -106,26 +107,20 @@ void SweepBuilder::KeepFields()
 //------------------------------------------------------------------------------
 void SweepBuilder::ReadTimes()
 {
-  const auto times = this->Header.FrameFields.find("Timestamp");
-  if (times != this->Header.FrameFields.end())
+  this->Result.Timestamps = ReadTimestamps(this->Header);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < this->Result.Timestamps.size(); ++i)
   {
-    std::vector<std::size_t> missing;
-    this->Result.Timestamps.resize(this->Count);
-    for (std::size_t i = 0; i < this->Count; ++i)
+    if (std::isnan(this->Result.Timestamps[i]))
     {
-      double& time = this->Result.Timestamps[i];
-      if (!ParseNumber(times->second[i], time) || !std::isfinite(time))
-      {
-        time = std::numeric_limits<double>::quiet_NaN();
-        missing.push_back(i);
-      }
+      missing.push_back(i);
     }
-    if (!missing.empty())
-    {
-      this->Warn("field Timestamp is missing or not a finite number in " + FrameList(missing));
-    }
-    this->Result.TextFields.erase("Timestamp");
   }
+  if (!missing.empty())
+  {
+    this->Warn("field Timestamp is missing or not a finite number in " + FrameList(missing));
+  }
+  this->Result.TextFields.erase("Timestamp");
   const auto numbers = this->Header.FrameFields.find("FrameNumber");
   for (std::size_t i = 0; i < this->Count; ++i)
   {
@@ -141,16 +136,25 @@ void SweepBuilder::ReadTimes()
 //------------------------------------------------------------------------------
 void SweepBuilder::FlagImages()
 {
+  const auto flags = this->Header.FrameFields.find("SliceStatus");
   const auto states = this->Header.FrameFields.find("ImageStatus");
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const bool stated = states != this->Header.FrameFields.end() && !states->second[i].empty();
     const bool refused = stated && states->second[i] != "OK" && this->Options.DropInvalid;
-    const bool absent = this->Options.FramesWithPixels >= 0 &&
-      static_cast<std::int64_t>(i) >= this->Options.FramesWithPixels;
+    const bool absent = this->Header.PosesOnly ||
+      (this->Options.FramesWithPixels >= 0 &&
+        static_cast<std::int64_t>(i) >= this->Options.FramesWithPixels);
     if (refused || absent)
     {
       this->Result.Status[i] |= Sweep::ImageInvalid;
+    }
+    std::int64_t given = 0;
+    if (this->Options.DropInvalid && flags != this->Header.FrameFields.end() &&
+      ParseInteger(flags->second[i], given) && given >= 0 && given <= 255)
+    {
+      this->Result.Status[i] |=
+        static_cast<unsigned char>(given & (Sweep::TooFast | Sweep::GatedOut));
     }
   }
 }
@@ -325,6 +329,22 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
       "TransformStatus is missing in all frames; the transform is taken as valid");
   }
 }
+}
+
+std::vector<double> ReadTimestamps(const SequenceHeader& header)
+{
+  std::vector<double> times;
+  const auto texts = header.FrameFields.find("Timestamp");
+  if (texts != header.FrameFields.end())
+  {
+    for (const std::string& text : texts->second)
+    {
+      double time = 0;
+      const bool known = ParseNumber(text, time) && std::isfinite(time);
+      times.push_back(known ? time : std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return times;
 }
 
 Sweep BuildSweep(const SequenceHeader& header, const SweepOptions& options)

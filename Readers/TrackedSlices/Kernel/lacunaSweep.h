@@ -35,7 +35,9 @@ struct Sweep
   {
     Valid = 0,
     PoseInvalid = 1,
-    ImageInvalid = 2
+    ImageInvalid = 2,
+    TooFast = 4,
+    GatedOut = 8
   };
 
   /// Maps (column, row, 0, 1) to mm in the reference frame. All NaN for a flagged pose: there is no
@@ -64,10 +66,15 @@ struct Sweep
 /// backwards. A frame's pose is valid when each of the sequence's transforms in the chain is there
 /// for the frame, is 16 finite numbers, can be inverted and has the status OK (any other word,
 /// known or not, is not valid; a transform that has no status in the whole file is taken as valid,
-/// with a warning). Its image is valid when ImageStatus is OK or absent.
+/// with a warning). Its image is valid when ImageStatus is OK or absent. A field SliceStatus adds
+/// its flags TooFast and GatedOut when DropInvalid is set; the others are found anew.
 ///
 /// Throws std::runtime_error when there is no chain, naming the missing link and the transforms
 /// there are, or when the calibration file cannot be used.
 Sweep BuildSweep(const SequenceHeader& header, const SweepOptions& options);
+
+/// The Timestamp of each frame in s; empty when no frame has one, NaN where one lacks it or has
+/// something else than a finite number.
+std::vector<double> ReadTimestamps(const SequenceHeader& header);
 }
 #endif

@@ -2,6 +2,7 @@
 // Whatever the bytes are, reading them ends in a sentence or in a consistent result. Most telling
 // under the address and undefined-behaviour sanitizers.
 #include "Compress.h"
+#include "NrrdFile.h"
 #include "SequenceFile.h"
 #include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
@@ -22,7 +23,7 @@ protected:
   {
     this->File.Write(content);
     this->File.WriteBeside("calibration.xml", calibration);
-    IsTrackedMetaImage(this->File.GetPath());
+    IsTrackedSequence(this->File.GetPath());
     try
     {
       this->ReadEverything();
@@ -37,7 +38,7 @@ protected:
 
   void ReadEverything()
   {
-    const SequenceHeader header = ReadMetaImageHeader(this->File.GetPath());
+    const SequenceHeader header = ReadSequenceHeader(this->File.GetPath());
     const auto pixels = PixelSource::Open(header);
     ASSERT_GE(pixels->GetNumberOfWholeFrames(), 1);
     ASSERT_LE(pixels->GetNumberOfWholeFrames(), header.Frames);
@@ -78,12 +79,30 @@ SequenceFile MakeRich()
   file.SetFrame(2, "FrameNumber", "42");
   return file;
 }
+
+std::string MakeRichNrrd(const std::string& encoding)
+{
+  NrrdFile file = MakeNrrd(3);
+  file.Set("encoding", encoding);
+  file.Set("byte skip", "0");
+  file.SetPair("key", R"(a value with \n and \\)");
+  file.SetFrame(1, "Note", "a custom text := with a sign");
+  file.Pixels = encoding == "gzip" ? Gzip(file.Pixels)
+    : encoding == "hex"            ? ToHex(file.Pixels)
+    : encoding == "text"           ? ToText(file.Pixels)
+                                   : file.Pixels;
+  return file.GetContent();
+}
 }
 
 TEST_F(HostileSequences, TheGoodFilesAreGood)
 {
   EXPECT_TRUE(this->Survives(MakeRich().GetContent()));
   EXPECT_TRUE(this->Survives(Compressed(MakeRich()).GetContent()));
+  for (const char* encoding : { "raw", "gzip", "hex", "text" })
+  {
+    EXPECT_TRUE(this->Survives(MakeRichNrrd(encoding))) << encoding;
+  }
 }
 
 TEST_F(HostileSequences, CutOffAnywhere)
@@ -100,21 +119,29 @@ TEST_F(HostileSequences, CutOffAnywhere)
   }
 }
 
+TEST_F(HostileSequences, NrrdCutOffAnywhere)
+{
+  const std::string content = MakeRichNrrd("gzip");
+  const std::size_t header = content.find("\n\n") + 2;
+  for (std::size_t size = 0; size < content.size(); ++size)
+  {
+    const bool good = this->Survives(content.substr(0, size));
+    ASSERT_FALSE(good && size < header) << size;
+  }
+}
+
 TEST_F(HostileSequences, EveryByteReplaced)
 {
-  for (const SequenceFile& file : { MakeRich(), Compressed(MakeRich()) })
+  for (const std::string& content : { MakeRich().GetContent(), Compressed(MakeRich()).GetContent(),
+         MakeRichNrrd("raw"), MakeRichNrrd("text") })
   {
-    const std::string content = file.GetContent();
     for (std::size_t at = 0; at < content.size(); ++at)
     {
       const char bytes[] = { '\0', '\n', ' ', '=', '-', '9', '\xff' };
-      for (const char c : { bytes[at % 7], bytes[(at + 3) % 7] })
-      {
-        std::string bad = content;
-        bad[at] = c;
-        this->Survives(bad);
-        ASSERT_FALSE(this->HasFatalFailure()) << at << " " << static_cast<int>(c);
-      }
+      std::string bad = content;
+      bad[at] = bytes[at % 7];
+      this->Survives(bad);
+      ASSERT_FALSE(this->HasFatalFailure()) << at << " " << static_cast<int>(bad[at]);
     }
   }
 }
@@ -123,13 +150,15 @@ TEST_F(HostileSequences, RandomDamage)
 {
   std::mt19937 random(20240229);
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
-  const std::string contents[] = { MakeRich().GetContent(), Compressed(MakeRich()).GetContent() };
+  const std::string contents[] = { MakeRich().GetContent(), Compressed(MakeRich()).GetContent(),
+    MakeRichNrrd("raw"), MakeRichNrrd("gzip"), MakeRichNrrd("hex"), MakeRichNrrd("text") };
   const std::string words[] = { "99999999999", "-1", "nan", "1e999", "Seq_Frame", "= ", "MET_LONG",
     "domain", "list", "True", "LOCAL", "To", "Transform", "0 0 0", "CompressedData = True\n",
-    "DimSize = 1 1 1\n", "UltrasoundImageOrientation = UN\n", "ElementNumberOfChannels = 3\n" };
+    "DimSize = 1 1 1\n", "UltrasoundImageOrientation = UN\n", "ElementNumberOfChannels = 3\n",
+    "byte skip: ", "encoding: hex\n", "vector", "\n\n", ":=" };
   for (int round = 0; round < 6000; ++round)
   {
-    std::string bad = contents[round % 2];
+    std::string bad = contents[round % 6];
     for (std::size_t k = 1 + below(6); k > 0 && !bad.empty(); --k)
     {
       const std::size_t at = below(bad.size());

@@ -20,7 +20,7 @@ struct OpenedSequence
 
   explicit OpenedSequence(const std::string& content)
     : File("sweep.igs.mha", content)
-    , Header(ReadMetaImageHeader(this->File.GetPath()))
+    , Header(ReadSequenceHeader(this->File.GetPath()))
     , Pixels(PixelSource::Open(this->Header))
   {
   }
@@ -196,7 +196,7 @@ TEST(PixelSource, ExternalFiles)
   const std::string pixels = file.Pixels;
   file.DataFile = "pixels.raw";
   const TemporaryFile header("sweep.mhd", file.GetContent());
-  const SequenceHeader read = ReadMetaImageHeader(header.GetPath());
+  const SequenceHeader read = ReadSequenceHeader(header.GetPath());
   ExpectError(GetError([&] { PixelSource::Open(read); }),
     { "sweep.mhd", "pixels.raw", "ElementDataFile", "does not exist" });
   header.WriteBeside("pixels.raw", pixels);
@@ -207,12 +207,12 @@ TEST(PixelSource, ExternalFiles)
   header.WriteBeside("pixels.raw", "header" + pixels);
   file.Set("HeaderSize", "6");
   header.Write(file.GetContent());
-  const SequenceHeader skipping = ReadMetaImageHeader(header.GetPath());
+  const SequenceHeader skipping = ReadSequenceHeader(header.GetPath());
   PixelSource::Open(skipping)->ReadFrame(2, frame.data());
   EXPECT_EQ(frame, pixels.substr(40, 20));
   file.Set("HeaderSize", "-1");
   header.Write(file.GetContent());
-  const SequenceHeader atEnd = ReadMetaImageHeader(header.GetPath());
+  const SequenceHeader atEnd = ReadSequenceHeader(header.GetPath());
   PixelSource::Open(atEnd)->ReadFrame(0, frame.data());
   EXPECT_EQ(frame, pixels.substr(0, 20));
 
@@ -221,7 +221,7 @@ TEST(PixelSource, ExternalFiles)
   zraw.DataFile = "pixels.zraw";
   header.Write(zraw.GetContent());
   header.WriteBeside("pixels.zraw", compressed.Pixels);
-  const SequenceHeader zheader = ReadMetaImageHeader(header.GetPath());
+  const SequenceHeader zheader = ReadSequenceHeader(header.GetPath());
   PixelSource::Open(zheader)->ReadFrame(2, frame.data());
   EXPECT_EQ(frame, pixels.substr(40, 20));
 }
@@ -300,7 +300,7 @@ TEST(PixelSource, FilesOverFourGigabytes)
     stream.seekp(static_cast<std::streamoff>(offset + 1030 * frameSize));
     stream << "START";
   }
-  const SequenceHeader header = ReadMetaImageHeader(sparse.GetPath());
+  const SequenceHeader header = ReadSequenceHeader(sparse.GetPath());
   const auto pixels = PixelSource::Open(header);
   EXPECT_EQ(pixels->GetNumberOfWholeFrames(), frames);
   std::string frame(static_cast<std::size_t>(frameSize), '?');

@@ -11,7 +11,7 @@ namespace
 SequenceHeader Read(const std::string& content)
 {
   const TemporaryFile file("sweep.igs.mha", content);
-  return ReadMetaImageHeader(file.GetPath());
+  return ReadSequenceHeader(file.GetPath());
 }
 
 SequenceHeader Read(const SequenceFile& file)
@@ -40,7 +40,7 @@ void ExpectFieldError(const std::string& name, const std::string& value, const s
 bool IsTracked(const std::string& content)
 {
   const TemporaryFile file("sweep.mha", content);
-  return IsTrackedMetaImage(file.GetPath());
+  return IsTrackedSequence(file.GetPath());
 }
 
 void ExpectWarning(const SequenceHeader& header, const std::string& part)
@@ -60,7 +60,7 @@ TEST(SequenceHeader, ReadsAGoodFile)
   EXPECT_EQ(header.Channels, 1);
   EXPECT_EQ(header.Type, ScalarType::UInt8);
   EXPECT_FALSE(header.BigEndian);
-  EXPECT_FALSE(header.Compressed);
+  EXPECT_EQ(header.Encoding, PixelEncoding::Raw);
   EXPECT_FALSE(header.Flips.X || header.Flips.Y);
   EXPECT_EQ(header.DataFileName, header.FileName);
   EXPECT_EQ(header.DataOffset, static_cast<std::int64_t>(file.GetHeader().size()));
@@ -136,6 +136,87 @@ TEST(SequenceHeader, ShapesOfFrames)
   EXPECT_EQ(Read(colour).Columns, 5);
 }
 
+TEST(SequenceHeader, ColoursHoweverTheyAreListed)
+{
+  // components before the columns, but kinds and dimensions that do not count them
+  SequenceFile file = MakeSequence();
+  file.Set("ElementNumberOfChannels", "3");
+  file.Set("DimSize", "3 5 4 3");
+  EXPECT_EQ(Read(file).Channels, 3);
+  EXPECT_EQ(Read(file).Columns, 5);
+  file.Remove("Kinds");
+  EXPECT_EQ(Read(file).Columns, 5);
+  file.Set("NDims", "4");
+  EXPECT_EQ(Read(file).Columns, 5);
+  file.Set("DimSize", "3 4 1 2"); // three columns, one layer
+  EXPECT_EQ(Read(file).Columns, 3);
+  EXPECT_EQ(Read(file).Frames, 2);
+  file.Set("Kinds", "vector domain domain list");
+  file.Set("DimSize", "4 5 4 3");
+  ExpectError(file.GetContent(), { "DimSize gives 4 components but ElementNumberOfChannels 3" });
+}
+
+TEST(SequenceHeader, PosesWithoutPictures)
+{
+  SequenceFile file = MakeSequence();
+  file.Set("DimSize", "0 0 0"); // no image
+  file.Remove("ElementType");
+  const SequenceHeader none = Read(file);
+  EXPECT_TRUE(none.PosesOnly);
+  EXPECT_EQ(none.Frames, 3); // those that the fields describe
+  EXPECT_EQ(none.Columns * none.Rows, 1);
+  ExpectWarning(none, "poses but no pictures");
+  file.Set("DimSize", "0 0 2");
+  EXPECT_EQ(Read(file).Frames, 2);
+  EXPECT_TRUE(IsTracked(file.GetContent()));
+
+  SequenceFile dummies = MakeSequence(3, 1, 1); // as PLUS writes them
+  EXPECT_FALSE(Read(dummies).PosesOnly);
+  for (int i = 0; i < 3; ++i)
+  {
+    dummies.RemoveFrame(i, "ImageStatus");
+  }
+  EXPECT_TRUE(Read(dummies).PosesOnly);
+  ExpectWarning(Read(dummies), "poses but no pictures");
+}
+
+TEST(SequenceHeader, AHeaderCutOffHasItsWholeFramesIfItsPixelsAreBesideIt)
+{
+  SequenceFile file = MakeSequence(3);
+  file.DataFile = "sweep.raw";
+  const std::string content = file.GetContent();
+  for (const bool beside : { true, false })
+  {
+    for (std::size_t size = content.find("Seq_Frame0000"); size < content.size(); size += 3)
+    {
+      const TemporaryFile stored("sweep.mhd", content.substr(0, size));
+      if (beside)
+      {
+        stored.WriteBeside("sweep.raw", file.Pixels);
+      }
+      std::int64_t whole = 0;
+      for (int frame = 0; frame < 3; ++frame)
+      {
+        const std::size_t at =
+          content.find("Seq_Frame000" + std::to_string(frame) + "_ImageStatus");
+        whole += size >= content.find('\n', at) + 1 ? 1 : 0;
+      }
+      if (whole == 0 || !beside)
+      {
+        EXPECT_NE(GetError([&] { ReadSequenceHeader(stored.GetPath()); }).find("cut off"),
+          std::string::npos)
+          << size;
+        continue;
+      }
+      const SequenceHeader header = ReadSequenceHeader(stored.GetPath());
+      ASSERT_EQ(header.Frames, whole) << size;
+      EXPECT_EQ(std::filesystem::path(header.DataFileName).filename(), "sweep.raw");
+      EXPECT_EQ(header.FrameFields.at("Timestamp").back(), std::to_string(9 + whole) + ".25");
+      EXPECT_EQ(header.FrameFields.at("ImageStatus").size(), static_cast<std::size_t>(whole));
+    }
+  }
+}
+
 TEST(SequenceHeader, ExternalData)
 {
   SequenceFile file = MakeSequence();
@@ -146,7 +227,7 @@ TEST(SequenceHeader, ExternalData)
     std::filesystem::path(header.FileName).parent_path() / "sub" / "pixels.raw");
   EXPECT_EQ(header.DataOffset, 17);
   file.Set("HeaderSize", "-1");
-  EXPECT_EQ(Read(file).DataOffset, -1);
+  EXPECT_EQ(Read(file).SkippedBytes, -1);
   file.Set("HeaderSize", "-2");
   ExpectError(file.GetContent(), { "HeaderSize is -2" });
   file.Remove("HeaderSize");
@@ -178,7 +259,7 @@ TEST(SequenceHeader, OddLinesAreIgnoredWithAWarning)
   {
     SequenceFile file = MakeSequence();
     file.AddLine(line);
-    ExpectWarning(Read(file), "ignored what is not of the form");
+    ExpectWarning(Read(file), "ignored what is neither");
   }
   SequenceFile file = MakeSequence();
   file.SetFrame(3, "Timestamp", "1");
@@ -226,7 +307,7 @@ TEST(SequenceHeader, DuplicateFields)
 TEST(SequenceHeader, WrongSizes)
 {
   for (const char* size :
-    { "0 0 0", "0 4 3", "5 4 0", "5 -4 3", "5 4 2147483648", "2147483648 4 3" })
+    { "0 4 3", "5 0 3", "5 4 0", "5 -4 3", "5 4 2147483648", "2147483648 4 3" })
   {
     ExpectFieldError("DimSize", size, "must each be from 1 to 2147483647");
   }
@@ -252,7 +333,7 @@ TEST(SequenceHeader, WrongFields)
 {
   ExpectFieldError("ElementType", "MET_STRING", "'MET_STRING'");
   ExpectFieldError("ElementType", "met_uchar", "known are MET_CHAR, MET_UCHAR");
-  ExpectFieldError("BinaryData", "False", "written as text");
+  ExpectFieldError("BinaryData", "perhaps", "'perhaps'; it must be True or False");
   ExpectFieldError("CompressedData", "maybe", "'maybe'; it must be True or False");
   ExpectFieldError("CompressedDataSize", "many", "CompressedDataSize is 'many'");
   ExpectFieldError("UltrasoundImageOrientation", "FM", "'FM'");
@@ -288,10 +369,10 @@ TEST(SequenceHeader, WhatIsNotASequence)
   ExpectError("ObjectType = Image\nNDims = 3\n", { "line 2", "ElementDataFile", "cut off" });
   ExpectError(
     "ObjectType = Image\nDimSize = 5 4 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
-    { "ordinary image", "MetaImage reader" });
-  EXPECT_NE(GetError([] { ReadMetaImageHeader("/nonexistent.mha"); }).find("no such file"),
+    { "ordinary image", "own reader" });
+  EXPECT_NE(GetError([] { ReadSequenceHeader("/nonexistent.mha"); }).find("no such file"),
     std::string::npos);
-  EXPECT_NE(GetError([] { ReadMetaImageHeader("/"); }).find("is not a file"), std::string::npos);
+  EXPECT_NE(GetError([] { ReadSequenceHeader("/"); }).find("is not a file"), std::string::npos);
 }
 
 TEST(SequenceHeader, VolumesAreForOtherReaders)
@@ -322,6 +403,6 @@ TEST(SequenceHeader, RecognisesItsFiles)
   EXPECT_FALSE(IsTracked("text\n"));
   EXPECT_FALSE(IsTracked(std::string(5000000, '\7')));
   EXPECT_FALSE(IsTracked("ObjectType = Image\n"));
-  EXPECT_FALSE(IsTrackedMetaImage("/nonexistent.mha"));
-  EXPECT_FALSE(IsTrackedMetaImage("/"));
+  EXPECT_FALSE(IsTrackedSequence("/nonexistent.mha"));
+  EXPECT_FALSE(IsTrackedSequence("/"));
 }

@@ -29,6 +29,11 @@ TEST(SliceOrientation, Pixels)
     EXPECT_EQ(Describe("MN", type), "-y");
     EXPECT_EQ(Describe("UNA", type), "xy");
     EXPECT_EQ(Describe(" US_IMG_ORIENT_UN ", type), "xy");
+    EXPECT_EQ(Describe("un", type), "xy");
+    // what PLUS takes as the same
+    EXPECT_EQ(Describe("MN", type), Describe("MND", type));
+    EXPECT_EQ(Describe("UF", type), Describe("UFA", type));
+    EXPECT_EQ(Describe("UN", type), Describe("UND", type));
   }
 }
 
@@ -39,6 +44,9 @@ TEST(SliceOrientation, Lines)
   EXPECT_EQ(Describe("FU", "RF_REAL"), "-y");
   EXPECT_EQ(Describe("NU", "US_IMG_RF_REAL"), "xy");
   EXPECT_EQ(Describe("FM", "RF_IQ_LINE"), "--");
+  EXPECT_EQ(Describe("FM", "RF_I_LINE_Q_LINE"), "--");
+  EXPECT_EQ(Describe("FMA", "RF_REAL"), "--");
+  EXPECT_EQ(Describe("NUD", "RF_REAL"), "xy");
 }
 
 TEST(SliceOrientation, RefusesWhatCannotBeRight)
@@ -49,7 +57,7 @@ TEST(SliceOrientation, RefusesWhatCannotBeRight)
   EXPECT_NE(error("MF", "RF_REAL").find("known are FM"), std::string::npos);
   EXPECT_NE(error("MF", "DOPPLER").find("'DOPPLER' is unknown"), std::string::npos);
   EXPECT_NE(error("NM", "RF_IQ_LINE").find("complex"), std::string::npos);
-  for (const char* bad : { "", "M", "XX", "MFX", "MFAA", "AMF", "mf", "MM" })
+  for (const char* bad : { "", "M", "XX", "MFX", "MFAA", "AMF", "MM" })
   {
     EXPECT_NE(error(bad, ""), "") << bad;
   }

@@ -15,7 +15,7 @@ template <class T>
 std::vector<T> ReadRegion(const std::string& content, const SliceRegion& region)
 {
   const TemporaryFile file("sweep.igs.mha", content);
-  const SequenceHeader header = ReadMetaImageHeader(file.GetPath());
+  const SequenceHeader header = ReadSequenceHeader(file.GetPath());
   const auto pixels = PixelSource::Open(header);
   std::vector<T> values(static_cast<std::size_t>(
     region.Columns * region.Rows * std::max<std::int64_t>(0, region.Frames)));
@@ -129,7 +129,7 @@ TEST(SliceStack, RegionsMustBeInside)
 TEST(SliceStack, ReportsProgressAndStops)
 {
   const TemporaryFile file("sweep.igs.mha", MakeSequence(500).GetContent());
-  const SequenceHeader header = ReadMetaImageHeader(file.GetPath());
+  const SequenceHeader header = ReadSequenceHeader(file.GetPath());
   const auto pixels = PixelSource::Open(header);
   std::vector<unsigned char> values(500 * 20);
   std::vector<double> reports;

@@ -24,12 +24,12 @@ TEST(SpineSweep, LiesWherePlusPutsIt)
   {
     GTEST_SKIP() << "no data in " << LACUNA_TEST_DATA;
   }
-  const SequenceHeader header = ReadMetaImageHeader(SequenceName);
+  const SequenceHeader header = ReadSequenceHeader(SequenceName);
   EXPECT_EQ(header.Columns, 820);
   EXPECT_EQ(header.Rows, 616);
   EXPECT_EQ(header.Frames, 21);
-  EXPECT_TRUE(header.Compressed);
-  EXPECT_TRUE(IsTrackedMetaImage(SequenceName));
+  EXPECT_EQ(header.Encoding, PixelEncoding::Zlib);
+  EXPECT_TRUE(IsTrackedSequence(SequenceName));
   SweepOptions options;
   options.CalibrationFileName = CalibrationName;
   const Sweep sweep = BuildSweep(header, options);
@@ -70,7 +70,7 @@ TEST(SpineSweep, ReadsThePixels)
   {
     GTEST_SKIP() << "no data in " << LACUNA_TEST_DATA;
   }
-  const SequenceHeader header = ReadMetaImageHeader(SequenceName);
+  const SequenceHeader header = ReadSequenceHeader(SequenceName);
   const auto pixels = PixelSource::Open(header);
   ASSERT_EQ(pixels->GetNumberOfWholeFrames(), 21);
   ThreadExecution execution;

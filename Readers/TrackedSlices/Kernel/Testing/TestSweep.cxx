@@ -20,7 +20,7 @@ Sweep Build(const SequenceFile& file, const std::string& calibration = MakeCalib
     options.CalibrationFileName =
       (std::filesystem::path(sequence.GetPath()).parent_path() / "calibration.xml").string();
   }
-  return BuildSweep(ReadMetaImageHeader(sequence.GetPath()), options);
+  return BuildSweep(ReadSequenceHeader(sequence.GetPath()), options);
 }
 
 Sweep BuildUnchecked(const SequenceFile& file)
@@ -213,6 +213,32 @@ TEST(Sweep, ImageStatus)
   options.DropInvalid = false;
   options.FramesWithPixels = 1; // the rest is cut off: nothing to use there
   EXPECT_EQ(Build(file, MakeCalibration(), options).Status, (Flags{ 0, 2, 2 }));
+}
+
+TEST(Sweep, PosesWithoutPicturesAreComplete)
+{
+  SequenceFile file = MakeSequence();
+  file.Set("DimSize", "0 0 0");
+  file.SetFrame(1, "ProbeToTrackerTransformStatus", "OUT_OF_VIEW");
+  const Sweep sweep = Build(file);
+  EXPECT_EQ(sweep.Status, (Flags{ 2, 3, 2 }));
+  EXPECT_EQ(BuildUnchecked(file).Status, (Flags{ 2, 2, 2 })); // there is no image, whoever asks
+  ExpectPoint(sweep.ImageToReference[2].Point({ 10, 20, 0 }), { -76, -3, 35 });
+  EXPECT_EQ(sweep.Timestamps[2], 12.25);
+  EXPECT_EQ(Warnings(sweep), ""); // the header has said it
+}
+
+TEST(Sweep, FlagsOfSpeedAndGatingComeFromTheFile)
+{
+  SequenceFile file = MakeSequence(5);
+  const char* const flags[] = { "4", "13", "3", "256", "fast" };
+  for (int i = 0; i < 5; ++i)
+  {
+    file.SetFrame(i, "SliceStatus", flags[i]);
+  }
+  file.SetFrame(2, "ImageStatus", "INVALID");
+  EXPECT_EQ(Build(file).Status, (Flags{ 4, 12, 2, 0, 0 })); // pose and image are judged anew
+  EXPECT_EQ(BuildUnchecked(file).Status, (Flags{ 0, 0, 0, 0, 0 }));
 }
 
 TEST(Sweep, DamagedMatricesSpoilTheirFrame)

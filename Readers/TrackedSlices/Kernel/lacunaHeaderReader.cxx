@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaHeaderReader.h"
+
+#include "lacunaSequenceText.h"
+
+#include <algorithm>
+#include <climits>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::string_view FramePrefix = "Seq_Frame";
+constexpr const char* ImageStatus = "ImageStatus";
+
+bool IsColourKind(const std::string& kind)
+{
+  static const std::set<std::string> kinds = { "vector", "3-vector", "4-vector", "3-color",
+    "4-color", "rgb-color", "rgba-color", "scalar" };
+  return kinds.count(kind) > 0;
+}
+
+bool IsFrameKind(const std::string& kind)
+{
+  return kind == "list" || kind == "time";
+}
+
+// Seq_Frame0012_Timestamp -> 12, Timestamp
+bool SplitFrameField(std::string_view name, std::int64_t& frame, std::string& field)
+{
+  name.remove_prefix(FramePrefix.size());
+  const std::size_t underscore = name.find('_');
+  if (underscore == std::string_view::npos || underscore + 1 == name.size() ||
+    !ParseInteger(name.substr(0, underscore), frame) || frame < 0)
+  {
+    return false;
+  }
+  field = name.substr(underscore + 1);
+  return true;
+}
+}
+
+//------------------------------------------------------------------------------
+SequenceShape GetSequenceShape(const SequenceAxes& axes)
+{
+  SequenceShape shape;
+  std::vector<std::int64_t> sizes = axes.Sizes;
+  std::vector<std::string> kinds = axes.Kinds;
+  const std::string sizeName = axes.SizeName;
+  shape.Channels = std::max<std::int64_t>(1, axes.Channels);
+
+  bool colourFirst = false;
+  if (!kinds.empty() && IsColourKind(kinds[0]))
+  {
+    kinds.erase(kinds.begin());
+    colourFirst = sizes.size() == kinds.size() + 1; // else the sizes leave it out
+  }
+  else if (axes.Channels > 1 && sizes.size() == (kinds.empty() ? 4 : kinds.size() + 1))
+  {
+    // '3 columns rows frames' under kinds, or a number of dimensions, that do not count the colours
+    colourFirst = sizes[0] == axes.Channels && (!kinds.empty() || sizes[2] != 1);
+  }
+  else if (kinds.empty() && axes.MayBeginWithColour && sizes.size() == 4)
+  {
+    colourFirst = (sizes[0] == 3 || sizes[0] == 4) && sizes[2] != 1;
+  }
+  if (colourFirst)
+  {
+    if (axes.Channels != 0 && axes.Channels != sizes[0])
+    {
+      throw std::invalid_argument(sizeName + " gives " + std::to_string(sizes[0]) +
+        " components but ElementNumberOfChannels " + std::to_string(axes.Channels));
+    }
+    shape.Channels = sizes[0];
+    sizes.erase(sizes.begin());
+  }
+
+  if (sizes.size() < 2 || sizes.size() > 4)
+  {
+    throw std::invalid_argument(
+      sizeName + " is " + axes.SizeText + "; it must be 'columns rows frames'");
+  }
+  if (!kinds.empty() && kinds.size() != sizes.size())
+  {
+    throw std::invalid_argument(std::string(axes.KindName) + " lists " +
+      std::to_string(kinds.size()) + " dimensions, but " + sizeName + " (" + axes.SizeText +
+      ") has " + std::to_string(sizes.size()));
+  }
+  const auto list = std::find_if(kinds.begin(), kinds.end(), IsFrameKind);
+  if (list != kinds.end() && list + 1 != kinds.end())
+  {
+    throw std::invalid_argument(std::string(axes.KindName) + " has '" + *list +
+      "' before the last dimension; frames must come last");
+  }
+  // Without kinds the last of three or four dimensions counts the frames.
+  if (list != kinds.end() || (kinds.empty() && sizes.size() > 2))
+  {
+    shape.Frames = sizes.back();
+    sizes.pop_back();
+  }
+  shape.Columns = sizes[0];
+  shape.Rows = sizes.size() > 1 ? sizes[1] : 0;
+  for (std::size_t i = 2; i < sizes.size(); ++i)
+  {
+    shape.Depth = sizes[i] == 1 ? shape.Depth : sizes[i];
+  }
+  return shape;
+}
+
+//------------------------------------------------------------------------------
+bool HasSlices(const SequenceAxes& axes)
+{
+  try
+  {
+    return GetSequenceShape(axes).Depth == 1;
+  }
+  catch (const std::invalid_argument&)
+  {
+    return true;
+  }
+}
+
+//------------------------------------------------------------------------------
+HeaderReader::HeaderReader(const std::string& fileName)
+  : Lines(fileName)
+{
+  this->Header.FileName = fileName;
+}
+
+//------------------------------------------------------------------------------
+bool HeaderReader::IsFrameField(std::string_view name)
+{
+  return EqualsIgnoringCase(name.substr(0, FramePrefix.size()), FramePrefix);
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::FailTwice(
+  const std::string& field, const std::string& first, const std::string& second) const
+{
+  this->Lines.Fail(
+    "gives " + field + " again, as '" + second + "' after '" + first + "'; remove the wrong one");
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::AddFrameField(const std::string& name, const std::string& value)
+{
+  FrameField field;
+  if (!SplitFrameField(name, field.Frame, field.Name))
+  {
+    this->Ignore("field " + name);
+    return;
+  }
+  field.Value = value;
+  this->FrameFields.push_back(std::move(field));
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::int64_t> HeaderReader::GetIntegers(
+  const std::string& name, const std::string* value) const
+{
+  std::vector<std::int64_t> numbers;
+  for (const std::string_view word :
+    SplitWords(value ? std::string_view(*value) : std::string_view()))
+  {
+    numbers.push_back(0);
+    if (!ParseInteger(word, numbers.back()))
+    {
+      this->Fail("header field " + name + " is '" + *value + "'; '" + std::string(word) +
+        "' is not an integer that can be represented");
+    }
+  }
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+std::int64_t HeaderReader::GetLastDescribedFrame() const
+{
+  std::int64_t last = -1;
+  for (const FrameField& field : this->FrameFields)
+  {
+    last = std::max(last, field.Frame);
+  }
+  return last;
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::SetShape(const SequenceAxes& axes)
+{
+  if (this->FrameFields.empty())
+  {
+    this->Fail(this->CutOff
+        ? "the header is cut off before the fields of the first frame"
+        : "no field Seq_Frame0000_... describes a slice: this is an ordinary image without "
+          "poses; open it with ParaView's own reader");
+  }
+  this->SizeName = axes.SizeName;
+  SequenceShape shape;
+  try
+  {
+    shape = GetSequenceShape(axes);
+  }
+  catch (const std::invalid_argument& e)
+  {
+    this->Fail(e.what());
+  }
+  const std::string size = std::string(axes.SizeName) + " is " + axes.SizeText;
+  if (shape.Columns == 0 && shape.Rows == 0)
+  {
+    this->Header.PosesOnly = true;
+    shape.Columns = shape.Rows = shape.Depth = shape.Channels = 1;
+    shape.Frames = shape.Frames == 0 ? this->GetLastDescribedFrame() + 1 : shape.Frames;
+  }
+  if (shape.Depth != 1)
+  {
+    this->Fail("the frames are volumes of " + std::to_string(shape.Depth) + " layers (" + size +
+      "), not slices; open a volume with ParaView's own reader");
+  }
+  for (const std::int64_t n : { shape.Columns, shape.Rows, shape.Frames })
+  {
+    if (n < 1 || n > INT_MAX)
+    {
+      this->Fail(size + "; columns, rows and frames must each be from 1 to " +
+        std::to_string(INT_MAX) +
+        (n == 0 && n == shape.Frames ? " (a recording that ended before its first slice?)" : ""));
+    }
+  }
+  if (shape.Channels != 1 && shape.Channels != 3 && shape.Channels != 4)
+  {
+    this->Fail("pixels have " + std::to_string(shape.Channels) +
+      " components; known are 1 (grey), 3 (RGB) and 4 (RGBA)");
+  }
+  // 2^31 * 2^31 pixels of one byte fit in 64 bits, but not with frames and elements on top
+  const double bytes = 8.0 * static_cast<double>(shape.Columns) * static_cast<double>(shape.Rows) *
+    static_cast<double>(shape.Frames) * static_cast<double>(shape.Channels);
+  if (bytes > 1e18)
+  {
+    this->Fail(size + "; no file holds so much");
+  }
+  this->Header.Columns = shape.Columns;
+  this->Header.Rows = shape.Rows;
+  this->Header.Frames = shape.Frames;
+  this->Header.Channels = shape.Channels;
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::SetOrientation(
+  const std::string& name, const std::string* orientation, const std::string* type)
+{
+  if (this->Header.PosesOnly)
+  {
+    return; // nothing that could be turned
+  }
+  if (!orientation)
+  {
+    this->Header.Warnings.emplace_back(
+      name + " is missing; the slices are taken as they are stored");
+  }
+  if (type)
+  {
+    this->Header.ImageType = GetImageTypeName(*type);
+  }
+  const bool lines = this->Header.ImageType.find("RF_") == 0;
+  try
+  {
+    this->Header.Flips = GetSliceFlips(orientation ? *orientation
+        : lines                                    ? "FM"
+                                                   : "MF",
+      this->Header.ImageType);
+  }
+  catch (const std::invalid_argument& e)
+  {
+    this->Fail(e.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::SetDataFile(const std::string& name, const std::string& value)
+{
+  if (value.substr(0, 4) == "LIST" || value.find('%') != std::string::npos)
+  {
+    this->Fail(name + " is '" + value + "'; pixels in one file per slice are not read, only " +
+      (name == "ElementDataFile" ? "LOCAL or " : "") + "the name of one file");
+  }
+  const std::filesystem::path folder = std::filesystem::path(this->Header.FileName).parent_path();
+  this->Header.DataFileName = (folder / value).string(); // value alone if it is absolute
+}
+
+//------------------------------------------------------------------------------
+bool HeaderReader::IsLastFrameWhole() const
+{
+  const std::int64_t last = this->GetLastDescribedFrame();
+  bool others = false;
+  for (const FrameField& field : this->FrameFields)
+  {
+    const bool ends = field.Name == ImageStatus;
+    if (ends && field.Frame == last)
+    {
+      return true;
+    }
+    others = others || ends;
+  }
+  return !others;
+}
+
+//------------------------------------------------------------------------------
+// A frame's fields are whole when another frame follows, or when ImageStatus, the last one, is
+// there.
+void HeaderReader::DropUnfinishedFrames()
+{
+  const std::int64_t last = this->GetLastDescribedFrame();
+  const bool whole = std::any_of(this->FrameFields.begin(), this->FrameFields.end(),
+    [&](const FrameField& field) { return field.Frame == last && field.Name == ImageStatus; });
+  const std::int64_t frames = std::min(this->Header.Frames, whole ? last + 1 : last);
+  if (frames < 1)
+  {
+    this->Fail("the header is cut off before the fields of the first frame are complete");
+  }
+  this->Header.Frames = frames;
+  this->Header.Warnings.push_back("the header is cut off, as after a recording that was "
+                                  "interrupted: " +
+    std::to_string(frames) + " frames are described completely");
+  const auto end = std::remove_if(this->FrameFields.begin(), this->FrameFields.end(),
+    [&](const FrameField& field) { return field.Frame >= frames; });
+  this->FrameFields.erase(end, this->FrameFields.end());
+}
+
+//------------------------------------------------------------------------------
+// Keeps what is allocated for fields in proportion to the length of the header.
+void HeaderReader::CheckFrameFields() const
+{
+  const auto count = static_cast<std::size_t>(this->Header.Frames);
+  std::set<std::int64_t> described;
+  std::set<std::string> names;
+  for (const FrameField& field : this->FrameFields)
+  {
+    if (field.Frame < this->Header.Frames)
+    {
+      described.insert(field.Frame);
+    }
+    names.insert(field.Name);
+  }
+  if (described.size() * 2 < count)
+  {
+    this->Fail(this->SizeName + " says " + std::to_string(count) +
+      " frames, but fields Seq_Frame... describe only " + std::to_string(described.size()) +
+      " of them");
+  }
+  if (names.size() * count > 100 * this->FrameFields.size() + 1000000)
+  {
+    this->Fail("the frames have " + std::to_string(names.size()) +
+      " different fields, nearly all of them missing in nearly all frames");
+  }
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::SortFrameFields()
+{
+  if (!this->Ignored.empty())
+  {
+    this->Header.Warnings.push_back(
+      "ignored what is neither a field of the header nor of the form Seq_Frame0000_Name: " +
+      JoinSome(this->Ignored));
+  }
+  if (this->CutOff)
+  {
+    this->DropUnfinishedFrames();
+  }
+  this->CheckFrameFields();
+  const auto count = static_cast<std::size_t>(this->Header.Frames);
+  std::set<std::int64_t> outside;
+  for (FrameField& field : this->FrameFields)
+  {
+    if (field.Frame >= this->Header.Frames)
+    {
+      outside.insert(field.Frame);
+      continue;
+    }
+    std::vector<std::string>& values = this->Header.FrameFields[field.Name];
+    values.resize(count);
+    std::string& value = values[static_cast<std::size_t>(field.Frame)];
+    if (!value.empty() && value != field.Value)
+    {
+      this->Fail("frame " + std::to_string(field.Frame) + " has field " + field.Name +
+        " twice, as '" + value + "' and as '" + field.Value + "'; remove the wrong one");
+    }
+    value = std::move(field.Value);
+  }
+  if (!outside.empty())
+  {
+    this->Header.Warnings.push_back("fields of frames " + std::to_string(*outside.begin()) +
+      " to " + std::to_string(*outside.rbegin()) + " are ignored: " + this->SizeName + " says " +
+      std::to_string(count) + " frames, numbered from 0");
+  }
+  // PLUS writes one dummy pixel per frame, and no state of the image, when it keeps poses only.
+  if (this->Header.Columns == 1 && this->Header.Rows == 1 && this->Header.Channels == 1 &&
+    this->Header.FrameFields.count(ImageStatus) == 0)
+  {
+    this->Header.PosesOnly = true;
+  }
+  if (this->Header.PosesOnly)
+  {
+    this->Header.Type = ScalarType::UInt8;
+    this->Header.TypeIsLong = false;
+    this->Header.Warnings.emplace_back(
+      "the file has poses but no pictures: every slice is one blank pixel, marked as having no "
+      "valid image; the poses and fields are complete");
+  }
+}
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the readers of MetaImage and NRRD headers share: the shape of the data and the fields of
+/// the frames.
+#ifndef lacunaHeaderReader_h
+#define lacunaHeaderReader_h
+
+#include "lacunaHeaderLines.h"
+#include "lacunaSequenceHeader.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lacuna
+{
+/// The axes of the data as a header lists them, fastest first.
+struct SequenceAxes
+{
+  const char* SizeName = "DimSize"; ///< of the field, for messages
+  const char* KindName = "Kinds";
+  std::string SizeText;
+  std::vector<std::int64_t> Sizes;
+  std::vector<std::string> Kinds; ///< in lower case; empty when the header has none
+  std::int64_t Channels = 0;      ///< when given elsewhere; else 0
+  /// Without kinds, whether a first axis of 3 or 4 of four axes is colour.
+  bool MayBeginWithColour = false;
+};
+
+struct SequenceShape
+{
+  std::int64_t Columns = 0;
+  std::int64_t Rows = 0;
+  std::int64_t Depth = 1;
+  std::int64_t Frames = 1;
+  std::int64_t Channels = 1;
+};
+
+/// Finds out which axis is what: colour first if any, columns, rows, layers if any, frames last. A
+/// list of kinds decides; without one, the last of three or more axes counts the frames. Sizes are
+/// not judged. Throws std::invalid_argument when the axes make no sense.
+SequenceShape GetSequenceShape(const SequenceAxes& axes);
+
+/// Whether frames with these axes are slices. Axes that make no sense count as such: reading them
+/// tells what is wrong.
+bool HasSlices(const SequenceAxes& axes);
+
+/// The base of the readers: collects fields, then turns them into a SequenceHeader.
+class HeaderReader
+{
+public:
+  /// Whether name is that of a frame's field: it begins with Seq_Frame in any case.
+  static bool IsFrameField(std::string_view name);
+
+protected:
+  explicit HeaderReader(const std::string& fileName);
+
+  [[noreturn]] void Fail(const std::string& text) const { this->Lines.Fail(text, false); }
+  [[noreturn]] void FailTwice(
+    const std::string& field, const std::string& first, const std::string& second) const;
+
+  /// Keeps Seq_Frame0012_Timestamp. A name that is not of this form is noted as ignored.
+  void AddFrameField(const std::string& name, const std::string& value);
+  void Ignore(const std::string& what) { this->Ignored.push_back(what); }
+
+  /// The integers of the field name's value, which may be null.
+  std::vector<std::int64_t> GetIntegers(const std::string& name, const std::string* value) const;
+
+  /// Sets the header's shape. Fails when there are no frame fields, when frames are not slices, or
+  /// when sizes are impossible.
+  void SetShape(const SequenceAxes& axes);
+  /// Either may be null: name is the orientation field's.
+  void SetOrientation(
+    const std::string& name, const std::string* orientation, const std::string* type);
+  /// Sets the place of the pixels to a file named in the header; name is the field's.
+  void SetDataFile(const std::string& name, const std::string& value);
+  /// Gives the frames their fields; reports what was ignored. The last step.
+  void SortFrameFields();
+
+  /// Of the last frame that fields describe; -1 when there is none.
+  std::int64_t GetLastDescribedFrame() const;
+
+  /// Whether that frame has ImageStatus, the last of a frame's fields, or no frame has it.
+  bool IsLastFrameWhole() const;
+
+  HeaderLines Lines;
+  SequenceHeader Header;
+  /// The end of the header is missing: frames count only as far as their fields are whole.
+  bool CutOff = false;
+
+private:
+  struct FrameField
+  {
+    std::int64_t Frame;
+    std::string Name;
+    std::string Value;
+  };
+  void DropUnfinishedFrames();
+  void CheckFrameFields() const;
+
+  std::string SizeName;
+  std::vector<FrameField> FrameFields;
+  std::vector<std::string> Ignored;
+};
+
+/// The readers proper.
+SequenceHeader ReadMetaImageHeader(const std::string& fileName);
+SequenceHeader ReadNrrdHeader(const std::string& fileName);
+
+/// Whether the frames of a file are slices, by its lines up to the first frame field; false when
+/// there is none. May throw.
+bool IsTrackedMetaImage(HeaderLines& lines);
+bool IsTrackedNrrd(HeaderLines& lines);
+}
+#endif
