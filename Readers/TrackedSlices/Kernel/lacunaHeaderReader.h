@@ -108,6 +108,10 @@ private:
 SequenceHeader ReadMetaImageHeader(const std::string& fileName);
 SequenceHeader ReadNrrdHeader(const std::string& fileName);
 
+/// Whether a header field of this name has a meaning in the format, so that no custom field can.
+bool IsMetaImageField(const std::string& name);
+bool IsNrrdField(const std::string& name);
+
 /// Whether the frames of a file are slices, by its lines up to the first frame field; false when
 /// there is none. May throw.
 bool IsTrackedMetaImage(HeaderLines& lines);

@@ -310,6 +310,12 @@ SequenceHeader ReadMetaImageHeader(const std::string& fileName)
 }
 
 //------------------------------------------------------------------------------
+bool IsMetaImageField(const std::string& name)
+{
+  return KnownFields.count(name) > 0 || EqualsIgnoringCase(name, "ElementDataFile");
+}
+
+//------------------------------------------------------------------------------
 bool IsTrackedMetaImage(HeaderLines& lines)
 {
   std::string line;

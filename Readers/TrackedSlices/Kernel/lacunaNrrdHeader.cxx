@@ -19,6 +19,8 @@ const std::set<std::string> KnownFields = { "dimension", "type", "block size", "
   "axismaxs", "centers", "centerings", "labels", "units", "kinds", "space", "space dimension",
   "space units", "space origin", "space directions", "measurement frame" };
 
+const std::set<std::string> OwnKeys = { "ultrasound image orientation", "ultrasound image type" };
+
 const std::map<std::string, ScalarType> Types = { { "signed char", ScalarType::Int8 },
   { "int8", ScalarType::Int8 }, { "int8_t", ScalarType::Int8 }, { "uchar", ScalarType::UInt8 },
   { "unsigned char", ScalarType::UInt8 }, { "uint8", ScalarType::UInt8 },
@@ -202,7 +204,7 @@ void NrrdHeaderReader::ReadLines()
 void NrrdHeaderReader::AddField(const NrrdLine& line)
 {
   const std::string name = ToLower(line.Name);
-  const bool ours = name == "ultrasound image orientation" || name == "ultrasound image type";
+  const bool ours = OwnKeys.count(name) > 0;
   const bool known = ours || (line.What == NrrdLine::Kind::Field && KnownFields.count(name) > 0);
   const std::string& key = known ? name : line.Name;
   const auto inserted = this->Fields.emplace(key, line.Value);
@@ -335,6 +337,13 @@ void NrrdHeaderReader::ReadDataPlace()
 SequenceHeader ReadNrrdHeader(const std::string& fileName)
 {
   return NrrdHeaderReader(fileName).Read();
+}
+
+//------------------------------------------------------------------------------
+bool IsNrrdField(const std::string& name)
+{
+  const std::string lower = ToLower(name);
+  return KnownFields.count(lower) > 0 || OwnKeys.count(lower) > 0;
 }
 
 //------------------------------------------------------------------------------

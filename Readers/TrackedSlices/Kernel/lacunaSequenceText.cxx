@@ -2,6 +2,7 @@
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <limits>
 
@@ -116,6 +117,23 @@ std::string ParseMatrix(std::string_view text, Matrix4& matrix)
     }
   }
   return {};
+}
+
+std::string FormatNumber(double value)
+{
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
+  return { text.data(), result.ptr };
+}
+
+std::string FormatMatrix(const Matrix4& matrix)
+{
+  std::string text;
+  for (int i = 0; i < 16; ++i)
+  {
+    text += (i > 0 ? " " : "") + FormatNumber(matrix(i / 4, i % 4));
+  }
+  return text;
 }
 
 std::string JoinSome(const std::vector<std::string>& items, std::size_t most)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reading the words and numbers of sequence headers. Independent of the locale, and exact: a word
+/// Reading and writing the words and numbers of sequence headers. Independent of the locale, and exact: a word
 /// is a number only when all of it is.
 #ifndef lacunaSequenceText_h
 #define lacunaSequenceText_h
@@ -35,6 +35,11 @@ bool ParseNumber(std::string_view word, double& value);
 /// Reads 16 numbers, row by row. Returns an empty string, or what is wrong: another number of words
 /// ("has 15 numbers, not 16"), a word that is no number, a number that is not finite.
 std::string ParseMatrix(std::string_view text, Matrix4& matrix);
+
+/// The shortest text that reads as the same number.
+std::string FormatNumber(double value);
+/// 16 such numbers, row by row.
+std::string FormatMatrix(const Matrix4& matrix);
 
 /// A list for a message: the first few items joined by ", ", then "and 12 more".
 std::string JoinSome(const std::vector<std::string>& items, std::size_t most = 8);

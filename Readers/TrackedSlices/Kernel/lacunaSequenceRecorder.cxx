@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSequenceRecorder.h"
+
+#include "lacunaByteOrder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+// Undoes what a failed step has done. What cannot be undone does no harm, see the reader's rules.
+template <class Step>
+void Try(const Step& step)
+{
+  try
+  {
+    step();
+  }
+  catch (const FileError&)
+  {
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+SequenceRecorder::SequenceRecorder(
+  const std::string& fileName, const SequenceDescription& description, int compressionLevel)
+  : Kind(fileName, compressionLevel > 0)
+  , Description(description)
+{
+  if (!this->Kind.IsDetached())
+  {
+    throw std::invalid_argument("'" + fileName +
+      "' cannot be recorded to: a single file has its header before the pixels and cannot grow; "
+      "record to .mhd or .nhdr, and convert the finished recording");
+  }
+  const std::string beginning = this->Kind.GetBeginning(description);
+  if (compressionLevel > 0)
+  {
+    this->Compressor = std::make_unique<StreamCompressor>(
+      this->Kind.IsNrrd() ? StreamCompressor::Wrapping::Gzip : StreamCompressor::Wrapping::Zlib,
+      compressionLevel);
+  }
+  const std::string& dataName = this->Kind.GetDataFileName();
+  this->Data = std::make_unique<OutputFile>(dataName, OutputFile::Mode::CreateNew, dataName);
+  try
+  {
+    this->Header = std::make_unique<OutputFile>(fileName, OutputFile::Mode::CreateNew, fileName);
+    if (this->Compressor)
+    {
+      const std::string start = this->Compressor->GetBeginning();
+      this->Data->WriteAt(0, start);
+      this->DataSize = static_cast<std::int64_t>(start.size());
+    }
+    this->CountsOffset =
+      static_cast<std::int64_t>(beginning.find(this->Kind.GetCounts(description, 0, 0)));
+    this->Header->WriteAt(0, beginning + this->Kind.GetEnd());
+    this->HeaderSize = static_cast<std::int64_t>(beginning.size());
+  }
+  catch (const FileError&)
+  {
+    // Nothing has been recorded: leave nothing behind, but for a header that was there before.
+    std::error_code error;
+    if (this->Header)
+    {
+      std::filesystem::remove(fileName, error);
+    }
+    std::filesystem::remove(dataName, error);
+    throw;
+  }
+}
+
+//------------------------------------------------------------------------------
+SequenceRecorder::~SequenceRecorder()
+{
+  Try([&] { this->Close(); });
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
+{
+  if (!this->Header)
+  {
+    throw std::invalid_argument("the recording is closed");
+  }
+  if (std::none_of(fields.begin(), fields.end(),
+        [](const auto& field) { return field.first == "ImageStatus" && !field.second.empty(); }))
+  {
+    fields.emplace_back("ImageStatus", "OK"); // marks the end of a slice's fields, too
+  }
+  const std::string text = this->Kind.GetFrame(this->Slices, fields);
+
+  const std::size_t elementSize = GetScalarSize(this->Description.Type);
+  const auto size =
+    static_cast<std::size_t>(this->Description.Columns * this->Description.Rows) * elementSize;
+  const auto* bytes = static_cast<const unsigned char*>(pixels);
+  if (IsBigEndianMachine())
+  {
+    this->Frame.assign(bytes, bytes + size);
+    SwapElementBytes(this->Frame.data(), size / elementSize, elementSize);
+    bytes = this->Frame.data();
+  }
+  std::unique_ptr<StreamCompressor> compressor;
+  std::string packed;
+  std::int64_t stored = static_cast<std::int64_t>(size);
+  if (this->Compressor)
+  {
+    compressor = std::make_unique<StreamCompressor>(*this->Compressor);
+    ThreadExecution execution(1);
+    packed = compressor->Compress(bytes, size, execution);
+    stored = static_cast<std::int64_t>(packed.size());
+  }
+
+  try
+  {
+    this->Data->WriteAt(this->DataSize,
+      compressor ? static_cast<const void*>(packed.data()) : bytes,
+      static_cast<std::size_t>(stored));
+    this->WriteHeader(text, this->Slices + 1, 0);
+  }
+  catch (const FileError&)
+  {
+    Try([&] { this->Data->Truncate(this->DataSize); });
+    throw;
+  }
+  this->DataSize += stored;
+  this->HeaderSize += static_cast<std::int64_t>(text.size());
+  ++this->Slices;
+  if (compressor)
+  {
+    this->Compressor = std::move(compressor);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Adds fields to the header, or leaves it as it was.
+void SequenceRecorder::WriteHeader(
+  const std::string& fields, std::int64_t slices, std::int64_t compressedSize)
+{
+  const std::string end = this->Kind.GetEnd();
+  try
+  {
+    this->Header->WriteAt(this->HeaderSize, fields + end);
+    this->Header->WriteAt(
+      this->CountsOffset, this->Kind.GetCounts(this->Description, slices, compressedSize));
+  }
+  catch (const FileError&)
+  {
+    // These bytes were there before, so a full disk has room for them.
+    Try(
+      [&]
+      {
+        this->Header->WriteAt(
+          this->CountsOffset, this->Kind.GetCounts(this->Description, this->Slices, 0));
+        this->Header->WriteAt(this->HeaderSize, end);
+        this->Header->Truncate(this->HeaderSize + static_cast<std::int64_t>(end.size()));
+      });
+    throw;
+  }
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::Sync()
+{
+  if (this->Header)
+  {
+    this->Data->Sync();
+    this->Header->Sync();
+  }
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::Close()
+{
+  if (!this->Header)
+  {
+    return;
+  }
+  if (this->Compressor)
+  {
+    const std::string end = this->Compressor->GetEnd();
+    try
+    {
+      this->Data->WriteAt(this->DataSize, end);
+    }
+    catch (const FileError&)
+    {
+      Try([&] { this->Data->Truncate(this->DataSize); });
+      throw;
+    }
+    this->WriteHeader({}, this->Slices, this->DataSize + static_cast<std::int64_t>(end.size()));
+  }
+  this->Sync();
+  this->Data->Close();
+  this->Header->Close();
+  this->Data.reset();
+  this->Header.reset();
+}
+}
