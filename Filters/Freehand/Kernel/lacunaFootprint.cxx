@@ -11,9 +11,8 @@ namespace
 // Finer rasters come closer to an even mean, and cost their square. 2 halves an aliasing
 // frequency's remainder already to what the box itself leaves.
 constexpr double SamplesPerFootprint = 2;
-// Steps that feet may lie outside of the outermost pixels. The raster goes on by one, and voxels
-// extrapolate less than one more. Only images of few footprints would ask for more.
-constexpr double LargestMargin = 1.75;
+// Only images smaller than a voxel would ask for more.
+constexpr int MostSamplesOutside = 8;
 // Lines reduced together, so that the inner loops run over neighbouring values.
 constexpr int BlockSize = 8;
 
@@ -54,7 +53,6 @@ FootprintAxis::FootprintAxis(int n, double width)
     this->Step = length / steps;
     box = std::sqrt(std::max(0.0, width * width - 2 * this->Step * this->Step));
   }
-  this->Margin = std::min(0.5 + width / 2, LargestMargin * this->Step);
   this->Taps = box > 0 ? std::min(n, static_cast<int>(std::ceil(box)) + 2) : 1;
   this->Starts.resize(steps + 1);
   this->Weights.assign(static_cast<std::size_t>(steps + 1) * this->Taps, 0.0);
@@ -70,6 +68,16 @@ FootprintAxis::FootprintAxis(int n, double width)
       weights[t] = HatMean(x, half, start + t);
     }
   }
+}
+
+double FootprintAxis::GetMargin(double voxelWidth) const
+{
+  return std::min(0.5 + voxelWidth / 2, MostSamplesOutside * this->Step);
+}
+
+int FootprintAxis::GetNumberOfSamplesOutside(double voxelWidth) const
+{
+  return static_cast<int>(std::ceil(this->GetMargin(voxelWidth) / this->Step - 1e-9));
 }
 
 namespace
@@ -227,58 +235,74 @@ void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const Footp
 
 namespace
 {
-// What comes before a, b, c.
+// The slope that leads on from a, b, c to what comes before them.
 template <class Real>
-Real GoOn(Real a, Real b, Real c)
+Real GetSlope(Real a, Real b, Real c)
 {
   const Real last = a - b;
   const Real before = b - c;
-  return last * before > 0 ? a + (std::abs(last) < std::abs(before) ? last : before) : a;
+  return last * before > 0 ? (std::abs(last) < std::abs(before) ? last : before) : 0;
 }
 
-// Fills count values of a raster's border, stride apart; inside leads from each to its neighbour
-// inside of the border. There are at least two such neighbours, samples in all.
-template <class Real>
-void ContinueLine(
-  Real* raster, Real* weights, std::int64_t stride, std::int64_t inside, int count, int samples)
+// Goes on from one border of a raster's inner part: lines, stride apart, each by steps values.
+// inside leads from a value of the border to its inner neighbour.
+struct Border
 {
-  // two samples have but one difference: no slope
-  const std::int64_t third = std::min(samples, 3) * inside;
-  for (std::int64_t n = 0; n < count * stride; n += stride)
+  std::int64_t Start, Stride, Inside;
+  int Lines, Steps;
+  std::int64_t Third; ///< from a value of the border to the third one
+};
+
+template <class Real>
+void Continue(Real* raster, Real* weights, const Border& border)
+{
+  const std::int64_t second = border.Inside;
+  const std::int64_t third = border.Third;
+  for (int n = 0; n < border.Lines; ++n)
   {
-    const Real* const v = raster + n;
-    if (!weights)
+    Real* const v = raster + border.Start + n * border.Stride;
+    Real* const w = weights ? weights + border.Start + n * border.Stride : nullptr;
+    Real slope = 0;
+    if (!w)
     {
-      raster[n] = GoOn(v[inside], v[2 * inside], v[third]);
-      continue;
+      slope = GetSlope(v[0], v[second], v[third]);
     }
-    const Real* const w = weights + n;
-    weights[n] = w[inside];
-    raster[n] = w[inside] > 0 && w[2 * inside] > 0 && w[third] > 0
-      ? w[inside] * GoOn(v[inside] / w[inside], v[2 * inside] / w[2 * inside], v[third] / w[third])
-      : v[inside];
+    else if (w[0] > 0 && w[second] > 0 && w[third] > 0)
+    {
+      slope = w[0] * GetSlope(v[0] / w[0], v[second] / w[second], v[third] / w[third]);
+    }
+    for (int i = 1; i <= border.Steps; ++i)
+    {
+      v[-i * second] = v[0] + static_cast<Real>(i) * slope;
+      if (w)
+      {
+        w[-i * second] = w[0];
+      }
+    }
   }
 }
 }
 
 template <class Real>
-void ContinueRaster(Real* raster, Real* weights, int width, int height)
+void ContinueRaster(
+  Real* raster, Real* weights, int width, int height, int columnsOutside, int rowsOutside)
 {
   const std::int64_t down = width;
-  const auto fill =
-    [&](std::int64_t first, std::int64_t stride, std::int64_t inside, int count, int samples)
-  {
-    ContinueLine(
-      raster + first, weights ? weights + first : nullptr, stride, inside, count, samples);
-  };
-  fill(down, down, 1, height - 2, width - 2);
-  fill(2 * down - 1, down, -1, height - 2, width - 2);
-  fill(0, 1, down, width, height - 2);
-  fill(down * (height - 1), 1, -down, width, height - 2);
+  const int columns = width - 2 * columnsOutside;
+  const int rows = height - 2 * rowsOutside;
+  // two samples have but one difference: the third is the second one, and there is no slope
+  const int thirdColumn = std::min(columns, 3) - 1;
+  const std::int64_t thirdRow = (std::min(rows, 3) - 1) * down;
+  const std::int64_t corner = rowsOutside * down + columnsOutside;
+  Continue(raster, weights, { corner, down, 1, rows, columnsOutside, thirdColumn });
+  Continue(raster, weights, { corner + columns - 1, down, -1, rows, columnsOutside, -thirdColumn });
+  const std::int64_t top = rowsOutside * down;
+  Continue(raster, weights, { top, 1, down, width, rowsOutside, thirdRow });
+  Continue(raster, weights, { top + (rows - 1) * down, 1, -down, width, rowsOutside, -thirdRow });
 }
 
-template void ContinueRaster(float*, float*, int, int);
-template void ContinueRaster(double*, double*, int, int);
+template void ContinueRaster(float*, float*, int, int, int, int);
+template void ContinueRaster(double*, double*, int, int, int, int);
 
 // NOLINTBEGIN(bugprone-macro-parentheses): types
 #define LACUNA_INSTANTIATE(T, Real)                                                                \

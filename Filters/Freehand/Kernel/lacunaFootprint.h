@@ -12,8 +12,8 @@
 /// axis as it is.
 ///
 /// A voxel whose centre lies outside of the image still covers a part of it, as long as it lies
-/// less than half a footprint from the pixels' area. For such voxels the raster goes on by one
-/// sample along its slope: linear grey levels are exact there too. The slope is that one of the
+/// less than half its width from the pixels' area. For such voxels the raster goes on by some
+/// samples along its slope: linear grey levels are exact there too. The slope is that one of the
 /// last two differences which is smaller, and none where they have opposite signs, so that edges
 /// and speckle next to the border are not carried on.
 #ifndef lacunaFootprint_h
@@ -37,8 +37,10 @@ public:
   /// Pixels from one sample to the next; sample 0 lies at pixel 0, the last one at pixel n - 1.
   double GetStep() const { return this->Step; }
   /// Pixels that the foot of a voxel may lie outside of the first and the last pixel: half of the
-  /// footprint and half a pixel, but less than two steps.
-  double GetMargin() const { return this->Margin; }
+  /// voxel's width (pixels) and half a pixel, but at most eight steps.
+  double GetMargin(double voxelWidth) const;
+  /// By which the raster must go on for this, on each side.
+  int GetNumberOfSamplesOutside(double voxelWidth) const;
   /// Sample i is the sum of GetNumberOfTaps() pixels from GetStart(i), weighted by GetWeights(i).
   int GetNumberOfTaps() const { return this->Taps; }
   int GetStart(int i) const { return this->Starts[i]; }
@@ -49,7 +51,6 @@ public:
 
 private:
   double Step = 1;
-  double Margin = 0;
   int Taps = 1;
   std::vector<int> Starts;
   std::vector<double> Weights;
@@ -70,9 +71,11 @@ void AverageFootprintsInFan(const T* pixels, std::int64_t rowStride, const Footp
   const FootprintAxis& rows, const FanMask& fan, Real* sums, Real* weights,
   std::int64_t meanStride);
 
-/// Fills the outermost values of a raster of width x height from those inside of them. weights is
-/// null, or laid out like the raster; it goes on without a slope, and the raster then holds sums.
+/// Fills the outermost columns and rows, on each side, of a raster of width x height values from
+/// those inside of them, at least 2 x 2. weights is null, or laid out like the raster; it goes on
+/// without a slope, and the raster then holds sums.
 template <class Real>
-void ContinueRaster(Real* raster, Real* weights, int width, int height);
+void ContinueRaster(
+  Real* raster, Real* weights, int width, int height, int columnsOutside, int rowsOutside);
 }
 #endif

@@ -18,20 +18,20 @@ AffineFunction MakeFunction(const VolumeGrid& grid, const Vec3& gradient, const 
     gradient[2] * grid.Spacing[2], Dot(gradient, grid.Origin - point) };
 }
 
-// Pixels that a voxel covers: the width of the box that has the same second moment as the voxel
-// seen along f's gradient. For cubic voxels it does not depend on the direction.
-double GetFootprintWidth(const AffineFunction& f)
+// What a voxel covers along f's gradient, in f's unit: the width of the box that has the same second
+// moment as the voxel. For cubic voxels it does not depend on the direction.
+double GetVoxelWidth(const AffineFunction& f)
 {
   return std::sqrt(f.I * f.I + f.J * f.J + f.K * f.K);
 }
 
-// The raster of a slice; with margin samples more on each side.
+// The raster of a slice, which goes on by some columns and rows on each side.
 template <class Real>
 void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const FootprintAxis& rows,
-  int margin, SampledSlice& sampled)
+  int columnsOutside, int rowsOutside, SampledSlice& sampled)
 {
-  sampled.Width = columns.GetNumberOfSamples() + 2 * margin;
-  sampled.Height = rows.GetNumberOfSamples() + 2 * margin;
+  sampled.Width = columns.GetNumberOfSamples() + 2 * columnsOutside;
+  sampled.Height = rows.GetNumberOfSamples() + 2 * rowsOutside;
   sampled.RowStride = sampled.Width;
   sampled.Type = std::is_same<Real, float>::value ? ScalarType::Float32 : ScalarType::Float64;
   const auto count = static_cast<std::size_t>(sampled.Width) * sampled.Height;
@@ -40,7 +40,7 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
   Real* const weights = slice.Fan ? pixels + count : nullptr;
   sampled.Pixels = pixels;
   sampled.Weights = weights;
-  const std::int64_t start = margin * (sampled.RowStride + 1);
+  const std::int64_t start = rowsOutside * sampled.RowStride + columnsOutside;
   DispatchScalars(slice.Type, slice.Pixels,
     [&](const auto* source)
     {
@@ -54,10 +54,7 @@ void FillRaster(const SliceImage& slice, const FootprintAxis& columns, const Foo
                       source, slice.RowStride, columns, rows, pixels + start, sampled.RowStride);
       }
     });
-  if (margin > 0)
-  {
-    ContinueRaster(pixels, weights, sampled.Width, sampled.Height);
-  }
+  ContinueRaster(pixels, weights, sampled.Width, sampled.Height, columnsOutside, rowsOutside);
 }
 
 bool HasSampler(ScalarType type, bool doublePrecision)
@@ -73,8 +70,8 @@ bool NeedsDoublePrecision(ScalarType type)
   return GetScalarSize(type) > 2 && type != ScalarType::Float32;
 }
 
-SampledSlice SampleSlice(
-  const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling, bool doublePrecision)
+SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling,
+  double footprintScale, bool doublePrecision)
 {
   CheckSlice(slice);
   if (NeedsDoublePrecision(slice.Type) && !doublePrecision)
@@ -94,14 +91,18 @@ SampledSlice SampleSlice(
   sampled.Row = MakeFunction(grid, 1 / Norm(area) * Cross(sampled.Normal, x), origin);
   sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
 
+  sampled.FootprintHeight = footprintScale * GetVoxelWidth(sampled.Distance);
+
   const bool footprint = sampling == PixelSampling::Footprint;
-  const FootprintAxis columns(slice.Width, footprint ? GetFootprintWidth(sampled.Column) : 0);
-  const FootprintAxis rows(slice.Height, footprint ? GetFootprintWidth(sampled.Row) : 0);
+  const double voxelColumns = footprint ? GetVoxelWidth(sampled.Column) : 0;
+  const double voxelRows = footprint ? GetVoxelWidth(sampled.Row) : 0;
+  const FootprintAxis columns(slice.Width, footprintScale * voxelColumns);
+  const FootprintAxis rows(slice.Height, footprintScale * voxelRows);
   const double right = slice.Width - 1;
   const double bottom = slice.Height - 1;
   // pixels that feet may lie outside
-  const double dx = footprint ? columns.GetMargin() : 0.5;
-  const double dy = footprint ? rows.GetMargin() : 0.5;
+  const double dx = footprint ? columns.GetMargin(voxelColumns) : 0.5;
+  const double dy = footprint ? rows.GetMargin(voxelRows) : 0.5;
   sampled.Corners = { slice.PixelToReference.Point({ -dx, -dy, 0 }),
     slice.PixelToReference.Point({ right + dx, -dy, 0 }),
     slice.PixelToReference.Point({ -dx, bottom + dy, 0 }),
@@ -117,7 +118,8 @@ SampledSlice SampleSlice(
 
   // Footprints of some slices of a sweep may be narrower than a pixel: all get a raster, so that
   // all are of one type.
-  const int margin = footprint ? 1 : 0;
+  const int left = footprint ? columns.GetNumberOfSamplesOutside(voxelColumns) : 0;
+  const int above = footprint ? rows.GetNumberOfSamplesOutside(voxelRows) : 0;
   if (!footprint && !slice.Fan && HasSampler(slice.Type, doublePrecision))
   {
     sampled.Type = slice.Type;
@@ -128,18 +130,18 @@ SampledSlice SampleSlice(
   }
   else if (doublePrecision)
   {
-    FillRaster<double>(slice, columns, rows, margin, sampled);
+    FillRaster<double>(slice, columns, rows, left, above, sampled);
   }
   else
   {
-    FillRaster<float>(slice, columns, rows, margin, sampled);
+    FillRaster<float>(slice, columns, rows, left, above, sampled);
   }
   const double columnStep = columns.GetStep();
   const double rowStep = rows.GetStep();
-  sampled.Column = 1 / columnStep * sampled.Column + margin;
-  sampled.Row = 1 / rowStep * sampled.Row + margin;
-  sampled.Columns = { margin - dx / columnStep, margin + (right + dx) / columnStep };
-  sampled.Rows = { margin - dy / rowStep, margin + (bottom + dy) / rowStep };
+  sampled.Column = 1 / columnStep * sampled.Column + left;
+  sampled.Row = 1 / rowStep * sampled.Row + above;
+  sampled.Columns = { left - dx / columnStep, left + (right + dx) / columnStep };
+  sampled.Rows = { above - dy / rowStep, above + (bottom + dy) / rowStep };
   return sampled;
 }
 

@@ -41,6 +41,8 @@ struct SampledSlice
   /// Of a voxel: the foot of its perpendicular on the slice in raster coordinates, and its signed
   /// distance from the slice along Normal in mm.
   AffineFunction Column, Row, Distance;
+  /// The footprint's extent along Normal, mm.
+  double FootprintHeight;
 
   /// The raster: UInt8, Int16, UInt16, Float32 or Float64.
   ScalarType Type = ScalarType::UInt8;
@@ -59,11 +61,11 @@ struct SampledSlice
   std::unique_ptr<std::byte[]> Storage; ///< holds Pixels when they are the slice's own copy
 };
 
-/// Makes slice ready. All slices with a fan get a raster of their own. Without doublePrecision the raster's values are such as a float holds.
+/// Makes slice ready. footprintScale: width and height of footprints, in voxels. All slices with a fan get a raster of their own. Without doublePrecision the raster's values are such as a float holds.
 /// The result refers to the slice's pixels when it can.
 /// Throws std::invalid_argument when the slice is unusable, see CheckSlice.
-SampledSlice SampleSlice(
-  const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling, bool doublePrecision);
+SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling,
+  double footprintScale, bool doublePrecision);
 
 /// Copies the pixels that slice refers to, so that the caller's may go.
 void OwnPixels(SampledSlice& slice);

@@ -62,11 +62,12 @@ void AddImageBounds(
 }
 }
 
-SlicePair::SlicePair(
-  const SampledSlice& first, const SampledSlice& second, const VolumeGrid& grid, double maximumGap)
+SlicePair::SlicePair(const SampledSlice& first, const SampledSlice& second, const VolumeGrid& grid,
+  double maximumGap, bool acrossSlices)
   : First(&first)
   , Second(&second)
   , DistanceTolerance(Tolerance * std::min({ grid.Spacing[0], grid.Spacing[1], grid.Spacing[2] }))
+  , HalfHeight(acrossSlices ? first.FootprintHeight / 2 : 0)
 {
   const double tolerance = this->DistanceTolerance;
   if (!(Dot(first.Normal, second.Normal) > SmallestCosine))
@@ -107,9 +108,12 @@ void SlicePair::AddWedge(double direction, const VolumeGrid& grid, double maximu
   double highest = lowest;
   for (const Vec3& corner : this->First->Corners)
   {
-    const double end = corner[2] + direction * reach * this->First->Normal[2];
-    lowest = std::min({ lowest, corner[2], end });
-    highest = std::max({ highest, corner[2], end });
+    for (const double way : { -this->HalfHeight, reach + this->HalfHeight })
+    {
+      const double z = corner[2] + direction * way * this->First->Normal[2];
+      lowest = std::min(lowest, z);
+      highest = std::max(highest, z);
+    }
   }
   const auto layerOf = [&](double z)
   {
@@ -129,8 +133,12 @@ void SlicePair::AddWedge(double direction, const VolumeGrid& grid, double maximu
   const AffineFunction fromFirst = direction * this->FirstFunctions.Distance;
   const AffineFunction toSecond = -direction * this->SecondFunctions.Distance;
   // the tightest bounds first: most rows end there
-  wedge.Region.Add(fromFirst + tolerance);
-  wedge.Region.Add(toSecond + tolerance);
+  wedge.Region.Add(fromFirst + (tolerance + this->HalfHeight));
+  wedge.Region.Add(toSecond + (tolerance + this->HalfHeight));
+  if (this->HalfHeight > 0)
+  {
+    wedge.Region.Add(fromFirst + toSecond + tolerance); // not implied by the two
+  }
   if (maximumGap > 0)
   {
     wedge.Region.Add(-(fromFirst + toSecond) + (maximumGap + tolerance));

@@ -16,6 +16,11 @@
 /// Voxels exactly on a slice belong to the pairs on both of its sides, which give them the same
 /// grey level.
 ///
+/// Footprints that reach across slices: a voxel has a height, its footprint's extent along the
+/// normals, and takes the grey levels of that part of its height which lies between the slices. The
+/// region then also holds the voxels that lie outside by up to half of this height. They take grey
+/// levels from the pair, but only a pair that they lie between fills them.
+///
 /// Slices turned by 90 degrees or more against each other are no neighbours in a sweep; those that
 /// lie in the same plane have nothing between them.
 #ifndef lacunaSlicePair_h
@@ -37,9 +42,10 @@ public:
     Turned
   };
 
-  /// maximumGap in mm, 0 = no limit. The slices must outlive the pair.
+  /// maximumGap in mm, 0 = no limit. acrossSlices: the region is that of voxels with a height. The
+  /// slices must outlive the pair.
   SlicePair(const SampledSlice& first, const SampledSlice& second, const VolumeGrid& grid,
-    double maximumGap);
+    double maximumGap, bool acrossSlices);
 
   Relation GetRelation() const { return this->SliceRelation; }
   const SampledSlice& GetFirst() const { return *this->First; }
@@ -47,6 +53,9 @@ public:
 
   /// mm; both slices are this near only where they intersect, and then equally near.
   double GetTolerance() const { return this->DistanceTolerance; }
+
+  /// Half of the voxels' height, mm; 0 unless acrossSlices.
+  double GetHalfHeight() const { return this->HalfHeight; }
 
   /// Layers k of the grid that the region may reach.
   IndexInterval GetLayers() const { return this->Layers; }
@@ -82,6 +91,7 @@ private:
   const SampledSlice* Second;
   Relation SliceRelation = Relation::Neighbours;
   double DistanceTolerance;
+  double HalfHeight;
   bool Transposed = false;
   Functions FirstFunctions, SecondFunctions;
   std::array<Wedge, 2> Wedges;

@@ -5,6 +5,7 @@
 #include "lacunaVoxelFilling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
@@ -46,8 +47,21 @@ T Convert(double value)
   }
 }
 
-template <class T, class Real>
-void WriteVoxels(const VoxelBlock<Real>& voxels, Compounding compounding, T* intensity,
+template <class Real>
+double GetIntensity(const Voxel<Real>& voxel, Compounding compounding)
+{
+  const double samples = compounding == Compounding::Mean && voxel.Count > 1 ? voxel.Count : 1;
+  return static_cast<double>(voxel.Value) / samples;
+}
+
+template <class Real>
+double GetIntensity(const WeightedVoxel<Real>& voxel, Compounding)
+{
+  return voxel.Count > 0 ? static_cast<double>(voxel.Value) / voxel.Weight : 0;
+}
+
+template <class T, class VoxelType>
+void WriteVoxels(const VoxelBlock<VoxelType>& voxels, Compounding compounding, T* intensity,
   unsigned int* contributions, char* mask, Execution& execution)
 {
   constexpr std::int64_t grain = 65536;
@@ -56,14 +70,47 @@ void WriteVoxels(const VoxelBlock<Real>& voxels, Compounding compounding, T* int
     {
       for (std::int64_t i = begin; i < end; ++i)
       {
-        const Voxel<Real>& voxel = voxels.GetData()[i];
-        const double samples =
-          compounding == Compounding::Mean && voxel.Count > 1 ? voxel.Count : 1;
-        intensity[i] = Convert<T>(static_cast<double>(voxel.Value) / samples);
+        const VoxelType& voxel = voxels.GetData()[i];
+        intensity[i] = Convert<T>(GetIntensity(voxel, compounding));
         contributions[i] = voxel.Count;
         mask[i] = voxel.Count > 0 ? 1 : 0;
       }
     });
+}
+
+// Footprints that reach across slices collect weighted samples.
+bool IsWeighted(const SweptVolume::Options& options)
+{
+  return options.FootprintAcrossSlices &&
+    options.Interpolation == SweptVolume::Method::BetweenSlices &&
+    options.Sampling == PixelSampling::Footprint && options.Compound == Compounding::Mean;
+}
+
+template <template <class> class VoxelType, class Variant>
+void MakeVoxels(const std::array<int, 6>& extent, bool doublePrecision, Variant& voxels)
+{
+  if (doublePrecision)
+  {
+    voxels = VoxelBlock<VoxelType<double>>(extent);
+  }
+  else
+  {
+    voxels = VoxelBlock<VoxelType<float>>(extent);
+  }
+}
+
+template <class Real>
+void FillPair(const SlicePair& pair, std::int64_t k, const SweptVolume::Options& options,
+  VoxelBlock<Voxel<Real>>& voxels)
+{
+  FillBetween(pair, k, options.Sampling, options.Compound, voxels);
+}
+
+template <class Real>
+void FillPair(const SlicePair& pair, std::int64_t k, const SweptVolume::Options&,
+  VoxelBlock<WeightedVoxel<Real>>& voxels)
+{
+  FillAcross(pair, k, voxels);
 }
 }
 
@@ -81,13 +128,17 @@ SweptVolume::SweptVolume(
       throw std::invalid_argument("the requested extent is not a part of the volume");
     }
   }
-  if (options.DoublePrecision)
+  if (!(options.FootprintScale > 0) || !std::isfinite(options.FootprintScale))
   {
-    this->Doubles = VoxelBlock<double>(extent);
+    throw std::invalid_argument("the footprint's scale must be positive");
+  }
+  if (IsWeighted(options))
+  {
+    MakeVoxels<WeightedVoxel>(extent, options.DoublePrecision, this->Voxels);
   }
   else
   {
-    this->Floats = VoxelBlock<float>(extent);
+    MakeVoxels<Voxel>(extent, options.DoublePrecision, this->Voxels);
   }
 }
 
@@ -145,8 +196,8 @@ void SweptVolume::AddPairs(
     {
       for (std::int64_t n = b; n < e; ++n)
       {
-        sampled[n] = SampleSlice(
-          slices[begin + n], this->Grid, this->Settings.Sampling, this->Settings.DoublePrecision);
+        sampled[n] = SampleSlice(slices[begin + n], this->Grid, this->Settings.Sampling,
+          this->Settings.FootprintScale, this->Settings.DoublePrecision);
       }
     };
     if (this->Settings.Sampling == PixelSampling::Footprint && count > 1)
@@ -174,7 +225,8 @@ void SweptVolume::AddPairs(
           throw std::invalid_argument(
             slice.Label + ": its grey levels are of another type than those of the slices before");
         }
-        pairs.emplace_back(*previous, slice, this->Grid, this->Settings.MaximumSliceGap);
+        pairs.emplace_back(
+          *previous, slice, this->Grid, this->Settings.MaximumSliceGap, IsWeighted(this->Settings));
         ++this->Counts.All;
         const SlicePair::Relation relation = pairs.back().GetRelation();
         this->Counts.Coincident += relation == SlicePair::Relation::Coincident ? 1 : 0;
@@ -212,23 +264,20 @@ void SweptVolume::Fill(const std::vector<SlicePair>& pairs, Execution& execution
     {
       for (std::int64_t k = layers.First + begin; k < layers.First + end; ++k)
       {
-        for (const SlicePair& pair : pairs)
-        {
-          if (k < pair.GetLayers().First || k > pair.GetLayers().Last)
-          {
-            continue;
-          }
-          if (this->Settings.DoublePrecision)
-          {
-            FillBetween(pair, k, this->Settings.Sampling, this->Settings.Compound, this->Doubles);
-          }
-          else
-          {
-            FillBetween(pair, k, this->Settings.Sampling, this->Settings.Compound, this->Floats);
-          }
-        }
+        this->FillLayer(pairs, k);
       }
     });
+}
+
+void SweptVolume::FillLayer(const std::vector<SlicePair>& pairs, std::int64_t k)
+{
+  for (const SlicePair& pair : pairs)
+  {
+    if (k >= pair.GetLayers().First && k <= pair.GetLayers().Last)
+    {
+      std::visit([&](auto& voxels) { FillPair(pair, k, this->Settings, voxels); }, this->Voxels);
+    }
+  }
 }
 
 void SweptVolume::AddPixels(
@@ -241,13 +290,13 @@ void SweptVolume::AddPixels(
       const IndexInterval layers{ this->Extent[4] + begin, this->Extent[4] + end - 1 };
       for (const SliceImage& slice : slices)
       {
-        if (this->Settings.DoublePrecision)
+        if (auto* const floats = std::get_if<VoxelBlock<Voxel<float>>>(&this->Voxels))
         {
-          PutPixels(slice, this->Grid, layers, this->Settings.Compound, this->Doubles);
+          PutPixels(slice, this->Grid, layers, this->Settings.Compound, *floats);
         }
-        else
+        else if (auto* const doubles = std::get_if<VoxelBlock<Voxel<double>>>(&this->Voxels))
         {
-          PutPixels(slice, this->Grid, layers, this->Settings.Compound, this->Floats);
+          PutPixels(slice, this->Grid, layers, this->Settings.Compound, *doubles);
         }
       }
     });
@@ -257,14 +306,9 @@ template <class T>
 void SweptVolume::Write(
   T* intensity, unsigned int* contributions, char* mask, Execution& execution) const
 {
-  if (this->Settings.DoublePrecision)
-  {
-    WriteVoxels(this->Doubles, this->Settings.Compound, intensity, contributions, mask, execution);
-  }
-  else
-  {
-    WriteVoxels(this->Floats, this->Settings.Compound, intensity, contributions, mask, execution);
-  }
+  std::visit([&](const auto& voxels)
+    { WriteVoxels(voxels, this->Settings.Compound, intensity, contributions, mask, execution); },
+    this->Voxels);
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a type

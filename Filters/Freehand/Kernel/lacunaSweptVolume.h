@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <variant>
 #include <vector>
 
 namespace lacuna
@@ -39,6 +40,13 @@ public:
     Method Interpolation = Method::BetweenSlices;
     PixelSampling Sampling = PixelSampling::Footprint; ///< BetweenSlices only
     Compounding Compound = Compounding::Mean;
+    /// Width of footprints in voxels, positive. More than 1 averages noise away, and detail.
+    double FootprintScale = 1;
+    /// Footprints have a height too, FootprintScale voxels along the slices' normals: voxels become
+    /// the mean over this way of the grey levels that are interpolated between all slices it meets.
+    /// Without it, each voxel sees the two slices next to it alone, also where slices are closer
+    /// than voxels. The same voxels are filled. BetweenSlices of footprints and their mean only.
+    bool FootprintAcrossSlices = false;
     /// mm; voxels at which two slices are further apart stay empty. 0 = no limit. BetweenSlices
     /// only.
     double MaximumSliceGap = 0;
@@ -47,7 +55,8 @@ public:
   };
 
   /// extent: first and last voxel along x, y, z, of the part of grid to fill.
-  /// Throws std::invalid_argument when it is not inside the grid, std::bad_alloc without memory.
+  /// Throws std::invalid_argument when it is not inside the grid or FootprintScale is not positive
+  /// and finite, std::bad_alloc without memory.
   SweptVolume(const VolumeGrid& grid, const std::array<int, 6>& extent, const Options& options);
   ~SweptVolume();
   SweptVolume(const SweptVolume&) = delete;
@@ -90,12 +99,14 @@ private:
   void AddPixels(
     const std::vector<SliceImage>& slices, Execution& execution, double first, double last);
   void Fill(const std::vector<SlicePair>& pairs, Execution& execution);
+  void FillLayer(const std::vector<SlicePair>& pairs, std::int64_t k);
 
   VolumeGrid Grid;
   std::array<int, 6> Extent;
   Options Settings;
-  VoxelBlock<float> Floats; ///< one of the two is used
-  VoxelBlock<double> Doubles;
+  std::variant<VoxelBlock<Voxel<float>>, VoxelBlock<Voxel<double>>,
+    VoxelBlock<WeightedVoxel<float>>, VoxelBlock<WeightedVoxel<double>>>
+    Voxels;
   std::unique_ptr<SampledSlice> Previous; ///< of this sweep, with pixels of its own
   PairCounts Counts;
 };

@@ -41,8 +41,25 @@ struct Voxel
   }
 };
 
-/// The voxels Extent[0]..Extent[1], ... of a grid, x fastest, all empty at first.
+/// One voxel whose samples have weights: it becomes their weighted mean. Only those samples count
+/// that could make the voxel on their own; without any it stays empty.
 template <class Real>
+struct WeightedVoxel
+{
+  Real Value; ///< the sum of the samples times their weights
+  float Weight;
+  std::uint32_t Count;
+
+  void Put(Real sample, float weight, bool counts)
+  {
+    this->Value += weight * sample;
+    this->Weight += weight;
+    this->Count += counts ? 1 : 0;
+  }
+};
+
+/// The voxels Extent[0]..Extent[1], ... of a grid, x fastest, all empty at first.
+template <class VoxelType>
 class VoxelBlock
 {
 public:
@@ -51,8 +68,8 @@ public:
     : Extent(extent)
   {
     // zeroed when first touched, by the thread that fills it
-    this->Data.reset(static_cast<Voxel<Real>*>(
-      std::calloc(static_cast<std::size_t>(this->GetNumberOfVoxels()), sizeof(Voxel<Real>))));
+    this->Data.reset(static_cast<VoxelType*>(
+      std::calloc(static_cast<std::size_t>(this->GetNumberOfVoxels()), sizeof(VoxelType))));
     if (!this->Data)
     {
       throw std::bad_alloc();
@@ -68,8 +85,8 @@ public:
   {
     return this->GetSize(0) * this->GetSize(1) * this->GetSize(2);
   }
-  Voxel<Real>* GetData() { return this->Data.get(); }
-  const Voxel<Real>* GetData() const { return this->Data.get(); }
+  VoxelType* GetData() { return this->Data.get(); }
+  const VoxelType* GetData() const { return this->Data.get(); }
 
 private:
   struct Free
@@ -77,7 +94,7 @@ private:
     void operator()(void* p) const { std::free(p); }
   };
   std::array<int, 6> Extent{ 0, -1, 0, -1, 0, -1 };
-  std::unique_ptr<Voxel<Real>[], Free> Data;
+  std::unique_ptr<VoxelType[], Free> Data;
 };
 }
 #endif

@@ -30,9 +30,8 @@ struct Raster
   int LastRow;
 };
 
-// Grey level at (column, row) of a raster that goes on beyond the image: less than one sample before
-// the first one, or as far after the last one, both continue linearly. A truncated column is in
-// range then, or one too far.
+// Grey level at (column, row), which lies on the raster but for the tolerance of SlicePair: a
+// truncated column is in range, or one too far.
 template <class T, class Real>
 struct SampleFootprint
 {
@@ -103,34 +102,75 @@ struct Lines
   Line Column, Row, Distance, FanX, FanY;
 };
 
-// The weight of the second slice for a voxel at these distances from the two.
-double GetWeight(double first, double second, double tolerance)
+// Puts the sample of a voxel whose feet have the grey levels x and y, at these signed distances from
+// the first and the second slice: what the voxel's centre has.
+template <Compounding compounding>
+struct PutCentre
 {
-  const double a = std::abs(first);
-  const double gap = a + std::abs(second);
-  return gap > tolerance ? a / gap : 0.5;
-}
+  explicit PutCentre(const SlicePair& pair)
+    : Tolerance(pair.GetTolerance())
+  {
+  }
+  template <class Real>
+  void operator()(Voxel<Real>& voxel, Real x, Real y, double first, double second) const
+  {
+    const double a = std::abs(first);
+    const double gap = a + std::abs(second);
+    const double weight = gap > this->Tolerance ? a / gap : 0.5;
+    voxel.template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+  }
+  double Tolerance;
+};
+
+// The mean over the part of the voxel's height that lies between the slices, weighted by its length.
+struct PutHeight
+{
+  explicit PutHeight(const SlicePair& pair)
+    : HalfHeight(pair.GetHalfHeight())
+    , Tolerance(pair.GetTolerance())
+  {
+  }
+  template <class Real>
+  void operator()(WeightedVoxel<Real>& voxel, Real x, Real y, double first, double second) const
+  {
+    // along the normal, from the voxel's centre: the slices lie at -first and -second
+    const double begin = std::max(std::min(-first, -second), -this->HalfHeight);
+    const double end = std::min(std::max(-first, -second), this->HalfHeight);
+    const bool holdsCentre = begin <= this->Tolerance && end >= -this->Tolerance;
+    const double length = holdsCentre ? std::max(end - begin, this->Tolerance) : end - begin;
+    if (length > 0)
+    {
+      // grey levels are linear between the slices: their mean is that in the middle
+      const double gap = first - second;
+      const double weight =
+        std::abs(gap) > this->Tolerance ? (0.5 * (begin + end) + first) / gap : 0.5;
+      voxel.Put(x + static_cast<Real>(weight) * (y - x), static_cast<float>(length), holdsCentre);
+    }
+  }
+  double HalfHeight;
+  double Tolerance;
+};
 
 // Voxels first..last of a line. Everything is computed from the voxel's own index, not from its
 // predecessor, so that it does not matter where a piece of the volume begins.
-template <class T, class Real, template <class, class> class Sampler, Compounding compounding>
+template <template <class, class> class Sampler, class T, class Put, class VoxelType>
 void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const Lines& first,
-  const Lines& second, double tolerance, IndexInterval interval, Voxel<Real>* voxel,
+  const Lines& second, const Put& put, IndexInterval interval, VoxelType* voxel,
   std::int64_t stride)
 {
+  using Real = decltype(voxel->Value);
   for (std::int64_t n = interval.First; n <= interval.Last; ++n, voxel += stride)
   {
     const auto i = static_cast<double>(static_cast<int>(n));
     const Real x = Sampler<T, Real>::At(firstRaster, first.Column.At(i), first.Row.At(i));
     const Real y = Sampler<T, Real>::At(secondRaster, second.Column.At(i), second.Row.At(i));
-    const double weight = GetWeight(first.Distance.At(i), second.Distance.At(i), tolerance);
-    voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+    put(*voxel, x, y, first.Distance.At(i), second.Distance.At(i));
   }
 }
 
 // The grey level at a foot in a slice with a fan, from the raster of sums and that of weights.
 // Returns false where there is none.
-template <class Real, template <class, class> class Sampler>
+template <template <class, class> class Sampler, class Real>
 bool SampleInFan(const Raster<Real>& sums, const Raster<Real>& weights, const FanMask& fan,
   const Lines& lines, double i, Real& grey)
 {
@@ -150,10 +190,11 @@ bool SampleInFan(const Raster<Real>& sums, const Raster<Real>& weights, const Fa
 }
 
 // FillLine for slices with fans.
-template <class Real, template <class, class> class Sampler, Compounding compounding>
-void FillLineInFans(const SlicePair& pair, const Lines& first, const Lines& second,
-  IndexInterval interval, Voxel<Real>* voxel, std::int64_t stride)
+template <template <class, class> class Sampler, class Put, class VoxelType>
+void FillLineInFans(const SlicePair& pair, const Lines& first, const Lines& second, const Put& put,
+  IndexInterval interval, VoxelType* voxel, std::int64_t stride)
 {
+  using Real = decltype(voxel->Value);
   const SampledSlice& firstSlice = pair.GetFirst();
   const SampledSlice& secondSlice = pair.GetSecond();
   const Raster<Real> firstSums(firstSlice);
@@ -165,18 +206,17 @@ void FillLineInFans(const SlicePair& pair, const Lines& first, const Lines& seco
     const auto i = static_cast<double>(static_cast<int>(n));
     Real x;
     Real y;
-    if (SampleInFan<Real, Sampler>(firstSums, firstWeights, *firstSlice.Fan, first, i, x) &&
-      SampleInFan<Real, Sampler>(secondSums, secondWeights, *secondSlice.Fan, second, i, y))
+    if (SampleInFan<Sampler>(firstSums, firstWeights, *firstSlice.Fan, first, i, x) &&
+      SampleInFan<Sampler>(secondSums, secondWeights, *secondSlice.Fan, second, i, y))
     {
-      const double weight =
-        GetWeight(first.Distance.At(i), second.Distance.At(i), pair.GetTolerance());
-      voxel->template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+      put(*voxel, x, y, first.Distance.At(i), second.Distance.At(i));
     }
   }
 }
 
-template <class T, class Real, template <class, class> class Sampler, Compounding compounding>
-void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
+// T is the type of the slices' rasters.
+template <class T, template <class, class> class Sampler, class Put, class VoxelType>
+void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<VoxelType>& voxels)
 {
   const std::array<int, 6>& extent = voxels.GetExtent();
   const std::size_t iAxis = pair.IsTransposed() ? 1 : 0;
@@ -184,7 +224,7 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
   const IndexInterval columns{ extent[2 * iAxis], extent[2 * iAxis + 1] };
   const IndexInterval rows{ extent[2 * jAxis], extent[2 * jAxis + 1] };
   const std::array<std::int64_t, 2> strides{ 1, voxels.GetSize(0) };
-  Voxel<Real>* const corner =
+  VoxelType* const corner =
     voxels.GetData() + (k - extent[4]) * voxels.GetSize(0) * voxels.GetSize(1);
 
   VoxelRegion::Layer layers[2];
@@ -205,6 +245,7 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
     }
   }
 
+  const Put put(pair);
   const bool hasFans = pair.GetFirst().Fan && pair.GetSecond().Fan;
   const Raster<T> firstRaster(pair.GetFirst());
   const Raster<T> secondRaster(pair.GetSecond());
@@ -234,19 +275,18 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
     const auto row = static_cast<double>(j);
     const Lines first(pair.GetFirstFunctions(), row, static_cast<double>(k));
     const Lines second(pair.GetSecondFunctions(), row, static_cast<double>(k));
-    Voxel<Real>* const start = corner + (j - rows.First) * strides[jAxis];
+    VoxelType* const start = corner + (j - rows.First) * strides[jAxis];
     for (const IndexInterval& part : parts)
     {
-      Voxel<Real>* const voxel = start + (part.First - columns.First) * strides[iAxis];
+      VoxelType* const voxel = start + (part.First - columns.First) * strides[iAxis];
       if (hasFans)
       {
-        FillLineInFans<Real, Sampler, compounding>(
-          pair, first, second, part, voxel, strides[iAxis]);
+        FillLineInFans<Sampler>(pair, first, second, put, part, voxel, strides[iAxis]);
       }
       else
       {
-        FillLine<T, Real, Sampler, compounding>(firstRaster, secondRaster, first, second,
-          pair.GetTolerance(), part, voxel, strides[iAxis]);
+        FillLine<Sampler>(
+          firstRaster, secondRaster, first, second, put, part, voxel, strides[iAxis]);
       }
     }
   }
@@ -254,20 +294,20 @@ void FillLayer(const SlicePair& pair, std::int64_t k, VoxelBlock<Real>& voxels)
 
 template <class T, class Real>
 void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
-  Compounding compounding, VoxelBlock<Real>& voxels)
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels)
 {
   const auto fill = [&](auto compounded)
   {
-    constexpr Compounding how = decltype(compounded)::value;
+    using Put = PutCentre<decltype(compounded)::value>;
     switch (sampling)
     {
       case PixelSampling::Footprint:
         // its rasters are always of type Real
-        return FillLayer<Real, Real, SampleFootprint, how>(pair, k, voxels);
+        return FillLayer<Real, SampleFootprint, Put>(pair, k, voxels);
       case PixelSampling::Bilinear:
-        return FillLayer<T, Real, SampleBilinearly, how>(pair, k, voxels);
+        return FillLayer<T, SampleBilinearly, Put>(pair, k, voxels);
       case PixelSampling::Nearest:
-        return FillLayer<T, Real, SampleNearest, how>(pair, k, voxels);
+        return FillLayer<T, SampleNearest, Put>(pair, k, voxels);
     }
   };
   if (compounding == Compounding::Mean)
@@ -282,7 +322,7 @@ void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
 
 template <Compounding compounding, class T, class Real>
 void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& grid,
-  IndexInterval layers, VoxelBlock<Real>& voxels)
+  IndexInterval layers, VoxelBlock<Voxel<Real>>& voxels)
 {
   const std::array<int, 6>& extent = voxels.GetExtent();
   const std::array<IndexInterval, 3> range{ IndexInterval{ extent[0], extent[1] },
@@ -345,7 +385,7 @@ void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& gri
 
 template <class Real>
 void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
-  Compounding compounding, VoxelBlock<Real>& voxels)
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels)
 {
   if constexpr (std::is_same<Real, double>::value)
   {
@@ -368,8 +408,14 @@ void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
 }
 
 template <class Real>
+void FillAcross(const SlicePair& pair, std::int64_t k, VoxelBlock<WeightedVoxel<Real>>& voxels)
+{
+  FillLayer<Real, SampleFootprint, PutHeight>(pair, k, voxels);
+}
+
+template <class Real>
 void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
-  Compounding compounding, VoxelBlock<Real>& voxels)
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels)
 {
   DispatchScalars(slice.Type, slice.Pixels,
     [&](const auto* pixels)
@@ -386,11 +432,13 @@ void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval la
 }
 
 template void FillBetween(
-  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<float>&);
+  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<Voxel<float>>&);
 template void FillBetween(
-  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<double>&);
+  const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<Voxel<double>>&);
+template void FillAcross(const SlicePair&, std::int64_t, VoxelBlock<WeightedVoxel<float>>&);
+template void FillAcross(const SlicePair&, std::int64_t, VoxelBlock<WeightedVoxel<double>>&);
 template void PutPixels(
-  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<float>&);
+  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<Voxel<float>>&);
 template void PutPixels(
-  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<double>&);
+  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<Voxel<double>>&);
 }

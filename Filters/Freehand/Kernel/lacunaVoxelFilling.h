@@ -13,11 +13,15 @@ namespace lacuna
 /// the same type: any but Float64 where Real is float, Float64 where it is double.
 template <class Real>
 void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
-  Compounding compounding, VoxelBlock<Real>& voxels);
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels);
+
+/// The same for footprints that reach across slices.
+template <class Real>
+void FillAcross(const SlicePair& pair, std::int64_t k, VoxelBlock<WeightedVoxel<Real>>& voxels);
 
 /// Adds the pixels of slice whose nearest voxels lie in layers; slice has passed CheckSlice.
 template <class Real>
 void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
-  Compounding compounding, VoxelBlock<Real>& voxels);
+  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels);
 }
 #endif

@@ -200,42 +200,46 @@ TEST(Footprint, SamplesAreIntegralsOfTheInterpolatedLine)
   }
 }
 
-TEST(Footprint, MarginIsHalfAFootprintAndHalfAPixel)
+TEST(Footprint, MarginIsHalfAVoxelAndHalfAPixel)
 {
   for (const double width : { 0.3, 1.0, 1.5, 4.0, 5.85, 17.0 })
   {
-    EXPECT_NEAR(FootprintAxis(Pixels, width).GetMargin(), 0.5 + width / 2, 1e-12);
+    EXPECT_NEAR(FootprintAxis(Pixels, width).GetMargin(width), 0.5 + width / 2, 1e-12);
   }
-  // never so far that the continued raster does not reach
+  // never so far that an image of some pixels becomes a huge raster
   for (const int n : { 2, 3, 5, 20 })
   {
     for (const double width : { 1.5, 3.0, 17.0, 400.0 })
     {
       const FootprintAxis axis(n, width);
-      EXPECT_LE(axis.GetMargin(), 1.75 * axis.GetStep() + 1e-12);
+      const int samples = axis.GetNumberOfSamplesOutside(width);
+      EXPECT_GE(samples, 1);
+      EXPECT_LE(samples, 8);
+      EXPECT_LE(axis.GetMargin(width), samples * axis.GetStep() + 1e-6);
+      EXPECT_GT(axis.GetMargin(width), (samples - 1) * axis.GetStep());
     }
   }
 }
 
 TEST(Footprint, RasterGoesOnAlongItsSlope)
 {
-  const int width = 7;
-  const int height = 6;
+  const int width = 9;
+  const int height = 11;
   const auto plane = [](int x, int y) { return 3 + 1.5 * x - 2.25 * y; };
   std::vector<double> raster(std::size_t(1) * width * height, 1e9);
   std::vector<double> sums(raster.size(), 1e9);
   std::vector<double> weights(raster.size(), 1e9);
-  for (int y = 1; y < height - 1; ++y)
+  for (int y = 3; y < height - 3; ++y)
   {
-    for (int x = 1; x < width - 1; ++x)
+    for (int x = 2; x < width - 2; ++x)
     {
       raster[y * width + x] = plane(x, y);
       weights[y * width + x] = 0.25 * (1 + x % 3);
       sums[y * width + x] = plane(x, y) * weights[y * width + x];
     }
   }
-  ContinueRaster<double>(raster.data(), nullptr, width, height);
-  ContinueRaster(sums.data(), weights.data(), width, height);
+  ContinueRaster<double>(raster.data(), nullptr, width, height, 2, 3);
+  ContinueRaster(sums.data(), weights.data(), width, height, 2, 3);
   for (int y = 0; y < height; ++y)
   {
     for (int x = 0; x < width; ++x)
@@ -265,7 +269,7 @@ TEST(Footprint, RasterGoesOnNoSteeperThanBefore)
     {
       std::copy(c.Inner.begin(), c.Inner.end(), raster.begin() + 5 * y + 1);
     }
-    ContinueRaster<double>(raster.data(), nullptr, 5, 5);
+    ContinueRaster<double>(raster.data(), nullptr, 5, 5, 1, 1);
     for (int y = 0; y < 5; ++y)
     {
       EXPECT_EQ(raster[5 * y], c.Expected);
@@ -277,10 +281,10 @@ TEST(Footprint, RasterGoesOnNoSteeperThanBefore)
   sums[6] = 9;
   sums[7] = 8;
   weights[8] = 0;
-  ContinueRaster(sums.data(), weights.data(), 5, 5);
+  ContinueRaster(sums.data(), weights.data(), 5, 5, 1, 1);
   EXPECT_EQ(sums[5], 9);
   EXPECT_EQ(weights[5], 0.5F);
   std::vector<float> two{ 0, 0, 0, 0, 0, 4, 3, 0, 0, 2, 1, 0, 0, 0, 0, 0 };
-  ContinueRaster<float>(two.data(), nullptr, 4, 4);
+  ContinueRaster<float>(two.data(), nullptr, 4, 4, 1, 1);
   EXPECT_EQ(two, (std::vector<float>{ 4, 4, 3, 3, 4, 4, 3, 3, 2, 2, 1, 1, 2, 2, 1, 1 }));
 }

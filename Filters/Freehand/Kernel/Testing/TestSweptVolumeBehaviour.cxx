@@ -44,6 +44,10 @@ std::vector<SweptVolume::Options> GetAllOptions()
     options.Interpolation = SweptVolume::Method::NearestVoxel;
     all.push_back(options);
   }
+  SweptVolume::Options across;
+  across.FootprintScale = 2.5;
+  across.FootprintAcrossSlices = true;
+  all.push_back(across);
   return all;
 }
 
@@ -401,12 +405,18 @@ TEST(SweptVolumeBehaviour, RefusesUnusableSlicesByName)
   EXPECT_NE(GetError(slices).find("double precision"), std::string::npos);
 }
 
-TEST(SweptVolumeBehaviour, RefusesAnExtentOutsideOfTheGrid)
+TEST(SweptVolumeBehaviour, RefusesAnExtentOutsideOfTheGridAndAFootprintOfNoSize)
 {
   const VolumeGrid grid{ { 0, 0, 0 }, { 1, 1, 1 }, { 4, 4, 4 } };
   EXPECT_THROW(SweptVolume(grid, { 0, 4, 0, 3, 0, 3 }, {}), std::invalid_argument);
   EXPECT_THROW(SweptVolume(grid, { 0, 3, -1, 3, 0, 3 }, {}), std::invalid_argument);
   EXPECT_THROW(SweptVolume(grid, { 0, 3, 0, 3, 2, 1 }, {}), std::invalid_argument);
+  for (const double scale : { 0.0, -1.0, std::nan(""), HUGE_VAL })
+  {
+    SweptVolume::Options options;
+    options.FootprintScale = scale;
+    EXPECT_THROW(SweptVolume(grid, { 0, 3, 0, 3, 0, 3 }, options), std::invalid_argument);
+  }
 }
 
 TEST(SweptVolumeBehaviour, CanBeStopped)
