@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaActivityMap.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::size_t MostSlices = 32;
+constexpr int NeighbourhoodRadius = 4;
+// The border of the dense region is ragged by this much: changing pixels so near belong to it.
+constexpr int BorderRadius = 2;
+
+// The two lowest and the two highest grey levels of a pixel.
+struct Extremes
+{
+  float Lowest = std::numeric_limits<float>::infinity();
+  float SecondLowest = std::numeric_limits<float>::infinity();
+  float Highest = -std::numeric_limits<float>::infinity();
+  float SecondHighest = -std::numeric_limits<float>::infinity();
+
+  void Put(float value)
+  {
+    if (value < this->SecondLowest)
+    {
+      this->SecondLowest = std::max(value, this->Lowest);
+      this->Lowest = std::min(value, this->Lowest);
+    }
+    if (value > this->SecondHighest)
+    {
+      this->SecondHighest = std::min(value, this->Highest);
+      this->Highest = std::max(value, this->Highest);
+    }
+  }
+};
+
+// Sums over rectangles of an image in constant time.
+class SumTable
+{
+public:
+  template <class Function>
+  SumTable(int width, int height, const Function& value)
+    : Width(width)
+    , Height(height)
+    , Sums((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1), 0)
+  {
+    for (int row = 0; row < height; ++row)
+    {
+      std::int64_t line = 0;
+      for (int column = 0; column < width; ++column)
+      {
+        line += value(column, row);
+        this->At(column + 1, row + 1) = this->At(column + 1, row) + line;
+      }
+    }
+  }
+
+  // Mean over the square of the given radius, cut to the image.
+  double GetMean(int column, int row, int radius)
+  {
+    const int left = std::max(0, column - radius);
+    const int right = std::min(this->Width, column + radius + 1);
+    const int top = std::max(0, row - radius);
+    const int bottom = std::min(this->Height, row + radius + 1);
+    const std::int64_t sum =
+      this->At(right, bottom) - this->At(left, bottom) - this->At(right, top) + this->At(left, top);
+    return static_cast<double>(sum) / (static_cast<double>(right - left) * (bottom - top));
+  }
+
+private:
+  std::int64_t& At(int column, int row)
+  {
+    return this->Sums[static_cast<std::size_t>(row) * (static_cast<std::size_t>(this->Width) + 1) +
+      static_cast<std::size_t>(column)];
+  }
+  int Width, Height;
+  std::vector<std::int64_t> Sums;
+};
+
+// Gives all pixels of a part that is connected (by edges) and not labelled (0) yet a label. Returns
+// how many they are. Pixels that belong to nothing have the label -1.
+std::int64_t LabelPart(
+  std::vector<int>& labels, int width, int height, int column, int row, int label)
+{
+  const auto index = [&](int x, int y)
+  { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + x; };
+  std::vector<std::pair<int, int>> pending{ { column, row } };
+  labels[index(column, row)] = label;
+  std::int64_t size = 0;
+  while (!pending.empty())
+  {
+    const auto [x, y] = pending.back();
+    pending.pop_back();
+    ++size;
+    const std::pair<int, int> neighbours[] = { { x - 1, y }, { x + 1, y }, { x, y - 1 },
+      { x, y + 1 } };
+    for (const auto& [nx, ny] : neighbours)
+    {
+      if (nx >= 0 && nx < width && ny >= 0 && ny < height && labels[index(nx, ny)] == 0)
+      {
+        labels[index(nx, ny)] = label;
+        pending.emplace_back(nx, ny);
+      }
+    }
+  }
+  return size;
+}
+}
+
+std::int64_t PixelSet::GetSize() const
+{
+  return std::count(this->Members.begin(), this->Members.end(), char(1));
+}
+
+PixelSet PixelSet::Flipped() const
+{
+  PixelSet flipped(this->Width, this->Height);
+  for (int row = 0; row < this->Height; ++row)
+  {
+    for (int column = 0; column < this->Width; ++column)
+    {
+      if (this->Has(column, row))
+      {
+        flipped.Put(column, this->Height - 1 - row);
+      }
+    }
+  }
+  return flipped;
+}
+
+ActivityMap::ActivityMap(const std::vector<SliceImage>& slices)
+  : Width(slices.front().Width)
+  , Height(slices.front().Height)
+{
+  const std::size_t count = std::min(MostSlices, slices.size());
+  std::vector<Extremes> extremes(
+    static_cast<std::size_t>(this->Width) * static_cast<std::size_t>(this->Height));
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    const SliceImage& slice = slices[count > 1 ? n * (slices.size() - 1) / (count - 1) : 0];
+    DispatchScalars(slice.Type, slice.Pixels,
+      [&](const auto* pixels)
+      {
+        auto extreme = extremes.begin();
+        for (int row = 0; row < this->Height; ++row)
+        {
+          for (int column = 0; column < this->Width; ++column)
+          {
+            (extreme++)->Put(static_cast<float>(pixels[slice.RowStride * row + column]));
+          }
+        }
+      });
+  }
+  this->Changes.reserve(extremes.size());
+  for (const Extremes& e : extremes)
+  {
+    const float change = count < 4 ? e.Highest - e.Lowest : e.SecondHighest - e.SecondLowest;
+    this->Changes.push_back(change > 0 ? change : 0); // or not a number
+    this->Largest = std::max<double>(this->Largest, this->Changes.back());
+  }
+}
+
+PixelSet ActivityMap::GetLargestPart(double threshold) const
+{
+  const auto index = [&](int x, int y)
+  { return static_cast<std::size_t>(y) * static_cast<std::size_t>(this->Width) + x; };
+  const auto changes = [&](int x, int y) { return this->Changes[index(x, y)] > threshold ? 1 : 0; };
+  SumTable changing(this->Width, this->Height, changes);
+  std::vector<int> labels(this->Changes.size(), -1);
+  for (int row = 0; row < this->Height; ++row)
+  {
+    for (int column = 0; column < this->Width; ++column)
+    {
+      if (changing.GetMean(column, row, NeighbourhoodRadius) > 0.5)
+      {
+        labels[index(column, row)] = 0;
+      }
+    }
+  }
+  int parts = 0;
+  int largest = 0;
+  std::int64_t largestSize = 0;
+  for (int row = 0; row < this->Height; ++row)
+  {
+    for (int column = 0; column < this->Width; ++column)
+    {
+      if (labels[index(column, row)] == 0)
+      {
+        ++parts;
+        const std::int64_t size = LabelPart(labels, this->Width, this->Height, column, row, parts);
+        if (size > largestSize)
+        {
+          largestSize = size;
+          largest = parts;
+        }
+      }
+    }
+  }
+  const auto isInside = [&](int x, int y) { return labels[index(x, y)] == largest ? 1 : 0; };
+  SumTable inside(this->Width, this->Height, isInside);
+  PixelSet part(this->Width, this->Height);
+  for (int row = 0; row < this->Height; ++row)
+  {
+    for (int column = 0; column < this->Width; ++column)
+    {
+      const double density = inside.GetMean(column, row, BorderRadius);
+      // a pixel on a straight border has 6 neighbours of 9, one beside it by chance 3
+      if (density > 0.999 ||
+        (density > 0 && changes(column, row) && changing.GetMean(column, row, 1) > 0.4))
+      {
+        part.Put(column, row);
+      }
+    }
+  }
+  return part;
+}
+}

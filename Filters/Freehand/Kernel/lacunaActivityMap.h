@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the images of a sweep change from slice to slice: in what the probe sees, not around it.
+#ifndef lacunaActivityMap_h
+#define lacunaActivityMap_h
+
+#include "lacunaSliceImage.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lacuna
+{
+/// The pixels of one connected part of an image.
+class PixelSet
+{
+public:
+  PixelSet(int width, int height)
+    : Width(width)
+    , Height(height)
+    , Members(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0)
+  {
+  }
+
+  int GetWidth() const { return this->Width; }
+  int GetHeight() const { return this->Height; }
+  bool Has(int column, int row) const { return this->Members[this->Index(column, row)] != 0; }
+  void Put(int column, int row) { this->Members[this->Index(column, row)] = 1; }
+  std::int64_t GetSize() const;
+  /// Upside down.
+  PixelSet Flipped() const;
+
+private:
+  std::size_t Index(int column, int row) const
+  {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(this->Width) +
+      static_cast<std::size_t>(column);
+  }
+  int Width, Height;
+  std::vector<char> Members;
+};
+
+/// How much each pixel changes over a sweep.
+class ActivityMap
+{
+public:
+  /// Takes at most 32 of the slices, evenly spread. All have windows of one size; at least 3.
+  /// A pixel's change is its range of grey levels; from 4 slices on the highest and the lowest one do
+  /// not count, so that single errors (shot noise) do not.
+  explicit ActivityMap(const std::vector<SliceImage>& slices);
+
+  double GetLargestChange() const { return this->Largest; }
+
+  /// The largest connected part that is dense with pixels that change by more than threshold: more
+  /// than half of a neighbourhood of 9 x 9 do. Letters, rulers and noise are too thin or too sparse
+  /// for that. It may be empty.
+  PixelSet GetLargestPart(double threshold) const;
+
+private:
+  int Width, Height;
+  std::vector<float> Changes;
+  double Largest = 0;
+};
+}
+#endif
