@@ -110,9 +110,16 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
   this->DropUnusable(candidates, selection);
   this->DropOutliers(candidates, selection);
-  for (const Candidate& candidate : candidates)
+  for (const bool inStack : { true, false })
   {
-    (candidate.IsInStack ? this->Slices : this->Others).push_back(candidate.Slice);
+    for (const Candidate& candidate : candidates)
+    {
+      if (candidate.IsInStack == inStack)
+      {
+        (inStack ? this->Slices : this->Others).push_back(candidate.Slice);
+        this->Poses.push_back(tracked.GetImageToReference(candidate.Number));
+      }
+    }
   }
 }
 
@@ -127,10 +134,10 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
   const Range rows = Clip(stack, 1, selection.Clip[1], selection.Clip[3]);
   const double* origin = stack->GetOrigin();
   const double* spacing = stack->GetSpacing();
-  const lacuna::Matrix4 windowToImage =
-    lacuna::Matrix4::Translation(
-      { origin[0] + spacing[0] * columns.First, origin[1] + spacing[1] * rows.First, 0 }) *
-    lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
+  this->Window.Origin = { origin[0] + spacing[0] * columns.First,
+    origin[1] + spacing[1] * rows.First };
+  this->Window.Step = { spacing[0], spacing[1] };
+  const lacuna::Matrix4 windowToImage = this->Window.GetMatrix();
   vtkDataArray* const frames = vtkLacunaFieldData::Find(
     stack, vtkLacunaTrackedSlices::FrameNumberName, 1, tracked.GetNumberOfSlices());
 
@@ -250,6 +257,25 @@ void vtkLacunaSliceImages::DropOutliers(
   }
   kept.insert(kept.end(), candidates.begin() + static_cast<std::ptrdiff_t>(next), candidates.end());
   candidates = kept;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::ApplyFan(const vtkLacunaSliceFan& fan)
+{
+  std::vector<lacuna::SliceImage*> all;
+  for (std::vector<lacuna::SliceImage>* slices : { &this->Slices, &this->Others })
+  {
+    for (lacuna::SliceImage& slice : *slices)
+    {
+      all.push_back(&slice);
+    }
+  }
+  this->Window = fan.Apply(all, this->Window);
+  // not from the poses of the windows before, so that the same window always gives the same poses
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    all[i]->PixelToReference = this->Poses[i] * this->Window.GetMatrix();
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #define vtkLacunaSliceImages_h
 
 #include "lacunaSliceImage.h"
+#include "vtkLacunaSliceFan.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
@@ -53,11 +54,18 @@ struct vtkLacunaSliceImages
   /// pose invalid, 2 gated out".
   std::string DescribeFlags() const;
 
+  /// Cuts all slices to a fan; once.
+  void ApplyFan(const vtkLacunaSliceFan& fan);
+
   vtkImageData* Stack;
   vtkSmartPointer<vtkDataArray> GreyLevels; ///< in one piece of memory
   std::vector<lacuna::SliceImage> Slices;
   /// Slices of the sweep that are not in the stack; without pixels, only if asked for.
   std::vector<lacuna::SliceImage> Others;
+  /// ImageToReference of Slices, then of Others.
+  std::vector<lacuna::Matrix4> Poses;
+  /// Columns and rows of the slices' windows in the original slices.
+  vtkLacunaSliceFan::Window Window;
   /// One sentence for each slice that is left out because of a bad pose.
   std::vector<std::string> LeftOut;
 

@@ -10,7 +10,9 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
@@ -46,6 +48,29 @@ void WarnOfLeftOut(vtkLacunaSweptVolume* self, const std::vector<std::string>& l
   }
 }
 
+void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
+{
+  if (fans.Found.empty())
+  {
+    return;
+  }
+  std::vector<double> origins, angles, radii;
+  vtkNew<vtkIntArray> clips;
+  clips->SetName("ClipRectangle");
+  clips->SetNumberOfComponents(4);
+  for (const vtkLacunaSliceFan& fan : fans.Found)
+  {
+    origins.insert(origins.end(), fan.Sector.Origin.begin(), fan.Sector.Origin.end());
+    angles.insert(angles.end(), fan.Sector.Angles.begin(), fan.Sector.Angles.end());
+    radii.insert(radii.end(), fan.Sector.Radii.begin(), fan.Sector.Radii.end());
+    clips->InsertNextTypedTuple(fan.Clip.data());
+  }
+  vtkLacunaFieldData::Set(output, "FanOrigin", origins, 2);
+  vtkLacunaFieldData::Set(output, "FanAngles", angles, 2);
+  vtkLacunaFieldData::Set(output, "FanRadii", radii, 2);
+  output->GetFieldData()->AddArray(clips);
+}
+
 // Says what is wrong with slices between which nothing could be filled.
 void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
 {
@@ -65,6 +90,26 @@ void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
 }
 
 vtkStandardNewMacro(vtkLacunaSweptVolume);
+
+//------------------------------------------------------------------------------
+vtkLacunaSweptVolume::vtkLacunaSweptVolume()
+  : Fans(new vtkLacunaSweptVolumeFans)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSweptVolume::~vtkLacunaSweptVolume() = default;
+
+//------------------------------------------------------------------------------
+const char* vtkLacunaSweptVolume::GetFanDescription()
+{
+  this->FanDescription.clear();
+  for (const vtkLacunaSliceFan& fan : this->Fans->Found)
+  {
+    this->FanDescription += (this->FanDescription.empty() ? "" : "\n") + fan.Describe();
+  }
+  return this->FanDescription.c_str();
+}
 
 //------------------------------------------------------------------------------
 int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
@@ -125,7 +170,7 @@ int vtkLacunaSweptVolume::RequestInformation(
     {
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      const vtkLacunaSweptVolumePlan plan(this, inputs[0]);
+      const vtkLacunaSweptVolumePlan plan(this, inputs[0], *this->Fans);
       info->Remove(vtkDataObject::DIRECTION());
       if (!plan.IsEmpty())
       {
@@ -155,7 +200,7 @@ int vtkLacunaSweptVolume::RequestData(
       vtkInformation* info = outputs->GetInformationObject(0);
       vtkImageData* output = vtkImageData::GetData(outputs);
       output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      const vtkLacunaSweptVolumePlan plan(this, inputs[0]);
+      const vtkLacunaSweptVolumePlan plan(this, inputs[0], *this->Fans);
       if (plan.IsEmpty())
       {
         output->Initialize();
@@ -222,6 +267,7 @@ int vtkLacunaSweptVolume::RequestData(
       output->GetPointData()->SetScalars(intensity);
       output->GetPointData()->AddArray(contributions);
       output->GetPointData()->AddArray(mask);
+      WriteFans(output, *this->Fans);
       std::vector<vtkDataObject*> stacks;
       for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
       {
@@ -238,6 +284,7 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
   constexpr std::array<const char*, 3> samplings{ "Footprint", "Bilinear", "Nearest" };
   constexpr std::array<const char*, 2> interpolations{ "BetweenSlices", "NearestVoxel" };
   constexpr std::array<const char*, 2> compoundings{ "Mean", "Maximum" };
+  constexpr std::array<const char*, 3> fanMasks{ "Given", "Automatic", "None" };
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
   constexpr std::array<const char*, 2> types{ "Input", "Float" };
   std::ostringstream text;
@@ -260,6 +307,10 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
        << " Compounding=" << compoundings[this->Compounding]
        << " MaximumSliceGap=" << this->MaximumSliceGap << " ";
   list("ClipRectangle", this->ClipRectangle);
+  text << "FanMask=" << fanMasks[this->FanMask] << " ";
+  list("FanOrigin", this->FanOrigin);
+  list("FanAngles", this->FanAngles);
+  list("FanRadii", this->FanRadii);
   text << "UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
        << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses] << " ";
   text << "OutputScalarType=" << types[this->OutputScalarType];

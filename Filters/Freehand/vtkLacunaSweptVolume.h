@@ -25,7 +25,10 @@
  * | Intensity         | see OutputScalarType  | grey level, active scalars; 0 where there is none|
  * | Contributions     | unsigned int          | how many samples made the voxel                  |
  * | vtkValidPointMask | char                  | 1 where there are samples, else 0                |
- * Field data: Provenance. The arrays of the slices are not copied: they do not describe a volume.
+ * Field data: Provenance; with FanMask Automatic also FanOrigin, FanAngles, FanRadii (double, 2
+ * components) and ClipRectangle (int, 4), one tuple for each input, as the properties would have
+ * them; the radii are 0 where there is no sector. The arrays of the slices are not copied: they do
+ * not describe a volume.
  *
  * The grid depends on the poses, which are known when the input has been executed: so the input is
  * brought up to date already when information about the output is asked for.
@@ -41,7 +44,10 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 
+#include <memory>
 #include <string>
+
+struct vtkLacunaSweptVolumeFans;
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkImageAlgorithm
 {
@@ -70,6 +76,12 @@ public:
   {
     Mean = 0,
     Maximum = 1
+  };
+  enum FanMasks
+  {
+    Given = 0,
+    Automatic = 1,
+    NoFan = 2
   };
   enum BadPoseRules
   {
@@ -152,6 +164,43 @@ public:
   ///@}
 
   ///@{
+  /// What the probe sees of the slices; the rest does not exist for the volume. Given: the fan of
+  /// FanOrigin, FanAngles and FanRadii, if its radii are not 0. Automatic: found in the pixels, for
+  /// each input (lacunaFanDetection.h); an error says when that is not certain. NoFan: all of it.
+  /// ClipRectangle applies in any case. Default: Given.
+  vtkSetClampMacro(FanMask, int, Given, NoFan);
+  vtkGetMacro(FanMask, int);
+  void SetFanMaskToGiven() { this->SetFanMask(Given); }
+  void SetFanMaskToAutomatic() { this->SetFanMask(Automatic); }
+  void SetFanMaskToNoFan() { this->SetFanMask(NoFan); }
+  ///@}
+
+  ///@{
+  /// The point where all beams of a curved or phased probe meet: column and row in pixels of the
+  /// original slices; it may lie outside of them. Default: 0 0.
+  vtkSetVector2Macro(FanOrigin, double);
+  vtkGetVector2Macro(FanOrigin, double);
+  ///@}
+
+  ///@{
+  /// Directions of the first and the last beam, degrees: 0 is straight down (growing rows), positive
+  /// ones lean to the right (growing columns). Default: -45 45.
+  vtkSetVector2Macro(FanAngles, double);
+  vtkGetVector2Macro(FanAngles, double);
+  ///@}
+
+  ///@{
+  /// Where beams begin and end, mm from FanOrigin. Default: 0 0, no fan.
+  vtkSetVector2Macro(FanRadii, double);
+  vtkGetVector2Macro(FanRadii, double);
+  ///@}
+
+  /// The fans found with FanMask Automatic, one line for each input: "FanOrigin=160,-40
+  /// FanAngles=-32,32 FanRadii=18,78 ClipRectangle=17,20,287,200"; of a linear probe only the
+  /// ClipRectangle. Empty before the first update and with other masks.
+  const char* GetFanDescription();
+
+  ///@{
   /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
   /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
   /// Default: off.
@@ -197,8 +246,8 @@ public:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 protected:
-  vtkLacunaSweptVolume() = default;
-  ~vtkLacunaSweptVolume() override = default;
+  vtkLacunaSweptVolume();
+  ~vtkLacunaSweptVolume() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(
@@ -222,11 +271,17 @@ private:
   int Compounding = Mean;
   double MaximumSliceGap = 0;
   int ClipRectangle[4] = { 0, 0, 0, 0 };
+  int FanMask = Given;
+  double FanOrigin[2] = { 0, 0 };
+  double FanAngles[2] = { -45, 45 };
+  double FanRadii[2] = { 0, 0 };
   bool UseImageInvalid = false;
   bool UseTooFast = false;
   bool UseGatedOut = false;
   int BadPoses = Refuse;
   int OutputScalarType = Input;
   int MemoryLimit = 4096;
+  std::unique_ptr<vtkLacunaSweptVolumeFans> Fans;
+  std::string FanDescription;
 };
 #endif

@@ -14,12 +14,13 @@
 
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
-  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
+  vtkLacunaSweptVolume* filter, vtkInformationVector* inputs, vtkLacunaSweptVolumeFans& fans)
   : ScalarType(VTK_FLOAT)
 {
   this->ReadSweeps(filter, inputs);
   if (!this->IsEmpty())
   {
+    this->ApplyFans(filter, fans);
     this->ChooseOptions(filter);
     this->ChooseFrame(filter);
     this->ChooseGrid(filter);
@@ -64,6 +65,60 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
       message << ")";
       throw std::runtime_error(message.str());
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSweptVolumePlan::ApplyFans(
+  vtkLacunaSweptVolume* filter, vtkLacunaSweptVolumeFans& fans)
+{
+  if (filter->GetFanMask() != vtkLacunaSweptVolume::Automatic)
+  {
+    fans = {};
+    vtkLacunaSliceFan given;
+    std::copy_n(filter->GetFanOrigin(), 2, given.Sector.Origin.begin());
+    std::copy_n(filter->GetFanAngles(), 2, given.Sector.Angles.begin());
+    std::copy_n(filter->GetFanRadii(), 2, given.Sector.Radii.begin());
+    if (filter->GetFanMask() == vtkLacunaSweptVolume::Given && given.HasSector())
+    {
+      for (vtkLacunaSliceImages& sweep : this->Sweeps)
+      {
+        sweep.ApplyFan(given);
+      }
+    }
+    return;
+  }
+  std::vector<std::intptr_t> key(filter->GetClipRectangle(), filter->GetClipRectangle() + 4);
+  key.insert(key.end(),
+    { filter->GetUseImageInvalid(), filter->GetUseTooFast(), filter->GetUseGatedOut(),
+      filter->GetBadPoses() });
+  for (const vtkLacunaSliceImages& sweep : this->Sweeps)
+  {
+    key.push_back(reinterpret_cast<std::intptr_t>(sweep.Stack));
+    key.push_back(static_cast<std::intptr_t>(sweep.Stack->GetMTime()));
+  }
+  if (key != fans.Key)
+  {
+    fans = {};
+    for (const vtkLacunaSliceImages& sweep : this->Sweeps)
+    {
+      try
+      {
+        fans.Found.push_back(vtkLacunaSliceFan::Detect(sweep.Slices, sweep.Window));
+      }
+      catch (const std::runtime_error& error)
+      {
+        fans = {};
+        throw std::runtime_error(error.what() +
+          std::string(". Give FanOrigin, FanAngles and FanRadii, or a ClipRectangle, and set "
+                      "FanMask to Given"));
+      }
+    }
+    fans.Key = key;
+  }
+  for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
+  {
+    this->Sweeps[s].ApplyFan(fans.Found[s]);
   }
 }
 

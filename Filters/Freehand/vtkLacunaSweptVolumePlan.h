@@ -7,6 +7,7 @@
 #include "lacunaMatrix4.h"
 #include "lacunaSweptVolume.h"
 #include "lacunaVolumeGrid.h"
+#include "vtkLacunaSliceFan.h"
 #include "vtkLacunaSliceImages.h"
 
 #include <array>
@@ -17,13 +18,22 @@
 class vtkInformationVector;
 class vtkLacunaSweptVolume;
 
+/// Fans that were found in the inputs, so that they are searched for only when something changes.
+struct vtkLacunaSweptVolumeFans
+{
+  /// The properties that matter, and each input's data object and its modification time.
+  std::vector<std::intptr_t> Key;
+  std::vector<vtkLacunaSliceFan> Found; ///< of each input that is not empty
+};
+
 /// Made anew for each request, from the filter's properties and inputs, which must outlive it. Not a
 /// part of the module's interface.
 class vtkLacunaSweptVolumePlan
 {
 public:
-  /// inputs: of port 0. Throws std::exception with a text for the user.
-  vtkLacunaSweptVolumePlan(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
+  /// inputs: of port 0. fans: kept from plan to plan. Throws std::exception with a text for the user.
+  vtkLacunaSweptVolumePlan(
+    vtkLacunaSweptVolume* filter, vtkInformationVector* inputs, vtkLacunaSweptVolumeFans& fans);
 
   /// True when there is nothing in the inputs.
   bool IsEmpty() const { return this->Sweeps.empty(); }
@@ -43,6 +53,7 @@ public:
 
 private:
   void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
+  void ApplyFans(vtkLacunaSweptVolume* filter, vtkLacunaSweptVolumeFans& fans);
   void ChooseOptions(vtkLacunaSweptVolume* filter);
   void ChooseFrame(vtkLacunaSweptVolume* filter);
   std::vector<lacuna::SliceImage> GetAllSlices() const;

@@ -23,11 +23,13 @@ def check_defaults():
         "Interpolation": ["BetweenSlices", "NearestVoxel"],
         "Compounding": ["Mean", "Maximum"],
         "OutputScalarType": ["Input", "Float"],
+        "FanMask": ["Given", "Automatic", "None"],
         "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
     }
     for name in ("OutputSpacing", "OutputBounds", "OutputFrame", "PixelSampling", "Interpolation",
                  "Compounding",
-                 "MaximumSliceGap", "ClipRectangle", "BadPoses", "UseTooFast", "UseGatedOut",
+                 "MaximumSliceGap", "ClipRectangle", "FanMask", "FanOrigin", "FanAngles",
+                 "FanRadii", "BadPoses", "UseTooFast", "UseGatedOut",
                  "UseImageInvalid", "OutputScalarType", "MemoryLimit"):
         default = getattr(own, "Get" + name)()
         if name in enumerations:

@@ -49,4 +49,22 @@ mask = array(proxy, "vtkValidPointMask")
 assert 0.5 < mask.mean() < 0.54, mask.mean()  # the sweep runs askew through its box
 grey = array(proxy, "Intensity")[mask == 1]
 assert abs(grey.mean() - pixels.mean()) < 3, (grey.mean(), pixels.mean())
+
+# what the probe sees: the rows and columns that are not black in all slices
+seen = pixels.max(axis=0) > 0
+columns = np.flatnonzero(seen.mean(axis=0) > 0.05)
+rows = np.flatnonzero(seen.mean(axis=1) > 0.05)
+box = (columns[0], rows[0], columns[-1] - columns[0] + 1, rows[-1] - rows[0] + 1)
+proxy.FanMask = "Automatic"
+proxy.OutputFrame = "Principal"
+proxy.UpdatePipeline()
+found = servermanager.Fetch(proxy).GetFieldData()
+assert found.GetArray("ClipRectangle").GetTuple4(0) == box, found.GetArray("ClipRectangle")
+assert found.GetArray("FanRadii").GetTuple2(0) == (0, 0)  # a linear probe
+proxy.UpdatePropertyInformation()
+assert proxy.GetProperty("FanDescription").GetData() == "ClipRectangle=%d,%d,%d,%d" % box
+assert proxy.GetDataInformation().GetNumberOfPoints() < 0.45 * volume.GetNumberOfPoints()
+mask = array(proxy, "vtkValidPointMask")
+inside = pixels[:, rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+assert abs(array(proxy, "Intensity")[mask == 1].mean() - inside.mean()) < 3  # no black around it
 print("ok")

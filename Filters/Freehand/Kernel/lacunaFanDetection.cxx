@@ -16,6 +16,7 @@ namespace
 {
 constexpr double Tolerance = 1.5; // pixels, the larger of the two spacings
 constexpr double LeastSupport = 1.0 / 3;
+constexpr double LeastSupportOfRectangles = 0.4; // more than a small disc gives
 constexpr double LeastInside = 0.98;
 constexpr double LeastCovered = 0.5;
 // Fractions of the largest change below which a pixel counts as unchanged.
@@ -143,7 +144,7 @@ Trial TryRectangle(const PixelSet& part, const Outline& outline)
   trial.Fan.Rectangle = { first[0], first[1], last[0] - first[0] + 1, last[1] - first[1] + 1 };
   for (std::size_t s = 0; s < 4 && trial.Doubt.empty(); ++s)
   {
-    if (sides[s].Support < LeastSupport)
+    if (sides[s].Support < LeastSupportOfRectangles)
     {
       trial.Doubt = std::string("the ") + names[s] + " side of a rectangle is confirmed by only " +
         Percent(sides[s].Support) + " of its length";

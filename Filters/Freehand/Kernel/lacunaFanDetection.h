@@ -13,7 +13,8 @@
 /// the sector and bits of text beside it do no harm.
 ///
 /// A shape is trusted when 98 % of the part lie in it, the part covers at least half of it, and each
-/// side and arc is confirmed by a third of its length, unless the image ends there. The smallest
+/// side and arc is confirmed by a third of its length (of a rectangle by two fifths), unless the
+/// image ends there. The smallest
 /// change that counts is tried from none at all (recordings that are exactly black around the
 /// sector) up to a sixteenth of the largest one (noisy ones). The first trusted shape that is
 /// smaller than the image wins; a rectangle that reaches to the left or the right edge only before

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The part of its images that a probe sees, in the pixels of tracked slices. Not a part of the
+/// module's interface.
+#ifndef vtkLacunaSliceFan_h
+#define vtkLacunaSliceFan_h
+
+#include "lacunaFan.h"
+#include "lacunaSliceImage.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+/// A sector, or just a rectangle, in pixels of the original slices.
+struct vtkLacunaSliceFan
+{
+  /// How the pixels of slices' windows are counted in the original slices.
+  struct Window
+  {
+    lacuna::Vec2 Origin{ 0, 0 }; ///< column and row of the window's first pixel
+    lacuna::Vec2 Step{ 1, 1 };   ///< from pixel to pixel
+    /// (column, row, 0, 1) in the window to those in the original slice.
+    lacuna::Matrix4 GetMatrix() const;
+  };
+
+  /// Origin in pixels of the original slices, angles in degrees, radii in mm; no fan when the radii
+  /// are 0.
+  lacuna::Fan Sector;
+  /// First column and row, width and height; 0 to the edge.
+  std::array<int, 4> Clip{ 0, 0, 0, 0 };
+
+  bool HasSector() const { return this->Sector.Radii[0] != 0 || this->Sector.Radii[1] != 0; }
+  /// "FanOrigin=... FanAngles=... FanRadii=... ClipRectangle=...", as the properties would have it.
+  std::string Describe() const;
+
+  /// Finds it in the pixels of slices; its numbers are rounded so that they can be copied. Throws
+  /// std::exception with a text for the user when it cannot be found for certain.
+  static vtkLacunaSliceFan Detect(
+    const std::vector<lacuna::SliceImage>& slices, const Window& window);
+
+  /// Gives slices the fan, and cuts their windows to the box around it. slices: all windows are one
+  /// window of the original slices. Returns the new window; the poses are still those of the old one.
+  /// Throws std::exception when the fan does not meet it.
+  Window Apply(const std::vector<lacuna::SliceImage*>& slices, const Window& window) const;
+};
+#endif
