@@ -295,3 +295,18 @@ std::string vtkLacunaSliceImages::DescribeFlags() const
   }
   return text.str();
 }
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribeLeftOut(const std::vector<std::string>& leftOut)
+{
+  std::ostringstream text;
+  text << leftOut.size() << (leftOut.size() == 1 ? " slice was" : " slices were")
+       << " left out because of bad poses.";
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 0; i < leftOut.size() && i < most; ++i)
+  {
+    text << "\n" << leftOut[i];
+  }
+  text << (leftOut.size() > most ? "\n..." : "");
+  return text.str();
+}

@@ -57,6 +57,10 @@ struct vtkLacunaSliceImages
   /// Cuts all slices to a fan; once.
   void ApplyFan(const vtkLacunaSliceFan& fan);
 
+  /// A warning about slices that are left out because of bad poses (LeftOut, also of several
+  /// stacks); names the first ten.
+  static std::string DescribeLeftOut(const std::vector<std::string>& leftOut);
+
   vtkImageData* Stack;
   vtkSmartPointer<vtkDataArray> GreyLevels; ///< in one piece of memory
   std::vector<lacuna::SliceImage> Slices;

@@ -31,23 +31,6 @@ bool HasPoints(const int extent[6])
   return extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5];
 }
 
-void WarnOfLeftOut(vtkLacunaSweptVolume* self, const std::vector<std::string>& leftOut)
-{
-  if (!leftOut.empty())
-  {
-    std::ostringstream text;
-    text << leftOut.size() << (leftOut.size() == 1 ? " slice was" : " slices were")
-         << " left out because of bad poses.";
-    constexpr std::size_t most = 10;
-    for (std::size_t i = 0; i < leftOut.size() && i < most; ++i)
-    {
-      text << "\n" << leftOut[i];
-    }
-    text << (leftOut.size() > most ? "\n..." : "");
-    vtkWarningWithObjectMacro(self, << text.str());
-  }
-}
-
 void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
 {
   if (fans.Found.empty())
@@ -206,7 +189,10 @@ int vtkLacunaSweptVolume::RequestData(
         output->Initialize();
         return;
       }
-      WarnOfLeftOut(this, plan.LeftOut);
+      if (!plan.LeftOut.empty())
+      {
+        vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(plan.LeftOut));
+      }
       const lacuna::Vec3 origin = plan.GetOrigin();
       const std::array<double, 9> direction = plan.GetDirection();
       int whole[6];

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSliceRayCaster.h"
+
+#include "lacunaSliceFingerprint.h"
+#include "lacunaSliceRayCaster.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSliceImages.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+bool IsSame(const lacuna::ImagePlane& a, const lacuna::ImagePlane& b)
+{
+  return a.Origin == b.Origin && a.Right == b.Right && a.Down == b.Down && a.View == b.View &&
+    a.PixelSpacing == b.PixelSpacing && a.Size == b.Size;
+}
+}
+
+//------------------------------------------------------------------------------
+/// What there is to do: which slices are seen from where.
+class vtkLacunaSliceRayCaster::Plan
+{
+public:
+  /// Throws std::exception with a text for the user.
+  Plan(vtkLacunaSliceRayCaster* self, vtkInformationVector* inputs)
+  {
+    vtkImageData* stack = vtkImageData::GetData(inputs);
+    if (!stack || stack->GetNumberOfPoints() == 0)
+    {
+      return;
+    }
+    if (std::isnan(self->IsoValue))
+    {
+      throw std::runtime_error("IsoValue is not a number; give a grey level of the slices");
+    }
+    if (!(self->MaximumGap >= 0))
+    {
+      throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
+    }
+    vtkLacunaSliceSelection selection;
+    std::copy_n(self->ClipRectangle, 4, selection.Clip.begin());
+    selection.BadPoses = self->BadPoses;
+    selection.AcceptedFlags = (self->UseImageInvalid ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
+      (self->UseTooFast ? vtkLacunaTrackedSlices::TooFast : 0) |
+      (self->UseGatedOut ? vtkLacunaTrackedSlices::GatedOut : 0);
+    this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
+    if (this->GetSlices().empty())
+    {
+      std::ostringstream message;
+      message << "no slice is left to look at: " << this->Images->DescribeFlags();
+      if (!this->Images->LeftOut.empty())
+      {
+        message << "; " << this->Images->LeftOut.size() << " have bad poses";
+      }
+      throw std::runtime_error(message.str());
+    }
+    this->ChoosePlane(self);
+  }
+
+  bool IsEmpty() const { return !this->Images; }
+  const std::vector<lacuna::SliceImage>& GetSlices() const { return this->Images->Slices; }
+
+  std::unique_ptr<vtkLacunaSliceImages> Images;
+  lacuna::ImagePlane Plane;
+
+private:
+  void ChoosePlane(vtkLacunaSliceRayCaster* self)
+  {
+    lacuna::ViewSettings view;
+    std::copy_n(self->ViewDirection, 3, view.Direction.data());
+    std::copy_n(self->ViewUp, 3, view.Up.data());
+    std::copy_n(self->FocalPoint, 3, view.FocalPoint.data());
+    view.HasFocalPoint = vtkLacunaDepthMap::IsGiven(self->FocalPoint);
+    std::copy_n(self->PlaneOrigin, 3, view.PlaneOrigin.data());
+    view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
+    view.PixelSpacing = self->PixelSpacing;
+    view.Size = { self->ImageSize[0], self->ImageSize[1] };
+    std::vector<lacuna::Vec3> points;
+    double finest = VTK_DOUBLE_MAX;
+    for (const lacuna::SliceImage& slice : this->GetSlices())
+    {
+      const auto corners = lacuna::GetCorners(slice);
+      points.insert(points.end(), corners.begin(), corners.end());
+      finest = std::min({ finest, lacuna::Norm(slice.PixelToReference.Column(0)),
+        lacuna::Norm(slice.PixelToReference.Column(1)) });
+    }
+    this->Plane = lacuna::MakeImagePlane(points, finest, view);
+  }
+};
+
+//------------------------------------------------------------------------------
+/// The casting so far: more slices of the same sweep, or another MaximumGap, go on from there.
+class vtkLacunaSliceRayCaster::State
+{
+public:
+  std::unique_ptr<lacuna::SliceRayCaster> Caster;
+  lacuna::ImagePlane Plane;
+  std::array<int, 4> Extent{};
+  double IsoValue = 0;
+  int SolidSide = 0;
+  std::vector<lacuna::SliceFingerprint> Slices;
+
+  /// Brings the casting up to date and returns how many slices had to be cast for that.
+  std::size_t Update(const vtkLacunaSliceRayCaster* self, const Plan& plan,
+    const std::array<int, 4>& extent, lacuna::Execution& execution)
+  {
+    execution.SetStage(0, 0.1);
+    std::vector<lacuna::SliceFingerprint> slices =
+      lacuna::GetFingerprints(plan.GetSlices(), execution);
+    // not kept while it changes: what is stopped on the way is of no use
+    std::unique_ptr<lacuna::SliceRayCaster> caster = std::move(this->Caster);
+    auto known = static_cast<std::ptrdiff_t>(this->Slices.size());
+    const auto begin = plan.GetSlices().begin();
+    if (caster && IsSame(this->Plane, plan.Plane) && this->Extent == extent &&
+      this->IsoValue == self->IsoValue && this->SolidSide == self->SolidSide &&
+      lacuna::IsContinued(this->Slices, slices))
+    {
+      caster->MoveSlices({ begin, begin + known });
+    }
+    else
+    {
+      known = 0;
+      caster = nullptr; // its memory goes before there is a new one
+      caster = std::make_unique<lacuna::SliceRayCaster>(plan.Plane, extent, self->IsoValue,
+        self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below);
+    }
+    execution.SetStage(0.1, 0.9);
+    caster->AddSlices({ begin + known, plan.GetSlices().end() }, execution);
+    this->Plane = plan.Plane;
+    this->Extent = extent;
+    this->IsoValue = self->IsoValue;
+    this->SolidSide = self->SolidSide;
+    this->Slices = std::move(slices);
+    this->Caster = std::move(caster);
+    return this->Slices.size() - static_cast<std::size_t>(known);
+  }
+};
+
+vtkStandardNewMacro(vtkLacunaSliceRayCaster);
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceRayCaster::vtkLacunaSliceRayCaster()
+  : Kept(std::make_unique<State>())
+{
+  std::fill_n(this->FocalPoint, 3, VTK_DOUBLE_MAX);
+  std::fill_n(this->PlaneOrigin, 3, VTK_DOUBLE_MAX);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceRayCaster::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // Slices that change with time change the map: it is laid out again when the time is known.
+  if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  {
+    return this->RequestInformation(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceRayCaster::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  // Any pixel's ray may meet any slice, on any rank.
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (info->Has(SDDP::WHOLE_EXTENT()))
+  {
+    info->Set(SDDP::UPDATE_EXTENT(), info->Get(SDDP::WHOLE_EXTENT()), 6);
+  }
+  info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceRayCaster::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // Where the map lies follows from the poses, which are data: so the input must be executed now.
+  // When it is up to date, as it usually is, this does nothing.
+  this->RequestUpdateExtent(request, inputs, outputs);
+  vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
+  connection->GetProducer()->Update(connection->GetIndex());
+
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      vtkInformation* info = outputs->GetInformationObject(0);
+      const Plan plan(this, inputs[0]);
+      if (plan.IsEmpty())
+      {
+        const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+        info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
+      }
+      else
+      {
+        vtkLacunaDepthMap::SetInformation(info, plan.Plane);
+      }
+      info->Set(SDDP::TIME_DEPENDENT_INFORMATION(), 1);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceRayCaster::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkInformation* info = outputs->GetInformationObject(0);
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      output->GetFieldData()->Initialize(); // VTK passes the slices' own
+      this->NumberOfCastSlices = 0;
+      const Plan plan(this, inputs[0]);
+      if (plan.IsEmpty())
+      {
+        output->Initialize();
+        return;
+      }
+      const lacuna::ImagePlane& plane = plan.Plane;
+      const int* whole = info->Get(SDDP::WHOLE_EXTENT());
+      if (whole[1] != plane.Size[0] - 1 || whole[3] != plane.Size[1] - 1 ||
+        !std::equal(
+          plane.Origin.data(), plane.Origin.data() + 3, info->Get(vtkDataObject::ORIGIN())))
+      {
+        throw std::runtime_error(
+          "the slices have changed since the map was announced (a source that changes with "
+          "time?); set FocalPoint, PlaneOrigin, PixelSpacing and ImageSize, so that the map does "
+          "not depend on the slices");
+      }
+      int extent[6];
+      info->Get(SDDP::UPDATE_EXTENT(), extent);
+      output->SetExtent(extent);
+      vtkLacunaDepthMap::SetGeometry(output, plane);
+      const vtkIdType pixels = output->GetNumberOfPoints();
+      vtkNew<vtkDoubleArray> depth;
+      depth->SetName(vtkLacunaDepthMap::DepthName);
+      depth->SetNumberOfTuples(pixels);
+      vtkNew<vtkCharArray> mask;
+      mask->SetName(vtkLacunaDepthMap::MaskName);
+      mask->SetNumberOfTuples(pixels);
+      vtkNew<vtkFloatArray> normals;
+      normals->SetName(vtkLacunaDepthMap::NormalsName);
+      normals->SetNumberOfComponents(3);
+      normals->SetNumberOfTuples(pixels);
+      if (pixels > 0)
+      {
+        const std::array<int, 4> part{ extent[0], extent[1], extent[2], extent[3] };
+        this->NumberOfCastSlices =
+          static_cast<vtkIdType>(this->Kept->Update(this, plan, part, execution));
+        execution.SetStage(0.9, 1);
+        this->Kept->Caster->Write(this->MaximumGap,
+          { part, depth->GetPointer(0), mask->GetPointer(0), normals->GetPointer(0) }, execution);
+        this->WarnAbout(plan, std::count(mask->GetPointer(0), mask->GetPointer(pixels), 1) > 0);
+      }
+      output->GetPointData()->SetScalars(depth);
+      output->GetPointData()->AddArray(mask);
+      output->GetPointData()->SetNormals(normals);
+      vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, { this->IsoValue }, 1);
+      vtkLacunaProvenance::Record(output, this, { plan.Images->Stack }, this->DescribeParameters());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
+{
+  const std::vector<std::string>& leftOut = plan.Images->LeftOut;
+  if (!leftOut.empty())
+  {
+    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(leftOut));
+  }
+  const lacuna::SliceRayCaster& caster = *this->Kept->Caster;
+  const std::int64_t edgeOn = caster.GetNumberOfEdgeOnSlices();
+  if (edgeOn > 0)
+  {
+    // the way to look that shows most of the slices
+    lacuna::Vec3 across{ 0, 0, 0 };
+    for (const lacuna::SliceImage& slice : plan.GetSlices())
+    {
+      const lacuna::Vec3 normal = lacuna::Normalized(
+        lacuna::Cross(slice.PixelToReference.Column(0), slice.PixelToReference.Column(1)));
+      across = across + (lacuna::Dot(normal, across) < 0 ? -1.0 : 1.0) * normal;
+    }
+    across = lacuna::Normalized(across);
+    for (double& x : across.Elements)
+    {
+      x = std::round(1000 * x) / 1000 + 0.0; // to be read; no negative zero
+    }
+    vtkWarningMacro(<< edgeOn << " of " << caster.GetNumberOfSlices()
+                    << " slices are seen edge-on, at less than "
+                    << lacuna::SliceProjection::SmallestAngle
+                    << " degree from the view direction, and left out; the slices are seen best "
+                       "along the ViewDirection "
+                    << across[0] << " " << across[1] << " " << across[2] << " or its opposite");
+  }
+  double range[2];
+  plan.Images->GreyLevels->GetFiniteRange(range, 0);
+  if (!hasSurface && !(this->IsoValue >= range[0] && this->IsoValue <= range[1]))
+  {
+    vtkWarningMacro(<< "IsoValue " << this->IsoValue
+                    << " lies outside the grey levels of the slices, which range from " << range[0]
+                    << " to " << range[1] << ": the map is empty");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceRayCaster::DescribeParameters() const
+{
+  constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
+  std::ostringstream text;
+  text.precision(17);
+  const auto list = [&](const char* name, const auto& values)
+  {
+    text << " " << name << "=";
+    const char* separator = "";
+    for (const auto value : values)
+    {
+      text << separator << value;
+      separator = ",";
+    }
+  };
+  text << "IsoValue=" << this->IsoValue
+       << " SolidSide=" << (this->SolidSide == Above ? "Above" : "Below")
+       << " MaximumGap=" << this->MaximumGap;
+  list("ViewDirection", this->ViewDirection);
+  list("ViewUp", this->ViewUp);
+  list("FocalPoint", this->FocalPoint);
+  list("PlaneOrigin", this->PlaneOrigin);
+  text << " PixelSpacing=" << this->PixelSpacing;
+  list("ImageSize", this->ImageSize);
+  list("ClipRectangle", this->ClipRectangle);
+  text << " UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
+       << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses];
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceRayCaster::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Parameters: " << this->DescribeParameters() << "\n"
+     << indent << "NumberOfCastSlices: " << this->NumberOfCastSlices << "\n";
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaSliceRayCaster
+ * @brief   Depth map of a surface straight from freehand ultrasound slices, without a volume
+ *
+ * Looks at tracked slices (see vtkLacunaTrackedSlices.h) from one direction. The parallel ray of
+ * each pixel meets each slice at most once; the surface lies where these samples, from the viewer
+ * on, first turn solid: the crossing of the iso-value is interpolated linearly between the nearest
+ * solid sample and the sample just in front of it. If the two are further apart than MaximumGap, or
+ * nothing lies in front, the depth is that of the solid sample (Carr 1996, 4.3). It is the quick
+ * look: a volume (vtkLacunaSweptVolume) gives better surfaces, and can be measured.
+ *
+ * The map depends on the set of slices only, not on their order, on threads or pieces, bit by bit.
+ * When the input comes again with more slices at its end (a live source, a replay) and the view is
+ * the same, only the new ones are cast: for that, keep the map from following the bounds of the
+ * slices by FocalPoint, PlaneOrigin, PixelSpacing and ImageSize.
+ *
+ * Input: tracked slices. Slices whose SliceStatus is not 0 are left out, but for flags taken by
+ * choice. Grey levels between pixels are bilinear; samples that are not finite do not exist. Slices
+ * seen edge-on, at less than 1 degree from the rays, are left out and counted in a warning.
+ *
+ * Output: a depth map, see vtkLacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
+ * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
+ * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
+ * x 3, unit, reference frame, towards the viewer; from the slopes of the depth by the rule in
+ * lacunaDepthSlope.h). Field data: ImageToWorld, IsoValues, Provenance. Requested extents are
+ * honoured.
+ *
+ * The map depends on the poses, which are known when the input has been executed: so the input is
+ * brought up to date already when information about the output is asked for.
+ *
+ * Errors: an array of the input is missing, no slice is left, a pose cannot be true (see BadPoses),
+ * IsoValue or MaximumGap is not a number, MaximumGap is negative, the view is impossible (a zero
+ * ViewDirection or ViewUp, the two parallel, over 2^28 pixels).
+ *
+ * @sa lacunaSliceRayCaster.h, vtkLacunaBSplineIsoRayCaster, vtkLacunaDepthMapSurface
+ */
+#ifndef vtkLacunaSliceRayCaster_h
+#define vtkLacunaSliceRayCaster_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersFreehandModule.h" // for export macro
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceRayCaster : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaSliceRayCaster* New();
+  vtkTypeMacro(vtkLacunaSliceRayCaster, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum SolidSideType
+  {
+    Above = 0, ///< solid where the grey level is at or above the iso-value
+    Below
+  };
+  enum BadPoseRules
+  {
+    Refuse = 0,
+    LeaveOut = 1,
+    KeepOutliers = 2
+  };
+
+  ///@{
+  /// Grey level of the surface. Default: 128, the middle of 8 bits.
+  vtkSetMacro(IsoValue, double);
+  vtkGetMacro(IsoValue, double);
+  ///@}
+
+  ///@{
+  /// Which side of the iso-value is solid. Default: Above; Below for vessels filled with fluid.
+  vtkSetClampMacro(SolidSide, int, Above, Below);
+  vtkGetMacro(SolidSide, int);
+  ///@}
+
+  ///@{
+  /// mm along the ray: where the solid sample and the one in front of it are further apart, the
+  /// depth of the solid sample is taken. 0 = no limit. Default: 0.
+  vtkSetMacro(MaximumGap, double);
+  vtkGetMacro(MaximumGap, double);
+  ///@}
+
+  ///@{
+  /// The way the viewer looks, reference frame, any length. Default: 0 0 -1.
+  vtkSetVector3Macro(ViewDirection, double);
+  vtkGetVector3Macro(ViewDirection, double);
+  ///@}
+
+  ///@{
+  /// What is shown upwards, reference frame; need not be perpendicular to ViewDirection. Default:
+  /// 0 1 0.
+  vtkSetVector3Macro(ViewUp, double);
+  vtkGetVector3Macro(ViewUp, double);
+  ///@}
+
+  ///@{
+  /// What is shown in the middle of the map, mm. While a coordinate is VTK_DOUBLE_MAX (the
+  /// default), the middle of the slices.
+  vtkSetVector3Macro(FocalPoint, double);
+  vtkGetVector3Macro(FocalPoint, double);
+  ///@}
+
+  ///@{
+  /// A point of the image plane, mm: where depth is 0. While a coordinate is VTK_DOUBLE_MAX (the
+  /// default) the plane goes through the corner of the slices nearest the viewer, so that no depth
+  /// is negative. The plane does not cut: a surface before it has a negative depth.
+  vtkSetVector3Macro(PlaneOrigin, double);
+  vtkGetVector3Macro(PlaneOrigin, double);
+  ///@}
+
+  ///@{
+  /// mm between the map's pixels. Default: 0, the smallest pixel spacing of the slices.
+  vtkSetMacro(PixelSpacing, double);
+  vtkGetMacro(PixelSpacing, double);
+  ///@}
+
+  ///@{
+  /// Columns and rows of the map. 0 (default): as many as show all slices, the first pixels on
+  /// their edge (with a FocalPoint, the middle one on it). Otherwise the map is centred on the
+  /// slices or the FocalPoint.
+  vtkSetVector2Macro(ImageSize, int);
+  vtkGetVector2Macro(ImageSize, int);
+  ///@}
+
+  ///@{
+  /// The part of the slices to use, in pixels: first column, first row, width, height. A width or
+  /// height of 0 reaches to the edge of the image. Default: 0 0 0 0, all.
+  vtkSetVector4Macro(ClipRectangle, int);
+  vtkGetVector4Macro(ClipRectangle, int);
+  ///@}
+
+  ///@{
+  /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
+  /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
+  /// Default: off.
+  vtkSetMacro(UseImageInvalid, bool);
+  vtkGetMacro(UseImageInvalid, bool);
+  vtkBooleanMacro(UseImageInvalid, bool);
+  vtkSetMacro(UseTooFast, bool);
+  vtkGetMacro(UseTooFast, bool);
+  vtkBooleanMacro(UseTooFast, bool);
+  vtkSetMacro(UseGatedOut, bool);
+  vtkGetMacro(UseGatedOut, bool);
+  vtkBooleanMacro(UseGatedOut, bool);
+  ///@}
+
+  ///@{
+  /// What to do with slices that are to be taken, but whose pose cannot be true; see
+  /// vtkLacunaSweptVolume. Default: Refuse.
+  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
+  vtkGetMacro(BadPoses, int);
+  ///@}
+
+  /// Slices that the last update cast; fewer than there are when it went on from an earlier one.
+  vtkGetMacro(NumberOfCastSlices, vtkIdType);
+
+  int ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+protected:
+  vtkLacunaSliceRayCaster();
+  ~vtkLacunaSliceRayCaster() override;
+
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaSliceRayCaster(const vtkLacunaSliceRayCaster&) = delete;
+  void operator=(const vtkLacunaSliceRayCaster&) = delete;
+
+  class Plan;
+  class State;
+  void WarnAbout(const Plan& plan, bool hasSurface);
+  std::string DescribeParameters() const;
+
+  double IsoValue = 128;
+  int SolidSide = Above;
+  double MaximumGap = 0;
+  double ViewDirection[3] = { 0, 0, -1 };
+  double ViewUp[3] = { 0, 1, 0 };
+  double FocalPoint[3];
+  double PlaneOrigin[3];
+  double PixelSpacing = 0;
+  int ImageSize[2] = { 0, 0 };
+  int ClipRectangle[4] = { 0, 0, 0, 0 };
+  bool UseImageInvalid = false;
+  bool UseTooFast = false;
+  bool UseGatedOut = false;
+  int BadPoses = Refuse;
+  vtkIdType NumberOfCastSlices = 0;
+
+  std::unique_ptr<State> Kept;
+};
+#endif
