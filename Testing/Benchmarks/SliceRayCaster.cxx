@@ -10,8 +10,9 @@
 /// is hidden already: Towards brings the nearest slices last, so that all of every slice counts and
 /// nothing is hidden; Away brings them first; Shuffled is any order.
 ///
-/// Counters: slices/s and ns per pixel of the map that a slice covers, both by the time that the
-/// process was busy, and the share of the map that a slice covers.
+/// Counters: slices/s, the time for each pixel of the map that a slice covers, both by the time that
+/// the process was busy, and the share of the map that a slice covers.
+#include "lacunaSliceFingerprint.h"
 #include "lacunaSliceProjection.h"
 #include "lacunaSliceRayCaster.h"
 
@@ -132,8 +133,8 @@ void SetCounters(benchmark::State& state, double covered, double slices)
   const auto iterations = static_cast<double>(state.iterations());
   using Counter = benchmark::Counter;
   state.counters["slices/s"] = Counter(slices * iterations, Counter::kIsRate);
-  state.counters["ns/pixel"] =
-    Counter(1e-9 * covered * slices / Count * iterations, Counter::kIsRate | Counter::kInvert);
+  state.counters["pixel"] =
+    Counter(covered * slices / Count * iterations, Counter::kIsRate | Counter::kInvert);
   state.counters["coverage"] = covered / Count / MapSize / MapSize;
 }
 
@@ -187,6 +188,17 @@ void Write(benchmark::State& state)
     caster.Write(0, { Extent, depth.data(), valid.data(), normals.data() }, execution);
   }
 }
+
+// What it takes to see that 200 slices are those of the last time.
+void Fingerprints(benchmark::State& state)
+{
+  const std::vector<SliceImage> slices = GetSlices(Away);
+  ThreadExecution execution(static_cast<int>(state.range(0)));
+  for (auto _ : state)
+  {
+    benchmark::DoNotOptimize(GetFingerprints(slices, execution));
+  }
+}
 }
 
 // oblique, order (Towards, Away, Shuffled), threads
@@ -201,6 +213,11 @@ BENCHMARK(AllAtOnce)
   ->MeasureProcessCPUTime()
   ->Unit(benchmark::kMillisecond);
 BENCHMARK(Write)
+  ->ArgName("threads")
+  ->ArgsProduct({ { 1, 2 } })
+  ->MeasureProcessCPUTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(Fingerprints)
   ->ArgName("threads")
   ->ArgsProduct({ { 1, 2 } })
   ->MeasureProcessCPUTime()
