@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Speckle Filter and Contrast To Speckle through ParaView: defaults, phantom, state, pieces, compounding."""
+"""Speckle Filter and Contrast To Speckle through ParaView: defaults, phantom, compounding, state, trace."""
 import os
 
 import lacuna.plugin
@@ -7,10 +7,11 @@ import numpy as np
 
 lacuna.plugin.load()
 from paraview.simple import *
-from paraview import servermanager
+from paraview import servermanager, smtrace
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from lacuna import speckle
+from lacuna.errors import PipelineError, raising
 
 OPERATIONS = ["Median", "Rank", "Minimum", "Maximum", "Opening", "Closing", "OpenClose", "CloseOpen",
               "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian"]
@@ -24,14 +25,42 @@ def check_defaults():
     assert proxy.Operation == OPERATIONS[own.GetOperation()]
     assert proxy.KernelShape == ["Box", "Ellipsoid"][own.GetKernelShape()]
     assert list(proxy.KernelSize) == list(own.GetKernelSize())
-    for name in ("Rank", "StandardDeviation", "AdaptiveStrength"):
+    for name in ("ScalarArray", "Rank", "StandardDeviation", "AdaptiveStrength"):
         assert getattr(proxy, name) == getattr(own, "Get" + name)(), name
     proxy = ContrastToSpeckle(Input=source)
     own = lacuna.vtkLacunaContrastToSpeckle()
-    for name in ("InsideArray", "OutsideArray", "IsoValue"):
+    for name in ("ScalarArray", "InsideArray", "OutsideArray", "IsoValue"):
         assert getattr(proxy, name) == getattr(own, "Get" + name)(), name
     for name in ("InsideBounds", "OutsideBounds"):
         assert list(getattr(proxy, name)) == list(getattr(own, "Get" + name)()), name
+
+
+def check_arrays():
+    """The input's own scalars, whichever source is active; a chosen array; a wrong name is an error."""
+    other = Wavelet()
+    other.UpdatePipeline()
+    sweep = PhantomSweep(NumberOfSlices=1, ImageSize=[30, 20], SpeckleLevel=0.3)
+    both = Calculator(Input=sweep, ResultArrayName="Double", Function="2 * Intensity")
+    SetActiveSource(other)
+    proxy = SpeckleFilter(Input=sweep)
+    contrast = ContrastToSpeckle(Input=sweep, InsideBounds=[0, 9, 0, 9, 0, 0])
+    with raising():
+        proxy.UpdatePipeline()
+        mean = servermanager.Fetch(contrast).GetColumnByName("InsideMean").GetValue(0)
+    assert servermanager.Fetch(proxy).GetPointData().GetScalars().GetName() == "Intensity"
+    proxy = SpeckleFilter(Input=both, ScalarArray="Double")
+    points = servermanager.Fetch(proxy).GetPointData()
+    raw = vtk_to_numpy(servermanager.Fetch(sweep).GetPointData().GetScalars())
+    assert (vtk_to_numpy(points.GetArray("Intensity")) == raw).all()
+    assert (vtk_to_numpy(points.GetArray("Double")) != 2 * raw).any()
+    double = ContrastToSpeckle(Input=both, ScalarArray="Double", InsideBounds=[0, 9, 0, 9, 0, 0])
+    assert abs(servermanager.Fetch(double).GetColumnByName("InsideMean").GetValue(0) - 2 * mean) < 1e-9
+    try:
+        with raising():
+            SpeckleFilter(Input=sweep, ScalarArray="Echo").UpdatePipeline()
+        raise AssertionError("a missing array was accepted")
+    except PipelineError as error:
+        assert "no point array 'Echo'" in str(error), error
 
 
 def check_tracked_slices():
@@ -130,6 +159,47 @@ def check_compounding():
         assert maximum / n ** 0.5 > 0.88, (n, maximum)
 
 
+def check_compounding_of_sweeps():
+    """The same by Swept Volume: more sweeps of Phantom Sweep in a volume, more SNR."""
+    def snr(count, compounding, level=0.52):  # as fully developed speckle
+        sweeps = [PhantomSweep(NumberOfSlices=12, ImageSize=[64, 48], PixelSpacing=1, SpeckleLevel=level, Seed=seed,
+                               OutputScalarType="Float") for seed in range(count)]
+        volume = SweptVolume(Input=sweeps, OutputSpacing=[1, 1, 1], PixelSampling="Nearest",
+                             Compounding=compounding, OutputScalarType="Float")
+        volume.UpdatePipeline()
+        x0, x1, y0, y1, z0, z1 = volume.GetDataInformation().GetBounds()
+        corner = [x0 + 2, x0 + 14, y0 + 2, y0 + 12, z1 - 20, z1]
+        return speckle.measure(volume, inside_bounds=corner)["InsideSNR"]
+
+    assert snr(1, "Mean", 0) == np.inf  # plain tissue
+    for compounding, least in (("Mean", 0.97), ("Maximum", 0.87)):
+        single = snr(1, compounding)
+        for n in (4, 9):
+            gain = snr(n, compounding) / single
+            print(f"compounding {n} sweeps, {compounding}: {gain:.2f}, root {n ** 0.5:.2f}")
+            assert least < gain / n ** 0.5 < 1.03, (compounding, n, gain)
+
+
+def check_trace():
+    """What ParaView's trace writes makes the same filters again."""
+    sweep = PhantomSweep(NumberOfSlices=1, ImageSize=[40, 30], SpeckleLevel=0.3)
+    smtrace.start_trace()
+    opening = SpeckleFilter(registrationName="TraceFilter", Input=sweep, Operation="Opening",
+                            KernelShape="Ellipsoid", KernelSize=[7, 5, 1])
+    contrast = ContrastToSpeckle(registrationName="TraceContrast", Input=opening,
+                                 InsideBounds=[0, 20, 0, 20, 0, 0], IsoValue=60)
+    trace = smtrace.stop_trace()
+    for line in ("Operation = 'Opening'", "KernelShape = 'Ellipsoid'", "KernelSize = [7, 5, 1]",
+                 "InsideBounds = [0.0, 20.0, 0.0, 20.0, 0.0, 0.0]", "IsoValue = 60.0"):
+        assert line in trace, (line, trace)
+    before = servermanager.Fetch(contrast).GetColumnByName("CSR").GetValue(0)
+    Delete(contrast)
+    Delete(opening)
+    exec(compile(trace, "trace", "exec"), {})
+    again = FindSource("TraceContrast")
+    assert servermanager.Fetch(again).GetColumnByName("CSR").GetValue(0) == before
+
+
 def check_state():
     """A state file brings filter and measure back."""
     sweep = PhantomSweep(NumberOfSlices=1, ImageSize=[60, 50], SpeckleLevel=0.3)
@@ -147,9 +217,12 @@ def check_state():
 
 
 check_defaults()
+check_arrays()
 check_tracked_slices()
 check_operations()
 check_contrast()
 check_selection()
 check_compounding()
+check_compounding_of_sweeps()
+check_trace()
 check_state()
