@@ -26,10 +26,10 @@ COLUMNS = ("CSR", "InsideMean", "InsideSNR", "OutsideMean", "OutsideSNR", "Regio
 
 
 def measure(image, inside_array="", outside_array="", inside_bounds=None, outside_bounds=None,
-            iso_value=128):
+            iso_value=128, scalar_array=""):
     """The row of Contrast To Speckle as a dictionary. image: a pipeline proxy."""
     contrast = pv.ContrastToSpeckle(Input=image, InsideArray=inside_array, OutsideArray=outside_array,
-                                    IsoValue=iso_value)
+                                    IsoValue=iso_value, ScalarArray=scalar_array)
     if inside_bounds is not None:
         contrast.InsideBounds = inside_bounds
     if outside_bounds is not None:
@@ -44,14 +44,14 @@ def compare(image, filters=None, **regions):
     """One row for each filter: the keys of measure(), and the label as "filter".
 
     filters: label -> properties of Speckle Filter (None: the image as it is); default FILTERS.
-    regions: inside_array, outside_array, inside_bounds, outside_bounds, iso_value, as in measure().
+    regions: inside_array, outside_array, inside_bounds, outside_bounds, iso_value, scalar_array, as in measure().
     """
     rows = []
     for label, properties in (FILTERS if filters is None else filters).items():
         if properties is None:
             rows.append(dict(filter=label, **measure(image, **regions)))
             continue
-        filtered = pv.SpeckleFilter(Input=image, **properties)
+        filtered = pv.SpeckleFilter(Input=image, ScalarArray=regions.get("scalar_array", ""), **properties)
         rows.append(dict(filter=label, **measure(filtered, **regions)))
         pv.Delete(filtered)
     return rows
