@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time per sample of the speckle filters, against window size and against VTK's median.
-//   bin/BenchmarkSpeckleFilter [--benchmark_filter=...]
-// per_sample is wall time on all cores, cpu_per_sample what all threads took together.
+//   bin/BenchmarkSpeckleFilter [--benchmark_filter=Goal]
+// per_sample is wall time on all cores (of use on an idle machine only), cpu_per_sample what all
+// threads took together. Goal cases carry what per_sample has to reach on two cores as goal, and
+// how many times faster than vtkImageMedian3D in the same run they are as faster and cpu_faster.
 #include "lacunaSpeckleFilter.h"
 #include "vtkImageData.h"
 #include "vtkImageMedian3D.h"
@@ -10,6 +12,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <ctime>
@@ -56,34 +59,54 @@ const std::vector<T>& Speckle(const Size& size)
   return samples;
 }
 
-/// per_sample: wall time; it is of use on an otherwise idle machine only. cpu_per_sample: processor
-/// time of all threads.
-class CpuClock
+/// Seconds for a sample.
+struct Cost
+{
+  double Wall = 0;
+  double Cpu = 0;
+};
+
+/// Counts from its making to its end.
+class Clock
 {
 public:
-  explicit CpuClock(benchmark::State& state, std::size_t samples)
+  explicit Clock(benchmark::State& state, std::size_t samples)
     : State(state)
-    , Samples(samples)
-    , Start(std::clock())
+    , Samples(static_cast<double>(samples))
+    , Start(std::chrono::steady_clock::now())
+    , CpuStart(std::clock())
   {
   }
-  ~CpuClock()
+  ~Clock()
   {
-    const double cpu = double(std::clock() - this->Start) / CLOCKS_PER_SEC;
-    this->State.counters["cpu_per_sample"] =
-      cpu / (static_cast<double>(this->Samples) * static_cast<double>(this->State.iterations()));
-    this->State.counters["per_sample"] = benchmark::Counter(static_cast<double>(this->Samples),
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    const Cost cost = this->GetCost();
+    this->State.counters["cpu_per_sample"] = cost.Cpu;
+    this->State.counters["per_sample"] = cost.Wall;
+  }
+
+  Cost GetCost() const
+  {
+    const double count = this->Samples * static_cast<double>(this->State.iterations());
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - this->Start;
+    return { wall.count() / count, double(std::clock() - this->CpuStart) / CLOCKS_PER_SEC / count };
   }
 
 private:
   benchmark::State& State;
-  std::size_t Samples;
-  std::clock_t Start;
+  double Samples;
+  std::chrono::steady_clock::time_point Start;
+  std::clock_t CpuStart;
 };
 
+/// What the median of VTK cost in this run.
+Cost& PeerCost()
+{
+  static Cost cost;
+  return cost;
+}
+
 template <class T>
-void Filter(benchmark::State& state, const Size& size, const lacuna::SpeckleParameters& parameters)
+Cost Filter(benchmark::State& state, const Size& size, const lacuna::SpeckleParameters& parameters)
 {
   const lacuna::Extent box{ 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 };
   const std::vector<T>& samples = Speckle<T>(size);
@@ -91,11 +114,12 @@ void Filter(benchmark::State& state, const Size& size, const lacuna::SpecklePara
   const lacuna::ImageView<const T> input(samples.data(), box);
   const lacuna::ImageView<T> output(result.data(), box);
   lacuna::ThreadExecution execution;
-  const CpuClock clock(state, samples.size());
+  const Clock clock(state, samples.size());
   for (auto _ : state)
   {
     lacuna::FilterSpeckle(input, output, parameters, execution);
   }
+  return clock.GetCost();
 }
 
 lacuna::SpeckleParameters Make(SpeckleOperation operation, int width, bool flat)
@@ -117,19 +141,33 @@ void VTKMedian(benchmark::State& state, const Size& size, int width)
   vtkNew<vtkImageMedian3D> median;
   median->SetInputData(image);
   median->SetKernelSize(width, width, width);
+  median->SetEnableSMP(false); // ParaView's default back end is sequential
   median->SetNumberOfThreads(vtkMultiThreader::GetGlobalDefaultNumberOfThreads());
-  const CpuClock clock(state, samples.size());
+  const Clock clock(state, samples.size());
   for (auto _ : state)
   {
     median->Modified();
     median->Update();
   }
+  PeerCost() = clock.GetCost();
 }
 
 template <class Body>
 void Register(const std::string& name, const Body& body)
 {
   benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+/// A goal: nanoseconds of wall time for a sample on two cores.
+void RegisterGoal(const std::string& name, double goal, const Size& size,
+  const lacuna::SpeckleParameters& parameters)
+{
+  Register("Goal/" + name,
+    [=](benchmark::State& state)
+    {
+      Filter<std::uint8_t>(state, size, parameters);
+      state.counters["goal"] = 1e-9 * goal;
+    });
 }
 }
 
@@ -141,22 +179,36 @@ int main(int argc, char* argv[])
     [=](benchmark::State& state) { VTKMedian(state, slab, 9); });
   Register("Goal/Median_9x9x9_uint8_40slices",
     [=](benchmark::State& state)
-    { Filter<std::uint8_t>(state, slab, Make(SpeckleOperation::Median, 9, false)); });
-  Register("Goal/Median_9x9x9_uint8",
-    [=](benchmark::State& state)
-    { Filter<std::uint8_t>(state, Foetus, Make(SpeckleOperation::Median, 9, false)); });
-  Register("Goal/Median_11x11_uint8",
-    [=](benchmark::State& state)
-    { Filter<std::uint8_t>(state, Sweep, Make(SpeckleOperation::Median, 11, true)); });
+    {
+      const Cost cost = Filter<std::uint8_t>(state, slab, Make(SpeckleOperation::Median, 9, false));
+      state.counters["faster"] = PeerCost().Wall / cost.Wall; // goal: 100
+      state.counters["cpu_faster"] = PeerCost().Cpu / cost.Cpu;
+    });
+  RegisterGoal("Median_9x9x9_uint8", 80, Foetus, Make(SpeckleOperation::Median, 9, false));
+  RegisterGoal("Median_11x11_uint8", 12, Sweep, Make(SpeckleOperation::Median, 11, true));
   for (const double deviation : { 1.0, 1.4142, 2.0, 3.0, 4.0 })
   {
-    Register("Goal/Gaussian_3D_uint8/" + std::to_string(deviation).substr(0, 4),
-      [=](benchmark::State& state)
+    auto parameters = Make(SpeckleOperation::Gaussian, 3, false);
+    parameters.StandardDeviation = deviation;
+    RegisterGoal(
+      "Gaussian_3D_uint8/" + std::to_string(deviation).substr(0, 4), 5, Foetus, parameters);
+  }
+  // Independent of the window: compare the lines.
+  for (const int width : { 3, 9, 15, 31 })
+  {
+    for (const bool flat : { true, false })
+    {
+      const std::string suffix = (flat ? "_2D_uint8/" : "_3D_uint8/") + std::to_string(width);
+      const auto run = [=](const char* name, SpeckleOperation operation)
       {
-        auto parameters = Make(SpeckleOperation::Gaussian, 3, false);
-        parameters.StandardDeviation = deviation;
-        Filter<std::uint8_t>(state, Foetus, parameters);
-      });
+        Register(name + suffix,
+          [=](benchmark::State& state)
+          { Filter<std::uint8_t>(state, Foetus, Make(operation, width, flat)); });
+      };
+      run("Goal/Minimum", SpeckleOperation::Minimum);
+      run("Goal/Maximum", SpeckleOperation::Maximum);
+      run("Goal/Opening", SpeckleOperation::Opening);
+    }
   }
 
   // Cost against window size.
