@@ -133,6 +133,27 @@ TEST(RankFilter, CountsWindowsLargerThanTheImage)
   }
 }
 
+// A block with its margin just fits the bytes that positions in it are kept in.
+TEST(RankFilter, LongWindowsInLongImages)
+{
+  const Image<float> wide = oracle::Random<float>(300, 5, 2, 12);
+  const Image<float> high = oracle::Random<float>(5, 300, 2, 13);
+  const Image<float> deep = oracle::Random<float>(3, 2, 300, 14);
+  for (const int length : { 130, 200, 254 })
+  {
+    for (const auto& [image, window] :
+      { std::pair(wide, Window({ length, 3, 1 }, WindowShape::Box)),
+        std::pair(high, Window({ 3, length, 1 }, WindowShape::Ellipsoid)),
+        std::pair(deep, Window({ 2, 1, length }, WindowShape::Box)) })
+    {
+      EXPECT_EQ(oracle::Differences(Filtered(image, window, {}, lacuna::BestVectorUnit()),
+                  oracle::Rank(image, window, 50)),
+        0u)
+        << length;
+    }
+  }
+}
+
 TEST(RankFilter, LeavesNaNOutAndInPlace)
 {
   for (const unsigned one_in : { 2u, 20u })
