@@ -7,8 +7,10 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
+#include "vtkTable.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <iomanip>
@@ -35,18 +37,40 @@ std::uint64_t Hash(const void* bytes, std::size_t size)
   return hash;
 }
 
-std::string HashOfScalars(vtkDataObject* data)
+// Of the active point scalars of a data set, of the numbers of a table.
+std::string HashOfNumbers(vtkDataObject* data)
 {
-  auto* set = vtkDataSet::SafeDownCast(data);
-  vtkDataArray* scalars = set ? set->GetPointData()->GetScalars() : nullptr;
-  if (!scalars || !scalars->HasStandardMemoryLayout())
+  std::vector<vtkDataArray*> arrays;
+  if (auto* set = vtkDataSet::SafeDownCast(data))
+  {
+    arrays.push_back(set->GetPointData()->GetScalars());
+  }
+  else if (auto* table = vtkTable::SafeDownCast(data))
+  {
+    for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
+    {
+      arrays.push_back(vtkDataArray::SafeDownCast(table->GetColumn(c)));
+    }
+  }
+  std::uint64_t hash = 0;
+  bool any = false;
+  for (vtkDataArray* array : arrays)
+  {
+    if (array && array->HasStandardMemoryLayout())
+    {
+      const std::uint64_t own = Hash(array->GetVoidPointer(0),
+        static_cast<std::size_t>(array->GetNumberOfValues()) * array->GetDataTypeSize());
+      const std::array<std::uint64_t, 2> both{ hash, own };
+      hash = any ? Hash(both.data(), sizeof(both)) : own;
+      any = true;
+    }
+  }
+  if (!any)
   {
     return "-";
   }
   std::ostringstream text;
-  text << std::hex << std::setw(16) << std::setfill('0')
-       << Hash(scalars->GetVoidPointer(0),
-            static_cast<std::size_t>(scalars->GetNumberOfValues()) * scalars->GetDataTypeSize());
+  text << std::hex << std::setw(16) << std::setfill('0') << hash;
   return text.str();
 }
 }
@@ -75,7 +99,7 @@ void Record(vtkDataObject* output, vtkObjectBase* algorithm,
         steps.push_back(earlier);
       }
     }
-    step << " input:" << HashOfScalars(input);
+    step << " input:" << HashOfNumbers(input);
   }
   if (!parameters.empty())
   {

@@ -21,7 +21,8 @@ constexpr const char* ArrayName = "Provenance";
 VTKLACUNAFILTERSCOMMON_EXPORT const char* GetVersion();
 
 /// Copies the steps of the inputs to output and adds one for this step: version, class, a hash of
-/// each input's active point scalars, parameters ("Name=value Name=value"). Never a patient's name.
+/// each input's active point scalars (of a table: its numbers), parameters ("Name=value
+/// Name=value"). Never a patient's name.
 VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   const std::vector<vtkDataObject*>& inputs, const std::string& parameters);
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSliceStack.h"
 
+#include "lacunaLuminance.h"
 #include "lacunaSliceOrientation.h"
 
-#include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
-#include <type_traits>
 #include <vector>
 
 namespace lacuna
@@ -18,29 +16,6 @@ bool IsInside(std::int64_t first, std::int64_t count, std::int64_t stride, std::
 {
   return first >= 0 && stride > 0 && count > 0 && first < size &&
     (count - 1) <= (size - 1 - first) / stride;
-}
-
-// Luminance of count pixels, written over the first of every group of channels.
-template <class T>
-void MakeGrey(T* pixels, std::int64_t count, std::int64_t channels)
-{
-  for (std::int64_t i = 0; i < count; ++i)
-  {
-    const T* colour = pixels + i * channels;
-    const double grey = 0.299 * static_cast<double>(colour[0]) +
-      0.587 * static_cast<double>(colour[1]) + 0.114 * static_cast<double>(colour[2]);
-    if constexpr (std::is_integral_v<T>)
-    {
-      // 2^63 - 1 and 2^64 - 1 are not doubles: the rounded sum can be one too much for T
-      constexpr auto most = static_cast<double>(std::numeric_limits<T>::max());
-      pixels[i] =
-        grey < most ? static_cast<T>(std::floor(grey + 0.5)) : std::numeric_limits<T>::max();
-    }
-    else
-    {
-      pixels[i] = static_cast<T>(grey);
-    }
-  }
 }
 }
 
@@ -81,8 +56,8 @@ void ReadSliceStack(const SequenceHeader& header, PixelSource& source, const Sli
       DispatchScalarType(source.GetScalarType(),
         [&](auto value)
         {
-          MakeGrey(reinterpret_cast<decltype(value)*>(stored), header.Columns * header.Rows,
-            header.Channels);
+          auto* colours = reinterpret_cast<decltype(value)*>(stored);
+          MakeLuminance(colours, header.Columns * header.Rows, header.Channels, colours);
         });
     }
     FlipSlice(stored, header.Columns, header.Rows, elementSize, header.Flips);
