@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaAssembleTrackedSlices.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaPoseRecords.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaStackPixels.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+constexpr const char* IntensityName = "Intensity";
+constexpr const char* ProbeToReferenceName = "ProbeToReference";
+constexpr const char* GateName = "Gate";
+
+std::array<int, 6> GetExtent(vtkInformation* info, vtkInformationIntegerVectorKey* key)
+{
+  std::array<int, 6> extent;
+  info->Get(key, extent.data());
+  return extent;
+}
+}
+
+vtkStandardNewMacro(vtkLacunaAssembleTrackedSlices);
+
+//------------------------------------------------------------------------------
+vtkLacunaAssembleTrackedSlices::vtkLacunaAssembleTrackedSlices()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetPixelSpacing(double columns, double rows)
+{
+  this->SetPixelSpacingAt(0, columns);
+  this->SetPixelSpacingAt(1, rows);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetNumberOfPixelSpacings(int) {}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetPixelSpacingAt(int i, double spacing)
+{
+  // The first number alone stands for both.
+  for (int axis = i; axis < 2; ++axis)
+  {
+    if (axis >= 0 && this->PixelSpacing[axis] != spacing)
+    {
+      this->PixelSpacing[axis] = spacing;
+      this->Modified();
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetImageToProbe(const double elements[16])
+{
+  if (!std::equal(elements, elements + 16, this->ImageToProbe))
+  {
+    std::copy(elements, elements + 16, this->ImageToProbe);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetNumberOfPoseColumns(int count)
+{
+  const auto size = static_cast<std::size_t>(std::max(0, count));
+  if (size != this->PoseColumns.size())
+  {
+    this->PoseColumns.resize(size);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::SetPoseColumn(int i, const char* name)
+{
+  const std::string text = name ? name : "";
+  if (i < 0)
+  {
+    return;
+  }
+  if (i >= this->GetNumberOfPoseColumns())
+  {
+    this->SetNumberOfPoseColumns(i + 1);
+  }
+  if (this->PoseColumns[i] != text)
+  {
+    this->PoseColumns[i] = text;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+const char* vtkLacunaAssembleTrackedSlices::GetPoseColumn(int i) const
+{
+  return i >= 0 && i < this->GetNumberOfPoseColumns() ? this->PoseColumns[i].c_str() : nullptr;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaAssembleTrackedSlices::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaAssembleTrackedSlices::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      vtkInformation* in = inputs[0]->GetInformationObject(0);
+      vtkInformation* out = outputs->GetInformationObject(0);
+      std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
+      this->TimeSteps.clear();
+      if (extent[4] == extent[5] && in->Has(SDDP::TIME_STEPS()) &&
+        in->Length(SDDP::TIME_STEPS()) > 1)
+      {
+        const double* times = in->Get(SDDP::TIME_STEPS());
+        this->TimeSteps.assign(times, times + in->Length(SDDP::TIME_STEPS()));
+        extent[4] = 0;
+        extent[5] = in->Length(SDDP::TIME_STEPS()) - 1;
+        out->Remove(SDDP::TIME_STEPS());
+        out->Remove(SDDP::TIME_RANGE());
+      }
+      out->Set(SDDP::WHOLE_EXTENT(), extent.data(), 6);
+      const double rows = this->RowOrder == BottomRowFirst ? -extent[2] : 0;
+      out->Set(vtkDataObject::ORIGIN(), 0.0, rows, -static_cast<double>(extent[4]));
+      out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
+      out->Remove(vtkDataObject::DIRECTION());
+      out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      if (vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+            in, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS))
+      {
+        vtkDataObject::SetPointDataActiveScalarInfo(
+          out, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), 1);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* in = inputs[0]->GetInformationObject(0);
+  vtkInformation* table = inputs[1]->GetInformationObject(0);
+  const std::array<int, 6> wanted =
+    GetExtent(outputs->GetInformationObject(0), SDDP::UPDATE_EXTENT());
+  // Whole pictures: which rows are wanted is known when the order of rows is.
+  std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
+  if (this->TimeSteps.empty())
+  {
+    extent[4] = wanted[4];
+    extent[5] = wanted[5];
+  }
+  else
+  {
+    // the first picture; RequestData asks for the others
+    const auto last = static_cast<int>(this->TimeSteps.size()) - 1;
+    in->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[std::max(0, std::min(wanted[4], last))]);
+  }
+  in->Set(SDDP::UPDATE_EXTENT(), extent.data(), 6);
+  for (vtkInformation* info : { in, table })
+  {
+    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaAssembleTrackedSlices::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkInformation* info = outputs->GetInformationObject(0);
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      output->GetFieldData()->Initialize(); // VTK passes the stack's own
+      this->CollectPixels(vtkImageData::GetData(inputs[0]), info, output, execution);
+      this->Assemble(vtkImageData::GetData(inputs[0]), vtkTable::GetData(inputs[1]), info, output);
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::CollectPixels(
+  vtkImageData* stack, vtkInformation* info, vtkImageData* output, vtkLacunaExecution& execution)
+{
+  std::array<int, 6> wanted = GetExtent(info, SDDP::UPDATE_EXTENT());
+  output->SetExtent(wanted.data());
+  output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+  output->SetSpacing(1, 1, 1);
+  if (output->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  vtkDataArray* pixels = vtkLacunaStackPixels::Find(stack);
+  const bool flip = this->RowOrder == BottomRowFirst ||
+    (this->RowOrder == Automatic && vtkLacunaStackPixels::IsBottomRowFirst(pixels));
+  const std::array<int, 6> whole = GetExtent(info, SDDP::WHOLE_EXTENT());
+  if (flip && this->RowOrder == Automatic && whole[2] != 0)
+  {
+    throw std::runtime_error("the pictures are a part of larger ones (from row " +
+      std::to_string(whole[2]) +
+      " on): what is their top row is not known; set RowOrder to BottomRowFirst if it is their "
+      "last one");
+  }
+  vtkSmartPointer<vtkDataArray> grey;
+  if (this->TimeSteps.empty() && !flip && pixels->GetNumberOfComponents() == 1 &&
+    std::equal(wanted.begin(), wanted.end(), stack->GetExtent()))
+  {
+    grey.TakeReference(pixels->NewInstance());
+    grey->ShallowCopy(pixels);
+  }
+  else
+  {
+    grey = vtkLacunaStackPixels::Allocate(pixels, wanted);
+    const int count = this->TimeSteps.empty() ? wanted[5] - wanted[4] + 1 : 1;
+    for (int k = wanted[4]; k <= wanted[5]; k += count)
+    {
+      if (!this->TimeSteps.empty())
+      {
+        stack = this->UpdatePicture(k);
+      }
+      vtkLacunaStackPixels::Copy(stack, this->TimeSteps.empty() ? k : stack->GetExtent()[4], count,
+        flip, { whole[2], whole[3] }, grey, wanted, k);
+      execution.Report((k - wanted[4]) / (wanted[5] - wanted[4] + 1.0));
+    }
+  }
+  grey->SetName(IntensityName);
+  output->GetPointData()->SetScalars(grey);
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkLacunaAssembleTrackedSlices::UpdatePicture(int step)
+{
+  // Not by CONTINUE_EXECUTING: with it VTK asks for ever for a picture that cannot be had.
+  vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
+  vtkAlgorithm* producer = connection->GetProducer();
+  const int port = connection->GetIndex();
+  vtkNew<vtkInformationVector> requests;
+  requests->SetNumberOfInformationObjects(producer->GetNumberOfOutputPorts());
+  vtkInformation* info = requests->GetInformationObject(port);
+  info->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[step]);
+  info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  auto* picture = producer->Update(port, requests)
+    ? vtkImageData::SafeDownCast(producer->GetOutputDataObject(port))
+    : nullptr;
+  if (!picture || picture->GetNumberOfPoints() == 0)
+  {
+    throw std::runtime_error("there is no picture at time step " + std::to_string(step) +
+      " (time " + std::to_string(this->TimeSteps[step]) + ")");
+  }
+  return picture;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::Assemble(
+  vtkImageData* stack, vtkTable* table, vtkInformation* info, vtkImageData* output)
+{
+  const std::array<int, 6> whole = GetExtent(info, SDDP::WHOLE_EXTENT());
+  const auto slices = static_cast<std::size_t>(whole[5] - whole[4] + 1);
+  vtkLacunaPoseRequest request;
+  request.Poses.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
+  request.Poses.Transform = static_cast<lacuna::PoseTransform>(this->PoseTransform);
+  request.Poses.Unit = static_cast<lacuna::LengthUnit>(this->LengthUnit);
+  request.Poses.PixelSpacing = { this->PixelSpacing[0], this->PixelSpacing[1] };
+  request.Poses.ImageToProbe = lacuna::Matrix4(this->ImageToProbe);
+  request.Poses.SkipInvalid = this->SkipInvalidPoses;
+  request.PoseColumns = this->PoseColumns;
+  request.FrameColumn = this->FrameColumn;
+  request.TimestampColumn = this->TimestampColumn;
+  request.StatusColumn = this->StatusColumn;
+  request.GateColumn = this->GateColumn;
+  request.MatchBy = this->MatchBy;
+  std::copy(this->GateRange, this->GateRange + 2, request.GateRange);
+  request.FirstFrameNumber = this->FirstFrameNumber;
+  request.TimeOffset = this->TimeOffset;
+  request.MaximumTimeGap = this->MaximumTimeGap;
+
+  const lacuna::PoseChain chain = lacuna::MakePoseChain(request.Poses);
+  const vtkLacunaPoseRecords records(table, slices, this->GetSliceTimes(stack, slices), request);
+  for (const std::string& warning : records.Warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  std::vector<lacuna::Matrix4> poses;
+  for (const lacuna::Matrix4& pose : records.ToReference)
+  {
+    poses.push_back(pose * chain.PixelToPose);
+  }
+  if (!chain.Calibrated)
+  {
+    poses.clear();
+    vtkWarningMacro("the probe is not calibrated: PixelSpacing is 0 and ImageToProbe the identity. "
+                    "The slices have no ImageToReference; filters that need to know where they lie "
+                    "refuse them. Set PixelSpacing, and ImageToProbe");
+  }
+  if (this->PoseTransform == ProbeToReference || this->PoseTransform == ReferenceToProbe)
+  {
+    vtkLacunaFieldData::SetMatrices(output, ProbeToReferenceName, records.ToReference);
+  }
+  if (chain.HasImageToProbe)
+  {
+    vtkLacunaFieldData::SetMatrices(
+      output, vtkLacunaTrackedSlices::ImageToProbeName, { chain.ImageToProbe });
+  }
+  if (!records.Gate.empty())
+  {
+    vtkLacunaFieldData::Set(output, GateName, records.Gate, 1);
+  }
+  vtkLacunaTrackedSlices::Write(output, poses, records.Times, records.Status, records.FrameNumbers);
+  // The hash is that of all slices, also where they came one by one.
+  vtkNew<vtkImageData> source;
+  source->SetExtent(output->GetExtent());
+  source->GetPointData()->SetScalars(output->GetPointData()->GetScalars());
+  source->SetFieldData(stack->GetFieldData());
+  vtkLacunaProvenance::Record(output, this, { source, table }, this->DescribeParameters());
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaAssembleTrackedSlices::GetSliceTimes(
+  vtkImageData* stack, std::size_t slices) const
+{
+  if (this->FrameRate < 0 || !std::isfinite(this->FrameRate))
+  {
+    throw std::runtime_error("FrameRate is " + std::to_string(this->FrameRate) +
+      "; it must be slices per second, or 0 where the slices have times");
+  }
+  std::vector<double> times;
+  if (this->FrameRate > 0)
+  {
+    for (std::size_t i = 0; i < slices; ++i)
+    {
+      times.push_back(static_cast<double>(i) / this->FrameRate);
+    }
+    return times;
+  }
+  vtkDataArray* array = stack->GetFieldData()->GetArray(vtkLacunaTrackedSlices::TimestampName);
+  if (array && array->GetNumberOfComponents() == 1 &&
+    array->GetNumberOfTuples() == static_cast<vtkIdType>(slices))
+  {
+    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    {
+      times.push_back(array->GetTuple1(i));
+    }
+    return times;
+  }
+  // Time steps of picture series are often mere numbers: they are taken for times only on demand.
+  return this->MatchBy == Time ? this->TimeSteps : times;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaAssembleTrackedSlices::DescribeParameters() const
+{
+  constexpr std::array<const char*, 3> formats{ "Matrix", "Quaternion", "Euler" };
+  constexpr std::array<const char*, 4> transforms{ "ProbeToReference", "ReferenceToProbe",
+    "ImageToReference", "ReferenceToImage" };
+  constexpr std::array<const char*, 4> units{ "mm", "m", "cm", "inch" };
+  constexpr std::array<const char*, 3> orders{ "Automatic", "TopRowFirst", "BottomRowFirst" };
+  constexpr std::array<const char*, 3> matchings{ "Order", "FrameNumber", "Time" };
+  std::ostringstream text;
+  text << "PoseFormat=" << formats[this->PoseFormat]
+       << " PoseTransform=" << transforms[this->PoseTransform]
+       << " LengthUnit=" << units[this->LengthUnit] << " PixelSpacing=" << this->PixelSpacing[0]
+       << "," << this->PixelSpacing[1] << " ImageToProbe=";
+  for (int i = 0; i < 16; ++i)
+  {
+    text << (i ? "," : "") << this->ImageToProbe[i];
+  }
+  text << " RowOrder=" << orders[this->RowOrder] << " MatchBy=" << matchings[this->MatchBy];
+  for (const std::string& column : this->PoseColumns)
+  {
+    text << " PoseColumn=" << column;
+  }
+  text << " FrameColumn=" << this->FrameColumn << " TimestampColumn=" << this->TimestampColumn
+       << " StatusColumn=" << this->StatusColumn << " GateColumn=" << this->GateColumn
+       << " GateRange=" << this->GateRange[0] << "," << this->GateRange[1]
+       << " FirstFrameNumber=" << this->FirstFrameNumber << " FrameRate=" << this->FrameRate
+       << " TimeOffset=" << this->TimeOffset << " MaximumTimeGap=" << this->MaximumTimeGap
+       << " SkipInvalidPoses=" << (this->SkipInvalidPoses ? "on" : "off");
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaAssembleTrackedSlices::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+}

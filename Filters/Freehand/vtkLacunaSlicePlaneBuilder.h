@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Polydata of tracked slices: which of them, their lattices, outlines and arrays.
+#ifndef vtkLacunaSlicePlaneBuilder_h
+#define vtkLacunaSlicePlaneBuilder_h
+
+#include "lacunaSliceLattice.h"
+#include "lacunaSliceMotion.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkDataArray;
+class vtkImageData;
+class vtkLacunaExecution;
+class vtkPolyData;
+
+/// Not a part of the module's interface; the options are the filter's properties.
+class vtkLacunaSlicePlaneBuilder
+{
+public:
+  enum InvalidSliceChoices
+  {
+    LeaveOut = 0,
+    Outline = 1,
+    Show = 2
+  };
+
+  struct Options
+  {
+    int Stride = 1;
+    lacuna::TrackerAccuracy Accuracy;
+    double SpeedLimit = 0; ///< mm/s, 0 = none
+    bool OutlineOnly = false;
+    int InvalidSlices = LeaveOut;
+    int MaximumNumberOfPoints = 0;
+  };
+
+  /// stack has all columns and rows of the whole extent, and the slices first to last (last <
+  /// first: none) that are shown at all. It must outlive the builder. Throws std::runtime_error
+  /// with a text for the user when it is not what vtkLacunaTrackedSlices.h wants, and when no slice
+  /// of the whole extent is to be shown.
+  vtkLacunaSlicePlaneBuilder(
+    vtkImageData* stack, const int whole[6], int first, int last, const Options& options);
+
+  bool HasTimes() const { return !this->Speeds.empty(); }
+  bool HasCalibration() const { return this->Calibrated; }
+  int GetPixelStep() const { return this->Lattice.GetStep(); }
+
+  /// Numbers in the sweep of the slices that are shown.
+  std::vector<vtkIdType> GetShown() const;
+  /// mm/s, NaN where it is not known; only with times.
+  double GetSpeed(vtkIdType slice) const { return this->Speeds[slice]; }
+  bool IsTooFast(vtkIdType slice) const;
+
+  /// Fills points, cells and arrays; output is empty before.
+  void Build(vtkPolyData* output, vtkLacunaExecution& execution);
+
+private:
+  struct ShownSlice
+  {
+    int K;                // index in the stack
+    vtkIdType Number;     // in the sweep
+    bool IsOutline;       // else a lattice
+    bool IsBlank;         // an outline without values
+    vtkIdType FirstPoint; // in the output
+    vtkIdType FirstCell;
+  };
+
+  void ReadSweep();
+  void ChooseSlices(int first, int last);
+  vtkIdType GetCellsPerLattice() const;
+  lacuna::Vec3 GetPixel(int i, int j) const;
+  std::array<lacuna::Vec3, 4> GetCorners() const;
+  void FillSlice(const ShownSlice& slice, float* points, float* levels, float* errors) const;
+  template <class Array>
+  void MakePolygons(vtkPolyData* output, vtkLacunaExecution& execution) const;
+  void MakeCells(vtkPolyData* output, vtkLacunaExecution& execution) const;
+  void AddCellData(vtkPolyData* output) const;
+
+  Options Settings;
+  vtkImageData* Stack;
+  vtkLacunaTrackedSlices Tracked;
+  vtkSmartPointer<vtkDataArray> GreyLevels; // in one piece of memory
+  std::array<int, 6> Whole;
+  std::vector<char> HasPose;
+  std::vector<double> Speeds;
+  bool Calibrated = false;
+  lacuna::Matrix4 ImageToProbe;
+  lacuna::SliceLattice Lattice;
+  std::vector<ShownSlice> Shown;
+  vtkIdType NumberOfPoints = 0;
+  vtkIdType NumberOfCells = 0;
+};
+#endif

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSlicePlanes.h"
+
+#include "lacunaPoseTable.h"
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSlicePlaneBuilder.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+// Slices k of the stack that a piece of the output has; last < first: none.
+struct Slab
+{
+  int First, Last;
+};
+
+Slab GetSlab(vtkInformation* input, vtkInformation* output)
+{
+  int whole[6];
+  input->Get(SDDP::WHOLE_EXTENT(), whole);
+  const std::int64_t depth = std::int64_t{ whole[5] } - whole[4] + 1;
+  std::int64_t piece = 0;
+  std::int64_t pieces = 1;
+  if (output->Has(SDDP::UPDATE_NUMBER_OF_PIECES()) && output->Has(SDDP::UPDATE_PIECE_NUMBER()))
+  {
+    piece = output->Get(SDDP::UPDATE_PIECE_NUMBER());
+    pieces = std::max(1, output->Get(SDDP::UPDATE_NUMBER_OF_PIECES()));
+  }
+  return { static_cast<int>(whole[4] + depth * piece / pieces),
+    static_cast<int>(whole[4] + depth * (piece + 1) / pieces - 1) };
+}
+}
+
+vtkStandardNewMacro(vtkLacunaSlicePlanes);
+
+//------------------------------------------------------------------------------
+int vtkLacunaSlicePlanes::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSlicePlanes::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* in = inputs[0]->GetInformationObject(0);
+  int extent[6];
+  in->Get(SDDP::WHOLE_EXTENT(), extent);
+  const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
+  if (slab.First <= slab.Last)
+  {
+    extent[4] = slab.First;
+    extent[5] = slab.Last;
+  }
+  else
+  {
+    extent[5] = extent[4]; // what the sweep is, is asked for even where no slice is wanted
+  }
+  in->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  in->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+  in->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  in->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSlicePlanes::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkInformation* in = inputs[0]->GetInformationObject(0);
+      vtkImageData* stack = vtkImageData::GetData(inputs[0]);
+      vtkPolyData* output = vtkPolyData::GetData(outputs);
+      output->GetFieldData()->Initialize(); // VTK passes the slices' own
+      if (stack->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      vtkLacunaSlicePlaneBuilder::Options options;
+      options.Stride = this->Stride;
+      options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };
+      options.SpeedLimit = this->SpeedLimit;
+      options.OutlineOnly = this->OutlineOnly;
+      options.InvalidSlices = this->InvalidSlices;
+      options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
+      int whole[6];
+      in->Get(SDDP::WHOLE_EXTENT(), whole);
+      const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
+      vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
+      this->CheckRequest(builder.HasTimes(), builder.HasCalibration());
+      builder.Build(output, execution);
+      if (this->ColorBy == Speed)
+      {
+        output->GetCellData()->SetActiveScalars("Speed");
+        this->WarnOfSpeed(builder);
+      }
+      else
+      {
+        output->GetPointData()->SetActiveScalars(
+          this->ColorBy == RegistrationError ? "RegistrationError" : "Intensity");
+      }
+      vtkLacunaFieldData::Set(
+        output, "PixelStep", { static_cast<double>(builder.GetPixelStep()) }, 1);
+      vtkLacunaFieldData::Set(output, "SpeedLimit", { this->SpeedLimit }, 1);
+      vtkLacunaProvenance::Record(output, this, { stack }, this->DescribeParameters());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSlicePlanes::WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder)
+{
+  const std::vector<vtkIdType> shown = builder.GetShown();
+  std::vector<std::size_t> fast;
+  std::vector<std::size_t> unknown;
+  for (const vtkIdType slice : shown)
+  {
+    if (std::isnan(builder.GetSpeed(slice)))
+    {
+      unknown.push_back(static_cast<std::size_t>(slice));
+    }
+    else if (builder.IsTooFast(slice))
+    {
+      fast.push_back(static_cast<std::size_t>(slice));
+    }
+  }
+  if (!fast.empty())
+  {
+    vtkWarningMacro(<< fast.size() << " of " << shown.size() << " slices are faster than "
+                    << this->SpeedLimit << " mm/s: " << lacuna::DescribeItems("slice", fast));
+  }
+  if (!unknown.empty())
+  {
+    vtkWarningMacro("the speed is not known in " << lacuna::DescribeItems("slice", unknown)
+                                                 << ": no time, or none that is later than that "
+                                                    "of the slice before");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSlicePlanes::CheckRequest(bool hasTimes, bool hasCalibration) const
+{
+  for (const double accuracy : { this->TranslationAccuracy, this->AngularAccuracy })
+  {
+    if (!(accuracy >= 0) || !std::isfinite(accuracy))
+    {
+      std::ostringstream message;
+      message << "TranslationAccuracy and AngularAccuracy are " << this->TranslationAccuracy
+              << " mm and " << this->AngularAccuracy << " degrees; they must be 0 or more";
+      throw std::runtime_error(message.str());
+    }
+  }
+  if (this->ColorBy == Speed && !hasTimes)
+  {
+    throw std::runtime_error(std::string("ColorBy is Speed, but field data array '") +
+      vtkLacunaTrackedSlices::TimestampName +
+      "' is missing: the times of the slices are not known");
+  }
+  if (this->ColorBy == RegistrationError && !hasCalibration)
+  {
+    throw std::runtime_error(std::string("ColorBy is RegistrationError, but field data array '") +
+      vtkLacunaTrackedSlices::ImageToProbeName +
+      "' is missing: how far the pixels are from the sensor is not known. Give the reader a "
+      "CalibrationFileName, or Assemble Tracked Slices an ImageToProbe");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSlicePlanes::DescribeParameters() const
+{
+  constexpr std::array<const char*, 3> colorings{ "Intensity", "Speed", "RegistrationError" };
+  constexpr std::array<const char*, 3> choices{ "LeaveOut", "Outline", "Show" };
+  std::ostringstream text;
+  text << "Stride=" << this->Stride << " ColorBy=" << colorings[this->ColorBy]
+       << " TranslationAccuracy=" << this->TranslationAccuracy
+       << " AngularAccuracy=" << this->AngularAccuracy << " SpeedLimit=" << this->SpeedLimit
+       << " OutlineOnly=" << (this->OutlineOnly ? "on" : "off")
+       << " InvalidSlices=" << choices[this->InvalidSlices]
+       << " MaximumNumberOfPoints=" << this->MaximumNumberOfPoints;
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSlicePlanes::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+}

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaSlicePlanes
+ * @brief   Tracked slices as pictures in space
+ *
+ * Shows slices where they lie (see vtkLacunaTrackedSlices.h for what these are): each becomes a
+ * lattice of quadrilaterals with its grey levels, or its outline. Coloured by speed and by expected
+ * error it shows where the probe was moved too fast, and where the tracker is poor (Carr 1996,
+ * ch. 2).
+ *
+ * A lattice has every n-th pixel of the slice along both axes, and the last ones; grey levels are
+ * means over n x n pixels. n is 1, or as much more as MaximumNumberOfPoints wants.
+ *
+ * Output: polydata in the reference frame, mm.
+ * | array             | where | type          | meaning                                             |
+ * |-------------------|-------|---------------|-----------------------------------------------------|
+ * | Intensity         | point | float         | grey level; not with OutlineOnly                    |
+ * | RegistrationError | point | float, mm     | expected RMS error of the place, see below          |
+ * | Speed             | cell  | float, mm/s   | of the fastest corner, since the slice before       |
+ * | TooFast           | cell  | unsigned char | 1 where Speed is above SpeedLimit                   |
+ * | SliceNumber       | cell  | int           | number in the sweep                                 |
+ * | SliceStatus       | cell  | unsigned char | flags, 0 = valid                                    |
+ * | Timestamp         | cell  | double, s     |                                                     |
+ * ColorBy chooses the active scalars, which ParaView colours by. Field data: PixelStep (the n
+ * above), SpeedLimit, Provenance.
+ *
+ * RegistrationError = sqrt(TranslationAccuracy^2 + (2 r sin(AngularAccuracy / 2))^2), r the distance
+ * of the pixel from the origin of the probe frame, the tracker's sensor; it needs ImageToProbe.
+ * Speed and Timestamp need Timestamp. Without these arrays the others are made, unless ColorBy asks
+ * for one: then it is an error.
+ *
+ * In parallel, pieces are runs of slices; they do not depend on each other, and the result is the
+ * same bit by bit for any number of threads.
+ *
+ * @sa lacunaSliceLattice.h, lacunaSliceMotion.h
+ */
+#ifndef vtkLacunaSlicePlanes_h
+#define vtkLacunaSlicePlanes_h
+
+#include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // for std::string
+
+class vtkLacunaSlicePlaneBuilder;
+
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSlicePlanes : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaSlicePlanes* New();
+  vtkTypeMacro(vtkLacunaSlicePlanes, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Colorings
+  {
+    Intensity = 0,
+    Speed = 1,
+    RegistrationError = 2
+  };
+  enum InvalidSliceChoices
+  {
+    LeaveOut = 0,
+    Outline = 1,
+    Show = 2
+  };
+
+  ///@{
+  /// Every n-th slice of the stack is shown, from the first on. Default: 1.
+  vtkSetClampMacro(Stride, int, 1, VTK_INT_MAX);
+  vtkGetMacro(Stride, int);
+  ///@}
+
+  ///@{
+  /// What the slices are coloured by: Intensity, Speed (mm/s) or RegistrationError (mm).
+  /// Default: Intensity.
+  vtkSetClampMacro(ColorBy, int, Intensity, RegistrationError);
+  vtkGetMacro(ColorBy, int);
+  ///@}
+
+  ///@{
+  /// Root mean square error of the tracker's position in mm (three axes together), and of its
+  /// orientation in degrees. Default: 1.38 and 0.26, a Polhemus FASTRAK.
+  vtkSetMacro(TranslationAccuracy, double);
+  vtkGetMacro(TranslationAccuracy, double);
+  vtkSetMacro(AngularAccuracy, double);
+  vtkGetMacro(AngularAccuracy, double);
+  ///@}
+
+  ///@{
+  /// mm/s; faster slices are TooFast, and with ColorBy Speed a warning names them. 0 = no limit.
+  /// Default: 23, which makes 1 mm in the 44 ms that a video frame is late.
+  vtkSetMacro(SpeedLimit, double);
+  vtkGetMacro(SpeedLimit, double);
+  ///@}
+
+  ///@{
+  /// Only the outlines of the slices. Default: off.
+  vtkSetMacro(OutlineOnly, bool);
+  vtkGetMacro(OutlineOnly, bool);
+  vtkBooleanMacro(OutlineOnly, bool);
+  ///@}
+
+  ///@{
+  /// What becomes of slices whose SliceStatus is not 0: LeaveOut, Outline (with values that are not
+  /// a number, so that they take the NaN colour) or Show (as the others). Slices without a pose are
+  /// always left out. Default: LeaveOut.
+  vtkSetClampMacro(InvalidSlices, int, LeaveOut, Show);
+  vtkGetMacro(InvalidSlices, int);
+  ///@}
+
+  ///@{
+  /// Points that all slices together may have. Default: 4 000 000.
+  vtkSetClampMacro(MaximumNumberOfPoints, int, 4, VTK_INT_MAX);
+  vtkGetMacro(MaximumNumberOfPoints, int);
+  ///@}
+
+protected:
+  vtkLacunaSlicePlanes() = default;
+  ~vtkLacunaSlicePlanes() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaSlicePlanes(const vtkLacunaSlicePlanes&) = delete;
+  void operator=(const vtkLacunaSlicePlanes&) = delete;
+
+  void WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder);
+  void CheckRequest(bool hasTimes, bool hasCalibration) const;
+  std::string DescribeParameters() const;
+
+  int Stride = 1;
+  int ColorBy = Intensity;
+  double TranslationAccuracy = 1.38;
+  double AngularAccuracy = 0.26;
+  double SpeedLimit = 23;
+  bool OutlineOnly = false;
+  int InvalidSlices = LeaveOut;
+  int MaximumNumberOfPoints = 4000000;
+};
+#endif
