@@ -94,6 +94,17 @@ lacuna::Vec2 vtkLacunaDepthMap::GetPixelSpacing() const
 }
 
 //------------------------------------------------------------------------------
+std::string vtkLacunaDepthMap::GetNormalsName(const std::string& depthArray)
+{
+  const std::string depth = DepthName;
+  if (depthArray == depth || depthArray.rfind(depth + "_", 0) == 0)
+  {
+    return NormalsName + depthArray.substr(depth.size());
+  }
+  return depthArray + NormalsName;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaDepthMap::SetGeometry(vtkImageData* map, const Geometry& g)
 {
   map->SetOrigin(g.Origin.data());

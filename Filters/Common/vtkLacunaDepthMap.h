@@ -8,7 +8,9 @@
 ///
 /// Point data: Depth (double, mm, NaN where there is none), vtkValidPointMask (char, 1 where Depth
 /// is a number), Normals (float x 3, unit, world, towards the viewer), for further iso-values
-/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char) and Deviation (double).
+/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char) and Deviation (double). Shaded maps
+/// add Color (unsigned char x 3, the active scalars), the normals used (Normals for Depth, Normals_1
+/// for Depth_1, ..., FittedNormals for Fitted) and NormalDifference (float, degrees).
 /// Field data: ImageToWorld (16, (column, row, mm along z, 1) to world mm), IsoValues, and for
 /// perspective maps EyePosition (3) and ViewAngle (degrees).
 #ifndef vtkLacunaDepthMap_h
@@ -18,6 +20,8 @@
 #include "lacunaMatrix4.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"
+
+#include <string>
 
 class vtkDataArray;
 class vtkImageData;
@@ -32,6 +36,8 @@ public:
   static constexpr const char* FittedName = "Fitted";
   static constexpr const char* FilledMaskName = "FilledMask";
   static constexpr const char* DeviationName = "Deviation";
+  static constexpr const char* ColorName = "Color";
+  static constexpr const char* NormalDifferenceName = "NormalDifference";
   static constexpr const char* ImageToWorldName = "ImageToWorld";
   static constexpr const char* EyePositionName = "EyePosition";
   static constexpr const char* ViewAngleName = "ViewAngle";
@@ -55,6 +61,8 @@ public:
   /// (column, row, mm along the view direction, 1) to world mm; column and row are extent indices.
   const lacuna::Matrix4& GetImageToWorld() const { return this->ImageToWorld; }
   bool IsPerspective() const { return this->Perspective; }
+  /// Where the rays of a perspective map start, world mm.
+  const lacuna::Vec3& GetEye() const { return this->Eye; }
   /// The point at depth mm along the ray of pixel (column, row); these may be fractions.
   lacuna::Vec3 GetPoint(double column, double row, double depth) const;
   /// Unit direction of the ray of pixel (column, row), world.
@@ -62,6 +70,10 @@ public:
   /// mm between columns and between rows.
   lacuna::Vec2 GetPixelSpacing() const;
   vtkDataArray* GetDepth() const { return this->Depth; }
+
+  /// The name of the normals that belong to an array of depths: Normals for Depth, Normals_1 for
+  /// Depth_1, otherwise the array's name with Normals behind it.
+  static std::string GetNormalsName(const std::string& depthArray);
 
   /// Sets origin, spacing, direction matrix and ImageToWorld of a map whose extent starts anywhere.
   static void SetGeometry(vtkImageData* map, const Geometry& geometry);

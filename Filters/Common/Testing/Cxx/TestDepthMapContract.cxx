@@ -58,6 +58,7 @@ int TestDepthMapContract(int, char*[])
     vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::EyePositionName, { 100, -20, 103 }, 3);
     const vtkLacunaDepthMap contract(map);
     LACUNA_CHECK(contract.IsPerspective());
+    LACUNA_CHECK_NEAR(contract.GetEye()[2], 103, 0);
     const lacuna::Vec3 ray = contract.GetRay(0, 0);
     LACUNA_CHECK_NEAR(ray[2], -1, 1e-12);
     LACUNA_CHECK_NEAR(contract.GetPoint(0, 0, 7)[2], -4, 1e-12);
@@ -85,5 +86,8 @@ int TestDepthMapContract(int, char*[])
     volume->SetDimensions(3, 3, 2);
     LACUNA_CHECK_THROWS(vtkLacunaDepthMap contract(volume), "2 layers");
   }
+  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Depth") == "Normals");
+  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Depth_2") == "Normals_2");
+  LACUNA_CHECK(vtkLacunaDepthMap::GetNormalsName("Fitted") == "FittedNormals");
   return lacunaCheck::Result();
 }
