@@ -2,8 +2,6 @@
 #include "lacunaDepthMapMesher.h"
 
 #include <cmath>
-#include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -16,16 +14,13 @@ namespace
 constexpr int Corners[4][3] = { { 0, 2, 3 }, { 0, 3, 1 }, { 0, 2, 1 }, { 1, 2, 3 } };
 constexpr int RowGrain = 16;
 constexpr double MaximumStepRatio = 3;
-constexpr double RadiansPerDegree = 3.14159265358979323846 / 180;
 
-void CheckAngle(const char* name, double degrees, double limit)
+/// True when an edge steps so much farther along the rays than the next that they cannot be one
+/// surface. The next may be undefined.
+bool IsJump(const DepthEdge& edge, const DepthEdge& next)
 {
-  if (!(degrees >= 0 && degrees <= limit))
-  {
-    std::ostringstream message;
-    message << name << " is " << degrees << " degrees; it must lie within 0 and " << limit;
-    throw std::invalid_argument(message.str());
-  }
+  return next.IsDefined() &&
+    std::abs(edge.Along) * next.Across > MaximumStepRatio * std::abs(next.Along) * edge.Across;
 }
 }
 
@@ -36,8 +31,7 @@ DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& r
   , FirstRow(firstRow)
   , LastRow(lastRow)
 {
-  CheckAngle("MaximumAngle", rule.MaximumAngle, 90);
-  CheckAngle("MaximumAngleChange", rule.MaximumAngleChange, 180);
+  rule.Limits.Check();
   const auto& e = grid.Extent;
   if (firstRow < e[2] || lastRow > e[3] || e[1] < e[0])
   {
@@ -60,7 +54,7 @@ DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& r
         std::int64_t points = 0;
         for (int c = e[0]; c <= e[1]; ++c)
         {
-          points += this->IsDefined(c, row);
+          points += this->Grid.IsDefined(c, row);
         }
         this->PointOffsets[r + 1] = points;
         if (r == squareRows)
@@ -90,61 +84,10 @@ DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& r
   }
 }
 
-std::int64_t DepthMapMesher::PixelOf(int column, int row) const
-{
-  const auto& e = this->Grid.Extent;
-  return (static_cast<std::int64_t>(row) - e[2]) * (e[1] - e[0] + 1) + (column - e[0]);
-}
-
-bool DepthMapMesher::IsDefined(int column, int row) const
-{
-  const auto& e = this->Grid.Extent;
-  return column >= e[0] && column <= e[1] && row >= e[2] && row <= e[3] &&
-    std::isfinite(this->Grid.Depth[this->PixelOf(column, row)]);
-}
-
-Vec3 DepthMapMesher::PointOf(int column, int row) const
-{
-  const Matrix4& m = this->Grid.ImageToWorld;
-  const Vec3 pixel = m.Point({ static_cast<double>(column), static_cast<double>(row), 0 });
-  const Vec3 ray =
-    this->Grid.Perspective ? Normalized(pixel - this->Grid.Eye) : Normalized(m.Column(2));
-  return pixel + this->Grid.Depth[this->PixelOf(column, row)] * ray;
-}
-
-/// Degrees between the edge from a pixel to its neighbour and the plane perpendicular to the rays;
-/// positive away from the viewer, NaN when either has no depth.
-double DepthMapMesher::Angle(int column, int row, int right, int down) const
-{
-  if (!this->IsDefined(column, row) || !this->IsDefined(column + right, row + down))
-  {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const Vec3 from = this->PointOf(column, row);
-  const Vec3 to = this->PointOf(column + right, row + down);
-  const Vec3 ray = Normalized(this->Grid.Perspective ? 0.5 * (from + to) - this->Grid.Eye
-                                                     : this->Grid.ImageToWorld.Column(2));
-  const Vec3 edge = to - from;
-  const double along = Dot(edge, ray);
-  return std::atan2(along, Norm(edge - along * ray)) / RadiansPerDegree;
-}
-
-bool DepthMapMesher::GoesOn(double angle, int column, int row, int right, int down) const
-{
-  const double beyond = this->Angle(column, row, right, down);
-  if (std::isnan(beyond))
-  {
-    return true;
-  }
-  const bool alike = std::abs(beyond - angle) < this->Rule.MaximumAngleChange ||
-    (std::abs(beyond) > this->Rule.MaximumAngle && (beyond > 0) == (angle > 0));
-  const auto step = [](double degrees) { return std::tan(std::abs(degrees) * RadiansPerDegree); };
-  return alike && step(angle) <= MaximumStepRatio * step(beyond);
-}
-
 bool DepthMapMesher::IsJoined(int column, int row, int right, int down) const
 {
-  if (!this->IsDefined(column, row) || !this->IsDefined(column + right, row + down))
+  const DepthGrid& grid = this->Grid;
+  if (!grid.IsDefined(column, row) || !grid.IsDefined(column + right, row + down))
   {
     return false;
   }
@@ -152,10 +95,17 @@ bool DepthMapMesher::IsJoined(int column, int row, int right, int down) const
   {
     return true;
   }
-  const double angle = this->Angle(column, row, right, down);
-  return !(std::abs(angle) > this->Rule.MaximumAngle) ||
-    (this->GoesOn(angle, column - right, row - down, right, down) &&
-      this->GoesOn(angle, column + right, row + down, right, down));
+  const DiscontinuityLimits& limits = this->Rule.Limits;
+  const DepthEdge edge = grid.EdgeFrom(column, row, right, down);
+  if (!(std::abs(edge.Angle) > limits.MaximumAngle))
+  {
+    return true; // in none of the cases is an edge torn that is not steep
+  }
+  const DepthEdge before = grid.EdgeFrom(column - right, row - down, right, down);
+  const DepthEdge after = grid.EdgeFrom(column + right, row + down, right, down);
+  return !IsTornForward(ClassifySlopes(before.Angle, edge.Angle, limits)) &&
+    !IsTornBackward(ClassifySlopes(edge.Angle, after.Angle, limits)) && !IsJump(edge, before) &&
+    !IsJump(edge, after);
 }
 
 unsigned char DepthMapMesher::ChooseTriangles(int column, int row) const
@@ -181,8 +131,10 @@ unsigned char DepthMapMesher::ChooseTriangles(int column, int row) const
     return excess > 0 ? alongFalling : alongRising;
   }
   const double* depth = this->Grid.Depth;
-  const double fall = depth[this->PixelOf(column + 1, row + 1)] - depth[this->PixelOf(column, row)];
-  const double rise = depth[this->PixelOf(column + 1, row)] - depth[this->PixelOf(column, row + 1)];
+  const double fall =
+    depth[this->Grid.PixelOf(column + 1, row + 1)] - depth[this->Grid.PixelOf(column, row)];
+  const double rise =
+    depth[this->Grid.PixelOf(column + 1, row)] - depth[this->Grid.PixelOf(column, row + 1)];
   return std::abs(rise) < std::abs(fall) ? alongRising : alongFalling;
 }
 
@@ -198,13 +150,13 @@ void DepthMapMesher::FillPoints(double* points, long long* pixels, Execution& ex
         std::int64_t i = this->PointOffsets[r];
         for (int c = e[0]; c <= e[1]; ++c)
         {
-          if (this->IsDefined(c, row))
+          if (this->Grid.IsDefined(c, row))
           {
-            const Vec3 p = this->PointOf(c, row);
+            const Vec3 p = this->Grid.PointOf(c, row);
             points[3 * i] = p[0];
             points[3 * i + 1] = p[1];
             points[3 * i + 2] = p[2];
-            pixels[i] = this->PixelOf(c, row);
+            pixels[i] = this->Grid.PixelOf(c, row);
             ++i;
           }
         }
@@ -227,8 +179,8 @@ void DepthMapMesher::FillTriangles(long long* corners, Execution& execution) con
         long long* out = corners + 3 * this->TriangleOffsets[r];
         for (int c = e[0]; c < e[1]; ++c, ++flags)
         {
-          const std::int64_t nextUpper = upper + this->IsDefined(c, row);
-          const std::int64_t nextLower = lower + this->IsDefined(c, row + 1);
+          const std::int64_t nextUpper = upper + this->Grid.IsDefined(c, row);
+          const std::int64_t nextLower = lower + this->Grid.IsDefined(c, row + 1);
           const std::int64_t square[4] = { upper, nextUpper, lower, nextLower };
           for (int t = 0; t < 4; ++t)
           {

@@ -4,8 +4,9 @@
 #ifndef lacunaDepthMapMesher_h
 #define lacunaDepthMapMesher_h
 
+#include "lacunaDepthDiscontinuity.h"
+#include "lacunaDepthGrid.h"
 #include "lacunaExecution.h"
-#include "lacunaMatrix4.h"
 
 #include <array>
 #include <cstdint>
@@ -13,29 +14,15 @@
 
 namespace lacuna
 {
-/// The depths of a part of a map and where its pixels lie.
-struct DepthGrid
-{
-  const double* Depth = nullptr; ///< mm, row-major over Extent; not finite where there is none
-  std::array<int, 4> Extent{};   ///< first and last column, first and last row
-  /// (column, row, mm along the view direction, 1) to world mm.
-  Matrix4 ImageToWorld;
-  bool Perspective = false; ///< rays go out from Eye instead of along the view direction
-  Vec3 Eye{ 0, 0, 0 };
-};
-
-/// When neighbours are not joined, with the angles of the nine-case method (Carr 1996, 3.3.2). The
-/// angle of an edge is that between it and the plane perpendicular to the view. An edge steeper
-/// than MaximumAngle is kept only if the surface goes on alike beyond both of its ends: the next
-/// edge on the same line differs by less than MaximumAngleChange or is steeper than MaximumAngle
-/// the same way, and its step of depth is at least a third of this one's; or there is no next edge.
-/// So a steep side that bends smoothly stays whole (towards the rim of a ball steps grow by a
-/// factor of 1 + sqrt(2) at most), while a jump from one steep side to another is seen.
+/// When neighbours are not joined: when the nine cases, at either end of an edge, find a discontinuity
+/// in it; or when a steep edge steps more than three times as far along the rays as the next edge on
+/// the same line. The cases alone take a jump from one steep side to another for a steep side; one
+/// that bends smoothly stays whole (towards the rim of a ball steps grow by a factor of 1 + sqrt(2) at
+/// most).
 struct DiscontinuityRule
 {
-  bool Break = true;              ///< false: all neighbours are joined
-  double MaximumAngle = 65;       ///< degrees
-  double MaximumAngleChange = 20; ///< degrees
+  bool Break = true; ///< false: all neighbours are joined
+  DiscontinuityLimits Limits;
 };
 
 /// One point per pixel with a depth, one or two triangles per square of pixels (split along the
@@ -59,11 +46,6 @@ public:
   void FillTriangles(long long* corners, Execution& execution) const;
 
 private:
-  std::int64_t PixelOf(int column, int row) const;
-  bool IsDefined(int column, int row) const;
-  Vec3 PointOf(int column, int row) const;
-  double Angle(int column, int row, int right, int down) const;
-  bool GoesOn(double angle, int column, int row, int right, int down) const;
   bool IsJoined(int column, int row, int right, int down) const;
   unsigned char ChooseTriangles(int column, int row) const;
 

@@ -187,7 +187,7 @@ TEST(DepthMapMesher, SteepSidesThatBendSmoothlyStayWhole)
   EXPECT_GE(Mesh(ramp, DiscontinuityRule()).Triangles(), 2u * 4 * (29 - 2));
   // with a larger angle it is one with its flats
   DiscontinuityRule steep;
-  steep.MaximumAngle = 82;
+  steep.Limits.MaximumAngle = 82;
   EXPECT_EQ(Mesh(ramp, steep).Triangles(), 2u * 4 * 29);
 }
 
@@ -203,8 +203,8 @@ TEST(DepthMapMesher, AnglesAreThoseOfPerspectiveRays)
     map.Depth[i] = 100 - Norm(pixel - map.Grid.Eye);
   }
   DiscontinuityRule rule;
-  rule.MaximumAngle = 1;
-  rule.MaximumAngleChange = 0;
+  rule.Limits.MaximumAngle = 1;
+  rule.Limits.MaximumAngleChange = 0;
   const Mesh mesh(map, rule);
   EXPECT_EQ(mesh.Triangles(), 2u * 20 * 20);
   for (std::size_t i = 0; i < mesh.Pixels.size(); ++i)
@@ -263,11 +263,11 @@ TEST(DepthMapMesher, SmallAndWrong)
   }
   const Map map(4, 4, 1, [](double, double) { return 1; });
   DiscontinuityRule rule;
-  rule.MaximumAngle = 91;
+  rule.Limits.MaximumAngle = 91;
   EXPECT_THROW(Mesh(map, rule), std::invalid_argument);
-  rule.MaximumAngle = None;
+  rule.Limits.MaximumAngle = None;
   EXPECT_THROW(Mesh(map, rule), std::invalid_argument);
   rule = DiscontinuityRule();
-  rule.MaximumAngleChange = -1;
+  rule.Limits.MaximumAngleChange = -1;
   EXPECT_THROW(Mesh(map, rule), std::invalid_argument);
 }
