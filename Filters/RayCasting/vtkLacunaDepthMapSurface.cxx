@@ -2,9 +2,11 @@
 #include "vtkLacunaDepthMapSurface.h"
 
 #include "lacunaDepthMapMesher.h"
+#include "lacunaDepthNormals.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -12,7 +14,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaFieldData.h"
+#include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -50,18 +52,6 @@ struct Rows
   }
 };
 
-/// The depths as double: the array itself when it is one.
-vtkSmartPointer<vtkDoubleArray> AsDouble(vtkDataArray* array)
-{
-  vtkSmartPointer<vtkDoubleArray> depth = vtkDoubleArray::SafeDownCast(array);
-  if (!depth)
-  {
-    depth = vtkSmartPointer<vtkDoubleArray>::New();
-    depth->DeepCopy(array);
-  }
-  return depth;
-}
-
 /// Copies the tuples at ids of every array of from to to.
 void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
 {
@@ -75,6 +65,33 @@ void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
     array->GetTuples(ids, carried);
     to->AddArray(carried);
   }
+}
+
+/// Degrees between the map's normals and those that the depths give by the nine cases.
+vtkSmartPointer<vtkFloatArray> DifferenceOfNormals(vtkImageData* map, const std::string& name,
+  const lacuna::DepthGrid& grid, const lacuna::DiscontinuityLimits& limits,
+  vtkLacunaExecution& execution)
+{
+  vtkDataArray* array = map->GetPointData()->GetArray(name.c_str());
+  if (!array || array->GetNumberOfComponents() != 3)
+  {
+    throw std::runtime_error("the depth map has no normals '" + name +
+      "' of three components to compare: turn ComputeNormalDifference off");
+  }
+  vtkNew<vtkFloatArray> stored;
+  stored->DeepCopy(array);
+  const vtkIdType pixels = map->GetNumberOfPoints();
+  vtkNew<vtkFloatArray> estimated;
+  estimated->SetNumberOfComponents(3);
+  estimated->SetNumberOfTuples(pixels);
+  lacuna::EstimateNormals(grid, lacuna::DepthNormalMethod::Predicate, limits, grid.Extent,
+    estimated->GetPointer(0), execution);
+  auto difference = vtkSmartPointer<vtkFloatArray>::New();
+  difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
+  difference->SetNumberOfTuples(pixels);
+  lacuna::AnglesBetween(
+    stored->GetPointer(0), estimated->GetPointer(0), pixels, difference->GetPointer(0), execution);
+  return difference;
 }
 }
 
@@ -127,12 +144,7 @@ int vtkLacunaDepthMapSurface::RequestData(
         return;
       }
       const vtkLacunaDepthMap map(input);
-      vtkDataArray* depthArray = input->GetPointData()->GetArray(this->DepthArray.c_str());
-      if (!depthArray || depthArray->GetNumberOfComponents() != 1)
-      {
-        throw std::runtime_error("the depth map has no one-component point array '" +
-          this->DepthArray + "' to take depths from");
-      }
+      const vtkLacunaMapDepths depths(input, map, this->DepthArray);
       int whole[6];
       std::copy_n(input->GetExtent(), 6, whole);
       inputVector[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);
@@ -143,21 +155,10 @@ int vtkLacunaDepthMapSurface::RequestData(
         return; // more pieces than rows
       }
 
-      const auto depth = AsDouble(depthArray);
-      lacuna::DepthGrid grid;
-      grid.Depth = depth->GetPointer(0);
-      grid.Extent = { extent[0], extent[1], extent[2], extent[3] };
-      grid.ImageToWorld = map.GetImageToWorld();
-      grid.Perspective = map.IsPerspective();
-      if (grid.Perspective)
-      {
-        vtkLacunaFieldData::Get(input, vtkLacunaDepthMap::EyePositionName, 3, 1)
-          ->GetTuple(0, grid.Eye.data());
-      }
+      const lacuna::DiscontinuityLimits limits{ this->MaximumAngle, this->MaximumAngleChange };
       execution.SetStage(0, 0.6);
-      const lacuna::DepthMapMesher mesher(grid,
-        { this->BreakAtDiscontinuities, this->MaximumAngle, this->MaximumAngleChange }, rows.First,
-        rows.Last, execution);
+      const lacuna::DepthMapMesher mesher(depths.GetGrid(),
+        { this->BreakAtDiscontinuities, limits }, rows.First, rows.Last, execution);
 
       execution.SetStage(0.6, 0.8);
       const vtkIdType numberOfPoints = mesher.GetNumberOfPoints();
@@ -201,18 +202,29 @@ int vtkLacunaDepthMapSurface::RequestData(
       vtkPointData* pointData = output->GetPointData();
       CarryArrays(input->GetPointData(), ids, pointData);
       pointData->SetPedigreeIds(pixelIds);
-      pointData->SetActiveScalars(this->DepthArray.c_str());
-      if (this->DepthArray == vtkLacunaDepthMap::DepthName)
+      const std::string normals = vtkLacunaDepthMap::GetNormalsName(this->DepthArray);
+      if (this->ComputeNormalDifference)
       {
-        pointData->SetActiveNormals(vtkLacunaDepthMap::NormalsName);
+        const auto difference =
+          DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
+        vtkNew<vtkFloatArray> carried;
+        carried->SetName(difference->GetName());
+        carried->SetNumberOfTuples(numberOfPoints);
+        difference->GetTuples(ids, carried);
+        pointData->AddArray(carried);
       }
+      pointData->SetActiveScalars(pointData->HasArray(vtkLacunaDepthMap::ColorName)
+          ? vtkLacunaDepthMap::ColorName
+          : this->DepthArray.c_str());
+      pointData->SetActiveNormals(normals.c_str());
 
       std::ostringstream parameters;
       parameters.precision(17);
       parameters << "DepthArray=" << this->DepthArray
                  << " BreakAtDiscontinuities=" << this->BreakAtDiscontinuities
                  << " MaximumAngle=" << this->MaximumAngle
-                 << " MaximumAngleChange=" << this->MaximumAngleChange;
+                 << " MaximumAngleChange=" << this->MaximumAngleChange
+                 << " ComputeNormalDifference=" << this->ComputeNormalDifference;
       vtkLacunaProvenance::Record(output, this, { input }, parameters.str());
     });
 }
@@ -224,5 +236,6 @@ void vtkLacunaDepthMapSurface::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DepthArray: " << this->DepthArray << "\n"
      << indent << "BreakAtDiscontinuities: " << this->BreakAtDiscontinuities << "\n"
      << indent << "MaximumAngle: " << this->MaximumAngle << "\n"
-     << indent << "MaximumAngleChange: " << this->MaximumAngleChange << "\n";
+     << indent << "MaximumAngleChange: " << this->MaximumAngleChange << "\n"
+     << indent << "ComputeNormalDifference: " << this->ComputeNormalDifference << "\n";
 }

@@ -7,24 +7,27 @@
  * normals are towards the viewer. Neighbours are not joined across a discontinuity of depth, so
  * that no skin hangs between what is near and what is far.
  *
- * The rule uses the angles of the nine-case method for depth-map normals. The angle of an edge is
- * that between it and the plane perpendicular to the view. An edge steeper than MaximumAngle is
- * kept only if the surface goes on alike beyond both of its ends: the next edge on the same line
- * differs by less than MaximumAngleChange or is steeper than MaximumAngle the same way, and its
- * step of depth is at least a third of this one's; or there is no next edge. A steep side of a
- * skull, which bends smoothly, stays whole.
+ * The rule is that of the nine cases by which vtkLacunaDepthMapShader's normals (Predicate) see
+ * discontinuities. The angle of an edge is that between it and the plane perpendicular to the ray. An
+ * edge steeper than MaximumAngle is kept only if the surface goes on alike beyond both of its ends:
+ * the next edge on the same line differs by less than MaximumAngleChange or is steeper than
+ * MaximumAngle the same way, and its step of depth is at least a third of this one's; or there is no
+ * next edge. A steep side of a skull, which bends smoothly, stays whole.
  *
  * Input: a depth map, see vtkLacunaDepthMap.h. Output: vtkPolyData with points in double precision;
- * all point arrays of the map are carried along, DepthArray being the active scalars and, if
- * DepthArray is Depth, Normals the active normals; PixelId (vtkIdType, pedigree ids): column + row
- * * W, counted from the corner of the map's whole extent, so that a selection made with the mouse
- * means pixels. Pieces split the map into bands of rows.
+ * all point arrays of the map are carried along, the normals that belong to DepthArray being the
+ * active normals, and Color, which a shaded map has, the active scalars (without it, DepthArray);
+ * PixelId (vtkIdType, pedigree ids): column + row * W, counted from the corner of the map's whole
+ * extent, so that a selection made with the mouse means pixels; if asked for, NormalDifference (float,
+ * degrees): the angle between the map's normals and those that the depths give by the nine cases.
+ * Pieces split the map into bands of rows.
  *
- * Errors: the input is not a depth map, it has no such DepthArray, an angle is out of range.
+ * Errors: the input is not a depth map, it has no such DepthArray, it has no normals to
+ * compare, an angle is out of range.
  *
  * Source: Carr 1996, 3.3.2.
  *
- * @sa vtkLacunaBSplineIsoRayCaster
+ * @sa vtkLacunaBSplineIsoRayCaster vtkLacunaDepthMapShader
  */
 #ifndef vtkLacunaDepthMapSurface_h
 #define vtkLacunaDepthMapSurface_h
@@ -69,6 +72,13 @@ public:
   vtkGetMacro(MaximumAngleChange, double);
   ///@}
 
+  ///@{
+  /** Whether NormalDifference is made. Default off. */
+  vtkSetMacro(ComputeNormalDifference, bool);
+  vtkGetMacro(ComputeNormalDifference, bool);
+  vtkBooleanMacro(ComputeNormalDifference, bool);
+  ///@}
+
 protected:
   vtkLacunaDepthMapSurface() = default;
   ~vtkLacunaDepthMapSurface() override = default;
@@ -82,6 +92,7 @@ protected:
   bool BreakAtDiscontinuities = true;
   double MaximumAngle = 65;
   double MaximumAngleChange = 20;
+  bool ComputeNormalDifference = false;
 
 private:
   vtkLacunaDepthMapSurface(const vtkLacunaDepthMapSurface&) = delete;

@@ -32,7 +32,8 @@ assert caster.ScalarArray == algorithm.GetScalarArray() == ""
 surface = DepthMapSurface(Input=caster)
 algorithm = lacuna.vtkLacunaDepthMapSurface()
 assert surface.DepthArray == algorithm.GetDepthArray() == "Depth"
-check_defaults(surface, algorithm, ["BreakAtDiscontinuities", "MaximumAngle", "MaximumAngleChange"])
+check_defaults(surface, algorithm, ["BreakAtDiscontinuities", "MaximumAngle", "MaximumAngleChange",
+                                    "ComputeNormalDifference"])
 Delete(surface)
 Delete(caster)
 

@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaDepthMapShader.h"
+
+#include "lacunaDepthNormals.h"
+#include "lacunaDepthShader.h"
+
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaMapDepths.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+constexpr double BiasPerVoxel = 0.1;
+
+void CheckChoice(const char* name, int value, int count)
+{
+  if (value < 0 || value >= count)
+  {
+    throw std::runtime_error(std::string(name) + " is " + std::to_string(value) +
+      "; it must lie within 0 and " + std::to_string(count - 1));
+  }
+}
+
+/// (i, j, k) counted from the volume's first voxel to world mm.
+lacuna::Matrix4 IndexToWorld(vtkImageData* volume)
+{
+  const int* extent = volume->GetExtent();
+  return lacuna::Matrix4(volume->GetIndexToPhysicalMatrix()->GetData()) *
+    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+      static_cast<double>(extent[4]) });
+}
+
+/// The sphere around the box of a volume's voxel centres.
+lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
+{
+  const int* dimensions = volume->GetDimensions();
+  const lacuna::Vec3 half{ 0.5 * (dimensions[0] - 1), 0.5 * (dimensions[1] - 1),
+    0.5 * (dimensions[2] - 1) };
+  const lacuna::Matrix4 toWorld = IndexToWorld(volume);
+  lacuna::Sphere sphere;
+  sphere.Centre = toWorld.Point(half);
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    sphere.Radius = std::max(sphere.Radius,
+      lacuna::Norm(toWorld.Vector(
+        { corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1], half[2] })));
+  }
+  return sphere;
+}
+
+/// The iso-value of the surface whose depths are in an array: number k of IsoValues for Depth_k, the
+/// first for all others.
+double IsoValueOf(vtkImageData* map, const std::string& depthArray)
+{
+  vtkDataArray* values = vtkLacunaFieldData::Find(map, vtkLacunaDepthMap::IsoValuesName, 1, -1);
+  const std::string further = std::string(vtkLacunaDepthMap::DepthName) + "_";
+  const long number =
+    depthArray.rfind(further, 0) == 0 ? std::atol(depthArray.c_str() + further.size()) : 0;
+  if (!values || number < 0 || number >= values->GetNumberOfTuples())
+  {
+    throw std::runtime_error(std::string("the depth map does not say in field data array '") +
+      vtkLacunaDepthMap::IsoValuesName + "' at which grey level '" + depthArray +
+      "' was found, which shadows need: disconnect the volume or turn CastShadows off");
+  }
+  return values->GetComponent(number, 0);
+}
+}
+
+//------------------------------------------------------------------------------
+/// The prepared volume is kept: other lights need it unchanged.
+class vtkLacunaDepthMapShader::Internals
+{
+public:
+  using Key =
+    std::tuple<vtkDataArray*, vtkMTimeType, std::array<int, 3>, std::array<double, 16>, int, int>;
+  Key CasterKey{};
+  /// What the caster refers to, in a memory layout that serves.
+  vtkSmartPointer<vtkDataArray> Voxels;
+  std::unique_ptr<lacuna::IsoRayCaster> Caster;
+
+  static vtkDataArray* FindScalars(vtkLacunaDepthMapShader* self, vtkImageData* volume)
+  {
+    vtkPointData* data = volume->GetPointData();
+    vtkDataArray* scalars =
+      self->VolumeArray.empty() ? data->GetScalars() : data->GetArray(self->VolumeArray.c_str());
+    if (!scalars || scalars->GetNumberOfComponents() != 1 ||
+      scalars->GetNumberOfTuples() != volume->GetNumberOfPoints())
+    {
+      throw std::runtime_error(
+        (self->VolumeArray.empty() ? std::string("the volume has no active point scalars")
+                                   : "the volume has no point array '" + self->VolumeArray + "'") +
+        " of one grey level per voxel, which shadows need");
+    }
+    return scalars;
+  }
+
+  lacuna::ShadowCaster Prepare(vtkLacunaDepthMapShader* self, vtkImageData* map,
+    vtkImageData* input, vtkLacunaExecution& execution)
+  {
+    vtkDataArray* scalars = FindScalars(self, input);
+    const int* dimensions = input->GetDimensions();
+    lacuna::VoxelVolume volume;
+    volume.Type = vtkLacunaScalarType::Get(scalars);
+    volume.Size = { dimensions[0], dimensions[1], dimensions[2] };
+    volume.IndexToWorld = IndexToWorld(input);
+    CheckLights(self, volume);
+    std::array<double, 16> matrix;
+    std::copy_n(volume.IndexToWorld.Data(), 16, matrix.begin());
+    const Key key{ scalars, scalars->GetMTime(), volume.Size, matrix, self->Interpolation,
+      self->SolidSide };
+    if (!this->Caster || key != this->CasterKey)
+    {
+      this->Caster.reset();
+      this->Voxels = scalars;
+      if (!scalars->HasStandardMemoryLayout())
+      {
+        this->Voxels.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+        this->Voxels->DeepCopy(scalars);
+      }
+      volume.Voxels = this->Voxels->GetVoidPointer(0);
+      this->Caster = std::make_unique<lacuna::IsoRayCaster>(volume,
+        static_cast<lacuna::FieldInterpolation>(self->Interpolation),
+        self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below, execution);
+      this->CasterKey = key;
+    }
+    lacuna::ShadowCaster shadows;
+    shadows.Caster = this->Caster.get();
+    shadows.IsoValue = IsoValueOf(map, self->DepthArray);
+    const double* spacing = input->GetSpacing();
+    shadows.Bias = self->ShadowBias > 0 ? self->ShadowBias
+                                        : BiasPerVoxel *
+        std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+    return shadows;
+  }
+
+  /// Shadow rays come from the light, so it has to be before all that may hide it.
+  static void CheckLights(vtkLacunaDepthMapShader* self, const lacuna::VoxelVolume& volume)
+  {
+    const lacuna::Matrix4 toIndex = volume.IndexToWorld.Inverse();
+    for (std::size_t i = 0; i < self->Lights.size(); ++i)
+    {
+      const auto& light = self->Lights[i];
+      const lacuna::Vec3 index = toIndex.Point({ light[0], light[1], light[2] });
+      bool inside = light[3] != 0;
+      for (int a = 0; a < 3; ++a)
+      {
+        inside = inside && index[a] > 0 && index[a] < volume.Size[a] - 1;
+      }
+      if (inside)
+      {
+        throw std::runtime_error("light " + std::to_string(i) +
+          " lies within the volume that throws shadows; move it out of the volume or turn "
+          "CastShadows off");
+      }
+    }
+  }
+
+  static lacuna::ShadingSettings MakeSettings(vtkLacunaDepthMapShader* self)
+  {
+    CheckChoice("NormalMethod", self->NormalMethod, Predicate + 1);
+    CheckChoice("Shading", self->Shading, DepthOnly + 1);
+    CheckChoice("DepthLaw", self->DepthLaw, Inverse + 1);
+    CheckChoice("Interpolation", self->Interpolation, Trilinear + 1);
+    CheckChoice("SolidSide", self->SolidSide, Below + 1);
+    if (!(self->ShadowBias >= 0 && std::isfinite(self->ShadowBias)))
+    {
+      throw std::runtime_error("ShadowBias is " + std::to_string(self->ShadowBias) +
+        "; it must be a length in mm, or 0 for a tenth of the smallest voxel edge");
+    }
+    lacuna::ShadingSettings settings;
+    settings.Model =
+      self->Shading == Phong ? lacuna::ShadingModel::Phong : lacuna::ShadingModel::DepthOnly;
+    settings.Ambient = self->Ambient;
+    settings.Diffuse = self->Diffuse;
+    settings.Specular = self->Specular;
+    settings.SpecularPower = self->SpecularPower;
+    settings.DepthCue = self->DepthCue;
+    settings.Law =
+      self->DepthLaw == InverseSquare ? lacuna::DepthLaw::InverseSquare : lacuna::DepthLaw::Inverse;
+    std::copy_n(self->SurfaceColor, 3, settings.SurfaceColor.data());
+    std::copy_n(self->BackgroundColor, 3, settings.BackgroundColor.data());
+    for (std::size_t i = 0; i < self->Lights.size(); ++i)
+    {
+      const auto& light = self->Lights[i];
+      if (light[3] != 0 && light[3] != 1)
+      {
+        throw std::runtime_error("light " + std::to_string(i) + " has the fourth number " +
+          std::to_string(light[3]) + "; it must be 0 for a direction or 1 for a position");
+      }
+      settings.Lights.push_back({ { light[0], light[1], light[2] }, light[3] == 1, light[4] });
+    }
+    settings.Check();
+    return settings;
+  }
+
+  /// The map's normals of the pixels of output; null when it has none.
+  static vtkSmartPointer<vtkFloatArray> StoredNormals(
+    vtkLacunaDepthMapShader* self, vtkImageData* output)
+  {
+    const std::string name = vtkLacunaDepthMap::GetNormalsName(self->DepthArray);
+    vtkDataArray* stored = output->GetPointData()->GetArray(name.c_str());
+    if (!stored || stored->GetNumberOfComponents() != 3)
+    {
+      return nullptr;
+    }
+    auto normals = vtkSmartPointer<vtkFloatArray>::New();
+    normals->DeepCopy(stored);
+    return normals;
+  }
+
+  /// The normals to shade with, and how they differ from the map's. May be null for DepthOnly.
+  static vtkSmartPointer<vtkFloatArray> MakeNormals(vtkLacunaDepthMapShader* self,
+    const lacuna::DepthGrid& grid, vtkImageData* output, vtkLacunaExecution& execution)
+  {
+    const int* e = output->GetExtent();
+    const std::array<int, 4> extent = { e[0], e[1], e[2], e[3] };
+    const std::string name = vtkLacunaDepthMap::GetNormalsName(self->DepthArray);
+    vtkSmartPointer<vtkFloatArray> stored = StoredNormals(self, output);
+    if (self->NormalMethod == Stored)
+    {
+      if (!stored)
+      {
+        if (self->Shading == DepthOnly)
+        {
+          return nullptr;
+        }
+        throw std::runtime_error("the depth map has no normals '" + name +
+          "' of three components: choose another NormalMethod than Stored");
+      }
+      const std::int64_t missing =
+        lacuna::MendNormals(grid, extent, stored->GetPointer(0), execution);
+      if (missing > 0)
+      {
+        vtkWarningWithObjectMacro(self,
+          "" << missing << " pixels have a depth and no normal in '" << name
+             << "'; they are shaded as if they faced the viewer");
+      }
+      return stored;
+    }
+    auto normals = vtkSmartPointer<vtkFloatArray>::New();
+    normals->SetName(name.c_str());
+    normals->SetNumberOfComponents(3);
+    normals->SetNumberOfTuples(output->GetNumberOfPoints());
+    const lacuna::DepthNormalMethod methods[] = { lacuna::DepthNormalMethod::CentralDifference,
+      lacuna::DepthNormalMethod::Gordon, lacuna::DepthNormalMethod::Predicate };
+    lacuna::EstimateNormals(grid, methods[self->NormalMethod - CentralDifference],
+      { self->MaximumAngle, self->MaximumAngleChange }, extent, normals->GetPointer(0), execution);
+    if (stored)
+    {
+      vtkNew<vtkFloatArray> difference;
+      difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
+      difference->SetNumberOfTuples(output->GetNumberOfPoints());
+      lacuna::AnglesBetween(stored->GetPointer(0), normals->GetPointer(0),
+        output->GetNumberOfPoints(), difference->GetPointer(0), execution);
+      output->GetPointData()->AddArray(difference);
+    }
+    return normals;
+  }
+
+  static std::string Describe(vtkLacunaDepthMapShader* self)
+  {
+    std::ostringstream text;
+    text.precision(17);
+    text << "DepthArray=" << self->DepthArray << " NormalMethod=" << self->NormalMethod
+         << " MaximumAngle=" << self->MaximumAngle
+         << " MaximumAngleChange=" << self->MaximumAngleChange << " Shading=" << self->Shading
+         << " Ambient=" << self->Ambient << " Diffuse=" << self->Diffuse
+         << " Specular=" << self->Specular << " SpecularPower=" << self->SpecularPower
+         << " DepthCue=" << self->DepthCue << " DepthLaw=" << self->DepthLaw << " Lights=";
+    for (std::size_t i = 0; i < self->Lights.size(); ++i)
+    {
+      for (std::size_t k = 0; k < 5; ++k)
+      {
+        text << (i + k ? "," : "") << self->Lights[i][k];
+      }
+    }
+    text << " SurfaceColor=" << self->SurfaceColor[0] << "," << self->SurfaceColor[1] << ","
+         << self->SurfaceColor[2] << " BackgroundColor=" << self->BackgroundColor[0] << ","
+         << self->BackgroundColor[1] << "," << self->BackgroundColor[2]
+         << " CastShadows=" << self->CastShadows << " VolumeArray=" << self->VolumeArray
+         << " Interpolation=" << self->Interpolation << " SolidSide=" << self->SolidSide
+         << " ShadowBias=" << self->ShadowBias;
+    return text.str();
+  }
+};
+
+vtkStandardNewMacro(vtkLacunaDepthMapShader);
+
+//------------------------------------------------------------------------------
+vtkLacunaDepthMapShader::vtkLacunaDepthMapShader()
+  : Internal(std::make_unique<Internals>())
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaDepthMapShader::~vtkLacunaDepthMapShader() = default;
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMapShader::AddLight(double x, double y, double z, double w, double intensity)
+{
+  this->Lights.push_back({ x, y, z, w, intensity });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMapShader::RemoveAllLights()
+{
+  if (!this->Lights.empty())
+  {
+    this->Lights.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapShader::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapShader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_CHAR, 3);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+/// The sphere around the data is that of the map's points where there is no volume.
+bool vtkLacunaDepthMapShader::NeedsWholeMap()
+{
+  return this->GetNumberOfInputConnections(1) == 0 &&
+    (this->Shading == DepthOnly || this->DepthCue > 0);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapShader::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  int whole[6] = { 0, -1, 0, -1, 0, -1 };
+  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
+  int extent[6];
+  std::copy_n(whole, 6, extent);
+  if (!this->NeedsWholeMap())
+  {
+    outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
+    for (int a = 0; a < 2 && extent[0] <= extent[1] && extent[2] <= extent[3]; ++a)
+    {
+      // neighbours, for the normals
+      extent[2 * a] = std::max(whole[2 * a], extent[2 * a] - 1);
+      extent[2 * a + 1] = std::min(whole[2 * a + 1], extent[2 * a + 1] + 1);
+    }
+  }
+  const auto request = [](vtkInformation* info, const int wanted[6])
+  {
+    info->Set(SDDP::UPDATE_EXTENT(), wanted, 6);
+    // this very extent: a producer of sub-extents would split it once more by piece
+    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  };
+  request(inInfo, extent);
+  if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
+  {
+    int volume[6] = { 0, -1, 0, -1, 0, -1 };
+    volumeInfo->Get(SDDP::WHOLE_EXTENT(), volume);
+    request(volumeInfo, volume);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDepthMapShader::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::Run(this, outputVector,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+      vtkImageData* volume = vtkImageData::GetData(inputVector[1]);
+      vtkImageData* output = vtkImageData::GetData(outputVector);
+      lacuna::ShadingSettings settings = Internals::MakeSettings(this);
+      if (!input || input->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      const vtkLacunaDepthMap contract(input);
+      const vtkLacunaMapDepths depths(input, contract, this->DepthArray);
+      const lacuna::DepthGrid& grid = depths.GetGrid();
+      int extent[6];
+      outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
+      if (extent[0] < grid.Extent[0] || extent[1] > grid.Extent[1] || extent[2] < grid.Extent[2] ||
+        extent[3] > grid.Extent[3])
+      {
+        throw std::runtime_error("pixels outside of the depth map were asked for");
+      }
+      output->ShallowCopy(input);
+      output->Crop(extent);
+
+      execution.SetStage(0, 0.2);
+      lacuna::ShadowCaster shadows;
+      const bool hasVolume = volume && volume->GetNumberOfPoints() > 0;
+      if (hasVolume && this->CastShadows && this->Shading == Phong && !this->Lights.empty())
+      {
+        shadows = this->Internal->Prepare(this, input, volume, execution);
+      }
+      if (hasVolume)
+      {
+        settings.Data = CircumscribedSphere(volume);
+      }
+      else if (this->NeedsWholeMap())
+      {
+        settings.Data = lacuna::CircumscribedSphere(grid, execution);
+      }
+
+      execution.SetStage(0.2, 0.4);
+      const auto normals = Internals::MakeNormals(this, grid, output, execution);
+      if (normals)
+      {
+        output->GetPointData()->AddArray(normals);
+        output->GetPointData()->SetActiveNormals(normals->GetName());
+      }
+
+      execution.SetStage(0.4, 1);
+      vtkNew<vtkUnsignedCharArray> colors;
+      colors->SetName(vtkLacunaDepthMap::ColorName);
+      colors->SetNumberOfComponents(3);
+      colors->SetNumberOfTuples(output->GetNumberOfPoints());
+      lacuna::ShadeDepths(grid, normals ? normals->GetPointer(0) : nullptr, settings, shadows,
+        { extent[0], extent[1], extent[2], extent[3] }, colors->GetPointer(0), execution);
+      output->GetPointData()->AddArray(colors);
+      output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::ColorName);
+
+      std::vector<vtkDataObject*> sources{ input };
+      if (volume)
+      {
+        sources.push_back(volume);
+      }
+      vtkLacunaProvenance::Record(output, this, sources, Internals::Describe(this));
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMapShader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Settings: " << Internals::Describe(this) << "\n";
+}

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaDepthMapShader
+ * @brief picture of a depth map: Phong or depth-only shading, depth cue, lights, shadows
+ *
+ * Normals. Stored: those of the map (analytic or grey-level, as its maker wrote them). The other
+ * methods look at the depths alone. Along its row and its column a pixel has an edge to the point
+ * before (backward) and to the next (forward); the chosen tangents are perpendicular to the normal.
+ * CentralDifference: between both neighbours, which darkens occluding edges. Gordon: mean of both
+ * slopes (depth per mm across the ray), weighted by 1 up to a slope of 2, 1e-5 from 5 on, and a half
+ * wave of the cosine between. Predicate: the first of nine cases, with the angles of both edges
+ * against the plane perpendicular to the ray: (1) no neighbour: slope 0; (2, 3) one neighbour: its
+ * edge; (4) angles differ by less than MaximumAngleChange: central; (5) both steeper than
+ * MaximumAngle, opposite signs: 0; (6) both steeper, same sign: central; (7, 8) one steeper: the
+ * other; (9) central. Where one neighbour is missing all methods take the other edge. Points are
+ * taken in space, so a plane has its exact normal in perspective maps too.
+ *
+ * Shading. Phong: color x (Ambient + Diffuse sum I N.L) + white x Specular sum I cos^n, n =
+ * SpecularPower, the angle being that between the mirrored light and the viewer. (Diffuse shading is
+ * Specular 0.) DepthOnly: a brightness of 1 at the near end of the sphere around the data, 0 at its far
+ * end, falling as 1/d^2 or 1/d (DepthLaw) from a source one diameter before the sphere. DepthCue 0..1
+ * mixes that brightness into Phong: the far end is 1 - DepthCue as bright. The sphere is around the
+ * volume if there is one, otherwise around the box of the map's points; distances are along the view,
+ * in perspective from the eye.
+ *
+ * Lights: any number, parallel or at positions; none: one at the viewpoint. With a volume at the second
+ * input, a point that the volume's surface hides from a light gets none of it. The iso-value is that of
+ * the map's IsoValues; what lies nearer to the point than ShadowBias along the ray is the point's own
+ * surface and throws no shadow. The light at the viewpoint throws none that could be seen.
+ *
+ * Input 0: a depth map, see vtkLacunaDepthMap.h. Input 1 (optional): vtkImageData with point scalars of
+ * one component, at least two voxels along each axis.
+ *
+ * Output: the same map with its arrays and geometry, and Color (unsigned char x 3, active scalars;
+ * pixels without a depth have BackgroundColor, and 0 in vtkValidPointMask), the normals used (float x
+ * 3, in Normals, for other depth arrays see vtkLacunaDepthMap::GetNormalsName) and, if the map had
+ * normals and others were used, NormalDifference: degrees between both (float, NaN without a depth).
+ * Requested extents are honoured.
+ *
+ * Errors: input 0 is no depth map or has no such DepthArray, no normals are stored, a setting is out
+ * of range, a light has no direction or lies within the volume, the volume has no scalars or the map
+ * no IsoValues.
+ *
+ * Source: Carr 1996, 3.3; Gordon & Reynolds 1985.
+ *
+ * @sa vtkLacunaBSplineIsoRayCaster vtkLacunaDepthMapSurface
+ */
+#ifndef vtkLacunaDepthMapShader_h
+#define vtkLacunaDepthMapShader_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersRayCastingModule.h" // for export macro
+
+#include <array>  // for std::array
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+#include <vector> // for std::vector
+
+class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapShader : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaDepthMapShader* New();
+  vtkTypeMacro(vtkLacunaDepthMapShader, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum NormalMethodType
+  {
+    Stored = 0,
+    CentralDifference,
+    Gordon,
+    Predicate
+  };
+
+  enum ShadingType
+  {
+    Phong = 0,
+    DepthOnly
+  };
+
+  enum DepthLawType
+  {
+    InverseSquare = 0, ///< a point source
+    Inverse            ///< between a point source and parallel light
+  };
+
+  enum InterpolationType
+  {
+    BSpline = 0,
+    InterpolatingBSpline,
+    Trilinear
+  };
+
+  enum SolidSideType
+  {
+    Above = 0,
+    Below
+  };
+
+  /** The volume that throws shadows. */
+  void SetVolumeConnection(vtkAlgorithmOutput* volume) { this->SetInputConnection(1, volume); }
+
+  ///@{
+  /** The point array with the depths in mm. Default Depth; Fitted shows the fit of a filled map. */
+  vtkSetMacro(DepthArray, std::string);
+  vtkGetMacro(DepthArray, std::string);
+  ///@}
+
+  ///@{
+  /** Where the normals come from. Default Stored. */
+  vtkSetMacro(NormalMethod, int);
+  vtkGetMacro(NormalMethod, int);
+  ///@}
+
+  ///@{
+  /** Of Predicate: what is steeper may be a discontinuity. Degrees, 0..90, default 65. */
+  vtkSetMacro(MaximumAngle, double);
+  vtkGetMacro(MaximumAngle, double);
+  ///@}
+
+  ///@{
+  /** Of Predicate: angles that differ less are one surface. Degrees, 0..180, default 20. */
+  vtkSetMacro(MaximumAngleChange, double);
+  vtkGetMacro(MaximumAngleChange, double);
+  ///@}
+
+  ///@{
+  /** Phong (default) or DepthOnly. */
+  vtkSetMacro(Shading, int);
+  vtkGetMacro(Shading, int);
+  ///@}
+
+  ///@{
+  /** Parts of the light, >= 0. Defaults 0.1, 0.7, 0.2: a surface towards the viewer is white. */
+  vtkSetMacro(Ambient, double);
+  vtkGetMacro(Ambient, double);
+  vtkSetMacro(Diffuse, double);
+  vtkGetMacro(Diffuse, double);
+  vtkSetMacro(Specular, double);
+  vtkGetMacro(Specular, double);
+  ///@}
+
+  ///@{
+  /** Phong's exponent; greater makes highlights smaller. At least 0.001, default 20. */
+  vtkSetMacro(SpecularPower, double);
+  vtkGetMacro(SpecularPower, double);
+  ///@}
+
+  ///@{
+  /**
+   * Lights, world coordinates: w = 0: parallel light, x y z the direction towards it, any length;
+   * w = 1: a lamp at x y z (mm). Intensity >= 0. Default none: one of intensity 1 at the viewpoint.
+   */
+  void AddLight(double x, double y, double z, double w, double intensity);
+  void RemoveAllLights();
+  int GetNumberOfLights() const { return static_cast<int>(this->Lights.size()); }
+  ///@}
+
+  ///@{
+  /** How much darker the far end of the data is, 0..1. Default 0. */
+  vtkSetMacro(DepthCue, double);
+  vtkGetMacro(DepthCue, double);
+  ///@}
+
+  ///@{
+  /** How brightness falls with depth. Default InverseSquare. */
+  vtkSetMacro(DepthLaw, int);
+  vtkGetMacro(DepthLaw, int);
+  ///@}
+
+  ///@{
+  /** Colors of the surface and of pixels without a depth, red green blue, 0..1. Default white; black. */
+  vtkSetVector3Macro(SurfaceColor, double);
+  vtkGetVector3Macro(SurfaceColor, double);
+  vtkSetVector3Macro(BackgroundColor, double);
+  vtkGetVector3Macro(BackgroundColor, double);
+  ///@}
+
+  ///@{
+  /** Whether the volume, if there is one, throws shadows. Default on. */
+  vtkSetMacro(CastShadows, bool);
+  vtkGetMacro(CastShadows, bool);
+  vtkBooleanMacro(CastShadows, bool);
+  ///@}
+
+  ///@{
+  /** The volume's point array with the grey levels. Default empty: the active scalars. */
+  vtkSetMacro(VolumeArray, std::string);
+  vtkGetMacro(VolumeArray, std::string);
+  ///@}
+
+  ///@{
+  /** The field between the voxels and its solid side, as the map was made. Default BSpline, Above. */
+  vtkSetMacro(Interpolation, int);
+  vtkGetMacro(Interpolation, int);
+  vtkSetMacro(SolidSide, int);
+  vtkGetMacro(SolidSide, int);
+  ///@}
+
+  ///@{
+  /** See above. mm, >= 0; default 0: a tenth of the smallest voxel edge. */
+  vtkSetMacro(ShadowBias, double);
+  vtkGetMacro(ShadowBias, double);
+  ///@}
+
+protected:
+  vtkLacunaDepthMapShader();
+  ~vtkLacunaDepthMapShader() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  std::string DepthArray = "Depth";
+  int NormalMethod = Stored;
+  double MaximumAngle = 65;
+  double MaximumAngleChange = 20;
+  int Shading = Phong;
+  double Ambient = 0.1;
+  double Diffuse = 0.7;
+  double Specular = 0.2;
+  double SpecularPower = 20;
+  double DepthCue = 0;
+  int DepthLaw = InverseSquare;
+  double SurfaceColor[3] = { 1, 1, 1 };
+  double BackgroundColor[3] = { 0, 0, 0 };
+  bool CastShadows = true;
+  std::string VolumeArray;
+  int Interpolation = BSpline;
+  int SolidSide = Above;
+  double ShadowBias = 0;
+  std::vector<std::array<double, 5>> Lights;
+
+private:
+  vtkLacunaDepthMapShader(const vtkLacunaDepthMapShader&) = delete;
+  void operator=(const vtkLacunaDepthMapShader&) = delete;
+
+  bool NeedsWholeMap();
+
+  class Internals;
+  std::unique_ptr<Internals> Internal;
+};
+#endif

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The proxy Depth Map Shader on the skull phantom: defaults, lights from scripts, shadows, colours on the surface."""
+import math
+import os
+
+from paraview import servermanager
+from paraview.simple import *
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+import lacuna  # after the plugin: the wrapped classes, for the C++ defaults
+from lacuna_test import output
+
+skull = SkullPhantom(Spacing=[2, 2, 2.3])
+depth_map = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[0, 1, -0.2], ViewUp=[0, 0, 1],
+                                PixelSpacing=2)
+shader = DepthMapShader(Input=depth_map)
+algorithm = lacuna.vtkLacunaDepthMapShader()
+for name in ("MaximumAngle", "MaximumAngleChange", "Ambient", "Diffuse", "Specular", "SpecularPower", "DepthCue",
+             "SurfaceColor", "BackgroundColor", "CastShadows", "ShadowBias"):
+    shown, actual = getattr(shader, name), getattr(algorithm, "Get" + name)()
+    assert (tuple(shown) if hasattr(shown, "__len__") else shown) == actual, name
+assert shader.DepthArray == algorithm.GetDepthArray() == "Depth"
+assert shader.VolumeArray == algorithm.GetVolumeArray() == ""
+enumerations = {"NormalMethod": "Stored", "Shading": "Phong", "DepthLaw": "InverseSquare", "Interpolation": "BSpline",
+                "SolidSide": "Above"}
+for name, text in enumerations.items():
+    assert getattr(shader, name) == text, name
+    assert getattr(algorithm, "Get" + name)() == 0, name
+assert list(shader.Lights) == [] and algorithm.GetNumberOfLights() == 0
+
+
+def picture(**properties):
+    for name, value in properties.items():
+        setattr(shader, name, value)
+    shader.UpdatePipeline()
+    return servermanager.Fetch(shader)
+
+
+def mean(image, component=0, columns=(0, 1)):
+    """Of the pixels that have a depth, within a part of the columns."""
+    width = image.GetDimensions()[0]
+    data = image.GetPointData()
+    colors, mask = data.GetArray("Color"), data.GetArray("vtkValidPointMask")
+    chosen = [colors.GetComponent(i, component) for i in range(image.GetNumberOfPoints())
+              if mask.GetTuple1(i) and columns[0] <= i % width / width < columns[1]]
+    return sum(chosen) / len(chosen)
+
+
+front = picture()
+scalars = front.GetPointData().GetScalars()
+assert scalars.GetName() == "Color" and scalars.GetNumberOfComponents() == 3
+assert scalars.GetDataTypeAsString() == "unsigned char"
+assert 60 < mean(front) < 230, mean(front)
+
+# each method gives another picture; NormalDifference says by how many degrees the normals differ
+darkest = {}
+for method in ("CentralDifference", "Gordon", "Predicate"):
+    image = picture(NormalMethod=method)
+    difference = image.GetPointData().GetArray("NormalDifference")
+    values = [difference.GetTuple1(i) for i in range(image.GetNumberOfPoints())]
+    known = [v for v in values if not math.isnan(v)]
+    assert len(known) == sum(image.GetPointData().GetArray("vtkValidPointMask").GetTuple1(i)
+                             for i in range(image.GetNumberOfPoints()))
+    assert max(known) <= 180 and sorted(known)[len(known) // 2] < 5, sorted(known)[len(known) // 2]
+    darkest[method] = sum(known) / len(known)
+print("mean degrees from the stored normals:", darkest)
+assert darkest["Predicate"] < darkest["CentralDifference"], darkest
+
+# light from the viewer's right: the map looks along +y with z up, so right is +x
+right = picture(NormalMethod="Stored", Specular=0, Lights=[1, 0, 0, 0, 1])
+assert mean(right, columns=(0.5, 1)) > 2 * mean(right, columns=(0, 0.5)), "light from the right"
+left = picture(Lights=[-1, 0, 0, 0, 1])
+assert mean(left, columns=(0, 0.5)) > 2 * mean(left, columns=(0.5, 1)), "light from the left"
+both = picture(Lights=[1, 0, 0, 0, 1, -1, 0, 0, 0, 1])
+assert abs(mean(both) - (mean(left) + mean(right) - 25.5)) < 2, "lights add up"
+lamp = picture(Lights=[300, -300, 0, 1, 0.5])
+assert mean(lamp, columns=(0.5, 1)) > mean(lamp, columns=(0, 0.5))
+
+# with the volume, the rim of the hole throws its shadow into the skull; light from the viewer's left
+depth_map.ViewDirection = [-0.4, 0.2, -0.9]
+slanting = picture(Lights=[-2.0, -1.0, 2.5, 0, 1])
+shaded = picture(Volume=skull)
+columns, rows, _ = shaded.GetDimensions()
+before, after = (image.GetPointData().GetArray("Color") for image in (slanting, shaded))
+darker = [i for i in range(columns * rows) if after.GetComponent(i, 0) < before.GetComponent(i, 0)]
+assert not any(after.GetComponent(i, 0) > before.GetComponent(i, 0) for i in range(columns * rows))
+print(len(darker), "pixels in shadow")
+assert 150 < len(darker) < 0.2 * columns * rows, len(darker)
+off = picture(CastShadows=0)
+assert mean(off) == mean(slanting)
+
+# the depth cue darkens what is far, and colours are colours
+cue = picture(Lights=[], DepthCue=1, SurfaceColor=[1, 0.5, 0])
+plain = picture(DepthCue=0)
+assert mean(cue) < mean(plain) - 20 and mean(plain, 2) == 0 and abs(mean(plain, 1) - 0.5 * mean(plain)) < 1
+only = picture(Shading="DepthOnly", SurfaceColor=[1, 1, 1])
+near_far = [only.GetPointData().GetArray("Color").GetComponent(i, 0) for i in range(only.GetNumberOfPoints())
+            if only.GetPointData().GetArray("vtkValidPointMask").GetTuple1(i)]
+assert 0 < min(near_far) < max(near_far) < 255, "the skull lies within the sphere around its volume"
+
+# the surface has the same colours
+picture(Shading="Phong", Specular=0.2)
+surface = DepthMapSurface(Input=shader)
+surface.UpdatePipeline()
+mesh = servermanager.Fetch(surface)
+assert mesh.GetPointData().GetScalars().GetName() == "Color"
+image = servermanager.Fetch(shader)
+ids, colors = mesh.GetPointData().GetArray("PixelId"), mesh.GetPointData().GetArray("Color")
+for i in range(0, mesh.GetNumberOfPoints(), 97):
+    assert colors.GetTuple3(i) == image.GetPointData().GetArray("Color").GetTuple3(int(ids.GetTuple1(i)))
+view = CreateView("RenderView")
+view.ViewSize = [500, 500]
+shown = Show(surface, view)
+ColorBy(shown, ("POINTS", "Color"))
+shown.MapScalars = 0
+ResetCamera(view)
+Render(view)
+SaveScreenshot(output("DepthMapShaderSurface.png"), view)
+SaveData(output("DepthMapShader.png"), proxy=shader)
+print("ok")
