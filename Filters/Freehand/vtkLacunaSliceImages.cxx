@@ -89,7 +89,7 @@ constexpr std::array<const char*, 4> FlagNames{ "pose invalid", "image invalid",
 struct vtkLacunaSliceImages::Candidate
 {
   vtkIdType Number;
-  bool IsInStack;
+  bool HasImage;
   lacuna::SliceImage Slice;
 };
 
@@ -110,13 +110,13 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
   this->DropUnusable(candidates, selection);
   this->DropOutliers(candidates, selection);
-  for (const bool inStack : { true, false })
+  for (const bool hasImage : { true, false })
   {
     for (const Candidate& candidate : candidates)
     {
-      if (candidate.IsInStack == inStack)
+      if (candidate.HasImage == hasImage)
       {
-        (inStack ? this->Slices : this->Others).push_back(candidate.Slice);
+        (hasImage ? this->Slices : this->Others).push_back(candidate.Slice);
         this->Poses.push_back(tracked.GetImageToReference(candidate.Number));
       }
     }
@@ -155,26 +155,33 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
     }
     layer = k - extent[4];
   }
+  const auto orExpected = static_cast<unsigned char>(
+    selection.AcceptedFlags | (selection.IsReplay ? vtkLacunaTrackedSlices::ImageInvalid : 0));
   std::vector<Candidate> candidates;
   for (vtkIdType number = 0; number < tracked.GetNumberOfSlices(); ++number)
   {
     const std::int64_t layer = layers[number];
-    if (!tracked.IsUsable(number, selection.AcceptedFlags))
+    if (layer < 0)
     {
-      for (std::size_t flag = 0; flag < FlagNames.size() && layer >= 0; ++flag)
+      continue; // not in the stack
+    }
+    const bool isUsable = tracked.IsUsable(number, selection.AcceptedFlags);
+    if (!isUsable)
+    {
+      for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)
       {
         this->FlagCounts[flag] += (tracked.GetStatus(number) >> flag) & 1;
       }
-      this->NumberLeftOut += layer >= 0 ? 1 : 0;
+      ++this->NumberLeftOut;
     }
-    else if (layer >= 0 || selection.WholeSweep)
+    if (tracked.IsUsable(number, orExpected))
     {
       Candidate candidate;
       candidate.Number = number;
-      candidate.IsInStack = layer >= 0;
+      candidate.HasImage = isUsable;
       lacuna::SliceImage& slice = candidate.Slice;
       slice.Type = type;
-      if (candidate.IsInStack)
+      if (isUsable)
       {
         slice.Pixels = pixels +
           (layer * height * width + (rows.First - extent[2]) * width + columns.First - extent[0]) *

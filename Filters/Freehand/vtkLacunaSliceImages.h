@@ -35,8 +35,9 @@ struct vtkLacunaSliceSelection
   /// Flags of SliceStatus that do not matter.
   unsigned char AcceptedFlags = 0;
   int BadPoses = Refuse;
-  /// Where slices lie is asked of the whole sweep, also of slices that are not in the stack (yet).
-  bool WholeSweep = false;
+  /// The stack is replayed: slices whose image is invalid (2) may come yet. They are listed as
+  /// Others.
+  bool IsReplay = false;
   /// Ends the name of a slice in errors.
   std::string Suffix;
 };
@@ -64,7 +65,7 @@ struct vtkLacunaSliceImages
   vtkImageData* Stack;
   vtkSmartPointer<vtkDataArray> GreyLevels; ///< in one piece of memory
   std::vector<lacuna::SliceImage> Slices;
-  /// Slices of the sweep that are not in the stack; without pixels, only if asked for.
+  /// In a replay: slices whose pose is known, but not their image. They have no pixels.
   std::vector<lacuna::SliceImage> Others;
   /// ImageToReference of Slices, then of Others.
   std::vector<lacuna::Matrix4> Poses;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolume.h"
 
+#include "lacunaGrowingVolume.h"
 #include "lacunaMemory.h"
-#include "lacunaSweptVolume.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -77,11 +77,18 @@ vtkStandardNewMacro(vtkLacunaSweptVolume);
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolume::vtkLacunaSweptVolume()
   : Fans(new vtkLacunaSweptVolumeFans)
+  , Growing(new lacuna::GrowingVolume)
 {
 }
 
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolume::~vtkLacunaSweptVolume() = default;
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaSweptVolume::GetNumberOfSlicesAdded() const
+{
+  return static_cast<vtkIdType>(this->Growing->GetNumberOfSlicesAdded());
+}
 
 //------------------------------------------------------------------------------
 const char* vtkLacunaSweptVolume::GetFanDescription()
@@ -234,14 +241,13 @@ int vtkLacunaSweptVolume::RequestData(
       {
         std::array<int, 6> extent;
         std::copy(updateExtent, updateExtent + 6, extent.begin());
-        lacuna::SweptVolume volume(plan.Grid, extent, plan.Options);
-        const auto count = static_cast<double>(plan.Sweeps.size());
-        for (std::size_t s = 0; s < plan.Sweeps.size(); ++s)
+        lacuna::GrowingVolume::Sweeps sweeps;
+        for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
         {
-          volume.BeginSweep();
-          volume.AddSlices(plan.Sweeps[s].Slices, execution, 0.9 * static_cast<double>(s) / count,
-            0.9 * static_cast<double>(s + 1) / count);
+          sweeps.push_back(&sweep.Slices);
         }
+        const lacuna::SweptVolume& volume = this->Growing->Update(
+          sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
         CheckPairs(this, volume);
         execution.SetStage(0.9, 1);
         switch (plan.ScalarType)
@@ -249,6 +255,7 @@ int vtkLacunaSweptVolume::RequestData(
           vtkTemplateMacro(volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
             contributions->GetPointer(0), mask->GetPointer(0), execution));
         }
+        this->Growing->Finish();
       }
       output->GetPointData()->SetScalars(intensity);
       output->GetPointData()->AddArray(contributions);

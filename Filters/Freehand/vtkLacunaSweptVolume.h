@@ -30,6 +30,12 @@
  * them; the radii are 0 where there is no sector. The arrays of the slices are not copied: they do
  * not describe a volume.
  *
+ * Input that grows: when more slices have come at the end of the (last) input and all else is as it
+ * was, only they are worked on; the result is bit by bit that of all slices at once. The grid must
+ * not change for that: it is that of the whole sweep when the input has time steps (a replay, whose
+ * field data know all poses from the beginning); for a live source set OutputBounds and
+ * OutputSpacing.
+ *
  * The grid depends on the poses, which are known when the input has been executed: so the input is
  * brought up to date already when information about the output is asked for.
  *
@@ -48,6 +54,10 @@
 #include <string>
 
 struct vtkLacunaSweptVolumeFans;
+namespace lacuna
+{
+class GrowingVolume;
+}
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkImageAlgorithm
 {
@@ -242,6 +252,10 @@ public:
   vtkGetMacro(MemoryLimit, int);
   ///@}
 
+  /// Slices that the last update worked on: only the new ones when the slices of the update before
+  /// have not changed and more have come, in a grid that has not changed (see the guide), else all.
+  vtkIdType GetNumberOfSlicesAdded() const;
+
   int ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -283,5 +297,6 @@ private:
   int MemoryLimit = 4096;
   std::unique_ptr<vtkLacunaSweptVolumeFans> Fans;
   std::string FanDescription;
+  std::unique_ptr<lacuna::GrowingVolume> Growing;
 };
 #endif

@@ -4,9 +4,12 @@
 #include "lacunaPrincipalFrame.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaScalarType.h"
 #include "vtkLacunaSweptVolume.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <sstream>
@@ -48,11 +51,16 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     {
       continue;
     }
+    vtkInformation* info = inputs->GetInformationObject(i);
+    selection.IsReplay = info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS()) &&
+      info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()) > 1;
+    this->IsReplay |= selection.IsReplay;
     selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";
     this->Sweeps.emplace_back(stack, selection);
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
     this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
-    if (sweep.Slices.size() < needed)
+    // at the beginning of a replay there is nothing to see yet
+    if (sweep.Slices.size() + sweep.Others.size() < needed)
     {
       std::ostringstream message;
       message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()
@@ -142,7 +150,8 @@ void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
   const bool ofInput = filter->GetOutputScalarType() == vtkLacunaSweptVolume::Input;
   for (const vtkLacunaSliceImages& sweep : this->Sweeps)
   {
-    this->Options.DoublePrecision |= lacuna::NeedsDoublePrecision(sweep.Slices.front().Type);
+    this->Options.DoublePrecision |=
+      lacuna::NeedsDoublePrecision(vtkLacunaScalarType::Get(sweep.GreyLevels));
     if (ofInput && sweep.GreyLevels->GetDataType() != first)
     {
       throw std::runtime_error(std::string("the inputs have grey levels of different types (") +

@@ -50,6 +50,9 @@ public:
   lacuna::SweptVolume::Options Options;
   int ScalarType; ///< of Intensity, VTK_FLOAT, ...
   std::int64_t BytesPerVoxel = 0;
+  /// An input has time steps: its slices come one after the other, and the grid is that of all of
+  /// the sweep from the beginning.
+  bool IsReplay = false;
 
 private:
   void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
