@@ -55,6 +55,9 @@ recovers(caster, "ViewUp", [0, 0, 0], [([0, 1, 0], points(pv.BSplineIsoRayCaster
                                                                                  PixelSpacing=5)))])
 caster.PixelSpacing = 9
 assert points(caster) == pixels < 1000
+shader = pv.DepthMapShader(Input=caster)
+recovers(shader, "Lights", [0, 0, 0, 0, 1], [([0, 0, 1, 0, 1], pixels), ([], pixels)])
+recovers(shader, "DepthArray", "Fitted", [("Depth", pixels)])
 
 # classes alone: no older result passes for the one asked for
 direct = lacuna.vtkLacunaSkullPhantom()

@@ -11,6 +11,7 @@
 #include "vtkImageData.h"
 #include "vtkLacunaBSplineIsoRayCaster.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaDepthMapShader.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -163,6 +164,38 @@ void TestPieces()
   }
 }
 
+/// The angle between the map's normals and those of the nine cases, as the shader has it.
+void TestNormalDifference()
+{
+  vtkNew<vtkLacunaBSplineIsoRayCaster> caster;
+  caster->SetInputData(MakeVolume());
+  caster->SetIsoValue(0, 0);
+  vtkNew<vtkLacunaDepthMapShader> shader;
+  shader->SetInputConnection(caster->GetOutputPort());
+  shader->SetNormalMethod(vtkLacunaDepthMapShader::Predicate);
+  shader->SetMaximumAngle(50);
+  shader->Update();
+  vtkDataArray* expected = shader->GetOutput()->GetPointData()->GetArray("NormalDifference");
+  vtkNew<vtkLacunaDepthMapSurface> filter;
+  filter->SetInputConnection(caster->GetOutputPort());
+  filter->SetMaximumAngle(50);
+  filter->Update();
+  LACUNA_CHECK(!filter->GetOutput()->GetPointData()->HasArray("NormalDifference"));
+  filter->ComputeNormalDifferenceOn();
+  vtkIdType compared = 0;
+  for (int piece = 0; piece < 3; ++piece)
+  {
+    filter->UpdatePiece(piece, 3, 0);
+    vtkPointData* data = filter->GetOutput()->GetPointData();
+    for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); ++i, ++compared)
+    {
+      const auto pixel = static_cast<vtkIdType>(data->GetArray("PixelId")->GetTuple1(i));
+      LACUNA_CHECK(data->GetArray("NormalDifference")->GetTuple1(i) == expected->GetTuple1(pixel));
+    }
+  }
+  LACUNA_CHECK(compared > 300);
+}
+
 /// A made-up filled map whose extent does not start at zero.
 void TestOtherArrays()
 {
@@ -238,6 +271,14 @@ void TestBadInput()
     errorOf(map, "Fitted", 65).find("'Fitted'") != std::string::npos, "no such array");
   LACUNA_CHECK_THAT(
     errorOf(map, "Depth", 95).find("MaximumAngle is 95") != std::string::npos, "angle");
+  {
+    vtkNew<vtkLacunaDepthMapSurface> filter;
+    const auto messages = lacunaCheck::Watch(filter);
+    filter->SetInputData(map);
+    filter->ComputeNormalDifferenceOn();
+    filter->Update();
+    LACUNA_CHECK_CONTAINS(messages->Errors, "no normals 'Normals'");
+  }
   map->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   LACUNA_CHECK_THAT(
     errorOf(map, "Depth", 65).find("disagrees") != std::string::npos, "reset direction");
@@ -248,7 +289,8 @@ void TestBadInput()
   filter->Update();
   LACUNA_CHECK_THAT(filter->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
   LACUNA_CHECK_THAT(filter->GetDepthArray() == "Depth" && filter->GetBreakAtDiscontinuities() &&
-      filter->GetMaximumAngle() == 65 && filter->GetMaximumAngleChange() == 20,
+      filter->GetMaximumAngle() == 65 && filter->GetMaximumAngleChange() == 20 &&
+      !filter->GetComputeNormalDifference(),
     "defaults");
   std::ostringstream text;
   filter->Print(text);
@@ -260,6 +302,7 @@ int TestDepthMapSurface(int, char*[])
 {
   TestSurface();
   TestPieces();
+  TestNormalDifference();
   TestOtherArrays();
   TestBadInput();
   return lacunaCheck::Result();

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shadings of Depth Map Shader side by side, as in Carr 1996, figures 3.6 and 3.10.
+
+    pvpython depth-map-shading.py [folder for the pictures, default: .] [CT of a head, default: Skull Phantom]
+
+shadings: depth only, stored normals, central differences, nine cases. edge: an occluding edge by stored normals,
+central differences, Gordon's weights, nine cases. lights: Phong with depth cue, one light from the upper left with
+shadows, two lights with shadows.
+"""
+import os
+import sys
+
+import lacuna.plugin
+import numpy as np
+
+lacuna.plugin.load()
+from paraview import servermanager
+from paraview.simple import *
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def write(name, pictures, gap=6):
+    """One PNG of pictures (row, column, color), side by side; row 0 on top."""
+    white = np.full((pictures[0].shape[0], gap, 3), 255, dtype=np.uint8)
+    parts = [part for picture in pictures for part in (picture, white)][:-1]
+    rgb = np.concatenate(parts, axis=1)[::-1]
+    image = vtkImageData()
+    image.SetDimensions(rgb.shape[1], rgb.shape[0], 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(rgb).reshape(-1, 3), deep=1))
+    writer = vtkPNGWriter()
+    writer.SetFileName(name)
+    writer.SetInputData(image)
+    writer.Write()
+
+
+def main(folder, head=None):
+    os.makedirs(folder, exist_ok=True)
+    if head:
+        volume = OpenDataFile(head)  # face towards +y, seen from the right front
+        view = np.array([-0.35, -1, -0.15])
+        edge = (0.56, 0.86, 0.1, 0.46)  # rows and columns of the map, as parts
+    else:
+        volume = SkullPhantom()
+        view = np.array([-0.45, 0.35, -0.8])
+        edge = (0.2, 0.5, 0.42, 0.72)
+    depth_map = BSplineIsoRayCaster(Input=volume, IsoValues=[500], ViewDirection=view, ViewUp=UP, PixelSpacing=0.5)
+    shader = DepthMapShader(Input=depth_map, Volume=volume)
+
+    def picture(**properties):
+        """Red, green and blue of the map's pixels that show something; row 0 on top."""
+        for name, value in properties.items():
+            setattr(shader, name, value)
+        shader.UpdatePipeline()
+        image = servermanager.Fetch(shader)
+        width, height, _ = image.GetDimensions()
+        data = image.GetPointData()
+        mask = vtk_to_numpy(data.GetArray("vtkValidPointMask")).reshape(height, width)
+        rows, columns = (np.nonzero(mask.sum(axis=axis) > 20)[0] for axis in (1, 0))
+        return vtk_to_numpy(data.GetArray("Color")).reshape(height, width, 3)[
+            rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+
+    def differences():
+        """Degrees between the normals stored in the map and those that the last picture was made with."""
+        degrees = vtk_to_numpy(servermanager.Fetch(shader).GetPointData().GetArray("NormalDifference"))
+        return degrees[~np.isnan(degrees)]
+
+    def enlarged(rgb, factor=4):
+        height, width, _ = rgb.shape
+        part = rgb[int(edge[0] * height):int(edge[1] * height), int(edge[2] * width):int(edge[3] * width)]
+        return part.repeat(factor, axis=0).repeat(factor, axis=1)
+
+    depth = picture(Shading="DepthOnly")
+    shader.Shading = "Phong"
+    shader.Specular = 0  # diffuse shading
+    diffuse = {"Stored": picture(NormalMethod="Stored")}
+    print("degrees from the stored normals: median, mean, part above 30")
+    for method in ("CentralDifference", "Gordon", "Predicate"):
+        diffuse[method] = picture(NormalMethod=method)
+        degrees = differences()
+        print(f"{method}: {np.median(degrees):.2f} {degrees.mean():.2f} {100 * (degrees > 30).mean():.2f} %")
+    write(os.path.join(folder, "shadings.png"),
+          [depth, diffuse["Stored"], diffuse["CentralDifference"], diffuse["Predicate"]])
+    write(os.path.join(folder, "edge.png"), [enlarged(rgb) for rgb in diffuse.values()])
+
+    right = np.cross(view, UP)
+    right /= np.linalg.norm(right)
+    towards_viewer = -view / np.linalg.norm(view)
+    upper_left = -0.8 * right + 0.8 * UP + 0.9 * towards_viewer
+    lower_right = 0.9 * right - 0.2 * UP + 0.6 * towards_viewer
+    lights = [picture(NormalMethod="Stored", Specular=0.2, DepthCue=0.7, SurfaceColor=[0.95, 0.9, 0.8]),
+              picture(DepthCue=0, Lights=[*upper_left, 0, 1]),
+              picture(Lights=[*upper_left, 0, 0.8, *lower_right, 0, 0.3])]
+    write(os.path.join(folder, "lights.png"), lights)
+
+    # a light takes from no pixel what it had
+    assert depth.shape == diffuse["Stored"].shape == lights[0].shape
+    assert (lights[2].astype(int) >= (0.8 * lights[1]).astype(int) - 1).all()
+
+
+if __name__ == "__main__":
+    main(*(sys.argv[1:] or ["."]))
