@@ -8,7 +8,9 @@ from paraview.simple import *
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 import lacuna  # after the plugin: the wrapped classes, for the C++ defaults
+from lacuna import pictures
 from lacuna_test import output
+from vtkmodules.vtkIOImage import vtkPNGReader
 
 skull = SkullPhantom(Spacing=[2, 2, 2.3])
 depth_map = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[0, 1, -0.2], ViewUp=[0, 0, 1],
@@ -115,6 +117,20 @@ ColorBy(shown, ("POINTS", "Color"))
 shown.MapScalars = 0
 ResetCamera(view)
 Render(view)
+shown.Ambient, shown.Diffuse = 1, 0  # the picture has its light already
+Render(view)
 SaveScreenshot(output("DepthMapShaderSurface.png"), view)
-SaveData(output("DepthMapShader.png"), proxy=shader)
+
+# a file shows what the viewer sees: row 0 of the map on top (VTK counts a picture's rows from below)
+pictures.save_shaded(shader, output("DepthMapShader.png"))
+reader = vtkPNGReader()
+reader.SetFileName(output("DepthMapShader.png"))
+reader.Update()
+file = reader.GetOutput()
+width, height, _ = file.GetDimensions()
+assert (width, height, 1) == image.GetDimensions()
+map_colors = image.GetPointData().GetArray("Color")
+assert all(file.GetPointData().GetScalars().GetTuple3(column + width * (height - 1 - row)) ==
+           map_colors.GetTuple3(column + width * row)
+           for row in range(0, height, 3) for column in range(0, width, 3))
 print("ok")

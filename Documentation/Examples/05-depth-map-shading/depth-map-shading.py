@@ -14,11 +14,10 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
+from lacuna.pictures import shaded_pixels, write_pixels
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -27,20 +26,13 @@ def write(name, pictures, gap=6):
     """One PNG of pictures (row, column, color), side by side; row 0 on top."""
     white = np.full((pictures[0].shape[0], gap, 3), 255, dtype=np.uint8)
     parts = [part for picture in pictures for part in (picture, white)][:-1]
-    rgb = np.concatenate(parts, axis=1)[::-1]
-    image = vtkImageData()
-    image.SetDimensions(rgb.shape[1], rgb.shape[0], 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(rgb).reshape(-1, 3), deep=1))
-    writer = vtkPNGWriter()
-    writer.SetFileName(name)
-    writer.SetInputData(image)
-    writer.Write()
+    write_pixels(name, np.concatenate(parts, axis=1))
 
 
 def main(folder, head=None):
     os.makedirs(folder, exist_ok=True)
     if head:
-        volume = OpenDataFile(head)  # face towards +y, seen from the right front
+        volume = OpenDataFile(head)  # its face is towards +y
         view = np.array([-0.35, -1, -0.15])
         edge = (0.56, 0.86, 0.1, 0.46)  # rows and columns of the map, as parts
     else:
@@ -54,14 +46,11 @@ def main(folder, head=None):
         """Red, green and blue of the map's pixels that show something; row 0 on top."""
         for name, value in properties.items():
             setattr(shader, name, value)
-        shader.UpdatePipeline()
-        image = servermanager.Fetch(shader)
-        width, height, _ = image.GetDimensions()
-        data = image.GetPointData()
-        mask = vtk_to_numpy(data.GetArray("vtkValidPointMask")).reshape(height, width)
+        colors = shaded_pixels(shader)
+        mask = vtk_to_numpy(servermanager.Fetch(shader).GetPointData().GetArray("vtkValidPointMask"))
+        mask = mask.reshape(colors.shape[:2])
         rows, columns = (np.nonzero(mask.sum(axis=axis) > 20)[0] for axis in (1, 0))
-        return vtk_to_numpy(data.GetArray("Color")).reshape(height, width, 3)[
-            rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+        return colors[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
 
     def differences():
         """Degrees between the normals stored in the map and those that the last picture was made with."""

@@ -2,6 +2,10 @@
 """Pictures in one style: white background, matt surfaces, scalar bars with units."""
 import numpy as np
 import paraview.simple as pv
+from paraview import servermanager
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOImage import vtkPNGWriter
 
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
@@ -84,3 +88,28 @@ def save(view, name):
     """Renders into a PNG file."""
     pv.Render(view)
     pv.SaveScreenshot(name, view, ImageResolution=list(view.ViewSize))
+
+
+def shaded_pixels(proxy):
+    """The picture of a Depth Map Shader as (rows, columns, red green blue), uint8; row 0 is on top."""
+    image = servermanager.Fetch(proxy)
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetArray("Color")).reshape(height, width, 3)
+
+
+def write_pixels(name, pixels):
+    """Writes (rows, columns, red green blue), row 0 on top, as PNG: as the viewer sees it, not mirrored."""
+    height, width, _ = pixels.shape
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    upwards = np.ascontiguousarray(pixels[::-1], dtype=np.uint8)  # VTK writes the last row first
+    image.GetPointData().SetScalars(numpy_to_vtk(upwards.reshape(-1, 3), deep=1))
+    writer = vtkPNGWriter()
+    writer.SetFileName(name)
+    writer.SetInputData(image)
+    writer.Write()
+
+
+def save_shaded(proxy, name):
+    """Saves the picture of a Depth Map Shader as PNG, pixel by pixel."""
+    write_pixels(name, shaded_pixels(proxy))
