@@ -63,7 +63,13 @@ vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(int k) const
 {
-  const double z = this->Stack->GetOrigin()[2] + this->Stack->GetSpacing()[2] * k;
+  return GetSliceNumber(this->Stack, k, this->GetNumberOfSlices());
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(vtkImageData* stack, int k, vtkIdType slices)
+{
+  const double z = stack->GetOrigin()[2] + stack->GetSpacing()[2] * k;
   if (!(std::abs(z - std::round(z)) < 1e-3))
   {
     std::ostringstream message;
@@ -73,12 +79,11 @@ vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(int k) const
     throw std::runtime_error(message.str());
   }
   const auto slice = static_cast<vtkIdType>(std::llround(z));
-  if (slice < 0 || slice >= this->GetNumberOfSlices())
+  if (slice < 0 || slice >= slices)
   {
     std::ostringstream message;
-    message << "the stack holds a slice at z = " << z << ", but field data array '"
-            << ImageToReferenceName << "' has " << this->GetNumberOfSlices()
-            << " tuples (the z coordinate of tracked slices is the slice number)";
+    message << "the stack holds a slice at z = " << z << ", but the field data are those of "
+            << slices << " slices (the z coordinate of tracked slices is the slice number)";
     throw std::runtime_error(message.str());
   }
   return slice;

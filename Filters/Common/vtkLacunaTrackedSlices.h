@@ -57,6 +57,9 @@ public:
   /// Number in the sweep, 0-based, of the slice at extent index k. Throws when it is outside of it.
   vtkIdType GetSliceNumber(int k) const;
 
+  /// The same for a stack whose probe is not calibrated, of a sweep of so many slices.
+  static vtkIdType GetSliceNumber(vtkImageData* stack, int k, vtkIdType slices);
+
   /// (column, row, 0, 1) to mm in the reference frame.
   const lacuna::Matrix4& GetImageToReference(vtkIdType slice) const { return this->Poses[slice]; }
   unsigned char GetStatus(vtkIdType slice) const { return this->StatusFlags[slice]; }
