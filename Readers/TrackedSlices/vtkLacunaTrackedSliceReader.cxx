@@ -6,6 +6,7 @@
 #include "lacunaSequenceText.h"
 #include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
+#include "lacunaSweepReplay.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
@@ -17,16 +18,20 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaSequenceNames.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 #include <vtksys/SystemInformation.hxx>
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cstring>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -69,6 +74,12 @@ struct vtkLacunaTrackedSliceReader::Sequence
   std::unique_ptr<lacuna::PixelSource> Pixels;
   int First = 0; // slice at index 0 of the stack
   int Slices = 0;
+  std::unique_ptr<lacuna::SweepReplay> Replay; // null unless asked for
+  vtkSmartPointer<vtkImageData> Fields;        // its field data are those of every output
+  // What was read for the time before this one.
+  vtkSmartPointer<vtkDataArray> Scalars;
+  int Extent[6] = { 0, -1, 0, -1, 0, -1 };
+  int Shown = 0; // slices of the stack that had been taken
 };
 
 vtkStandardNewMacro(vtkLacunaTrackedSliceReader);
@@ -116,6 +127,11 @@ void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
   }
   sequence.First = first;
   sequence.Slices = (std::min(last, whole - 1) - first) / this->FrameStride + 1;
+  if (this->ReplayInTime)
+  {
+    sequence.Replay = std::make_unique<lacuna::SweepReplay>(
+      lacuna::ReadTimestamps(sequence.Header), first, this->FrameStride, sequence.Slices);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -125,6 +141,8 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
   this->Opened.reset();
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkInformation* info = outputs->GetInformationObject(0);
+  info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
+  info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
   if (!this->FileName || !this->FileName[0])
   {
     // Not yet an error: ParaView asks as soon as one of several properties is set.
@@ -149,6 +167,14 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(
         info, vtkLacunaScalarType::ToVTK(sequence->Pixels->GetScalarType()), 1);
+      if (sequence->Replay)
+      {
+        const std::vector<double>& times = sequence->Replay->GetTimes();
+        const double range[2] = { times.front(), times.back() };
+        info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times.data(),
+          static_cast<int>(times.size()));
+        info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
+      }
       this->Opened = std::move(sequence);
     });
   if (!opened)
@@ -199,13 +225,16 @@ std::string vtkLacunaTrackedSliceReader::DescribeParameters() const
        << " ImageFrame=" << Text(this->ImageFrame)
        << " ReferenceFrame=" << Text(this->ReferenceFrame) << " FrameRange=" << this->FrameRange[0]
        << "," << this->FrameRange[1] << " FrameStride=" << this->FrameStride
-       << " DropInvalidSlices=" << (this->DropInvalidSlices ? 1 : 0);
+       << " DropInvalidSlices=" << (this->DropInvalidSlices ? 1 : 0)
+       << " ReplayInTime=" << (this->ReplayInTime ? 1 : 0);
   return text.str();
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackedSliceReader::WriteFieldData(vtkImageData* output)
+void vtkLacunaTrackedSliceReader::MakeFieldData()
 {
+  auto fields = vtkSmartPointer<vtkImageData>::New();
+  vtkImageData* output = fields;
   const lacuna::SequenceHeader& header = this->Opened->Header;
   lacuna::SweepOptions options;
   options.CalibrationFileName = Text(this->CalibrationFileName);
@@ -216,8 +245,14 @@ void vtkLacunaTrackedSliceReader::WriteFieldData(vtkImageData* output)
   const lacuna::Sweep sweep = lacuna::BuildSweep(header, options);
 
   // The arrays of the contract come last: no field of the file takes their place.
+  std::vector<std::string> steps;
   for (const auto& [name, value] : header.CustomFields)
   {
+    if (name.find(vtkLacunaSequenceNames::ProvenancePrefix) == 0)
+    {
+      steps.push_back(value);
+      continue;
+    }
     AddStrings(output, name, { value });
   }
   for (const auto& [name, texts] : sweep.TextFields)
@@ -233,10 +268,24 @@ void vtkLacunaTrackedSliceReader::WriteFieldData(vtkImageData* output)
     vtkLacunaFieldData::SetMatrices(
       output, vtkLacunaTrackedSlices::ImageToProbeName, sweep.ImageToProbe);
   }
+  if (!header.PosesOnly)
+  {
+    const bool lines = header.ImageType.find("RF_") == 0; // else grey levels, also of colours
+    AddStrings(
+      output, vtkLacunaSequenceNames::ImageType, { lines ? header.ImageType : "BRIGHTNESS" });
+    AddStrings(output, vtkLacunaSequenceNames::Orientation, { lines ? "FM" : "MFA" });
+  }
+  AddStrings(
+    output, vtkLacunaSequenceNames::Frames, { options.ImageFrame, options.ReferenceFrame });
   vtkLacunaTrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
   vtkLacunaProvenance::Record(output, this, {},
     this->DescribeParameters() + (sweep.Chain.empty() ? "" : " Chain=" + sweep.Chain));
+  if (!steps.empty()) // the file goes on with them
+  {
+    steps.push_back(vtkLacunaProvenance::Get(output).back());
+    AddStrings(output, vtkLacunaProvenance::ArrayName, steps);
+  }
 
   std::vector<std::string> warnings = header.Warnings;
   if (!this->Opened->Pixels->GetWarning().empty())
@@ -244,10 +293,84 @@ void vtkLacunaTrackedSliceReader::WriteFieldData(vtkImageData* output)
     warnings.push_back(this->Opened->Pixels->GetWarning());
   }
   warnings.insert(warnings.end(), sweep.Warnings.begin(), sweep.Warnings.end());
+  if (this->Opened->Replay && !this->Opened->Replay->HasTimestamps())
+  {
+    warnings.emplace_back(
+      "no slice has a Timestamp; ReplayInTime shows one slice per second, by number");
+  }
   for (const std::string& warning : warnings)
   {
     vtkWarningMacro(<< this->FileName << ": " << warning);
   }
+  this->Opened->Fields = fields;
+}
+
+//------------------------------------------------------------------------------
+// Slices of the stack from index shown on are blank.
+void vtkLacunaTrackedSliceReader::ReadPixels(
+  vtkImageData* output, int shown, vtkLacunaExecution& execution)
+{
+  Sequence& sequence = *this->Opened;
+  int extent[6];
+  output->GetExtent(extent);
+  this->CheckMemory(extent);
+  output->AllocateScalars(vtkLacunaScalarType::ToVTK(sequence.Pixels->GetScalarType()), 1);
+  vtkDataArray* scalars = output->GetPointData()->GetScalars();
+  scalars->SetName(IntensityName);
+  auto* pixels = static_cast<unsigned char*>(output->GetScalarPointer());
+  if (!pixels)
+  {
+    throw std::bad_alloc();
+  }
+  lacuna::SliceRegion region;
+  region.FirstColumn = extent[0];
+  region.Columns = extent[1] - extent[0] + 1;
+  region.FirstRow = extent[2];
+  region.Rows = extent[3] - extent[2] + 1;
+  region.FrameStride = this->FrameStride;
+
+  // A replay goes on where it was.
+  const auto sliceSize = static_cast<std::size_t>(region.Columns * region.Rows) *
+    static_cast<std::size_t>(scalars->GetDataTypeSize());
+  const auto at = [&](int k) { return static_cast<std::size_t>(k - extent[4]) * sliceSize; };
+  int known = extent[4];
+  const int end = std::clamp(shown, extent[4], extent[5] + 1);
+  if (sequence.Scalars && std::equal(extent, extent + 6, sequence.Extent))
+  {
+    known = std::clamp(sequence.Shown, extent[4], end);
+    std::memcpy(pixels, sequence.Scalars->GetVoidPointer(0), at(known));
+  }
+  std::memset(pixels + at(end), 0, at(extent[5] + 1) - at(end));
+  if (known < end)
+  {
+    region.FirstFrame = sequence.First + std::int64_t{ known } * this->FrameStride;
+    region.Frames = end - known;
+    lacuna::ReadSliceStack(
+      sequence.Header, *sequence.Pixels, region, pixels + at(known), execution);
+  }
+  if (sequence.Replay)
+  {
+    sequence.Scalars = scalars;
+    std::copy(extent, extent + 6, sequence.Extent);
+    sequence.Shown = shown;
+  }
+}
+
+//------------------------------------------------------------------------------
+// Slices that have not been taken yet have no image.
+void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) const
+{
+  const vtkIdType last =
+    this->Opened->First + static_cast<vtkIdType>(shown - 1) * this->FrameStride;
+  vtkDataArray* all = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName);
+  vtkNew<vtkUnsignedCharArray> status;
+  status->DeepCopy(all);
+  for (vtkIdType i = last + 1; i < status->GetNumberOfTuples(); ++i)
+  {
+    status->SetValue(
+      i, static_cast<unsigned char>(status->GetValue(i) | vtkLacunaTrackedSlices::ImageInvalid));
+  }
+  output->GetFieldData()->AddArray(status);
 }
 
 //------------------------------------------------------------------------------
@@ -258,7 +381,8 @@ int vtkLacunaTrackedSliceReader::RequestData(
   {
     vtkDataObject::GetData(outputs, 0)->Initialize();
     this->SetErrorCode(vtkErrorCode::NoFileNameError);
-    vtkErrorMacro("FileName is not set; it must be a tracked sequence file (.mha, .mhd)");
+    vtkErrorMacro(
+      "FileName is not set; it must be a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)");
     return 0;
   }
   return vtkLacunaExecution::Run(this, outputs,
@@ -271,32 +395,27 @@ int vtkLacunaTrackedSliceReader::RequestData(
       output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
       output->SetSpacing(info->Get(vtkDataObject::SPACING()));
       output->SetExtent(extent);
+      int shown = this->Opened->Slices;
+      if (this->Opened->Replay && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
+      {
+        const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+        shown = static_cast<int>(this->Opened->Replay->GetNumberOfSlices(time));
+        output->GetInformation()->Set(
+          vtkDataObject::DATA_TIME_STEP(), this->Opened->Replay->GetTimeBefore(time));
+      }
       try
       {
-        this->WriteFieldData(output);
+        if (!this->Opened->Fields)
+        {
+          this->MakeFieldData();
+        }
+        output->GetFieldData()->ShallowCopy(this->Opened->Fields->GetFieldData());
         if (output->GetNumberOfPoints() == 0)
         {
           return;
         }
-        this->CheckMemory(extent);
-        output->AllocateScalars(
-          vtkLacunaScalarType::ToVTK(this->Opened->Pixels->GetScalarType()), 1);
-        output->GetPointData()->GetScalars()->SetName(IntensityName);
-        void* pixels = output->GetScalarPointer();
-        if (!pixels)
-        {
-          throw std::bad_alloc();
-        }
-        lacuna::SliceRegion region;
-        region.FirstColumn = extent[0];
-        region.Columns = extent[1] - extent[0] + 1;
-        region.FirstRow = extent[2];
-        region.Rows = extent[3] - extent[2] + 1;
-        region.FrameStride = this->FrameStride;
-        region.FirstFrame = this->Opened->First + std::int64_t{ extent[4] } * this->FrameStride;
-        region.Frames = extent[5] - extent[4] + 1;
-        lacuna::ReadSliceStack(
-          this->Opened->Header, *this->Opened->Pixels, region, pixels, execution);
+        this->HideSlices(output, shown);
+        this->ReadPixels(output, shown, execution);
       }
       catch (const lacuna::Aborted&)
       {
@@ -321,5 +440,6 @@ void vtkLacunaTrackedSliceReader::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FrameRange: " << this->FrameRange[0] << " " << this->FrameRange[1] << "\n";
   os << indent << "FrameStride: " << this->FrameStride << "\n";
   os << indent << "DropInvalidSlices: " << (this->DropInvalidSlices ? "on" : "off") << "\n";
+  os << indent << "ReplayInTime: " << (this->ReplayInTime ? "on" : "off") << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
 }

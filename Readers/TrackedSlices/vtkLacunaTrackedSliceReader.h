@@ -3,9 +3,11 @@
  * @class vtkLacunaTrackedSliceReader
  * @brief reads ultrasound slices with their poses from a tracked sequence file
  *
- * Reads MetaImage sequences (.igs.mha, .mha, .mhd with .raw or .zraw) as PLUS, 3D Slicer and their
- * kin write them: a stack of slices, raw or zlib-compressed, of any element type, with named fields
- * for each frame. The output is tracked slices, see vtkLacunaTrackedSlices for the contract:
+ * Reads MetaImage and NRRD sequences (.igs.mha, .mha, .mhd with .raw or .zraw, .nrrd, .nhdr with
+ * its data file) as PLUS, 3D Slicer and their kin write them: a stack of slices, raw, compressed
+ * (zlib, gzip) or as text, of any element type, with named fields for each frame. The content tells
+ * the format, not the name. The output is tracked slices, see vtkLacunaTrackedSlices for the
+ * contract:
  *
  * - vtkImageData of columns x rows x slices; point scalars `Intensity` (grey levels in the file's
  *   type; colours become luminance 0.299 R + 0.587 G + 0.114 B). Slices are turned to the
@@ -14,8 +16,10 @@
  * - field data, one tuple for each frame of the file: `ImageToReference` (16 components, pixel
  *   (column, row, 0, 1) to mm; NaN where the pose is invalid), `Timestamp` (s), `SliceStatus`,
  *   `FrameNumber`, each transform of the file under its name (`ProbeToTracker`, 16), the file's
- *   other fields as strings under their names; one tuple: `ImageToProbe` when known and constant.
- *   Fields whose name begins with Patient are left out.
+ *   other fields as strings under their names; one tuple: `ImageToProbe` when known and constant,
+ *   `UltrasoundImageType` and `UltrasoundImageOrientation` (of the slices as they are now); two
+ *   strings `ImageToReferenceFrames`: what Image and Reference are called. Fields whose name begins
+ *   with Patient are left out.
  *
  * **Chains.** ImageToReference is composed from the file's transforms of each frame and the
  * constant ones of the calibration file (CoordinateDefinitions), forwards or backwards, along the
@@ -31,6 +35,16 @@
  * (missing, malformed, not finite, singular) or its pixels are missing because the file is cut off.
  * Frames whose fields are damaged are named in a warning.
  *
+ * **Poses without pictures** (DimSize 0 0 0, or 1 x 1 dummy pixels without ImageStatus) give a stack
+ * of 1 x 1 blank pixels, with a warning; all slices have bit 2 set, poses and fields are complete.
+ *
+ * **Replay.** With ReplayInTime the reader has time steps. At time t the slices up to the last one
+ * taken by then are there; the later ones are blank and have bit 2 (no valid image) set, so that
+ * filters leave them out. The stack has the same extent at any time, since VTK's pipeline cannot
+ * follow one that grows; z stays the slice number, poses and fields are those of the whole sweep.
+ * See lacuna::SweepReplay for clocks that jump or fail. Without a requested time all slices are
+ * there. What was read for one time is kept for the next.
+ *
  * Requested extents are honoured: of uncompressed files only the slices asked for are read, of
  * compressed ones all up to the last slice asked for. Errors set vtkErrorCode::FileFormatError or
  * FileNotFoundError.
@@ -45,6 +59,8 @@
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
+
+class vtkLacunaExecution;
 
 class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceReader : public vtkImageAlgorithm
 {
@@ -98,6 +114,13 @@ public:
   ///@}
 
   ///@{
+  /// Whether slices appear in the course of time as they were taken. Default: off.
+  vtkSetMacro(ReplayInTime, bool);
+  vtkGetMacro(ReplayInTime, bool);
+  vtkBooleanMacro(ReplayInTime, bool);
+  ///@}
+
+  ///@{
   /// Most memory that the pixels may take, in MiB; more is an error before anything is allocated.
   /// Default: 0, the memory of the machine.
   vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
@@ -124,7 +147,9 @@ private:
   struct Sequence;
   void OpenSequence(Sequence& sequence);
   void CheckMemory(const int extent[6]) const;
-  void WriteFieldData(vtkImageData* output);
+  void ReadPixels(vtkImageData* output, int shown, vtkLacunaExecution& execution);
+  void HideSlices(vtkImageData* output, int shown) const;
+  void MakeFieldData();
   std::string DescribeParameters() const;
 
   char* FileName = nullptr;
@@ -134,6 +159,7 @@ private:
   int FrameRange[2] = { 0, -1 };
   int FrameStride = 1;
   bool DropInvalidSlices = true;
+  bool ReplayInTime = false;
   int MemoryLimit = 0;
   /// The file as RequestInformation found it; kept open from one requested extent to the next.
   std::unique_ptr<Sequence> Opened;

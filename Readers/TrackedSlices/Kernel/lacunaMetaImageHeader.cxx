@@ -322,7 +322,8 @@ bool IsTrackedMetaImage(HeaderLines& lines)
   std::string name;
   std::string value;
   SequenceAxes axes;
-  while (lines.Next(line))
+  bool tracked = false;
+  while ((!tracked || axes.Kinds.empty()) && lines.Next(line)) // kinds may come late, or never
   {
     if (Trim(line).empty())
     {
@@ -330,7 +331,7 @@ bool IsTrackedMetaImage(HeaderLines& lines)
     }
     if (!SplitField(line, name, value) || EqualsIgnoringCase(name, "ElementDataFile"))
     {
-      return false;
+      break;
     }
     if (name == "Kinds")
     {
@@ -350,9 +351,9 @@ bool IsTrackedMetaImage(HeaderLines& lines)
     }
     else if (HeaderReader::IsFrameField(name))
     {
-      return HasSlices(axes);
+      tracked = true;
     }
   }
-  return false;
+  return tracked && HasSlices(axes);
 }
 }

@@ -352,7 +352,9 @@ bool IsTrackedNrrd(HeaderLines& lines)
   std::string text;
   SequenceAxes axes;
   axes.MayBeginWithColour = true;
-  while (lines.Next(text) && !Trim(text).empty())
+  bool tracked = false;
+  // kinds may come late, or never
+  while ((!tracked || axes.Kinds.empty()) && lines.Next(text) && !Trim(text).empty())
   {
     const NrrdLine line = SplitLine(text);
     const std::string name =
@@ -371,9 +373,9 @@ bool IsTrackedNrrd(HeaderLines& lines)
     }
     else if (HeaderReader::IsFrameField(line.Name))
     {
-      return HasSlices(axes);
+      tracked = true;
     }
   }
-  return false;
+  return tracked && HasSlices(axes);
 }
 }

@@ -172,20 +172,19 @@ std::string SequenceKind::GetMetaImageBeginning(const SequenceDescription& descr
 //------------------------------------------------------------------------------
 std::string SequenceKind::GetNrrdBeginning(const SequenceDescription& description) const
 {
+  // No fields of space: PLUS needs none, and VTK's reader would count two of the three dimensions.
   return "NRRD0004\n"
          "# Complete NRRD file format specification at:\n"
          "# http://teem.sourceforge.net/nrrd/format.html\n"
          "type: " +
     std::string(GetNrrdType(description.Type)) +
     "\n"
-    "dimension: 3\n"
-    "space dimension: 2\n" +
+    "dimension: 3\n" +
     this->GetCounts(description, 0, 0) +
-    "space directions: (1,0) (0,1) none\n"
     "kinds: domain domain list\n"
     "endian: little\n"
     "encoding: " +
-    (this->Compressed ? "gzip\n" : "raw\n") + "space origin: (0,0)\n" +
+    (this->Compressed ? "gzip\n" : "raw\n") +
     (this->IsDetached()
         ? "data file: " + std::filesystem::path(this->DataFileName).filename().string() + "\n"
         : "") +

@@ -77,7 +77,7 @@ SequenceHeader ReadSequenceHeader(const std::string& fileName);
 
 /// Whether fileName is a MetaImage or NRRD file with fields for its frames and frames that are
 /// slices: not an ordinary image, and not a reconstructed volume, which has frame fields too. Reads
-/// no further than the first frame field and does not throw.
+/// no further than the first frame field and the kinds of the axes, and does not throw.
 bool IsTrackedSequence(const std::string& fileName);
 }
 #endif

@@ -5,6 +5,7 @@
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -144,6 +145,20 @@ void SweepTransforms::NameFrames()
 }
 
 //------------------------------------------------------------------------------
+// Whether all matrices of one are the one of the other, but for the rounding of decimal numbers.
+bool SweepTransforms::IsSame(
+  const SweepTransform& transform, const SweepTransform& constant, bool forwards)
+{
+  const Matrix4 wanted = forwards ? constant.Matrices[0] : constant.Matrices[0].Inverse();
+  return std::all_of(transform.Matrices.begin(), transform.Matrices.end(),
+    [&](const Matrix4& matrix)
+    {
+      return std::equal(matrix.Data(), matrix.Data() + 16, wanted.Data(),
+        [](double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(b)); });
+    });
+}
+
+//------------------------------------------------------------------------------
 bool SweepTransforms::Enter(std::size_t transform, const std::string& from, const std::string& to)
 {
   if (from == to)
@@ -155,8 +170,11 @@ bool SweepTransforms::Enter(std::size_t transform, const std::string& from, cons
     if (other.FromCalibration &&
       ((other.From == from && other.To == to) || (other.From == to && other.To == from)))
     {
-      this->Warnings.push_back("transform " + this->Transforms[transform].Name +
-        " of the sequence is replaced by " + other.Name + " of the calibration file");
+      if (!this->IsSame(this->Transforms[transform], other, from == other.From))
+      {
+        this->Warnings.push_back("transform " + this->Transforms[transform].Name +
+          " of the sequence is replaced by " + other.Name + " of the calibration file");
+      }
       return true;
     }
   }

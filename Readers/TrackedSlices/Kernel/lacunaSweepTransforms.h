@@ -67,6 +67,8 @@ private:
   void ReadCalibration(const std::string& fileName);
   void ReadFrames(const SequenceHeader& header);
   void NameFrames();
+  static bool IsSame(
+    const SweepTransform& transform, const SweepTransform& constant, bool forwards);
   bool Enter(std::size_t transform, const std::string& from, const std::string& to);
 
   bool HasCalibrationFile;

@@ -36,7 +36,7 @@ void TestDefaults()
   std::ostringstream text;
   reader->Print(text);
   for (const char* name : { "FileName", "CalibrationFileName", "ImageFrame", "ReferenceFrame",
-         "FrameRange", "FrameStride", "DropInvalidSlices", "MemoryLimit" })
+         "FrameRange", "FrameStride", "DropInvalidSlices", "ReplayInTime", "MemoryLimit" })
   {
     LACUNA_CHECK_CONTAINS(text.str(), std::string(name) + ": ");
   }

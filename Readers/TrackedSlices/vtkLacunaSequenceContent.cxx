@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSequenceContent.h"
+
+#include "lacunaPoseFields.h"
+#include "lacunaSequenceText.h"
+#include "lacunaTransformGraph.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaSequenceNames.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkPointData.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+namespace
+{
+constexpr const char* TransformSuffix = "Transform";
+constexpr const char* StatusSuffix = "TransformStatus";
+constexpr const char* ImageStatus = "ImageStatus";
+constexpr std::size_t LongestLine = 990; // PLUS reads 1000 characters at a time
+
+// Arrays that are written in a way of their own.
+const std::set<std::string> OwnNames = { vtkLacunaTrackedSlices::ImageToReferenceName,
+  vtkLacunaTrackedSlices::ImageToProbeName, vtkLacunaTrackedSlices::TimestampName,
+  vtkLacunaTrackedSlices::SliceStatusName, vtkLacunaTrackedSlices::FrameNumberName,
+  vtkLacunaProvenance::ArrayName, vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
+  vtkLacunaSequenceNames::Orientation, ImageStatus };
+
+std::string GetString(vtkImageData* stack, const char* name, vtkIdType i)
+{
+  auto* array = vtkStringArray::SafeDownCast(stack->GetFieldData()->GetAbstractArray(name));
+  return array && i < array->GetNumberOfValues() ? std::string(array->GetValue(i)) : std::string();
+}
+
+std::string FormatTuple(vtkDataArray* array, vtkIdType i)
+{
+  std::string text;
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  {
+    text += (c > 0 ? " " : "") + lacuna::FormatNumber(array->GetComponent(i, c));
+  }
+  return text;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSequenceContent::vtkLacunaSequenceContent(
+  vtkImageData* stack, const lacuna::SequenceKind& kind)
+  : Stack(stack)
+  , Kind(kind)
+{
+  this->FindSlices();
+  this->FindPixels();
+  this->AddArrays();
+  this->AddStates();
+  this->AddPoses();
+  this->AddProvenance();
+  this->CheckLines();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::FindSlices()
+{
+  vtkDataArray* status =
+    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
+  if (!status)
+  {
+    throw std::runtime_error("the input is not a stack of tracked slices: it has no field data "
+                             "array 'SliceStatus'; write other images with ParaView's own writers");
+  }
+  this->Count = status->GetNumberOfTuples();
+  const int* extent = this->Stack->GetExtent();
+  for (int k = extent[4]; k <= extent[5]; ++k)
+  {
+    this->Slices.push_back(vtkLacunaTrackedSlices::GetSliceNumber(this->Stack, k, this->Count));
+    this->Status.push_back(static_cast<unsigned char>(status->GetTuple1(this->Slices.back())));
+  }
+  this->Content.Frames.resize(this->Slices.size());
+
+  double origin[3];
+  double spacing[3];
+  this->Stack->GetOrigin(origin);
+  this->Stack->GetSpacing(spacing);
+  this->PixelToImage = lacuna::Matrix4::Translation({ origin[0] + spacing[0] * extent[0],
+                         origin[1] + spacing[1] * extent[2], 0 }) *
+    lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
+  this->Cropped = !lacuna::IsNear(this->PixelToImage, lacuna::Matrix4());
+  const std::string image = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 0);
+  const std::string reference = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 1);
+  this->ImageFrame = image.empty() ? this->ImageFrame : image;
+  this->ReferenceFrame = reference.empty() ? this->ReferenceFrame : reference;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::FindPixels()
+{
+  vtkDataArray* scalars = this->Stack->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1 ||
+    scalars->GetNumberOfTuples() != this->Stack->GetNumberOfPoints())
+  {
+    throw std::runtime_error("tracked slices must have active point scalars: one grey level for "
+                             "each pixel");
+  }
+  const int* size = this->Stack->GetDimensions();
+  lacuna::SequenceDescription& description = this->Content.Description;
+  description.Columns = size[0];
+  description.Rows = size[1];
+  description.Type = vtkLacunaScalarType::Get(scalars);
+  const std::string type = GetString(this->Stack, vtkLacunaSequenceNames::ImageType, 0);
+  description.ImageType = type.empty() ? description.ImageType : type;
+  const auto* pixels = static_cast<const unsigned char*>(scalars->GetVoidPointer(0));
+  const std::size_t sliceSize = static_cast<std::size_t>(description.Columns * description.Rows) *
+    lacuna::GetScalarSize(description.Type);
+  this->Content.GetPixels = [pixels, sliceSize](std::int64_t frame)
+  { return pixels + static_cast<std::size_t>(frame) * sliceSize; };
+  this->PosesOnly = size[0] == 1 && size[1] == 1 &&
+    !this->Stack->GetFieldData()->GetAbstractArray(ImageStatus) &&
+    std::all_of(this->Status.begin(), this->Status.end(),
+      [](unsigned char status) { return status & vtkLacunaTrackedSlices::ImageInvalid; });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddArrays()
+{
+  vtkFieldData* fields = this->Stack->GetFieldData();
+  for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = fields->GetAbstractArray(i);
+    if (array && array->GetName() && OwnNames.count(array->GetName()) == 0)
+    {
+      this->AddArray(array);
+    }
+  }
+  vtkDataArray* imageToProbe =
+    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::ImageToProbeName, 16, 1);
+  if (imageToProbe && !this->FindText(0, this->ImageFrame + "ToProbeTransform"))
+  {
+    this->AddTransform(imageToProbe);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddArray(vtkAbstractArray* array)
+{
+  const std::string name = array->GetName();
+  const vtkIdType tuples = array->GetNumberOfTuples();
+  if (lacuna::EqualsIgnoringCase(std::string_view(name).substr(0, 7), "Patient"))
+  {
+    this->Warnings.push_back("field data array '" + name +
+      "' is not written: a name that begins with Patient may tell who it is");
+    return;
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  auto* strings = vtkStringArray::SafeDownCast(array);
+  if ((tuples != this->Count && tuples != 1) || (!numbers && !strings) ||
+    (strings && array->GetNumberOfComponents() != 1))
+  {
+    this->Warnings.push_back("field data array '" + name + "' is not written: it has " +
+      std::to_string(tuples) +
+      " tuples; a sequence has fields for the whole (1) or for each of the " +
+      std::to_string(this->Count) + " slices");
+  }
+  else if (strings)
+  {
+    this->AddStrings(strings);
+  }
+  else if (array->GetNumberOfComponents() == 16)
+  {
+    this->AddTransform(numbers);
+  }
+  else
+  {
+    this->AddNumbers(numbers);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddStrings(vtkStringArray* array)
+{
+  const std::string name = array->GetName();
+  if (array->GetNumberOfValues() != this->Count)
+  {
+    this->AddHeaderField(name, array->GetValue(0));
+    return;
+  }
+  if (lacuna::EndsWithIgnoringCase(name, StatusSuffix))
+  {
+    const std::string transform = name.substr(0, name.size() - std::string(StatusSuffix).size());
+    vtkDataArray* matrices = this->Stack->GetFieldData()->GetArray(transform.c_str());
+    if (matrices && matrices->GetNumberOfComponents() == 16 &&
+      matrices->GetNumberOfTuples() == this->Count && OwnNames.count(transform) == 0)
+    {
+      return; // comes with its transform
+    }
+  }
+  std::vector<std::string> texts = this->GetTexts(name);
+  if (this->Cropped && lacuna::EndsWithIgnoringCase(name, TransformSuffix))
+  {
+    const std::string transform = name.substr(0, name.size() - std::string(TransformSuffix).size());
+    for (std::string& text : texts)
+    {
+      lacuna::Matrix4 matrix;
+      if (lacuna::ParseMatrix(text, matrix).empty())
+      {
+        text = lacuna::FormatMatrix(this->ToPixels(transform, matrix));
+      }
+    }
+  }
+  this->AddFrameField(name, texts);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddNumbers(vtkDataArray* array)
+{
+  if (array->GetNumberOfTuples() != this->Count)
+  {
+    this->AddHeaderField(array->GetName(), FormatTuple(array, 0));
+    return;
+  }
+  std::vector<std::string> texts;
+  for (const vtkIdType slice : this->Slices)
+  {
+    texts.push_back(FormatTuple(array, slice));
+  }
+  this->AddFrameField(array->GetName(), texts);
+}
+
+//------------------------------------------------------------------------------
+// Every transform has a status; one that is not OK may have no matrix.
+void vtkLacunaSequenceContent::AddTransform(vtkDataArray* array)
+{
+  const bool imageToProbe =
+    std::string(array->GetName()) == vtkLacunaTrackedSlices::ImageToProbeName;
+  const std::string name = imageToProbe ? this->ImageFrame + "ToProbe" : array->GetName();
+  const bool constant = array->GetNumberOfTuples() != this->Count;
+  const bool stated = !constant &&
+    this->Stack->GetFieldData()->GetAbstractArray((name + StatusSuffix).c_str()) != nullptr;
+  std::vector<std::string> states = this->GetTexts(name + StatusSuffix);
+  std::vector<std::string> matrices;
+  for (std::size_t i = 0; i < this->Slices.size(); ++i)
+  {
+    const lacuna::Matrix4 matrix =
+      this->ToPixels(name, vtkLacunaFieldData::GetMatrix(array, constant ? 0 : this->Slices[i]));
+    const bool finite = matrix.IsFinite();
+    matrices.push_back(finite ? lacuna::FormatMatrix(matrix) : std::string());
+    if (!stated || states[i].empty())
+    {
+      states[i] = finite ? (stated ? "INVALID" : "OK") : (stated ? "" : "INVALID");
+    }
+    else if (!finite && states[i] == "OK")
+    {
+      states[i] = "INVALID";
+    }
+  }
+  this->AddFrameField(name + TransformSuffix, matrices);
+  this->AddFrameField(name + StatusSuffix, states);
+}
+
+//------------------------------------------------------------------------------
+// Times, numbers and flags.
+void vtkLacunaSequenceContent::AddStates()
+{
+  vtkDataArray* times =
+    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::TimestampName, 1, this->Count);
+  vtkDataArray* numbers =
+    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::FrameNumberName, 1, this->Count);
+  bool ownNumbers = false;
+  std::vector<std::string> timeTexts(this->Slices.size());
+  std::vector<std::string> numberTexts(this->Slices.size());
+  std::vector<std::string> flagTexts(this->Slices.size());
+  std::vector<std::string> imageTexts = this->GetTexts(ImageStatus);
+  for (std::size_t i = 0; i < this->Slices.size(); ++i)
+  {
+    const vtkIdType slice = this->Slices[i];
+    if (times && std::isfinite(times->GetTuple1(slice)))
+    {
+      timeTexts[i] = lacuna::FormatNumber(times->GetTuple1(slice));
+    }
+    if (numbers)
+    {
+      numberTexts[i] = lacuna::FormatNumber(numbers->GetTuple1(slice));
+      ownNumbers = ownNumbers || numbers->GetTuple1(slice) != static_cast<double>(i);
+    }
+    if (this->Status[i] & (vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut))
+    {
+      flagTexts[i] = std::to_string(this->Status[i]);
+    }
+    const bool invalid = (this->Status[i] & vtkLacunaTrackedSlices::ImageInvalid) != 0;
+    if (imageTexts[i].empty() || (invalid && imageTexts[i] == "OK"))
+    {
+      imageTexts[i] = invalid ? "INVALID" : "OK";
+    }
+  }
+  this->AddFrameField(vtkLacunaTrackedSlices::TimestampName, timeTexts);
+  if (ownNumbers) // a frame without one is numbered by its place
+  {
+    this->AddFrameField(vtkLacunaTrackedSlices::FrameNumberName, numberTexts);
+  }
+  this->AddFrameField(vtkLacunaTrackedSlices::SliceStatusName, flagTexts);
+  if (!this->PosesOnly)
+  {
+    this->AddFrameField(ImageStatus, imageTexts);
+  }
+}
+
+//------------------------------------------------------------------------------
+// The poses themselves are written when nothing else in the file tells them.
+void vtkLacunaSequenceContent::AddPoses()
+{
+  vtkDataArray* array = vtkLacunaFieldData::Find(
+    this->Stack, vtkLacunaTrackedSlices::ImageToReferenceName, 16, this->Count);
+  if (!array)
+  {
+    return;
+  }
+  std::vector<lacuna::Matrix4> poses;
+  for (const vtkIdType slice : this->Slices)
+  {
+    poses.push_back(vtkLacunaFieldData::GetMatrix(array, slice) * this->PixelToImage);
+  }
+  if (this
+        ->Cropped) // the poses go in, so that no calibration of the whole picture takes their place
+  {
+    this->Warnings.emplace_back(
+      "the slices are cropped or resampled: column and row in the file are those of the pixels as "
+      "they are now. Read the file without a CalibrationFileName, which is for the whole picture");
+  }
+  else if (lacuna::TellPoses(this->Content.Frames, this->ImageFrame, this->ReferenceFrame, poses))
+  {
+    return;
+  }
+  const std::string name = this->ImageFrame + "To" + this->ReferenceFrame;
+  std::vector<std::string> matrices;
+  std::vector<std::string> states;
+  for (const lacuna::Matrix4& pose : poses)
+  {
+    matrices.push_back(pose.IsFinite() ? lacuna::FormatMatrix(pose) : std::string());
+    states.emplace_back(pose.IsFinite() ? "OK" : "INVALID");
+  }
+  for (lacuna::SequenceFields& fields : this->Content.Frames)
+  {
+    fields.erase(
+      std::remove_if(fields.begin(), fields.end(),
+        [&](const auto& field)
+        { return field.first == name + TransformSuffix || field.first == name + StatusSuffix; }),
+      fields.end());
+  }
+  this->AddFrameField(name + TransformSuffix, matrices);
+  this->AddFrameField(name + StatusSuffix, states);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddProvenance()
+{
+  std::size_t number = 0;
+  for (const std::string& step : vtkLacunaProvenance::Get(this->Stack))
+  {
+    this->AddHeaderField(vtkLacunaSequenceNames::ProvenancePrefix + std::to_string(number++), step);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::CheckLines()
+{
+  std::set<std::string> names;
+  const auto check = [&](const lacuna::SequenceFields& fields)
+  {
+    for (const auto& [name, text] : fields)
+    {
+      if (name.size() + text.size() > LongestLine)
+      {
+        names.insert(name);
+      }
+    }
+  };
+  check(this->Content.Description.CustomFields);
+  std::for_each(this->Content.Frames.begin(), this->Content.Frames.end(), check);
+  if (!names.empty())
+  {
+    this->Warnings.push_back("fields are longer than 1000 characters; PLUS would cut them: " +
+      lacuna::JoinSome({ names.begin(), names.end() }));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddHeaderField(const std::string& name, const std::string& text)
+{
+  if (this->Accepts(name, { text }, false))
+  {
+    this->Content.Description.CustomFields.emplace_back(name, text);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSequenceContent::AddFrameField(
+  const std::string& name, const std::vector<std::string>& texts)
+{
+  if (!this->Accepts(name, texts, true))
+  {
+    return;
+  }
+  for (std::size_t i = 0; i < texts.size(); ++i)
+  {
+    if (!texts[i].empty())
+    {
+      this->Content.Frames[i].emplace_back(name, texts[i]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaSequenceContent::Accepts(
+  const std::string& name, const std::vector<std::string>& texts, bool ofFrame)
+{
+  for (const std::string& text : texts)
+  {
+    const std::string problem = this->Kind.GetProblem(name, text, ofFrame);
+    if (!problem.empty())
+    {
+      this->Warnings.push_back("field '" + name + "' is not written: " + problem);
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+lacuna::Matrix4 vtkLacunaSequenceContent::ToPixels(
+  const std::string& name, const lacuna::Matrix4& matrix) const
+{
+  const auto readings = lacuna::ReadTransformName(name);
+  if (!this->Cropped || readings.size() != 1)
+  {
+    return matrix;
+  }
+  if (readings[0].first == this->ImageFrame)
+  {
+    return matrix * this->PixelToImage;
+  }
+  return readings[0].second == this->ImageFrame ? this->PixelToImage.Inverse() * matrix : matrix;
+}
+
+//------------------------------------------------------------------------------
+const std::string* vtkLacunaSequenceContent::FindText(
+  std::size_t frame, const std::string& field) const
+{
+  const lacuna::SequenceFields& fields = this->Content.Frames.at(frame);
+  const auto found = std::find_if(
+    fields.begin(), fields.end(), [&](const auto& other) { return other.first == field; });
+  return found == fields.end() ? nullptr : &found->second;
+}
+
+//------------------------------------------------------------------------------
+// Of the slices in the stack; empty texts when there is no such array.
+std::vector<std::string> vtkLacunaSequenceContent::GetTexts(const std::string& name) const
+{
+  std::vector<std::string> texts;
+  for (const vtkIdType slice : this->Slices)
+  {
+    texts.push_back(GetString(this->Stack, name.c_str(), slice));
+  }
+  return texts;
+}

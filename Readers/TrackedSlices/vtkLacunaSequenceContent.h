@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a stack of tracked slices is as a sequence file: the inverse of the reader.
+#ifndef vtkLacunaSequenceContent_h
+#define vtkLacunaSequenceContent_h
+
+#include "lacunaMatrix4.h"
+#include "lacunaSequenceWriter.h"
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkAbstractArray;
+class vtkDataArray;
+class vtkImageData;
+class vtkStringArray;
+
+class vtkLacunaSequenceContent
+{
+public:
+  /// Collects the slices that stack holds, with their fields; stack must outlive this object.
+  /// Throws std::runtime_error that names the array when stack is not tracked slices.
+  vtkLacunaSequenceContent(vtkImageData* stack, const lacuna::SequenceKind& kind);
+
+  const lacuna::SequenceContent& Get() const { return this->Content; }
+  /// What cannot be written, one sentence each.
+  const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
+
+private:
+  void FindSlices();
+  void FindPixels();
+  void AddArrays();
+  void AddArray(vtkAbstractArray* array);
+  void AddStrings(vtkStringArray* array);
+  void AddNumbers(vtkDataArray* array);
+  void AddTransform(vtkDataArray* array);
+  void AddStates();
+  void AddPoses();
+  void AddProvenance();
+  void CheckLines();
+
+  void AddHeaderField(const std::string& name, const std::string& text);
+  void AddFrameField(const std::string& name, const std::vector<std::string>& texts);
+  bool Accepts(const std::string& name, const std::vector<std::string>& texts, bool ofFrame);
+  /// A transform of the given name as it is between the pixels of the file.
+  lacuna::Matrix4 ToPixels(const std::string& name, const lacuna::Matrix4& matrix) const;
+  const std::string* FindText(std::size_t frame, const std::string& field) const;
+  std::vector<std::string> GetTexts(const std::string& name) const;
+
+  vtkImageData* Stack;
+  const lacuna::SequenceKind& Kind;
+  lacuna::SequenceContent Content;
+  std::vector<std::string> Warnings;
+  vtkIdType Count = 0;           ///< slices of the sweep
+  std::vector<vtkIdType> Slices; ///< those in the stack
+  std::vector<unsigned char> Status;
+  bool PosesOnly = false;
+  std::string ImageFrame = "Image";
+  std::string ReferenceFrame = "Reference";
+  bool Cropped = false;
+  lacuna::Matrix4 PixelToImage; ///< (column, row) of the file to those of the sweep
+};
+#endif

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaTrackedSliceWriter.h"
+
+#include "lacunaOutputFile.h"
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaSequenceContent.h"
+#include "vtkLogger.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <new>
+#include <stdexcept>
+#include <string>
+
+vtkStandardNewMacro(vtkLacunaTrackedSliceWriter);
+
+//------------------------------------------------------------------------------
+vtkLacunaTrackedSliceWriter::~vtkLacunaTrackedSliceWriter()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaTrackedSliceWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaTrackedSliceWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info &&
+    info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    // Any rank writes the whole stack, or none of it.
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaTrackedSliceWriter::Write()
+{
+  this->FileSize = 0;
+  this->Superclass::Write();
+  if (this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
+  {
+    // VTK does not come to WriteData when a filter upstream fails or has nothing
+    this->SetErrorCode(vtkErrorCode::UnknownError);
+    vtkErrorMacro("nothing was written: there is no input, or a filter before this one failed");
+  }
+  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceWriter::WriteData()
+{
+  this->FileSize = 0;
+  unsigned long code = vtkErrorCode::UnknownError;
+  std::string error;
+  try
+  {
+    auto* stack = vtkImageData::SafeDownCast(this->GetInput());
+    if (!this->FileName || !*this->FileName)
+    {
+      code = vtkErrorCode::NoFileNameError;
+      throw std::runtime_error("no FileName is given");
+    }
+    if (!stack || stack->GetNumberOfPoints() == 0)
+    {
+      throw std::runtime_error("the input has no slices");
+    }
+    this->WriteStack(stack);
+    return;
+  }
+  catch (const lacuna::FileError& e)
+  {
+    code = e.GetKind() == lacuna::FileError::Kind::NoSpace ? vtkErrorCode::OutOfDiskSpaceError
+                                                           : vtkErrorCode::CannotOpenFileError;
+    error = e.what();
+  }
+  catch (const lacuna::Aborted&)
+  {
+    this->SetErrorCode(vtkErrorCode::UserError); // no file, but no error message either
+    return;
+  }
+  catch (const std::bad_alloc&)
+  {
+    error = "out of memory";
+  }
+  catch (const std::exception& e)
+  {
+    error = e.what();
+  }
+  this->SetErrorCode(code);
+  vtkErrorMacro(<< error);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
+{
+  vtkLacunaExecution execution(this);
+  const lacuna::SequenceKind kind(this->FileName, this->CompressionLevel > 0);
+  const vtkLacunaSequenceContent content(stack, kind);
+  this->FileSize =
+    lacuna::WriteSequence(this->FileName, content.Get(), this->CompressionLevel, execution);
+  for (const std::string& warning : content.GetWarnings())
+  {
+    vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
+  vtkLog(INFO, << "Tracked Slice Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
+               << content.Get().Frames.size() << " slices");
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaTrackedSliceWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
+  os << indent << "CompressionLevel: " << this->CompressionLevel << "\n";
+  os << indent << "FileSize: " << this->FileSize << "\n";
+}

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaTrackedSliceWriter
+ * @brief writes tracked slices as a sequence file
+ *
+ * Writes a stack of tracked slices (contract vtkLacunaTrackedSlices) as a sequence that PLUS, 3D
+ * Slicer and vtkLacunaTrackedSliceReader read; the extension of FileName chooses the kind: .mha,
+ * .mhd (with .raw or .zraw), .nrrd, .nhdr (with .raw or .raw.gz). What was read comes back:
+ *
+ * - the slices that the stack holds, in its scalar type, in the orientation MFA (FM for
+ *   radio-frequency data), to which all transforms refer. They are numbered from 0;
+ * - every transform of 16 components with its status, ImageToProbe as a transform of each frame, so
+ *   that the file can be read without a calibration file. ImageToReference itself is written when
+ *   the other transforms do not lead to the same poses (corrected poses, phantoms, cropped slices);
+ * - Timestamp, FrameNumber, ImageStatus; the flags too fast and gated out as SliceStatus;
+ * - string and number arrays with a tuple for each slice or a single one, as text;
+ * - the Provenance, as fields LacunaProvenance0 ... of the header.
+ *
+ * In-plane crops and new pixel spacings go into the transforms from and to the image. Arrays whose
+ * names begin with Patient are left out. What cannot be written is named in a warning.
+ *
+ * Files get their names when they are complete. On failure Write() returns 0, GetErrorCode() says
+ * why, and what was at FileName stays.
+ *
+ * @sa vtkLacunaTrackedSliceReader
+ */
+#ifndef vtkLacunaTrackedSliceWriter_h
+#define vtkLacunaTrackedSliceWriter_h
+
+#include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
+#include "vtkWriter.h"
+
+class vtkImageData;
+
+class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceWriter : public vtkWriter
+{
+public:
+  static vtkLacunaTrackedSliceWriter* New();
+  vtkTypeMacro(vtkLacunaTrackedSliceWriter, vtkWriter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
+  /// before this one failed.
+  int Write() override;
+
+  ///@{
+  /// The file to write: .mha, .mhd, .nrrd or .nhdr.
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+
+  ///@{
+  /// 0: raw pixels, of which single slices can be read; 1 (quick) to 9 (small): one zlib or gzip
+  /// stream. Default: 1.
+  vtkSetClampMacro(CompressionLevel, int, 0, 9);
+  vtkGetMacro(CompressionLevel, int);
+  ///@}
+
+  ///@{
+  /// Bytes of the file or files that the last Write() made; 0 when it failed.
+  vtkGetMacro(FileSize, vtkTypeInt64);
+  ///@}
+
+  int ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+protected:
+  vtkLacunaTrackedSliceWriter() = default;
+  ~vtkLacunaTrackedSliceWriter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  void WriteData() override;
+
+private:
+  vtkLacunaTrackedSliceWriter(const vtkLacunaTrackedSliceWriter&) = delete;
+  void operator=(const vtkLacunaTrackedSliceWriter&) = delete;
+
+  void WriteStack(vtkImageData* stack);
+
+  char* FileName = nullptr;
+  int CompressionLevel = 1;
+  vtkTypeInt64 FileSize = 0;
+};
+#endif
