@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaMemory.h"
 
+#include <cstdint>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace lacuna
@@ -47,5 +49,23 @@ void RequireMemory(const std::string& what, double bytes)
   message << what << " would need " << bytes / Gibibyte << " GiB, this machine has "
           << available / Gibibyte << " GiB of memory free";
   throw std::runtime_error(message.str());
+}
+
+void PreferLargePages(void* memory, std::size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+  // whole large pages inside of the block: what lies next to it is not ours
+  constexpr std::uintptr_t page = 2097152;
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t first = (address + page - 1) / page * page;
+  const std::uintptr_t end = (address + bytes) / page * page;
+  if (first < end)
+  {
+    madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE); // a wish, may fail
+  }
+#else
+  static_cast<void>(memory);
+  static_cast<void>(bytes);
+#endif
 }
 }

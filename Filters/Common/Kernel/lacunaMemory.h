@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Refuses allocations that cannot succeed before they are tried.
+/// Refuses allocations that cannot succeed before they are tried, and makes large ones cheaper.
 #ifndef lacunaMemory_h
 #define lacunaMemory_h
 
+#include <cstddef>
 #include <string>
 
 namespace lacuna
@@ -15,5 +16,11 @@ double GetAvailableMemory();
 /// to be stored, its size and the memory there is. bytes is a double so that no product of sizes
 /// can overflow on its way here.
 void RequireMemory(const std::string& what, double bytes);
+
+/// Asks the system to back memory by large pages when it is first touched: ordinary ones of 4 KiB
+/// take a fault each, which is a sixth of the time of making a volume. For memory that has just been
+/// allocated and will be filled densely. Does nothing for less than some MiB, nor where the system
+/// knows no such thing.
+void PreferLargePages(void* memory, std::size_t bytes);
 }
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaFootprint.h"
 
+#include "lacunaWide.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -85,7 +87,7 @@ namespace
 // line = sum of count lines from pixels, weighted. A few lines at a time: the compiler turns the
 // inner loops into vector code.
 template <class T, class Real>
-void WeighLines(
+LACUNA_WIDE void WeighLines(
   const T* pixels, std::int64_t rowStride, int width, const double* weights, int count, Real* line)
 {
   int t = 0;

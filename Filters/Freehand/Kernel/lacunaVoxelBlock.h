@@ -4,6 +4,8 @@
 #ifndef lacunaVoxelBlock_h
 #define lacunaVoxelBlock_h
 
+#include "lacunaMemory.h"
+
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -74,6 +76,7 @@ public:
     {
       throw std::bad_alloc();
     }
+    PreferLargePages(this->Data.get(), this->GetNumberOfVoxels() * sizeof(VoxelType));
   }
 
   const std::array<int, 6>& GetExtent() const { return this->Extent; }
