@@ -160,7 +160,7 @@ void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
     }
   }
   this->ScalarType = ofInput ? first : VTK_FLOAT;
-  this->BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->Options.DoublePrecision) +
+  this->BytesPerVoxel = lacuna::SweptVolume::GetBytesPerVoxel(this->Options) +
     vtkDataArray::GetDataTypeSize(this->ScalarType) +
     static_cast<std::int64_t>(sizeof(unsigned int) + sizeof(char));
 }

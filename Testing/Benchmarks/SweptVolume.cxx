@@ -1,236 +1,319 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A sweep of an analytic scene reconstructed: seconds, and the error against the truth.
+/// Sweeps of an analytic scene (lacunaSweptScene.h) reconstructed: seconds, error against the truth,
+/// memory, and the time that one slice more takes.
 ///
-/// 200 slices of 640 x 480 pixels of 0.1 mm over 60 mm, twisting from -12 to 12 degrees about the
-/// image's vertical and fanning from -8 to 8 degrees about its horizontal; grey levels between 20
-/// and 240, 8 bit.
+/// Beside them two yardsticks of the same run, so that ratios mean something on any machine: Splat,
+/// the usual way (lacunaPixelSplat.h), and ReadAndWrite, which only touches the memory.
+///
+/// Counters: filled, the part of the swept region that has grey levels; RMS, the error there; RMSall,
+/// that of all voxels with grey levels, also of those just outside of the swept region; bytes, what
+/// one voxel takes; peakMB, what the process took most in one reconstruction beyond what it had.
+#include "lacunaMemory.h"
+#include "lacunaPixelSplat.h"
+#include "lacunaSweptScene.h"
 #include "lacunaSweptVolume.h"
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <map>
+#include <utility>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 using namespace lacuna;
 
 namespace
 {
-constexpr int Width = 640;
-constexpr int Height = 480;
-constexpr double PixelSpacing = 0.1;
-constexpr double Travel = 60;
-constexpr double Pi = 3.14159265358979323846;
-
-double Truth(const Vec3& p)
+enum Mode
 {
-  constexpr double turn = 2 * Pi;
-  return 130 + 55 * std::sin(turn * p[0] / 25) * std::cos(turn * p[2] / 31) +
-    55 * std::sin(turn * (p[1] / 21 + p[2] / 47));
-}
-
-struct Sweep
-{
-  explicit Sweep(int count)
-    : Pixels(static_cast<std::size_t>(count) * Width * Height)
-  {
-    for (int n = 0; n < count; ++n)
-    {
-      const double t = static_cast<double>(n) / (count - 1);
-      SliceImage slice;
-      slice.Width = Width;
-      slice.Height = Height;
-      slice.RowStride = Width;
-      slice.Label = "slice " + std::to_string(n);
-      slice.PixelToReference = Matrix4::Translation({ 0, 0, Travel * (t - 0.5) }) *
-        Matrix4::Rotation({ 0, 1, 0 }, 12 * Pi / 180 * (2 * t - 1)) *
-        Matrix4::Rotation({ 1, 0, 0 }, 8 * Pi / 180 * (2 * t - 1)) *
-        Matrix4::Scaling({ PixelSpacing, PixelSpacing, 1 }) *
-        Matrix4::Translation({ -0.5 * (Width - 1), -0.5 * (Height - 1), 0 });
-      slice.Pixels = this->GetPixels(n);
-      this->Slices.push_back(slice);
-    }
-    ThreadExecution execution;
-    execution.For(count, 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t n = begin; n < end; ++n)
-        {
-          this->Draw(n);
-        }
-      });
-  }
-
-  std::uint8_t* GetPixels(std::int64_t n) { return this->Pixels.data() + n * Width * Height; }
-
-  void Draw(std::int64_t n)
-  {
-    std::uint8_t* pixels = this->GetPixels(n);
-    const Matrix4& pose = this->Slices[n].PixelToReference;
-    for (int y = 0; y < Height; ++y)
-    {
-      for (int x = 0; x < Width; ++x)
-      {
-        const Vec3 p = pose.Point({ static_cast<double>(x), static_cast<double>(y), 0 });
-        *pixels++ = static_cast<std::uint8_t>(std::lround(Truth(p)));
-      }
-    }
-  }
-
-  std::vector<std::uint8_t> Pixels;
-  std::vector<SliceImage> Slices;
+  Footprint,
+  Bilinear,
+  Nearest,
+  NearestVoxel,
+  AcrossSlices, ///< footprints that reach across slices
+  Wide          ///< the same, three voxels wide and high
 };
+constexpr std::array<const char*, 6> ModeNames{ "Footprint", "Bilinear", "Nearest", "NearestVoxel",
+  "AcrossSlices", "Wide" };
 
-const Sweep& GetSweep(int count)
-{
-  static const Sweep shortSweep(200);
-  if (count == 200)
-  {
-    return shortSweep;
-  }
-  static const Sweep longSweep(600);
-  return longSweep;
-}
-
-template <class T>
-struct Volume
-{
-  explicit Volume(const VolumeGrid& grid)
-    : Intensity(std::size_t(1) * grid.Dimensions[0] * grid.Dimensions[1] * grid.Dimensions[2])
-    , Contributions(this->Intensity.size())
-    , Mask(this->Intensity.size())
-  {
-  }
-  std::vector<T> Intensity;
-  std::vector<unsigned int> Contributions;
-  std::vector<char> Mask;
-};
-
-template <class T>
-double GetError(const VolumeGrid& grid, const Volume<T>& volume)
-{
-  double sum = 0;
-  double count = 0;
-  std::size_t n = 0;
-  for (int k = 0; k < grid.Dimensions[2]; ++k)
-  {
-    for (int j = 0; j < grid.Dimensions[1]; ++j)
-    {
-      for (int i = 0; i < grid.Dimensions[0]; ++i, ++n)
-      {
-        if (volume.Mask[n])
-        {
-          const Vec3 p{ grid.Origin[0] + i * grid.Spacing[0], grid.Origin[1] + j * grid.Spacing[1],
-            grid.Origin[2] + k * grid.Spacing[2] };
-          const double e = static_cast<double>(volume.Intensity[n]) - Truth(p);
-          sum += e * e;
-          count += 1;
-        }
-      }
-    }
-  }
-  return std::sqrt(sum / count);
-}
-
-SweptVolume::Options GetOptions(int sampling)
+SweptVolume::Options GetOptions(Mode mode)
 {
   SweptVolume::Options options;
-  if (sampling == 3)
+  switch (mode)
   {
-    options.Interpolation = SweptVolume::Method::NearestVoxel;
-  }
-  else
-  {
-    options.Sampling = static_cast<PixelSampling>(sampling);
+    case NearestVoxel:
+      options.Interpolation = SweptVolume::Method::NearestVoxel;
+      break;
+    case AcrossSlices:
+    case Wide:
+      options.FootprintAcrossSlices = true;
+      options.FootprintScale = mode == Wide ? 3 : 1;
+      break;
+    default:
+      options.Sampling = static_cast<PixelSampling>(mode);
   }
   return options;
 }
 
-VolumeGrid GetGrid(const Sweep& sweep, double spacing)
+template <class T>
+const SceneSweep<T>& GetSweep(int count, bool isNoisy)
 {
-  VolumeGridRequest request;
-  request.Spacing = { spacing, spacing, spacing };
-  return MakeVolumeGrid(sweep.Slices, request);
+  static std::map<std::pair<int, bool>, std::unique_ptr<SceneSweep<T>>> sweeps;
+  auto& sweep = sweeps[{ count, isNoisy }];
+  if (!sweep)
+  {
+    sweep = std::make_unique<SceneSweep<T>>(count, isNoisy);
+  }
+  return *sweep;
 }
 
-// The whole work: memory, slices, arrays.
+VolumeGrid GetGrid(const std::vector<SliceImage>& slices, std::int64_t spacing)
+{
+  VolumeGridRequest request;
+  const double mm = static_cast<double>(spacing) / 10;
+  request.Spacing = { mm, mm, mm };
+  return MakeVolumeGrid(slices, request);
+}
+
+std::array<int, 6> GetExtent(const VolumeGrid& grid)
+{
+  return { 0, grid.Dimensions[0] - 1, 0, grid.Dimensions[1] - 1, 0, grid.Dimensions[2] - 1 };
+}
+
+std::size_t GetSize(const VolumeGrid& grid)
+{
+  return std::size_t(1) * grid.Dimensions[0] * grid.Dimensions[1] * grid.Dimensions[2];
+}
+
+// What a user gets; not initialised, like the arrays of the filter.
 template <class T>
-Volume<T> Reconstruct(const Sweep& sweep, const VolumeGrid& grid, int sampling, int threads)
+struct Volume
+{
+  explicit Volume(const VolumeGrid& grid)
+    : Intensity(new T[GetSize(grid)])
+    , Contributions(new unsigned int[GetSize(grid)])
+    , Mask(new char[GetSize(grid)])
+  {
+    PreferLargePages(this->Intensity.get(), GetSize(grid) * sizeof(T));
+    PreferLargePages(this->Contributions.get(), GetSize(grid) * sizeof(unsigned int));
+    PreferLargePages(this->Mask.get(), GetSize(grid));
+  }
+  static constexpr std::size_t BytesPerVoxel = sizeof(T) + sizeof(unsigned int) + sizeof(char);
+  std::unique_ptr<T[]> Intensity;
+  std::unique_ptr<unsigned int[]> Contributions;
+  std::unique_ptr<char[]> Mask;
+};
+
+// The whole work: memory, slices, arrays.
+template <class Out>
+Volume<Out> Reconstruct(
+  const std::vector<SliceImage>& slices, const VolumeGrid& grid, Mode mode, int threads)
 {
   ThreadExecution execution(threads);
-  SweptVolume accumulator(grid,
-    { 0, grid.Dimensions[0] - 1, 0, grid.Dimensions[1] - 1, 0, grid.Dimensions[2] - 1 },
-    GetOptions(sampling));
-  accumulator.AddSlices(sweep.Slices, execution);
-  Volume<T> volume(grid);
+  SweptVolume accumulator(grid, GetExtent(grid), GetOptions(mode));
+  accumulator.AddSlices(slices, execution);
+  Volume<Out> volume(grid);
   accumulator.Write(
-    volume.Intensity.data(), volume.Contributions.data(), volume.Mask.data(), execution);
+    volume.Intensity.get(), volume.Contributions.get(), volume.Mask.get(), execution);
   return volume;
 }
 
-template <class T>
-void Batch(benchmark::State& state)
+// A line of /proc/self/status, MB; 0 where there is no such file.
+double GetMemory(const std::string& name)
 {
-  const Sweep& sweep = GetSweep(static_cast<int>(state.range(0)));
-  const VolumeGrid grid = GetGrid(sweep, static_cast<double>(state.range(1)) / 10);
-  const auto sampling = static_cast<int>(state.range(2));
-  const auto threads = static_cast<int>(state.range(3));
-  for (auto _ : state)
+  std::ifstream status("/proc/self/status");
+  std::string key;
+  for (double value = 0; status >> key; status.ignore(1000, '\n'))
   {
-    benchmark::DoNotOptimize(Reconstruct<T>(sweep, grid, sampling, threads));
+    if (key == name + ":" && status >> value)
+    {
+      return value / 1024;
+    }
   }
-  const Volume<T> volume = Reconstruct<T>(sweep, grid, sampling, threads);
-  double filled = 0;
-  for (const char m : volume.Mask)
-  {
-    filled += m;
-  }
-  state.counters["RMS"] = GetError(grid, volume);
-  state.counters["Mvoxel"] = static_cast<double>(volume.Mask.size()) * 1e-6;
-  state.counters["Mfilled"] = filled * 1e-6;
+  return 0;
 }
 
-// One slice more, one thread, as during a scan.
+template <class In, class Out>
+void Batch(benchmark::State& state, bool isNoisy)
+{
+  const auto& sweep = GetSweep<In>(static_cast<int>(state.range(0)), isNoisy);
+  const VolumeGrid grid = GetGrid(sweep.Slices, state.range(1));
+  const auto mode = static_cast<Mode>(state.range(2));
+  const auto threads = static_cast<int>(state.range(3));
+  state.SetLabel(ModeNames[mode]);
+  for (auto _ : state)
+  {
+    benchmark::DoNotOptimize(Reconstruct<Out>(sweep.Slices, grid, mode, threads));
+  }
+#ifdef __GLIBC__
+  malloc_trim(0); // what was freed is not used again
+#endif
+  std::ofstream("/proc/self/clear_refs") << 5; // the peak counts from now on
+  const double before = GetMemory("VmRSS");
+  const Volume<Out> volume = Reconstruct<Out>(sweep.Slices, grid, mode, threads);
+  state.counters["peakMB"] = GetMemory("VmHWM") - before;
+  const auto size = static_cast<double>(GetSize(grid));
+  const std::vector<char> region = MarkSweptRegion(sweep.TruePoses, grid);
+  const SceneScore score = GetScore(grid, region, volume.Intensity.get(), volume.Mask.get());
+  state.counters["filled"] = score.Filled;
+  state.counters["RMS"] = score.Error;
+  state.counters["RMSall"] = score.All;
+  state.counters["Mvoxel"] = size * 1e-6;
+  state.counters["bytes"] = static_cast<double>(
+    SweptVolume::GetBytesPerVoxel(GetOptions(mode)) + Volume<Out>::BytesPerVoxel);
+}
+
+double GetProcessSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// One slice more, one thread, as during a scan. meanMs and worstMs are processor time: what else
+// runs on the machine does not count.
 void OneByOne(benchmark::State& state)
 {
-  const Sweep& sweep = GetSweep(200);
-  const VolumeGrid grid = GetGrid(sweep, static_cast<double>(state.range(0)) / 10);
+  const auto& sweep = GetSweep<std::uint8_t>(200, false);
+  const VolumeGrid grid = GetGrid(sweep.Slices, state.range(0));
+  const auto mode = static_cast<Mode>(state.range(1));
+  state.SetLabel(ModeNames[mode]);
   ThreadExecution execution(1);
-  SweptVolume accumulator(grid,
-    { 0, grid.Dimensions[0] - 1, 0, grid.Dimensions[1] - 1, 0, grid.Dimensions[2] - 1 },
-    GetOptions(static_cast<int>(state.range(1))));
+  SweptVolume accumulator(grid, GetExtent(grid), GetOptions(mode));
   std::size_t n = 0;
+  double sum = 0;
+  double worst = 0;
   for (auto _ : state)
   {
     if (n % sweep.Slices.size() == 0)
     {
       accumulator.BeginSweep();
     }
+    const double start = GetProcessSeconds();
     accumulator.AddSlices({ sweep.Slices[n++ % sweep.Slices.size()] }, execution);
+    const double seconds = GetProcessSeconds() - start;
+    sum += seconds;
+    worst = std::max(worst, seconds);
   }
+  state.counters["meanMs"] = 1e3 * sum / static_cast<double>(n);
+  state.counters["worstMs"] = 1e3 * worst;
+}
+
+template <class In>
+void Splat(benchmark::State& state, bool isNoisy)
+{
+  const auto& sweep = GetSweep<In>(static_cast<int>(state.range(0)), isNoisy);
+  const VolumeGrid grid = GetGrid(sweep.Slices, state.range(1));
+  Volume<float> volume(grid);
+  for (auto _ : state)
+  {
+    std::vector<SplatVoxel> voxels(GetSize(grid));
+    SplatPixels<In>(sweep.Slices, grid, voxels);
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+    {
+      volume.Mask[i] = voxels[i].Weight > 0 ? 1 : 0;
+      volume.Intensity[i] = volume.Mask[i] ? voxels[i].Sum / voxels[i].Weight : 0;
+      volume.Contributions[i] = 1;
+    }
+  }
+  const std::vector<char> region = MarkSweptRegion(sweep.TruePoses, grid);
+  const SceneScore score = GetScore(grid, region, volume.Intensity.get(), volume.Mask.get());
+  state.counters["filled"] = score.Filled;
+  state.counters["RMS"] = score.Error;
+  state.counters["RMSall"] = score.All;
+}
+
+// Reads the pixels once, and writes once what a volume of floats takes, work space included.
+void ReadAndWrite(benchmark::State& state)
+{
+  const auto& sweep = GetSweep<std::uint8_t>(200, false);
+  const VolumeGrid grid = GetGrid(sweep.Slices, state.range(0));
+  const std::size_t size = GetSize(grid) *
+    (SweptVolume::GetBytesPerVoxel(GetOptions(Footprint)) + Volume<float>::BytesPerVoxel);
+  constexpr std::size_t pixels = std::size_t(1) * SceneWidth * SceneHeight;
+  for (auto _ : state)
+  {
+    const std::unique_ptr<char[]> memory(new char[size]);
+    std::memset(memory.get(), 1, size);
+    unsigned int sum = 0;
+    for (const SliceImage& slice : sweep.Slices)
+    {
+      const auto* const p = static_cast<const std::uint8_t*>(slice.Pixels);
+      for (std::size_t i = 0; i < pixels; ++i)
+      {
+        sum += p[i];
+      }
+    }
+    benchmark::DoNotOptimize(sum);
+    benchmark::DoNotOptimize(memory.get());
+  }
+}
+
+// Clean: 8 bit in, float or 8 bit out. Noisy: float or 8 bit in, float out.
+void CleanFloat(benchmark::State& state)
+{
+  Batch<std::uint8_t, float>(state, false);
+}
+void CleanUInt8(benchmark::State& state)
+{
+  Batch<std::uint8_t, std::uint8_t>(state, false);
+}
+void NoisyFloat(benchmark::State& state)
+{
+  Batch<float, float>(state, true);
+}
+void NoisyUInt8(benchmark::State& state)
+{
+  Batch<std::uint8_t, float>(state, true);
+}
+void SplatClean(benchmark::State& state)
+{
+  Splat<std::uint8_t>(state, false);
+}
+void SplatNoisy(benchmark::State& state)
+{
+  Splat<float>(state, true);
+}
+
+void Set(benchmark::internal::Benchmark* b)
+{
+  b->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 }
 }
 
-// slices, spacing in 0.1 mm, sampling (Footprint, Bilinear, Nearest; 3 = NearestVoxel), threads
-BENCHMARK_TEMPLATE(Batch, float)
-  ->ArgNames({ "slices", "spacing", "sampling", "threads" })
-  ->ArgsProduct({ { 200 }, { 3, 4, 5 }, { 0, 1, 2, 3 }, { 1, 2 } })
-  ->ArgsProduct({ { 600 }, { 4 }, { 0, 1 }, { 1, 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
-BENCHMARK_TEMPLATE(Batch, std::uint8_t)
-  ->ArgNames({ "slices", "spacing", "sampling", "threads" })
-  ->ArgsProduct({ { 200 }, { 3, 4, 5 }, { 0, 1, 2 }, { 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+// spacing in 0.1 mm
+BENCHMARK(CleanFloat)
+  ->Apply(Set)
+  ->ArgNames({ "slices", "spacing", "mode", "threads" })
+  ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, Bilinear, Nearest, NearestVoxel }, { 1, 2 } })
+  ->ArgsProduct({ { 200 }, { 4 }, { AcrossSlices, Wide }, { 1, 2 } })
+  ->ArgsProduct({ { 600 }, { 4 }, { Footprint, Bilinear, Nearest, AcrossSlices }, { 1, 2 } });
+BENCHMARK(CleanUInt8)
+  ->Apply(Set)
+  ->ArgNames({ "slices", "spacing", "mode", "threads" })
+  ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, Bilinear, Nearest }, { 1, 2 } });
+BENCHMARK(NoisyFloat)
+  ->Apply(Set)
+  ->ArgNames({ "slices", "spacing", "mode", "threads" })
+  ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, AcrossSlices, Wide }, { 2 } });
+BENCHMARK(NoisyUInt8)
+  ->Apply(Set)
+  ->ArgNames({ "slices", "spacing", "mode", "threads" })
+  ->ArgsProduct({ { 200 }, { 4 }, { Footprint, AcrossSlices, Wide }, { 2 } });
+BENCHMARK(SplatClean)
+  ->Apply(Set)
+  ->ArgNames({ "slices", "spacing" })
+  ->ArgsProduct({ { 200 }, { 5, 4, 3 } });
+BENCHMARK(SplatNoisy)->Apply(Set)->ArgNames({ "slices", "spacing" })->Args({ 200, 4 });
+BENCHMARK(ReadAndWrite)->Apply(Set)->ArgName("spacing")->Arg(4);
 BENCHMARK(OneByOne)
-  ->ArgNames({ "spacing", "sampling" })
-  ->ArgsProduct({ { 4 }, { 0, 1, 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->Apply(Set)
+  ->ArgNames({ "spacing", "mode" })
+  ->ArgsProduct({ { 4 }, { Footprint, Bilinear, Nearest, NearestVoxel, AcrossSlices, Wide } });
 BENCHMARK_MAIN();

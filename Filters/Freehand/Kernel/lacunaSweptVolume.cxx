@@ -142,6 +142,15 @@ SweptVolume::SweptVolume(
   }
 }
 
+std::int64_t SweptVolume::GetBytesPerVoxel(const Options& options)
+{
+  if (IsWeighted(options))
+  {
+    return options.DoublePrecision ? sizeof(WeightedVoxel<double>) : sizeof(WeightedVoxel<float>);
+  }
+  return options.DoublePrecision ? sizeof(Voxel<double>) : sizeof(Voxel<float>);
+}
+
 SweptVolume::~SweptVolume() = default;
 
 void SweptVolume::BeginSweep()

@@ -63,10 +63,7 @@ public:
   SweptVolume& operator=(const SweptVolume&) = delete;
 
   /// Memory that this class takes per voxel.
-  static std::int64_t GetBytesPerVoxel(bool doublePrecision)
-  {
-    return doublePrecision ? sizeof(Voxel<double>) : sizeof(Voxel<float>);
-  }
+  static std::int64_t GetBytesPerVoxel(const Options& options);
 
   /// The next slice starts a new sweep: it forms no pair with the one before.
   void BeginSweep();
