@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaGateSlices.h"
+
+#include "lacunaGateSignal.h"
+#include "lacunaSliceMotion.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+
+// The numbers of a column; NaN for texts that are none.
+std::vector<double> GetColumn(vtkTable* table, const std::string& name)
+{
+  vtkAbstractArray* column = table->GetColumnByName(name.c_str());
+  if (!column || column->GetNumberOfComponents() != 1)
+  {
+    std::ostringstream message;
+    message << "the gate table has no column '" << name << "'; its columns are";
+    for (vtkIdType c = 0; c < table->GetNumberOfColumns(); ++c)
+    {
+      const char* other = table->GetColumnName(c);
+      message << (c > 0 ? ", '" : " '") << (other ? other : "") << "'";
+    }
+    throw std::runtime_error(message.str());
+  }
+  std::vector<double> numbers;
+  for (vtkIdType row = 0; row < column->GetNumberOfTuples(); ++row)
+  {
+    bool isNumber = false;
+    const double number = column->GetVariantValue(row).ToDouble(&isNumber);
+    numbers.push_back(isNumber ? number : NotANumber);
+  }
+  return numbers;
+}
+
+// The column that the user named, or the first of the usual ones that there is.
+std::vector<double> GetKeyColumnOf(
+  vtkTable* table, const std::string& name, std::initializer_list<const char*> usual)
+{
+  for (const char* candidate : usual)
+  {
+    if (name.empty() && table->GetColumnByName(candidate))
+    {
+      return GetColumn(table, candidate);
+    }
+  }
+  return GetColumn(table, name.empty() ? *usual.begin() : name);
+}
+
+std::vector<double> GetField(vtkImageData* slices, const char* name, vtkIdType count)
+{
+  vtkDataArray* array = vtkLacunaFieldData::Get(slices, name, 1, count);
+  std::vector<double> values;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    values.push_back(array->GetTuple1(i));
+  }
+  return values;
+}
+}
+
+vtkStandardNewMacro(vtkLacunaGateSlices);
+
+//------------------------------------------------------------------------------
+vtkLacunaGateSlices::vtkLacunaGateSlices()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaGateSlices::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+    return 1;
+  }
+  return this->Superclass::FillInputPortInformation(port, info);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGateSlices::SetGateTableConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGateSlices::SetGateColumn(const char* name)
+{
+  if (this->GateColumn != (name ? name : ""))
+  {
+    this->GateColumn = name ? name : "";
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGateSlices::SetKeyColumn(const char* name)
+{
+  if (this->KeyColumn != (name ? name : ""))
+  {
+    this->KeyColumn = name ? name : "";
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaGateSlices::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution&)
+    {
+      vtkImageData* slices = vtkImageData::GetData(inputs[0]);
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      vtkTable* table = vtkTable::GetData(inputs[1]);
+      output->ShallowCopy(slices);
+      if (slices->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      vtkDataArray* status =
+        vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
+      const vtkIdType count = status->GetNumberOfTuples();
+      if (!(this->SpeedLimit >= 0))
+      {
+        throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
+      }
+      const bool hasGate = table || slices->GetFieldData()->GetArray(this->GateColumn.c_str());
+      if (!hasGate && !(this->SpeedLimit > 0))
+      {
+        throw std::runtime_error("there is nothing to gate by: connect a table, or slices with a "
+                                 "field data array '" +
+          this->GateColumn + "' (GateColumn), or give a SpeedLimit");
+      }
+      vtkNew<vtkUnsignedCharArray> flags;
+      flags->SetName(vtkLacunaTrackedSlices::SliceStatusName);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        flags->InsertNextValue(static_cast<unsigned char>(status->GetTuple1(i)));
+      }
+      if (hasGate)
+      {
+        const std::vector<double> gates = this->GetGates(slices, table, count);
+        const lacuna::GateRange range(
+          this->GateRange[0], this->GateRange[1], this->GateType == Value ? 0 : this->Period);
+        vtkIdType unknown = 0;
+        for (vtkIdType i = 0; i < count; ++i)
+        {
+          unknown += std::isnan(gates[i]) ? 1 : 0;
+          if (!range.Accepts(gates[i]))
+          {
+            flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::GatedOut);
+          }
+        }
+        if (unknown > 0)
+        {
+          vtkWarningMacro(<< unknown << " of " << count
+                          << " slices have no gate value and are gated out: the gate signal does "
+                             "not cover them");
+        }
+        vtkLacunaFieldData::Set(output, "Gate", gates, 1);
+      }
+      if (this->SpeedLimit > 0)
+      {
+        const std::vector<double> speeds = this->GetSpeeds(slices, count);
+        for (vtkIdType i = 0; i < count; ++i)
+        {
+          if (speeds[i] > this->SpeedLimit)
+          {
+            flags->SetValue(i, flags->GetValue(i) | vtkLacunaTrackedSlices::TooFast);
+          }
+        }
+      }
+      output->GetFieldData()->AddArray(flags);
+      std::vector<vtkDataObject*> sources{ slices };
+      if (table)
+      {
+        sources.push_back(table);
+      }
+      vtkLacunaProvenance::Record(output, this, sources, this->DescribeParameters());
+    });
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaGateSlices::GetGates(
+  vtkImageData* slices, vtkTable* table, vtkIdType count)
+{
+  if (this->GateType != Value && !(this->Period > 0 && std::isfinite(this->Period)))
+  {
+    throw std::runtime_error("Period must be above 0");
+  }
+  if (!(this->MaximumTimeGap >= 0))
+  {
+    throw std::runtime_error("MaximumTimeGap must be positive, or 0 for no limit");
+  }
+  if (!table)
+  {
+    if (this->GateType == Trigger)
+    {
+      throw std::runtime_error("triggers are rows of a table: connect one");
+    }
+    return GetField(slices, this->GateColumn.c_str(), count);
+  }
+  return this->MatchBy == Timestamp ? this->GetGatesByTime(slices, table, count)
+                                    : this->GetGatesByFrame(slices, table, count);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
+  vtkImageData* slices, vtkTable* table, vtkIdType count)
+{
+  constexpr std::array<lacuna::GateKind, 3> kinds{ lacuna::GateKind::Value, lacuna::GateKind::Phase,
+    lacuna::GateKind::Trigger };
+  const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
+  std::vector<double> rows = GetKeyColumnOf(table, this->KeyColumn, { "Timestamp", "Time" });
+  for (double& row : rows)
+  {
+    row += this->TimeOffset;
+  }
+  const lacuna::GateSignal signal(kinds[this->GateType], rows,
+    this->GateType == Trigger ? rows : GetColumn(table, this->GateColumn), this->Period,
+    this->MaximumTimeGap);
+  std::vector<double> gates;
+  bool isCovered = false;
+  for (const double time : times)
+  {
+    gates.push_back(signal.At(time));
+    isCovered |= !std::isnan(gates.back());
+  }
+  if (!isCovered)
+  {
+    std::ostringstream message;
+    message.precision(12);
+    message << "no slice has a gate value: the slices' Timestamp is " << times.front() << " to "
+            << times.back() << " s, the gate table is from " << signal.GetFirstTime() << " to "
+            << signal.GetLastTime() << " s; TimeOffset shifts the table";
+    throw std::runtime_error(message.str());
+  }
+  return gates;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaGateSlices::GetGatesByFrame(
+  vtkImageData* slices, vtkTable* table, vtkIdType count)
+{
+  if (this->GateType == Trigger)
+  {
+    throw std::runtime_error("triggers are instants: set MatchBy to Timestamp");
+  }
+  const std::vector<double> frames =
+    GetField(slices, vtkLacunaTrackedSlices::FrameNumberName, count);
+  const std::vector<double> rows =
+    GetKeyColumnOf(table, this->KeyColumn, { "FrameNumber", "Frame" });
+  const std::vector<double> values = GetColumn(table, this->GateColumn);
+  std::map<double, double> gateOfFrame;
+  for (std::size_t row = 0; row < rows.size(); ++row)
+  {
+    if (std::isfinite(rows[row]) && !gateOfFrame.emplace(rows[row], values[row]).second)
+    {
+      std::ostringstream message;
+      message << "the gate table has several rows for frame " << rows[row];
+      throw std::runtime_error(message.str());
+    }
+  }
+  std::vector<double> gates;
+  bool isCovered = false;
+  for (const double frame : frames)
+  {
+    const auto found = gateOfFrame.find(frame);
+    isCovered |= found != gateOfFrame.end();
+    const double gate = found != gateOfFrame.end() ? found->second : NotANumber;
+    gates.push_back(std::isfinite(gate) ? gate : NotANumber);
+  }
+  if (!isCovered)
+  {
+    std::ostringstream message;
+    message << "no slice has a gate value: the slices' FrameNumber is " << frames.front() << " to "
+            << frames.back() << ", and the gate table has none of them";
+    throw std::runtime_error(message.str());
+  }
+  return gates;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaGateSlices::GetSpeeds(vtkImageData* slices, vtkIdType count)
+{
+  const vtkLacunaTrackedSlices tracked(slices);
+  const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
+  std::vector<lacuna::Matrix4> poses;
+  std::vector<char> usable;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    poses.push_back(tracked.GetImageToReference(i));
+    usable.push_back(tracked.IsUsable(i, 0xff) && poses.back().IsFinite() ? 1 : 0);
+  }
+  const double* bounds = slices->GetBounds(); // columns and rows
+  return lacuna::GetSliceSpeeds(poses, usable, times,
+    { lacuna::Vec3{ bounds[0], bounds[2], 0 }, lacuna::Vec3{ bounds[1], bounds[2], 0 },
+      lacuna::Vec3{ bounds[0], bounds[3], 0 }, lacuna::Vec3{ bounds[1], bounds[3], 0 } });
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaGateSlices::DescribeParameters() const
+{
+  constexpr std::array<const char*, 3> types{ "Value", "Phase", "Trigger" };
+  constexpr std::array<const char*, 2> keys{ "Timestamp", "FrameNumber" };
+  std::ostringstream text;
+  text << "GateType=" << types[this->GateType] << " GateRange=" << this->GateRange[0] << ","
+       << this->GateRange[1] << " Period=" << this->Period << " GateColumn=" << this->GateColumn
+       << " MatchBy=" << keys[this->MatchBy] << " KeyColumn=" << this->KeyColumn
+       << " TimeOffset=" << this->TimeOffset << " MaximumTimeGap=" << this->MaximumTimeGap
+       << " SpeedLimit=" << this->SpeedLimit;
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGateSlices::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Parameters: " << this->DescribeParameters() << "\n";
+}
