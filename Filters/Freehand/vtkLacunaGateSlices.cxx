@@ -102,12 +102,6 @@ int vtkLacunaGateSlices::FillInputPortInformation(int port, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaGateSlices::SetGateTableConnection(vtkAlgorithmOutput* output)
-{
-  this->SetInputConnection(1, output);
-}
-
-//------------------------------------------------------------------------------
 void vtkLacunaGateSlices::SetGateColumn(const char* name)
 {
   if (this->GateColumn != (name ? name : ""))

@@ -57,9 +57,6 @@ public:
     FrameNumber = 1
   };
 
-  /// The table of the gate signal; port 1.
-  void SetGateTableConnection(vtkAlgorithmOutput* output);
-
   ///@{
   /// What the gate values are. Value: a number that goes up and down. Phase: a number that grows by
   /// Period in each cycle. Trigger: the rows of the table are the instants at which cycles begin, and

@@ -9,7 +9,6 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
-#include "vtkTrivialProducer.h"
 
 #include <cmath>
 #include <limits>
@@ -56,11 +55,9 @@ Gated Gate(vtkImageData* slices, vtkTable* table, const Settings& configure)
 {
   vtkNew<vtkLacunaGateSlices> filter;
   filter->SetInputData(slices);
-  vtkNew<vtkTrivialProducer> producer;
   if (table)
   {
-    producer->SetOutput(table);
-    filter->SetGateTableConnection(producer->GetOutputPort());
+    filter->SetInputDataObject(1, table);
   }
   configure(filter);
   const auto messages = lacunaCheck::Watch(filter);
@@ -265,11 +262,9 @@ void TestConsumer()
   const auto slices = MakeStack(MakePoses(7));
   const auto table =
     MakeTable("Time", { 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6 }, "Gate", { 0, 9, 9, 0, 9, 9, 0 });
-  vtkNew<vtkTrivialProducer> producer;
-  producer->SetOutput(table);
   vtkNew<vtkLacunaGateSlices> gate;
   gate->SetInputData(slices);
-  gate->SetGateTableConnection(producer->GetOutputPort());
+  gate->SetInputDataObject(1, table);
   vtkNew<vtkLacunaSweptVolume> volume;
   volume->SetInputConnection(gate->GetOutputPort());
   volume->SetOutputSpacing(0.5, 0.5, 0.5);

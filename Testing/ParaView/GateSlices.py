@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gate Slices through ParaView: defaults, a table from a file, a beating heart, state."""
+import os
+
+import numpy as np
+from paraview.simple import *
+from paraview import servermanager
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from lacuna_test import output
+from tracked_slice_files import array, open_slices
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+from lacuna import vtkLacunaGateSlices
+
+SLICES = 60  # 0.1 s apart, see tracked_slice_files
+
+
+def phase(time):
+    """Of a heart that beats 1.3 times a second."""
+    return (1.3 * time + 0.2) % 1
+
+
+def write_table(name, columns):
+    path = output(name)
+    with open(path, "w") as file:
+        file.write(",".join(columns) + "\n")
+        for row in zip(*columns.values()):
+            file.write(",".join("%.9g" % value for value in row) + "\n")
+    return CSVReader(FileName=[path])
+
+
+def status(proxy):
+    proxy.UpdatePipeline()
+    fields = servermanager.Fetch(proxy).GetFieldData()
+    return vtk_to_numpy(fields.GetArray("SliceStatus")).copy()
+
+
+# a bright wall that moves up and down by 6 pixels with each beat
+times = 0.1 * np.arange(SLICES)
+wall = 20 + np.rint(6 * np.cos(2 * np.pi * phase(times)))
+rows = np.arange(40)[None, :, None]
+pixels = np.where(np.abs(rows - wall[:, None, None]) < 2, 200, 10) * np.ones((1, 1, 30))
+poses = [np.diag([0.5, 0.5, 1, 1]) for _ in range(SLICES)]
+for n, pose in enumerate(poses):
+    pose[2, 3] = 0.2 * n
+slices = open_slices("GateSlices", pixels.astype(np.uint8), poses)
+
+proxy = GateSlices(Input=slices)
+own = vtkLacunaGateSlices()
+enumerations = {"GateType": ["Value", "Phase", "Trigger"], "MatchBy": ["Timestamp", "FrameNumber"]}
+for name in ("GateType", "GateRange", "Period", "SpeedLimit", "GateColumn", "MatchBy", "KeyColumn",
+             "TimeOffset", "MaximumTimeGap"):
+    default = getattr(own, "Get" + name)()
+    if name in enumerations:
+        default = enumerations[name][default]
+        for text in enumerations[name]:
+            setattr(proxy, name, text)
+            assert getattr(proxy, name) == text
+        setattr(proxy, name, default)
+    value = proxy.GetProperty(name).GetData()
+    value = tuple(value) if isinstance(default, tuple) else value
+    assert value == default, (name, value, default)
+
+# speed alone needs no table: 2 mm/s
+proxy.SpeedLimit = 1
+assert (status(proxy) == 4).all()
+proxy.SpeedLimit = 3
+assert (status(proxy) == 0).all()
+proxy.SpeedLimit = 0
+Delete(proxy)
+
+# the phase as a table of 20 samples a second; a fifth of the cycle, around its end
+samples = np.arange(0, 6.5, 0.05)
+table = write_table("GateSlicesPhase.csv", {"Time": samples, "Gate": phase(samples)})
+proxy = GateSlices(Input=slices, GateTable=table, GateType="Phase", GateRange=[0.895, 0.105])
+truth = (phase(times) > 0.895) | (phase(times) < 0.105)
+assert (status(proxy) == np.where(truth, 0, 8)).all()
+gate = vtk_to_numpy(servermanager.Fetch(proxy).GetFieldData().GetArray("Gate"))
+assert np.abs((gate - phase(times) + 0.5) % 1 - 0.5).max() < 1e-6
+
+# the wall stands still in the volume of the gated slices, and moves in that of all slices
+def wall_movement(volume):
+    """Standard deviation of the wall's row from layer to layer, in pixels."""
+    filled = array(volume, "vtkValidPointMask").all(axis=(1, 2))
+    bright = np.maximum(array(volume, "Intensity")[filled].astype(float).mean(axis=2) - 10, 0)
+    return ((bright * np.arange(bright.shape[1])).sum(axis=1) / bright.sum(axis=1)).std()
+
+
+volume = SweptVolume(Input=proxy, OutputSpacing=[0.5] * 3)
+gated = wall_movement(volume)
+volume.UseGatedOut = 1
+ungated = wall_movement(volume)
+print("the wall moves by %.2f pixels, by %.2f without gate" % (gated, ungated))
+assert gated < 0.6 and ungated > 3
+
+# R waves
+waves = (np.arange(10) - 0.2) / 1.3
+table = write_table("GateSlicesWaves.csv", {"Timestamp": waves})
+proxy.GateTable = table
+proxy.GateType = "Trigger"
+assert (status(proxy) == np.where(truth, 0, 8)).all()
+
+# state
+name = output("GateSlices.pvsm")
+SaveState(name)
+ResetSession()
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+LoadState(name)
+loaded = next(p for (n, _), p in GetSources().items() if n.startswith("GateSlices"))
+assert loaded.GateType == "Trigger" and list(loaded.GateRange) == [0.895, 0.105]
+assert (status(loaded) == np.where(truth, 0, 8)).all()
+print("ok")
