@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceRayCaster.h"
 
+#include "lacunaMemory.h"
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceRayCaster.h"
 #include "vtkAlgorithmOutput.h"
@@ -262,6 +263,10 @@ int vtkLacunaSliceRayCaster::RequestData(
       output->SetExtent(extent);
       vtkLacunaDepthMap::SetGeometry(output, plane);
       const vtkIdType pixels = output->GetNumberOfPoints();
+      constexpr std::int64_t arrays = sizeof(double) + sizeof(char) + 3 * sizeof(float);
+      const std::int64_t work = this->Kept->Caster ? 0 : lacuna::SliceRayCaster::GetBytesPerPixel();
+      lacuna::RequireMemory("this part of the depth map",
+        static_cast<double>(pixels) * static_cast<double>(arrays + work));
       vtkNew<vtkDoubleArray> depth;
       depth->SetName(vtkLacunaDepthMap::DepthName);
       depth->SetNumberOfTuples(pixels);
