@@ -68,8 +68,10 @@ public:
     selection.AcceptedFlags = (self->UseImageInvalid ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
       (self->UseTooFast ? vtkLacunaTrackedSlices::TooFast : 0) |
       (self->UseGatedOut ? vtkLacunaTrackedSlices::GatedOut : 0);
+    vtkInformation* info = inputs->GetInformationObject(0);
+    selection.IsReplay = info->Has(SDDP::TIME_STEPS()) && info->Length(SDDP::TIME_STEPS()) > 1;
     this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
-    if (this->GetSlices().empty())
+    if (this->GetSlices().empty() && !this->IsMoreToCome())
     {
       std::ostringstream message;
       message << "no slice is left to look at: " << this->Images->DescribeFlags();
@@ -79,11 +81,21 @@ public:
       }
       throw std::runtime_error(message.str());
     }
+    vtkLacunaSliceFan fan;
+    std::copy_n(self->FanOrigin, 2, fan.Sector.Origin.begin());
+    std::copy_n(self->FanAngles, 2, fan.Sector.Angles.begin());
+    std::copy_n(self->FanRadii, 2, fan.Sector.Radii.begin());
+    if (fan.HasSector())
+    {
+      this->Images->ApplyFan(fan);
+    }
     this->ChoosePlane(self);
   }
 
   bool IsEmpty() const { return !this->Images; }
   const std::vector<lacuna::SliceImage>& GetSlices() const { return this->Images->Slices; }
+  /// True while a replay has not reached its end.
+  bool IsMoreToCome() const { return !this->Images->Others.empty(); }
 
   std::unique_ptr<vtkLacunaSliceImages> Images;
   lacuna::ImagePlane Plane;
@@ -102,12 +114,15 @@ private:
     view.Size = { self->ImageSize[0], self->ImageSize[1] };
     std::vector<lacuna::Vec3> points;
     double finest = VTK_DOUBLE_MAX;
-    for (const lacuna::SliceImage& slice : this->GetSlices())
+    for (const auto* slices : { &this->Images->Slices, &this->Images->Others })
     {
-      const auto corners = lacuna::GetCorners(slice);
-      points.insert(points.end(), corners.begin(), corners.end());
-      finest = std::min({ finest, lacuna::Norm(slice.PixelToReference.Column(0)),
-        lacuna::Norm(slice.PixelToReference.Column(1)) });
+      for (const lacuna::SliceImage& slice : *slices)
+      {
+        const auto corners = lacuna::GetCorners(slice);
+        points.insert(points.end(), corners.begin(), corners.end());
+        finest = std::min({ finest, lacuna::Norm(slice.PixelToReference.Column(0)),
+          lacuna::Norm(slice.PixelToReference.Column(1)) });
+      }
     }
     this->Plane = lacuna::MakeImagePlane(points, finest, view);
   }
@@ -329,7 +344,8 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
   }
   double range[2];
   plan.Images->GreyLevels->GetFiniteRange(range, 0);
-  if (!hasSurface && !(this->IsoValue >= range[0] && this->IsoValue <= range[1]))
+  if (!hasSurface && !plan.IsMoreToCome() &&
+    !(this->IsoValue >= range[0] && this->IsoValue <= range[1]))
   {
     vtkWarningMacro(<< "IsoValue " << this->IsoValue
                     << " lies outside the grey levels of the slices, which range from " << range[0]
@@ -363,6 +379,9 @@ std::string vtkLacunaSliceRayCaster::DescribeParameters() const
   text << " PixelSpacing=" << this->PixelSpacing;
   list("ImageSize", this->ImageSize);
   list("ClipRectangle", this->ClipRectangle);
+  list("FanOrigin", this->FanOrigin);
+  list("FanAngles", this->FanAngles);
+  list("FanRadii", this->FanRadii);
   text << " UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
        << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses];
   return text.str();

@@ -11,9 +11,10 @@
  * look: a volume (vtkLacunaSweptVolume) gives better surfaces, and can be measured.
  *
  * The map depends on the set of slices only, not on their order, on threads or pieces, bit by bit.
- * When the input comes again with more slices at its end (a live source, a replay) and the view is
- * the same, only the new ones are cast: for that, keep the map from following the bounds of the
- * slices by FocalPoint, PlaneOrigin, PixelSpacing and ImageSize.
+ * When the input comes again with more slices at its end and the view is the same, only the new
+ * ones are cast. The map of a replay (an input with time steps) shows the whole sweep from the
+ * beginning, since its poses are known; for a live source keep the map from following the bounds of
+ * the slices by FocalPoint, PlaneOrigin, PixelSpacing and ImageSize.
  *
  * Input: tracked slices. Slices whose SliceStatus is not 0 are left out, but for flags taken by
  * choice. Grey levels between pixels are bilinear; samples that are not finite do not exist. Slices
@@ -132,6 +133,18 @@ public:
   ///@}
 
   ///@{
+  /// What a curved or phased probe sees of the slices, see vtkLacunaSweptVolume: where its beams meet
+  /// (column, row), the directions of the first and the last one (degrees), and where they begin and
+  /// end (mm). Defaults: 0 0, -45 45, 0 0: there is no fan while the radii are 0.
+  vtkSetVector2Macro(FanOrigin, double);
+  vtkGetVector2Macro(FanOrigin, double);
+  vtkSetVector2Macro(FanAngles, double);
+  vtkGetVector2Macro(FanAngles, double);
+  vtkSetVector2Macro(FanRadii, double);
+  vtkGetVector2Macro(FanRadii, double);
+  ///@}
+
+  ///@{
   /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
   /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
   /// Default: off.
@@ -189,6 +202,9 @@ private:
   double PixelSpacing = 0;
   int ImageSize[2] = { 0, 0 };
   int ClipRectangle[4] = { 0, 0, 0, 0 };
+  double FanOrigin[2] = { 0, 0 };
+  double FanAngles[2] = { -45, 45 };
+  double FanRadii[2] = { 0, 0 };
   bool UseImageInvalid = false;
   bool UseTooFast = false;
   bool UseGatedOut = false;

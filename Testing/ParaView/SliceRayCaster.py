@@ -83,7 +83,7 @@ def check_defaults():
     own = lacuna.vtkLacunaSliceRayCaster()
     enumerations = {"SolidSide": ["Above", "Below"], "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"]}
     for name in ("IsoValue", "SolidSide", "MaximumGap", "ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin",
-                 "PixelSpacing", "ImageSize", "ClipRectangle", "BadPoses", "UseTooFast", "UseGatedOut",
+                 "PixelSpacing", "ImageSize", "ClipRectangle", "FanOrigin", "FanAngles", "FanRadii", "BadPoses", "UseTooFast", "UseGatedOut",
                  "UseImageInvalid"):
         default = getattr(own, "Get" + name)()
         if name in enumerations:
@@ -163,6 +163,11 @@ def check_vessels():
     assert mask.dtype == np.int8 and mask.sum() == len(found)
     surface = fetch(DepthMapSurface(Input=caster))
     assert surface.GetNumberOfPoints() == len(found)
+    # the nine cases once more, by the shader's own code
+    shaded = fetch(DepthMapShader(Input=caster, NormalMethod="Predicate"))
+    own, other = (vtk_to_numpy(i.GetPointData().GetArray("Normals")) for i in (image, shaded))
+    assert np.abs(own).max() > 0.9
+    np.testing.assert_allclose(own, other, atol=2e-6)
 
 
 def check_growth(sweep):

@@ -11,7 +11,7 @@ namespace lacuna
 /// Slope of the depth along a line of pixels: mm of depth per mm, from a pixel (here) and its
 /// neighbours on the line, spacing mm away. NaN is a neighbour without a depth; here is a number.
 /// With the angles of the backward, forward and central differences against the image plane
-/// (Carr 1996, 3.3.3):
+/// (Carr 1996, 3.3.2.2 and figure 3.8):
 /// 1. no neighbour has a depth: 0
 /// 2. 3. only one has: the difference from it
 /// 4. the backward and forward angles differ by less than 20 degrees: central

@@ -5,23 +5,24 @@
 #define lacunaSliceFingerprint_h
 
 #include "lacunaExecution.h"
+#include "lacunaPixelHash.h"
 #include "lacunaSliceImage.h"
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 namespace lacuna
 {
-/// All that matters of a slice, the grey levels as a hash of 64 bits: equal slices have equal
-/// fingerprints, and different ones as good as never.
+/// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints, and
+/// different ones as good as never (lacunaPixelHash.h).
 struct SliceFingerprint
 {
   ScalarType Type;
   std::array<int, 2> Size;
   std::array<double, 16> Pose;
-  std::array<double, 6> Fan; ///< all 0 without one
-  std::uint64_t Hash;        ///< of the grey levels, row by row
+  /// Origin, angles, radii, pixel spacing; all 0 without one.
+  std::array<double, 8> Fan;
+  PixelHash Pixels;
 
   bool operator==(const SliceFingerprint& other) const;
   bool operator!=(const SliceFingerprint& other) const { return !(*this == other); }

@@ -221,6 +221,14 @@ void TestProperties()
     c->SetImageSize(3, 3);
   };
   LACUNA_CHECK_NEAR(depth(focused, 1, 1), (30 - 2 - 4) / 10.0, 1e-12);
+  // only what the probe sees exists: here a quarter of a ring about the corner of column 0, row 0
+  const auto fan = [](Caster* c)
+  {
+    c->SetFanRadii(1, 3.01);
+    c->SetFanAngles(0, 90);
+  };
+  LACUNA_CHECK_NEAR(depth(fan, 2, 4), 2, 1e-12);
+  LACUNA_CHECK(std::isnan(depth(fan, 1, 1)) && std::isnan(depth(fan, 5, 5)));
   // a part of the slices; the map fits this part
   const auto clipped = [](Caster* c) { c->SetClipRectangle(3, 2, 7, 5); };
   LACUNA_CHECK_NEAR(depth(clipped, 3, 2), 1.6, 1e-12);
@@ -467,7 +475,7 @@ void TestGrowingInput()
   LACUNA_CHECK(caster->GetNumberOfCastSlices() == 3);
 }
 
-// A source of slices whose poses move with time.
+// A source of slices whose poses move with time, or that come with time.
 class SliceSource : public vtkImageAlgorithm
 {
 public:
@@ -475,6 +483,7 @@ public:
   vtkTypeMacro(SliceSource, vtkImageAlgorithm);
   int Executions = 0;
   bool HasTime = false;
+  bool IsReplay = false;
 
 protected:
   SliceSource() { this->SetNumberOfInputPorts(0); }
@@ -500,7 +509,20 @@ protected:
       ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
       : 0;
     vtkImageData* output = vtkImageData::GetData(outputs);
-    output->ShallowCopy(MakeStack(MakePoses(5, time)));
+    std::vector<unsigned char> status(5, 0);
+    for (int slice = 0; this->IsReplay && slice < 5; ++slice)
+    {
+      status[slice] = slice < time ? 0 : 2; // the image is still to come
+    }
+    const auto stack = MakeStack(MakePoses(5, this->IsReplay ? 0 : time), VTK_SHORT, status);
+    for (vtkIdType i = 0; i < stack->GetNumberOfPoints(); ++i)
+    {
+      if (status[i / (13 * 9)] != 0)
+      {
+        stack->GetPointData()->GetScalars()->SetTuple1(i, 0);
+      }
+    }
+    output->ShallowCopy(stack);
     if (this->HasTime)
     {
       output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
@@ -539,6 +561,28 @@ void TestPipeline()
     LACUNA_CHECK_NEAR(caster->GetOutput()->GetOrigin()[2], time, 1e-9);
     LACUNA_CHECK_NEAR(GetValue(caster->GetOutput(), "Depth", 6, 4, 0), 1.6, 1e-9);
   }
+
+  // slices that come with time: the map is that of the whole sweep from the beginning
+  vtkNew<SliceSource> replay;
+  replay->HasTime = replay->IsReplay = true;
+  vtkNew<Caster> watching;
+  LookAlong(watching);
+  watching->SetInputConnection(replay->GetOutputPort());
+  const auto messages = lacunaCheck::Watch(watching);
+  for (const int time : { 0, 1, 2, 3, 5 })
+  {
+    watching->UpdateTimeStep(time);
+    vtkImageData* map = watching->GetOutput();
+    LACUNA_CHECK(map->GetNumberOfPoints() == 13 * 9);
+    LACUNA_CHECK(watching->GetNumberOfCastSlices() == (time == 5 ? 2 : time == 0 ? 0 : 1));
+    // grey = 14 + 10 z at column 6 of row 4
+    LACUNA_CHECK(std::isnan(GetValue(map, "Depth", 6, 4, 0)) == (time < 3));
+  }
+  LACUNA_CHECK_NEAR(GetValue(watching->GetOutput(), "Depth", 6, 4, 0), 1.6, 1e-12);
+  watching->UpdateTimeStep(2);
+  LACUNA_CHECK_THAT(watching->GetNumberOfCastSlices() == 2, "back in time all is cast anew");
+  LACUNA_CHECK_THAT(messages->Errors.empty() && messages->Warnings.empty(),
+    "nothing to say of slices that are still to come: " + messages->Errors + messages->Warnings);
 
   // stopped by the user, and then not
   vtkNew<Caster> stopped;
