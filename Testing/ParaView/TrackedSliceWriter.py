@@ -82,10 +82,10 @@ def read_with_vtk(path):
 
 
 # Defaults in the XML are those of the class.
-writer = servermanager.writers.LacunaTrackedSliceWriter() if hasattr(
-    servermanager.writers, "LacunaTrackedSliceWriter") else servermanager.writers.TrackedSliceWriter()
+writer = servermanager.writers.TrackedSliceWriter()
 plain = lacuna.vtkLacunaTrackedSliceWriter()
 assert writer.CompressionLevel == plain.GetCompressionLevel()
+assert not writer.FileName and not plain.GetFileName()
 
 # SaveData takes this writer for tracked slices and leaves other images to ParaView's writers.
 sweep = PhantomSweep(NumberOfSlices=7, ImageSize=[40, 30])

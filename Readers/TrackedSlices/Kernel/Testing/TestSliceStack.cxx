@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Compress.h"
+#include "NrrdFile.h"
 #include "SequenceFile.h"
 #include "lacunaSliceStack.h"
 
@@ -103,6 +104,39 @@ TEST(SliceStack, ColoursBecomeLuminance)
   const std::uint64_t most[6] = { ~0ull, ~0ull, ~0ull, 0, 0, 0 };
   file.Pixels.assign(reinterpret_cast<const char*>(most), sizeof(most));
   EXPECT_GE(ReadRegion<std::uint64_t>(file.GetContent(), region)[0], ~0ull - 4096); // no overflow
+}
+
+TEST(SliceStack, ColoursAsVectorsAndChannels)
+{
+  // (10, 200, 50) is 126, see above
+  NrrdFile file = MakeNrrd(1, 2, 1);
+  file.Set("dimension", "4");
+  file.Set("sizes", "3 2 1 1");
+  file.Set("kinds", "vector domain domain list");
+  file.SetPair("ultrasound image type", "RGB_COLOR");
+  file.Pixels = std::string("\x01\x01\x01\x0a\xc8\x32", 6);
+  const SliceRegion region = Region(0, 2, 0, 1, 0, 1);
+  const std::vector<std::uint8_t> expected = { 1, 126 };
+  EXPECT_EQ(ReadRegion<std::uint8_t>(file.GetContent(), region), expected);
+  for (const char* kinds : { "vector domain domain list", "domain domain list" })
+  {
+    SequenceFile image = MakeSequence(1, 2, 1);
+    image.Set("NDims", "4");
+    image.Set("DimSize", "3 2 1 1");
+    image.Set("Kinds", kinds);
+    image.Set("ElementNumberOfChannels", "3");
+    image.Pixels = file.Pixels;
+    EXPECT_EQ(ReadRegion<std::uint8_t>(image.GetContent(), region), expected) << kinds;
+  }
+}
+
+TEST(SliceStack, PosesWithoutPicturesAreBlankPixels)
+{
+  SequenceFile file = MakeSequence(3);
+  file.Set("DimSize", "0 0 0");
+  file.DataFile = "there-is-none.raw";
+  EXPECT_EQ(ReadRegion<std::uint8_t>(file.GetContent(), Region(0, 1, 0, 1, 0, 3)),
+    (std::vector<std::uint8_t>{ 0, 0, 0 }));
 }
 
 TEST(SliceStack, MissingFramesAreBlank)
