@@ -414,7 +414,10 @@ int vtkLacunaTrackedSliceReader::RequestData(
         {
           return;
         }
-        this->HideSlices(output, shown);
+        if (shown < this->Opened->Slices)
+        {
+          this->HideSlices(output, shown);
+        }
         this->ReadPixels(output, shown, execution);
       }
       catch (const lacuna::Aborted&)

@@ -279,7 +279,7 @@ void HeaderReader::SetOrientation(
 //------------------------------------------------------------------------------
 void HeaderReader::SetDataFile(const std::string& name, const std::string& value)
 {
-  if (value.substr(0, 4) == "LIST" || value.find('%') != std::string::npos)
+  if (value == "LIST" || value.substr(0, 5) == "LIST " || value.find('%') != std::string::npos)
   {
     this->Fail(name + " is '" + value + "'; pixels in one file per slice are not read, only " +
       (name == "ElementDataFile" ? "LOCAL or " : "") + "the name of one file");

@@ -83,11 +83,11 @@ SequenceKind::SequenceKind(const std::string& fileName, bool compressed)
     path.replace_extension(!compressed ? ".raw" : this->Nrrd ? ".raw.gz" : ".zraw");
     this->DataFileName = path.string();
     const std::string name = path.filename().string();
-    if (HasAny(name, std::string_view("%\r\n\0", 4)) || Trim(name) != name ||
-      name.substr(0, 4) == "LIST" || name[0] == '.')
+    if (HasAny(name, std::string_view("%\r\n\0", 4)) || Trim(name) != name || name[0] == '.' ||
+      name.substr(0, 5) == "LIST ")
     {
       throw std::invalid_argument("the header '" + fileName + "' cannot name its pixels '" + name +
-        "': a name with % or a line break, or that begins with LIST, a dot or a blank, would be "
+        "': a name with % or a line break, or that begins with 'LIST ', a dot or a blank, would be "
         "misread");
     }
   }

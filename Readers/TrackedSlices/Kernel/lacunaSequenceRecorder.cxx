@@ -2,6 +2,7 @@
 #include "lacunaSequenceRecorder.h"
 
 #include "lacunaByteOrder.h"
+#include "lacunaStreamCompressor.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -19,7 +19,6 @@
 
 #include "lacunaOutputFile.h"
 #include "lacunaSequenceFormat.h"
-#include "lacunaStreamCompressor.h"
 
 #include <cstdint>
 #include <memory>
@@ -28,6 +27,8 @@
 
 namespace lacuna
 {
+class StreamCompressor;
+
 class SequenceRecorder
 {
 public:

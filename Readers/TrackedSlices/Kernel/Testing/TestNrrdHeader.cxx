@@ -157,6 +157,8 @@ TEST(NrrdHeader, DetachedData)
   }
   file.Set("data file", "/elsewhere/pixels.raw");
   EXPECT_EQ(Read(file).DataFileName, "/elsewhere/pixels.raw");
+  file.Set("data file", "/elsewhere/LISTEN.raw");
+  EXPECT_EQ(Read(file).DataFileName, "/elsewhere/LISTEN.raw");
   file.Set("byte skip", "-1");
   EXPECT_EQ(Read(file).SkippedBytes, -1);
   file.Set("encoding", "gzip");
@@ -181,9 +183,10 @@ TEST(NrrdHeader, ADetachedHeaderCutOffAnywhereHasItsWholeFrames)
   file.Detached = true;
   file.Set("data file", "pixels.raw");
   const std::string content = file.GetContent();
+  const TemporaryFile stored("sweep.nhdr");
   for (std::size_t size = content.find("Seq_Frame0000"); size < content.size(); size += 3)
   {
-    const TemporaryFile stored("sweep.nhdr", content.substr(0, size));
+    stored.Write(content.substr(0, size));
     // a frame is whole with the line feed of its last field
     std::int64_t whole = 0;
     for (int frame = 0; frame < 4; ++frame)

@@ -24,7 +24,10 @@ struct OpenedNrrd
   explicit OpenedNrrd(const std::string& content, const std::string& beside = {})
     : File("sweep.nrrd", content)
   {
-    this->File.WriteBeside("pixels", beside);
+    if (!beside.empty())
+    {
+      this->File.WriteBeside("pixels", beside);
+    }
     this->Header = ReadSequenceHeader(this->File.GetPath());
     this->Pixels = PixelSource::Open(this->Header);
   }

@@ -187,13 +187,14 @@ TEST(SequenceHeader, AHeaderCutOffHasItsWholeFramesIfItsPixelsAreBesideIt)
   const std::string content = file.GetContent();
   for (const bool beside : { true, false })
   {
+    const TemporaryFile stored("sweep.mhd");
+    if (beside)
+    {
+      stored.WriteBeside("sweep.raw", file.Pixels);
+    }
     for (std::size_t size = content.find("Seq_Frame0000"); size < content.size(); size += 3)
     {
-      const TemporaryFile stored("sweep.mhd", content.substr(0, size));
-      if (beside)
-      {
-        stored.WriteBeside("sweep.raw", file.Pixels);
-      }
+      stored.Write(content.substr(0, size));
       std::int64_t whole = 0;
       for (int frame = 0; frame < 3; ++frame)
       {

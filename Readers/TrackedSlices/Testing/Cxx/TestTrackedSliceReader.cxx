@@ -170,6 +170,8 @@ void TestRequests()
   reader->UpdateExtent(second);
   CheckPixels(output);
 
+  LACUNA_CHECK(output->GetFieldData()->GetArray("SliceStatus")->GetTuple1(19) == 0);
+
   reader->SetFrameRange(19, -1);
   reader->SetFrameStride(1);
   reader->UpdateWholeExtent();
