@@ -122,7 +122,7 @@ public:
 
   ///@{
   /// Which row of the picture comes first in the stack. Slices count rows from the top. Automatic:
-  /// the bottom one where the array's name is that of VTK's readers of PNG, JPEG, BMP, PNM and
+  /// the bottom one where the array's name is that of VTK's readers of PNG, JPEG, BMP and
   /// DICOM, which read so, else the top one. Default: Automatic.
   vtkSetClampMacro(RowOrder, int, Automatic, BottomRowFirst);
   vtkGetMacro(RowOrder, int);

@@ -63,8 +63,7 @@ vtkDataArray* Find(vtkImageData* image)
 bool IsBottomRowFirst(vtkDataArray* pixels)
 {
   const std::string name = pixels->GetName() ? pixels->GetName() : "";
-  return name == "PNGImage" || name == "JPEGImage" || name == "BMPImage" || name == "PNMImage" ||
-    name == "DICOMImage";
+  return name == "PNGImage" || name == "JPEGImage" || name == "BMPImage" || name == "DICOMImage";
 }
 
 //------------------------------------------------------------------------------

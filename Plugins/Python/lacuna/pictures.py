@@ -55,6 +55,41 @@ def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     return table
 
 
+def show_slices(planes, view):
+    """Shows Slice Planes as pictures, not as lit surfaces: in grey levels, or by speed or error with units.
+
+    The colours of Speed change from blue to red at the SpeedLimit. What has no value is red in grey pictures, else yellow.
+    """
+    display = pv.Show(planes, view)
+    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+    display.LineWidth = 2
+    name = planes.GetProperty("ColorBy").GetData()
+    if planes.OutlineOnly and name == "Intensity":
+        display.ColorArrayName = [None, ""]
+        display.AmbientColor = display.DiffuseColor = [0.25, 0.35, 0.5]
+        return display
+    place = "CELLS" if name == "Speed" else "POINTS"
+    planes.UpdatePipeline()
+    low, high = (planes.CellData if name == "Speed" else planes.PointData)[name].GetRange()
+    pv.ColorBy(display, (place, name))
+    table = pv.GetColorTransferFunction(name, display, separate=True)
+    table.ApplyPreset({"Intensity": "Grayscale", "Speed": "Cool to Warm"}.get(name, "Viridis (matplotlib)"), True)
+    if name == "Speed" and planes.SpeedLimit > 0:
+        low, high = 0, 2 * planes.SpeedLimit
+    table.RescaleTransferFunction(low, high if high > low else low + 1)
+    table.NanColor = [0.85, 0.1, 0.1] if name == "Intensity" else [1, 0.85, 0]
+    display.LookupTable = table
+    display.SetScalarBarVisibility(view, True)
+    bar = pv.GetScalarBar(table, view)
+    bar.Title = {"Intensity": "Grey level", "Speed": "Speed (mm/s)"}.get(name, "Expected error (mm)")
+    bar.ComponentTitle = ""
+    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = "%.2f" if name == "RegistrationError" else "%.0f"
+    bar.WindowLocation = "Lower Right Corner"
+    return display
+
+
 def look(view, direction, up, zoom=1.0):
     """Points the camera along direction with up upwards and everything in sight."""
     camera = view.GetActiveCamera()
