@@ -168,6 +168,36 @@ TEST(DepthMapMesher, NoSkinFromOneSteepSideToAnother)
   EXPECT_EQ(mesh.Triangles(), 2u * 5 * 38);
 }
 
+TEST(DepthMapMesher, EachEndOfAnEdgeIsAsked)
+{
+  const auto triangles = [](const std::function<double(double)>& slope)
+  {
+    // slope(x): from x to x + 1
+    const Map map(31, 6, 1,
+      [&](double x, double)
+      {
+        double depth = 20;
+        for (int i = 0; i < static_cast<int>(x + 0.5); ++i)
+        {
+          depth += slope(i);
+        }
+        return depth;
+      });
+    return Mesh(map, DiscontinuityRule()).Triangles();
+  };
+  const std::size_t whole = 2u * 5 * 30;
+  const std::size_t column = 2u * 5;
+  EXPECT_EQ(triangles([](double) { return 2.75; }), whole);
+  // 45, 70, 45 degrees: cases 7 and 8 at the first and the last steep edge
+  EXPECT_EQ(triangles([](double x) { return x < 10 || x > 19 ? 1 : 2.75; }), whole - 2 * column);
+  EXPECT_EQ(triangles([](double x) { return x < 10 ? 1 : 2.75; }), whole - column);
+  EXPECT_EQ(triangles([](double x) { return x > 19 ? 1 : 2.75; }), whole - column);
+  // 75, 87, 75 degrees are all steep the same way; the steps tell where it jumps
+  EXPECT_EQ(triangles([](double x) { return x < 10 || x > 19 ? 3.73 : 20; }), whole - 2 * column);
+  EXPECT_EQ(triangles([](double x) { return x < 10 ? 3.73 : 20; }), whole - column);
+  EXPECT_EQ(triangles([](double x) { return x > 19 ? 3.73 : 20; }), whole - column);
+}
+
 TEST(DepthMapMesher, SteepSidesThatBendSmoothlyStayWhole)
 {
   // a ball of 80 mm at 0.45 mm against nothing: up to 87 degrees
