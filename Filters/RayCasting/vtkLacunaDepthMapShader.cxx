@@ -151,6 +151,15 @@ public:
     lacuna::ShadowCaster shadows;
     shadows.Caster = this->Caster.get();
     shadows.IsoValue = IsoValueOf(map, self->DepthArray);
+    if (!(shadows.IsoValue >= this->Caster->GetMinimum() &&
+          shadows.IsoValue <= this->Caster->GetMaximum()))
+    {
+      vtkWarningWithObjectMacro(self,
+        "the map's iso-value " << shadows.IsoValue
+                               << " lies outside the volume's values, which range "
+                               << "from " << this->Caster->GetMinimum() << " to "
+                               << this->Caster->GetMaximum() << ": it throws no shadows");
+    }
     const double* spacing = input->GetSpacing();
     shadows.Bias = self->ShadowBias > 0 ? self->ShadowBias
                                         : BiasPerVoxel *

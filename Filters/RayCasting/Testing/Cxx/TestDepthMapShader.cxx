@@ -448,7 +448,14 @@ void TestBadInput()
   LACUNA_CHECK_CONTAINS(errorOf(map), "'IsoValues'");
   vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::IsoValuesName, { 1 }, 1);
   map->Modified();
-  LACUNA_CHECK(errorOf(map).empty());
+  {
+    const auto messages = lacunaCheck::Watch(shader);
+    shader->Update();
+    LACUNA_CHECK(messages->Errors.empty());
+    LACUNA_CHECK_CONTAINS(messages->Warnings, "iso-value 1 lies outside the volume's values");
+    shader->RemoveAllObservers();
+    shader->GetExecutive()->RemoveAllObservers();
+  }
   volume->SetDimensions(25, 5, 1);
   volume->Modified();
   LACUNA_CHECK_CONTAINS(errorOf(map), "at least two voxels");
