@@ -112,14 +112,43 @@ for i in range(0, mesh.GetNumberOfPoints(), 97):
     assert colors.GetTuple3(i) == image.GetPointData().GetArray("Color").GetTuple3(int(ids.GetTuple1(i)))
 view = CreateView("RenderView")
 view.ViewSize = [500, 500]
-shown = Show(surface, view)
-ColorBy(shown, ("POINTS", "Color"))
-shown.MapScalars = 0
-ResetCamera(view)
-Render(view)
-shown.Ambient, shown.Diffuse = 1, 0  # the picture has its light already
-Render(view)
-SaveScreenshot(output("DepthMapShaderSurface.png"), view)
+view.UseColorPaletteForBackground = 0
+view.Background = [0, 0, 0]
+view.OrientationAxesVisibility = 0
+# seen along the map's own rays, the surface and the map look like the picture
+size = image.GetDimensions()
+middle = [(a + b) / 2 for a, b in zip(image.GetPoint(0), image.GetPoint(image.GetNumberOfPoints() - 1))]
+direction = [-0.4, 0.2, -0.9]
+map_colors = image.GetPointData().GetArray("Color")
+for proxy in (surface, shader):
+    pictures.show_shaded(proxy, view)
+    Render(view)  # the first one resets the camera
+    view.CameraParallelProjection = 1
+    view.CameraFocalPoint = [m + 100 * d for m, d in zip(middle, direction)]
+    view.CameraPosition = [m - 100 * d for m, d in zip(middle, direction)]
+    view.CameraViewUp = [0, 0, 1]
+    view.ViewSize = [4 * size[0], 4 * size[1]]
+    view.CameraParallelScale = size[1]  # half of the height, at 2 mm for each pixel
+    Render(view)
+    name = output(f"DepthMapShader{proxy.GetXMLLabel().split()[-1]}.png")
+    SaveScreenshot(name, view, ImageResolution=view.ViewSize)
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    seen = reader.GetOutput().GetPointData().GetScalars()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    assert (width, height) == (4 * size[0], 4 * size[1]), (width, height)
+    differences, mirrored = [], []
+    for row in range(2, size[1] - 2, 3):
+        for column in range(2, size[0] - 2, 3):
+            expected = map_colors.GetComponent(column + size[0] * row, 0)
+            if expected > 0:
+                for found, y in ((differences, height - 1 - (4 * row + 2)), (mirrored, 4 * row + 2)):
+                    found.append(abs(seen.GetComponent(4 * column + 2 + width * y, 0) - expected))
+    median, median_mirrored = (sorted(found)[len(found) // 2] for found in (differences, mirrored))
+    print(proxy.GetXMLLabel(), "against the picture: median difference", median, "if mirrored", median_mirrored)
+    assert len(differences) > 300 and median <= 2 < 10 < median_mirrored, proxy.GetXMLLabel()
+    Hide(proxy, view)
 
 # a file shows what the viewer sees: row 0 of the map on top (VTK counts a picture's rows from below)
 pictures.save_shaded(shader, output("DepthMapShader.png"))
@@ -129,7 +158,6 @@ reader.Update()
 file = reader.GetOutput()
 width, height, _ = file.GetDimensions()
 assert (width, height, 1) == image.GetDimensions()
-map_colors = image.GetPointData().GetArray("Color")
 assert all(file.GetPointData().GetScalars().GetTuple3(column + width * (height - 1 - row)) ==
            map_colors.GetTuple3(column + width * row)
            for row in range(0, height, 3) for column in range(0, width, 3))

@@ -132,6 +132,16 @@ def shaded_pixels(proxy):
     return vtk_to_numpy(image.GetPointData().GetArray("Color")).reshape(height, width, 3)
 
 
+def show_shaded(proxy, view):
+    """Shows a Depth Map Shader, or a Depth Map Surface behind one, in the picture's own colours."""
+    display = pv.Show(proxy, view)
+    pv.ColorBy(display, ("POINTS", "Color"))
+    display.MapScalars = 0
+    if display.Representation != "Slice":
+        display.Ambient, display.Diffuse = 1, 0  # the picture has its light already
+    return display
+
+
 def write_pixels(name, pixels):
     """Writes (rows, columns, red green blue), row 0 on top, as PNG: as the viewer sees it, not mirrored."""
     height, width, _ = pixels.shape
