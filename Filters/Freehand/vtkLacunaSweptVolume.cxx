@@ -296,6 +296,8 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
   text << "OutputFrame=" << frames[this->OutputFrame] << " ";
   list("OutputBounds", this->OutputBounds);
   text << "PixelSampling=" << samplings[this->PixelSampling]
+       << " FootprintScale=" << this->FootprintScale
+       << " FootprintAcrossSlices=" << this->FootprintAcrossSlices
        << " Interpolation=" << interpolations[this->Interpolation]
        << " Compounding=" << compoundings[this->Compounding]
        << " MaximumSliceGap=" << this->MaximumSliceGap << " ";

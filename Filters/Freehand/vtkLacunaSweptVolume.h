@@ -143,6 +143,23 @@ public:
   ///@}
 
   ///@{
+  /// Width of footprints in voxels, above 0. More than 1 averages noise away, and detail. Only for
+  /// PixelSampling Footprint. Default: 1.
+  vtkSetMacro(FootprintScale, double);
+  vtkGetMacro(FootprintScale, double);
+  ///@}
+
+  ///@{
+  /// Whether footprints have a height, too: voxels are then the mean over FootprintScale voxels along
+  /// the slices' normals of what is interpolated between all slices there. For slices that are closer
+  /// than voxels, of which only the two nearest count otherwise. Only for PixelSampling Footprint and
+  /// Compounding Mean. Default: off.
+  vtkSetMacro(FootprintAcrossSlices, bool);
+  vtkGetMacro(FootprintAcrossSlices, bool);
+  vtkBooleanMacro(FootprintAcrossSlices, bool);
+  ///@}
+
+  ///@{
   /// BetweenSlices, or NearestVoxel: each pixel of each slice goes to the voxel in which its centre
   /// lies, and nothing is interpolated. Default: BetweenSlices.
   vtkSetClampMacro(Interpolation, int, BetweenSlices, NearestVoxel);
@@ -281,6 +298,8 @@ private:
   double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
   int OutputFrame = Reference;
   int PixelSampling = Footprint;
+  double FootprintScale = 1;
+  bool FootprintAcrossSlices = false;
   int Interpolation = BetweenSlices;
   int Compounding = Mean;
   double MaximumSliceGap = 0;

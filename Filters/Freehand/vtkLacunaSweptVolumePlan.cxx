@@ -12,6 +12,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -144,6 +145,12 @@ void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
   this->Options.Compound = filter->GetCompounding() == vtkLacunaSweptVolume::Maximum
     ? lacuna::Compounding::Maximum
     : lacuna::Compounding::Mean;
+  if (!(filter->GetFootprintScale() > 0 && std::isfinite(filter->GetFootprintScale())))
+  {
+    throw std::runtime_error("FootprintScale must be above 0");
+  }
+  this->Options.FootprintScale = filter->GetFootprintScale();
+  this->Options.FootprintAcrossSlices = filter->GetFootprintAcrossSlices();
   this->Options.MaximumSliceGap = filter->GetMaximumSliceGap();
 
   const int first = this->Sweeps.front().GreyLevels->GetDataType();

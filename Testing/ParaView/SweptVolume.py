@@ -29,7 +29,7 @@ def check_defaults():
     for name in ("OutputSpacing", "OutputBounds", "OutputFrame", "PixelSampling", "Interpolation",
                  "Compounding",
                  "MaximumSliceGap", "ClipRectangle", "FanMask", "FanOrigin", "FanAngles",
-                 "FanRadii", "BadPoses", "UseTooFast", "UseGatedOut",
+                 "FanRadii", "FootprintScale", "FootprintAcrossSlices", "BadPoses", "UseTooFast", "UseGatedOut",
                  "UseImageInvalid", "OutputScalarType", "MemoryLimit"):
         default = getattr(own, "Get" + name)()
         if name in enumerations:

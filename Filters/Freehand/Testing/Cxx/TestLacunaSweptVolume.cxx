@@ -101,6 +101,17 @@ void TestContract()
     "Contributions are unsigned int");
   LACUNA_CHECK_THAT(
     vtkCharArray::SafeDownCast(points->GetArray("vtkValidPointMask")) != nullptr, "mask is char");
+  // wider footprints see the same of linear grey levels, and higher ones too
+  filter->SetFootprintScale(2);
+  filter->FootprintAcrossSlicesOn();
+  filter->Update();
+  LACUNA_CHECK_THAT(
+    GetValue(volume, "Intensity", 6, 2, 5) == 39, "wide and high footprints of a ramp");
+  LACUNA_CHECK_CONTAINS(
+    vtkLacunaProvenance::Get(volume)[0], "FootprintScale=2 FootprintAcrossSlices=1");
+  filter->SetFootprintScale(1);
+  filter->FootprintAcrossSlicesOff();
+  filter->Update();
   // column 6, row 4, between slices 2 and 3: 6 + 8 + 25
   LACUNA_CHECK_THAT(GetValue(volume, "Intensity", 6, 2, 5) == 39, "interpolated grey level");
   LACUNA_CHECK_THAT(GetValue(volume, "Contributions", 6, 2, 5) == 1, "one sample between slices");
@@ -286,6 +297,8 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(
     with([](auto* f) { f->SetClipRectangle(-2147483647, 0, 5, 0); }), "0 columns");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetFootprintScale(0); }), "FootprintScale");
+  LACUNA_CHECK_CONTAINS(with([=](auto* f) { f->SetFootprintScale(notANumber); }), "FootprintScale");
   LACUNA_CHECK_CONTAINS(
     with([](auto* f) { f->SetOutputSpacing(0.001, 0.001, 0.001); }), "MemoryLimit");
   LACUNA_CHECK_CONTAINS(with(
