@@ -109,7 +109,7 @@ public:
   ///@}
 
   ///@{
-  /// Points that all slices together may have. Default: 4 000 000.
+  /// Points that all slices together may have. Default: 2 000 000.
   vtkSetClampMacro(MaximumNumberOfPoints, int, 4, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfPoints, int);
   ///@}
@@ -139,6 +139,6 @@ private:
   double SpeedLimit = 23;
   bool OutlineOnly = false;
   int InvalidSlices = LeaveOut;
-  int MaximumNumberOfPoints = 4000000;
+  int MaximumNumberOfPoints = 2000000;
 };
 #endif

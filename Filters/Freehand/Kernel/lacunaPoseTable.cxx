@@ -259,6 +259,7 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   std::vector<std::size_t> stated;
   std::vector<std::size_t> missing;
   std::vector<std::size_t> faulty;
+  std::vector<std::size_t> zero;
   std::string firstFault;
   Vec3 sizes{};
   std::size_t first = rows;
@@ -297,6 +298,13 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
       sizes = first == rows ? lengths : sizes;
       CheckPixelSizes(sizes, first == rows ? i : first, lengths, i);
     }
+    // poses are often counted from the first one, but hardly come back to it to the last digit
+    if (options.Format == PoseFormat::Euler && i > 0 &&
+      std::all_of(numbers.data() + i * count, numbers.data() + (i + 1) * count,
+        [](double v) { return v == 0; }))
+    {
+      zero.push_back(i);
+    }
     first = std::min(first, i);
     table.ToReference[i] = pose;
     table.Usable[i] = 1;
@@ -316,6 +324,11 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   {
     table.Warnings.push_back("there is no pose in " + DescribeItems("row", missing) +
       " (numbers are missing or not finite, or all zero); flagged in SliceStatus");
+  }
+  if (!zero.empty())
+  {
+    table.Warnings.push_back("all numbers are 0 in " + DescribeItems("row", zero) +
+      ": taken as a pose. If these rows are empty, write nan: ParaView reads empty cells as 0");
   }
   if (!faulty.empty())
   {

@@ -199,8 +199,13 @@ TEST(PoseTable, RowsWithoutAPoseAreNamed)
   const PoseTable lost =
     ReadPoseTable({ 1, 2, 3, 0, 0, 0, 0 }, 7, {}, Options(PoseFormat::Quaternion));
   EXPECT_EQ(lost.Usable, std::vector<char>{ 0 });
-  // all angles 0 are a pose
-  ExpectNear(ReadOne({ 0, 0, 0, 0, 0, 0 }, Options(PoseFormat::Euler)), Matrix4(), 0);
+  // six zeros are a pose, but perhaps none was meant
+  const PoseTable zero =
+    ReadPoseTable(std::vector<double>(12, 0.0), 6, {}, Options(PoseFormat::Euler));
+  EXPECT_EQ(zero.Usable, (std::vector<char>{ 1, 1 }));
+  ExpectNear(zero.ToReference[0], Matrix4(), 0);
+  ASSERT_EQ(zero.Warnings.size(), 1u);
+  EXPECT_NE(zero.Warnings[0].find("all numbers are 0 in row 1:"), std::string::npos);
 }
 
 TEST(PoseTable, WhatIsNoPoseIsRefused)
