@@ -390,7 +390,8 @@ DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSp
   {
     throw std::runtime_error("the fan cannot be found: nothing changes from slice to slice");
   }
-  std::string doubts;
+  std::string smallness;
+  std::array<std::string, 3> doubts; // of a rectangle, of a sector, of one upside down
   DetectedFan whole;
   bool isWhole = false;
   for (const double fraction : Thresholds)
@@ -399,18 +400,20 @@ DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSp
     const double size = static_cast<double>(part.GetSize()) / (static_cast<double>(width) * height);
     if (size < SmallestPart)
     {
-      doubts += "; what changes covers only " + Percent(size) + " of the image";
+      smallness = "; what changes covers only " + Percent(size) + " of the image";
       break;
     }
     const Outline outline(part);
-    for (const Trial& trial : { TryRectangle(part, outline), TrySector(part, outline, pixelSpacing),
-           TryFlippedSector(part, pixelSpacing) })
+    const std::array<Trial, 3> trials{ TryRectangle(part, outline),
+      TrySector(part, outline, pixelSpacing), TryFlippedSector(part, pixelSpacing) };
+    for (std::size_t n = 0; n < trials.size(); ++n)
     {
+      const Trial& trial = trials[n];
       const std::array<int, 4>& r = trial.Fan.Rectangle;
       const bool isWide = r[0] < EdgeWidth && r[0] + r[2] > width - EdgeWidth;
       if (!trial.Doubt.empty())
       {
-        doubts += doubts.find(trial.Doubt) == std::string::npos ? "; " + trial.Doubt : "";
+        doubts[n] = "; " + trial.Doubt;
       }
       else if (!trial.Fan.IsSector && isWide && r[1] < EdgeWidth &&
         r[1] + r[3] > height - EdgeWidth)
@@ -430,6 +433,7 @@ DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSp
   {
     return whole;
   }
-  throw std::runtime_error("the fan cannot be found for certain" + doubts);
+  throw std::runtime_error(
+    "the fan cannot be found for certain" + smallness + doubts[0] + doubts[1]);
 }
 }
