@@ -388,11 +388,13 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
   if (!this->NeedsWholeMap())
   {
     outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
-    for (int a = 0; a < 2 && extent[0] <= extent[1] && extent[2] <= extent[3]; ++a)
+    if (extent[0] <= extent[1] && extent[2] <= extent[3])
     {
       // neighbours, for the normals
-      extent[2 * a] = std::max(whole[2 * a], extent[2 * a] - 1);
-      extent[2 * a + 1] = std::min(whole[2 * a + 1], extent[2 * a + 1] + 1);
+      extent[0] = std::max(whole[0], extent[0] - 1);
+      extent[1] = std::min(whole[1], extent[1] + 1);
+      extent[2] = std::max(whole[2], extent[2] - 1);
+      extent[3] = std::min(whole[3], extent[3] + 1);
     }
   }
   const auto request = [](vtkInformation* info, const int wanted[6])

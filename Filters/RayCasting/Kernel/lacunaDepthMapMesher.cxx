@@ -29,7 +29,6 @@ DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& r
   : Grid(grid)
   , Rule(rule)
   , FirstRow(firstRow)
-  , LastRow(lastRow)
 {
   rule.Limits.Check();
   const auto& e = grid.Extent;

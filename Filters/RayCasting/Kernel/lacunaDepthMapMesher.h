@@ -52,7 +52,6 @@ private:
   DepthGrid Grid;
   DiscontinuityRule Rule;
   int FirstRow;
-  int LastRow;
   std::vector<unsigned char> Triangles; ///< flags for each square
   std::vector<std::int64_t> PointOffsets;
   std::vector<std::int64_t> TriangleOffsets;

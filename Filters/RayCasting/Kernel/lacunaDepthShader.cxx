@@ -27,7 +27,8 @@ void CheckRange(const std::string& name, double value, double low, double high)
 /// What is not a number is black.
 unsigned char ToByte(double intensity)
 {
-  return intensity > 0 ? static_cast<unsigned char>(255 * std::min(intensity, 1.0) + 0.5) : 0;
+  return intensity > 0 ? static_cast<unsigned char>(std::lround(255 * std::min(intensity, 1.0)))
+                       : 0;
 }
 
 void Store(const Vec3& color, unsigned char* out)
