@@ -4,53 +4,52 @@
 #ifndef lacunaFieldWalker_h
 #define lacunaFieldWalker_h
 
-#include "lacunaFieldBounds.h"
-#include "lacunaTensorCell.h"
+#include "lacunaSurfaceBlocks.h"
+#include "lacunaTileSpans.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 namespace lacuna
 {
-/// What a walker walks through.
-template <class T>
-struct WalkedField
-{
-  const T* Voxels;
-  std::array<int, 3> Size;
-  const FieldBounds<T>* Bounds;
-  bool SolidAbove;
-  bool HasEmpty; ///< some voxels are not finite
-  double Empty;  ///< and count as this
-};
-
 /// The line A + t B in index coordinates, and how far it is known.
 template <class T, int Support>
 class FieldWalker
 {
 public:
-  FieldWalker(const WalkedField<T>& field, const Vec3& a, const Vec3& b, double isoValue)
+  /// blocks: of the same field; lent for the time of the walk.
+  FieldWalker(const WalkedField<T>& field, double isoValue, SurfaceBlocks<T, Support>& blocks,
+    const Vec3& a, const Vec3& b)
     : Field(field)
+    , Blocks(blocks)
     , A(a)
     , B(b)
     , InverseB{ 1 / b[0], 1 / b[1], 1 / b[2] }
     , IsoValue(isoValue)
-    , Sign(field.SolidAbove ? 1 : -1)
   {
   }
 
   /// Finds the first entry into the solid. gradient is that of the field towards the solid, per
   /// voxel step.
-  bool FindEntry(double& t, Vec3& gradient)
+  bool FindEntry(const RaySpan& span, double& t, Vec3& gradient)
   {
     double t0;
     double t1;
     if (!this->Clip(t0, t1))
+    {
+      return false;
+    }
+    if (span.First > t0)
+    {
+      t0 = span.First;
+      this->Known = State::Outside;
+    }
+    t1 = std::min(t1, span.Last);
+    if (!(t0 < t1))
     {
       return false;
     }
@@ -119,34 +118,33 @@ private:
     return t0 < t1;
   }
 
-  /// t where the line meets the far side of a block of 2^shift cells.
-  double LeaveAt(int axis, int block, int shift) const
-  {
-    if (this->B[axis] == 0)
-    {
-      return std::numeric_limits<double>::infinity();
-    }
-    const int plane = (block + (this->B[axis] > 0)) * (1 << shift);
-    return (plane - this->A[axis]) * this->InverseB[axis];
-  }
-
-  /// Visits the blocks first..last of one level between t0 and t1, in order. Every t is computed
-  /// from the integer coordinates of a plane, so that levels agree and errors do not add up.
+  /// Visits the blocks of 2^Shift cells between first and last and between t0 and t1, in order.
+  /// Every t is computed from the integer coordinates of a plane, so that levels agree and errors
+  /// do not add up. No branch depends on which way the line goes next: nobody can guess it.
   template <int Shift>
   bool Walk(const Index& first, const Index& last, double t0, double t1)
   {
     Index block;
+    Index step;
+    Index stepsLeft;
+    Index plane; // where the line leaves the block, voxels
     std::array<double, 3> leave;
     for (int a = 0; a < 3; ++a)
     {
-      const int cell = static_cast<int>(std::floor(this->A[a] + t0 * this->B[a]));
+      const bool forwards = this->B[a] > 0;
+      // cuts to the whole number towards 0: rounding may lead out of the volume, but not far
+      const int cell = static_cast<int>(this->A[a] + t0 * this->B[a]);
       block[a] = std::min(std::max(cell >> Shift, first[a]), last[a]);
-      leave[a] = this->LeaveAt(a, block[a], Shift);
+      step[a] = forwards ? 1 : -1;
+      stepsLeft[a] = forwards ? last[a] - block[a] : block[a] - first[a];
+      plane[a] = (block[a] + forwards) * (1 << Shift);
+      leave[a] = this->B[a] == 0 ? std::numeric_limits<double>::infinity()
+                                 : (plane[a] - this->A[a]) * this->InverseB[a];
     }
     for (double t = t0;;)
     {
-      const int yz = leave[1] < leave[2] ? 1 : 2;
-      const int axis = leave[0] < leave[yz] ? 0 : yz;
+      const int yz = 2 - (leave[1] < leave[2]);
+      const int axis = yz * !(leave[0] < leave[yz]);
       const double end = std::min(leave[axis], t1);
       if (end > t)
       {
@@ -156,16 +154,14 @@ private:
         }
         t = end;
       }
-      if (leave[axis] >= t1)
+      if (leave[axis] >= t1 || stepsLeft[axis] == 0)
       {
         return false;
       }
-      block[axis] += this->B[axis] > 0 ? 1 : -1;
-      if (block[axis] < first[axis] || block[axis] > last[axis])
-      {
-        return false;
-      }
-      leave[axis] = this->LeaveAt(axis, block[axis], Shift);
+      --stepsLeft[axis];
+      block[axis] += step[axis];
+      plane[axis] += step[axis] * (1 << Shift);
+      leave[axis] = (plane[axis] - this->A[axis]) * this->InverseB[axis];
     }
   }
 
@@ -174,7 +170,13 @@ private:
   {
     if constexpr (Shift == 0)
     {
-      return this->VisitCell(block, t0, t1);
+      const int bit = CellHulls::BitOf(block[0], block[1], block[2]);
+      if (this->Hulls.Outside >> bit & 1)
+      {
+        this->Known = State::Outside;
+        return false;
+      }
+      return this->Hulls.Inside >> bit & 1 ? this->MeetSolid(t0) : this->SearchCell(block, t0, t1);
     }
     else
     {
@@ -191,6 +193,19 @@ private:
       if (this->Field.SolidAbove ? low >= this->IsoValue : high <= this->IsoValue)
       {
         return this->MeetSolid(t0);
+      }
+      if constexpr (Shift == FineShift)
+      {
+        this->Hulls = this->Blocks.Get(block);
+        if (this->Hulls.AreOutside())
+        {
+          this->Known = State::Outside;
+          return false;
+        }
+        if (this->Hulls.AreInside())
+        {
+          return this->MeetSolid(t0);
+        }
       }
       constexpr int finer = Shift == CoarseShift ? FineShift : 0;
       Index first;
@@ -217,10 +232,10 @@ private:
     Index cell;
     for (int a = 0; a < 3; ++a)
     {
-      const int c = static_cast<int>(std::floor(this->A[a] + t * this->B[a]));
+      const int c = static_cast<int>(this->A[a] + t * this->B[a]);
       cell[a] = std::min(std::max(c, 0), this->Field.Size[a] - 2);
     }
-    this->Gather(cell);
+    this->Blocks.GetControlPoints().GetCell(cell, this->Cell);
     this->SetHit(cell, t);
     return true;
   }
@@ -241,39 +256,9 @@ private:
     return local;
   }
 
-  bool VisitCell(const Index& cell, double t0, double t1)
-  {
-    this->Gather(cell);
-    // the sign bits of all control points: do they agree?
-    std::uint64_t any = 0;
-    std::uint64_t all = ~std::uint64_t(0);
-    for (const double p : this->Cell.Points)
-    {
-      std::uint64_t bits;
-      std::memcpy(&bits, &p, sizeof(bits));
-      any |= bits;
-      all &= bits;
-    }
-    if (all >> 63)
-    {
-      this->Known = State::Outside;
-      return false;
-    }
-    if (!(any >> 63))
-    {
-      if (this->Known != State::Outside)
-      {
-        this->Known = State::Inside;
-        return false;
-      }
-      this->SetHit(cell, t0);
-      return true;
-    }
-    return this->SearchCell(cell, t0, t1);
-  }
-
   bool SearchCell(const Index& cell, double t0, double t1)
   {
+    this->Blocks.GetControlPoints().GetCell(cell, this->Cell);
     const Vec3 to = this->Local(cell, t1);
     ScaledBernstein p = this->Cell.Along(this->Local(cell, t0), to);
     double s;
@@ -308,100 +293,13 @@ private:
     return true;
   }
 
-  /// Loads the control points of a cell, less the iso-value; positive is solid.
-  void Gather(const Index& cell)
-  {
-    constexpr int before = TensorCell<Support>::Before;
-    constexpr int after = TensorCell<Support>::After;
-    const auto& size = this->Field.Size;
-    const bool interior = cell[0] >= before && cell[1] >= before && cell[2] >= before &&
-      cell[0] + after < size[0] && cell[1] + after < size[1] && cell[2] + after < size[2];
-    if (!interior || this->Field.HasEmpty)
-    {
-      this->GatherGuarded(cell);
-      return;
-    }
-    const double sign = this->Sign;
-    const double offset = -sign * this->IsoValue;
-    const std::int64_t row = size[0];
-    const std::int64_t slice = row * size[1];
-    const T* corner = this->Field.Voxels + (cell[2] - before) * slice + (cell[1] - before) * row +
-      (cell[0] - before);
-    double* out = this->Cell.Points;
-    for (int k = 0; k < Support; ++k)
-    {
-      for (int j = 0; j < Support; ++j)
-      {
-        const T* in = corner + k * slice + j * row;
-        for (int i = 0; i < Support; ++i)
-        {
-          out[i] = sign * static_cast<double>(in[i]) + offset;
-        }
-        out += Support;
-      }
-    }
-  }
-
-  /// The same at the border, where points are missing, and for voxels that are not finite.
-  void GatherGuarded(const Index& cell)
-  {
-    constexpr int before = TensorCell<Support>::Before;
-    const auto& size = this->Field.Size;
-    double* out = this->Cell.Points;
-    for (int k = 0; k < Support; ++k)
-    {
-      const int z = std::min(std::max(cell[2] - before + k, 0), size[2] - 1);
-      for (int j = 0; j < Support; ++j)
-      {
-        const int y = std::min(std::max(cell[1] - before + j, 0), size[1] - 1);
-        const T* row = this->Field.Voxels + (static_cast<std::int64_t>(z) * size[1] + y) * size[0];
-        for (int i = 0; i < Support; ++i)
-        {
-          const int x = std::min(std::max(cell[0] - before + i, 0), size[0] - 1);
-          const double v = static_cast<double>(row[x]);
-          *out++ =
-            this->Sign * (std::isfinite(v) ? v : this->Field.Empty) - this->Sign * this->IsoValue;
-        }
-      }
-    }
-    if constexpr (Support == 4)
-    {
-      constexpr std::ptrdiff_t strides[3] = { 1, 4, 16 };
-      for (int a = 0; a < 3; ++a)
-      {
-        if (cell[a] == 0)
-        {
-          this->Extrapolate(a, strides[a], 0, 1);
-        }
-        if (cell[a] == size[a] - 2)
-        {
-          this->Extrapolate(a, strides[a], 3, -1);
-        }
-      }
-    }
-  }
-
-  /// Continues the points linearly along an axis at position end; inward leads to its neighbours.
-  void Extrapolate(int axis, std::ptrdiff_t stride, int end, std::ptrdiff_t inward)
-  {
-    const std::ptrdiff_t u = axis == 0 ? 4 : 1;
-    const std::ptrdiff_t v = axis == 2 ? 4 : 16;
-    for (int b = 0; b < 4; ++b)
-    {
-      for (int a = 0; a < 4; ++a)
-      {
-        double* p = &this->Cell.Points[a * u + b * v + end * stride];
-        p[0] = 2 * p[inward * stride] - p[2 * inward * stride];
-      }
-    }
-  }
-
   const WalkedField<T>& Field;
+  SurfaceBlocks<T, Support>& Blocks;
+  CellHulls Hulls; ///< of the block on the way
   Vec3 A;
   Vec3 B;
   Vec3 InverseB;
   double IsoValue;
-  double Sign;
   State Known = State::Unknown;
   TensorCell<Support> Cell;
   double HitT = 0;

@@ -3,6 +3,7 @@
 
 #include "lacunaFieldWalker.h"
 #include "lacunaSplineFilter.h"
+#include "lacunaTileSpans.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,10 +18,23 @@ class IsoRayCaster::Field
 {
 public:
   virtual ~Field() = default;
-  /// The line a + t b is in index coordinates.
-  virtual bool FindEntry(
-    const Vec3& a, const Vec3& b, double isoValue, double& t, Vec3& gradient) const = 0;
 
+  /// What a thread keeps from ray to ray, for one iso-value.
+  class Memory
+  {
+  public:
+    virtual ~Memory() = default;
+  };
+  virtual std::unique_ptr<Memory> Remember(double isoValue) const = 0;
+
+  /// The line a + t b is in index coordinates.
+  virtual bool FindEntry(const Vec3& a, const Vec3& b, const RaySpan& span, Memory& memory,
+    double& t, Vec3& gradient) const = 0;
+
+  virtual TileSpans FindSpans(const Matrix4& indexToPixel, const std::array<int, 4>& extent,
+    double isoValue, Execution& execution) const = 0;
+
+  Matrix4 IndexToWorld;
   Matrix4 WorldToIndex;
   double Minimum = 0;
   double Maximum = 0;
@@ -29,7 +43,8 @@ public:
 
 namespace
 {
-constexpr int TileWidth = 16;
+constexpr int TileWidth = 32;
+constexpr std::int64_t TilesAtATime = 2;
 
 template <class T, int Support>
 class TypedField : public IsoRayCaster::Field
@@ -46,13 +61,40 @@ public:
       above ? this->Minimum : this->Maximum };
   }
 
-  bool FindEntry(
-    const Vec3& a, const Vec3& b, double isoValue, double& t, Vec3& gradient) const override
+  std::unique_ptr<Memory> Remember(double isoValue) const override
   {
-    return FieldWalker<T, Support>(this->Walked, a, b, isoValue).FindEntry(t, gradient);
+    return std::make_unique<TypedMemory>(this->Walked, isoValue);
+  }
+
+  bool FindEntry(const Vec3& a, const Vec3& b, const RaySpan& span, Memory& memory, double& t,
+    Vec3& gradient) const override
+  {
+    auto& own = static_cast<TypedMemory&>(memory);
+    return FieldWalker<T, Support>(this->Walked, own.IsoValue, own.Blocks, a, b)
+      .FindEntry(span, t, gradient);
+  }
+
+  TileSpans FindSpans(const Matrix4& indexToPixel, const std::array<int, 4>& extent,
+    double isoValue, Execution& execution) const override
+  {
+    const bool above = this->Walked.SolidAbove;
+    return { this->Bounds, indexToPixel, extent,
+      [&](double low, double high) { return above ? high < isoValue : low > isoValue; },
+      execution };
   }
 
 private:
+  struct TypedMemory : Memory
+  {
+    TypedMemory(const WalkedField<T>& field, double isoValue)
+      : IsoValue(isoValue)
+      , Blocks(field, isoValue)
+    {
+    }
+    double IsoValue;
+    SurfaceBlocks<T, Support> Blocks;
+  };
+
   FieldBounds<T> Bounds;
   WalkedField<T> Walked;
 };
@@ -74,6 +116,29 @@ public:
 private:
   SplineCoefficients Coefficients;
 };
+
+bool CastRay(const IsoRayCaster::Field& field, IsoRayCaster::Field::Memory& memory,
+  const RaySpan& span, const Vec3& origin, const Vec3& direction, RayHit& hit)
+{
+  if (!(field.Minimum <= field.Maximum))
+  {
+    return false; // no voxel is finite
+  }
+  const Matrix4& m = field.WorldToIndex;
+  Vec3 g;
+  if (!field.FindEntry(m.Point(origin), m.Vector(direction), span, memory, hit.Distance, g))
+  {
+    return false;
+  }
+  // A gradient is a covector: it goes back with the transposed matrix.
+  const Vec3 world{ m(0, 0) * g[0] + m(1, 0) * g[1] + m(2, 0) * g[2],
+    m(0, 1) * g[0] + m(1, 1) * g[1] + m(2, 1) * g[2],
+    m(0, 2) * g[0] + m(1, 2) * g[1] + m(2, 2) * g[2] };
+  const double length = Norm(world);
+  // On a plateau at the iso-value the surface has no direction: show it to the viewer.
+  hit.Normal = length > 0 ? (-1 / length) * world : -1 * direction;
+  return true;
+}
 
 std::unique_ptr<IsoRayCaster::Field> MakeField(
   const VoxelVolume& volume, FieldInterpolation interpolation, SolidSide side, Execution& execution)
@@ -103,6 +168,7 @@ IsoRayCaster::IsoRayCaster(
   CheckVolumeSize(volume.Size);
   const Matrix4 worldToIndex = volume.IndexToWorld.Inverse();
   std::unique_ptr<Field> field = MakeField(volume, interpolation, side, execution);
+  field->IndexToWorld = volume.IndexToWorld;
   field->WorldToIndex = worldToIndex;
   this->Implementation = std::move(field);
 }
@@ -127,25 +193,8 @@ std::int64_t IsoRayCaster::GetNumberOfNonFiniteVoxels() const
 bool IsoRayCaster::CastRay(
   const Vec3& origin, const Vec3& direction, double isoValue, RayHit& hit) const
 {
-  const Field& field = *this->Implementation;
-  if (!(field.Minimum <= field.Maximum))
-  {
-    return false; // no voxel is finite
-  }
-  const Matrix4& m = field.WorldToIndex;
-  Vec3 g;
-  if (!field.FindEntry(m.Point(origin), m.Vector(direction), isoValue, hit.Distance, g))
-  {
-    return false;
-  }
-  // A gradient is a covector: it goes back with the transposed matrix.
-  const Vec3 world{ m(0, 0) * g[0] + m(1, 0) * g[1] + m(2, 0) * g[2],
-    m(0, 1) * g[0] + m(1, 1) * g[1] + m(2, 1) * g[2],
-    m(0, 2) * g[0] + m(1, 2) * g[1] + m(2, 2) * g[2] };
-  const double length = Norm(world);
-  // On a plateau at the iso-value the surface has no direction: show it to the viewer.
-  hit.Normal = length > 0 ? (-1 / length) * world : -1 * direction;
-  return true;
+  const std::unique_ptr<Field::Memory> memory = this->Implementation->Remember(isoValue);
+  return ::lacuna::CastRay(*this->Implementation, *memory, RaySpan::All(), origin, direction, hit);
 }
 
 void IsoRayCaster::Cast(
@@ -158,12 +207,27 @@ void IsoRayCaster::Cast(
   {
     return;
   }
+  const Vec3 alongRow = (1 / plane.PixelSpacing) * plane.Right;
+  const Vec3 alongColumn = (1 / plane.PixelSpacing) * plane.Down;
+  Matrix4 worldToPixel;
+  for (int a = 0; a < 3; ++a)
+  {
+    worldToPixel(0, a) = alongRow[a];
+    worldToPixel(1, a) = alongColumn[a];
+    worldToPixel(2, a) = plane.View[a];
+  }
+  worldToPixel(0, 3) = -Dot(alongRow, plane.Origin);
+  worldToPixel(1, 3) = -Dot(alongColumn, plane.Origin);
+  worldToPixel(2, 3) = -Dot(plane.View, plane.Origin);
+  const TileSpans spans = this->Implementation->FindSpans(
+    worldToPixel * this->Implementation->IndexToWorld, e, isoValue, execution);
   // Square tiles: neighbouring rays meet the same voxels while these are in the cache.
   const std::int64_t across = (columns + TileWidth - 1) / TileWidth;
   const std::int64_t down = (rows + TileWidth - 1) / TileWidth;
-  execution.For(across * down, 1,
+  execution.For(across * down, TilesAtATime,
     [&](std::int64_t begin, std::int64_t end)
     {
+      const std::unique_ptr<Field::Memory> memory = this->Implementation->Remember(isoValue);
       for (std::int64_t tile = begin; tile < end; ++tile)
       {
         const std::int64_t x0 = tile % across * TileWidth;
@@ -176,7 +240,9 @@ void IsoRayCaster::Cast(
             const Vec3 origin =
               plane.PixelPosition(static_cast<int>(e[0] + x), static_cast<int>(e[2] + y));
             RayHit hit{ std::numeric_limits<double>::quiet_NaN(), { 0, 0, 0 } };
-            const bool valid = this->CastRay(origin, plane.View, isoValue, hit);
+            const RaySpan span = spans.Get(static_cast<int>(e[0] + x), static_cast<int>(e[2] + y));
+            const bool valid = !span.IsEmpty() &&
+              ::lacuna::CastRay(*this->Implementation, *memory, span, origin, plane.View, hit);
             pixels.Depth[i] = hit.Distance;
             if (pixels.Valid)
             {
