@@ -27,32 +27,36 @@ double Power(double x, int n)
   return power;
 }
 
+/// h(r) = sum a[i] r^i of degree 9, and its slope. Estrin's scheme: short chains of operations.
+inline double ValueAndSlope(const double* a, double r, double& slope)
+{
+  const double r2 = r * r;
+  const double r4 = r2 * r2;
+  const double r8 = r4 * r4;
+  const double low = (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
+  const double high = (a[4] + a[5] * r) + (a[6] + a[7] * r) * r2;
+  const double slopeLow = (a[1] + 2 * a[2] * r) + (3 * a[3] + 4 * a[4] * r) * r2;
+  const double slopeHigh = (5 * a[5] + 6 * a[6] * r) + (7 * a[7] + 8 * a[8] * r) * r2;
+  slope = (slopeLow + slopeHigh * r4) + 9 * a[9] * r8;
+  return (low + high * r4) + (a[8] + a[9] * r) * r8;
+}
+
 /// The root in 0 <= r <= 1 of h(r) = sum a[i] r^i, which has one sign change in its coefficients
-/// and so exactly one positive root; h(1) does not have the sign class of a[0].
-double SolveMonotone(const double* a, int n)
+/// and so exactly one positive root; h(1) does not have the sign class of a[0]. start: a guess.
+double SolveMonotone(const double* a, double start)
 {
   const bool startsNegative = a[0] < 0;
   double low = 0;
   double high = 1;
-  double atOne = 0;
-  for (int i = 0; i <= n; ++i)
-  {
-    atOne += a[i];
-  }
-  double r = a[0] / (a[0] - atOne);
+  double r = start;
   for (int iteration = 0; high - low > 1e-15; ++iteration)
   {
     if (iteration > MaximumNewtonSteps || !(r > low && r < high))
     {
       r = 0.5 * (low + high);
     }
-    double value = a[n];
-    double slope = 0;
-    for (int i = n - 1; i >= 0; --i)
-    {
-      slope = slope * r + value;
-      value = value * r + a[i];
-    }
+    double slope;
+    const double value = ValueAndSlope(a, r, slope);
     ((value < 0) == startsNegative ? low : high) = r;
     // A step out of the bracket comes from a slope the wrong way, near r = 0: bisect then.
     const double next = r - value / slope;
@@ -65,6 +69,25 @@ double SolveMonotone(const double* a, int n)
   return high;
 }
 
+/// Where the control polygon of p crosses zero, 0 < s < 1: a root is near.
+double ZeroOfPolygon(const ScaledBernstein& p)
+{
+  const int n = p.Degree;
+  double binomial = 1;
+  double last = p.A[0];
+  for (int i = 1; i <= n; ++i)
+  {
+    binomial = binomial * (n - i + 1) / i;
+    const double next = p.A[i] / binomial;
+    if ((next < 0) != (last < 0))
+    {
+      return (i - 1 + last / (last - next)) / n;
+    }
+    last = next;
+  }
+  return 0.5;
+}
+
 double SolveOneChange(const ScaledBernstein& p)
 {
   const int n = p.Degree;
@@ -73,15 +96,16 @@ double SolveOneChange(const ScaledBernstein& p)
   {
     atHalf += p.A[i];
   }
+  const double start = ZeroOfPolygon(p);
   // With r = s / (1 - s), or its reciprocal, p becomes a plain polynomial on 0 <= r <= 1.
   if ((atHalf < 0) != (p.A[0] < 0))
   {
-    const double r = SolveMonotone(p.A.data(), n);
+    const double r = SolveMonotone(p.A.data(), start / (1 - start));
     return r / (1 + r);
   }
-  double reversed[Capacity];
+  double reversed[Capacity] = {};
   std::reverse_copy(p.A.begin(), p.A.begin() + n + 1, reversed);
-  const double r = SolveMonotone(reversed, n);
+  const double r = SolveMonotone(reversed, (1 - start) / start);
   return 1 / (1 + r);
 }
 

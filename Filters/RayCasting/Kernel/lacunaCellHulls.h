@@ -19,6 +19,15 @@ struct CellHulls
   static int BitOf(int i, int j, int k) { return (i & 3) | (j & 3) << 2 | (k & 3) << 4; }
 };
 
+/// Encloses the field in a cell between two parallel planes, in the cell's local coordinates x:
+/// Low <= field - Slope . x <= High.
+struct CellPlanes
+{
+  double Slope[3];
+  double Low;
+  double High;
+};
+
 /// The control points of a block of 4^3 cells with a tensor-product field: uniform cubic B-spline
 /// (Support 4: points -1..5 along each axis) or trilinear (Support 2: 0..4).
 template <int Support>
@@ -29,11 +38,21 @@ struct BlockPoints
   /// [z][y][x]. Elements from Width on are no points.
   alignas(32) float Values[Width][Width][RowSize];
   float ReadTooFar[2]; ///< by vector code
+  /// How far rounding may have moved a Bezier point. Infinite where float overflows or loses
+  /// digits.
+  float Tolerance;
+
+  /// Sets the tolerance from the values. rounded: the greatest number that was rounded to float
+  /// for them.
+  void SetTolerance(float rounded);
 
   /// Inside a cell the field is a convex combination of the cell's Bezier points, which are much
-  /// nearer to it than its control points. tolerance: what rounding may have done to a point; cells
-  /// with a Bezier point nearer to zero than this are in neither set.
-  CellHulls Classify(float tolerance) const;
+  /// nearer to it than its control points. Cells with a Bezier point that may have another sign
+  /// but for rounding are in neither set.
+  CellHulls Classify() const;
+
+  /// i, j, k: 0..3.
+  CellPlanes FindPlanes(int i, int j, int k) const;
 };
 
 extern template struct BlockPoints<2>;

@@ -3,36 +3,33 @@
 
 #include "lacunaFieldWalker.h"
 #include "lacunaSplineFilter.h"
-#include "lacunaTileSpans.h"
+#include "lacunaTileCaster.h"
+#include "lacunaVoxelBlocks.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace lacuna
 {
-/// What depends on the type of voxels and on the interpolation, behind one call per ray.
+/// What depends on the type of voxels and on the interpolation, behind one call per ray or tile.
 class IsoRayCaster::Field
 {
 public:
   virtual ~Field() = default;
 
-  /// What a thread keeps from ray to ray, for one iso-value.
-  class Memory
-  {
-  public:
-    virtual ~Memory() = default;
-  };
-  virtual std::unique_ptr<Memory> Remember(double isoValue) const = 0;
+  virtual bool FindEntry(
+    const Ray& ray, const RaySpan& span, double isoValue, RayEntry& entry) const = 0;
 
-  /// The line a + t b is in index coordinates.
-  virtual bool FindEntry(const Vec3& a, const Vec3& b, const RaySpan& span, Memory& memory,
-    double& t, Vec3& gradient) const = 0;
-
-  virtual TileSpans FindSpans(const Matrix4& indexToPixel, const std::array<int, 4>& extent,
-    double isoValue, Execution& execution) const = 0;
+  /// Casts the rays of the pixels of extent in tiles, which are given to take from any thread.
+  using TileTaker = std::function<void(const std::array<int, 4>& tile, const TileEntries& entries)>;
+  virtual void CastTiles(const RayGrid& rays, const BlockProjection& projection,
+    const std::array<int, 4>& extent, double isoValue, const TileTaker& take,
+    Execution& execution) const = 0;
 
   Matrix4 IndexToWorld;
   Matrix4 WorldToIndex;
@@ -43,8 +40,42 @@ public:
 
 namespace
 {
-constexpr int TileWidth = 32;
-constexpr std::int64_t TilesAtATime = 2;
+/// What a thread works with, used again by those that come later: fresh memory costs page faults.
+template <int Support>
+class Workers
+{
+public:
+  struct Worker
+  {
+    TileCaster<Support> Caster;
+    TileEntries Entries;
+  };
+
+  template <class... Arguments>
+  std::unique_ptr<Worker> Take(const Arguments&... arguments)
+  {
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      if (!this->Idle.empty())
+      {
+        std::unique_ptr<Worker> worker = std::move(this->Idle.back());
+        this->Idle.pop_back();
+        return worker;
+      }
+    }
+    return std::unique_ptr<Worker>(new Worker{ { arguments... }, {} });
+  }
+
+  void Return(std::unique_ptr<Worker> worker)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Idle.push_back(std::move(worker));
+  }
+
+private:
+  std::mutex Mutex;
+  std::vector<std::unique_ptr<Worker>> Idle;
+};
 
 template <class T, int Support>
 class TypedField : public IsoRayCaster::Field
@@ -57,46 +88,47 @@ public:
     this->Maximum = this->Bounds.GetMaximum();
     this->NumberOfNonFinite = this->Bounds.GetNumberOfNonFinite();
     const bool above = side == SolidSide::Above;
-    this->Walked = { voxels, size, &this->Bounds, above, this->NumberOfNonFinite > 0,
+    this->Solid = { voxels, size, &this->Bounds, above, this->NumberOfNonFinite > 0,
       above ? this->Minimum : this->Maximum };
   }
 
-  std::unique_ptr<Memory> Remember(double isoValue) const override
+  bool FindEntry(
+    const Ray& ray, const RaySpan& span, double isoValue, RayEntry& entry) const override
   {
-    return std::make_unique<TypedMemory>(this->Walked, isoValue);
+    const VoxelBlocks<T, Support> field(this->Solid, isoValue);
+    SurfaceBlocks<Support> blocks(field);
+    return FieldWalker<Support>(blocks, ray).FindEntry(span, entry);
   }
 
-  bool FindEntry(const Vec3& a, const Vec3& b, const RaySpan& span, Memory& memory, double& t,
-    Vec3& gradient) const override
+  void CastTiles(const RayGrid& rays, const BlockProjection& projection,
+    const std::array<int, 4>& extent, double isoValue, const TileTaker& take,
+    Execution& execution) const override
   {
-    auto& own = static_cast<TypedMemory&>(memory);
-    return FieldWalker<T, Support>(this->Walked, own.IsoValue, own.Blocks, a, b)
-      .FindEntry(span, t, gradient);
-  }
-
-  TileSpans FindSpans(const Matrix4& indexToPixel, const std::array<int, 4>& extent,
-    double isoValue, Execution& execution) const override
-  {
-    const bool above = this->Walked.SolidAbove;
-    return { this->Bounds, indexToPixel, extent,
-      [&](double low, double high) { return above ? high < isoValue : low > isoValue; },
-      execution };
+    const VoxelBlocks<T, Support> field(this->Solid, isoValue);
+    constexpr int width = TileEntries::Width;
+    const std::int64_t across = (static_cast<std::int64_t>(extent[1]) - extent[0]) / width + 1;
+    Workers<Support> workers;
+    const std::int64_t down = (static_cast<std::int64_t>(extent[3]) - extent[2]) / width + 1;
+    execution.For(across * down, 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        auto worker = workers.Take(field, rays, projection);
+        for (std::int64_t n = begin; n < end; ++n)
+        {
+          const int x = extent[0] + static_cast<int>(n % across) * width;
+          const int y = extent[2] + static_cast<int>(n / across) * width;
+          const std::array<int, 4> tile{ x, std::min(x + width - 1, extent[1]), y,
+            std::min(y + width - 1, extent[3]) };
+          worker->Caster.Cast(tile, nullptr, worker->Entries);
+          take(tile, worker->Entries);
+        }
+        workers.Return(std::move(worker));
+      });
   }
 
 private:
-  struct TypedMemory : Memory
-  {
-    TypedMemory(const WalkedField<T>& field, double isoValue)
-      : IsoValue(isoValue)
-      , Blocks(field, isoValue)
-    {
-    }
-    double IsoValue;
-    SurfaceBlocks<T, Support> Blocks;
-  };
-
   FieldBounds<T> Bounds;
-  WalkedField<T> Walked;
+  SolidVoxels<T> Solid;
 };
 
 /// Owns the control points of the spline that goes through the voxels.
@@ -117,27 +149,18 @@ private:
   SplineCoefficients Coefficients;
 };
 
-bool CastRay(const IsoRayCaster::Field& field, IsoRayCaster::Field::Memory& memory,
-  const RaySpan& span, const Vec3& origin, const Vec3& direction, RayHit& hit)
+/// The normal of a surface: unit, world, against the gradient.
+Vec3 NormalOf(const IsoRayCaster::Field& field, const Vec3& gradient, const Vec3& direction)
 {
-  if (!(field.Minimum <= field.Maximum))
-  {
-    return false; // no voxel is finite
-  }
-  const Matrix4& m = field.WorldToIndex;
-  Vec3 g;
-  if (!field.FindEntry(m.Point(origin), m.Vector(direction), span, memory, hit.Distance, g))
-  {
-    return false;
-  }
   // A gradient is a covector: it goes back with the transposed matrix.
+  const Matrix4& m = field.WorldToIndex;
+  const Vec3& g = gradient;
   const Vec3 world{ m(0, 0) * g[0] + m(1, 0) * g[1] + m(2, 0) * g[2],
     m(0, 1) * g[0] + m(1, 1) * g[1] + m(2, 1) * g[2],
     m(0, 2) * g[0] + m(1, 2) * g[1] + m(2, 2) * g[2] };
   const double length = Norm(world);
   // On a plateau at the iso-value the surface has no direction: show it to the viewer.
-  hit.Normal = length > 0 ? (-1 / length) * world : -1 * direction;
-  return true;
+  return length > 0 ? (-1 / length) * world : -1 * direction;
 }
 
 std::unique_ptr<IsoRayCaster::Field> MakeField(
@@ -193,20 +216,35 @@ std::int64_t IsoRayCaster::GetNumberOfNonFiniteVoxels() const
 bool IsoRayCaster::CastRay(
   const Vec3& origin, const Vec3& direction, double isoValue, RayHit& hit) const
 {
-  const std::unique_ptr<Field::Memory> memory = this->Implementation->Remember(isoValue);
-  return ::lacuna::CastRay(*this->Implementation, *memory, RaySpan::All(), origin, direction, hit);
+  const Field& field = *this->Implementation;
+  if (!(field.Minimum <= field.Maximum))
+  {
+    return false; // no voxel is finite
+  }
+  const Ray ray{ field.WorldToIndex.Point(origin), field.WorldToIndex.Vector(direction) };
+  RayEntry entry;
+  if (!field.FindEntry(ray, RaySpan{}, isoValue, entry))
+  {
+    return false;
+  }
+  hit = { entry.T, NormalOf(field, entry.Gradient, direction) };
+  return true;
 }
 
 void IsoRayCaster::Cast(
   const ImagePlane& plane, double isoValue, const DepthPixels& pixels, Execution& execution) const
 {
   const auto& e = pixels.Extent;
-  const std::int64_t columns = static_cast<std::int64_t>(e[1]) - e[0] + 1;
-  const std::int64_t rows = static_cast<std::int64_t>(e[3]) - e[2] + 1;
-  if (columns <= 0 || rows <= 0)
+  if (e[1] < e[0] || e[3] < e[2])
   {
     return;
   }
+  const Field& field = *this->Implementation;
+  const Matrix4& m = field.WorldToIndex;
+  const Vec3 zero{ 0, 0, 0 };
+  const RayGrid rays{ { m.Point(plane.Origin), m.Vector(plane.View) },
+    { m.Vector(plane.PixelSpacing * plane.Right), zero },
+    { m.Vector(plane.PixelSpacing * plane.Down), zero }, true };
   const Vec3 alongRow = (1 / plane.PixelSpacing) * plane.Right;
   const Vec3 alongColumn = (1 / plane.PixelSpacing) * plane.Down;
   Matrix4 worldToPixel;
@@ -219,42 +257,35 @@ void IsoRayCaster::Cast(
   worldToPixel(0, 3) = -Dot(alongRow, plane.Origin);
   worldToPixel(1, 3) = -Dot(alongColumn, plane.Origin);
   worldToPixel(2, 3) = -Dot(plane.View, plane.Origin);
-  const TileSpans spans = this->Implementation->FindSpans(
-    worldToPixel * this->Implementation->IndexToWorld, e, isoValue, execution);
-  // Square tiles: neighbouring rays meet the same voxels while these are in the cache.
-  const std::int64_t across = (columns + TileWidth - 1) / TileWidth;
-  const std::int64_t down = (rows + TileWidth - 1) / TileWidth;
-  execution.For(across * down, TilesAtATime,
-    [&](std::int64_t begin, std::int64_t end)
+  const BlockProjection projection(worldToPixel * field.IndexToWorld, rays);
+  const std::int64_t columns = static_cast<std::int64_t>(e[1]) - e[0] + 1;
+  const auto take = [&](const std::array<int, 4>& tile, const TileEntries& entries)
+  {
+    for (int row = tile[2]; row <= tile[3]; ++row)
     {
-      const std::unique_ptr<Field::Memory> memory = this->Implementation->Remember(isoValue);
-      for (std::int64_t tile = begin; tile < end; ++tile)
+      const std::uint64_t found = entries.Found[row - tile[2]];
+      const RayEntry* line = entries.Entries.data() + TileEntries::Width * (row - tile[2]);
+      for (int column = tile[0]; column <= tile[1]; ++column)
       {
-        const std::int64_t x0 = tile % across * TileWidth;
-        const std::int64_t y0 = tile / across * TileWidth;
-        for (std::int64_t y = y0; y < std::min(rows, y0 + TileWidth); ++y)
+        const std::int64_t i = (static_cast<std::int64_t>(row) - e[2]) * columns + column - e[0];
+        const int x = column - tile[0];
+        const bool valid = found >> x & 1;
+        pixels.Depth[i] = valid ? line[x].T : std::numeric_limits<double>::quiet_NaN();
+        if (pixels.Valid)
         {
-          for (std::int64_t x = x0; x < std::min(columns, x0 + TileWidth); ++x)
+          pixels.Valid[i] = valid;
+        }
+        if (pixels.Normals)
+        {
+          const Vec3 normal = valid ? NormalOf(field, line[x].Gradient, plane.View) : zero;
+          for (int a = 0; a < 3; ++a)
           {
-            const std::int64_t i = y * columns + x;
-            const Vec3 origin =
-              plane.PixelPosition(static_cast<int>(e[0] + x), static_cast<int>(e[2] + y));
-            RayHit hit{ std::numeric_limits<double>::quiet_NaN(), { 0, 0, 0 } };
-            const RaySpan span = spans.Get(static_cast<int>(e[0] + x), static_cast<int>(e[2] + y));
-            const bool valid = !span.IsEmpty() &&
-              ::lacuna::CastRay(*this->Implementation, *memory, span, origin, plane.View, hit);
-            pixels.Depth[i] = hit.Distance;
-            if (pixels.Valid)
-            {
-              pixels.Valid[i] = valid;
-            }
-            for (int a = 0; pixels.Normals && a < 3; ++a)
-            {
-              pixels.Normals[3 * i + a] = static_cast<float>(hit.Normal[a]);
-            }
+            pixels.Normals[3 * i + a] = static_cast<float>(normal[a]);
           }
         }
       }
-    });
+    }
+  };
+  field.CastTiles(rays, projection, e, isoValue, take, execution);
 }
 }
