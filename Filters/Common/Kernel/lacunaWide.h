@@ -13,4 +13,11 @@
 #else
 #define LACUNA_WIDE
 #endif
+
+/// Before a function that such a function calls: only what is inlined is compiled for AVX2 with it.
+#if defined(__GNUC__)
+#define LACUNA_INLINE inline __attribute__((always_inline))
+#else
+#define LACUNA_INLINE inline
+#endif
 #endif

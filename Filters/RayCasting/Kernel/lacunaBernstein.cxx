@@ -27,10 +27,16 @@ double Power(double x, int n)
   return power;
 }
 
-/// h(r) = sum a[i] r^i of degree 9, and its slope. Estrin's scheme: short chains of operations.
+/// h(r) = sum a[i] r^i, and its slope. Degree: 3 or 9. Estrin's scheme: short chains of operations.
+template <int Degree>
 inline double ValueAndSlope(const double* a, double r, double& slope)
 {
   const double r2 = r * r;
+  if (Degree == 3)
+  {
+    slope = (a[1] + 2 * a[2] * r) + 3 * a[3] * r2;
+    return (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
+  }
   const double r4 = r2 * r2;
   const double r8 = r4 * r4;
   const double low = (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
@@ -43,6 +49,7 @@ inline double ValueAndSlope(const double* a, double r, double& slope)
 
 /// The root in 0 <= r <= 1 of h(r) = sum a[i] r^i, which has one sign change in its coefficients
 /// and so exactly one positive root; h(1) does not have the sign class of a[0]. start: a guess.
+template <int Degree>
 double SolveMonotone(const double* a, double start)
 {
   const bool startsNegative = a[0] < 0;
@@ -56,7 +63,7 @@ double SolveMonotone(const double* a, double start)
       r = 0.5 * (low + high);
     }
     double slope;
-    const double value = ValueAndSlope(a, r, slope);
+    const double value = ValueAndSlope<Degree>(a, r, slope);
     ((value < 0) == startsNegative ? low : high) = r;
     // A step out of the bracket comes from a slope the wrong way, near r = 0: bisect then.
     const double next = r - value / slope;
@@ -73,21 +80,18 @@ double SolveMonotone(const double* a, double start)
 double ZeroOfPolygon(const ScaledBernstein& p)
 {
   const int n = p.Degree;
-  double binomial = 1;
-  double last = p.A[0];
-  for (int i = 1; i <= n; ++i)
+  int i = 1;
+  while (i < n && (p.A[i] < 0) == (p.A[0] < 0))
   {
-    binomial = binomial * (n - i + 1) / i;
-    const double next = p.A[i] / binomial;
-    if ((next < 0) != (last < 0))
-    {
-      return (i - 1 + last / (last - next)) / n;
-    }
-    last = next;
+    ++i;
   }
-  return 0.5;
+  // A[i - 1] / (n over i - 1) and A[i] / (n over i), both times (n over i) i
+  const double last = p.A[i - 1] * (n - i + 1);
+  const double next = p.A[i] * i;
+  return (i - 1 + last / (last - next)) / n;
 }
 
+template <int Degree>
 double SolveOneChange(const ScaledBernstein& p)
 {
   const int n = p.Degree;
@@ -100,12 +104,12 @@ double SolveOneChange(const ScaledBernstein& p)
   // With r = s / (1 - s), or its reciprocal, p becomes a plain polynomial on 0 <= r <= 1.
   if ((atHalf < 0) != (p.A[0] < 0))
   {
-    const double r = SolveMonotone(p.A.data(), start / (1 - start));
+    const double r = SolveMonotone<Degree>(p.A.data(), start / (1 - start));
     return r / (1 + r);
   }
   double reversed[Capacity] = {};
   std::reverse_copy(p.A.begin(), p.A.begin() + n + 1, reversed);
-  const double r = SolveMonotone(reversed, (1 - start) / start);
+  const double r = SolveMonotone<Degree>(reversed, (1 - start) / start);
   return 1 / (1 + r);
 }
 
@@ -155,7 +159,7 @@ bool Search(
   }
   if (pattern == SignPattern::OneChange)
   {
-    s = low + width * SolveOneChange(p);
+    s = low + width * (p.Degree <= 3 ? SolveOneChange<3>(p) : SolveOneChange<9>(p));
     return true;
   }
   if (depth == MaximumDepth)

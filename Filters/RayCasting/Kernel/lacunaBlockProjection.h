@@ -114,14 +114,17 @@ public:
     int box[4];
     for (int a = 0; a < 2; ++a)
     {
-      const double first = std::max(std::ceil(low[a] - margin), 1.0 * extent[2 * a]);
-      const double last = std::min(std::floor(high[a] + margin), 1.0 * extent[2 * a + 1]);
-      if (!(first <= last))
+      // not floor and ceil, which are calls on old processors
+      const double size = 1.0 * extent[2 * a + 1] - extent[2 * a];
+      const double from = std::max(low[a] - margin - extent[2 * a], 0.0);
+      const double to = std::min(high[a] + margin - extent[2 * a], size);
+      if (!(from <= to))
       {
         return { 0, -1, 0, -1 };
       }
-      box[2 * a] = static_cast<int>(first);
-      box[2 * a + 1] = static_cast<int>(last);
+      const int first = static_cast<int>(from);
+      box[2 * a] = extent[2 * a] + first + (first < from);
+      box[2 * a + 1] = extent[2 * a] + static_cast<int>(to);
     }
     return { box[0], box[1], box[2], box[3] };
   }

@@ -28,7 +28,7 @@ struct Range
 };
 
 /// Bezier points along one row from its control points; reads p[0..9].
-inline void AlongRow(const float* p, float* line)
+LACUNA_INLINE void AlongRow(const float* p, float* line)
 {
   constexpr float sixth = 1.0F / 6;
   constexpr float third = 1.0F / 3;
@@ -47,7 +47,7 @@ inline void AlongRow(const float* p, float* line)
 }
 
 /// The same across seven lines, to thirteen that lie stride floats apart.
-inline void AcrossLines(const float (*in)[LineSize], float* out, int stride)
+LACUNA_INLINE void AcrossLines(const float (*in)[LineSize], float* out, int stride)
 {
   constexpr float sixth = 1.0F / 6;
   constexpr float third = 1.0F / 3;
@@ -70,18 +70,18 @@ inline void AcrossLines(const float (*in)[LineSize], float* out, int stride)
   }
 }
 
-inline float Lesser(float a, float b)
+LACUNA_INLINE float Lesser(float a, float b)
 {
   return a < b ? a : b;
 }
 
-inline float Greater(float a, float b)
+LACUNA_INLINE float Greater(float a, float b)
 {
   return a > b ? a : b;
 }
 
 /// Of the lines that bound a cell.
-inline void MergeLines(
+LACUNA_INLINE void MergeLines(
   const float* a, const float* b, const float* c, const float* d, Range& result)
 {
   for (int i = 0; i < LineSize; ++i)
@@ -91,7 +91,7 @@ inline void MergeLines(
   }
 }
 
-inline void MergeRanges(
+LACUNA_INLINE void MergeRanges(
   const Range& a, const Range& b, const Range& c, const Range& d, Range& result)
 {
   for (int i = 0; i < LineSize; ++i)
@@ -101,7 +101,7 @@ inline void MergeRanges(
   }
 }
 
-inline void Store(CellHulls& hulls, float low, float high, float tolerance, int bit)
+LACUNA_INLINE void Store(CellHulls& hulls, float low, float high, float tolerance, int bit)
 {
   hulls.Outside |= static_cast<std::uint64_t>(high < -tolerance) << bit;
   hulls.Inside |= static_cast<std::uint64_t>(low > tolerance) << bit;
@@ -180,7 +180,7 @@ CellHulls ClassifyLinear(const float (*points)[5][8], float tolerance)
 }
 
 /// Bezier points of a cell along one axis, for four lines that lie side by side.
-inline void ToBezier(const float (*in)[4], int stride, float (*out)[4])
+LACUNA_INLINE void ToBezier(const float (*in)[4], int stride, float (*out)[4])
 {
   constexpr float sixth = 1.0F / 6;
   constexpr float third = 1.0F / 3;
@@ -362,7 +362,7 @@ CellPlanes BlockPoints<Support>::FindPlanes(int i, int j, int k) const
   const double tolerance = this->Tolerance;
   if (!(tolerance < std::numeric_limits<double>::infinity()))
   {
-    return { { 0, 0, 0 }, -tolerance, tolerance };
+    return { Vec3{ 0, 0, 0 }, -tolerance, tolerance };
   }
   FloatPlanes planes;
   if constexpr (Support == 4)
@@ -374,7 +374,7 @@ CellPlanes BlockPoints<Support>::FindPlanes(int i, int j, int k) const
     PlanesOfLinear(this->Values, i, j, k, planes);
   }
   // A slope is at most the difference of two points: its products are rounded by no more than they.
-  return { { planes.Slope[0], planes.Slope[1], planes.Slope[2] }, planes.Low - 4 * tolerance,
+  return { Vec3{ planes.Slope[0], planes.Slope[1], planes.Slope[2] }, planes.Low - 4 * tolerance,
     planes.High + 4 * tolerance };
 }
 

@@ -4,6 +4,8 @@
 #ifndef lacunaCellHulls_h
 #define lacunaCellHulls_h
 
+#include "lacunaVector.h"
+
 #include <cstdint>
 
 namespace lacuna
@@ -23,7 +25,7 @@ struct CellHulls
 /// Low <= field - Slope . x <= High.
 struct CellPlanes
 {
-  double Slope[3];
+  Vec3 Slope;
   double Low;
   double High;
 };

@@ -79,19 +79,14 @@ bool FindEntryInCell(const TensorCell<Support>& cell, ScaledBernstein& p, Vec3 f
   return true;
 }
 
-/// The same for a ray of which nothing is known.
+/// The same for a ray of which nothing is known. doubt: values of the field up to this are zero but
+/// for rounding.
 template <int Support>
 CellFinding SearchCellAlone(
-  const TensorCell<Support>& cell, const Vec3& from, const Vec3& to, double& s)
+  const TensorCell<Support>& cell, const Vec3& from, const Vec3& to, double doubt, double& s)
 {
-  constexpr double rounding = 1e-12;
   ScaledBernstein p = cell.Along(from, to);
-  double greatest = 0;
-  for (const double a : p.A)
-  {
-    greatest = std::max(greatest, std::abs(a));
-  }
-  if (!(std::min(std::abs(p.A[0]), std::abs(p.A[p.Degree])) > rounding * greatest))
+  if (!(std::abs(p.A[0]) > doubt && std::abs(p.A[p.Degree]) > doubt))
   {
     return CellFinding::Doubt;
   }

@@ -28,28 +28,55 @@ constexpr T Highest()
                                           : std::numeric_limits<T>::max();
 }
 
-/// Widens low[x]..high[x] by row[x]. Plain loops, so that the compiler vectorises them.
+/// Widens low[x]..high[x] by four rows. Plain loops, so that the compiler vectorises them.
 template <class T>
-void Accumulate(const T* row, int n, bool guard, T* low, T* high)
+void Accumulate(
+  const std::array<const T*, 4>& rows, int n, bool guard, T* __restrict low, T* __restrict high)
 {
   if constexpr (std::is_floating_point<T>::value)
   {
     if (guard)
     {
-      for (int x = 0; x < n; ++x)
+      for (const T* row : rows)
       {
-        const bool finite = std::isfinite(row[x]);
-        low[x] = std::min(low[x], finite ? row[x] : Lowest<T>());
-        high[x] = std::max(high[x], finite ? row[x] : Highest<T>());
+        for (int x = 0; x < n; ++x)
+        {
+          const bool finite = std::isfinite(row[x]);
+          low[x] = std::min(low[x], finite ? row[x] : Lowest<T>());
+          high[x] = std::max(high[x], finite ? row[x] : Highest<T>());
+        }
       }
       return;
     }
   }
+  const auto lesser = [](T a, T b) { return a < b ? a : b; };
+  const auto greater = [](T a, T b) { return a > b ? a : b; };
+  const T* a = rows[0];
+  const T* b = rows[1];
+  const T* c = rows[2];
+  const T* d = rows[3];
   for (int x = 0; x < n; ++x)
   {
-    const T v = row[x];
-    low[x] = v < low[x] ? v : low[x];
-    high[x] = v > high[x] ? v : high[x];
+    low[x] = lesser(low[x], lesser(lesser(a[x], b[x]), lesser(c[x], d[x])));
+    high[x] = greater(high[x], greater(greater(a[x], b[x]), greater(c[x], d[x])));
+  }
+}
+
+/// Each element becomes the choice among width elements from it on; the last ones are used up.
+template <class T, class Choose>
+void Slide(std::vector<T>& line, int width, const Choose& choose)
+{
+  T* p = line.data();
+  const std::size_t n = line.size();
+  for (int done = 1; done < width;)
+  {
+    const int step = std::min(done, width - done);
+    const T* q = p + step;
+    for (std::size_t x = 0; x + step < n; ++x)
+    {
+      p[x] = choose(p[x], q[x]);
+    }
+    done += step;
   }
 }
 
@@ -141,8 +168,11 @@ void FieldBounds<T>::BuildFine(
   execution.For(level.Blocks[2], 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      std::vector<T> low(size[0]);
-      std::vector<T> high(size[0]);
+      // voxel x is element x + before; those beyond the volume do not count
+      const int width = (1 << FineShift) + before + after;
+      const std::size_t length = (static_cast<std::size_t>(level.Blocks[0]) << FineShift) + width;
+      std::vector<T> low(length);
+      std::vector<T> high(length);
       for (int k = static_cast<int>(begin); k < end; ++k)
       {
         const Reach rz(k, FineShift, size[2], before, after);
@@ -154,18 +184,24 @@ void FieldBounds<T>::BuildFine(
           const Reach ry(j, FineShift, size[1], before, after);
           for (int z = rz.First; z <= rz.Last; ++z)
           {
-            for (int y = ry.First; y <= ry.Last; ++y)
+            for (int y = ry.First; y <= ry.Last; y += 4)
             {
-              const T* row = voxels + (static_cast<std::int64_t>(z) * size[1] + y) * size[0];
-              Accumulate(row, size[0], guard, low.data(), high.data());
+              std::array<const T*, 4> rows;
+              for (int n = 0; n < 4; ++n)
+              {
+                const int inside = std::min(y + n, ry.Last);
+                rows[n] = voxels + (static_cast<std::int64_t>(z) * size[1] + inside) * size[0];
+              }
+              Accumulate(rows, size[0], guard, low.data() + before, high.data() + before);
             }
           }
+          Slide(low, width, [](T a, T b) { return a < b ? a : b; });
+          Slide(high, width, [](T a, T b) { return a > b ? a : b; });
           T* bounds = level.Bounds.data() + level.IndexOf(0, j, k);
-          for (int i = 0; i < level.Blocks[0]; ++i, bounds += 2)
+          for (int i = 0; i < level.Blocks[0]; ++i)
           {
-            const Reach rx(i, FineShift, size[0], before, after);
-            bounds[0] = *std::min_element(low.begin() + rx.First, low.begin() + rx.Last + 1);
-            bounds[1] = *std::max_element(high.begin() + rx.First, high.begin() + rx.Last + 1);
+            bounds[2 * i] = low[i << FineShift];
+            bounds[2 * i + 1] = high[i << FineShift];
           }
         }
       }

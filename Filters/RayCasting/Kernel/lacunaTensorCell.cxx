@@ -9,7 +9,7 @@ namespace
 {
 /// Weights of the control points in the field's polar form at (r, s, t): its values at the
 /// arguments' permutations of two ends are the Bernstein coefficients between them.
-inline void PolarWeights(
+LACUNA_INLINE void PolarWeights(
   double r, double s, double t, double& w0, double& w1, double& w2, double& w3)
 {
   // de Boor's scheme for knots -2, -1, 0, 1, 2, 3
@@ -23,14 +23,34 @@ inline void PolarWeights(
   w3 = third * r * b2;
 }
 
+/// Scaled Bernstein coefficients m of the weights i on x0..x1: w[i][m].
+LACUNA_INLINE void CubicBernstein(double x0, double x1, double (*w)[4])
+{
+  const double r[4] = { x0, x0, x0, x1 };
+  const double s[4] = { x0, x0, x1, x1 };
+  const double t[4] = { x0, x1, x1, x1 };
+  constexpr double binomial[4] = { 1, 3, 3, 1 };
+  for (int m = 0; m < 4; ++m)
+  {
+    PolarWeights(r[m], s[m], t[m], w[0][m], w[1][m], w[2][m], w[3][m]);
+    for (int i = 0; i < 4; ++i)
+    {
+      w[i][m] *= binomial[m];
+    }
+  }
+}
+
 template <int S>
 struct Basis;
 
 template <>
 struct Basis<4>
 {
-  static void Value(double x, double w[4]) { PolarWeights(x, x, x, w[0], w[1], w[2], w[3]); }
-  static void Slope(double x, double w[4])
+  LACUNA_INLINE static void Value(double x, double w[4])
+  {
+    PolarWeights(x, x, x, w[0], w[1], w[2], w[3]);
+  }
+  LACUNA_INLINE static void Slope(double x, double w[4])
   {
     const double y = 1 - x;
     w[0] = -0.5 * y * y;
@@ -38,41 +58,26 @@ struct Basis<4>
     w[2] = 0.5 + x * (1 - 1.5 * x);
     w[3] = 0.5 * x * x;
   }
-  /// w[i][m]: scaled Bernstein coefficient m of weight i on x0..x1.
-  static void Bernstein(double x0, double x1, double w[4][4])
+  LACUNA_INLINE static void Bernstein(double x0, double x1, double w[4][4])
   {
-    const double r[4] = { x0, x0, x0, x1 };
-    const double s[4] = { x0, x0, x1, x1 };
-    const double t[4] = { x0, x1, x1, x1 };
-    constexpr double binomial[4] = { 1, 3, 3, 1 };
-    for (int m = 0; m < 4; ++m)
-    {
-      PolarWeights(r[m], s[m], t[m], w[0][m], w[1][m], w[2][m], w[3][m]);
-    }
-    for (int i = 0; i < 4; ++i)
-    {
-      for (int m = 0; m < 4; ++m)
-      {
-        w[i][m] *= binomial[m];
-      }
-    }
+    CubicBernstein(x0, x1, w);
   }
 };
 
 template <>
 struct Basis<2>
 {
-  static void Value(double x, double w[2])
+  LACUNA_INLINE static void Value(double x, double w[2])
   {
     w[0] = 1 - x;
     w[1] = x;
   }
-  static void Slope(double, double w[2])
+  LACUNA_INLINE static void Slope(double, double w[2])
   {
     w[0] = -1;
     w[1] = 1;
   }
-  static void Bernstein(double x0, double x1, double w[2][2])
+  LACUNA_INLINE static void Bernstein(double x0, double x1, double w[2][2])
   {
     w[0][0] = 1 - x0;
     w[0][1] = 1 - x1;
@@ -81,58 +86,93 @@ struct Basis<2>
   }
 };
 
-/// The points contracted with constant weights along two axes: those of the third remain.
-/// Strides are those of the axes u and v to contract and of w to keep.
+/// The points contracted with constant weights along all axes but one; only the rows' loops, of
+/// adjacent points, can become vector code.
 template <int S>
-void ContractTwo(
-  const double* points, int u, int v, int w, const double* wu, const double* wv, double* rest)
+LACUNA_INLINE void ContractAllBut(
+  int axis, const double* points, const double (*w)[S], double* rest)
 {
+  if (axis == 0)
+  {
+    for (int i = 0; i < S; ++i)
+    {
+      rest[i] = 0;
+    }
+    for (int n = 0; n < S * S; ++n)
+    {
+      const double weight = w[1][n % S] * w[2][n / S];
+      for (int i = 0; i < S; ++i)
+      {
+        rest[i] += weight * points[S * n + i];
+      }
+    }
+    return;
+  }
+  const int step = axis == 1 ? S * S : S; // of the axis to contract besides x
+  const int other = axis == 1 ? S : S * S;
+  const double* weights = w[axis == 1 ? 2 : 1];
   for (int c = 0; c < S; ++c)
   {
-    double sum = 0;
-    for (int b = 0; b < S; ++b)
+    const double* p = points + other * c;
+    double row[S];
+    for (int i = 0; i < S; ++i)
     {
-      double row = 0;
-      for (int a = 0; a < S; ++a)
+      row[i] = weights[0] * p[i] + weights[1] * p[i + step];
+      if constexpr (S == 4)
       {
-        row += wu[a] * points[a * u + b * v + c * w];
+        row[i] += weights[S - 2] * p[i + 2 * step] + weights[S - 1] * p[i + 3 * step];
       }
-      sum += wv[b] * row;
     }
-    rest[c] = sum;
+    rest[c] = w[0][0] * row[0] + w[0][1] * row[1];
+    if constexpr (S == 4)
+    {
+      rest[c] += w[0][S - 2] * row[S - 2] + w[0][S - 1] * row[S - 1];
+    }
   }
 }
 
 /// A line along one axis only: degree S - 1.
 template <int S>
-ScaledBernstein AlongAxis(const double* points, int axis, const Vec3& from, const Vec3& to)
+LACUNA_INLINE void AlongAxis(
+  const double* points, int axis, const Vec3& from, const Vec3& to, double* result)
 {
-  constexpr int strides[3] = { 1, S, S * S };
-  const int a = axis == 0 ? 1 : 0;
-  const int b = axis == 2 ? 1 : 2;
-  double wa[S];
-  double wb[S];
-  Basis<S>::Value(from[a], wa);
-  Basis<S>::Value(from[b], wb);
-  double rest[S];
-  ContractTwo<S>(points, strides[a], strides[b], strides[axis], wa, wb, rest);
-  double w[S][S];
-  Basis<S>::Bernstein(from[axis], to[axis], w);
-  ScaledBernstein p;
-  p.Degree = S - 1;
-  for (int i = 0; i < S; ++i)
+  double w[3][S];
+  for (int a = 0; a < 3; ++a)
   {
-    for (int m = 0; m < S; ++m)
+    if (a != axis)
     {
-      p.A[m] += rest[i] * w[i][m];
+      Basis<S>::Value(from[a], w[a]);
     }
   }
-  return p;
+  double rest[S];
+  ContractAllBut<S>(axis, points, w, rest);
+  double b[S][S];
+  Basis<S>::Bernstein(from[axis], to[axis], b);
+  for (int m = 0; m < S; ++m)
+  {
+    result[m] = rest[0] * b[0][m] + rest[1] * b[1][m];
+    if constexpr (S == 4)
+    {
+      result[m] += rest[S - 2] * b[S - 2][m] + rest[S - 1] * b[S - 1][m];
+    }
+  }
 }
 
-LACUNA_WIDE void ComposeCubic(const double* points, const double (*wx)[4], const double (*wy)[4],
-  const double (*wz)[4], double* result)
+LACUNA_WIDE void CubicAlongAxis(
+  const double* points, int axis, const Vec3& from, const Vec3& to, double* result)
 {
+  AlongAxis<4>(points, axis, from, to, result);
+}
+
+LACUNA_WIDE void ComposeCubic(
+  const double* points, const Vec3& from, const Vec3& to, double* result)
+{
+  alignas(32) double wx[4][4];
+  alignas(32) double wy[4][4];
+  alignas(32) double wz[4][4];
+  CubicBernstein(from[0], to[0], wx);
+  CubicBernstein(from[1], to[1], wy);
+  CubicBernstein(from[2], to[2], wz);
   alignas(32) double planes[4][8];
   for (int k = 0; k < 4; ++k)
   {
@@ -203,21 +243,32 @@ ScaledBernstein TensorCell<S>::Along(const Vec3& from, const Vec3& to) const
   const bool moves[3] = { from[0] != to[0], from[1] != to[1], from[2] != to[2] };
   if (moves[0] + moves[1] + moves[2] <= 1)
   {
-    return AlongAxis<S>(this->Points, moves[0] ? 0 : (moves[1] ? 1 : 2), from, to);
-  }
-  alignas(32) double w[3][S][S];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    Basis<S>::Bernstein(from[axis], to[axis], w[axis]);
+    const int axis = moves[0] ? 0 : (moves[1] ? 1 : 2);
+    ScaledBernstein p;
+    p.Degree = Degree;
+    if constexpr (S == 4)
+    {
+      CubicAlongAxis(this->Points, axis, from, to, p.A.data());
+    }
+    else
+    {
+      AlongAxis<S>(this->Points, axis, from, to, p.A.data());
+    }
+    return p;
   }
   ScaledBernstein p;
   p.Degree = 3 * Degree;
   if constexpr (S == 4)
   {
-    ComposeCubic(this->Points, w[0], w[1], w[2], p.A.data());
+    ComposeCubic(this->Points, from, to, p.A.data());
   }
   else
   {
+    double w[3][S][S];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      Basis<S>::Bernstein(from[axis], to[axis], w[axis]);
+    }
     ComposeLinear(this->Points, w[0], w[1], w[2], p.A.data());
   }
   return p;
@@ -232,7 +283,7 @@ double TensorCell<S>::Value(const Vec3& at) const
     Basis<S>::Value(at[axis], w[axis]);
   }
   double rest[S];
-  ContractTwo<S>(this->Points, 1, S, S * S, w[0], w[1], rest);
+  ContractAllBut<S>(2, this->Points, w, rest);
   double value = 0;
   for (int k = 0; k < S; ++k)
   {
@@ -241,39 +292,73 @@ double TensorCell<S>::Value(const Vec3& at) const
   return value;
 }
 
+namespace
+{
+template <int S>
+LACUNA_INLINE void ContractGradient(
+  const double* points, const double (*w)[S], const double (*d)[S], double* gradient)
+{
+  // first along y and z over whole rows, which vectorises, then along x
+  alignas(32) double value[S] = {};
+  alignas(32) double dy[S] = {};
+  alignas(32) double dz[S] = {};
+  for (int k = 0; k < S; ++k)
+  {
+    const double* p = points + S * S * k;
+    for (int i = 0; i < S; ++i)
+    {
+      double row = w[1][0] * p[i] + w[1][1] * p[i + S];
+      double slope = d[1][0] * p[i] + d[1][1] * p[i + S];
+      if constexpr (S == 4)
+      {
+        row += w[1][S - 2] * p[i + 2 * S] + w[1][S - 1] * p[i + 3 * S];
+        slope += d[1][S - 2] * p[i + 2 * S] + d[1][S - 1] * p[i + 3 * S];
+      }
+      value[i] += w[2][k] * row;
+      dy[i] += w[2][k] * slope;
+      dz[i] += d[2][k] * row;
+    }
+  }
+  gradient[0] = gradient[1] = gradient[2] = 0;
+  for (int i = 0; i < S; ++i)
+  {
+    gradient[0] += d[0][i] * value[i];
+    gradient[1] += w[0][i] * dy[i];
+    gradient[2] += w[0][i] * dz[i];
+  }
+}
+
+LACUNA_WIDE void CubicGradient(const double* points, const Vec3& at, double* gradient)
+{
+  double w[3][4];
+  double d[3][4];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    Basis<4>::Value(at[axis], w[axis]);
+    Basis<4>::Slope(at[axis], d[axis]);
+  }
+  ContractGradient<4>(points, w, d, gradient);
+}
+}
+
 template <int S>
 Vec3 TensorCell<S>::Gradient(const Vec3& at) const
 {
-  double w[3][S];
-  double d[3][S];
-  for (int axis = 0; axis < 3; ++axis)
+  Vec3 gradient;
+  if constexpr (S == 4)
   {
-    Basis<S>::Value(at[axis], w[axis]);
-    Basis<S>::Slope(at[axis], d[axis]);
+    CubicGradient(this->Points, at, gradient.data());
   }
-  Vec3 gradient{ 0, 0, 0 };
-  for (int k = 0; k < S; ++k)
+  else
   {
-    double dx = 0;
-    double dy = 0;
-    double value = 0;
-    for (int j = 0; j < S; ++j)
+    double w[3][S];
+    double d[3][S];
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const double* p = this->Points + (S * k + j) * S;
-      double row = 0;
-      double slope = 0;
-      for (int i = 0; i < S; ++i)
-      {
-        row += p[i] * w[0][i];
-        slope += p[i] * d[0][i];
-      }
-      dx += slope * w[1][j];
-      dy += row * d[1][j];
-      value += row * w[1][j];
+      Basis<S>::Value(at[axis], w[axis]);
+      Basis<S>::Slope(at[axis], d[axis]);
     }
-    gradient[0] += dx * w[2][k];
-    gradient[1] += dy * w[2][k];
-    gradient[2] += value * d[2][k];
+    ContractGradient<S>(this->Points, w, d, gradient.data());
   }
   return gradient;
 }

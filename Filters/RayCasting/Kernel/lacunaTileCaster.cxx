@@ -4,6 +4,7 @@
 #include "lacunaFieldWalker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lacuna
@@ -11,15 +12,8 @@ namespace lacuna
 namespace
 {
 constexpr double FaceTolerance = 1e-10; ///< voxels
-constexpr double StandsStill = 1e-6;    ///< voxels
+constexpr double NoMove = 1e-6;         ///< voxels
 
-/// A line in a face of the volume may miss it by rounding only: the faces' tolerance counts for the
-/// axes along which the line stands still. length: in voxels.
-bool StandsStillAlong(int axis, const Vec3& b, double length)
-{
-  const double fastest = std::max(std::max(std::abs(b[0]), std::abs(b[1])), std::abs(b[2]));
-  return std::abs(b[axis]) * length < StandsStill * fastest;
-}
 }
 
 template <int Support>
@@ -29,9 +23,17 @@ TileCaster<Support>::TileCaster(
   , Rays(rays)
   , Projection(projection)
   , InverseB{ 1 / rays.First.B[0], 1 / rays.First.B[1], 1 / rays.First.B[2] }
-  , Length(1.0 * field.GetSize()[0] + field.GetSize()[1] + field.GetSize()[2])
   , Blocks(field)
 {
+  const Vec3& b = rays.First.B;
+  const double fastest = std::max(std::max(std::abs(b[0]), std::abs(b[1])), std::abs(b[2]));
+  const Index& size = field.GetSize();
+  const double length = 1.0 * size[0] + size[1] + size[2]; // no ray crosses more voxels
+  for (int a = 0; a < 3; ++a)
+  {
+    this->Stops[a] = rays.Parallel && b[a] == 0;
+    this->StandsStill[a] = rays.Parallel && std::abs(b[a]) * length < NoMove * fastest;
+  }
 }
 
 template <int Support>
@@ -73,23 +75,49 @@ void TileCaster<Support>::Cast(
         }
         const CellHulls classes = this->Field.GetBlockClasses(big);
         const std::uint64_t mixed = ~(classes.Outside | classes.Inside);
-        const auto order = [&](int a)
-        { return this->Projection.Order(a, 4 * big[a], 4 * big[a] + 3, blockShift); };
-        const FrontToBack bz = order(2);
-        const FrontToBack by = order(1);
-        const FrontToBack bx = order(0);
-        for (int n = 0; n < 64; ++n)
+        this->ForEach(mixed, big, blockShift,
+          [&](const Index& block)
+          {
+            const PixelBox box = this->Projection.Find(block, blockShift, extent);
+            if (!box.IsEmpty() && this->IsOpen(box))
+            {
+              this->CastBlock(block, box);
+            }
+          });
+      }
+    }
+  }
+}
+
+/// Calls body with the blocks of a bigger one that are in set, front to back.
+template <int Support>
+template <class Body>
+void TileCaster<Support>::ForEach(
+  std::uint64_t set, const Index& bigger, int shift, const Body& body) const
+{
+  int order[3][4];
+  for (int a = 0; a < 3; ++a)
+  {
+    const FrontToBack indices = this->Projection.Order(a, 4 * bigger[a], 4 * bigger[a] + 3, shift);
+    for (int n = 0; n < 4; ++n)
+    {
+      order[a][n] = indices[n];
+    }
+  }
+  for (const int z : order[2])
+  {
+    for (const int y : order[1])
+    {
+      const std::uint64_t row = set >> CellHulls::BitOf(0, y, z) & 15;
+      if (!row)
+      {
+        continue;
+      }
+      for (const int x : order[0])
+      {
+        if (row >> (x & 3) & 1)
         {
-          const Index block{ bx[n & 3], by[n >> 2 & 3], bz[n >> 4] };
-          if (!(mixed >> CellHulls::BitOf(block[0], block[1], block[2]) & 1))
-          {
-            continue;
-          }
-          const PixelBox box = this->Projection.Find(block, blockShift, extent);
-          if (!box.IsEmpty() && this->IsOpen(box))
-          {
-            this->CastBlock(block, box);
-          }
+          body({ x, y, z });
         }
       }
     }
@@ -105,49 +133,48 @@ void TileCaster<Support>::CastBlock(const Index& block, const PixelBox& box)
   {
     return;
   }
-  const auto order = [&](int a)
-  { return this->Projection.Order(a, 4 * block[a], 4 * block[a] + 3, 0); };
-  const FrontToBack z = order(2);
-  const FrontToBack y = order(1);
-  const FrontToBack x = order(0);
   const std::array<int, 4> part{ box.FirstColumn, box.LastColumn, box.FirstRow, box.LastRow };
-  for (int n = 0; n < 64; ++n)
-  {
-    const Index cell{ x[n & 3], y[n >> 2 & 3], z[n >> 4] };
-    if (!(mixed >> CellHulls::BitOf(cell[0], cell[1], cell[2]) & 1))
+  this->ForEach(mixed, block, 0,
+    [&](const Index& cell)
     {
-      continue;
-    }
-    const PixelBox cellBox = this->Projection.Find(cell, 0, part);
-    if (!cellBox.IsEmpty() && this->IsOpen(cellBox))
-    {
-      const Index inBlock{ cell[0] & 3, cell[1] & 3, cell[2] & 3 };
+      const PixelBox cellBox = this->Projection.Find(cell, 0, part);
+      if (cellBox.IsEmpty() || !this->IsOpen(cellBox))
+      {
+        return;
+      }
       if (this->Rays.Parallel)
       {
-        this->template CastCell<true>(cell, inBlock, cellBox);
+        this->template CastCell<true>(cell, cellBox);
       }
       else
       {
-        this->template CastCell<false>(cell, inBlock, cellBox);
+        this->template CastCell<false>(cell, cellBox);
       }
-    }
-  }
+    });
 }
 
 template <int Support>
 template <bool Parallel>
-void TileCaster<Support>::CastCell(const Index& cell, const Index& inBlock, const PixelBox& box)
+void TileCaster<Support>::CastCell(const Index& cell, const PixelBox& box)
 {
-  CellPlanes planes;
+  CellPlanes planes{};
   bool hasPlanes = false;
   TensorCell<Support> points;
   bool hasPoints = false;
-  const Index& size = this->Field.GetSize();
-  bool atBorder = false;
+  Vec3 low;
+  Vec3 high;
   for (int a = 0; a < 3; ++a)
   {
-    atBorder = atBorder || cell[a] == 0 || cell[a] == size[a] - 2;
+    // A line in a face of the volume may miss it by rounding only: the faces' tolerance counts for
+    // the axes along which the line stands still.
+    const bool still = this->StandsStill[a];
+    low[a] = cell[a] - (still && cell[a] == 0 ? FaceTolerance : 0);
+    high[a] = cell[a] + 1 + (still && cell[a] == this->Field.GetSize()[a] - 2 ? FaceTolerance : 0);
   }
+  // The polynomial along an axis is found as fast as the planes.
+  const bool usePlanes = !(Support == 4 && this->Stops[0] + this->Stops[1] + this->Stops[2] == 2);
+  // The tolerance of the block's points is for floats, of 24 bits; here it is doubles, of 53.
+  const double doubt = this->Points.Tolerance * 1e-6;
   const std::uint64_t columns = this->Columns(box);
   for (int row = box.FirstRow; row <= box.LastRow; ++row)
   {
@@ -166,21 +193,14 @@ void TileCaster<Support>::CastCell(const Index& cell, const Index& inBlock, cons
       bool within = true;
       for (int a = 0; a < 3; ++a)
       {
-        double low = cell[a];
-        double high = cell[a] + 1;
-        if (atBorder && StandsStillAlong(a, ray.B, this->Length))
+        if (Parallel ? this->Stops[a] : ray.B[a] == 0)
         {
-          low -= cell[a] == 0 ? FaceTolerance : 0;
-          high += cell[a] == size[a] - 2 ? FaceTolerance : 0;
-        }
-        if (ray.B[a] == 0)
-        {
-          within = within && ray.A[a] >= low && ray.A[a] < high;
+          within = within && ray.A[a] >= low[a] && ray.A[a] < high[a];
           continue;
         }
         const double inverse = Parallel ? this->InverseB[a] : 1 / ray.B[a];
-        const double u = (low - ray.A[a]) * inverse;
-        const double v = (high - ray.A[a]) * inverse;
+        const double u = (low[a] - ray.A[a]) * inverse;
+        const double v = (high[a] - ray.A[a]) * inverse;
         t0 = std::max(t0, std::min(u, v));
         t1 = std::min(t1, std::max(u, v));
       }
@@ -188,19 +208,22 @@ void TileCaster<Support>::CastCell(const Index& cell, const Index& inBlock, cons
       {
         continue;
       }
-      if (!hasPlanes)
-      {
-        planes = this->Points.FindPlanes(inBlock[0], inBlock[1], inBlock[2]);
-        hasPlanes = true;
-      }
       const Vec3 from = LocalPoint(ray, cell, t0);
       const Vec3 to = LocalPoint(ray, cell, t1);
-      const double u =
-        planes.Slope[0] * from[0] + planes.Slope[1] * from[1] + planes.Slope[2] * from[2];
-      const double v = planes.Slope[0] * to[0] + planes.Slope[1] * to[1] + planes.Slope[2] * to[2];
-      if (std::max(u, v) + planes.High < 0 || std::min(u, v) + planes.Low > 0)
+      if (usePlanes)
       {
-        continue;
+        if (!hasPlanes)
+        {
+          planes = this->Points.FindPlanes(cell[0] & 3, cell[1] & 3, cell[2] & 3);
+          hasPlanes = true;
+        }
+        const Vec3& n = planes.Slope;
+        const double u = Dot(n, from);
+        const double v = Dot(n, to);
+        if (std::max(u, v) + planes.High < 0 || std::min(u, v) + planes.Low > 0)
+        {
+          continue;
+        }
       }
       if (!hasPoints)
       {
@@ -210,7 +233,7 @@ void TileCaster<Support>::CastCell(const Index& cell, const Index& inBlock, cons
       double s;
       RayEntry& entry = this->Out->Entries[Width * line + column];
       bool found = false;
-      switch (SearchCellAlone(points, from, to, s))
+      switch (SearchCellAlone(points, from, to, doubt, s))
       {
         case CellFinding::Nothing:
           continue;

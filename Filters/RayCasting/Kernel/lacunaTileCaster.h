@@ -49,7 +49,9 @@ public:
 private:
   void CastBlock(const Index& block, const PixelBox& box);
   template <bool Parallel>
-  void CastCell(const Index& cell, const Index& inBlock, const PixelBox& box);
+  void CastCell(const Index& cell, const PixelBox& box);
+  template <class Body>
+  void ForEach(std::uint64_t set, const Index& bigger, int shift, const Body& body) const;
 
   /// Whether a ray of the box still looks for its entry.
   bool IsOpen(const PixelBox& box) const
@@ -72,10 +74,12 @@ private:
   const FieldBlocks<Support>& Field;
   RayGrid Rays;
   const BlockProjection& Projection;
-  Vec3 InverseB;                 ///< of a parallel projection
-  double Length;                 ///< no ray crosses more voxels
-  SurfaceBlocks<Support> Blocks; ///< for rays followed alone
-  BlockPoints<Support> Points;   ///< of the block at work
+  // of a parallel projection:
+  Vec3 InverseB;
+  std::array<bool, 3> Stops;       ///< the rays' B is 0 along an axis
+  std::array<bool, 3> StandsStill; ///< the rays move along it by rounding only
+  SurfaceBlocks<Support> Blocks;   ///< for rays followed alone
+  BlockPoints<Support> Points;     ///< of the block at work
   std::array<std::uint64_t, Width> Open;
   std::array<int, 4> Extent;
   const RaySpan* Spans = nullptr;
