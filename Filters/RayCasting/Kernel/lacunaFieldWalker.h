@@ -32,14 +32,13 @@ public:
   /// Finds the first entry into the solid. What lies before the span is not known.
   bool FindEntry(const RaySpan& span, RayEntry& entry)
   {
-    double t0;
-    double t1;
-    if (!this->Clip(t0, t1))
+    RaySpan within;
+    if (!ClipToVolume(this->Line, this->Field.GetSize(), within))
     {
       return false;
     }
-    t0 = std::max(t0, span.First);
-    t1 = std::min(t1, span.Last);
+    const double t0 = std::max(within.First, span.First);
+    const double t1 = std::min(within.Last, span.Last);
     if (!(t0 < t1))
     {
       return false;
@@ -54,51 +53,24 @@ public:
     return true;
   }
 
+  /// Finds where the ray, in the solid behind t0, leaves it. False when the volume or the span ends
+  /// before.
+  bool FindExit(double t0, const RaySpan& span, double& t)
+  {
+    this->Leaving = true;
+    RayEntry entry;
+    if (!this->FindEntry({ std::max(t0, span.First), span.Last }, entry))
+    {
+      return false;
+    }
+    t = entry.T;
+    return true;
+  }
+
 private:
   using Index = std::array<int, 3>;
   static constexpr int CoarseShift = FieldBlocks<Support>::CoarseShift;
   static constexpr int BlockShift = FieldBlocks<Support>::BlockShift;
-  static constexpr double FaceTolerance = 1e-10; ///< voxels
-  static constexpr double StandsStill = 1e-6;    ///< voxels
-
-  /// The part of the line within the volume. A line in a face of the volume may miss it by rounding
-  /// only: the faces' tolerance counts for the axes along which the line stands still.
-  bool Clip(double& t0, double& t1) const
-  {
-    t0 = -std::numeric_limits<double>::infinity();
-    t1 = std::numeric_limits<double>::infinity();
-    for (int a = 0; a < 3; ++a)
-    {
-      if (!this->ClipAxis(a, FaceTolerance, t0, t1))
-      {
-        return false;
-      }
-    }
-    const double length = t1 - t0;
-    for (int a = 0; a < 3; ++a)
-    {
-      if (std::abs(this->Line.B[a]) * length > StandsStill && !this->ClipAxis(a, 0, t0, t1))
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  bool ClipAxis(int axis, double tolerance, double& t0, double& t1) const
-  {
-    const double low = -tolerance - this->Line.A[axis];
-    const double high = this->Field.GetSize()[axis] - 1 + tolerance - this->Line.A[axis];
-    if (this->Line.B[axis] == 0)
-    {
-      return low <= 0 && high >= 0;
-    }
-    const double u = low * this->InverseB[axis];
-    const double v = high * this->InverseB[axis];
-    t0 = std::max(t0, std::min(u, v));
-    t1 = std::min(t1, std::max(u, v));
-    return t0 < t1;
-  }
 
   /// Visits the blocks of 2^Shift cells between first and last and between t0 and t1, in order.
   /// Every t is computed from the integer coordinates of a plane, so that levels agree and errors
@@ -155,8 +127,7 @@ private:
       const auto type = this->Field.GetCoarseClass(block);
       if (type.Outside)
       {
-        this->State = RayState::Outside;
-        return false;
+        return this->MeetEmpty(t0);
       }
       if (type.Inside)
       {
@@ -171,8 +142,7 @@ private:
       const int bit = CellHulls::BitOf(block[0], block[1], block[2]);
       if (hulls.Outside >> bit & 1)
       {
-        this->State = RayState::Outside;
-        return false;
+        return this->MeetEmpty(t0);
       }
       if (hulls.Inside >> bit & 1)
       {
@@ -203,6 +173,14 @@ private:
       last[a] = std::min(first[a] + 4, count) - 1;
     }
     return this->template Walk<Finer>(first, last, t0, t1);
+  }
+
+  /// The field is not solid from t on.
+  bool MeetEmpty(double t)
+  {
+    this->State = RayState::Outside;
+    this->Entry.T = t;
+    return this->Leaving;
   }
 
   /// The field is solid from t on. A hit, unless it was so before or is so from the start.
@@ -236,6 +214,16 @@ private:
     const Vec3 to = LocalPoint(this->Line, cell, t1);
     ScaledBernstein p = this->Cell.Along(from, to);
     double s;
+    if (this->Leaving)
+    {
+      s = 0;
+      if (p.A[0] >= 0 && !FindFirstSignChange(p, s))
+      {
+        return false;
+      }
+      this->Entry.T = t0 + s * (t1 - t0);
+      return true;
+    }
     if (!FindEntryInCell(this->Cell, p, from, to, this->State, s))
     {
       return false;
@@ -253,6 +241,7 @@ private:
   RayState State = RayState::Unknown;
   TensorCell<Support> Cell;
   RayEntry Entry{};
+  bool Leaving = false; ///< looks for an exit
 };
 }
 #endif

@@ -9,6 +9,7 @@
 #ifndef lacunaIsoRayCaster_h
 #define lacunaIsoRayCaster_h
 
+#include "lacunaCutRegion.h"
 #include "lacunaExecution.h"
 #include "lacunaImagePlane.h"
 #include "lacunaSolidSide.h"
@@ -19,11 +20,19 @@
 
 namespace lacuna
 {
+class IsoField;
+
 enum class FieldInterpolation
 {
   BSpline,              ///< cubic, the voxels are the control points: smooths
   InterpolatingBSpline, ///< cubic, goes through the voxels
   Trilinear
+};
+
+enum class SurfaceNormal
+{
+  Analytic, ///< of the field
+  GreyLevel ///< differences of voxels, interpolated trilinearly (Carr 1996, eq. 3.5)
 };
 
 struct RayHit
@@ -32,11 +41,31 @@ struct RayHit
   Vec3 Normal;     ///< unit, world, out of the solid and so towards the viewer
 };
 
+/// What the rays of a map are asked besides where they first hit.
+struct RayRequest
+{
+  /// Rays start here and go through the pixels; null: a parallel projection. Depths count from the
+  /// pixels, those of surfaces between the eye and the image plane are negative.
+  const Vec3* Eye = nullptr;
+  /// Of the pixels of the extent: rays are followed from 1e-6 voxel behind these depths only, as if
+  /// nothing were known of what lies before; not at all where NaN. Null: from the start.
+  const double* StartDepth = nullptr;
+  /// Not seen, nor what of the solid is in it; may be null. Must outlive the call.
+  const CutRegion* CutAway = nullptr;
+  bool CapCutAway = true;   ///< a ray that leaves CutAway into the solid hits there
+  bool CapBoundary = false; ///< so does one that enters the volume in the solid
+  SurfaceNormal Normals = SurfaceNormal::Analytic;
+  /// For the pixels of the extent: mm from the hit to where the ray leaves the solid; NaN without a
+  /// hit and where the volume ends before. Where the solid is cut away it ends. May be null.
+  double* Thickness = nullptr;
+};
+
 /// Rules. The surface is where a ray passes from outside into the solid. A ray that is inside the
 /// solid where it enters the volume has not met its surface there: it goes on until it has left the
-/// solid and enters it again. The field ends at the centres of the outermost voxels; control points
-/// beyond them are extrapolated linearly. Voxels that are not finite count as empty: they take the
-/// value of the emptiest voxel (the least one when the solid is above the iso-value).
+/// solid and enters it again (unless capped, see RayRequest). The field ends at the centres of the
+/// outermost voxels; control points beyond them are extrapolated linearly. Voxels that are not
+/// finite count as empty: they take the value of the emptiest voxel (the least one when the solid
+/// is above the iso-value).
 class IsoRayCaster
 {
 public:
@@ -56,14 +85,23 @@ public:
   /// line: distances before the origin are negative. False when there is none.
   bool CastRay(const Vec3& origin, const Vec3& direction, double isoValue, RayHit& hit) const;
 
-  /// Casts the rays of pixels.Extent. A pixel's result does not depend on the extent.
+  /// Casts the rays of pixels.Extent. A pixel's result does not depend on the extent. Throws
+  /// std::invalid_argument when the eye is not before the plane.
+  void Cast(const ImagePlane& plane, double isoValue, const DepthPixels& pixels,
+    const RayRequest& request, Execution& execution) const;
   void Cast(const ImagePlane& plane, double isoValue, const DepthPixels& pixels,
     Execution& execution) const;
 
-  class Field;
-
 private:
-  std::unique_ptr<const Field> Implementation;
+  /// The normal of a surface with this index gradient towards the solid at a point of a ray.
+  Vec3 NormalOf(const Vec3& gradient, const Vec3& direction) const;
+
+  friend class MapCaster;
+
+  VoxelVolume Volume;
+  Matrix4 WorldToIndex;
+  SolidSide Side;
+  std::unique_ptr<const IsoField> Field;
 };
 }
 #endif

@@ -6,6 +6,7 @@
 
 #include "lacunaVector.h"
 
+#include <array>
 #include <limits>
 
 namespace lacuna
@@ -30,6 +31,16 @@ struct RayEntry
   double T;
   Vec3 Gradient; ///< of the field towards the solid, per voxel step
 };
+
+/// The part of a ray within a volume, between the centres of the outermost voxels; false when there
+/// is none. A line in a face of the volume may miss it by rounding only: the faces' tolerance counts
+/// for the axes along which the line stands still.
+bool ClipToVolume(const Ray& ray, const std::array<int, 3>& size, RaySpan& span);
+
+/// How much further than the volume those axes reach, voxels.
+constexpr double FaceTolerance = 1e-10;
+/// A ray that moves less than this along an axis, in voxels, stands still.
+constexpr double NoMove = 1e-6;
 
 /// The rays of the pixels of an image, whose lines depend linearly on the column and the row: in a
 /// parallel projection all have the same B, in a perspective one the same A.

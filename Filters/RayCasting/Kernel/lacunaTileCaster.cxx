@@ -9,13 +9,6 @@
 
 namespace lacuna
 {
-namespace
-{
-constexpr double FaceTolerance = 1e-10; ///< voxels
-constexpr double NoMove = 1e-6;         ///< voxels
-
-}
-
 template <int Support>
 TileCaster<Support>::TileCaster(
   const FieldBlocks<Support>& field, const RayGrid& rays, const BlockProjection& projection)
@@ -48,7 +41,13 @@ void TileCaster<Support>::Cast(
   const PixelBox tile{ extent[0], extent[1], extent[2], extent[3] };
   for (int row = extent[2]; row <= extent[3]; ++row)
   {
-    this->Open[row - extent[2]] = this->Columns(tile);
+    const int line = row - extent[2];
+    this->Open[line] = this->Columns(tile);
+    for (int x = 0; spans && x <= extent[1] - extent[0]; ++x)
+    {
+      const RaySpan& span = spans[Width * line + x];
+      this->Open[line] &= ~(static_cast<std::uint64_t>(!(span.First < span.Last)) << x);
+    }
   }
   const Index coarse = this->Field.CountCoarse();
   constexpr int coarseShift = FieldBlocks<Support>::CoarseShift;
