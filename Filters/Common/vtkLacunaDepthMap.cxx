@@ -142,5 +142,13 @@ void vtkLacunaDepthMap::SetInformation(vtkInformation* info, const lacuna::Image
 //------------------------------------------------------------------------------
 bool vtkLacunaDepthMap::IsGiven(const double point[3])
 {
-  return std::none_of(point, point + 3, [](double x) { return x >= VTK_DOUBLE_MAX; });
+  const auto open = std::count_if(point, point + 3, [](double x) { return x >= VTK_DOUBLE_MAX; });
+  if (open != 0 && open != 3)
+  {
+    std::ostringstream message;
+    message << "of the point " << point[0] << " " << point[1] << " " << point[2] << " only "
+            << 3 - open << " coordinates are given: give all three, or leave all at 1e299";
+    throw std::runtime_error(message.str());
+  }
+  return open == 0;
 }

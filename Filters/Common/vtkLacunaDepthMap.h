@@ -82,8 +82,8 @@ public:
   /// What RequestInformation says of a map on plane: whole extent, geometry, type of the scalars.
   static void SetInformation(vtkInformation* info, const lacuna::ImagePlane& plane);
 
-  /// True unless point is left open: a coordinate is VTK_DOUBLE_MAX, the default of the points of
-  /// ViewSettings in filters that make maps.
+  /// True unless point is left open: its coordinates are VTK_DOUBLE_MAX, the default of the points
+  /// of ViewSettings in filters that make maps. Throws when some are and others are not.
   static bool IsGiven(const double point[3]);
 
 private:

@@ -2,6 +2,7 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaIsoRayCaster.h"
+#include "lacunaPerspective.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
@@ -9,8 +10,10 @@
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -27,6 +30,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -39,6 +43,8 @@ static_assert(vtkLacunaBSplineIsoRayCaster::Trilinear ==
 
 namespace
 {
+constexpr const char* ThicknessName = "Thickness";
+
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
 std::array<int, 3> SizeOf(const int extent[6])
@@ -87,6 +93,11 @@ public:
   vtkSmartPointer<vtkDataArray> Copy;
   std::unique_ptr<lacuna::IsoRayCaster> Caster;
 
+  static lacuna::Vec3 Eye(vtkLacunaBSplineIsoRayCaster* self)
+  {
+    return { self->EyePosition[0], self->EyePosition[1], self->EyePosition[2] };
+  }
+
   static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkInformation* inInfo)
   {
     int extent[6];
@@ -111,6 +122,14 @@ public:
     {
       std::copy_n(data->GetDirectionMatrix()->GetData(), 9, direction);
     }
+    for (const double edge : spacing)
+    {
+      if (!(std::abs(edge) > 0) || !std::isfinite(edge))
+      {
+        throw std::runtime_error("the voxels of the volume are " + Joined(spacing, 3) +
+          " mm: every edge must be longer than 0; mend the spacing of the input");
+      }
+    }
     lacuna::ViewSettings view;
     std::copy_n(self->ViewDirection, 3, view.Direction.data());
     std::copy_n(self->ViewUp, 3, view.Up.data());
@@ -120,8 +139,70 @@ public:
     view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
     view.PixelSpacing = self->PixelSpacing;
     view.Size = { self->ImageSize[0], self->ImageSize[1] };
-    return lacuna::MakeImagePlane(
-      IndexToWorld(origin, spacing, direction, extent), SizeOf(extent), view);
+    const lacuna::Matrix4 indexToWorld = IndexToWorld(origin, spacing, direction, extent);
+    const auto size = SizeOf(extent);
+    if (self->Projection == Parallel)
+    {
+      return lacuna::MakeImagePlane(indexToWorld, size, view);
+    }
+    if (!vtkLacunaDepthMap::IsGiven(self->EyePosition))
+    {
+      throw std::runtime_error(
+        "a perspective view needs EyePosition: the point from which the viewer looks");
+    }
+    lacuna::CheckVolumeSize(size);
+    return lacuna::MakePerspectivePlane(lacuna::CornersOf(indexToWorld, size),
+      lacuna::SmallestEdgeOf(indexToWorld), view, Eye(self), self->ViewAngle);
+  }
+
+  /// The depths of the start map in extent. Throws unless it shows the same view as plane.
+  static std::vector<double> StartDepths(vtkImageData* map, const lacuna::ImagePlane& plane,
+    const lacuna::Vec3* eye, const int extent[6])
+  {
+    const vtkLacunaDepthMap start(map);
+    const lacuna::Matrix4 wanted = lacuna::Matrix4::FromColumns(
+      plane.PixelSpacing * plane.Right, plane.PixelSpacing * plane.Down, plane.View, plane.Origin);
+    bool same = start.IsPerspective() == (eye != nullptr);
+    for (int i = 0; i < 12; ++i)
+    {
+      const double difference = wanted(i / 4, i % 4) - start.GetImageToWorld()(i / 4, i % 4);
+      same = same && std::abs(difference) <= 1e-6 * plane.PixelSpacing;
+    }
+    if (same && eye)
+    {
+      const lacuna::Vec3 seen = start.GetPoint(0, 0, 0) - *eye;
+      same = lacuna::Norm(lacuna::Normalized(seen) - start.GetRay(0, 0)) < 1e-9;
+    }
+    const int* has = map->GetExtent();
+    for (int a = 0; a < 2; ++a)
+    {
+      same = same && has[2 * a] <= extent[2 * a] && has[2 * a + 1] >= extent[2 * a + 1];
+    }
+    if (!same)
+    {
+      throw std::runtime_error("the start depth map shows another view: give both filters the same "
+                               "view, PixelSpacing, ImageSize and PlaneOrigin");
+    }
+    std::vector<double> depths;
+    for (int y = extent[2]; y <= extent[3]; ++y)
+    {
+      for (int x = extent[0]; x <= extent[1]; ++x)
+      {
+        int pixel[3] = { x, y, has[4] };
+        depths.push_back(start.GetDepth()->GetTuple1(map->ComputePointId(pixel)));
+      }
+    }
+    return depths;
+  }
+
+  /// Rings round voxels like +-1e20 reach far: say so.
+  static bool IsPadded(const lacuna::IsoRayCaster& caster, double isoValue)
+  {
+    const double below = isoValue - caster.GetMinimum();
+    const double above = caster.GetMaximum() - isoValue;
+    const double greatest = std::max(below, above);
+    return greatest > 1e5 * std::min(below, above) ||
+      greatest > 1e10 * std::max(1.0, std::abs(isoValue));
   }
 
   const lacuna::IsoRayCaster& Prepare(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* input,
@@ -163,6 +244,8 @@ vtkLacunaBSplineIsoRayCaster::vtkLacunaBSplineIsoRayCaster()
 {
   std::fill_n(this->FocalPoint, 3, VTK_DOUBLE_MAX);
   std::fill_n(this->PlaneOrigin, 3, VTK_DOUBLE_MAX);
+  std::fill_n(this->EyePosition, 3, VTK_DOUBLE_MAX);
+  this->SetNumberOfInputPorts(2);
 }
 
 //------------------------------------------------------------------------------
@@ -205,6 +288,40 @@ double vtkLacunaBSplineIsoRayCaster::GetIsoValue(int i) const
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaBSplineIsoRayCaster::SetCutAway(vtkImplicitFunction* function)
+{
+  if (this->CutAway != function)
+  {
+    this->CutAway = function;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkImplicitFunction* vtkLacunaBSplineIsoRayCaster::GetCutAway() const
+{
+  return this->CutAway;
+}
+
+//------------------------------------------------------------------------------
+vtkMTimeType vtkLacunaBSplineIsoRayCaster::GetMTime()
+{
+  const vtkMTimeType time = this->Superclass::GetMTime();
+  return this->CutAway ? std::max(time, this->CutAway->GetMTime()) : time;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaBSplineIsoRayCaster::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaBSplineIsoRayCaster::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -237,14 +354,21 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
 int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  // any pixel's ray may go anywhere in the volume
-  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-  inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
-  // this very extent: a producer of sub-extents would split it once more by piece
-  inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
+  // another size must be seen to be one.
+  for (int port = 0; port < 2; ++port)
+  {
+    if (inputVector[port]->GetNumberOfInformationObjects() > 0)
+    {
+      vtkInformation* inInfo = inputVector[port]->GetInformationObject(0);
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
+      inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+      // this very extent: a producer of sub-extents would split it once more by piece
+      inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+      inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+    }
+  }
   return 1;
 }
 
@@ -310,6 +434,33 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       normals->SetNumberOfComponents(3);
       normals->SetNumberOfTuples(pixels);
 
+      const lacuna::Vec3 eye = Internals::Eye(this);
+      lacuna::RayRequest request;
+      request.Eye = this->Projection == Perspective ? &eye : nullptr;
+      request.CapCutAway = this->CapCutAway;
+      request.CapBoundary = this->CapBoundary;
+      request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
+                                                       : lacuna::SurfaceNormal::GreyLevel;
+      std::vector<double> startDepths;
+      vtkImageData* start = vtkImageData::GetData(inputVector[1]);
+      if (start)
+      {
+        startDepths = Internals::StartDepths(start, plane, request.Eye, extent);
+        request.StartDepth = startDepths.data();
+      }
+      std::unique_ptr<lacuna::CutRegion> cutAway;
+      if (this->CutAway)
+      {
+        const lacuna::Matrix4 indexToWorld = IndexToWorld(input->GetOrigin(), input->GetSpacing(),
+          input->GetDirectionMatrix()->GetData(), input->GetExtent());
+        cutAway =
+          vtkLacunaCutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(indexToWorld),
+            lacuna::CornersOf(indexToWorld, SizeOf(input->GetExtent())));
+        request.CutAway = cutAway.get();
+      }
+      vtkNew<vtkDoubleArray> thickness;
+      thickness->SetName(ThicknessName);
+
       const std::size_t count = this->IsoValues.size();
       for (std::size_t i = 0; i < count; ++i)
       {
@@ -324,16 +475,35 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
                                        << caster.GetMaximum() << ": " << depth->GetName()
                                        << " is empty");
         }
+        if (this->Interpolation == InterpolatingBSpline && Internals::IsPadded(caster, isoValue))
+        {
+          vtkWarningMacro("array '"
+            << name << "' has values from " << caster.GetMinimum() << " to " << caster.GetMaximum()
+            << ", very far from the iso-value " << isoValue
+            << ": round such voxels the spline that goes through all voxels "
+               "swings far up and down. Replace padding values by that of "
+               "air with Threshold or Calculator, or choose BSpline");
+        }
+        request.Thickness = nullptr;
+        if (i == 0 && this->ComputeThickness)
+        {
+          thickness->SetNumberOfTuples(pixels);
+          request.Thickness = thickness->GetPointer(0);
+        }
         execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
         caster.Cast(plane, isoValue,
           { { extent[0], extent[1], extent[2], extent[3] }, depth->GetPointer(0),
             i ? nullptr : mask->GetPointer(0), i ? nullptr : normals->GetPointer(0) },
-          execution);
+          request, execution);
         output->GetPointData()->AddArray(depth);
         if (i == 0)
         {
           output->GetPointData()->AddArray(mask);
           output->GetPointData()->SetNormals(normals);
+          if (this->ComputeThickness)
+          {
+            output->GetPointData()->AddArray(thickness);
+          }
         }
       }
       output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
@@ -344,13 +514,29 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       }
 
       vtkLacunaFieldData::Set(output, vtkLacunaDepthMap::IsoValuesName, this->IsoValues, 1);
-      vtkLacunaProvenance::Record(output, this, { input },
+      if (request.Eye)
+      {
+        vtkLacunaFieldData::Set(
+          output, vtkLacunaDepthMap::EyePositionName, { eye[0], eye[1], eye[2] }, 3);
+        vtkLacunaFieldData::Set(
+          output, vtkLacunaDepthMap::ViewAngleName, { lacuna::ViewAngleOf(plane, eye) }, 1);
+      }
+      std::vector<vtkDataObject*> sources{ input };
+      if (start)
+      {
+        sources.push_back(start);
+      }
+      vtkLacunaProvenance::Record(output, this, sources,
         "Array=" + name + " IsoValues=" + Joined(this->IsoValues.data(), count) +
           " Interpolation=" + std::to_string(this->Interpolation) + " SolidSide=" +
           std::to_string(this->SolidSide) + " ViewDirection=" + Joined(this->ViewDirection, 3) +
           " ViewUp=" + Joined(this->ViewUp, 3) + " PlaneOrigin=" + Joined(plane.Origin.data(), 3) +
           " PixelSpacing=" + Joined(&plane.PixelSpacing, 1) +
-          " ImageSize=" + std::to_string(plane.Size[0]) + "," + std::to_string(plane.Size[1]));
+          " ImageSize=" + std::to_string(plane.Size[0]) + "," + std::to_string(plane.Size[1]) +
+          (request.Eye ? " EyePosition=" + Joined(eye.data(), 3) : std::string()) +
+          " NormalMethod=" + std::to_string(this->NormalMethod) +
+          " CutAway=" + (this->CutAway ? this->CutAway->GetClassName() : "None") + " CapCutAway=" +
+          std::to_string(this->CapCutAway) + " CapBoundary=" + std::to_string(this->CapBoundary));
     });
 }
 
@@ -367,5 +553,13 @@ void vtkLacunaBSplineIsoRayCaster::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "FocalPoint: " << Joined(this->FocalPoint, 3) << "\n"
      << indent << "PlaneOrigin: " << Joined(this->PlaneOrigin, 3) << "\n"
      << indent << "PixelSpacing: " << this->PixelSpacing << "\n"
+     << indent << "Projection: " << this->Projection << "\n"
+     << indent << "EyePosition: " << Joined(this->EyePosition, 3) << "\n"
+     << indent << "ViewAngle: " << this->ViewAngle << "\n"
+     << indent << "NormalMethod: " << this->NormalMethod << "\n"
+     << indent << "CutAway: " << this->CutAway.Get() << "\n"
+     << indent << "CapCutAway: " << this->CapCutAway << "\n"
+     << indent << "CapBoundary: " << this->CapBoundary << "\n"
+     << indent << "ComputeThickness: " << this->ComputeThickness << "\n"
      << indent << "ImageSize: " << this->ImageSize[0] << " " << this->ImageSize[1] << "\n";
 }

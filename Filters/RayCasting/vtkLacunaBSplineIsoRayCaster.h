@@ -18,17 +18,27 @@
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
  * x 3, unit, world, towards the viewer), Depth_1, Depth_2, ... for the second iso-value and so on.
- * Field data: ImageToWorld, IsoValues, Provenance. Requested extents are honoured.
+ * With ComputeThickness: Thickness (double, mm along the ray from the first hit to where it leaves
+ * the solid; NaN without a hit and where the volume ends before). Field data: ImageToWorld,
+ * IsoValues, Provenance, of perspective maps EyePosition and ViewAngle. Requested extents are
+ * honoured.
+ *
+ * Optional second input: a depth map of the same view, behind whose Depth the rays go on (from 1e-6
+ * voxel behind it, and not at all where it is NaN): to a higher iso-value, to the next layer, or
+ * with the other SolidSide to the far side of the wall.
  *
  * Rules. A field equal to the iso-value is solid. A ray that is inside the solid where it enters
  * the volume has not met a surface there (a head cut by the scan field is open): it goes on until
  * it has left the solid and enters it again. The field ends at the centres of the outermost voxels;
  * beyond them control points are extrapolated linearly. Voxels that are not finite are empty (they
  * take the least solid value of the volume); their number is given in a warning. An iso-value
- * outside the volume's values gives an empty map and a warning with their range.
+ * outside the volume's values gives an empty map and a warning with their range. Where a ray leaves
+ * what is cut away into the solid it hits there, with the cut's normal (CapCutAway), and with
+ * CapBoundary also where it enters the volume in the solid. A perspective ray starts at the eye,
+ * which is no surface.
  *
  * Errors: no scalars or several components, fewer than two voxels along an axis, a zero
- * ViewDirection or ViewUp, ViewUp parallel to ViewDirection, a negative or not finite PixelSpacing,
+ * ViewDirection or ViewUp, voxels without size, a start depth map of another view, ViewUp parallel to ViewDirection, a negative or not finite PixelSpacing,
  * more than 2^28 pixels.
  *
  * Source: Carr 1996, 3.2 and 3.3.3.
@@ -41,9 +51,13 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
 
+#include "vtkSmartPointer.h" // for CutAway
+
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 #include <vector> // for std::vector
+
+class vtkImplicitFunction;
 
 class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaBSplineIsoRayCaster : public vtkImageAlgorithm
 {
@@ -93,6 +107,89 @@ public:
   vtkSetClampMacro(SolidSide, int, Above, Below);
   vtkGetMacro(SolidSide, int);
   ///@}
+
+  enum ProjectionType
+  {
+    Parallel = 0,
+    Perspective ///< rays start at EyePosition
+  };
+
+  enum NormalMethodType
+  {
+    Analytic = 0, ///< gradient of the field
+    GreyLevel     ///< differences of voxels, interpolated trilinearly (Carr 1996, eq. 3.5)
+  };
+
+  ///@{
+  /** How rays run. Default Parallel. */
+  vtkSetClampMacro(Projection, int, Parallel, Perspective);
+  vtkGetMacro(Projection, int);
+  ///@}
+
+  ///@{
+  /**
+   * Perspective: where the viewer is, world mm. No default. The image plane is perpendicular to
+   * ViewDirection through PlaneOrigin, else through FocalPoint, else through the corner of the
+   * volume nearest the eye; the line from the eye along ViewDirection meets the map's middle.
+   */
+  vtkSetVector3Macro(EyePosition, double);
+  vtkGetVector3Macro(EyePosition, double);
+  ///@}
+
+  ///@{
+  /**
+   * Perspective: the angle that the rows of the map span, degrees, default 30. It gives the pixel
+   * spacing for a given number of rows, or the number of rows for a spacing; if both are given it
+   * follows from them.
+   */
+  vtkSetMacro(ViewAngle, double);
+  vtkGetMacro(ViewAngle, double);
+  ///@}
+
+  ///@{
+  /** Where normals come from. Default Analytic. */
+  vtkSetClampMacro(NormalMethod, int, Analytic, GreyLevel);
+  vtkGetMacro(NormalMethod, int);
+  ///@}
+
+  ///@{
+  /**
+   * What is cut away: the volume where this function is negative (inside a box, sphere or cylinder,
+   * behind a plane). Default none. Planes, boxes, spheres and cylinders are cut exactly, other
+   * functions are sampled twice per smallest voxel edge.
+   */
+  void SetCutAway(vtkImplicitFunction* function);
+  vtkImplicitFunction* GetCutAway() const;
+  ///@}
+
+  ///@{
+  /** Whether the solid shows a surface where it is cut away. Default on. */
+  vtkSetMacro(CapCutAway, bool);
+  vtkGetMacro(CapCutAway, bool);
+  vtkBooleanMacro(CapCutAway, bool);
+  ///@}
+
+  ///@{
+  /** Whether the solid shows a surface where the volume ends. Default off. */
+  vtkSetMacro(CapBoundary, bool);
+  vtkGetMacro(CapBoundary, bool);
+  vtkBooleanMacro(CapBoundary, bool);
+  ///@}
+
+  ///@{
+  /** Whether to add the array Thickness for the first iso-value. Default off. */
+  vtkSetMacro(ComputeThickness, bool);
+  vtkGetMacro(ComputeThickness, bool);
+  vtkBooleanMacro(ComputeThickness, bool);
+  ///@}
+
+  /** A depth map of the same view (input port 1, optional): rays go on behind its Depth. */
+  void SetStartDepthMapConnection(vtkAlgorithmOutput* output)
+  {
+    this->SetInputConnection(1, output);
+  }
+
+  vtkMTimeType GetMTime() override;
 
   ///@{
   /** The way the viewer looks, world, any length. Default 0 0 -1: from the top. */
@@ -145,6 +242,7 @@ protected:
   vtkLacunaBSplineIsoRayCaster();
   ~vtkLacunaBSplineIsoRayCaster() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -159,6 +257,14 @@ protected:
   double PlaneOrigin[3];
   double PixelSpacing = 0;
   int ImageSize[2] = { 0, 0 };
+  int Projection = Parallel;
+  double EyePosition[3];
+  double ViewAngle = 30;
+  int NormalMethod = Analytic;
+  vtkSmartPointer<vtkImplicitFunction> CutAway;
+  bool CapCutAway = true;
+  bool CapBoundary = false;
+  bool ComputeThickness = false;
 
 private:
   vtkLacunaBSplineIsoRayCaster(const vtkLacunaBSplineIsoRayCaster&) = delete;

@@ -22,6 +22,11 @@ public:
   /// span.Last (finite), in order and disjoint.
   std::vector<RaySpan> Find(const Vec3& origin, const Vec3& direction, const RaySpan& span) const;
 
+  bool Contains(const Vec3& point) const
+  {
+    return !this->Find(point, { 1, 0, 0 }, { -1e-9, 1e-9 }).empty();
+  }
+
   /// At a point of the region's surface: unit, world, into the region, and so out of what is left.
   Vec3 Normal(const Vec3& point) const;
 

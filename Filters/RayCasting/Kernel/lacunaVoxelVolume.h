@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace lacuna
 {
@@ -40,6 +41,10 @@ inline void CheckVolumeSize(const std::array<int, 3>& size)
       " voxels has no inside: at least two voxels are needed along each axis");
   }
 }
+
+/// The centres of the outermost voxels at the corners, world.
+std::vector<Vec3> CornersOf(const Matrix4& indexToWorld, const std::array<int, 3>& size);
+double SmallestEdgeOf(const Matrix4& indexToWorld);
 
 /// The plane for looking at a box of size voxels: the centres of the outermost voxels are its
 /// corners, its smallest voxel edge is the finest spacing. Throws also what CheckVolumeSize throws.

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Perspective, start depth maps, cut-away functions, thickness and their errors.
+#include "vtkLacunaBSplineIsoRayCaster.h"
+
+#include "lacunaCheck.h"
+#include "vtkBox.h"
+#include "vtkCylinder.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkImplicitBoolean.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkNew.h"
+#include "vtkPlane.h"
+#include "vtkPlanes.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkSmartPointer.h"
+#include "vtkSphere.h"
+#include "vtkTransform.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace
+{
+using Caster = vtkLacunaBSplineIsoRayCaster;
+
+vtkSmartPointer<vtkImageData> MakeVolume(const std::function<double(const double*)>& valueAt)
+{
+  auto volume = vtkSmartPointer<vtkImageData>::New();
+  volume->SetExtent(2, 31, -4, 25, 7, 36);
+  volume->SetOrigin(-16.5, -10.5, -21.5); // centred at 0
+  volume->AllocateScalars(VTK_DOUBLE, 1);
+  volume->GetPointData()->GetScalars()->SetName("Values");
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    volume->GetPointData()->GetScalars()->SetTuple1(i, valueAt(volume->GetPoint(i)));
+  }
+  return volume;
+}
+
+/// Solid within 10 mm of the origin, exactly.
+vtkSmartPointer<vtkImageData> MakeBall()
+{
+  return MakeVolume(
+    [](const double* p) { return 101 - (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + 1); });
+}
+
+vtkSmartPointer<Caster> MakeCaster(vtkImageData* volume)
+{
+  auto caster = vtkSmartPointer<Caster>::New();
+  caster->SetInputData(volume);
+  caster->SetIsoValue(0, 0);
+  caster->SetImageSize(41, 31);
+  caster->SetPixelSpacing(0.5);
+  caster->SetViewDirection(0, 0, -1);
+  caster->SetPlaneOrigin(0, 0, 20);
+  return caster;
+}
+
+double DepthAt(Caster* caster, int column, int row, const char* name = "Depth")
+{
+  caster->Update();
+  int pixel[3] = { column, row, 0 };
+  vtkImageData* map = caster->GetOutput();
+  vtkDataArray* array = map->GetPointData()->GetArray(name);
+  return array ? array->GetTuple1(map->ComputePointId(pixel)) : std::nan("");
+}
+
+bool IsNear(double a, double b, double tolerance = 1e-9)
+{
+  return std::abs(a - b) <= tolerance;
+}
+
+void TestCutAways()
+{
+  const auto ball = MakeBall();
+  const auto caster = MakeCaster(ball);
+  // the middle pixel (20, 15) looks along x = y = 0: the ball's top is at z = sqrt(99)
+  const double top = 20 - std::sqrt(99.0);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), top), "nothing cut");
+
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(0, 0, 4);
+  plane->SetNormal(0, 0, -1); // what is above is cut away
+  caster->SetCutAway(plane);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 16), "plane");
+  LACUNA_CHECK_THAT(
+    caster->GetOutput()->GetPointData()->GetNormals()->GetTuple3(15 * 41 + 20)[2] == 1,
+    "the cap's normal");
+  plane->SetOrigin(0, 0, 5);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 15), "a function changed in place");
+  caster->CapCutAwayOff();
+  LACUNA_CHECK_THAT(std::isnan(DepthAt(caster, 20, 15)), "not capped");
+  caster->CapCutAwayOn();
+
+  vtkNew<vtkBox> box;
+  box->SetBounds(-3, 3, -4, 4, -2, 30);
+  caster->SetCutAway(box);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 22), "box");
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20 + 7, 15), 20 - std::sqrt(99 - 3.5 * 3.5)), "beside");
+  vtkNew<vtkTransform> transform; // world to box: twice as large and moved
+  transform->Scale(2, 2, 2);
+  transform->Translate(1, 0, 3);
+  box->SetTransform(transform);
+  // -2 < 2 (z + 3) < 30 and -3 < 2 (x + 1) < 3
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 24), "a box with a transform");
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20 + 2, 15), 20 - std::sqrt(99 - 1.0)), "beside it");
+
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(0, 0, 10);
+  sphere->SetRadius(6);
+  caster->SetCutAway(sphere);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 16), "sphere");
+
+  vtkNew<vtkCylinder> cylinder; // along y
+  cylinder->SetCenter(0, 0, 10);
+  cylinder->SetRadius(5);
+  caster->SetCutAway(cylinder);
+  LACUNA_CHECK_THAT(
+    IsNear(DepthAt(caster, 20 + 2, 15 + 6), 20 - (10 - std::sqrt(24.0))), "cylinder");
+
+  vtkNew<vtkPlanes> planes;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> normals;
+  normals->SetNumberOfComponents(3);
+  points->InsertNextPoint(0, 0, 3);
+  normals->InsertNextTuple3(0, 0, -1);
+  points->InsertNextPoint(2.25, 0, 0);
+  normals->InsertNextTuple3(1, 0, 0);
+  planes->SetPoints(points);
+  planes->SetNormals(normals);
+  caster->SetCutAway(planes);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 17), "planes");
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 26, 15), 20 - std::sqrt(99 - 9.0)), "beside planes");
+
+  vtkNew<vtkImplicitBoolean> both; // sampled
+  both->SetOperationTypeToUnion();
+  both->AddFunction(sphere);
+  both->AddFunction(plane);
+  caster->SetCutAway(both);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 16), "any function: the deeper of two");
+  caster->SetCutAway(nullptr);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), top), "whole again");
+}
+
+void TestPerspective()
+{
+  const auto ball = MakeBall();
+  vtkNew<Caster> caster;
+  caster->SetInputData(ball);
+  caster->SetIsoValue(0, 0);
+  caster->SetProjection(Caster::Perspective);
+  caster->SetEyePosition(30, -20, 40);
+  caster->SetViewDirection(-30, 20, -40);
+  caster->SetViewAngle(25);
+  caster->SetImageSize(40, 30);
+  caster->ComputeThicknessOn();
+  caster->Update();
+  vtkImageData* output = caster->GetOutput();
+  const vtkLacunaDepthMap map(output);
+  LACUNA_CHECK_THAT(map.IsPerspective(), "EyePosition is recorded");
+  LACUNA_CHECK_THAT(
+    IsNear(output->GetFieldData()->GetArray("ViewAngle")->GetTuple1(0), 25), "ViewAngle");
+  int hits = 0;
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    const double depth = map.GetDepth()->GetTuple1(i);
+    if (!std::isnan(depth))
+    {
+      ++hits;
+      const lacuna::Vec3 p =
+        map.GetPoint(static_cast<double>(i % 40), static_cast<double>(i / 40), depth);
+      LACUNA_CHECK_THAT(IsNear(lacuna::Norm(p), std::sqrt(99.0)), "on the sphere");
+      const double thickness = output->GetPointData()->GetArray("Thickness")->GetTuple1(i);
+      const lacuna::Vec3 far =
+        p + thickness * map.GetRay(static_cast<double>(i % 40), static_cast<double>(i / 40));
+      LACUNA_CHECK_THAT(IsNear(lacuna::Norm(far), std::sqrt(99.0), 1e-8), "its far side");
+    }
+  }
+  LACUNA_CHECK_THAT(hits > 100, "the sphere is seen");
+}
+
+void TestStartDepthMap()
+{
+  // a hollow ball
+  const auto shell = MakeVolume(
+    [](const double* p)
+    {
+      const double r = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+      return 3 - std::abs(r - 10);
+    });
+  const auto first = MakeCaster(shell);
+  first->ComputeThicknessOn();
+  const double hit = DepthAt(first, 20, 15);
+  const double thickness = DepthAt(first, 20, 15, "Thickness");
+  const auto next = MakeCaster(shell);
+  next->SetStartDepthMapConnection(first->GetOutputPort());
+  const double second = DepthAt(next, 20, 15);
+  LACUNA_CHECK_THAT(IsNear(hit, 7, 0.1) && IsNear(thickness, 6, 0.2), "the near wall");
+  LACUNA_CHECK_THAT(IsNear(second, 27, 0.1), "the far wall");
+  const auto inner = MakeCaster(shell);
+  inner->SetSolidSide(Caster::Below);
+  inner->SetStartDepthMapConnection(first->GetOutputPort());
+  LACUNA_CHECK_THAT(IsNear(DepthAt(inner, 20, 15), hit + thickness), "the near wall's other side");
+  const auto higher = MakeCaster(shell);
+  higher->SetIsoValue(0, 1);
+  higher->SetStartDepthMapConnection(first->GetOutputPort());
+  LACUNA_CHECK_THAT(IsNear(DepthAt(higher, 20, 15), 8, 0.1), "a higher iso-value");
+
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(next);
+  messages->Watch(next->GetExecutive());
+  next->SetPixelSpacing(0.4);
+  next->Update();
+  LACUNA_CHECK_THAT(messages->HasError("shows another view"), "another pixel spacing");
+  next->SetPixelSpacing(0.5);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(next, 20, 15), second), "recovered");
+}
+
+void CheckError(Caster* caster, const std::string& text)
+{
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(caster);
+  messages->Watch(caster->GetExecutive());
+  caster->Update();
+  LACUNA_CHECK_THAT(messages->HasError(text), text);
+}
+
+void TestErrors()
+{
+  const auto ball = MakeBall();
+  auto caster = MakeCaster(ball);
+  caster->SetProjection(Caster::Perspective);
+  CheckError(caster, "needs EyePosition");
+  caster->SetEyePosition(0, 0, -200);
+  CheckError(caster, "behind the eye");
+  caster->SetEyePosition(0, 0, 200);
+  caster->SetViewAngle(0);
+  CheckError(caster, "view angle of 0");
+  caster->SetProjection(Caster::Parallel);
+  caster->SetPlaneOrigin(0, VTK_DOUBLE_MAX, 3);
+  CheckError(caster, "give all three");
+  caster->SetPlaneOrigin(0, 0, 20);
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(0, 0, std::nan(""));
+  caster->SetCutAway(plane);
+  CheckError(caster, "no origin");
+  caster->SetCutAway(nullptr);
+  ball->SetSpacing(1, 0, 1);
+  CheckError(caster, "every edge must be longer than 0");
+  ball->SetSpacing(1, 1, std::nan(""));
+  CheckError(caster, "every edge must be longer than 0");
+  ball->SetSpacing(1, 1, 1);
+  LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 20 - std::sqrt(99.0)), "recovered");
+
+  ball->GetPointData()->GetScalars()->SetTuple1(0, -1e20);
+  ball->GetPointData()->GetScalars()->Modified();
+  ball->Modified();
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(caster);
+  caster->Update();
+  LACUNA_CHECK_THAT(!messages->HasWarning("swings"), "BSpline stays within its control points");
+  caster->SetInterpolation(Caster::InterpolatingBSpline);
+  caster->Update();
+  LACUNA_CHECK_THAT(
+    messages->HasWarning("-1e+20") && messages->HasWarning("Threshold"), "padding values ring");
+}
+}
+
+int TestIsoRayCasterRequests(int, char*[])
+{
+  TestCutAways();
+  TestPerspective();
+  TestStartDepthMap();
+  TestErrors();
+  return lacunaCheck::Result();
+}
