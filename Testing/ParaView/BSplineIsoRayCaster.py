@@ -28,6 +28,11 @@ assert (caster.Interpolation, caster.SolidSide) == ("BSpline", "Above")
 assert (algorithm.GetInterpolation(), algorithm.GetSolidSide()) == (0, 0)
 check_defaults(caster, algorithm,
                ["ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin", "PixelSpacing", "ImageSize"])
+check_defaults(caster, algorithm, ["FocalPoint", "EyePosition", "ViewAngle", "CapCutAway", "CapBoundary",
+                                   "ComputeThickness"])
+assert (caster.Projection, caster.NormalMethod) == ("Parallel", "Analytic")
+assert (algorithm.GetProjection(), algorithm.GetNormalMethod()) == (0, 0)
+assert type(caster.CutAway).__name__ == "None" and caster.StartDepthMap is None, caster.CutAway
 assert caster.ScalarArray == algorithm.GetScalarArray() == ""
 surface = DepthMapSurface(Input=caster)
 algorithm = lacuna.vtkLacunaDepthMapSurface()
@@ -72,6 +77,39 @@ assert mesh.GetPointData().GetPedigreeIds().GetName() == "PixelId"
 assert mesh.GetPointData().GetNormals().GetName() == "Normals"
 bounds = mesh.GetBounds()
 assert abs(bounds[5] - 10) < 1e-9 and bounds[4] > -1e-9, bounds
+
+# The same sphere cut by a plane through its middle, from an eye, and its far side.
+view = dict(Input=quadric, ScalarArray="Square", SolidSide="Below", IsoValues=[101])
+cut = BSplineIsoRayCaster(ComputeThickness=1, CutAway="Plane", ViewDirection=[0, 0, -1], PixelSpacing=0.5, **view)
+cut.CutAway.Origin = [0, 0, 2]
+cut.CutAway.Normal = [0, 0, -1]
+cut.UpdatePipeline()
+middle = 81 * 40 + 40
+data = servermanager.Fetch(cut).GetPointData()
+assert abs(data.GetArray("Depth").GetTuple1(middle) - 18) < 1e-9
+assert abs(data.GetArray("Thickness").GetTuple1(middle) - 12) < 1e-6
+cut.CutAway = "Box"
+cut.CutAway.Position = [-3, -3, 5]
+cut.CutAway.Length = [6, 6, 30]
+cut.UpdatePipeline()
+data = servermanager.Fetch(cut).GetPointData()
+assert abs(data.GetArray("Depth").GetTuple1(middle) - 15) < 1e-9, data.GetArray("Depth").GetTuple1(middle)
+cut.CutAway = "None"
+behind = BSplineIsoRayCaster(StartDepthMap=cut, ViewDirection=[0, 0, -1], PixelSpacing=0.5, **view)
+behind.SolidSide = "Above"
+behind.UpdatePipeline()
+data = servermanager.Fetch(behind).GetPointData()
+assert abs(data.GetArray("Depth").GetTuple1(middle) - 30) < 1e-9, "the far side"
+seen = BSplineIsoRayCaster(Projection="Perspective", EyePosition=[0, -50, 0], ViewDirection=[0, 1, 0],
+                           ViewUp=[0, 0, 1], ViewAngle=40, ImageSize=[31, 31], **view)
+seen.UpdatePipeline()
+eye_map = servermanager.Fetch(seen)
+assert eye_map.GetFieldData().GetArray("EyePosition").GetTuple3(0) == (0, -50, 0)
+plane = eye_map.GetPoint(15 * 31 + 15)
+depth_at = eye_map.GetPointData().GetArray("Depth").GetTuple1(15 * 31 + 15)
+assert abs(plane[1] + depth_at + 10) < 1e-9, (plane, depth_at)
+for proxy in (seen, behind, cut):
+    Delete(proxy)
 
 # A selection made on the surface means pixels of the map.
 pixel = 81 * 40 + 45
