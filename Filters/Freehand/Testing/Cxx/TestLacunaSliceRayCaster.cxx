@@ -318,6 +318,8 @@ void TestErrors()
     errors([](Caster* c) { c->SetFocalPoint(0, NotANumber, 0); }), "focal point");
   LACUNA_CHECK_CONTAINS(
     errors([](Caster* c) { c->SetPlaneOrigin(0, NotANumber, 0); }), "plane origin");
+  LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetFocalPoint(VTK_DOUBLE_MAX, 0, 0); }),
+    "only 2 coordinates are given");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetPixelSpacing(-0.5); }), "pixel spacing");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetPixelSpacing(1e-9); }), "too large");
   LACUNA_CHECK_CONTAINS(errors([](Caster* c) { c->SetImageSize(-1, 4); }), "-1 x 4");
@@ -465,7 +467,7 @@ void TestGrowingInput()
   LACUNA_CHECK(caster->GetNumberOfCastSlices() == 5);
 
   // a map that follows the slices is laid out anew
-  caster->SetFocalPoint(VTK_DOUBLE_MAX, 0, 0);
+  caster->SetFocalPoint(VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
   caster->SetInputData(MakeStack(MakePoses(2)));
   caster->Update();
   std::vector<Matrix4> wider = MakePoses(3);
