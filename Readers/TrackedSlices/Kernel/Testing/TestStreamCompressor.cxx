@@ -46,12 +46,12 @@ TEST(StreamCompressor, OneOrdinaryStream)
   ThreadExecution execution(3);
   for (const auto wrapping : { StreamCompressor::Wrapping::Zlib, StreamCompressor::Wrapping::Gzip })
   {
-    for (const int level : { 1, 6, 9 })
+    for (const int level : { 1, 9 })
     {
       StreamCompressor compressor(wrapping, level);
       std::string packed = compressor.GetBeginning();
       std::string all;
-      for (const std::size_t size : { 5, 0, 1, 40000, 3, 3000000, 524288, 77 })
+      for (const std::size_t size : { 5, 0, 1, 40000, 3, 1200000, 524288, 77 })
       {
         const std::string bytes = MakeBytes(size);
         packed += compressor.Compress(
