@@ -22,6 +22,7 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 namespace
@@ -52,6 +53,30 @@ void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
   vtkLacunaFieldData::Set(output, "FanAngles", angles, 2);
   vtkLacunaFieldData::Set(output, "FanRadii", radii, 2);
   output->GetFieldData()->AddArray(clips);
+}
+
+// The volume changes whenever one of the inputs does; VTK by itself passes on the times of the first
+// input only.
+void AnnounceTimes(vtkInformationVector* inputs, vtkInformation* output)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  std::set<double> times;
+  for (int i = 0; i < inputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* info = inputs->GetInformationObject(i);
+    const double* steps = info->Get(SDDP::TIME_STEPS());
+    times.insert(steps, steps + info->Length(SDDP::TIME_STEPS()));
+  }
+  if (times.empty())
+  {
+    output->Remove(SDDP::TIME_STEPS());
+    output->Remove(SDDP::TIME_RANGE());
+    return;
+  }
+  const std::vector<double> steps(times.begin(), times.end());
+  const double range[2] = { steps.front(), steps.back() };
+  output->Set(SDDP::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
+  output->Set(SDDP::TIME_RANGE(), range, 2);
 }
 
 // Says what is wrong with slices between which nothing could be filled.
@@ -177,6 +202,7 @@ int vtkLacunaSweptVolume::RequestInformation(
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
+      AnnounceTimes(inputs[0], info);
     });
 }
 

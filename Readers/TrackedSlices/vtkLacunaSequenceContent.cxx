@@ -272,6 +272,8 @@ void vtkLacunaSequenceContent::AddStates()
     vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::TimestampName, 1, this->Count);
   vtkDataArray* numbers =
     vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::FrameNumberName, 1, this->Count);
+  vtkDataArray* poses = vtkLacunaFieldData::Find(
+    this->Stack, vtkLacunaTrackedSlices::ImageToReferenceName, 16, this->Count);
   bool ownNumbers = false;
   std::vector<std::string> timeTexts(this->Slices.size());
   std::vector<std::string> numberTexts(this->Slices.size());
@@ -289,7 +291,11 @@ void vtkLacunaSequenceContent::AddStates()
       numberTexts[i] = lacuna::FormatNumber(numbers->GetTuple1(slice));
       ownNumbers = ownNumbers || numbers->GetTuple1(slice) != static_cast<double>(i);
     }
-    if (this->Status[i] & (vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut))
+    // an invalid pose is told by its transforms, unless it has numbers nevertheless
+    const bool toldElsewhere = !poses || !vtkLacunaFieldData::GetMatrix(poses, slice).IsFinite();
+    const int own = vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut |
+      (toldElsewhere ? 0 : vtkLacunaTrackedSlices::PoseInvalid);
+    if (this->Status[i] & own)
     {
       flagTexts[i] = std::to_string(this->Status[i]);
     }

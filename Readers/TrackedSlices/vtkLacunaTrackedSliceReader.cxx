@@ -380,9 +380,12 @@ int vtkLacunaTrackedSliceReader::RequestData(
   if (!this->Opened)
   {
     vtkDataObject::GetData(outputs, 0)->Initialize();
-    this->SetErrorCode(vtkErrorCode::NoFileNameError);
-    vtkErrorMacro(
-      "FileName is not set; it must be a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)");
+    if (!this->FileName || !*this->FileName) // else RequestInformation has said what is wrong
+    {
+      this->SetErrorCode(vtkErrorCode::NoFileNameError);
+      vtkErrorMacro(
+        "FileName is not set; it must be a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)");
+    }
     return 0;
   }
   return vtkLacunaExecution::Run(this, outputs,

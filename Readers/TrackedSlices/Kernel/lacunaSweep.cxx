@@ -154,7 +154,7 @@ void SweepBuilder::FlagImages()
       ParseInteger(flags->second[i], given) && given >= 0 && given <= 255)
     {
       this->Result.Status[i] |=
-        static_cast<unsigned char>(given & (Sweep::TooFast | Sweep::GatedOut));
+        static_cast<unsigned char>(given & (Sweep::PoseInvalid | Sweep::TooFast | Sweep::GatedOut));
     }
   }
 }

@@ -237,7 +237,7 @@ TEST(Sweep, FlagsOfSpeedAndGatingComeFromTheFile)
     file.SetFrame(i, "SliceStatus", flags[i]);
   }
   file.SetFrame(2, "ImageStatus", "INVALID");
-  EXPECT_EQ(Build(file).Status, (Flags{ 4, 12, 2, 0, 0 })); // pose and image are judged anew
+  EXPECT_EQ(Build(file).Status, (Flags{ 4, 13, 3, 0, 0 })); // the image is judged anew
   EXPECT_EQ(BuildUnchecked(file).Status, (Flags{ 0, 0, 0, 0, 0 }));
 }
 
