@@ -94,7 +94,8 @@ def check_operations():
     assert (results["Rank"] == results["Minimum"]).all()
     assert (results["Opening"] <= results["Closing"]).all()
     for a in ("Median", "Mode", "AdaptiveMedian", "Mean", "Gaussian"):
-        assert (results[a] >= results["Minimum"]).all() or a == "Gaussian"
+        if a != "Gaussian":  # which looks beyond the window
+            assert (results[a] >= results["Minimum"]).all(), a
         assert results[a].std() < vtk_to_numpy(servermanager.Fetch(sweep).GetPointData().GetScalars()).std()
 
 

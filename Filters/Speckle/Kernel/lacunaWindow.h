@@ -49,8 +49,6 @@ public:
   /// Rows in the order z, y; each row of a box is whole, an ellipsoid may leave out rows.
   const std::vector<Run>& GetRuns() const { return this->Runs; }
   std::int64_t GetNumberOfSamples() const { return this->Samples; }
-  /// True when the window is the sample alone.
-  bool IsSingle() const { return this->Samples == 1; }
 
   /// The window turned about its centre: differs in Lower and Upper of even sizes only. A dilation
   /// with it after an erosion with this one is an opening that shifts nothing.
