@@ -199,7 +199,7 @@ def check_camera(sweep):
     camera.SetViewUp(0.2, -1, 0.1)
     volume = SweptVolume(Input=sweep, OutputSpacing=[1, 1, 1])
     casters = [SliceRayCaster(Input=sweep, IsoValue=120), BSplineIsoRayCaster(Input=volume, IsoValues=[120])]
-    for parallel, rows in ((1, None), (1, 150), (0, 75)):
+    for parallel, rows in ((1, None), (0, 75), (1, 150)):
         camera.SetParallelProjection(parallel)
         camera.SetParallelScale(25)
         for caster in casters:
@@ -212,7 +212,13 @@ def check_camera(sweep):
             depth = depths(image)
             assert np.isfinite(depth).sum() > 0.02 * depth.size
             # points at the depth of the focal point, on the screen
-            near = start + np.linalg.norm(np.subtract(camera.GetFocalPoint(), camera.GetPosition())) * ray
+            eye = image.GetFieldData().GetArray("EyePosition")
+            assert (eye is not None) == (caster is casters[1] and not parallel)
+            if eye is None:
+                near = start + np.linalg.norm(np.subtract(camera.GetFocalPoint(), camera.GetPosition())) * ray
+            else:
+                assert np.allclose(eye.GetTuple(0), camera.GetPosition())
+                near = start
             matrix = camera.GetCompositeProjectionTransformMatrix(4 / 3, -1, 1)
             for row, column in ((0, 0), (height - 1, 3), (height // 3, height)):
                 x, y, _, w = matrix.MultiplyPoint((*near[row, column], 1))

@@ -5,7 +5,7 @@
     views.copy_camera(caster)          # the active view's camera, once
     surface = DepthMapSurface(Input=caster)
 
-For B-Spline Iso Ray Caster and Slice Ray Caster, which look along parallel rays.
+For B-Spline Iso Ray Caster and Slice Ray Caster. The latter looks along parallel rays whatever the camera does.
 """
 import math
 
@@ -16,9 +16,9 @@ def camera_view(camera, size, rows=None):
     """The view properties of a ray caster whose map shows what a camera shows in a window.
 
     camera: vtkCamera; size: width and height of the window in pixels; rows: of the map, by default as many as the
-    window has. The rows and columns of the map are those of the window, or as many times coarser or finer. Of a camera
-    with perspective, what it shows at the distance of its focal point. Depth is measured from the camera's position.
-    Returns a dict of property names and values.
+    window has. The rows and columns of the map are those of the window, or as many times coarser or finer. The rays are
+    parallel: of a camera with perspective, the map shows what it shows at the distance of its focal point. Depth is
+    measured from the camera's position. Returns a dict of property names and values.
     """
     width, height = size
     if not (width > 0 and height > 0):
@@ -46,11 +46,20 @@ def copy_camera(caster, view=None, rows=None):
     """Gives a ray caster (a ParaView proxy) the camera of a render view; by default of the active one.
 
     All of the map's geometry is set, so that it no longer depends on the data: slices that are added later are cast
-    alone. rows: see camera_view; 512 is a good size while slices arrive.
+    alone. A caster that can have perspective gets it from the camera. rows: see camera_view; 512 is a good size while
+    slices arrive.
     """
     import paraview.simple as pv
     view = view or pv.GetActiveView()
     if view is None or not hasattr(view, "GetActiveCamera"):
         raise ValueError("there is no active render view whose camera could be copied; give one")
-    for name, value in camera_view(view.GetActiveCamera(), view.ViewSize, rows).items():
+    camera = view.GetActiveCamera()
+    properties = camera_view(camera, view.ViewSize, rows)
+    if caster.GetProperty("Projection") is not None:
+        properties["Projection"] = "Parallel" if camera.GetParallelProjection() else "Perspective"
+        if not camera.GetParallelProjection():
+            # the map's plane goes through the focal point, where the spacing of its pixels holds
+            properties["EyePosition"] = properties["PlaneOrigin"]
+            properties["PlaneOrigin"] = properties["FocalPoint"]
+    for name, value in properties.items():
         setattr(caster, name, value)
