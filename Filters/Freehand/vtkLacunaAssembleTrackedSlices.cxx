@@ -287,7 +287,7 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   vtkImageData* stack, vtkTable* table, vtkInformation* info, vtkImageData* output)
 {
   const std::array<int, 6> whole = GetExtent(info, SDDP::WHOLE_EXTENT());
-  const auto slices = static_cast<std::size_t>(whole[5] - whole[4] + 1);
+  const auto slices = static_cast<std::size_t>(whole[5] - whole[4]) + 1;
   vtkLacunaPoseRequest request;
   request.Poses.Format = static_cast<lacuna::PoseFormat>(this->PoseFormat);
   request.Poses.Transform = static_cast<lacuna::PoseTransform>(this->PoseTransform);

@@ -5,6 +5,7 @@
 #include "vtkLacunaPoseColumns.h"
 #include "vtkLacunaTrackedSlices.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -109,11 +110,9 @@ vtkLacunaPoseRecords::vtkLacunaPoseRecords(vtkTable* data, std::size_t slices,
   {
     states = columns.GetStatus(others.Status);
   }
-  std::vector<char> refused;
-  for (const unsigned char state : states)
-  {
-    refused.push_back((state & vtkLacunaTrackedSlices::PoseInvalid) != 0);
-  }
+  std::vector<char> refused(states.size());
+  std::transform(states.begin(), states.end(), refused.begin(),
+    [](unsigned char state) { return (state & vtkLacunaTrackedSlices::PoseInvalid) != 0; });
   const lacuna::PoseTable table = lacuna::ReadPoseTable(
     columns.GetNumbers(poseColumns), poseColumns.size(), refused, request.Poses);
   this->Warnings = table.Warnings;

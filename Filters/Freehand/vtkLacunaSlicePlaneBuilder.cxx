@@ -30,7 +30,7 @@ namespace
 {
 constexpr float NoNumber = std::numeric_limits<float>::quiet_NaN();
 
-int Size(const std::array<int, 6>& extent, int axis)
+int Size(const std::array<int, 6>& extent, std::size_t axis)
 {
   return extent[2 * axis + 1] - extent[2 * axis] + 1;
 }

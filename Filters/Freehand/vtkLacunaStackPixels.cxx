@@ -70,7 +70,7 @@ bool IsBottomRowFirst(vtkDataArray* pixels)
 vtkSmartPointer<vtkDataArray> Allocate(vtkDataArray* pixels, const std::array<int, 6>& extent)
 {
   double size = 1;
-  for (int a = 0; a < 3; ++a)
+  for (std::size_t a = 0; a < 3; ++a)
   {
     size *= static_cast<double>(extent[2 * a + 1]) - extent[2 * a] + 1;
   }
