@@ -150,6 +150,10 @@ void TestPlanes()
     }
     const Vec3 x{ p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2] };
     const Vec3 y{ p[2][0] - p[1][0], p[2][1] - p[1][1], p[2][2] - p[1][2] };
+    for (int i = 0; i < 3; ++i)
+    {
+      LACUNA_CHECK_NEAR(p[2][i] - p[3][i], p[1][i] - p[0][i], 1e-5);
+    }
     const Vec3 normal = GetPose(slice).Vector({ 0, 0, 1 });
     LACUNA_CHECK_NEAR(lacuna::Dot(lacuna::Cross(x, y), normal), 0.5 * 0.4, 1e-4);
   }
