@@ -81,7 +81,7 @@ TEST(CubicSplineSpace, BSplinesArePositiveAndAddUpToOne)
   EXPECT_EQ(space.Evaluate(3).Weights[3], 1);
 }
 
-// The textbook's uniform segment (science.md, ch. 3 of Carr 1996).
+// The textbook's uniform segment (Carr 1996, chapter 3).
 TEST(CubicSplineSpace, AgreesWithTheUniformSegment)
 {
   const CubicSplineSpace space(0, { 1, 2, 3, 4, 5, 6 }, 7);
