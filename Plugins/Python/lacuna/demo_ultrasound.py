@@ -89,7 +89,7 @@ def closed_surface(sweep, volume, level, median):
     grown = [b + side * rim[i] for i in range(3) for b, side in ((bounds[2 * i], -1), (bounds[2 * i + 1], 1))]
     padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown,
                             ClipRectangle=list(volume.ClipRectangle))
-    smooth = pv.Median(Input=padded, SelectInputScalars=["POINTS", "Intensity"], KernelSize=[median] * 3)
+    smooth = pv.SpeckleFilter(Input=padded, Operation="Median", KernelSize=[median] * 3)
     contour = pv.Contour(Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[level],
                          ComputeNormals=1, ComputeScalars=0)
     largest = pv.Connectivity(Input=contour, ExtractionMode="Extract Largest Region", ColorRegions=0)
