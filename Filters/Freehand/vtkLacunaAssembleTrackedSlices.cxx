@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaAssembleTrackedSlices.h"
 
+#include "lacunaParameterText.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
@@ -387,27 +387,26 @@ std::string vtkLacunaAssembleTrackedSlices::DescribeParameters() const
   constexpr std::array<const char*, 4> units{ "mm", "m", "cm", "inch" };
   constexpr std::array<const char*, 3> orders{ "Automatic", "TopRowFirst", "BottomRowFirst" };
   constexpr std::array<const char*, 3> matchings{ "Order", "FrameNumber", "Time" };
-  std::ostringstream text;
-  text << "PoseFormat=" << formats[this->PoseFormat]
-       << " PoseTransform=" << transforms[this->PoseTransform]
-       << " LengthUnit=" << units[this->LengthUnit] << " PixelSpacing=" << this->PixelSpacing[0]
-       << "," << this->PixelSpacing[1] << " ImageToProbe=";
-  for (int i = 0; i < 16; ++i)
-  {
-    text << (i ? "," : "") << this->ImageToProbe[i];
-  }
-  text << " RowOrder=" << orders[this->RowOrder] << " MatchBy=" << matchings[this->MatchBy];
-  for (const std::string& column : this->PoseColumns)
-  {
-    text << " PoseColumn=" << column;
-  }
-  text << " FrameColumn=" << this->FrameColumn << " TimestampColumn=" << this->TimestampColumn
-       << " StatusColumn=" << this->StatusColumn << " GateColumn=" << this->GateColumn
-       << " GateRange=" << this->GateRange[0] << "," << this->GateRange[1]
-       << " FirstFrameNumber=" << this->FirstFrameNumber << " FrameRate=" << this->FrameRate
-       << " TimeOffset=" << this->TimeOffset << " MaximumTimeGap=" << this->MaximumTimeGap
-       << " SkipInvalidPoses=" << (this->SkipInvalidPoses ? "on" : "off");
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("PoseFormat", formats[this->PoseFormat])
+    .Add("PoseTransform", transforms[this->PoseTransform])
+    .Add("LengthUnit", units[this->LengthUnit])
+    .Add("PixelSpacing", this->PixelSpacing)
+    .Add("ImageToProbe", this->ImageToProbe)
+    .Add("RowOrder", orders[this->RowOrder])
+    .Add("MatchBy", matchings[this->MatchBy])
+    .Add("PoseColumns", this->PoseColumns)
+    .Add("FrameColumn", this->FrameColumn)
+    .Add("TimestampColumn", this->TimestampColumn)
+    .Add("StatusColumn", this->StatusColumn)
+    .Add("GateColumn", this->GateColumn)
+    .Add("GateRange", this->GateRange)
+    .Add("FirstFrameNumber", this->FirstFrameNumber)
+    .Add("FrameRate", this->FrameRate)
+    .Add("TimeOffset", this->TimeOffset)
+    .Add("MaximumTimeGap", this->MaximumTimeGap)
+    .Add("SkipInvalidPoses", static_cast<bool>(this->SkipInvalidPoses))
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 #include "vtkLacunaGateSlices.h"
 
 #include "lacunaGateSignal.h"
+#include "lacunaParameterText.h"
 #include "lacunaSliceMotion.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -322,13 +323,17 @@ std::string vtkLacunaGateSlices::DescribeParameters() const
 {
   constexpr std::array<const char*, 3> types{ "Value", "Phase", "Trigger" };
   constexpr std::array<const char*, 2> keys{ "Timestamp", "FrameNumber" };
-  std::ostringstream text;
-  text << "GateType=" << types[this->GateType] << " GateRange=" << this->GateRange[0] << ","
-       << this->GateRange[1] << " Period=" << this->Period << " GateColumn=" << this->GateColumn
-       << " MatchBy=" << keys[this->MatchBy] << " KeyColumn=" << this->KeyColumn
-       << " TimeOffset=" << this->TimeOffset << " MaximumTimeGap=" << this->MaximumTimeGap
-       << " SpeedLimit=" << this->SpeedLimit;
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("GateType", types[this->GateType])
+    .Add("GateRange", this->GateRange)
+    .Add("Period", this->Period)
+    .Add("GateColumn", this->GateColumn)
+    .Add("MatchBy", keys[this->MatchBy])
+    .Add("KeyColumn", this->KeyColumn)
+    .Add("TimeOffset", this->TimeOffset)
+    .Add("MaximumTimeGap", this->MaximumTimeGap)
+    .Add("SpeedLimit", this->SpeedLimit)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSlicePlanes.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaPoseTable.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -192,14 +193,16 @@ std::string vtkLacunaSlicePlanes::DescribeParameters() const
 {
   constexpr std::array<const char*, 3> colorings{ "Intensity", "Speed", "RegistrationError" };
   constexpr std::array<const char*, 3> choices{ "LeaveOut", "Outline", "Show" };
-  std::ostringstream text;
-  text << "Stride=" << this->Stride << " ColorBy=" << colorings[this->ColorBy]
-       << " TranslationAccuracy=" << this->TranslationAccuracy
-       << " AngularAccuracy=" << this->AngularAccuracy << " SpeedLimit=" << this->SpeedLimit
-       << " OutlineOnly=" << (this->OutlineOnly ? "on" : "off")
-       << " InvalidSlices=" << choices[this->InvalidSlices]
-       << " MaximumNumberOfPoints=" << this->MaximumNumberOfPoints;
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("Stride", this->Stride)
+    .Add("ColorBy", colorings[this->ColorBy])
+    .Add("TranslationAccuracy", this->TranslationAccuracy)
+    .Add("AngularAccuracy", this->AngularAccuracy)
+    .Add("SpeedLimit", this->SpeedLimit)
+    .Add("OutlineOnly", this->OutlineOnly)
+    .Add("InvalidSlices", choices[this->InvalidSlices])
+    .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

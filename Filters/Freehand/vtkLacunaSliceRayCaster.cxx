@@ -2,6 +2,7 @@
 #include "vtkLacunaSliceRayCaster.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceRayCaster.h"
 #include "vtkAlgorithmOutput.h"
@@ -357,34 +358,25 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
 std::string vtkLacunaSliceRayCaster::DescribeParameters() const
 {
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
-  std::ostringstream text;
-  text.precision(17);
-  const auto list = [&](const char* name, const auto& values)
-  {
-    text << " " << name << "=";
-    const char* separator = "";
-    for (const auto value : values)
-    {
-      text << separator << value;
-      separator = ",";
-    }
-  };
-  text << "IsoValue=" << this->IsoValue
-       << " SolidSide=" << (this->SolidSide == Above ? "Above" : "Below")
-       << " MaximumGap=" << this->MaximumGap;
-  list("ViewDirection", this->ViewDirection);
-  list("ViewUp", this->ViewUp);
-  list("FocalPoint", this->FocalPoint);
-  list("PlaneOrigin", this->PlaneOrigin);
-  text << " PixelSpacing=" << this->PixelSpacing;
-  list("ImageSize", this->ImageSize);
-  list("ClipRectangle", this->ClipRectangle);
-  list("FanOrigin", this->FanOrigin);
-  list("FanAngles", this->FanAngles);
-  list("FanRadii", this->FanRadii);
-  text << " UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
-       << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses];
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("IsoValue", this->IsoValue)
+    .Add("SolidSide", this->SolidSide == Above ? "Above" : "Below")
+    .Add("MaximumGap", this->MaximumGap)
+    .Add("ViewDirection", this->ViewDirection)
+    .Add("ViewUp", this->ViewUp)
+    .Add("FocalPoint", this->FocalPoint)
+    .Add("PlaneOrigin", this->PlaneOrigin)
+    .Add("PixelSpacing", this->PixelSpacing)
+    .Add("ImageSize", this->ImageSize)
+    .Add("ClipRectangle", this->ClipRectangle)
+    .Add("FanOrigin", this->FanOrigin)
+    .Add("FanAngles", this->FanAngles)
+    .Add("FanRadii", this->FanRadii)
+    .Add("UseImageInvalid", this->UseImageInvalid)
+    .Add("UseTooFast", this->UseTooFast)
+    .Add("UseGatedOut", this->UseGatedOut)
+    .Add("BadPoses", badPoses[this->BadPoses])
+    .Get();
 }
 
 //------------------------------------------------------------------------------

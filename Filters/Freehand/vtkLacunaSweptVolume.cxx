@@ -3,6 +3,7 @@
 
 #include "lacunaGrowingVolume.h"
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -23,7 +24,6 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 
 namespace
 {
@@ -306,36 +306,27 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
   constexpr std::array<const char*, 3> fanMasks{ "Given", "Automatic", "None" };
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
   constexpr std::array<const char*, 2> types{ "Input", "Float" };
-  std::ostringstream text;
-  const auto list = [&](const char* name, const auto& values)
-  {
-    text << name << "=";
-    const char* separator = "";
-    for (const auto value : values)
-    {
-      text << separator << value;
-      separator = ",";
-    }
-    text << " ";
-  };
-  list("OutputSpacing", this->OutputSpacing);
-  text << "OutputFrame=" << frames[this->OutputFrame] << " ";
-  list("OutputBounds", this->OutputBounds);
-  text << "PixelSampling=" << samplings[this->PixelSampling]
-       << " FootprintScale=" << this->FootprintScale
-       << " FootprintAcrossSlices=" << this->FootprintAcrossSlices
-       << " Interpolation=" << interpolations[this->Interpolation]
-       << " Compounding=" << compoundings[this->Compounding]
-       << " MaximumSliceGap=" << this->MaximumSliceGap << " ";
-  list("ClipRectangle", this->ClipRectangle);
-  text << "FanMask=" << fanMasks[this->FanMask] << " ";
-  list("FanOrigin", this->FanOrigin);
-  list("FanAngles", this->FanAngles);
-  list("FanRadii", this->FanRadii);
-  text << "UseImageInvalid=" << this->UseImageInvalid << " UseTooFast=" << this->UseTooFast
-       << " UseGatedOut=" << this->UseGatedOut << " BadPoses=" << badPoses[this->BadPoses] << " ";
-  text << "OutputScalarType=" << types[this->OutputScalarType];
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("OutputSpacing", this->OutputSpacing)
+    .Add("OutputFrame", frames[this->OutputFrame])
+    .Add("OutputBounds", this->OutputBounds)
+    .Add("PixelSampling", samplings[this->PixelSampling])
+    .Add("FootprintScale", this->FootprintScale)
+    .Add("FootprintAcrossSlices", this->FootprintAcrossSlices)
+    .Add("Interpolation", interpolations[this->Interpolation])
+    .Add("Compounding", compoundings[this->Compounding])
+    .Add("MaximumSliceGap", this->MaximumSliceGap)
+    .Add("ClipRectangle", this->ClipRectangle)
+    .Add("FanMask", fanMasks[this->FanMask])
+    .Add("FanOrigin", this->FanOrigin)
+    .Add("FanAngles", this->FanAngles)
+    .Add("FanRadii", this->FanRadii)
+    .Add("UseImageInvalid", this->UseImageInvalid)
+    .Add("UseTooFast", this->UseTooFast)
+    .Add("UseGatedOut", this->UseGatedOut)
+    .Add("BadPoses", badPoses[this->BadPoses])
+    .Add("OutputScalarType", types[this->OutputScalarType])
+    .Get();
 }
 
 //------------------------------------------------------------------------------

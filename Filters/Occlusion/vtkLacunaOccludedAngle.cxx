@@ -2,6 +2,7 @@
 #include "vtkLacunaOccludedAngle.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkArrayDispatch.h"
@@ -607,27 +608,21 @@ int vtkLacunaOccludedAngle::RequestData(
       int extent[6];
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
       output->Crop(extent);
-      std::ostringstream parameters;
-      parameters << "Mode=" << (this->Mode == BINARY ? "Binary" : "Continuous")
-                 << " Attenuation=" << this->Attenuation
-                 << " NumberOfDirections=" << this->NumberOfDirections << " ThresholdsOverPi=";
-      for (std::size_t i = 0; i < this->ThresholdsOverPi.size(); ++i)
-      {
-        parameters << (i > 0 ? "," : "") << this->ThresholdsOverPi[i];
-      }
-      parameters << " LocalRadii=";
-      for (std::size_t i = 0; i < this->LocalRadii.size(); ++i)
-      {
-        parameters << (i > 0 ? "," : "") << this->LocalRadii[i];
-      }
-      parameters << " ObjectOpacity=" << this->ObjectOpacity << " KeepData=" << this->KeepData
-                 << " MedianKernel=" << this->MedianKernel;
+      lacuna::ParameterText parameters;
+      parameters.Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
+        .Add("Attenuation", this->Attenuation)
+        .Add("NumberOfDirections", this->NumberOfDirections)
+        .Add("ThresholdsOverPi", this->ThresholdsOverPi)
+        .Add("LocalRadii", this->LocalRadii)
+        .Add("ObjectOpacity", this->ObjectOpacity)
+        .Add("KeepData", this->KeepData)
+        .Add("MedianKernel", this->MedianKernel);
       std::vector<vtkDataObject*> inputs{ input };
       if (space)
       {
         inputs.push_back(space);
       }
-      vtkLacunaProvenance::Record(output, this, inputs, parameters.str());
+      vtkLacunaProvenance::Record(output, this, inputs, parameters.Get());
     });
 }
 

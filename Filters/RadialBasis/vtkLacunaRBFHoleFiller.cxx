@@ -2,6 +2,7 @@
 #include "vtkLacunaRBFHoleFiller.h"
 
 #include "lacunaHoleFill.h"
+#include "lacunaParameterText.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -449,13 +450,16 @@ int vtkLacunaRBFHoleFiller::RequestData(
     }
     AddPointData(filled, contract, input, result);
 
-    std::ostringstream parameters;
-    parameters << "Kernel=" << this->Kernel << " DefectRegion="
-               << (this->DefectRegion ? this->DefectRegion->GetClassName() : "None")
-               << " DefectArray=" << this->DefectArray << " SupportArray=" << this->SupportArray
-               << " SupportMargin=" << this->SupportMargin << " NodeSpacing=" << this->NodeSpacing
-               << " Smoothing=" << this->Smoothing << " OutputMargin=" << this->OutputMargin;
-    vtkLacunaProvenance::Record(filled, this, { map }, parameters.str());
+    lacuna::ParameterText parameters;
+    parameters.Add("Kernel", this->Kernel)
+      .Add("DefectRegion", this->DefectRegion ? this->DefectRegion->GetClassName() : "None")
+      .Add("DefectArray", this->DefectArray)
+      .Add("SupportArray", this->SupportArray)
+      .Add("SupportMargin", this->SupportMargin)
+      .Add("NodeSpacing", this->NodeSpacing)
+      .Add("Smoothing", this->Smoothing)
+      .Add("OutputMargin", this->OutputMargin);
+    vtkLacunaProvenance::Record(filled, this, { map }, parameters.Get());
     output->ShallowCopy(filled);
     int piece[6];
     outputVector->GetInformationObject(0)->Get(

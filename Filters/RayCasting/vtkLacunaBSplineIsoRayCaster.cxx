@@ -2,6 +2,7 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaIsoRayCaster.h"
+#include "lacunaParameterText.h"
 #include "lacunaPerspective.h"
 
 #include "vtkAlgorithmOutput.h"
@@ -32,7 +33,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -67,17 +67,6 @@ lacuna::Matrix4 IndexToWorld(
   return lacuna::Matrix4(m->GetData()) *
     lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
       static_cast<double>(extent[4]) });
-}
-
-std::string Joined(const double* values, std::size_t n)
-{
-  std::ostringstream text;
-  text.precision(17);
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    text << (i ? "," : "") << values[i];
-  }
-  return text.str();
 }
 }
 
@@ -126,7 +115,7 @@ public:
     {
       if (!(std::abs(edge) > 0) || !std::isfinite(edge))
       {
-        throw std::runtime_error("the voxels of the volume are " + Joined(spacing, 3) +
+        throw std::runtime_error("the voxels of the volume are " + lacuna::FormatValue(spacing) +
           " mm: every edge must be longer than 0; mend the spacing of the input");
       }
     }
@@ -526,17 +515,25 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       {
         sources.push_back(start);
       }
-      vtkLacunaProvenance::Record(output, this, sources,
-        "Array=" + name + " IsoValues=" + Joined(this->IsoValues.data(), count) +
-          " Interpolation=" + std::to_string(this->Interpolation) + " SolidSide=" +
-          std::to_string(this->SolidSide) + " ViewDirection=" + Joined(this->ViewDirection, 3) +
-          " ViewUp=" + Joined(this->ViewUp, 3) + " PlaneOrigin=" + Joined(plane.Origin.data(), 3) +
-          " PixelSpacing=" + Joined(&plane.PixelSpacing, 1) +
-          " ImageSize=" + std::to_string(plane.Size[0]) + "," + std::to_string(plane.Size[1]) +
-          (request.Eye ? " EyePosition=" + Joined(eye.data(), 3) : std::string()) +
-          " NormalMethod=" + std::to_string(this->NormalMethod) +
-          " CutAway=" + (this->CutAway ? this->CutAway->GetClassName() : "None") + " CapCutAway=" +
-          std::to_string(this->CapCutAway) + " CapBoundary=" + std::to_string(this->CapBoundary));
+      lacuna::ParameterText parameters;
+      parameters.Add("Array", name)
+        .Add("IsoValues", this->IsoValues)
+        .Add("Interpolation", this->Interpolation)
+        .Add("SolidSide", this->SolidSide)
+        .Add("ViewDirection", this->ViewDirection)
+        .Add("ViewUp", this->ViewUp)
+        .Add("PlaneOrigin", plane.Origin.Elements)
+        .Add("PixelSpacing", plane.PixelSpacing)
+        .Add("ImageSize", plane.Size);
+      if (request.Eye)
+      {
+        parameters.Add("EyePosition", eye.Elements);
+      }
+      parameters.Add("NormalMethod", this->NormalMethod)
+        .Add("CutAway", this->CutAway ? this->CutAway->GetClassName() : "None")
+        .Add("CapCutAway", this->CapCutAway)
+        .Add("CapBoundary", this->CapBoundary);
+      vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
     });
 }
 
@@ -545,16 +542,16 @@ void vtkLacunaBSplineIsoRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "ScalarArray: " << this->ScalarArray << "\n"
-     << indent << "IsoValues: " << Joined(this->IsoValues.data(), this->IsoValues.size()) << "\n"
+     << indent << "IsoValues: " << lacuna::FormatValue(this->IsoValues) << "\n"
      << indent << "Interpolation: " << this->Interpolation << "\n"
      << indent << "SolidSide: " << this->SolidSide << "\n"
-     << indent << "ViewDirection: " << Joined(this->ViewDirection, 3) << "\n"
-     << indent << "ViewUp: " << Joined(this->ViewUp, 3) << "\n"
-     << indent << "FocalPoint: " << Joined(this->FocalPoint, 3) << "\n"
-     << indent << "PlaneOrigin: " << Joined(this->PlaneOrigin, 3) << "\n"
+     << indent << "ViewDirection: " << lacuna::FormatValue(this->ViewDirection) << "\n"
+     << indent << "ViewUp: " << lacuna::FormatValue(this->ViewUp) << "\n"
+     << indent << "FocalPoint: " << lacuna::FormatValue(this->FocalPoint) << "\n"
+     << indent << "PlaneOrigin: " << lacuna::FormatValue(this->PlaneOrigin) << "\n"
      << indent << "PixelSpacing: " << this->PixelSpacing << "\n"
      << indent << "Projection: " << this->Projection << "\n"
-     << indent << "EyePosition: " << Joined(this->EyePosition, 3) << "\n"
+     << indent << "EyePosition: " << lacuna::FormatValue(this->EyePosition) << "\n"
      << indent << "ViewAngle: " << this->ViewAngle << "\n"
      << indent << "NormalMethod: " << this->NormalMethod << "\n"
      << indent << "CutAway: " << this->CutAway.Get() << "\n"

@@ -4,6 +4,7 @@
 #include "lacunaDepthNormals.h"
 #include "lacunaDepthShader.h"
 
+#include "lacunaParameterText.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -27,7 +28,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 #include <tuple>
 
@@ -293,28 +293,32 @@ public:
 
   static std::string Describe(vtkLacunaDepthMapShader* self)
   {
-    std::ostringstream text;
-    text.precision(17);
-    text << "DepthArray=" << self->DepthArray << " NormalMethod=" << self->NormalMethod
-         << " MaximumAngle=" << self->MaximumAngle
-         << " MaximumAngleChange=" << self->MaximumAngleChange << " Shading=" << self->Shading
-         << " Ambient=" << self->Ambient << " Diffuse=" << self->Diffuse
-         << " Specular=" << self->Specular << " SpecularPower=" << self->SpecularPower
-         << " DepthCue=" << self->DepthCue << " DepthLaw=" << self->DepthLaw << " Lights=";
-    for (std::size_t i = 0; i < self->Lights.size(); ++i)
+    std::vector<double> lights;
+    for (const auto& light : self->Lights)
     {
-      for (std::size_t k = 0; k < 5; ++k)
-      {
-        text << (i + k ? "," : "") << self->Lights[i][k];
-      }
+      lights.insert(lights.end(), light.begin(), light.end());
     }
-    text << " SurfaceColor=" << self->SurfaceColor[0] << "," << self->SurfaceColor[1] << ","
-         << self->SurfaceColor[2] << " BackgroundColor=" << self->BackgroundColor[0] << ","
-         << self->BackgroundColor[1] << "," << self->BackgroundColor[2]
-         << " CastShadows=" << self->CastShadows << " VolumeArray=" << self->VolumeArray
-         << " Interpolation=" << self->Interpolation << " SolidSide=" << self->SolidSide
-         << " ShadowBias=" << self->ShadowBias;
-    return text.str();
+    return lacuna::ParameterText()
+      .Add("DepthArray", self->DepthArray)
+      .Add("NormalMethod", self->NormalMethod)
+      .Add("MaximumAngle", self->MaximumAngle)
+      .Add("MaximumAngleChange", self->MaximumAngleChange)
+      .Add("Shading", self->Shading)
+      .Add("Ambient", self->Ambient)
+      .Add("Diffuse", self->Diffuse)
+      .Add("Specular", self->Specular)
+      .Add("SpecularPower", self->SpecularPower)
+      .Add("DepthCue", self->DepthCue)
+      .Add("DepthLaw", self->DepthLaw)
+      .Add("Lights", lights)
+      .Add("SurfaceColor", self->SurfaceColor)
+      .Add("BackgroundColor", self->BackgroundColor)
+      .Add("CastShadows", self->CastShadows)
+      .Add("VolumeArray", self->VolumeArray)
+      .Add("Interpolation", self->Interpolation)
+      .Add("SolidSide", self->SolidSide)
+      .Add("ShadowBias", self->ShadowBias)
+      .Get();
   }
 };
 

@@ -4,6 +4,7 @@
 #include "lacunaDepthMapMesher.h"
 #include "lacunaDepthNormals.h"
 
+#include "lacunaParameterText.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
@@ -27,7 +28,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -218,14 +218,13 @@ int vtkLacunaDepthMapSurface::RequestData(
           : this->DepthArray.c_str());
       pointData->SetActiveNormals(normals.c_str());
 
-      std::ostringstream parameters;
-      parameters.precision(17);
-      parameters << "DepthArray=" << this->DepthArray
-                 << " BreakAtDiscontinuities=" << this->BreakAtDiscontinuities
-                 << " MaximumAngle=" << this->MaximumAngle
-                 << " MaximumAngleChange=" << this->MaximumAngleChange
-                 << " ComputeNormalDifference=" << this->ComputeNormalDifference;
-      vtkLacunaProvenance::Record(output, this, { input }, parameters.str());
+      lacuna::ParameterText parameters;
+      parameters.Add("DepthArray", this->DepthArray)
+        .Add("BreakAtDiscontinuities", this->BreakAtDiscontinuities)
+        .Add("MaximumAngle", this->MaximumAngle)
+        .Add("MaximumAngleChange", this->MaximumAngleChange)
+        .Add("ComputeNormalDifference", this->ComputeNormalDifference);
+      vtkLacunaProvenance::Record(output, this, { input }, parameters.Get());
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include "lacunaContrast.h"
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
@@ -20,7 +21,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -72,17 +72,6 @@ void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
   const lacuna::Matrix4 indexToWorld(image->GetIndexToPhysicalMatrix()->GetData());
   lacuna::MarkRegion(vtkLacunaSpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
     region, regions.data(), execution);
-}
-
-std::string Join(const double numbers[6])
-{
-  std::ostringstream text;
-  text.precision(17);
-  for (int i = 0; i < 6; ++i)
-  {
-    text << (i > 0 ? " " : "") << numbers[i];
-  }
-  return text.str();
 }
 
 /// Regions may reach anywhere, and a part of an image would give the numbers of that part.
@@ -236,23 +225,23 @@ int vtkLacunaContrastToSpeckle::RequestData(
 //------------------------------------------------------------------------------
 std::string vtkLacunaContrastToSpeckle::Describe() const
 {
-  std::ostringstream text;
-  text.precision(17);
-  const auto region = [&](const char* name, const std::string& array, const double bounds[6])
+  lacuna::ParameterText text;
+  const auto region = [&](
+                        const std::string& name, const std::string& array, const double(&bounds)[6])
   {
     if (!array.empty())
     {
-      text << name << "Array=" << array << " ";
+      text.Add(name + "Array", array);
     }
     if (HasBounds(bounds))
     {
-      text << name << "Bounds=" << Join(bounds) << " ";
+      text.Add(name + "Bounds", bounds);
     }
   };
   region("Inside", this->InsideArray, this->InsideBounds);
   region("Outside", this->OutsideArray, this->OutsideBounds);
-  text << "IsoValue=" << this->IsoValue;
-  return text.str();
+  text.Add("IsoValue", this->IsoValue);
+  return text.Get();
 }
 
 //------------------------------------------------------------------------------
@@ -262,7 +251,7 @@ void vtkLacunaContrastToSpeckle::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ScalarArray: " << this->ScalarArray << "\n";
   os << indent << "InsideArray: " << this->InsideArray << "\n";
   os << indent << "OutsideArray: " << this->OutsideArray << "\n";
-  os << indent << "InsideBounds: " << Join(this->InsideBounds) << "\n";
-  os << indent << "OutsideBounds: " << Join(this->OutsideBounds) << "\n";
+  os << indent << "InsideBounds: " << lacuna::FormatValue(this->InsideBounds) << "\n";
+  os << indent << "OutsideBounds: " << lacuna::FormatValue(this->OutsideBounds) << "\n";
   os << indent << "IsoValue: " << this->IsoValue << "\n";
 }

@@ -2,6 +2,7 @@
 #include "vtkLacunaSpeckleFilter.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaSpeckleFilter.h"
 #include "vtkDataObject.h"
 #include "vtkExtentTranslator.h"
@@ -20,7 +21,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
-#include <sstream>
 
 vtkStandardNewMacro(vtkLacunaSpeckleFilter);
 
@@ -52,30 +52,29 @@ lacuna::SpeckleParameters MakeParameters(vtkLacunaSpeckleFilter* self, const dou
 /// Only what the operation uses.
 std::string Describe(vtkLacunaSpeckleFilter* self)
 {
-  std::ostringstream text;
-  text.precision(17);
   const int* size = self->GetKernelSize();
-  text << "Operation=" << OperationNames[self->GetOperation()] << " KernelSize=" << size[0] << ","
-       << size[1] << "," << size[2];
   const int operation = self->GetOperation();
+  lacuna::ParameterText text;
+  text.Add("Operation", OperationNames[operation])
+    .Add("KernelSize", std::array<int, 3>{ size[0], size[1], size[2] });
   if (operation < vtkLacunaSpeckleFilter::MEAN)
   {
-    text << " KernelShape="
-         << (self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX ? "Box" : "Ellipsoid");
+    text.Add(
+      "KernelShape", self->GetKernelShape() == vtkLacunaSpeckleFilter::BOX ? "Box" : "Ellipsoid");
   }
   if (operation == vtkLacunaSpeckleFilter::RANK)
   {
-    text << " Rank=" << self->GetRank();
+    text.Add("Rank", self->GetRank());
   }
   if (operation == vtkLacunaSpeckleFilter::ADAPTIVE_MEDIAN)
   {
-    text << " AdaptiveStrength=" << self->GetAdaptiveStrength();
+    text.Add("AdaptiveStrength", self->GetAdaptiveStrength());
   }
   if (operation > vtkLacunaSpeckleFilter::MEAN)
   {
-    text << " StandardDeviation=" << self->GetStandardDeviation();
+    text.Add("StandardDeviation", self->GetStandardDeviation());
   }
-  return text.str();
+  return text.Get();
 }
 
 bool IsTrackedSlices(vtkDataObject* data)

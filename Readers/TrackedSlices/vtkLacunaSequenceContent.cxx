@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSequenceContent.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceText.h"
 #include "lacunaTransformGraph.h"

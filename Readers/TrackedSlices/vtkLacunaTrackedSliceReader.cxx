@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTrackedSliceReader.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaPixelSource.h"
 #include "lacunaSequenceHeader.h"
 #include "lacunaSequenceText.h"
@@ -215,19 +216,24 @@ void vtkLacunaTrackedSliceReader::CheckMemory(const int extent[6]) const
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaTrackedSliceReader::DescribeParameters() const
+std::string vtkLacunaTrackedSliceReader::DescribeParameters(const std::string& chain) const
 {
   const lacuna::SequenceHeader& header = this->Opened->Header;
-  std::ostringstream text;
-  text << "FileName=" << BaseName(this->FileName)
-       << " FileSize=" << vtksys::SystemTools::FileLength(header.DataFileName)
-       << " CalibrationFileName=" << BaseName(this->CalibrationFileName)
-       << " ImageFrame=" << Text(this->ImageFrame)
-       << " ReferenceFrame=" << Text(this->ReferenceFrame) << " FrameRange=" << this->FrameRange[0]
-       << "," << this->FrameRange[1] << " FrameStride=" << this->FrameStride
-       << " DropInvalidSlices=" << (this->DropInvalidSlices ? 1 : 0)
-       << " ReplayInTime=" << (this->ReplayInTime ? 1 : 0);
-  return text.str();
+  lacuna::ParameterText text;
+  text.Add("FileName", BaseName(this->FileName))
+    .Add("FileSize", vtksys::SystemTools::FileLength(header.DataFileName))
+    .Add("CalibrationFileName", BaseName(this->CalibrationFileName))
+    .Add("ImageFrame", Text(this->ImageFrame))
+    .Add("ReferenceFrame", Text(this->ReferenceFrame))
+    .Add("FrameRange", this->FrameRange)
+    .Add("FrameStride", this->FrameStride)
+    .Add("DropInvalidSlices", static_cast<bool>(this->DropInvalidSlices))
+    .Add("ReplayInTime", static_cast<bool>(this->ReplayInTime));
+  if (!chain.empty())
+  {
+    text.Add("Chain", chain);
+  }
+  return text.Get();
 }
 
 //------------------------------------------------------------------------------
@@ -279,8 +285,7 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
     output, vtkLacunaSequenceNames::Frames, { options.ImageFrame, options.ReferenceFrame });
   vtkLacunaTrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
-  vtkLacunaProvenance::Record(output, this, {},
-    this->DescribeParameters() + (sweep.Chain.empty() ? "" : " Chain=" + sweep.Chain));
+  vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters(sweep.Chain));
   if (!steps.empty()) // the file goes on with them
   {
     steps.push_back(vtkLacunaProvenance::Get(output).back());

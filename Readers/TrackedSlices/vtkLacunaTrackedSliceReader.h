@@ -150,7 +150,7 @@ private:
   void ReadPixels(vtkImageData* output, int shown, vtkLacunaExecution& execution);
   void HideSlices(vtkImageData* output, int shown) const;
   void MakeFieldData();
-  std::string DescribeParameters() const;
+  std::string DescribeParameters(const std::string& chain) const;
 
   char* FileName = nullptr;
   char* CalibrationFileName = nullptr;

@@ -3,6 +3,7 @@
 
 #include "lacunaIncompleteShape.h"
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -112,13 +113,15 @@ int vtkLacunaIncompleteShape::RequestData(
       output->Crop(extent);
       const double unit = shape.IsFlat() ? 1 : 0.001;
       vtkLacunaFieldData::Set(output, "CompleteVolume", { unit * shape.GetContent() }, 1);
-      std::ostringstream parameters;
-      parameters << "Shape=" << this->Shape << " Dimensions=" << this->Dimensions[0] << ","
-                 << this->Dimensions[1] << "," << this->Dimensions[2]
-                 << " PresentFraction=" << this->PresentFraction << " Patches=" << this->Patches
-                 << " GapAngle=" << this->GapAngle << " OutlierFraction=" << this->OutlierFraction
-                 << " Seed=" << this->Seed;
-      vtkLacunaProvenance::Record(output, this, {}, parameters.str());
+      lacuna::ParameterText parameters;
+      parameters.Add("Shape", this->Shape)
+        .Add("Dimensions", this->Dimensions)
+        .Add("PresentFraction", this->PresentFraction)
+        .Add("Patches", this->Patches)
+        .Add("GapAngle", this->GapAngle)
+        .Add("OutlierFraction", this->OutlierFraction)
+        .Add("Seed", this->Seed);
+      vtkLacunaProvenance::Record(output, this, {}, parameters.Get());
     });
 }
 

@@ -2,6 +2,7 @@
 #include "vtkLacunaPhantomSweep.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaPhantomScene.h"
 #include "lacunaPhantomSweep.h"
 #include "lacunaProbeMotion.h"
@@ -337,18 +338,25 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
 //------------------------------------------------------------------------------
 std::string vtkLacunaPhantomSweep::DescribeParameters()
 {
-  std::ostringstream text;
-  text << "NumberOfSlices=" << this->NumberOfSlices << " ImageSize=" << this->ImageSize[0] << ","
-       << this->ImageSize[1] << " PixelSpacing=" << this->PixelSpacing << " Motion=" << this->Motion
-       << " NumberOfSweeps=" << this->NumberOfSweeps << " SpeckleLevel=" << this->SpeckleLevel
-       << " PoseNoise=" << this->PoseNoise[0] << "," << this->PoseNoise[1]
-       << " Anatomy=" << this->Anatomy << " Seed=" << this->Seed << " Travel=" << this->Travel
-       << " SweepAngle=" << this->SweepAngle << " TwistAngle=" << this->TwistAngle
-       << " FanAngle=" << this->FanAngle << " Wander=" << this->Wander
-       << " EdgeWidth=" << this->EdgeWidth << " Center=" << this->Center[0] << ","
-       << this->Center[1] << "," << this->Center[2]
-       << " OutputScalarType=" << this->OutputScalarType;
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("NumberOfSlices", this->NumberOfSlices)
+    .Add("ImageSize", this->ImageSize)
+    .Add("PixelSpacing", this->PixelSpacing)
+    .Add("Motion", this->Motion)
+    .Add("NumberOfSweeps", this->NumberOfSweeps)
+    .Add("SpeckleLevel", this->SpeckleLevel)
+    .Add("PoseNoise", this->PoseNoise)
+    .Add("Anatomy", this->Anatomy)
+    .Add("Seed", this->Seed)
+    .Add("Travel", this->Travel)
+    .Add("SweepAngle", this->SweepAngle)
+    .Add("TwistAngle", this->TwistAngle)
+    .Add("FanAngle", this->FanAngle)
+    .Add("Wander", this->Wander)
+    .Add("EdgeWidth", this->EdgeWidth)
+    .Add("Center", this->Center)
+    .Add("OutputScalarType", this->OutputScalarType)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 #include "vtkLacunaSkullPhantom.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaSkull.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -141,13 +142,14 @@ bool vtkLacunaSkullPhantom::IsInDefect(double x, double y, double z)
 //------------------------------------------------------------------------------
 std::string vtkLacunaSkullPhantom::DescribeParameters()
 {
-  std::ostringstream text;
-  text << "Spacing=" << this->Spacing[0] << "," << this->Spacing[1] << "," << this->Spacing[2]
-       << " DefectRadius=" << this->DefectRadius << " DefectDirection=" << this->DefectDirection[0]
-       << "," << this->DefectDirection[1] << "," << this->DefectDirection[2]
-       << " NoiseLevel=" << this->NoiseLevel << " Seed=" << this->Seed
-       << " Center=" << this->Center[0] << "," << this->Center[1] << "," << this->Center[2];
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("Spacing", this->Spacing)
+    .Add("DefectRadius", this->DefectRadius)
+    .Add("DefectDirection", this->DefectDirection)
+    .Add("NoiseLevel", this->NoiseLevel)
+    .Add("Seed", this->Seed)
+    .Add("Center", this->Center)
+    .Get();
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSequenceText.h"
 
+#include "lacunaParameterText.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -117,13 +119,6 @@ std::string ParseMatrix(std::string_view text, Matrix4& matrix)
     }
   }
   return {};
-}
-
-std::string FormatNumber(double value)
-{
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
-  return { text.data(), result.ptr };
 }
 
 std::string FormatMatrix(const Matrix4& matrix)

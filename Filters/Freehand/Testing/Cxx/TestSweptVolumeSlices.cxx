@@ -90,7 +90,7 @@ void TestFlagsTakenByChoice()
   filter->UseGatedOutOn();
   LACUNA_CHECK_THAT(GetGrey(filter, 2) == 34, "a flag of the future");
   LACUNA_CHECK_CONTAINS(vtkLacunaProvenance::Get(filter->GetOutput()).back(),
-    "UseImageInvalid=1 UseTooFast=1 UseGatedOut=1 BadPoses=Refuse");
+    "UseImageInvalid=on UseTooFast=on UseGatedOut=on BadPoses=Refuse");
 }
 
 void TestTooFew()

@@ -121,7 +121,7 @@ void TestProvenance()
   const auto steps = vtkLacunaProvenance::Get(contrast->GetOutput());
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK_CONTAINS(
-    steps.at(0), "InsideArray=Left OutsideBounds=104 200 0 5.5 0 0 IsoValue=128");
+    steps.at(0), "InsideArray=Left OutsideBounds=104,200,0,5.5,0,0 IsoValue=128");
 }
 
 void TestAbort()
@@ -223,7 +223,7 @@ void TestPrint()
   vtkNew<vtkLacunaContrastToSpeckle> contrast;
   std::ostringstream text;
   contrast->Print(text);
-  for (const char* name : { "ScalarArray:", "InsideArray:", "OutsideArray:", "InsideBounds: 1 -1",
+  for (const char* name : { "ScalarArray:", "InsideArray:", "OutsideArray:", "InsideBounds: 1,-1",
          "OutsideBounds:", "IsoValue: 128" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaParameterText.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceText.h"
 

@@ -117,7 +117,7 @@ void TestOutput()
   LACUNA_CHECK(steps.size() == 1);
   LACUNA_CHECK_CONTAINS(steps.at(0), "FileName=sweep.igs.mha");
   LACUNA_CHECK_CONTAINS(steps.at(0), "FileSize=" + std::to_string(file.GetContent().size()));
-  LACUNA_CHECK_CONTAINS(steps.at(0), "Chain=Image > Probe > Tracker > Reference");
+  LACUNA_CHECK_CONTAINS(steps.at(0), "Chain=\"Image > Probe > Tracker > Reference\"");
   const std::string folder =
     std::filesystem::path(test.File.GetPath()).parent_path().filename().string();
   LACUNA_CHECK(steps.at(0).find(folder) == std::string::npos);
