@@ -10,8 +10,8 @@
 /// is hidden already: Towards brings the nearest slices last, so that all of every slice counts and
 /// nothing is hidden; Away brings them first; Shuffled is any order.
 ///
-/// Counters: slices/s, the time for each pixel of the map that a slice covers, both by the time that
-/// the process was busy, and the share of the map that a slice covers.
+/// Counters: slices/s, the time for each pixel of the map that a slice covers, both by the time
+/// that the process was busy, and the share of the map that a slice covers.
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceProjection.h"
 #include "lacunaSliceRayCaster.h"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Sweeps of an analytic scene (lacunaSweptScene.h) reconstructed: seconds, error against the truth,
-/// memory, and the time that one slice more takes.
+/// Sweeps of an analytic scene (lacunaSweptScene.h) reconstructed: seconds, error against the
+/// truth, memory, and the time that one slice more takes.
 ///
 /// Beside them two yardsticks of the same run, so that ratios mean something on any machine: Splat,
 /// the usual way (lacunaPixelSplat.h), and ReadAndWrite, which only touches the memory.
 ///
-/// Counters: filled, the part of the swept region that has grey levels; RMS, the error there; RMSall,
-/// that of all voxels with grey levels, also of those just outside of the swept region; bytes, what
-/// one voxel takes; peakMB, what the process took most in one reconstruction beyond what it had.
+/// Counters: filled, the part of the swept region that has grey levels; RMS, the error there;
+/// RMSall, that of all voxels with grey levels, also of those just outside of the swept region;
+/// bytes, what one voxel takes; peakMB, what the process took most in one reconstruction beyond
+/// what it had.
 #include "lacunaMemory.h"
 #include "lacunaPixelSplat.h"
 #include "lacunaSweptScene.h"

@@ -38,8 +38,8 @@ public:
   /// width, height: of the slice's window, pixels. pixelSpacing: mm from column to column and from
   /// row to row, the lengths of the first two columns of PixelToReference; rows and columns are
   /// taken to be at right angles.
-  /// Throws std::invalid_argument when a number is not finite, Angles or Radii are not first < last,
-  /// a radius is negative, the opening is over 360 degrees, or no pixel lies in the fan.
+  /// Throws std::invalid_argument when a number is not finite, Angles or Radii are not first <
+  /// last, a radius is negative, the opening is over 360 degrees, or no pixel lies in the fan.
   FanMask(const Fan& fan, int width, int height, const Vec2& pixelSpacing);
 
   int GetWidth() const { return this->Width; }

@@ -25,8 +25,8 @@ constexpr double VerticalSlope = 0.02;
 constexpr double SmallestOpening = 6; // degrees
 constexpr int MostDirections = 240;
 constexpr int FewestDirections = 16;
-// The region of change cannot be narrower than its neighbourhoods: nearer to the tip of a sector than
-// this many pixels across, its border says nothing.
+// The region of change cannot be narrower than its neighbourhoods: nearer to the tip of a sector
+// than this many pixels across, its border says nothing.
 constexpr double TipWidth = 36;
 // The outermost pixels that change lie half a pixel, on average, within the border.
 constexpr double HalfPixel = 0.5;

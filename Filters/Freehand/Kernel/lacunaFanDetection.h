@@ -8,13 +8,13 @@
 /// the point in which the two arcs are centred. The probe may be at the top or at the bottom of the
 /// image, and the sector may be cut off by the image's edges.
 ///
-/// Sides and arcs are found by consensus: the line, or radius, that most points of the part's border
-/// agree with (within 1.5 pixels), where points outside of it count against it. So dark parts within
-/// the sector and bits of text beside it do no harm.
+/// Sides and arcs are found by consensus: the line, or radius, that most points of the part's
+/// border agree with (within 1.5 pixels), where points outside of it count against it. So dark
+/// parts within the sector and bits of text beside it do no harm.
 ///
-/// A shape is trusted when 98 % of the part lie in it, the part covers at least half of it, and each
-/// side and arc is confirmed by a third of its length (of a rectangle by two fifths), unless the
-/// image ends there. The smallest
+/// A shape is trusted when 98 % of the part lie in it, the part covers at least half of it, and
+/// each side and arc is confirmed by a third of its length (of a rectangle by two fifths), unless
+/// the image ends there. The smallest
 /// change that counts is tried from none at all (recordings that are exactly black around the
 /// sector) up to a sixteenth of the largest one (noisy ones). The first trusted shape that is
 /// smaller than the image wins; a rectangle that reaches to the left or the right edge only before
@@ -43,8 +43,8 @@ struct DetectedFan
 
 /// slices: of one sweep, all with windows of one size; fans that they have are not heeded.
 /// pixelSpacing: mm from column to column and from row to row.
-/// Throws std::runtime_error, with a text for the user, when the slices are fewer than 3 or no shape
-/// can be trusted.
+/// Throws std::runtime_error, with a text for the user, when the slices are fewer than 3 or no
+/// shape can be trusted.
 DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSpacing);
 }
 #endif

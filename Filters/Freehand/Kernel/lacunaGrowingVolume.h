@@ -15,9 +15,9 @@
 namespace lacuna
 {
 /// A swept volume that is asked for again and again. When the slices are those of the last time and
-/// some more at the end of the last sweep (or new sweeps), and grid, extent and options are the same,
-/// only what is new is added to the volume of the last time. Else it is made anew. The result is the
-/// same bit by bit in either case.
+/// some more at the end of the last sweep (or new sweeps), and grid, extent and options are the
+/// same, only what is new is added to the volume of the last time. Else it is made anew. The result
+/// is the same bit by bit in either case.
 ///
 /// Slices are the same when their poses, windows, types and fans are equal, number by number, and
 /// the hashes of their pixels are (lacunaPixelHash.h). Neither addresses nor times of modification
@@ -31,9 +31,9 @@ public:
   /// The slices of each sweep, in order.
   using Sweeps = std::vector<const std::vector<SliceImage>*>;
 
-  /// Brings the volume up to date. isGrowing: growth is expected. Pixels are not needed any more when
-  /// it returns. Progress covers first..last of the whole. Throws what SweptVolume throws; nothing is
-  /// kept then. The result is valid until the next call of any method.
+  /// Brings the volume up to date. isGrowing: growth is expected. Pixels are not needed any more
+  /// when it returns. Progress covers first..last of the whole. Throws what SweptVolume throws;
+  /// nothing is kept then. The result is valid until the next call of any method.
   const SweptVolume& Update(const Sweeps& sweeps, const VolumeGrid& grid,
     const std::array<int, 6>& extent, const SweptVolume::Options& options, bool isGrowing,
     Execution& execution, double first = 0, double last = 1);

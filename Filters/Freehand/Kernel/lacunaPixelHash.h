@@ -11,8 +11,8 @@
 namespace lacuna
 {
 /// 128 bits. Pixels that differ have different hashes, but for a chance of less than 1 in 10^18:
-/// changes of up to 8 bytes always change it. Made for speed (several bytes per clock cycle) and not
-/// against an adversary.
+/// changes of up to 8 bytes always change it. Made for speed (several bytes per clock cycle) and
+/// not against an adversary.
 struct PixelHash
 {
   std::uint64_t First = 0;

@@ -4,11 +4,11 @@
 /// away, and one such slice would stretch a volume beyond all measure.
 ///
 /// The step between two consecutive slices is the largest distance that a corner moves, divided by
-/// the difference of their slice numbers (slices in between may be missing). A jump is a step longer
-/// than both the diagonal of an image (the median one of the sweep) and 20 times the median step.
-/// Jumps cut the sweep into groups; a slice after a jump may also continue one of the last 8 groups,
-/// from whose end it is no jump away. A group is an outlier when it has at most 3 slices and at most
-/// a quarter as many as the longest group.
+/// the difference of their slice numbers (slices in between may be missing). A jump is a step
+/// longer than both the diagonal of an image (the median one of the sweep) and 20 times the median
+/// step. Jumps cut the sweep into groups; a slice after a jump may also continue one of the last 8
+/// groups, from whose end it is no jump away. A group is an outlier when it has at most 3 slices
+/// and at most a quarter as many as the longest group.
 ///
 /// So sweeps of evenly long steps have no outliers, however long the steps are; nor has a sweep
 /// during which the probe was lifted and put down elsewhere, nor one with a pause. Errors below the

@@ -18,8 +18,8 @@ AffineFunction MakeFunction(const VolumeGrid& grid, const Vec3& gradient, const 
     gradient[2] * grid.Spacing[2], Dot(gradient, grid.Origin - point) };
 }
 
-// What a voxel covers along f's gradient, in f's unit: the width of the box that has the same second
-// moment as the voxel. For cubic voxels it does not depend on the direction.
+// What a voxel covers along f's gradient, in f's unit: the width of the box that has the same
+// second moment as the voxel. For cubic voxels it does not depend on the direction.
 double GetVoxelWidth(const AffineFunction& f)
 {
   return std::sqrt(f.I * f.I + f.J * f.J + f.K * f.K);

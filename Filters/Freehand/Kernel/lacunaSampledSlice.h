@@ -52,8 +52,8 @@ struct SampledSlice
   int Height = 0;
   /// The area in which feet count, first and last, in raster coordinates.
   Vec2 Columns, Rows;
-  /// With a fan: how much of each sample's weight lies in it. Pixels holds sums then, not means; see
-  /// AverageFootprintsInFan. Laid out like Pixels; null without a fan.
+  /// With a fan: how much of each sample's weight lies in it. Pixels holds sums then, not means;
+  /// see AverageFootprintsInFan. Laid out like Pixels; null without a fan.
   const void* Weights = nullptr;
   std::shared_ptr<const FanMask> Fan;
   /// Of a voxel: its foot in mm from the fan's origin along columns and along rows.
@@ -61,9 +61,10 @@ struct SampledSlice
   std::unique_ptr<std::byte[]> Storage; ///< holds Pixels when they are the slice's own copy
 };
 
-/// Makes slice ready. footprintScale: width and height of footprints, in voxels. All slices with a fan get a raster of their own. Without doublePrecision the raster's values are such as a float holds.
-/// The result refers to the slice's pixels when it can.
-/// Throws std::invalid_argument when the slice is unusable, see CheckSlice.
+/// Makes slice ready. footprintScale: width and height of footprints, in voxels. All slices with a
+/// fan get a raster of their own. Without doublePrecision the raster's values are such as a float
+/// holds. The result refers to the slice's pixels when it can. Throws std::invalid_argument when
+/// the slice is unusable, see CheckSlice.
 SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelSampling sampling,
   double footprintScale, bool doublePrecision);
 

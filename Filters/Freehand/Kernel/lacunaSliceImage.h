@@ -33,8 +33,8 @@ struct SliceImage
 };
 
 /// Throws std::invalid_argument, saying which slice, what is wrong and what to do, unless the
-/// window is at least 2 x 2 pixels, its pose is finite, affine and spans a plane, and its fan, if it
-/// has one, was made for a window of its size.
+/// window is at least 2 x 2 pixels, its pose is finite, affine and spans a plane, and its fan, if
+/// it has one, was made for a window of its size.
 void CheckSlice(const SliceImage& slice);
 
 /// Centres of the four corner pixels, mm.

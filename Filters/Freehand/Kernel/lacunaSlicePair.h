@@ -12,7 +12,8 @@
 /// slice, |a|/(|a|+|b|), is the t of the plane that passes the voxel.
 ///
 /// The voxel must also see both slices: its feet lie on both images (how far outside of the centres
-/// of the outermost pixels they may lie depends on PixelSampling) and in their fans, if they have any, and the slices are not further apart at the voxel, |a|+|b|, than a limit.
+/// of the outermost pixels they may lie depends on PixelSampling) and in their fans, if they have
+/// any, and the slices are not further apart at the voxel, |a|+|b|, than a limit.
 /// Voxels exactly on a slice belong to the pairs on both of its sides, which give them the same
 /// grey level.
 ///

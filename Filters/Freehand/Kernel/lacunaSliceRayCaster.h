@@ -31,9 +31,10 @@
 namespace lacuna
 {
 /// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice, inside its fan if
-/// it has one, samples it bilinearly; samples that are not finite do not exist. Of several samples at the same depth of a
-/// ray only the most solid one counts. Slices seen edge-on (SliceProjection::IsEdgeOn) are left
-/// out. A ray whose nearest sample of all is solid has its surface there.
+/// it has one, samples it bilinearly; samples that are not finite do not exist. Of several samples
+/// at the same depth of a ray only the most solid one counts. Slices seen edge-on
+/// (SliceProjection::IsEdgeOn) are left out. A ray whose nearest sample of all is solid has its
+/// surface there.
 class SliceRayCaster
 {
 public:

@@ -102,8 +102,8 @@ struct Lines
   Line Column, Row, Distance, FanX, FanY;
 };
 
-// Puts the sample of a voxel whose feet have the grey levels x and y, at these signed distances from
-// the first and the second slice: what the voxel's centre has.
+// Puts the sample of a voxel whose feet have the grey levels x and y, at these signed distances
+// from the first and the second slice: what the voxel's centre has.
 template <Compounding compounding>
 struct PutCentre
 {
@@ -122,7 +122,8 @@ struct PutCentre
   double Tolerance;
 };
 
-// The mean over the part of the voxel's height that lies between the slices, weighted by its length.
+// The mean over the part of the voxel's height that lies between the slices, weighted by its
+// length.
 struct PutHeight
 {
   explicit PutHeight(const SlicePair& pair)

@@ -19,8 +19,8 @@ SweptVolume::Options MakeOptions(double scale, bool acrossSlices, bool doublePre
   return options;
 }
 
-// Grey levels linear in column and row, of another slope on each slice: footprints of any width have
-// the grey level of their middle, also where the raster goes on.
+// Grey levels linear in column and row, of another slope on each slice: footprints of any width
+// have the grey level of their middle, also where the raster goes on.
 double GetGrey(std::size_t slice, double column, double row)
 {
   const auto n = static_cast<double>(slice);
