@@ -2,6 +2,7 @@
 #include "vtkLacunaSliceFan.h"
 
 #include "lacunaFanDetection.h"
+#include "vtkLacunaSliceAlgorithm.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,16 @@ std::string vtkLacunaSliceFan::Describe() const
   text << "ClipRectangle=" << this->Clip[0] << "," << this->Clip[1] << "," << this->Clip[2] << ","
        << this->Clip[3];
   return text.str();
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceFan vtkLacunaSliceFan::Make(vtkLacunaSliceAlgorithm* filter)
+{
+  vtkLacunaSliceFan fan;
+  std::copy_n(filter->GetFanOrigin(), 2, fan.Sector.Origin.begin());
+  std::copy_n(filter->GetFanAngles(), 2, fan.Sector.Angles.begin());
+  std::copy_n(filter->GetFanRadii(), 2, fan.Sector.Radii.begin());
+  return fan;
 }
 
 //------------------------------------------------------------------------------

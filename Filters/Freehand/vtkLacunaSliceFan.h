@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+class vtkLacunaSliceAlgorithm;
+
 /// A sector, or just a rectangle, in pixels of the original slices.
 struct vtkLacunaSliceFan
 {
@@ -34,14 +36,17 @@ struct vtkLacunaSliceFan
   /// "FanOrigin=... FanAngles=... FanRadii=... ClipRectangle=...", as the properties would have it.
   std::string Describe() const;
 
+  /// That of the properties of filter; without its ClipRectangle.
+  static vtkLacunaSliceFan Make(vtkLacunaSliceAlgorithm* filter);
+
   /// Finds it in the pixels of slices; its numbers are rounded so that they can be copied. Throws
   /// std::exception with a text for the user when it cannot be found for certain.
   static vtkLacunaSliceFan Detect(
     const std::vector<lacuna::SliceImage>& slices, const Window& window);
 
   /// Gives slices the fan, and cuts their windows to the box around it. slices: all windows are one
-  /// window of the original slices. Returns the new window; the poses are still those of the old one.
-  /// Throws std::exception when the fan does not meet it.
+  /// window of the original slices. Returns the new window; the poses are still those of the old
+  /// one. Throws std::exception when the fan does not meet it.
   Window Apply(const std::vector<lacuna::SliceImage*>& slices, const Window& window) const;
 };
 #endif

@@ -4,10 +4,13 @@
 #include "lacunaPoseOutliers.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaSliceAlgorithm.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +24,18 @@ struct Range
 {
   int First, Last;
 };
+
+void CheckClip(const std::array<int, 4>& clip)
+{
+  if (*std::min_element(clip.begin(), clip.end()) < 0)
+  {
+    std::ostringstream message;
+    message << "ClipRectangle is " << clip[0] << " " << clip[1] << " " << clip[2] << " " << clip[3]
+            << "; first column, first row, width and height count pixels of the image and must not "
+               "be negative (a width or height of 0 reaches to the edge)";
+    throw std::runtime_error(message.str());
+  }
+}
 
 // Cuts one axis of a stack to a part of the clip rectangle; size 0 reaches to the edge.
 Range Clip(vtkImageData* stack, int axis, int start, int size)
@@ -85,6 +100,34 @@ constexpr std::array<const char*, 4> FlagNames{ "pose invalid", "image invalid",
   "gated out" };
 }
 
+//------------------------------------------------------------------------------
+vtkLacunaSliceSelection vtkLacunaSliceSelection::Make(
+  vtkLacunaSliceAlgorithm* filter, vtkInformation* input)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  vtkLacunaSliceSelection selection;
+  std::copy_n(filter->GetClipRectangle(), 4, selection.Clip.begin());
+  selection.BadPoses = filter->GetBadPoses();
+  selection.AcceptedFlags =
+    (filter->GetUseImageInvalid() ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
+    (filter->GetUseTooFast() ? vtkLacunaTrackedSlices::TooFast : 0) |
+    (filter->GetUseGatedOut() ? vtkLacunaTrackedSlices::GatedOut : 0);
+  const int steps = input->Has(SDDP::TIME_STEPS()) ? input->Length(SDDP::TIME_STEPS()) : 0;
+  selection.IsReplay = steps > 1;
+  if (selection.IsReplay)
+  {
+    // without a time, a source shows all it has
+    vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
+    const double last = input->Get(SDDP::TIME_STEPS())[steps - 1];
+    const double time = data->Has(vtkDataObject::DATA_TIME_STEP())
+      ? data->Get(vtkDataObject::DATA_TIME_STEP())
+      : input->Has(SDDP::UPDATE_TIME_STEP()) ? input->Get(SDDP::UPDATE_TIME_STEP())
+                                             : last;
+    selection.IsAtEnd = time >= last;
+  }
+  return selection;
+}
+
 // A slice of the sweep whose status is good enough.
 struct vtkLacunaSliceImages::Candidate
 {
@@ -124,12 +167,32 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
 }
 
 //------------------------------------------------------------------------------
+// By number in the sweep: the slices without an image at the end of the stack.
+std::vector<bool> vtkLacunaSliceImages::FindSlicesToCome(
+  const vtkLacunaTrackedSlices& tracked) const
+{
+  std::vector<bool> isToCome(tracked.GetNumberOfSlices(), false);
+  const int* extent = this->Stack->GetExtent();
+  for (int k = extent[5]; k >= extent[4]; --k)
+  {
+    const vtkIdType number = tracked.GetSliceNumber(k);
+    if ((tracked.GetStatus(number) & vtkLacunaTrackedSlices::ImageInvalid) == 0)
+    {
+      break;
+    }
+    isToCome[number] = true;
+  }
+  return isToCome;
+}
+
+//------------------------------------------------------------------------------
 std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidates(
   const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection)
 {
   vtkImageData* const stack = this->Stack;
   const lacuna::ScalarType type = vtkLacunaScalarType::Get(this->GreyLevels);
   const auto* pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0));
+  CheckClip(selection.Clip);
   const Range columns = Clip(stack, 0, selection.Clip[0], selection.Clip[2]);
   const Range rows = Clip(stack, 1, selection.Clip[1], selection.Clip[3]);
   const double* origin = stack->GetOrigin();
@@ -157,6 +220,12 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
   }
   const auto orExpected = static_cast<unsigned char>(
     selection.AcceptedFlags | (selection.IsReplay ? vtkLacunaTrackedSlices::ImageInvalid : 0));
+  std::vector<bool> isToCome(layers.size(), false);
+  if (selection.IsReplay && !selection.IsAtEnd)
+  {
+    isToCome = this->FindSlicesToCome(tracked);
+    this->IsMoreToCome = std::find(isToCome.begin(), isToCome.end(), true) != isToCome.end();
+  }
   std::vector<Candidate> candidates;
   for (vtkIdType number = 0; number < tracked.GetNumberOfSlices(); ++number)
   {
@@ -165,7 +234,7 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
     {
       continue; // not in the stack
     }
-    const bool isUsable = tracked.IsUsable(number, selection.AcceptedFlags);
+    const bool isUsable = tracked.IsUsable(number, selection.AcceptedFlags) && !isToCome[number];
     if (!isUsable)
     {
       for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)
@@ -283,6 +352,13 @@ void vtkLacunaSliceImages::ApplyFan(const vtkLacunaSliceFan& fan)
   {
     all[i]->PixelToReference = this->Poses[i] * this->Window.GetMatrix();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::HideSlices()
+{
+  this->Others.insert(this->Others.begin(), this->Slices.begin(), this->Slices.end());
+  this->Slices.clear();
 }
 
 //------------------------------------------------------------------------------

@@ -15,11 +15,16 @@
 
 class vtkDataArray;
 class vtkImageData;
+class vtkInformation;
+class vtkLacunaSliceAlgorithm;
 class vtkLacunaTrackedSlices;
 
 /// Which slices of a stack to take, and which part of them.
 struct vtkLacunaSliceSelection
 {
+  /// As the properties of filter say, for a stack in its input.
+  static vtkLacunaSliceSelection Make(vtkLacunaSliceAlgorithm* filter, vtkInformation* input);
+
   /// What to do with slices whose status says that their pose is fine, but it is not: poses that
   /// are unusable (not finite, not affine, singular), and outliers (see lacunaPoseOutliers.h).
   enum BadPoseRule
@@ -35,9 +40,11 @@ struct vtkLacunaSliceSelection
   /// Flags of SliceStatus that do not matter.
   unsigned char AcceptedFlags = 0;
   int BadPoses = Refuse;
-  /// The stack is replayed: slices whose image is invalid (2) may come yet. They are listed as
-  /// Others.
+  /// The stack is replayed: slices whose image is invalid (2) are listed as Others, so that what is
+  /// laid out by the poses of all does not depend on the time.
   bool IsReplay = false;
+  /// The last time step of the replay is reached: no slices are to come.
+  bool IsAtEnd = false;
   /// Ends the name of a slice in errors.
   std::string Suffix;
 };
@@ -58,6 +65,9 @@ struct vtkLacunaSliceImages
   /// Cuts all slices to a fan; once.
   void ApplyFan(const vtkLacunaSliceFan& fan);
 
+  /// Makes Others of all slices: they count for the place of the output alone.
+  void HideSlices();
+
   /// A warning about slices that are left out because of bad poses (LeftOut, also of several
   /// stacks); names the first ten.
   static std::string DescribeLeftOut(const std::vector<std::string>& leftOut);
@@ -67,6 +77,8 @@ struct vtkLacunaSliceImages
   std::vector<lacuna::SliceImage> Slices;
   /// In a replay: slices whose pose is known, but not their image. They have no pixels.
   std::vector<lacuna::SliceImage> Others;
+  /// A replay has not shown all of them yet: too little to see is no error.
+  bool IsMoreToCome = false;
   /// ImageToReference of Slices, then of Others.
   std::vector<lacuna::Matrix4> Poses;
   /// Columns and rows of the slices' windows in the original slices.
@@ -76,6 +88,7 @@ struct vtkLacunaSliceImages
 
 private:
   struct Candidate;
+  std::vector<bool> FindSlicesToCome(const vtkLacunaTrackedSlices& tracked) const;
   std::vector<Candidate> FindCandidates(
     const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);
   void DropUnusable(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);

@@ -5,7 +5,6 @@
 #include "lacunaParameterText.h"
 #include "lacunaSliceFingerprint.h"
 #include "lacunaSliceRayCaster.h"
-#include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -19,7 +18,6 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSliceImages.h"
-#include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -27,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -39,6 +38,17 @@ bool IsSame(const lacuna::ImagePlane& a, const lacuna::ImagePlane& b)
 {
   return a.Origin == b.Origin && a.Right == b.Right && a.Down == b.Down && a.View == b.View &&
     a.PixelSpacing == b.PixelSpacing && a.Size == b.Size;
+}
+
+// True when info announces the map of plane.
+bool IsAnnounced(vtkInformation* info, const lacuna::ImagePlane& plane)
+{
+  vtkNew<vtkInformation> now;
+  vtkLacunaDepthMap::SetInformation(now, plane);
+  const auto isSame = [&](auto* key, int count)
+  { return info->Has(key) && std::equal(now->Get(key), now->Get(key) + count, info->Get(key)); };
+  return isSame(SDDP::WHOLE_EXTENT(), 6) && isSame(vtkDataObject::ORIGIN(), 3) &&
+    isSame(vtkDataObject::SPACING(), 3) && isSame(vtkDataObject::DIRECTION(), 9);
 }
 }
 
@@ -63,15 +73,8 @@ public:
     {
       throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
     }
-    vtkLacunaSliceSelection selection;
-    std::copy_n(self->ClipRectangle, 4, selection.Clip.begin());
-    selection.BadPoses = self->BadPoses;
-    selection.AcceptedFlags = (self->UseImageInvalid ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
-      (self->UseTooFast ? vtkLacunaTrackedSlices::TooFast : 0) |
-      (self->UseGatedOut ? vtkLacunaTrackedSlices::GatedOut : 0);
-    vtkInformation* info = inputs->GetInformationObject(0);
-    selection.IsReplay = info->Has(SDDP::TIME_STEPS()) && info->Length(SDDP::TIME_STEPS()) > 1;
-    this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
+    this->Images = std::make_unique<vtkLacunaSliceImages>(
+      stack, vtkLacunaSliceSelection::Make(self, inputs->GetInformationObject(0)));
     if (this->GetSlices().empty() && !this->IsMoreToCome())
     {
       std::ostringstream message;
@@ -82,10 +85,7 @@ public:
       }
       throw std::runtime_error(message.str());
     }
-    vtkLacunaSliceFan fan;
-    std::copy_n(self->FanOrigin, 2, fan.Sector.Origin.begin());
-    std::copy_n(self->FanAngles, 2, fan.Sector.Angles.begin());
-    std::copy_n(self->FanRadii, 2, fan.Sector.Radii.begin());
+    const vtkLacunaSliceFan fan = vtkLacunaSliceFan::Make(self);
     if (fan.HasSector())
     {
       this->Images->ApplyFan(fan);
@@ -96,7 +96,7 @@ public:
   bool IsEmpty() const { return !this->Images; }
   const std::vector<lacuna::SliceImage>& GetSlices() const { return this->Images->Slices; }
   /// True while a replay has not reached its end.
-  bool IsMoreToCome() const { return !this->Images->Others.empty(); }
+  bool IsMoreToCome() const { return this->Images->IsMoreToCome; }
 
   std::unique_ptr<vtkLacunaSliceImages> Images;
   lacuna::ImagePlane Plane;
@@ -191,43 +191,10 @@ vtkLacunaSliceRayCaster::vtkLacunaSliceRayCaster()
 vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceRayCaster::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  // Slices that change with time change the map: it is laid out again when the time is known.
-  if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
-  {
-    return this->RequestInformation(request, inputs, outputs);
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSliceRayCaster::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  // Any pixel's ray may meet any slice, on any rank.
-  vtkInformation* info = inputs[0]->GetInformationObject(0);
-  if (info->Has(SDDP::WHOLE_EXTENT()))
-  {
-    info->Set(SDDP::UPDATE_EXTENT(), info->Get(SDDP::WHOLE_EXTENT()), 6);
-  }
-  info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-  info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaSliceRayCaster::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  // Where the map lies follows from the poses, which are data: so the input must be executed now.
-  // When it is up to date, as it usually is, this does nothing.
-  this->RequestUpdateExtent(request, inputs, outputs);
-  vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
-  connection->GetProducer()->Update(connection->GetIndex());
-
+  this->Superclass::RequestInformation(request, inputs, outputs);
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
@@ -264,10 +231,7 @@ int vtkLacunaSliceRayCaster::RequestData(
         return;
       }
       const lacuna::ImagePlane& plane = plan.Plane;
-      const int* whole = info->Get(SDDP::WHOLE_EXTENT());
-      if (whole[1] != plane.Size[0] - 1 || whole[3] != plane.Size[1] - 1 ||
-        !std::equal(
-          plane.Origin.data(), plane.Origin.data() + 3, info->Get(vtkDataObject::ORIGIN())))
+      if (!IsAnnounced(info, plane))
       {
         throw std::runtime_error(
           "the slices have changed since the map was announced (a source that changes with "
@@ -314,11 +278,7 @@ int vtkLacunaSliceRayCaster::RequestData(
 //------------------------------------------------------------------------------
 void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
 {
-  const std::vector<std::string>& leftOut = plan.Images->LeftOut;
-  if (!leftOut.empty())
-  {
-    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(leftOut));
-  }
+  std::map<std::string, std::string> warnings;
   const lacuna::SliceRayCaster& caster = *this->Kept->Caster;
   const std::int64_t edgeOn = caster.GetNumberOfEdgeOnSlices();
   if (edgeOn > 0)
@@ -336,22 +296,26 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
     {
       x = std::round(1000 * x) / 1000 + 0.0; // to be read; no negative zero
     }
-    vtkWarningMacro(<< edgeOn << " of " << caster.GetNumberOfSlices()
-                    << " slices are seen edge-on, at less than "
-                    << lacuna::SliceProjection::SmallestAngle
-                    << " degree from the view direction, and left out; the slices are seen best "
-                       "along the ViewDirection "
-                    << across[0] << " " << across[1] << " " << across[2] << " or its opposite");
+    std::ostringstream text;
+    text << edgeOn << " of " << caster.GetNumberOfSlices()
+         << " slices are seen edge-on, at less than " << lacuna::SliceProjection::SmallestAngle
+         << " degree from the view direction, and left out; the slices are seen best along the "
+            "ViewDirection "
+         << across[0] << " " << across[1] << " " << across[2] << " or its opposite";
+    warnings["edge-on"] = text.str();
   }
   double range[2];
   plan.Images->GreyLevels->GetFiniteRange(range, 0);
   if (!hasSurface && !plan.IsMoreToCome() &&
     !(this->IsoValue >= range[0] && this->IsoValue <= range[1]))
   {
-    vtkWarningMacro(<< "IsoValue " << this->IsoValue
-                    << " lies outside the grey levels of the slices, which range from " << range[0]
-                    << " to " << range[1] << ": the map is empty");
+    std::ostringstream text;
+    text << "IsoValue " << this->IsoValue
+         << " lies outside the grey levels of the slices, which range from " << range[0] << " to "
+         << range[1] << ": the map is empty";
+    warnings["IsoValue " + std::to_string(this->IsoValue)] = text.str();
   }
+  this->WarnOfNews(warnings, plan.Images->LeftOut);
 }
 
 //------------------------------------------------------------------------------

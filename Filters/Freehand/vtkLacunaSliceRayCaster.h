@@ -39,29 +39,23 @@
 #ifndef vtkLacunaSliceRayCaster_h
 #define vtkLacunaSliceRayCaster_h
 
-#include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaSliceAlgorithm.h"
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceRayCaster : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceRayCaster : public vtkLacunaSliceAlgorithm
 {
 public:
   static vtkLacunaSliceRayCaster* New();
-  vtkTypeMacro(vtkLacunaSliceRayCaster, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLacunaSliceRayCaster, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum SolidSideType
   {
     Above = 0, ///< solid where the grey level is at or above the iso-value
     Below
-  };
-  enum BadPoseRules
-  {
-    Refuse = 0,
-    LeaveOut = 1,
-    KeepOutliers = 2
   };
 
   ///@{
@@ -125,60 +119,14 @@ public:
   vtkGetVector2Macro(ImageSize, int);
   ///@}
 
-  ///@{
-  /// The part of the slices to use, in pixels: first column, first row, width, height. A width or
-  /// height of 0 reaches to the edge of the image. Default: 0 0 0 0, all.
-  vtkSetVector4Macro(ClipRectangle, int);
-  vtkGetVector4Macro(ClipRectangle, int);
-  ///@}
-
-  ///@{
-  /// What a curved or phased probe sees of the slices, see vtkLacunaSweptVolume: where its beams meet
-  /// (column, row), the directions of the first and the last one (degrees), and where they begin and
-  /// end (mm). Defaults: 0 0, -45 45, 0 0: there is no fan while the radii are 0.
-  vtkSetVector2Macro(FanOrigin, double);
-  vtkGetVector2Macro(FanOrigin, double);
-  vtkSetVector2Macro(FanAngles, double);
-  vtkGetVector2Macro(FanAngles, double);
-  vtkSetVector2Macro(FanRadii, double);
-  vtkGetVector2Macro(FanRadii, double);
-  ///@}
-
-  ///@{
-  /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
-  /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
-  /// Default: off.
-  vtkSetMacro(UseImageInvalid, bool);
-  vtkGetMacro(UseImageInvalid, bool);
-  vtkBooleanMacro(UseImageInvalid, bool);
-  vtkSetMacro(UseTooFast, bool);
-  vtkGetMacro(UseTooFast, bool);
-  vtkBooleanMacro(UseTooFast, bool);
-  vtkSetMacro(UseGatedOut, bool);
-  vtkGetMacro(UseGatedOut, bool);
-  vtkBooleanMacro(UseGatedOut, bool);
-  ///@}
-
-  ///@{
-  /// What to do with slices that are to be taken, but whose pose cannot be true; see
-  /// vtkLacunaSweptVolume. Default: Refuse.
-  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
-  vtkGetMacro(BadPoses, int);
-  ///@}
-
   /// Slices that the last update cast; fewer than there are when it went on from an earlier one.
   vtkGetMacro(NumberOfCastSlices, vtkIdType);
-
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 protected:
   vtkLacunaSliceRayCaster();
   ~vtkLacunaSliceRayCaster() override;
 
   int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
@@ -201,14 +149,6 @@ private:
   double PlaneOrigin[3];
   double PixelSpacing = 0;
   int ImageSize[2] = { 0, 0 };
-  int ClipRectangle[4] = { 0, 0, 0, 0 };
-  double FanOrigin[2] = { 0, 0 };
-  double FanAngles[2] = { -45, 45 };
-  double FanRadii[2] = { 0, 0 };
-  bool UseImageInvalid = false;
-  bool UseTooFast = false;
-  bool UseGatedOut = false;
-  int BadPoses = Refuse;
   vtkIdType NumberOfCastSlices = 0;
 
   std::unique_ptr<State> Kept;

@@ -4,7 +4,6 @@
 #include "lacunaGrowingVolume.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -23,6 +22,7 @@
 #include "vtkUnsignedIntArray.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace
@@ -42,8 +42,9 @@ void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
   vtkNew<vtkIntArray> clips;
   clips->SetName("ClipRectangle");
   clips->SetNumberOfComponents(4);
-  for (const vtkLacunaSliceFan& fan : fans.Found)
+  for (const std::optional<vtkLacunaSliceFan>& found : fans.Found)
   {
+    const vtkLacunaSliceFan fan = found.value_or(vtkLacunaSliceFan());
     origins.insert(origins.end(), fan.Sector.Origin.begin(), fan.Sector.Origin.end());
     angles.insert(angles.end(), fan.Sector.Angles.begin(), fan.Sector.Angles.end());
     radii.insert(radii.end(), fan.Sector.Radii.begin(), fan.Sector.Radii.end());
@@ -55,8 +56,8 @@ void WriteFans(vtkImageData* output, const vtkLacunaSweptVolumeFans& fans)
   output->GetFieldData()->AddArray(clips);
 }
 
-// The volume changes whenever one of the inputs does; VTK by itself passes on the times of the first
-// input only.
+// The volume changes whenever one of the inputs does; VTK by itself passes on the times of the
+// first input only.
 void AnnounceTimes(vtkInformationVector* inputs, vtkInformation* output)
 {
   using SDDP = vtkStreamingDemandDrivenPipeline;
@@ -79,21 +80,24 @@ void AnnounceTimes(vtkInformationVector* inputs, vtkInformation* output)
   output->Set(SDDP::TIME_RANGE(), range, 2);
 }
 
-// Says what is wrong with slices between which nothing could be filled.
-void CheckPairs(vtkLacunaSweptVolume* self, const lacuna::SweptVolume& volume)
+// Says what is odd about slices between which nothing could be filled. Throws when nothing could at
+// all.
+std::map<std::string, std::string> CheckPairs(
+  const lacuna::SweptVolume& volume, const vtkLacunaSweptVolumePlan& plan)
 {
   const lacuna::SweptVolume::PairCounts& pairs = volume.GetPairCounts();
-  if (pairs.All > 0 && pairs.All == pairs.Coincident)
+  if (pairs.All > 0 && pairs.All == pairs.Coincident && !plan.IsMoreToCome)
   {
     throw std::runtime_error("all slices lie in the same plane: there is nothing between them");
   }
-  if (pairs.Turned > 0)
+  if (pairs.Turned == 0)
   {
-    vtkWarningWithObjectMacro(self,
-      << pairs.Turned << " of " << pairs.All
-      << " pairs of consecutive slices are turned by 90 degrees or more against each other; "
-         "nothing was filled between them. The order of the slices or their poses may be wrong.");
+    return {};
   }
+  return { { "turned",
+    std::to_string(pairs.Turned) + " of " + std::to_string(pairs.All) +
+      " pairs of consecutive slices are turned by 90 degrees or more against each other; nothing "
+      "was filled between them. The order of the slices or their poses may be wrong." } };
 }
 }
 
@@ -119,9 +123,10 @@ vtkIdType vtkLacunaSweptVolume::GetNumberOfSlicesAdded() const
 const char* vtkLacunaSweptVolume::GetFanDescription()
 {
   this->FanDescription.clear();
-  for (const vtkLacunaSliceFan& fan : this->Fans->Found)
+  for (const std::optional<vtkLacunaSliceFan>& fan : this->Fans->Found)
   {
-    this->FanDescription += (this->FanDescription.empty() ? "" : "\n") + fan.Describe();
+    this->FanDescription +=
+      (this->FanDescription.empty() ? "" : "\n") + (fan ? fan->Describe() : "not seen yet");
   }
   return this->FanDescription.c_str();
 }
@@ -135,51 +140,10 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSweptVolume::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  // Slices that change with time change the grid: it is found again when the time is known.
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
-  {
-    return this->RequestInformation(request, inputs, outputs);
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSweptVolume::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
-{
-  // Any part of the volume may need any slice, on any rank.
-  for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
-  {
-    vtkInformation* info = inputs[0]->GetInformationObject(i);
-    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-    {
-      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-        info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
-    }
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  }
-  return 1;
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaSweptVolume::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  // The whole extent follows from the poses, which are data. Downstream divides the whole extent
-  // into pieces before any data are asked for: so the input must be executed now. When it is up to
-  // date, as it usually is, this does nothing.
-  this->RequestUpdateExtent(request, inputs, outputs);
-  for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
-  {
-    vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);
-    connection->GetProducer()->Update(connection->GetIndex());
-  }
-
+  this->Superclass::RequestInformation(request, inputs, outputs);
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
@@ -222,10 +186,7 @@ int vtkLacunaSweptVolume::RequestData(
         output->Initialize();
         return;
       }
-      if (!plan.LeftOut.empty())
-      {
-        vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(plan.LeftOut));
-      }
+      std::map<std::string, std::string> warnings;
       const lacuna::Vec3 origin = plan.GetOrigin();
       const std::array<double, 9> direction = plan.GetDirection();
       int whole[6];
@@ -274,7 +235,7 @@ int vtkLacunaSweptVolume::RequestData(
         }
         const lacuna::SweptVolume& volume = this->Growing->Update(
           sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
-        CheckPairs(this, volume);
+        warnings = CheckPairs(volume, plan);
         execution.SetStage(0.9, 1);
         switch (plan.ScalarType)
         {
@@ -283,6 +244,7 @@ int vtkLacunaSweptVolume::RequestData(
         }
         this->Growing->Finish();
       }
+      this->WarnOfNews(warnings, plan.LeftOut);
       output->GetPointData()->SetScalars(intensity);
       output->GetPointData()->AddArray(contributions);
       output->GetPointData()->AddArray(mask);

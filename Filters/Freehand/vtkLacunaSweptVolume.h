@@ -6,20 +6,17 @@
  * Fills a voxel grid from tracked slices (see vtkLacunaTrackedSlices.h for what these are). A voxel
  * between two consecutive slices is interpolated between the feet of its perpendiculars,
  * V = (a X2 + b X1) / (a + b), with a and b its distances from the first and the second slice and
- * X1, X2 the grey levels at the feet (Carr 1996, 4.2). A voxel is between two slices when its
- * signed distances from them, along normals that turn with the probe, have opposite signs or one
- * is zero, and its feet lie on both images, whose pixels the voxel's footprint overlaps.
- * Consecutive slices may intersect: what lies between them is then a double wedge. Several samples
- * of one voxel, within a sweep or from several sweeps, are averaged or the largest one is kept;
- * they are collected in floating point and rounded once. The result does not depend on threads,
- * pieces or ranks, bit by bit.
+ * X1, X2 the grey levels at the feet (Carr 1996, 4.2; lacunaSlicePair.h says what between means).
+ * Several samples of one voxel, within a sweep or from several sweeps, are averaged or the largest
+ * one is kept; they are collected in floating point and rounded once. The result does not depend on
+ * threads, pieces or ranks, bit by bit.
  *
- * Input (repeatable): tracked slices, taken in the order of the stack. Slices whose SliceStatus is
- * not 0 are left out, but for flags taken by choice; their neighbours then form the pair. Different inputs form no pairs.
+ * Input (repeatable): tracked slices, taken in the order of the stack. Where slices are left out,
+ * their neighbours form the pair. Different inputs form no pairs.
  *
  * Output: an image along the axes of OutputFrame, mm in the reference frame, whose whole extent
- * starts at 0: voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of OutputBounds),
- * and there are round(length / spacing) + 1 voxels along each axis. Point data:
+ * starts at 0: voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of
+ * OutputBounds), and there are round(length / spacing) + 1 voxels along each axis. Point data:
  * | array             | type                  | meaning                                          |
  * |-------------------|-----------------------|--------------------------------------------------|
  * | Intensity         | see OutputScalarType  | grey level, active scalars; 0 where there is none|
@@ -27,28 +24,25 @@
  * | vtkValidPointMask | char                  | 1 where there are samples, else 0                |
  * Field data: Provenance; with FanMask Automatic also FanOrigin, FanAngles, FanRadii (double, 2
  * components) and ClipRectangle (int, 4), one tuple for each input, as the properties would have
- * them; the radii are 0 where there is no sector. The arrays of the slices are not copied: they do
- * not describe a volume.
+ * them; the radii are 0 where there is no sector, and all is 0 while a replay has not shown enough.
  *
  * Input that grows: when more slices have come at the end of the (last) input and all else is as it
  * was, only they are worked on; the result is bit by bit that of all slices at once. The grid must
- * not change for that: it is that of the whole sweep when the input has time steps (a replay, whose
- * field data know all poses from the beginning); for a live source set OutputBounds and
- * OutputSpacing.
+ * not change for that: in a replay (an input with time steps) it is that of the whole sweep, with
+ * FanMask Automatic that of the whole images; for a live source set OutputBounds and OutputSpacing.
  *
- * The grid depends on the poses, which are known when the input has been executed: so the input is
- * brought up to date already when information about the output is asked for.
- *
- * It is an error when an array of the input is missing, when fewer than two slices of an input are
- * left (one for NearestVoxel), when a slice has a pose that cannot be true (see BadPoses), when all slices lie in one plane, and when the volume would need more than MemoryLimit.
+ * Errors: an array of the input is missing; fewer than two slices of an input are left (one for
+ * NearestVoxel); a pose cannot be true (see BadPoses); all slices lie in one plane; the fan cannot
+ * be found; the volume would need more than MemoryLimit. What a replay has not shown yet is no
+ * error.
  *
  * @sa lacunaSweptVolume.h, lacunaSlicePair.h, lacunaFootprint.h, lacunaVolumeGrid.h
  */
 #ifndef vtkLacunaSweptVolume_h
 #define vtkLacunaSweptVolume_h
 
-#include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaSliceAlgorithm.h"
 
 #include <memory>
 #include <string>
@@ -59,11 +53,11 @@ namespace lacuna
 class GrowingVolume;
 }
 
-class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkImageAlgorithm
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSweptVolume : public vtkLacunaSliceAlgorithm
 {
 public:
   static vtkLacunaSweptVolume* New();
-  vtkTypeMacro(vtkLacunaSweptVolume, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLacunaSweptVolume, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum OutputFrames
@@ -92,12 +86,6 @@ public:
     Given = 0,
     Automatic = 1,
     NoFan = 2
-  };
-  enum BadPoseRules
-  {
-    Refuse = 0,
-    LeaveOut = 1,
-    KeepOutliers = 2
   };
   enum OutputScalarTypes
   {
@@ -150,10 +138,9 @@ public:
   ///@}
 
   ///@{
-  /// Whether footprints have a height, too: voxels are then the mean over FootprintScale voxels along
-  /// the slices' normals of what is interpolated between all slices there. For slices that are closer
-  /// than voxels, of which only the two nearest count otherwise. Only for PixelSampling Footprint and
-  /// Compounding Mean. Default: off.
+  /// Whether footprints have a height, too: voxels are then the mean over FootprintScale voxels
+  /// along the slices' normals of what is interpolated between all slices there, not only the two
+  /// nearest. Only for PixelSampling Footprint and Compounding Mean. Default: off.
   vtkSetMacro(FootprintAcrossSlices, bool);
   vtkGetMacro(FootprintAcrossSlices, bool);
   vtkBooleanMacro(FootprintAcrossSlices, bool);
@@ -184,13 +171,6 @@ public:
   ///@}
 
   ///@{
-  /// The part of the slices to use, in pixels: first column, first row, width, height. A width or
-  /// height of 0 reaches to the edge of the image. Default: 0 0 0 0, all.
-  vtkSetVector4Macro(ClipRectangle, int);
-  vtkGetVector4Macro(ClipRectangle, int);
-  ///@}
-
-  ///@{
   /// What the probe sees of the slices; the rest does not exist for the volume. Given: the fan of
   /// FanOrigin, FanAngles and FanRadii, if its radii are not 0. Automatic: found in the pixels, for
   /// each input (lacunaFanDetection.h); an error says when that is not certain. NoFan: all of it.
@@ -202,57 +182,10 @@ public:
   void SetFanMaskToNoFan() { this->SetFanMask(NoFan); }
   ///@}
 
-  ///@{
-  /// The point where all beams of a curved or phased probe meet: column and row in pixels of the
-  /// original slices; it may lie outside of them. Default: 0 0.
-  vtkSetVector2Macro(FanOrigin, double);
-  vtkGetVector2Macro(FanOrigin, double);
-  ///@}
-
-  ///@{
-  /// Directions of the first and the last beam, degrees: 0 is straight down (growing rows), positive
-  /// ones lean to the right (growing columns). Default: -45 45.
-  vtkSetVector2Macro(FanAngles, double);
-  vtkGetVector2Macro(FanAngles, double);
-  ///@}
-
-  ///@{
-  /// Where beams begin and end, mm from FanOrigin. Default: 0 0, no fan.
-  vtkSetVector2Macro(FanRadii, double);
-  vtkGetVector2Macro(FanRadii, double);
-  ///@}
-
   /// The fans found with FanMask Automatic, one line for each input: "FanOrigin=160,-40
   /// FanAngles=-32,32 FanRadii=18,78 ClipRectangle=17,20,287,200"; of a linear probe only the
   /// ClipRectangle. Empty before the first update and with other masks.
   const char* GetFanDescription();
-
-  ///@{
-  /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
-  /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
-  /// Default: off.
-  vtkSetMacro(UseImageInvalid, bool);
-  vtkGetMacro(UseImageInvalid, bool);
-  vtkBooleanMacro(UseImageInvalid, bool);
-  vtkSetMacro(UseTooFast, bool);
-  vtkGetMacro(UseTooFast, bool);
-  vtkBooleanMacro(UseTooFast, bool);
-  vtkSetMacro(UseGatedOut, bool);
-  vtkGetMacro(UseGatedOut, bool);
-  vtkBooleanMacro(UseGatedOut, bool);
-  ///@}
-
-  ///@{
-  /// What to do with slices that are to be taken, but whose pose cannot be true: it is not finite,
-  /// not affine or singular, or an outlier, far away from the slices beside it (lacunaPoseOutliers.h
-  /// says which). Refuse: an error names the slice. LeaveOut: a warning names the slices, the rest is
-  /// used. KeepOutliers: outliers are taken, unusable poses are refused. Default: Refuse.
-  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
-  vtkGetMacro(BadPoses, int);
-  void SetBadPosesToRefuse() { this->SetBadPoses(Refuse); }
-  void SetBadPosesToLeaveOut() { this->SetBadPoses(LeaveOut); }
-  void SetBadPosesToKeepOutliers() { this->SetBadPoses(KeepOutliers); }
-  ///@}
 
   ///@{
   /// Type of Intensity: that of the input, or Float. Default: Input.
@@ -273,17 +206,12 @@ public:
   /// have not changed and more have come, in a grid that has not changed (see the guide), else all.
   vtkIdType GetNumberOfSlicesAdded() const;
 
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-
 protected:
   vtkLacunaSweptVolume();
   ~vtkLacunaSweptVolume() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
@@ -303,15 +231,7 @@ private:
   int Interpolation = BetweenSlices;
   int Compounding = Mean;
   double MaximumSliceGap = 0;
-  int ClipRectangle[4] = { 0, 0, 0, 0 };
   int FanMask = Given;
-  double FanOrigin[2] = { 0, 0 };
-  double FanAngles[2] = { -45, 45 };
-  double FanRadii[2] = { 0, 0 };
-  bool UseImageInvalid = false;
-  bool UseTooFast = false;
-  bool UseGatedOut = false;
-  int BadPoses = Refuse;
   int OutputScalarType = Input;
   int MemoryLimit = 4096;
   std::unique_ptr<vtkLacunaSweptVolumeFans> Fans;

@@ -4,12 +4,9 @@
 #include "lacunaPrincipalFrame.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSweptVolume.h"
-#include "vtkLacunaTrackedSlices.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +21,13 @@ vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
   this->ReadSweeps(filter, inputs);
   if (!this->IsEmpty())
   {
+    this->PlacedSlices = this->GetAllSlices();
     this->ApplyFans(filter, fans);
+    // A replay does not know yet what fan it will show: its grid must not depend on it.
+    if (!this->IsReplay || filter->GetFanMask() != vtkLacunaSweptVolume::Automatic)
+    {
+      this->PlacedSlices = this->GetAllSlices();
+    }
     this->ChooseOptions(filter);
     this->ChooseFrame(filter);
     this->ChooseGrid(filter);
@@ -38,13 +41,6 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
   const int count = inputs->GetNumberOfInformationObjects();
   const std::size_t needed =
     filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
-  vtkLacunaSliceSelection selection;
-  std::copy_n(filter->GetClipRectangle(), 4, selection.Clip.begin());
-  selection.BadPoses = filter->GetBadPoses();
-  selection.AcceptedFlags =
-    (filter->GetUseImageInvalid() ? vtkLacunaTrackedSlices::ImageInvalid : 0) |
-    (filter->GetUseTooFast() ? vtkLacunaTrackedSlices::TooFast : 0) |
-    (filter->GetUseGatedOut() ? vtkLacunaTrackedSlices::GatedOut : 0);
   for (int i = 0; i < count; ++i)
   {
     vtkImageData* stack = vtkImageData::GetData(inputs, i);
@@ -52,16 +48,15 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     {
       continue;
     }
-    vtkInformation* info = inputs->GetInformationObject(i);
-    selection.IsReplay = info->Has(vtkStreamingDemandDrivenPipeline::TIME_STEPS()) &&
-      info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()) > 1;
+    vtkLacunaSliceSelection selection =
+      vtkLacunaSliceSelection::Make(filter, inputs->GetInformationObject(i));
     this->IsReplay |= selection.IsReplay;
     selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";
     this->Sweeps.emplace_back(stack, selection);
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
     this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
-    // at the beginning of a replay there is nothing to see yet
-    if (sweep.Slices.size() + sweep.Others.size() < needed)
+    this->IsMoreToCome |= sweep.IsMoreToCome;
+    if (!sweep.IsMoreToCome && sweep.Slices.size() < needed)
     {
       std::ostringstream message;
       message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()
@@ -84,10 +79,7 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
   if (filter->GetFanMask() != vtkLacunaSweptVolume::Automatic)
   {
     fans = {};
-    vtkLacunaSliceFan given;
-    std::copy_n(filter->GetFanOrigin(), 2, given.Sector.Origin.begin());
-    std::copy_n(filter->GetFanAngles(), 2, given.Sector.Angles.begin());
-    std::copy_n(filter->GetFanRadii(), 2, given.Sector.Radii.begin());
+    const vtkLacunaSliceFan given = vtkLacunaSliceFan::Make(filter);
     if (filter->GetFanMask() == vtkLacunaSweptVolume::Given && given.HasSector())
     {
       for (vtkLacunaSliceImages& sweep : this->Sweeps)
@@ -113,10 +105,15 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
     {
       try
       {
-        fans.Found.push_back(vtkLacunaSliceFan::Detect(sweep.Slices, sweep.Window));
+        fans.Found.emplace_back(vtkLacunaSliceFan::Detect(sweep.Slices, sweep.Window));
       }
       catch (const std::runtime_error& error)
       {
+        if (sweep.IsMoreToCome)
+        {
+          fans.Found.emplace_back(); // it will be seen later
+          continue;
+        }
         fans = {};
         throw std::runtime_error(error.what() +
           std::string(". Give FanOrigin, FanAngles and FanRadii, or a ClipRectangle, and set "
@@ -127,7 +124,14 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
   }
   for (std::size_t s = 0; s < this->Sweeps.size(); ++s)
   {
-    this->Sweeps[s].ApplyFan(fans.Found[s]);
+    if (fans.Found[s])
+    {
+      this->Sweeps[s].ApplyFan(*fans.Found[s]);
+    }
+    else
+    {
+      this->Sweeps[s].HideSlices();
+    }
   }
 }
 
@@ -191,17 +195,19 @@ void vtkLacunaSweptVolumePlan::ChooseFrame(vtkLacunaSweptVolume* filter)
   {
     return;
   }
-  this->FrameToReference = lacuna::GetPrincipalFrame(this->GetAllSlices());
+  this->FrameToReference = lacuna::GetPrincipalFrame(this->PlacedSlices);
   const lacuna::Matrix4 referenceToFrame = this->FrameToReference.Inverse();
+  const auto turn = [&](std::vector<lacuna::SliceImage>& slices)
+  {
+    for (lacuna::SliceImage& slice : slices)
+    {
+      slice.PixelToReference = referenceToFrame * slice.PixelToReference;
+    }
+  };
+  turn(this->PlacedSlices);
   for (vtkLacunaSliceImages& sweep : this->Sweeps)
   {
-    for (std::vector<lacuna::SliceImage>* slices : { &sweep.Slices, &sweep.Others })
-    {
-      for (lacuna::SliceImage& slice : *slices)
-      {
-        slice.PixelToReference = referenceToFrame * slice.PixelToReference;
-      }
-    }
+    turn(sweep.Slices);
   }
 }
 
@@ -227,5 +233,5 @@ void vtkLacunaSweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
   std::copy_n(filter->GetOutputBounds(), 6, request.Bounds.begin());
   request.BytesPerVoxel = this->BytesPerVoxel;
   request.MemoryLimit = filter->GetMemoryLimit() * 1048576.0;
-  this->Grid = lacuna::MakeVolumeGrid(this->GetAllSlices(), request);
+  this->Grid = lacuna::MakeVolumeGrid(this->PlacedSlices, request);
 }

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,15 +24,17 @@ struct vtkLacunaSweptVolumeFans
 {
   /// The properties that matter, and each input's data object and its modification time.
   std::vector<std::intptr_t> Key;
-  std::vector<vtkLacunaSliceFan> Found; ///< of each input that is not empty
+  /// Of each input that is not empty; none where a replay has not shown enough of it.
+  std::vector<std::optional<vtkLacunaSliceFan>> Found;
 };
 
-/// Made anew for each request, from the filter's properties and inputs, which must outlive it. Not a
-/// part of the module's interface.
+/// Made anew for each request, from the filter's properties and inputs, which must outlive it. Not
+/// a part of the module's interface.
 class vtkLacunaSweptVolumePlan
 {
 public:
-  /// inputs: of port 0. fans: kept from plan to plan. Throws std::exception with a text for the user.
+  /// inputs: of port 0. fans: kept from plan to plan. Throws std::exception with a text for the
+  /// user.
   vtkLacunaSweptVolumePlan(
     vtkLacunaSweptVolume* filter, vtkInformationVector* inputs, vtkLacunaSweptVolumeFans& fans);
 
@@ -53,6 +56,8 @@ public:
   /// An input has time steps: its slices come one after the other, and the grid is that of all of
   /// the sweep from the beginning.
   bool IsReplay = false;
+  /// A replay has not shown all of its slices yet.
+  bool IsMoreToCome = false;
 
 private:
   void ReadSweeps(vtkLacunaSweptVolume* filter, vtkInformationVector* inputs);
@@ -61,5 +66,7 @@ private:
   void ChooseFrame(vtkLacunaSweptVolume* filter);
   std::vector<lacuna::SliceImage> GetAllSlices() const;
   void ChooseGrid(vtkLacunaSweptVolume* filter);
+
+  std::vector<lacuna::SliceImage> PlacedSlices; ///< whose windows the grid holds
 };
 #endif

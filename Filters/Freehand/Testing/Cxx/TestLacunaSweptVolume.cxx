@@ -295,7 +295,13 @@ void TestErrors()
     with([](auto* f) { f->SetClipRectangle(40, 0, 0, 0); }), "0 columns of 0 to 12");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetClipRectangle(0, 8, 0, 0); }), "1 rows of 0 to 8");
   LACUNA_CHECK_CONTAINS(
-    with([](auto* f) { f->SetClipRectangle(-2147483647, 0, 5, 0); }), "0 columns");
+    with([](auto* f) { f->SetClipRectangle(13, 0, 2147483647, 0); }), "0 columns of 0 to 12");
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetClipRectangle(-1, 0, 5, 0); }),
+    "ClipRectangle is -1 0 5 0; first column, first row, width and height count pixels");
+  LACUNA_CHECK_CONTAINS(
+    with([](auto* f) { f->SetClipRectangle(0, 0, 0, -2147483647); }), "must not be negative");
+  // what lies beyond the right and lower edges does not matter
+  LACUNA_CHECK(with([](auto* f) { f->SetClipRectangle(3, 2, 2147483647, 99); }).empty());
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetFootprintScale(0); }), "FootprintScale");
   LACUNA_CHECK_CONTAINS(with([=](auto* f) { f->SetFootprintScale(notANumber); }), "FootprintScale");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The fan of vtkLacunaSweptVolume: given, found, copied from what was found, refused.
-#include "lacunaTestStacks.h"
-#include "vtkFieldData.h"
+#include "lacunaTestReplay.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -267,6 +266,78 @@ void TestPiecesAndFrame()
   }
 }
 
+// At the beginning of a replay there is no fan to be seen.
+void TestReplay()
+{
+  const auto scan = [](bool (*inside)(double, double))
+  {
+    return [=](int shown)
+    {
+      const auto stack = Scan(inside);
+      std::fill_n(
+        static_cast<unsigned char*>(stack->GetScalarPointer(0, 0, 0)) + Width * Height * shown,
+        Width * Height * (Slices - shown), static_cast<unsigned char>(0));
+      vtkDataArray* status = stack->GetFieldData()->GetArray("SliceStatus");
+      for (int k = shown; k < Slices; ++k)
+      {
+        status->SetTuple1(k, vtkLacunaTrackedSlices::ImageInvalid);
+      }
+      return stack;
+    };
+  };
+  vtkNew<Replay> replay;
+  replay->Show = scan(IsInSector);
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputConnection(replay->GetOutputPort());
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  filter->SetFanMaskToAutomatic();
+  const auto messages = lacunaCheck::Watch(filter);
+  int seen = 0;
+  for (int k = 0; k < Slices; ++k)
+  {
+    filter->UpdateTimeStep(k);
+    vtkImageData* volume = filter->GetOutput();
+    int whole[6];
+    filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    LACUNA_CHECK_THAT(volume->GetNumberOfPoints() > 0 &&
+        std::equal(whole, whole + 6, volume->GetExtent()) &&
+        volume->GetPointData()->GetNumberOfArrays() == 3,
+      "a volume as announced at time " + std::to_string(k));
+    vtkDataArray* radii = volume->GetFieldData()->GetArray("FanRadii");
+    LACUNA_CHECK(radii && radii->GetNumberOfTuples() == 1);
+    double range[2];
+    volume->GetPointData()->GetArray("Contributions")->GetRange(range);
+    if (k == 0)
+    {
+      LACUNA_CHECK_THAT(range[1] == 0, "nothing is seen in one slice");
+      LACUNA_CHECK(radii && radii->GetComponent(0, 1) == 0);
+      LACUNA_CHECK(filter->GetFanDescription() == std::string("not seen yet"));
+    }
+    seen += range[1] > 0 ? 1 : 0;
+  }
+  LACUNA_CHECK_THAT(seen > 0, "the fan is seen at last");
+  LACUNA_CHECK_THAT(messages->Errors.empty() && messages->Warnings.empty(), messages->Errors);
+  double bounds[6];
+  filter->GetOutput()->GetBounds(bounds);
+  LACUNA_CHECK_THAT(AreEqual(filter->GetOutput(),
+                      Reconstruct(Scan(IsInSector),
+                        [&](auto* f)
+                        {
+                          f->SetFanMaskToAutomatic();
+                          f->SetOutputBounds(bounds);
+                        })),
+    "the end of the replay");
+  // a fan that never comes to be seen is an error of the whole sweep
+  replay->Show = scan([](double x, double y) { return std::hypot(x - 70, y - 60) < 45; });
+  replay->Modified();
+  vtkNew<vtkLacunaSweptVolume> blind;
+  blind->SetInputConnection(replay->GetOutputPort());
+  blind->SetFanMaskToAutomatic();
+  const auto refused = lacunaCheck::Watch(blind);
+  blind->UpdateTimeStep(Slices - 1);
+  LACUNA_CHECK_CONTAINS(refused->Errors, "the fan cannot be found for certain");
+}
+
 void TestErrors()
 {
   const auto stack = Scan(IsInSector);
@@ -305,6 +376,7 @@ int TestSweptVolumeFan(int, char*[])
   TestGiven();
   TestAutomatic();
   TestPiecesAndFrame();
+  TestReplay();
   TestErrors();
   return lacunaCheck::Result();
 }

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaSweptVolume while its sweep grows: replayed in time, or live.
-#include "lacunaTestStacks.h"
-#include "vtkFieldData.h"
-#include "vtkImageAlgorithm.h"
-#include "vtkInformation.h"
-#include "vtkInformationVector.h"
-#include "vtkObjectFactory.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
+#include "lacunaTestReplay.h"
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <random>
 
 using lacuna::Matrix4;
@@ -58,44 +51,6 @@ vtkSmartPointer<vtkImageData> MakeSweep(int count, int blank = Slices, int first
   return stack;
 }
 
-// A sweep replayed in time, as by the reader: later slices are blank and flagged.
-class Replay : public vtkImageAlgorithm
-{
-public:
-  static Replay* New();
-  vtkTypeMacro(Replay, vtkImageAlgorithm);
-
-protected:
-  Replay() { this->SetNumberOfInputPorts(0); }
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
-  {
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const int extent[6] = { 0, 39, 0, 29, 0, Slices - 1 };
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    double steps[Slices];
-    for (int k = 0; k < Slices; ++k)
-    {
-      steps[k] = 0.5 * k;
-    }
-    const double range[2] = { steps[0], steps[Slices - 1] };
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, Slices);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
-    return 1;
-  }
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
-  {
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      : 1e9;
-    vtkImageData::GetData(outputs)->ShallowCopy(
-      MakeSweep(Slices, static_cast<int>(std::min<double>(Slices, time / 0.5 + 1))));
-    return 1;
-  }
-};
-vtkStandardNewMacro(Replay);
-
 bool AreEqual(vtkImageData* a, vtkImageData* b)
 {
   bool equal = a->GetNumberOfPoints() == b->GetNumberOfPoints() && a->GetNumberOfPoints() > 0;
@@ -132,6 +87,7 @@ vtkSmartPointer<vtkImageData> AtOnce(vtkImageData* stack, vtkImageData* grid)
 void TestReplay()
 {
   vtkNew<Replay> replay;
+  replay->Show = [](int shown) { return MakeSweep(Slices, shown); };
   vtkNew<vtkLacunaSweptVolume> filter;
   SetUp(filter);
   filter->SetInputConnection(replay->GetOutputPort());
@@ -139,7 +95,7 @@ void TestReplay()
   double bounds[6] = { 0, 0, 0, 0, 0, 0 };
   for (int k = 0; k < Slices; ++k)
   {
-    filter->UpdateTimeStep(0.5 * k);
+    filter->UpdateTimeStep(k);
     vtkImageData* volume = filter->GetOutput();
     LACUNA_CHECK_THAT(filter->GetNumberOfSlicesAdded() == 1, "one slice at a time");
     LACUNA_CHECK_THAT(k == 0 || std::equal(bounds, bounds + 6, volume->GetBounds()),
@@ -160,11 +116,11 @@ void TestReplay()
   LACUNA_CHECK_THAT(AreEqual(filter->GetOutput(), whole->GetOutput()), "the end of the replay");
 
   // back, and in leaps
-  filter->UpdateTimeStep(0.5 * 4);
+  filter->UpdateTimeStep(4);
   LACUNA_CHECK_THAT(filter->GetNumberOfSlicesAdded() == 5, "made anew");
   LACUNA_CHECK_THAT(
     AreEqual(filter->GetOutput(), AtOnce(MakeSweep(5), filter->GetOutput())), "back");
-  filter->UpdateTimeStep(0.5 * 7);
+  filter->UpdateTimeStep(7);
   LACUNA_CHECK_THAT(filter->GetNumberOfSlicesAdded() == 3, "a leap");
   LACUNA_CHECK_THAT(
     AreEqual(filter->GetOutput(), AtOnce(MakeSweep(8), filter->GetOutput())), "after a leap");
@@ -176,6 +132,121 @@ void TestReplay()
   filter->Update();
   LACUNA_CHECK_THAT(filter->GetNumberOfSlicesAdded() == 0, "only written anew");
   LACUNA_CHECK_THAT(messages->Errors.empty() && messages->Warnings.empty(), messages->Errors);
+}
+
+// Slices that are still to come are not taken as black ones.
+void TestReplayOfInvalidImages()
+{
+  vtkNew<Replay> replay;
+  // slices 3 and 9 have no image, though they have been taken
+  replay->Show = [](int shown)
+  {
+    const auto stack = MakeSweep(Slices, shown);
+    vtkDataArray* status = stack->GetFieldData()->GetArray("SliceStatus");
+    status->SetTuple1(3, vtkLacunaTrackedSlices::ImageInvalid);
+    status->SetTuple1(9, vtkLacunaTrackedSlices::ImageInvalid);
+    return stack;
+  };
+  vtkNew<vtkLacunaSweptVolume> filter;
+  SetUp(filter);
+  filter->UseImageInvalidOn();
+  filter->SetInputConnection(replay->GetOutputPort());
+  for (int k = 0; k < Slices; ++k)
+  {
+    filter->UpdateTimeStep(k);
+    // the slice without an image counts as soon as one with an image comes after it
+    LACUNA_CHECK_THAT(filter->GetNumberOfSlicesAdded() ==
+        (k == 3      ? 0
+            : k == 4 ? 2
+                     : 1),
+      "slices at time " + std::to_string(k));
+    if (k != 3 && k > 0)
+    {
+      LACUNA_CHECK_THAT(
+        AreEqual(filter->GetOutput(), AtOnce(MakeSweep(k + 1), filter->GetOutput())),
+        "no black slices at time " + std::to_string(k));
+    }
+  }
+  // all of a sweep without images
+  replay->Show = [](int) { return MakeSweep(Slices, 0); };
+  replay->Modified();
+  vtkNew<vtkLacunaSweptVolume> blind;
+  blind->SetInputConnection(replay->GetOutputPort());
+  const auto messages = lacunaCheck::Watch(blind);
+  blind->UpdateTimeStep(Slices - 1);
+  LACUNA_CHECK_CONTAINS(messages->Errors, "the slices are too few: 0 of 10");
+}
+
+// A probe that begins to move later.
+void TestReplayOfRest()
+{
+  std::vector<Matrix4> poses = MakePoses(Slices);
+  std::fill(poses.begin(), poses.begin() + 4, poses[0]);
+  vtkNew<Replay> replay;
+  replay->Show = [&](int shown)
+  {
+    std::vector<unsigned char> status(Slices, 0);
+    std::fill(status.begin() + shown, status.end(), vtkLacunaTrackedSlices::ImageInvalid);
+    return MakeStack(poses, VTK_UNSIGNED_CHAR, status);
+  };
+  vtkNew<vtkLacunaSweptVolume> filter;
+  SetUp(filter);
+  filter->SetInputConnection(replay->GetOutputPort());
+  const auto messages = lacunaCheck::Watch(filter);
+  for (int k = 0; k < Slices; ++k)
+  {
+    filter->UpdateTimeStep(k);
+    LACUNA_CHECK_THAT(filter->GetOutput()->GetNumberOfPoints() > 0, "a volume at any time");
+    double range[2];
+    filter->GetOutput()->GetPointData()->GetArray("Contributions")->GetRange(range);
+    LACUNA_CHECK_THAT((range[1] > 0) == (k >= 4), "empty while the probe is at rest");
+  }
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  // it never moves
+  std::fill(poses.begin(), poses.end(), poses[0]);
+  replay->Modified();
+  filter->UpdateTimeStep(Slices - 2);
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  filter->UpdateTimeStep(Slices - 1);
+  LACUNA_CHECK_CONTAINS(messages->Errors, "all slices lie in the same plane");
+}
+
+// What has been said is not said again at each slice.
+void TestWarnings()
+{
+  const auto stack = [](int count, const std::vector<int>& bad)
+  {
+    std::vector<Matrix4> poses = MakePoses(count);
+    for (const int n : bad)
+    {
+      poses[n](0, 0) = std::nan("");
+    }
+    poses[1] = poses[1] * Matrix4::Rotation({ 0, 1, 0 }, 3.1);
+    return MakeStack(poses);
+  };
+  vtkNew<vtkLacunaSweptVolume> filter;
+  SetUp(filter);
+  filter->SetBadPosesToLeaveOut();
+  const auto update = [&](int count, const std::vector<int>& bad)
+  {
+    const auto messages = lacunaCheck::Watch(filter);
+    filter->SetInputData(stack(count, bad));
+    filter->Update();
+    filter->RemoveAllObservers();
+    filter->GetExecutive()->RemoveAllObservers();
+    LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+    return messages->Warnings;
+  };
+  const std::string first = update(6, { 3 });
+  LACUNA_CHECK_CONTAINS(first, "1 slice was left out because of bad poses");
+  LACUNA_CHECK_CONTAINS(first, "turned by 90 degrees or more");
+  LACUNA_CHECK_THAT(update(7, { 3 }).empty(), "nothing new");
+  const std::string second = update(8, { 3, 7 });
+  LACUNA_CHECK_CONTAINS(second, "1 slice was left out because of bad poses");
+  LACUNA_CHECK_CONTAINS(second, "slice 7");
+  LACUNA_CHECK_THAT(!Contains(second, "slice 3") && !Contains(second, "turned"), second);
+  update(8, {});
+  LACUNA_CHECK_CONTAINS(update(8, { 3 }), "slice 3");
 }
 
 // A source that appends slices knows nothing of the future.
@@ -238,6 +309,9 @@ void TestNoReplay()
 int TestSweptVolumeGrowth(int, char*[])
 {
   TestReplay();
+  TestReplayOfInvalidImages();
+  TestReplayOfRest();
+  TestWarnings();
   TestLive();
   TestNoReplay();
   return lacunaCheck::Result();

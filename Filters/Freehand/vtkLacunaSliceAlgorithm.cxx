@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSliceAlgorithm.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaSliceImages.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <utility>
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceAlgorithm::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // Slices that change with time change the output's place: it is found again when the time is
+  // known.
+  if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  {
+    return this->RequestInformation(request, inputs, outputs);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* info = inputs[0]->GetInformationObject(i);
+    if (info->Has(SDDP::WHOLE_EXTENT()))
+    {
+      info->Set(SDDP::UPDATE_EXTENT(), info->Get(SDDP::WHOLE_EXTENT()), 6);
+    }
+    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceAlgorithm::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
+  // must be executed now. When they are up to date, as they usually are, this does nothing.
+  this->RequestUpdateExtent(request, inputs, outputs);
+  for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
+  {
+    vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);
+    connection->GetProducer()->Update(connection->GetIndex());
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceAlgorithm::WarnOfNews(
+  const std::map<std::string, std::string>& warnings, const std::vector<std::string>& leftOut)
+{
+  std::set<std::string> facts(leftOut.begin(), leftOut.end());
+  std::vector<std::string> news;
+  for (const std::string& sentence : leftOut)
+  {
+    if (this->KnownFacts.count(sentence) == 0)
+    {
+      news.push_back(sentence);
+    }
+  }
+  if (!news.empty())
+  {
+    vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(news));
+  }
+  for (const auto& [fact, text] : warnings)
+  {
+    facts.insert(fact);
+    if (this->KnownFacts.count(fact) == 0)
+    {
+      vtkWarningMacro(<< text);
+    }
+  }
+  this->KnownFacts = std::move(facts);
+}

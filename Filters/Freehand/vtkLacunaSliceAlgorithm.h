@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaSliceAlgorithm
+ * @brief   Superclass of filters that make an image of freehand ultrasound slices
+ *
+ * Has the properties that say which tracked slices (see vtkLacunaTrackedSlices.h) are taken, and
+ * which part of them. Slices whose SliceStatus is not 0 are left out, but for flags taken by
+ * choice.
+ *
+ * What is made of slices lies where their poses say, which are data: so the input is brought up to
+ * date already when information about the output is asked for, and again when the time changes. It
+ * is always asked for as a whole, since any part of the output may need any slice, on any rank.
+ *
+ * Replays: while an input with time steps has not reached the last of them, those slices are still
+ * to come which stand at its end and have an invalid image (SliceStatus 2). They are never taken,
+ * and what would be an error of a whole sweep is none yet.
+ *
+ * Warnings are given once: not again at each update of an input that grows.
+ *
+ * @sa vtkLacunaSweptVolume, vtkLacunaSliceRayCaster
+ */
+#ifndef vtkLacunaSliceAlgorithm_h
+#define vtkLacunaSliceAlgorithm_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersFreehandModule.h" // for export macro
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm : public vtkImageAlgorithm
+{
+public:
+  vtkTypeMacro(vtkLacunaSliceAlgorithm, vtkImageAlgorithm);
+
+  enum BadPoseRules
+  {
+    Refuse = 0,
+    LeaveOut = 1,
+    KeepOutliers = 2
+  };
+
+  ///@{
+  /// The part of the slices to use, in pixels: first column, first row, width, height. A width or
+  /// height of 0 reaches to the edge of the image, and what lies beyond its right or lower edge is
+  /// cut off. Negative numbers are an error, and so is less than 2 x 2 pixels. Default: 0 0 0 0,
+  /// all.
+  vtkSetVector4Macro(ClipRectangle, int);
+  vtkGetVector4Macro(ClipRectangle, int);
+  ///@}
+
+  ///@{
+  /// The point where all beams of a curved or phased probe meet: column and row in pixels of the
+  /// original slices; it may lie outside of them. Default: 0 0.
+  vtkSetVector2Macro(FanOrigin, double);
+  vtkGetVector2Macro(FanOrigin, double);
+  ///@}
+
+  ///@{
+  /// Directions of the first and the last beam, degrees: 0 is straight down (growing rows),
+  /// positive ones lean to the right (growing columns). Default: -45 45.
+  vtkSetVector2Macro(FanAngles, double);
+  vtkGetVector2Macro(FanAngles, double);
+  ///@}
+
+  ///@{
+  /// Where beams begin and end, mm from FanOrigin. Default: 0 0, no fan.
+  vtkSetVector2Macro(FanRadii, double);
+  vtkGetVector2Macro(FanRadii, double);
+  ///@}
+
+  ///@{
+  /// Whether slices are taken although their SliceStatus says that the image is invalid, that the
+  /// probe moved too fast, or that they are gated out. Those whose pose is invalid never are.
+  /// Default: off.
+  vtkSetMacro(UseImageInvalid, bool);
+  vtkGetMacro(UseImageInvalid, bool);
+  vtkBooleanMacro(UseImageInvalid, bool);
+  vtkSetMacro(UseTooFast, bool);
+  vtkGetMacro(UseTooFast, bool);
+  vtkBooleanMacro(UseTooFast, bool);
+  vtkSetMacro(UseGatedOut, bool);
+  vtkGetMacro(UseGatedOut, bool);
+  vtkBooleanMacro(UseGatedOut, bool);
+  ///@}
+
+  ///@{
+  /// What to do with slices that are to be taken, but whose pose cannot be true: it is not finite,
+  /// not affine or singular, or an outlier, far away from the slices beside it
+  /// (lacunaPoseOutliers.h says which). Refuse: an error names the slice. LeaveOut: a warning names
+  /// the slices, the rest is used. KeepOutliers: outliers are taken, unusable poses are refused.
+  /// Default: Refuse.
+  vtkSetClampMacro(BadPoses, int, Refuse, KeepOutliers);
+  vtkGetMacro(BadPoses, int);
+  void SetBadPosesToRefuse() { this->SetBadPoses(Refuse); }
+  void SetBadPosesToLeaveOut() { this->SetBadPoses(LeaveOut); }
+  void SetBadPosesToKeepOutliers() { this->SetBadPoses(KeepOutliers); }
+  ///@}
+
+  int ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+protected:
+  vtkLacunaSliceAlgorithm() = default;
+  ~vtkLacunaSliceAlgorithm() override = default;
+
+  /// Asks for all of the inputs and updates them. Subclasses call it first.
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  /// Gives those warnings of an update that the one before did not give. warnings: the text for
+  /// each fact, by a name that stays the same while it is the same fact. leftOut: the sentences
+  /// about slices with bad poses.
+  void WarnOfNews(
+    const std::map<std::string, std::string>& warnings, const std::vector<std::string>& leftOut);
+
+  int ClipRectangle[4] = { 0, 0, 0, 0 };
+  double FanOrigin[2] = { 0, 0 };
+  double FanAngles[2] = { -45, 45 };
+  double FanRadii[2] = { 0, 0 };
+  bool UseImageInvalid = false;
+  bool UseTooFast = false;
+  bool UseGatedOut = false;
+  int BadPoses = Refuse;
+
+private:
+  vtkLacunaSliceAlgorithm(const vtkLacunaSliceAlgorithm&) = delete;
+  void operator=(const vtkLacunaSliceAlgorithm&) = delete;
+
+  std::set<std::string> KnownFacts;
+};
+#endif
