@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Times the iso ray caster: the CT head at 500 HU with 512 x 512 rays and normals, and how the
-/// time grows with voxels and rays. Reference is the algorithm of Carr 1996, 3.2: rays go from cell
-/// to cell, cells without a control point at the threshold are skipped, in the others eight samples
-/// of 64 taps are taken and a transition is interpolated linearly.
+/// Times the iso ray caster from volume to depth map: the CT head at 500 HU with 512 x 512 rays and
+/// normals, by us, by the thesis's algorithm and by VTK's FlyingEdges3D with a z-buffer; and how the
+/// time grows with voxels and rays.
 #include "lacunaIsoRayCaster.h"
+#include "lacunaReferenceCaster.h"
+#ifdef LACUNA_WITH_FLYING_EDGES
+#include "lacunaSurfacePass.h"
+#endif
 
 #include <benchmark/benchmark.h>
 #include <zlib.h>
@@ -181,154 +184,6 @@ void ShellOf(benchmark::State& state)
     static_cast<int>(state.range(1)), static_cast<int>(state.range(2)));
 }
 
-/// The thesis's algorithm.
-class ReferenceCaster
-{
-public:
-  explicit ReferenceCaster(const VoxelVolume& volume)
-    : Voxels(static_cast<const std::int16_t*>(volume.Voxels))
-    , Size(volume.Size)
-    , WorldToIndex(volume.IndexToWorld.Inverse())
-  {
-  }
-
-  double Distance(const Vec3& origin, const Vec3& direction, double isoValue, Vec3& normal) const
-  {
-    const Vec3 a = this->WorldToIndex.Point(origin);
-    const Vec3 b = this->WorldToIndex.Vector(direction);
-    double t = -1e30;
-    double last = 1e30;
-    for (int i = 0; i < 3; ++i)
-    {
-      // the thesis keeps off the border, where support is missing
-      const double u = (1 - a[i]) / b[i];
-      const double v = (this->Size[i] - 2 - a[i]) / b[i];
-      if (b[i] == 0 && (a[i] < 1 || a[i] > this->Size[i] - 2))
-      {
-        return std::numeric_limits<double>::quiet_NaN();
-      }
-      if (b[i] != 0)
-      {
-        t = std::max(t, std::min(u, v));
-        last = std::min(last, std::max(u, v));
-      }
-    }
-    double before = -1e30; // outside
-    double beforeT = t;
-    while (t < last)
-    {
-      const Vec3 at = a + (t + 1e-9) * b;
-      int cell[3];
-      double end = last;
-      for (int i = 0; i < 3; ++i)
-      {
-        cell[i] = std::min(std::max(static_cast<int>(std::floor(at[i])), 1), this->Size[i] - 3);
-        if (b[i] != 0)
-        {
-          const double leave = (cell[i] + (b[i] > 0) - a[i]) / b[i];
-          end = leave > t + 1e-9 ? std::min(end, leave) : end;
-        }
-      }
-      if (this->Reaches(cell, isoValue))
-      {
-        for (int sample = 0; sample < 8; ++sample)
-        {
-          const double s = t + (end - t) * (sample + 1) / 8;
-          const double value = this->Value(cell, a + s * b, nullptr);
-          if (value >= isoValue && before < isoValue)
-          {
-            const double hit =
-              before < -1e29 ? s : beforeT + (s - beforeT) * (isoValue - before) / (value - before);
-            this->Value(cell, a + hit * b, &normal);
-            return hit;
-          }
-          before = value;
-          beforeT = s;
-        }
-      }
-      t = end;
-    }
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-
-private:
-  const std::int16_t* Corner(const int cell[3]) const
-  {
-    return this->Voxels + (cell[0] - 1) +
-      static_cast<std::int64_t>(this->Size[0]) *
-      ((cell[1] - 1) + static_cast<std::int64_t>(this->Size[1]) * (cell[2] - 1));
-  }
-
-  bool Reaches(const int cell[3], double isoValue) const
-  {
-    const std::int16_t* corner = this->Corner(cell);
-    for (int k = 0; k < 4; ++k)
-    {
-      for (int j = 0; j < 4; ++j)
-      {
-        const std::int16_t* p =
-          corner + static_cast<std::int64_t>(this->Size[0]) * (j + this->Size[1] * k);
-        if (p[0] >= isoValue || p[1] >= isoValue || p[2] >= isoValue || p[3] >= isoValue)
-        {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  static void Weights(double x, double w[4], double d[4])
-  {
-    const double y = 1 - x;
-    w[0] = y * y * y / 6;
-    w[1] = (3 * x * x * x - 6 * x * x + 4) / 6;
-    w[3] = x * x * x / 6;
-    w[2] = 1 - w[0] - w[1] - w[3];
-    d[0] = -0.5 * y * y;
-    d[1] = x * (1.5 * x - 2);
-    d[2] = 0.5 + x * (1 - 1.5 * x);
-    d[3] = 0.5 * x * x;
-  }
-
-  double Value(const int cell[3], const Vec3& at, Vec3* normal) const
-  {
-    double w[3][4];
-    double d[3][4];
-    for (int i = 0; i < 3; ++i)
-    {
-      Weights(at[i] - cell[i], w[i], d[i]);
-    }
-    const std::int16_t* corner = this->Corner(cell);
-    double value = 0;
-    Vec3 gradient{ 0, 0, 0 };
-    for (int k = 0; k < 4; ++k)
-    {
-      for (int j = 0; j < 4; ++j)
-      {
-        const std::int16_t* p =
-          corner + static_cast<std::int64_t>(this->Size[0]) * (j + this->Size[1] * k);
-        const double row = p[0] * w[0][0] + p[1] * w[0][1] + p[2] * w[0][2] + p[3] * w[0][3];
-        value += row * w[1][j] * w[2][k];
-        if (normal)
-        {
-          const double slope = p[0] * d[0][0] + p[1] * d[0][1] + p[2] * d[0][2] + p[3] * d[0][3];
-          gradient = gradient +
-            Vec3{ slope * w[1][j] * w[2][k], row * d[1][j] * w[2][k], row * w[1][j] * d[2][k] };
-        }
-      }
-    }
-    if (normal)
-    {
-      *normal = Normalized(gradient);
-    }
-    return value;
-  }
-
-  const std::int16_t* Voxels;
-  std::array<int, 3> Size;
-  Matrix4 WorldToIndex;
-};
-
 void CTHeadReference(benchmark::State& state)
 {
   if (Head().Voxels.empty())
@@ -359,6 +214,39 @@ void CTHeadReference(benchmark::State& state)
   }
   state.counters["hits"] = static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
 }
+
+#ifdef LACUNA_WITH_FLYING_EDGES
+void CastByTriangles(benchmark::State& state, const VoxelVolume& volume, const Vec3& direction,
+  int rays, bool normals, int threads)
+{
+  Map map(volume, direction, rays);
+  SurfacePass pass(volume, normals, threads);
+  for (auto _ : state)
+  {
+    pass.Cast(map.Plane, 500, map.Depth.data(), map.Normals.data());
+  }
+  state.counters["hits"] = static_cast<double>(std::count_if(
+    map.Depth.begin(), map.Depth.end(), [](double depth) { return !std::isnan(depth); }));
+  state.counters["triangles"] = static_cast<double>(pass.NumberOfTriangles);
+}
+
+void CTHeadFlyingEdges(benchmark::State& state)
+{
+  if (Head().Voxels.empty())
+  {
+    state.SkipWithError("no ct_head/head.mha in LACUNA_TEST_DATA");
+    return;
+  }
+  CastByTriangles(state, Head().Volume, Views[state.range(1)], 512, state.range(0) != 0,
+    static_cast<int>(state.range(2)));
+}
+
+void ShellFlyingEdges(benchmark::State& state)
+{
+  CastByTriangles(state, Shell(static_cast<int>(state.range(0))).Volume, Views[1],
+    static_cast<int>(state.range(1)), true, static_cast<int>(state.range(2)));
+}
+#endif
 }
 
 BENCHMARK(CTHead)
@@ -373,6 +261,19 @@ BENCHMARK(CTHeadReference)
   ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
+#ifdef LACUNA_WITH_FLYING_EDGES
+BENCHMARK(CTHeadFlyingEdges)
+  ->ArgNames({ "normals", "view", "threads" })
+  ->ArgsProduct({ { 0, 1 }, { 0, 1 }, { 1, 2 } })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(ShellFlyingEdges)
+  ->ArgsProduct({ { 256, 512 }, { 256, 512, 1024, 2048 }, { 2 } })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+#endif
 BENCHMARK(ShellOf)
   ->Name("Shell")
   ->ArgsProduct({ { 64, 256, 512 }, { 256, 512, 1024, 2048 }, { 2 } })
