@@ -24,7 +24,7 @@
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
  * x 3, unit, reference frame, towards the viewer; from the slopes of the depth by the rule in
- * lacunaDepthSlope.h). Field data: ImageToWorld, IsoValues, Provenance. Requested extents are
+ * lacunaDepthDiscontinuity.h). Field data: ImageToWorld, IsoValues, Provenance. Requested extents are
  * honoured.
  *
  * The map depends on the poses, which are known when the input has been executed: so the input is

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSliceRayCaster.h"
 
-#include "lacunaDepthSlope.h"
+#include "lacunaDepthDiscontinuity.h"
 #include "lacunaMemory.h"
 
 #include <algorithm>
@@ -293,6 +293,7 @@ void SliceRayCaster::Write(double maximumGap, const DepthPixels& pixels, Executi
   const std::int64_t width = this->Extent[1] - this->Extent[0] + 1;
   const std::int64_t wantedWidth = this->Wanted[1] - this->Wanted[0] + 1;
   const double spacing = this->Plane.PixelSpacing;
+  const SlopeRule cases{ DiscontinuityLimits() };
   execution.For(this->Wanted[3] - this->Wanted[2] + 1, RowsAtOnce,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -333,9 +334,9 @@ void SliceRayCaster::Write(double maximumGap, const DepthPixels& pixels, Executi
             Vec3 normal{ 0, 0, 0 };
             if (valid)
             {
-              const double right = GetDepthSlope(line[x - 1], depth, line[x + 1], spacing);
+              const double right = cases.SlopeAt(line[x - 1], depth, line[x + 1], spacing);
               const double down =
-                GetDepthSlope(line[x - lineLength], depth, line[x + lineLength], spacing);
+                cases.SlopeAt(line[x - lineLength], depth, line[x + lineLength], spacing);
               normal =
                 Normalized(right * this->Plane.Right + down * this->Plane.Down - this->Plane.View);
             }

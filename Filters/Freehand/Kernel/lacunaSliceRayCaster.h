@@ -66,7 +66,7 @@ public:
   /// Writes the depth map as it is now. Where the two samples are further apart than maximumGap mm
   /// (0 = no limit), or nothing lies in front of the solid one, the depth is that of the solid
   /// sample, otherwise the crossing of the iso-value on the straight line between them. Normals
-  /// come from the slopes of the depth (lacunaDepthSlope.h), also across the border of the extent.
+  /// come from the slopes of the depth (lacunaDepthDiscontinuity.h), also across the border of the extent.
   /// pixels.Extent must be the extent of this object.
   void Write(double maximumGap, const DepthPixels& pixels, Execution& execution) const;
 

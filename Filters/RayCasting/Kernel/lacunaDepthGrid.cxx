@@ -9,7 +9,6 @@ namespace lacuna
 {
 namespace
 {
-constexpr double DegreesPerRadian = 180 / 3.14159265358979323846;
 constexpr int RowGrain = 16;
 
 struct Box
@@ -52,7 +51,6 @@ DepthEdge DepthGrid::EdgeBetween(const Vec3& from, const Vec3& to) const
   edge.Step = to - from;
   edge.Along = Dot(edge.Step, ray);
   edge.Across = Norm(edge.Step - edge.Along * ray);
-  edge.Angle = std::atan2(edge.Along, edge.Across) * DegreesPerRadian;
   return edge;
 }
 
@@ -60,9 +58,7 @@ DepthEdge DepthGrid::EdgeFrom(int column, int row, int right, int down) const
 {
   if (!this->IsDefined(column, row) || !this->IsDefined(column + right, row + down))
   {
-    DepthEdge none;
-    none.Angle = std::numeric_limits<double>::quiet_NaN();
-    return none;
+    return DepthEdge::Missing();
   }
   return this->EdgeBetween(this->PointOf(column, row), this->PointOf(column + right, row + down));
 }

@@ -5,6 +5,7 @@
 #ifndef lacunaDepthGrid_h
 #define lacunaDepthGrid_h
 
+#include "lacunaDepthDiscontinuity.h"
 #include "lacunaExecution.h"
 #include "lacunaMatrix4.h"
 
@@ -14,17 +15,17 @@
 
 namespace lacuna
 {
-/// From one point of a depth map to a neighbour.
-struct DepthEdge
+/// From one point of a depth map to a neighbour, seen along the ray at its middle.
+struct DepthEdge : DepthStep
 {
   Vec3 Step{ 0, 0, 0 }; ///< world mm
-  double Along = 0;     ///< mm along the ray at the edge's middle, positive away from the viewer
-  double Across = 0;    ///< mm perpendicular to that ray, >= 0
-  /// Between the edge and the plane perpendicular to the ray: -90..90 degrees, NaN when an end has
-  /// no depth.
-  double Angle = 0;
 
-  bool IsDefined() const { return !std::isnan(this->Angle); }
+  static DepthEdge Missing()
+  {
+    DepthEdge edge;
+    static_cast<DepthStep&>(edge) = DepthStep::Missing();
+    return edge;
+  }
 };
 
 /// The depths of a part of a map and where its pixels lie. Does not own the depths.

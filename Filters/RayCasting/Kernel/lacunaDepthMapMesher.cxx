@@ -27,10 +27,10 @@ bool IsJump(const DepthEdge& edge, const DepthEdge& next)
 DepthMapMesher::DepthMapMesher(const DepthGrid& grid, const DiscontinuityRule& rule, int firstRow,
   int lastRow, Execution& execution)
   : Grid(grid)
-  , Rule(rule)
+  , Break(rule.Break)
+  , Cases(rule.Limits)
   , FirstRow(firstRow)
 {
-  rule.Limits.Check();
   const auto& e = grid.Extent;
   if (firstRow < e[2] || lastRow > e[3] || e[1] < e[0])
   {
@@ -90,20 +90,19 @@ bool DepthMapMesher::IsJoined(int column, int row, int right, int down) const
   {
     return false;
   }
-  if (!this->Rule.Break)
+  if (!this->Break)
   {
     return true;
   }
-  const DiscontinuityLimits& limits = this->Rule.Limits;
   const DepthEdge edge = grid.EdgeFrom(column, row, right, down);
-  if (!(std::abs(edge.Angle) > limits.MaximumAngle))
+  if (!this->Cases.IsSteep(edge))
   {
     return true; // in none of the cases is an edge torn that is not steep
   }
   const DepthEdge before = grid.EdgeFrom(column - right, row - down, right, down);
   const DepthEdge after = grid.EdgeFrom(column + right, row + down, right, down);
-  return !IsTornForward(ClassifySlopes(before.Angle, edge.Angle, limits)) &&
-    !IsTornBackward(ClassifySlopes(edge.Angle, after.Angle, limits)) && !IsJump(edge, before) &&
+  return !IsTornForward(this->Cases.Classify(before, edge)) &&
+    !IsTornBackward(this->Cases.Classify(edge, after)) && !IsJump(edge, before) &&
     !IsJump(edge, after);
 }
 

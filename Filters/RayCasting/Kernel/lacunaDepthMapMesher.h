@@ -50,7 +50,8 @@ private:
   unsigned char ChooseTriangles(int column, int row) const;
 
   DepthGrid Grid;
-  DiscontinuityRule Rule;
+  bool Break;
+  SlopeRule Cases;
   int FirstRow;
   std::vector<unsigned char> Triangles; ///< flags for each square
   std::vector<std::int64_t> PointOffsets;

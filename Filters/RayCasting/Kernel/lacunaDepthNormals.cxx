@@ -53,9 +53,7 @@ DepthEdge EdgeOf(
   {
     return grid.EdgeBetween(from.Points[i], to.Points[j]);
   }
-  DepthEdge none;
-  none.Angle = std::numeric_limits<double>::quiet_NaN();
-  return none;
+  return DepthEdge::Missing();
 }
 
 /// An edge's step, scaled to 1 mm across the ray.
@@ -73,27 +71,26 @@ double SlopeOf(const DepthEdge& edge)
 class TangentRule
 {
 public:
+  /// Only the predicate method knows of discontinuities. The others ask whether there are neighbours:
+  /// for them no edge is too steep.
   TangentRule(DepthNormalMethod method, const DiscontinuityLimits& limits)
     : Method(method)
-    , Limits(limits)
+    , Cases(method == DepthNormalMethod::Predicate ? limits : DiscontinuityLimits{ 90, 180 })
   {
   }
 
   Vec3 Tangent(const DepthEdge& backward, const DepthEdge& forward, const Vec3& level) const
   {
-    switch (this->CaseOf(backward, forward))
+    const SlopeCase c = this->Cases.Classify(backward, forward);
+    const bool usesBackward = UsesBackward(c);
+    const bool usesForward = UsesForward(c);
+    if (!usesBackward && !usesForward)
     {
-      case SlopeCase::Alone:
-      case SlopeCase::Spike:
-        return level;
-      case SlopeCase::ForwardOnly:
-      case SlopeCase::TornBackward:
-        return forward.Step;
-      case SlopeCase::BackwardOnly:
-      case SlopeCase::TornForward:
-        return backward.Step;
-      default:
-        break;
+      return level;
+    }
+    if (!usesBackward || !usesForward)
+    {
+      return usesForward ? forward.Step : backward.Step;
     }
     if (this->Method == DepthNormalMethod::Gordon)
     {
@@ -104,18 +101,8 @@ public:
   }
 
 private:
-  SlopeCase CaseOf(const DepthEdge& backward, const DepthEdge& forward) const
-  {
-    if (this->Method == DepthNormalMethod::Predicate)
-    {
-      return ClassifySlopes(backward.Angle, forward.Angle, this->Limits);
-    }
-    // the other methods know only whether there are neighbours: no change of angle is too large
-    return ClassifySlopes(backward.Angle, forward.Angle, { 90, 360 });
-  }
-
   DepthNormalMethod Method;
-  DiscontinuityLimits Limits;
+  SlopeRule Cases;
 };
 
 /// Unit normal towards the viewer of a surface with these tangents, which ray meets.
@@ -182,11 +169,8 @@ void EstimateNormals(const DepthGrid& grid, DepthNormalMethod method,
       {
         below.Load(grid, extent[2] + r + 1);
         float* out = normals + 3 * r * columns;
-        DepthEdge backward = first > 0 ? EdgeOf(grid, here, first - 1, here, first) : DepthEdge();
-        if (first == 0)
-        {
-          backward.Angle = std::numeric_limits<double>::quiet_NaN();
-        }
+        DepthEdge backward =
+          first > 0 ? EdgeOf(grid, here, first - 1, here, first) : DepthEdge::Missing();
         for (std::int64_t c = 0; c < columns; ++c, out += 3)
         {
           const std::size_t i = first + static_cast<std::size_t>(c);

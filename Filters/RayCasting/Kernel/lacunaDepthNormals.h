@@ -25,7 +25,7 @@ enum class DepthNormalMethod
 {
   CentralDifference, ///< between the two neighbours, whatever lies between (eq. 3.10)
   Gordon,            ///< mean of both slopes, each weighted by GordonWeight (eq. 3.11)
-  Predicate          ///< the slope that ClassifySlopes names (figure 3.8)
+  Predicate          ///< the slope that SlopeRule names (figure 3.8)
 };
 
 /// Gordon's weight of a slope (mm of depth per mm across the ray): 1 up to 2 (63 degrees), 1e-5 from

@@ -119,14 +119,20 @@ TEST(DepthDiscontinuity, ClassifiesByTheBook)
   int seen[10] = {};
   for (const auto& limit : limits)
   {
-    for (int i = -91; i <= 90; ++i)
+    const SlopeRule rule({ limit[0], limit[1] });
+    for (int i = -91; i < 90; ++i)
     {
-      for (int j = -91; j <= 90; ++j)
+      for (int j = -91; j < 90; ++j)
       {
-        const double back = i < -90 ? None : i;
-        const double forward = j < -90 ? None : j;
+        // never at a limit, where rounding decides
+        const double back = i < -90 ? None : i + 0.25;
+        const double forward = j < -90 ? None : j + 0.7;
         const int expected = CaseByTheBook(back, forward, limit[0], limit[1]);
-        const SlopeCase found = ClassifySlopes(back, forward, { limit[0], limit[1] });
+        const auto step = [](double degrees, double length) {
+          return DepthStep{ length * std::sin(degrees * Degree),
+            length * std::cos(degrees * Degree) };
+        };
+        const SlopeCase found = rule.Classify(step(back, 0.3), step(forward, 20));
         ASSERT_EQ(static_cast<int>(found), expected) << back << " " << forward;
         ASSERT_EQ(IsTornForward(found), expected == 5 || expected == 7);
         ASSERT_EQ(IsTornBackward(found), expected == 5 || expected == 8);
@@ -138,6 +144,27 @@ TEST(DepthDiscontinuity, ClassifiesByTheBook)
   {
     EXPECT_GT(seen[c], 0) << c;
   }
+}
+
+TEST(DepthDiscontinuity, StepsAlongTheRayAndLimitsAtTheirEnds)
+{
+  const DepthStep away{ 2, 0 };
+  const DepthStep back{ -3, 0 };
+  const DepthStep flat{ 0, 1 };
+  const SlopeRule usual{ DiscontinuityLimits() };
+  EXPECT_EQ(usual.Classify(away, back), SlopeCase::Spike);
+  EXPECT_EQ(usual.Classify(away, away), SlopeCase::Smooth);
+  EXPECT_EQ(usual.Classify(flat, away), SlopeCase::TornForward);
+  EXPECT_EQ(usual.Classify(back, flat), SlopeCase::TornBackward);
+  const SlopeRule nothingIsSteep({ 90, 20 });
+  EXPECT_FALSE(nothingIsSteep.IsSteep(away));
+  EXPECT_EQ(nothingIsSteep.Classify(away, back), SlopeCase::Crease);
+  const SlopeRule noChangeIsSmall({ 65, 0 });
+  EXPECT_EQ(noChangeIsSmall.Classify(flat, flat), SlopeCase::Crease);
+  EXPECT_EQ(noChangeIsSmall.Classify(away, away), SlopeCase::Steep);
+  const SlopeRule anyChangeIsSmall({ 0, 180 });
+  EXPECT_EQ(anyChangeIsSmall.Classify(away, { -2, 1e-3 }), SlopeCase::Smooth);
+  EXPECT_EQ(anyChangeIsSmall.Classify(away, away), SlopeCase::Smooth);
 }
 
 TEST(DepthNormals, TheNineCasesOneByOne)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaDepthSlope.h"
+#include "lacunaDepthDiscontinuity.h"
 
 #include <gtest/gtest.h>
 
@@ -12,11 +12,12 @@ namespace
 {
 constexpr double Nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double Degree = 3.14159265358979323846 / 180;
+const SlopeRule Rule{ DiscontinuityLimits() };
 
 // The slope between pixels that lie at the given angles from the one in the middle.
 double FromAngles(double backward, double forward, double spacing = 1)
 {
-  return GetDepthSlope(5 - spacing * std::tan(backward * Degree), 5,
+  return Rule.SlopeAt(5 - spacing * std::tan(backward * Degree), 5,
     5 + spacing * std::tan(forward * Degree), spacing);
 }
 
@@ -57,12 +58,12 @@ double ByTheBook(double before, double here, double after, double spacing)
 }
 }
 
-TEST(DepthSlope, NineCases)
+TEST(SlopeAt, NineCases)
 {
   const auto tangent = [](double degrees) { return std::tan(degrees * Degree); };
-  EXPECT_EQ(GetDepthSlope(Nothing, 5, Nothing, 0.5), 0);
-  EXPECT_DOUBLE_EQ(GetDepthSlope(Nothing, 5, 8, 0.5), 6);
-  EXPECT_DOUBLE_EQ(GetDepthSlope(3, 5, Nothing, 0.5), 4);
+  EXPECT_EQ(Rule.SlopeAt(Nothing, 5, Nothing, 0.5), 0);
+  EXPECT_DOUBLE_EQ(Rule.SlopeAt(Nothing, 5, 8, 0.5), 6);
+  EXPECT_DOUBLE_EQ(Rule.SlopeAt(3, 5, Nothing, 0.5), 4);
   EXPECT_NEAR(FromAngles(70, 80), 0.5 * (tangent(70) + tangent(80)), 1e-12);
   EXPECT_EQ(FromAngles(-70, 80), 0);
   EXPECT_NEAR(FromAngles(-88, -66), 0.5 * (tangent(-88) + tangent(-66)), 1e-9);
@@ -72,7 +73,7 @@ TEST(DepthSlope, NineCases)
   EXPECT_NEAR(FromAngles(-30, 60), 0.5 * (tangent(-30) + tangent(60)), 1e-12);
 }
 
-TEST(DepthSlope, LimitsAreWhereTheyAreSaidToBe)
+TEST(SlopeAt, LimitsAreWhereTheyAreSaidToBe)
 {
   // between 20 and 65 degrees all is central; so the limits show only near 65
   EXPECT_NEAR(FromAngles(50, 69.9), 0.5 * (std::tan(50 * Degree) + std::tan(69.9 * Degree)), 1e-12);
@@ -81,7 +82,7 @@ TEST(DepthSlope, LimitsAreWhereTheyAreSaidToBe)
   EXPECT_NEAR(FromAngles(20, 65.1), std::tan(20 * Degree), 1e-12);
 }
 
-TEST(DepthSlope, SameAsByAngles)
+TEST(SlopeAt, SameAsByAngles)
 {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> angle(-89.9, 89.9);
@@ -92,7 +93,7 @@ TEST(DepthSlope, SameAsByAngles)
     const double after = n % 13 == 0 ? Nothing : spacing * std::tan(angle(random) * Degree);
     const double expected = ByTheBook(before, 0.25, after, spacing);
     ASSERT_NEAR(
-      GetDepthSlope(before, 0.25, after, spacing), expected, 1e-9 * (1 + expected * expected))
+      Rule.SlopeAt(before, 0.25, after, spacing), expected, 1e-9 * (1 + expected * expected))
       << before << " " << after << " " << spacing;
   }
 }
