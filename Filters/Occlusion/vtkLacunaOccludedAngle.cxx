@@ -5,9 +5,6 @@
 #include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkAlgorithmOutput.h"
-#include "vtkArrayDispatch.h"
-#include "vtkDataArray.h"
-#include "vtkDataArrayRange.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
@@ -15,8 +12,8 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -25,94 +22,15 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 vtkStandardNewMacro(vtkLacunaOccludedAngle);
 
 namespace
 {
 const double Pi = 3.14159265358979323846;
-constexpr double DataOpacity = 0.95; // of a voxel of opacity 1
-
-/// The two axes of a 2-D image, or three, in the kernel's order, with the image's extent.
-struct Geometry
-{
-  explicit Geometry(vtkImageData* image)
-  {
-    int dimensions[3];
-    image->GetDimensions(dimensions);
-    int count = 0;
-    for (int axis : { 0, 1, 2 })
-    {
-      if (dimensions[axis] > 1)
-      {
-        this->Dimensions[count] = dimensions[axis];
-        this->Spacing[count++] = image->GetSpacing()[axis];
-      }
-    }
-    this->Axes = count;
-  }
-
-  std::int64_t GetSize() const
-  {
-    return this->Dimensions[0] * this->Dimensions[1] * this->Dimensions[2];
-  }
-
-  std::array<std::int64_t, 3> Dimensions{ 1, 1, 1 };
-  lacuna::Vec3 Spacing{ 1, 1, 1 };
-  int Axes = 0;
-};
-
-float* At(lacuna::AttenuationField& field, std::int64_t i)
-{
-  const auto& n = field.GetDimensions();
-  const std::int64_t row = i / n[0];
-  return field.Row(row % n[1], row / n[1]) + i % n[0];
-}
-
-std::string Where(vtkImageData* image, vtkIdType i)
-{
-  int dimensions[3];
-  image->GetDimensions(dimensions);
-  const int* extent = image->GetExtent();
-  std::ostringstream text;
-  text << "voxel (" << extent[0] + i % dimensions[0] << ", "
-       << extent[2] + (i / dimensions[0]) % dimensions[1] << ", "
-       << extent[4] + i / (static_cast<vtkIdType>(dimensions[0]) * dimensions[1]) << ")";
-  return text.str();
-}
-
-/// Copies scalars into the field, converted by a function object of (value, index).
-template <class Convert>
-struct Fill
-{
-  lacuna::AttenuationField& Field;
-  lacuna::Execution& Execution;
-  Convert& Converter;
-
-  template <class Array>
-  void operator()(Array* array) const
-  {
-    const auto values = vtk::DataArrayValueRange<1>(array);
-    const auto& n = this->Field.GetDimensions();
-    this->Execution.For(n[1] * n[2], std::max<std::int64_t>(1, (1 << 16) / n[0]),
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t r = begin; r < end; ++r)
-        {
-          float* row = this->Field.Row(r % n[1], r / n[1]);
-          for (std::int64_t i = 0; i < n[0]; ++i)
-          {
-            row[i] = this->Converter(static_cast<double>(values[r * n[0] + i]), r * n[0] + i);
-          }
-        }
-      });
-  }
-};
 }
 
 //------------------------------------------------------------------------------
@@ -125,33 +43,8 @@ public:
     , Input(input)
     , Space(space)
     , Grid(input)
+    , Scalars(vtkLacunaOcclusionInput::FindScalars(input, self->ScalarArray))
   {
-    this->Scalars = self->GetInputArrayToProcess(0, input);
-    // ParaView gives an empty name while it does not know the input's arrays yet.
-    const char* name = self->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-    if (!this->Scalars && name && !*name)
-    {
-      this->Scalars = input->GetPointData()->GetScalars();
-    }
-    if (!this->Scalars)
-    {
-      throw std::runtime_error("the input has no point scalars; choose an array");
-    }
-    if (this->Scalars->GetNumberOfComponents() != 1)
-    {
-      throw std::runtime_error(std::string("the array '") +
-        (this->Scalars->GetName() ? this->Scalars->GetName() : "") +
-        "' has more than one component; extract one");
-    }
-    if (this->Scalars->GetNumberOfTuples() != this->Grid.GetSize())
-    {
-      throw std::runtime_error("the array chosen is not a point array of the whole image");
-    }
-    if (this->Grid.Axes < 2)
-    {
-      throw std::runtime_error("an occluded angle needs an image that is at least two voxels wide "
-                               "along two axes");
-    }
   }
 
   /// The last iteration, or all of them when they are kept.
@@ -164,8 +57,11 @@ public:
     lacuna::RequireMemory(what.str(), (12.0 + kept) * static_cast<double>(this->Grid.GetSize()));
 
     lacuna::AttenuationField field(this->Grid.Dimensions, this->Grid.Spacing);
-    this->FillField(field, execution);
-    this->CutSpace(field);
+    vtkLacunaOcclusionInput::Fill(field, this->Input, this->Scalars,
+      { this->Self->Attenuation, this->Self->OpacityFunction, this->Self->Mode == BINARY },
+      execution);
+    vtkLacunaOcclusionInput::CutSpace(
+      field, this->Input, this->Space, this->Self->ReconstructionSpace);
 
     vtkNew<vtkFloatArray> angle;
     angle->SetName("OccludedAngle");
@@ -228,143 +124,6 @@ private:
     return options;
   }
 
-  void FillField(lacuna::AttenuationField& field, lacuna::Execution& execution)
-  {
-    const double largest = lacuna::GetLargestAttenuation(field);
-    const double opaque = lacuna::GetAttenuation(field, DataOpacity);
-    const double least = lacuna::GetAttenuation(field, 0.5);
-    const bool binary = this->Self->Mode == BINARY;
-    const auto finish = [=](double attenuation)
-    {
-      return static_cast<float>(
-        binary ? (attenuation >= least ? 1.0 : 0.0) : std::min(attenuation, largest));
-    };
-    const auto refuse = [this](const char* what, vtkIdType i)
-    { throw std::runtime_error(what + (" at " + Where(this->Input, i))); };
-    if (this->Self->Attenuation == ARRAY)
-    {
-      auto convert = [&](double value, vtkIdType i)
-      {
-        if (!(value >= 0))
-        {
-          refuse("the attenuation is negative or not a number", i);
-        }
-        return finish(value);
-      };
-      this->Convert(field, execution, convert);
-    }
-    else if (this->Self->Attenuation == OPACITY_FUNCTION)
-    {
-      vtkPiecewiseFunction* function = this->Self->OpacityFunction;
-      if (!function || function->GetSize() == 0)
-      {
-        throw std::runtime_error("there is no OpacityFunction; give one, or choose another way to "
-                                 "make attenuation of grey levels");
-      }
-      auto convert = [&](double value, vtkIdType i)
-      {
-        const double opacity = function->GetValue(value);
-        if (!(opacity >= 0) || std::isnan(value))
-        {
-          refuse("the opacity is negative or not a number", i);
-        }
-        return finish(opacity * opaque);
-      };
-      this->Convert(field, execution, convert);
-    }
-    else
-    {
-      double range[2];
-      this->Scalars->GetRange(range);
-      if (!(range[1] > range[0]))
-      {
-        throw std::runtime_error("all grey levels are " + std::to_string(range[0]) +
-          ": there is no data to reconstruct from");
-      }
-      const double scale = opaque / (range[1] - range[0]);
-      auto convert = [&](double value, vtkIdType i)
-      {
-        if (!std::isfinite(value))
-        {
-          refuse("the grey level is not a finite number", i);
-        }
-        return finish((value - range[0]) * scale);
-      };
-      this->Convert(field, execution, convert);
-    }
-  }
-
-  template <class Converter>
-  void Convert(lacuna::AttenuationField& field, lacuna::Execution& execution, Converter& convert)
-  {
-    const Fill<Converter> fill{ field, execution, convert };
-    if (!vtkArrayDispatch::Dispatch::Execute(this->Scalars, fill))
-    {
-      fill(this->Scalars);
-    }
-  }
-
-  void CutSpace(lacuna::AttenuationField& field)
-  {
-    vtkImplicitFunction* function = this->Self->ReconstructionSpace;
-    vtkDataArray* mask = nullptr;
-    if (this->Space)
-    {
-      mask = this->Space->GetPointData()->GetScalars();
-      const bool same = std::equal(this->Input->GetExtent(), this->Input->GetExtent() + 6,
-                          this->Space->GetExtent()) &&
-        this->SamePlace();
-      if (!same || !mask || mask->GetNumberOfTuples() != this->Grid.GetSize())
-      {
-        throw std::runtime_error("the reconstruction space (second input) must be an image with "
-                                 "point scalars and with the extent, origin, spacing and direction "
-                                 "of the first");
-      }
-    }
-    if (!mask && !function)
-    {
-      return;
-    }
-    bool any = false;
-    for (vtkIdType i = 0; i < this->Grid.GetSize(); ++i)
-    {
-      bool inside = !mask || mask->GetComponent(i, 0) != 0;
-      if (inside && function)
-      {
-        double point[3];
-        this->Input->GetPoint(i, point);
-        inside = function->FunctionValue(point) < 0;
-      }
-      float* value = At(field, i);
-      *value = inside ? *value : lacuna::AttenuationField::OutsideSpace();
-      any = any || *value > 0;
-    }
-    if (!any)
-    {
-      throw std::runtime_error("the reconstruction space contains none of the data; nothing can be "
-                               "reconstructed in it");
-    }
-  }
-
-  bool SamePlace() const
-  {
-    const double tolerance = 1e-6 * this->Grid.Spacing[0];
-    bool same = true;
-    for (int i = 0; i < 3; ++i)
-    {
-      same = same &&
-        std::abs(this->Input->GetOrigin()[i] - this->Space->GetOrigin()[i]) <= tolerance &&
-        std::abs(this->Input->GetSpacing()[i] - this->Space->GetSpacing()[i]) <= tolerance;
-      for (int j = 0; j < 3; ++j)
-      {
-        same = same &&
-          std::abs(this->Input->GetDirectionMatrix()->GetElement(i, j) -
-            this->Space->GetDirectionMatrix()->GetElement(i, j)) <= 1e-9;
-      }
-    }
-    return same;
-  }
-
   vtkSmartPointer<vtkImageData> MakeImage(vtkFloatArray* angle, vtkUnsignedCharArray* object,
     const lacuna::GrowthOptions& options, const std::vector<lacuna::GrowthStatistics>& all) const
   {
@@ -372,9 +131,7 @@ private:
     image->CopyStructure(this->Input);
     image->GetPointData()->SetScalars(angle);
     image->GetPointData()->AddArray(object);
-    const lacuna::Vec3& edge = this->Grid.Spacing;
-    const bool flat = this->Grid.Axes == 2;
-    const double voxel = flat ? edge[0] * edge[1] : edge[0] * edge[1] * edge[2] / 1000;
+    const double voxel = this->Grid.GetVoxelContent();
     std::vector<double> columns[6];
     for (std::size_t i = 0; i < all.size(); ++i)
     {
@@ -397,16 +154,14 @@ private:
   vtkLacunaOccludedAngle* Self;
   vtkImageData* Input;
   vtkImageData* Space;
-  Geometry Grid;
-  vtkDataArray* Scalars = nullptr;
+  vtkLacunaOcclusionInput::Grid Grid;
+  vtkDataArray* Scalars;
 };
 
 //------------------------------------------------------------------------------
 vtkLacunaOccludedAngle::vtkLacunaOccludedAngle()
 {
   this->SetNumberOfInputPorts(2);
-  this->SetInputArrayToProcess(
-    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
 
 vtkLacunaOccludedAngle::~vtkLacunaOccludedAngle() = default;
@@ -609,7 +364,8 @@ int vtkLacunaOccludedAngle::RequestData(
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
       output->Crop(extent);
       lacuna::ParameterText parameters;
-      parameters.Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
+      parameters.Add("ScalarArray", this->ScalarArray)
+        .Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
         .Add("Attenuation", this->Attenuation)
         .Add("NumberOfDirections", this->NumberOfDirections)
         .Add("ThresholdsOverPi", this->ThresholdsOverPi)
@@ -630,6 +386,7 @@ int vtkLacunaOccludedAngle::RequestData(
 void vtkLacunaOccludedAngle::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
   os << indent << "Mode: " << (this->Mode == BINARY ? "Binary" : "Continuous") << "\n";
   os << indent << "Attenuation: " << this->Attenuation << "\n";
   os << indent << "OpacityFunction: " << this->OpacityFunction.Get() << "\n";

@@ -7,7 +7,7 @@
 /// and the result taken as data again, once per threshold, so that gaps close step by step
 /// (Carr 1996, chapter 5).
 ///
-/// Input 0: vtkImageData, 2-D or 3-D, any point scalars with one component. Input 1 (optional): an
+/// Input 0: vtkImageData, 2-D or 3-D, with a point array of one component (ScalarArray). Input 1 (optional): an
 /// image of the same geometry whose scalars are not 0 inside the reconstruction space; rays end
 /// where they leave it.
 ///
@@ -33,6 +33,7 @@
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
 #include "vtkSmartPointer.h"                 // for ownership
 
+#include <string> // for the array's name
 #include <vector> // for the schedule
 
 class vtkImageData;
@@ -57,6 +58,12 @@ public:
     OPACITY_FUNCTION = 1,
     ARRAY = 2
   };
+
+  ///@{
+  /// The point array with the data. Default empty: the active scalars.
+  vtkSetMacro(ScalarArray, std::string);
+  vtkGetMacro(ScalarArray, std::string);
+  ///@}
 
   ///@{
   /// CONTINUOUS: a ray is hidden by 1 - exp(-attenuation along it). BINARY: by the first voxel it
@@ -154,6 +161,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  std::string ScalarArray;
   int Mode = CONTINUOUS;
   int Attenuation = LINEAR_IN_RANGE;
   vtkSmartPointer<vtkPiecewiseFunction> OpacityFunction;

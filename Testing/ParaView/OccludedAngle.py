@@ -24,8 +24,8 @@ for name, value in dict(Shape="Circle", Dimensions=[200, 200, 200], PresentFract
 source = IncompleteShape(GapAngle=40, Dimensions=[200, 200, 1 + 199])
 angle = OccludedAngle(Input=source)
 filter = lacuna.vtkLacunaOccludedAngle()
-for name, value in dict(Mode="Continuous", Attenuation="Linear in Range", NumberOfDirections=1000, ObjectOpacity=0.95,
-                        KeepData=0, MedianKernel=1, KeepIterations=0).items():
+for name, value in dict(ScalarArray="", Mode="Continuous", Attenuation="Linear in Range", NumberOfDirections=1000,
+                        ObjectOpacity=0.95, KeepData=0, MedianKernel=1, KeepIterations=0).items():
     assert getattr(angle, name) == value, (name, getattr(angle, name))
     if not isinstance(value, str):
         assert getattr(filter, "Get" + name)() == value, name

@@ -3,6 +3,7 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -80,6 +81,29 @@ void TestFlat()
     LACUNA_CHECK(Field(output, "SuggestedThresholdOverPi", 0) < 2);
     LACUNA_CHECK(vtkLacunaProvenance::Get(output).size() == 1);
   }
+}
+
+// The array named, else the active scalars.
+void TestScalarArray()
+{
+  vtkNew<vtkImageData> circle;
+  MakeCircle(circle, 2);
+  vtkNew<vtkFloatArray> dot;
+  dot->SetName("Dot");
+  dot->SetNumberOfTuples(circle->GetNumberOfPoints());
+  dot->Fill(0);
+  int at[3] = { 10, 15, 7 };
+  dot->SetValue(circle->ComputePointId(at), 1);
+  circle->GetPointData()->AddArray(dot);
+  vtkNew<vtkLacunaOccludedAngle> filter;
+  filter->SetInputData(circle);
+  filter->SetNumberOfDirections(60);
+  filter->Update();
+  LACUNA_CHECK(Field(filter->GetOutput(), "ObjectVoxels", 0) > 1000);
+  filter->SetScalarArray("Dot");
+  filter->Update();
+  LACUNA_CHECK(Field(filter->GetOutput(), "ObjectVoxels", 0) == 1);
+  LACUNA_CHECK(filter->GetOutput()->GetScalarComponentAsDouble(10, 15, 7, 0) > Pi);
 }
 
 // Kept iterations are time steps; each equals a run that ends there.
@@ -267,6 +291,7 @@ void TestAbort()
 int TestOccludedAngle(int, char*[])
 {
   TestFlat();
+  TestScalarArray();
   TestTimeSteps();
   TestAttenuations();
   TestSpace();
@@ -275,9 +300,9 @@ int TestOccludedAngle(int, char*[])
   vtkNew<vtkLacunaOccludedAngle> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "Mode", "Attenuation", "OpacityFunction", "NumberOfDirections",
-         "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "KeepData", "MedianKernel",
-         "ReconstructionSpace", "KeepIterations" })
+  for (const char* name : { "ScalarArray", "Mode", "Attenuation", "OpacityFunction",
+         "NumberOfDirections", "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "KeepData",
+         "MedianKernel", "ReconstructionSpace", "KeepIterations" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }

@@ -2,6 +2,7 @@
 #include "lacunaCheck.h"
 #include "vtkDataArray.h"
 #include "vtkExecutive.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaOccludedAngle.h"
 #include "vtkNew.h"
@@ -47,8 +48,22 @@ int TestOccludedAngleErrors(int, char*[])
   using Filter = vtkLacunaOccludedAngle;
   Expect("all grey levels are 0",
     [](Filter*, vtkImageData* image) { image->GetPointData()->GetScalars()->Fill(0); });
-  Expect(
-    "no point scalars", [](Filter*, vtkImageData* image) { image->GetPointData()->Initialize(); });
+  Expect("no active point scalars",
+    [](Filter*, vtkImageData* image) { image->GetPointData()->Initialize(); });
+  Expect("no point array 'Echo' of numbers",
+    [](Filter* filter, vtkImageData*) { filter->SetScalarArray("Echo"); });
+  Expect("at least two voxels wide",
+    [](Filter*, vtkImageData* image) { image->SetDimensions(0, 0, 0); });
+  Expect("the array 'Short' has 3 values, the image 960 points",
+    [](Filter* filter, vtkImageData* image)
+    {
+      vtkNew<vtkFloatArray> array;
+      array->SetName("Short");
+      array->SetNumberOfTuples(3);
+      array->Fill(1);
+      image->GetPointData()->AddArray(array);
+      filter->SetScalarArray("Short");
+    });
   Expect("more than one component",
     [](Filter*, vtkImageData* image) { image->AllocateScalars(VTK_FLOAT, 3); });
   Expect("at least two voxels wide",
