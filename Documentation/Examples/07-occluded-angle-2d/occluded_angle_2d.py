@@ -8,12 +8,14 @@ import os
 import sys
 
 import lacuna.plugin
+
+lacuna.plugin.load()
 from lacuna import occlusion, pictures
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-lacuna.plugin.load()
 folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+os.makedirs(folder, exist_ok=True)
 SIZE = [200, 200, 200]
 
 
@@ -35,7 +37,7 @@ def show(name, title, angle):
     line = Show(outline, view)
     line.AmbientColor = line.DiffuseColor = [0.9, 0.1, 0.1]
     line.LineWidth = 3
-    pictures.add_text(view, title)
+    pictures.add_title(view, title)
     pictures.look(view, (0, 0, -1), (0, 1, 0), 1.3)
     pictures.save(view, os.path.join(folder, name + ".png"))
     suggestion = occlusion.suggested_threshold(angle)
@@ -57,8 +59,9 @@ show("blob", "Noisy blob, 1.6 1.6 1.3 1.3 pi",
      OccludedAngle(Input=blob, NumberOfDirections=100, ThresholdsOverPi=[1.6, 1.6, 1.3, 1.3]))
 
 cavity = IncompleteShape(Shape="Cavity", Dimensions=SIZE, PresentFraction=0.6)
-# a ring that leaves the bay out
-space = Calculator(Input=cavity, ResultArrayName="Space", Function="if(abs(coordsY) < 10 & coordsX > 5, 0, 1)")
+# a doughnut, cut open: it leaves out all but the rim of the bay
+space = Calculator(Input=cavity, ResultArrayName="Space",
+                   Function="if(abs(coordsY) < 15 & (coordsX > 0 | coordsX^2 + coordsY^2 < 225), 0, 1)")
 show("cavity-doughnut", "Cavity, reconstruction space without the bay, 1.6 pi x 3",
      OccludedAngle(Input=cavity, SpaceMask=space, NumberOfDirections=100, ThresholdsOverPi=[1.6] * 3))
 small = IncompleteShape(Shape="Cavity", Dimensions=[60, 60, 60], PresentFraction=0.8)  # arms within the radii

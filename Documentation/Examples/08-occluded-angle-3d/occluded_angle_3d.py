@@ -7,11 +7,13 @@ import os
 import sys
 
 import lacuna.plugin
+
+lacuna.plugin.load()
 from lacuna import occlusion, pictures
 from paraview.simple import *
 
-lacuna.plugin.load()
 folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+os.makedirs(folder, exist_ok=True)
 
 
 def show(name, title, data, schedule, direction):
@@ -29,8 +31,8 @@ def show(name, title, data, schedule, direction):
     seen = Show(points, view)
     seen.AmbientColor = seen.DiffuseColor = [0.1, 0.3, 0.8]
     seen.PointSize = 4
-    pictures.add_text(view, title)
-    pictures.look(view, direction, (0, 0, 1), 1.3)
+    pictures.add_title(view, title)
+    pictures.look(view, direction, (0, 0, 1), 0.95)
     pictures.save(view, os.path.join(folder, name + ".png"))
     truth = servermanager.Fetch(data).GetFieldData().GetArray("CompleteVolume").GetValue(0)
     print(f"{name}: {surface.volume:.2f} ml, truth {truth:.2f} ml ({100 * (surface.volume / truth - 1):+.1f} %), "

@@ -119,6 +119,15 @@ def add_scale_bar(view, millimetres):
     display.WindowLocation = "Lower Center"
 
 
+def add_title(view, text):
+    """A line of dark text at the upper edge."""
+    display = pv.Show(pv.Text(Text=text), view)
+    display.Color = [0.1, 0.1, 0.1]
+    display.FontSize = 18
+    display.WindowLocation = "Upper Center"
+    return display
+
+
 def save(view, name):
     """Renders into a PNG file."""
     pv.Render(view)
