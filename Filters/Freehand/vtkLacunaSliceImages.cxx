@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceImages.h"
 
-#include "lacunaPoseOutliers.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSliceAlgorithm.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -83,19 +83,6 @@ void CheckStack(vtkImageData* stack)
   }
 }
 
-// The name of slice number, with the frame's number where it is another one.
-std::string MakeLabel(vtkIdType number, vtkDataArray* frames, const std::string& suffix)
-{
-  std::ostringstream label;
-  label << "slice " << number;
-  if (frames && frames->GetTuple1(number) != static_cast<double>(number))
-  {
-    label << " (frame " << frames->GetTuple1(number) << ")";
-  }
-  label << suffix;
-  return label.str();
-}
-
 constexpr std::array<const char*, 4> FlagNames{ "pose invalid", "image invalid", "too fast",
   "gated out" };
 }
@@ -151,8 +138,7 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
     this->GreyLevels->DeepCopy(tracked.GetGreyLevels());
   }
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
-  this->DropUnusable(candidates, selection);
-  this->DropOutliers(candidates, selection);
+  this->DropBadPoses(candidates, selection);
   for (const bool hasImage : { true, false })
   {
     for (const Candidate& candidate : candidates)
@@ -260,7 +246,7 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
       slice.Width = columns.Last - columns.First + 1;
       slice.Height = rows.Last - rows.First + 1;
       slice.PixelToReference = tracked.GetImageToReference(number) * windowToImage;
-      slice.Label = MakeLabel(number, frames, selection.Suffix);
+      slice.Label = vtkLacunaPoseJudge::MakeLabel(number, frames, selection.Suffix);
       candidates.push_back(candidate);
     }
   }
@@ -268,70 +254,50 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceImages::DropUnusable(
+void vtkLacunaSliceImages::DropBadPoses(
   std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection)
 {
-  std::vector<Candidate> kept;
+  std::vector<vtkLacunaPoseJudge::Slice> slices;
+  slices.reserve(candidates.size());
   for (const Candidate& candidate : candidates)
   {
-    try
-    {
-      lacuna::CheckSlice(candidate.Slice);
-      kept.push_back(candidate);
-    }
-    catch (const std::invalid_argument& error)
-    {
-      const std::string text = error.what();
-      if (selection.BadPoses != vtkLacunaSliceSelection::LeaveOut)
-      {
-        throw std::runtime_error(text + " (field data array '" +
-          vtkLacunaTrackedSlices::ImageToReferenceName + "'), or set BadPoses to LeaveOut");
-      }
-      this->LeftOut.push_back(text.substr(0, text.find(';')));
-    }
+    slices.push_back({ candidate.Number, &candidate.Slice });
   }
-  candidates = kept;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSliceImages::DropOutliers(
-  std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection)
-{
-  if (selection.BadPoses == vtkLacunaSliceSelection::KeepOutliers)
+  const std::string place =
+    std::string(" (field data array '") + vtkLacunaTrackedSlices::ImageToReferenceName + "'";
+  const auto isBad = [](const std::string& problem) { return !problem.empty(); };
+  std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(slices);
+  const auto unusable = std::find_if(problems.begin(), problems.end(), isBad);
+  if (unusable != problems.end() && selection.BadPoses != vtkLacunaSliceSelection::LeaveOut)
   {
-    return;
+    throw std::runtime_error(*unusable +
+      "; mark the slice invalid (SliceStatus 1) to leave it out, or mend its transform" + place +
+      "), or set BadPoses to LeaveOut");
   }
-  std::vector<lacuna::SlicePlace> places;
-  for (const Candidate& candidate : candidates)
+  if (selection.BadPoses != vtkLacunaSliceSelection::KeepOutliers)
   {
-    places.push_back({ candidate.Number, lacuna::GetCorners(candidate.Slice) });
+    vtkLacunaPoseJudge::AddOutliers(slices, problems);
   }
-  const lacuna::PoseOutliers found = lacuna::FindPoseOutliers(places);
+  const auto outlier = std::find_if(problems.begin(), problems.end(), isBad);
+  if (outlier != problems.end() && selection.BadPoses == vtkLacunaSliceSelection::Refuse)
+  {
+    const auto count = std::count_if(problems.begin(), problems.end(), isBad);
+    throw std::runtime_error(*outlier + place +
+      (count > 1 ? ", " + std::to_string(count) + " slices in all" : std::string()) +
+      "). Set BadPoses to LeaveOut or KeepOutliers, or mark the slice invalid (SliceStatus 1)");
+  }
   std::vector<Candidate> kept;
-  std::size_t next = 0;
-  for (const lacuna::PoseOutliers::Outlier& outlier : found.Outliers)
+  for (std::size_t i = 0; i < problems.size(); ++i)
   {
-    kept.insert(kept.end(), candidates.begin() + static_cast<std::ptrdiff_t>(next),
-      candidates.begin() + static_cast<std::ptrdiff_t>(outlier.Index));
-    next = outlier.Index + 1;
-    std::ostringstream text;
-    text << candidates[outlier.Index].Slice.Label << ": its pose is an outlier, it lies "
-         << outlier.Distance << " mm from the slices beside it; the median step of the sweep is "
-         << found.MedianStep << " mm, more than " << found.LongestStep << " mm is a jump";
-    if (selection.BadPoses == vtkLacunaSliceSelection::Refuse)
+    if (problems[i].empty())
     {
-      text << " (field data array '" << vtkLacunaTrackedSlices::ImageToReferenceName << "'";
-      if (found.Outliers.size() > 1)
-      {
-        text << ", " << found.Outliers.size() << " slices in all";
-      }
-      text << "). Set BadPoses to LeaveOut or KeepOutliers, or mark the slice invalid (SliceStatus "
-              "1)";
-      throw std::runtime_error(text.str());
+      kept.push_back(candidates[i]);
     }
-    this->LeftOut.push_back(text.str());
+    else
+    {
+      this->LeftOut.push_back(problems[i]);
+    }
   }
-  kept.insert(kept.end(), candidates.begin() + static_cast<std::ptrdiff_t>(next), candidates.end());
   candidates = kept;
 }
 

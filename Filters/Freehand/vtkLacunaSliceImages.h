@@ -25,8 +25,8 @@ struct vtkLacunaSliceSelection
   /// As the properties of filter say, for a stack in its input.
   static vtkLacunaSliceSelection Make(vtkLacunaSliceAlgorithm* filter, vtkInformation* input);
 
-  /// What to do with slices whose status says that their pose is fine, but it is not: poses that
-  /// are unusable (not finite, not affine, singular), and outliers (see lacunaPoseOutliers.h).
+  /// What to do with slices whose status says that their pose is fine, but it is not; see
+  /// vtkLacunaPoseJudge.h.
   enum BadPoseRule
   {
     Refuse = 0,
@@ -91,8 +91,7 @@ private:
   std::vector<bool> FindSlicesToCome(const vtkLacunaTrackedSlices& tracked) const;
   std::vector<Candidate> FindCandidates(
     const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);
-  void DropUnusable(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
-  void DropOutliers(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
+  void DropBadPoses(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
 
   std::array<int, 4> FlagCounts{ 0, 0, 0, 0 };
   int NumberLeftOut = 0;

@@ -11,6 +11,7 @@
 #include "vtkIntArray.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
@@ -38,6 +39,12 @@ int Size(const std::array<int, 6>& extent, std::size_t axis)
 std::array<int, 6> ToArray(const int extent[6])
 {
   return { extent[0], extent[1], extent[2], extent[3], extent[4], extent[5] };
+}
+
+// Numbers too large for a float become the largest one; none stays none.
+float ToFloat(double value)
+{
+  return static_cast<float>(std::min(value, double{ std::numeric_limits<float>::max() }));
 }
 
 template <class Array>
@@ -103,9 +110,8 @@ void vtkLacunaSlicePlaneBuilder::ReadSweep()
   {
     poses.push_back(this->Tracked.GetImageToReference(i));
     times.push_back(this->Tracked.GetTimestamp(i));
-    this->HasPose.push_back(!(this->Tracked.GetStatus(i) & vtkLacunaTrackedSlices::PoseInvalid) &&
-      poses.back().IsFinite());
   }
+  this->JudgePoses(poses);
   if (vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::TimestampName, 1, count))
   {
     this->Speeds = lacuna::GetSliceSpeeds(poses, this->HasPose, times, this->GetCorners());
@@ -115,22 +121,88 @@ void vtkLacunaSlicePlaneBuilder::ReadSweep()
   if (calibration && calibration->GetNumberOfTuples() >= 1)
   {
     this->ImageToProbe = vtkLacunaFieldData::GetMatrix(calibration, 0);
-    this->Calibrated = this->ImageToProbe.IsFinite();
+    for (const lacuna::Vec3& corner : this->GetCorners())
+    {
+      const double radius = lacuna::Norm(this->ImageToProbe.Point(corner));
+      this->BadCalibration |= !(radius <= vtkLacunaPoseJudge::LargestCoordinate);
+    }
+    this->Calibrated = !this->BadCalibration;
   }
+}
+
+//------------------------------------------------------------------------------
+// Also of slices that are not in the stack: speeds depend on their poses.
+void vtkLacunaSlicePlaneBuilder::JudgePoses(const std::vector<lacuna::Matrix4>& poses)
+{
+  const auto count = static_cast<vtkIdType>(poses.size());
+  vtkDataArray* frames =
+    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::FrameNumberName, 1, count);
+  const lacuna::Vec3 pixel = this->GetPixel(this->Whole[0], this->Whole[2]);
+  const lacuna::Vec3 step = this->GetPixel(this->Whole[0] + 1, this->Whole[2] + 1) - pixel;
+  const lacuna::Matrix4 pixelToImage =
+    lacuna::Matrix4::Translation(pixel) * lacuna::Matrix4::Scaling({ step[0], step[1], 1 });
+  std::vector<lacuna::SliceImage> images;
+  std::vector<vtkLacunaPoseJudge::Slice> slices;
+  images.reserve(poses.size()); // slices refer to them
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (!(this->Tracked.GetStatus(i) & vtkLacunaTrackedSlices::PoseInvalid))
+    {
+      lacuna::SliceImage image;
+      image.Width = Size(this->Whole, 0);
+      image.Height = Size(this->Whole, 1);
+      image.PixelToReference = poses[i] * pixelToImage;
+      image.Label = vtkLacunaPoseJudge::MakeLabel(i, frames, "");
+      images.push_back(image);
+      slices.push_back({ i, &images.back() });
+    }
+  }
+  std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(slices);
+  if (!this->Settings.KeepOutliers)
+  {
+    vtkLacunaPoseJudge::AddOutliers(slices, problems);
+  }
+  this->HasPose.assign(poses.size(), 0);
+  this->Problems.resize(poses.size());
+  for (std::size_t s = 0; s < slices.size(); ++s)
+  {
+    this->HasPose[slices[s].Number] = problems[s].empty() ? 1 : 0;
+    this->Problems[slices[s].Number] = problems[s];
+  }
+}
+
+//------------------------------------------------------------------------------
+// As far as SliceStatus is concerned.
+bool vtkLacunaSlicePlaneBuilder::MayShow(vtkIdType slice) const
+{
+  const unsigned char status = this->Tracked.GetStatus(slice);
+  return this->Settings.InvalidSlices == LeaveOut ? status == vtkLacunaTrackedSlices::Valid
+                                                  : !(status & vtkLacunaTrackedSlices::PoseInvalid);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaSlicePlaneBuilder::ChooseSlices(int first, int last)
 {
   bool any = false;
+  std::string firstProblem;
   vtkIdType outlines = 0;
   for (std::int64_t k = this->Whole[4]; k <= this->Whole[5]; k += this->Settings.Stride)
   {
     ShownSlice slice{ static_cast<int>(k), this->Tracked.GetSliceNumber(static_cast<int>(k)),
       this->Settings.OutlineOnly, false, 0, 0 };
     const bool valid = this->Tracked.GetStatus(slice.Number) == vtkLacunaTrackedSlices::Valid;
-    if (!this->HasPose[slice.Number] || (!valid && this->Settings.InvalidSlices == LeaveOut))
+    if (!this->MayShow(slice.Number))
     {
+      continue;
+    }
+    if (!this->HasPose[slice.Number])
+    {
+      const std::string& problem = this->Problems[slice.Number];
+      firstProblem = firstProblem.empty() ? problem : firstProblem;
+      if (k >= first && k <= last)
+      {
+        this->LeftOut.push_back(problem);
+      }
       continue;
     }
     any = true;
@@ -144,6 +216,12 @@ void vtkLacunaSlicePlaneBuilder::ChooseSlices(int first, int last)
     this->NumberOfPoints += slice.IsOutline ? 4 : this->Lattice.GetNumberOfPoints();
     outlines += slice.IsOutline ? 1 : 0;
     this->Shown.push_back(slice);
+  }
+  if (!any && !firstProblem.empty())
+  {
+    throw std::runtime_error(
+      "there is no slice to show: none of those asked for has a pose that can be used. " +
+      firstProblem);
   }
   if (!any)
   {
@@ -225,7 +303,7 @@ void vtkLacunaSlicePlaneBuilder::FillSlice(
       const double radius = lacuna::Norm(this->ImageToProbe.Point(pixel));
       *errors++ = slice.IsBlank
         ? NoNumber
-        : static_cast<float>(lacuna::GetRegistrationError(this->Settings.Accuracy, radius));
+        : ToFloat(lacuna::GetRegistrationError(this->Settings.Accuracy, radius));
     }
   };
   if (slice.IsOutline)
@@ -346,7 +424,7 @@ void vtkLacunaSlicePlaneBuilder::AddCellData(vtkPolyData* output) const
     {
       std::fill_n(time->GetPointer(first), cells, this->Tracked.GetTimestamp(slice.Number));
       std::fill_n(speed->GetPointer(first), cells,
-        slice.IsBlank ? NoNumber : static_cast<float>(this->Speeds[slice.Number]));
+        slice.IsBlank ? NoNumber : ToFloat(this->Speeds[slice.Number]));
       std::fill_n(
         fast->GetPointer(first), cells, static_cast<unsigned char>(this->IsTooFast(slice.Number)));
     }

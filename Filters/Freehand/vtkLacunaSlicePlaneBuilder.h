@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 class vtkDataArray;
@@ -36,6 +37,7 @@ public:
     double SpeedLimit = 0; ///< mm/s, 0 = none
     bool OutlineOnly = false;
     int InvalidSlices = LeaveOut;
+    bool KeepOutliers = false;
     int MaximumNumberOfPoints = 0;
   };
 
@@ -55,6 +57,10 @@ public:
   /// mm/s, NaN where it is not known; only with times.
   double GetSpeed(vtkIdType slice) const { return this->Speeds[slice]; }
   bool IsTooFast(vtkIdType slice) const;
+  /// A sentence for each slice from first to last that is not shown because of its pose.
+  const std::vector<std::string>& GetLeftOut() const { return this->LeftOut; }
+  /// Whether ImageToProbe is there, but gives no errors that are numbers.
+  bool HasBadCalibration() const { return this->BadCalibration; }
 
   /// Fills points, cells and arrays; output is empty before.
   void Build(vtkPolyData* output, vtkLacunaExecution& execution);
@@ -71,6 +77,8 @@ private:
   };
 
   void ReadSweep();
+  void JudgePoses(const std::vector<lacuna::Matrix4>& poses);
+  bool MayShow(vtkIdType slice) const;
   void ChooseSlices(int first, int last);
   vtkIdType GetCellsPerLattice() const;
   lacuna::Vec3 GetPixel(int i, int j) const;
@@ -86,9 +94,12 @@ private:
   vtkLacunaTrackedSlices Tracked;
   vtkSmartPointer<vtkDataArray> GreyLevels; // in one piece of memory
   std::array<int, 6> Whole;
-  std::vector<char> HasPose;
+  std::vector<char> HasPose;         // that can be used
+  std::vector<std::string> Problems; // of the slices whose pose cannot, though SliceStatus has none
+  std::vector<std::string> LeftOut;
   std::vector<double> Speeds;
   bool Calibrated = false;
+  bool BadCalibration = false;
   lacuna::Matrix4 ImageToProbe;
   lacuna::SliceLattice Lattice;
   std::vector<ShownSlice> Shown;

@@ -11,6 +11,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSlicePlaneBuilder.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
@@ -106,12 +107,17 @@ int vtkLacunaSlicePlanes::RequestData(
       options.SpeedLimit = this->SpeedLimit;
       options.OutlineOnly = this->OutlineOnly;
       options.InvalidSlices = this->InvalidSlices;
+      options.KeepOutliers = this->BadPoses == KeepOutliers;
       options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
       int whole[6];
       in->Get(SDDP::WHOLE_EXTENT(), whole);
       const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
       vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
-      this->CheckRequest(builder.HasTimes(), builder.HasCalibration());
+      this->CheckRequest(builder);
+      if (!builder.GetLeftOut().empty())
+      {
+        vtkWarningMacro(<< vtkLacunaSliceImages::DescribeLeftOut(builder.GetLeftOut()));
+      }
       builder.Build(output, execution);
       if (this->ColorBy == Speed)
       {
@@ -161,7 +167,7 @@ void vtkLacunaSlicePlanes::WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSlicePlanes::CheckRequest(bool hasTimes, bool hasCalibration) const
+void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builder)
 {
   for (const double accuracy : { this->TranslationAccuracy, this->AngularAccuracy })
   {
@@ -173,13 +179,24 @@ void vtkLacunaSlicePlanes::CheckRequest(bool hasTimes, bool hasCalibration) cons
       throw std::runtime_error(message.str());
     }
   }
-  if (this->ColorBy == Speed && !hasTimes)
+  if (builder.HasBadCalibration())
+  {
+    const std::string text = std::string("field data array '") +
+      vtkLacunaTrackedSlices::ImageToProbeName +
+      "' has elements that are not finite or beyond all measure, so RegistrationError is not known";
+    if (this->ColorBy == RegistrationError)
+    {
+      throw std::runtime_error(text + "; mend the calibration, or choose another ColorBy");
+    }
+    vtkWarningMacro(<< text);
+  }
+  if (this->ColorBy == Speed && !builder.HasTimes())
   {
     throw std::runtime_error(std::string("ColorBy is Speed, but field data array '") +
       vtkLacunaTrackedSlices::TimestampName +
       "' is missing: the times of the slices are not known");
   }
-  if (this->ColorBy == RegistrationError && !hasCalibration)
+  if (this->ColorBy == RegistrationError && !builder.HasCalibration())
   {
     throw std::runtime_error(std::string("ColorBy is RegistrationError, but field data array '") +
       vtkLacunaTrackedSlices::ImageToProbeName +
@@ -201,6 +218,7 @@ std::string vtkLacunaSlicePlanes::DescribeParameters() const
     .Add("SpeedLimit", this->SpeedLimit)
     .Add("OutlineOnly", this->OutlineOnly)
     .Add("InvalidSlices", choices[this->InvalidSlices])
+    .Add("BadPoses", this->BadPoses == LeaveOutBad ? "LeaveOut" : "KeepOutliers")
     .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints)
     .Get();
 }

@@ -12,17 +12,18 @@
  * means over n x n pixels. n is 1, or as much more as MaximumNumberOfPoints wants.
  *
  * Output: polydata in the reference frame, mm.
- * | array             | where | type          | meaning                                             |
- * |-------------------|-------|---------------|-----------------------------------------------------|
- * | Intensity         | point | float         | grey level; not with OutlineOnly                    |
- * | RegistrationError | point | float, mm     | expected RMS error of the place, see below          |
- * | Speed             | cell  | float, mm/s   | of the fastest corner, since the slice before       |
- * | TooFast           | cell  | unsigned char | 1 where Speed is above SpeedLimit                   |
- * | SliceNumber       | cell  | int           | number in the sweep                                 |
- * | SliceStatus       | cell  | unsigned char | flags, 0 = valid                                    |
- * | Timestamp         | cell  | double, s     |                                                     |
+ * | array             | where | type          | meaning                                  |
+ * |-------------------|-------|---------------|------------------------------------------|
+ * | Intensity         | point | float         | grey level; not with OutlineOnly         |
+ * | RegistrationError | point | float, mm     | expected RMS error of the place          |
+ * | Speed             | cell  | float, mm/s   | of the fastest corner, since the slice   |
+ * |                   |       |               | before that has a good pose and a time   |
+ * | TooFast           | cell  | unsigned char | 1 where Speed is above SpeedLimit        |
+ * | SliceNumber       | cell  | int           | number in the sweep                      |
+ * | SliceStatus       | cell  | unsigned char | flags, 0 = valid                         |
+ * | Timestamp         | cell  | double, s     |                                          |
  * ColorBy chooses the active scalars, which ParaView colours by. Field data: PixelStep (the n
- * above), SpeedLimit, Provenance.
+ * above), SpeedLimit, Provenance. All points are finite.
  *
  * RegistrationError = sqrt(TranslationAccuracy^2 + (2 r sin(AngularAccuracy / 2))^2), r the distance
  * of the pixel from the origin of the probe frame, the tracker's sensor; it needs ImageToProbe.
@@ -32,7 +33,7 @@
  * In parallel, pieces are runs of slices; they do not depend on each other, and the result is the
  * same bit by bit for any number of threads.
  *
- * @sa lacunaSliceLattice.h, lacunaSliceMotion.h
+ * @sa lacunaSliceLattice.h, lacunaSliceMotion.h, vtkLacunaPoseJudge.h
  */
 #ifndef vtkLacunaSlicePlanes_h
 #define vtkLacunaSlicePlanes_h
@@ -62,6 +63,11 @@ public:
     LeaveOut = 0,
     Outline = 1,
     Show = 2
+  };
+  enum BadPoseRules // values as in vtkLacunaSweptVolume
+  {
+    LeaveOutBad = 1,
+    KeepOutliers = 2
   };
 
   ///@{
@@ -109,6 +115,15 @@ public:
   ///@}
 
   ///@{
+  /// What to do with slices whose pose cannot be true though SliceStatus has nothing against it.
+  /// LeaveOutBad: a warning names them, they are not shown, and the speed of the next one is taken
+  /// from the slice before them. KeepOutliers: only poses that cannot be drawn (not finite,
+  /// singular, a corner beyond 1e38 mm) are left out. Default: LeaveOutBad.
+  vtkSetClampMacro(BadPoses, int, LeaveOutBad, KeepOutliers);
+  vtkGetMacro(BadPoses, int);
+  ///@}
+
+  ///@{
   /// Points that all slices together may have. Default: 2 000 000.
   vtkSetClampMacro(MaximumNumberOfPoints, int, 4, VTK_INT_MAX);
   vtkGetMacro(MaximumNumberOfPoints, int);
@@ -129,7 +144,7 @@ private:
   void operator=(const vtkLacunaSlicePlanes&) = delete;
 
   void WarnOfSpeed(const vtkLacunaSlicePlaneBuilder& builder);
-  void CheckRequest(bool hasTimes, bool hasCalibration) const;
+  void CheckRequest(const vtkLacunaSlicePlaneBuilder& builder);
   std::string DescribeParameters() const;
 
   int Stride = 1;
@@ -139,6 +154,7 @@ private:
   double SpeedLimit = 23;
   bool OutlineOnly = false;
   int InvalidSlices = LeaveOut;
+  int BadPoses = LeaveOutBad;
   int MaximumNumberOfPoints = 2000000;
 };
 #endif

@@ -28,7 +28,7 @@ std::vector<double> GetSliceSpeeds(const std::vector<Matrix4>& poses,
   std::size_t last = poses.size();
   for (std::size_t i = 0; i < poses.size(); ++i)
   {
-    if (!usable[i])
+    if (!usable[i] || !std::isfinite(times[i]))
     {
       continue;
     }

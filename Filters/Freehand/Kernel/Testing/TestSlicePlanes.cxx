@@ -43,6 +43,15 @@ TEST(SliceMotion, SpeedIsThatOfTheFastestCorner)
   EXPECT_TRUE(std::isnan(speeds[6])); // backwards
   EXPECT_DOUBLE_EQ(GetSliceSpeeds({ poses[0], poses[1] }, { 1, 1 }, { 0, 0.5 }, corners)[0], 10);
   EXPECT_TRUE(std::isnan(GetSliceSpeeds({ poses[0] }, { 1 }, { 0 }, corners)[0]));
+  // a slice without a time is passed over
+  for (const double none :
+    { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    const std::vector<double> around =
+      GetSliceSpeeds({ poses[0], poses[1], poses[1] }, { 1, 1, 1 }, { 0, none, 0.5 }, corners);
+    EXPECT_TRUE(std::isnan(around[1]));
+    EXPECT_DOUBLE_EQ(around[2], 10);
+  }
 }
 
 TEST(SliceLattice, LinearPicturesAreReproduced)

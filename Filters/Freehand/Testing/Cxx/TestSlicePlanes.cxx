@@ -21,6 +21,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 using lacuna::Matrix4;
@@ -251,6 +252,134 @@ void TestInvalidSlices()
     "no slice to show");
 }
 
+bool IsFinite(vtkPolyData* data)
+{
+  bool finite = true;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    const double* p = data->GetPoint(i);
+    finite &= std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]) &&
+      std::isfinite(GetPointValue(data, "RegistrationError", i));
+  }
+  for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
+  {
+    finite &= std::isfinite(GetCellValue(data, "Speed", c));
+  }
+  for (int i = 0; i < 6; ++i)
+  {
+    finite &= std::isfinite(data->GetBounds()[i]);
+  }
+  return finite;
+}
+
+// Poses that cannot be true though SliceStatus has nothing against them.
+void TestBadPoses()
+{
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const Matrix4 good = GetPose(7);
+  const std::vector<std::pair<Matrix4, std::string>> bad = { { Matrix4::Scaling({ nan, 1, 1 }),
+                                                               "not finite" },
+    { Matrix4::Translation({ inf, 0, 0 }), "not finite" },
+    { good * Matrix4::Scaling({ 0, 1, 1 }), "singular" },
+    { Matrix4::Translation({ 1e9, 0, 0 }) * good, "an outlier" },
+    { Matrix4::Translation({ 0, -1e308, 0 }) * good, "beyond all measure" },
+    { Matrix4::Scaling({ 1e308, 1e308, 1 }), "beyond all measure" } };
+  for (const auto& [pose, problem] : bad)
+  {
+    const auto stack = MakeStack(12);
+    vtkDataArray* frames = stack->GetFieldData()->GetArray("FrameNumber");
+    for (int i = 0; i < 12; ++i)
+    {
+      frames->SetTuple1(i, 100 + i);
+    }
+    vtkDataArray* poses = stack->GetFieldData()->GetArray("ImageToReference");
+    poses->SetTuple(7, pose.Data());
+    for (const bool outlines : { false, true })
+    {
+      vtkNew<vtkLacunaSlicePlanes> filter;
+      filter->SetInputData(stack);
+      filter->SetOutlineOnly(outlines);
+      const auto messages = lacunaCheck::Watch(filter);
+      filter->Update();
+      vtkPolyData* planes = filter->GetOutput();
+      LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+      LACUNA_CHECK_CONTAINS(messages->Warnings, "1 slice was left out because of bad poses");
+      LACUNA_CHECK_CONTAINS(messages->Warnings, "slice 7 (frame 107): its pose");
+      LACUNA_CHECK_CONTAINS(messages->Warnings, problem);
+      const vtkIdType cells = outlines ? 1 : (Width - 1) * (Height - 1);
+      LACUNA_CHECK(planes->GetNumberOfCells() == 11 * cells);
+      LACUNA_CHECK_THAT(IsFinite(planes), problem);
+      // slice 8 goes on from slice 6, 0.2 s before
+      double way = 0;
+      for (const double column : { 0.0, Width - 1.0 })
+      {
+        for (const double row : { 0.0, Height - 1.0 })
+        {
+          const Vec3 corner{ column, row, 0 };
+          way = std::max(way, lacuna::Norm(GetPose(8).Point(corner) - GetPose(6).Point(corner)));
+        }
+      }
+      LACUNA_CHECK(GetCellValue(planes, "SliceNumber", 7 * cells) == 8);
+      LACUNA_CHECK_NEAR(GetCellValue(planes, "Speed", 7 * cells), way / 0.2, 1e-4);
+      LACUNA_CHECK_NEAR(planes->GetBounds()[5], Run(MakeStack(12))->GetBounds()[5], 1e-4);
+
+      filter->SetBadPoses(vtkLacunaSlicePlanes::KeepOutliers);
+      filter->Update();
+      LACUNA_CHECK(planes->GetNumberOfCells() == (problem == "an outlier" ? 12 : 11) * cells);
+      LACUNA_CHECK_THAT(IsFinite(planes), problem);
+    }
+    // pieces judge the whole sweep, and each warns of its own slices only
+    vtkNew<vtkLacunaSlicePlanes> filter;
+    filter->SetInputData(stack);
+    vtkIdType points = 0;
+    for (int piece = 0; piece < 4; ++piece)
+    {
+      const auto messages = lacunaCheck::Watch(filter);
+      filter->UpdatePiece(piece, 4, 0);
+      points += filter->GetOutput()->GetNumberOfPoints();
+      LACUNA_CHECK(messages->HasWarning("slice 7") == (piece == 2));
+    }
+    LACUNA_CHECK(points == 11 * Width * Height);
+    // as other filters judge: a slice that is marked is not talked about
+    stack->GetFieldData()->GetArray("SliceStatus")->SetTuple1(7, 1);
+    vtkNew<vtkLacunaSlicePlanes> marked;
+    marked->SetInputData(stack);
+    const auto messages = lacunaCheck::Watch(marked);
+    marked->Update();
+    LACUNA_CHECK_THAT(messages->Warnings.empty(), messages->Warnings);
+    LACUNA_CHECK(marked->GetOutput()->GetNumberOfPoints() == 11 * Width * Height);
+  }
+  const auto stack = MakeStack(3);
+  for (int i = 0; i < 3; ++i)
+  {
+    stack->GetFieldData()->GetArray("ImageToReference")->SetComponent(i, 3, nan);
+  }
+  LACUNA_CHECK_CONTAINS(GetError(stack), "slice 0: its pose has elements that are not finite");
+
+  // two slices: neither is the outlier, but numbers stay numbers
+  const auto two = MakeStack(2);
+  two->GetFieldData()->GetArray("ImageToReference")->SetComponent(1, 3, 9e37);
+  two->GetFieldData()->GetArray("Timestamp")->SetTuple1(1, 1e-9);
+  LACUNA_CHECK_THAT(IsFinite(Run(two)), "bounds of a far-off slice");
+
+  // a calibration that tells nothing
+  for (const double wrong : { nan, 1e308 })
+  {
+    const auto sweep = MakeStack(3);
+    sweep->GetFieldData()->GetArray("ImageToProbe")->SetComponent(0, 0, wrong);
+    vtkNew<vtkLacunaSlicePlanes> filter;
+    filter->SetInputData(sweep);
+    const auto messages = lacunaCheck::Watch(filter);
+    filter->Update();
+    LACUNA_CHECK_CONTAINS(messages->Warnings, "RegistrationError is not known");
+    LACUNA_CHECK(!filter->GetOutput()->GetPointData()->GetArray("RegistrationError"));
+    LACUNA_CHECK_CONTAINS(
+      GetError(sweep, [](auto* f) { f->SetColorBy(vtkLacunaSlicePlanes::RegistrationError); }),
+      "mend the calibration");
+  }
+}
+
 void TestPiecesAndThreads()
 {
   const auto stack = MakeStack(7, { 0, 0, 4, 0, 0, 0, 0 });
@@ -332,6 +461,7 @@ int TestSlicePlanes(int, char*[])
   TestPlanes();
   TestChoices();
   TestInvalidSlices();
+  TestBadPoses();
   TestPiecesAndThreads();
   TestErrors();
   return lacunaCheck::Result();

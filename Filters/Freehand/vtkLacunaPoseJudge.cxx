@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaPoseJudge.h"
+
+#include "lacunaPoseOutliers.h"
+#include "vtkDataArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkLacunaPoseJudge::FindUnusable(const std::vector<Slice>& slices)
+{
+  std::vector<std::string> problems(slices.size());
+  for (std::size_t i = 0; i < slices.size(); ++i)
+  {
+    const lacuna::SliceImage& slice = *slices[i].Image;
+    for (const lacuna::Vec3& corner : lacuna::GetCorners(slice))
+    {
+      for (const double x : corner.Elements)
+      {
+        if (slice.PixelToReference.IsFinite() && !(std::abs(x) <= LargestCoordinate))
+        {
+          std::ostringstream text;
+          text << slice.Label << ": its pose puts a corner at " << x << " mm, beyond all measure";
+          problems[i] = text.str();
+        }
+      }
+    }
+    try
+    {
+      if (problems[i].empty())
+      {
+        lacuna::CheckSlice(slice);
+      }
+    }
+    catch (const std::invalid_argument& error)
+    {
+      problems[i] = error.what();
+      problems[i].resize(
+        std::min(problems[i].size(), problems[i].find(';'))); // there follows advice
+    }
+  }
+  return problems;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPoseJudge::AddOutliers(
+  const std::vector<Slice>& slices, std::vector<std::string>& problems)
+{
+  std::vector<lacuna::SlicePlace> places;
+  std::vector<std::size_t> usable;
+  for (std::size_t i = 0; i < slices.size(); ++i)
+  {
+    if (problems[i].empty())
+    {
+      places.push_back({ slices[i].Number, lacuna::GetCorners(*slices[i].Image) });
+      usable.push_back(i);
+    }
+  }
+  const lacuna::PoseOutliers found = lacuna::FindPoseOutliers(places);
+  for (const lacuna::PoseOutliers::Outlier& outlier : found.Outliers)
+  {
+    const std::size_t i = usable[outlier.Index];
+    std::ostringstream text;
+    text << slices[i].Image->Label << ": its pose is an outlier, it lies " << outlier.Distance
+         << " mm from the slices beside it; the median step of the sweep is " << found.MedianStep
+         << " mm, more than " << found.LongestStep << " mm is a jump";
+    problems[i] = text.str();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPoseJudge::MakeLabel(
+  vtkIdType number, vtkDataArray* frames, const std::string& suffix)
+{
+  std::ostringstream label;
+  label << "slice " << number;
+  if (frames && frames->GetTuple1(number) != static_cast<double>(number))
+  {
+    label << " (frame " << frames->GetTuple1(number) << ")";
+  }
+  label << suffix;
+  return label.str();
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Which poses of a sweep can be used; the same for all filters that take slices.
+#ifndef vtkLacunaPoseJudge_h
+#define vtkLacunaPoseJudge_h
+
+#include "lacunaSliceImage.h"
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataArray;
+
+/// Not a part of the module's interface.
+namespace vtkLacunaPoseJudge
+{
+/// mm; coordinates are handed on as float.
+constexpr double LargestCoordinate = 1e38;
+
+struct Slice
+{
+  vtkIdType Number; ///< in the sweep
+  const lacuna::SliceImage* Image;
+};
+
+/// For each slice of the sweep, in its order, an empty text when its pose can be used, else a
+/// sentence that names the slice and says what is wrong: the pose is not finite, not affine or
+/// singular, or a corner lies beyond LargestCoordinate.
+std::vector<std::string> FindUnusable(const std::vector<Slice>& slices);
+
+/// Adds a sentence for each slice without one whose pose is an outlier among those without one (see
+/// lacunaPoseOutliers.h).
+void AddOutliers(const std::vector<Slice>& slices, std::vector<std::string>& problems);
+
+/// What messages call slice number of the stack: "slice 7 (frame 12)", with the frame's number from
+/// frames, which may be null, where it is another one. suffix ends it.
+std::string MakeLabel(vtkIdType number, vtkDataArray* frames, const std::string& suffix);
+}
+#endif
