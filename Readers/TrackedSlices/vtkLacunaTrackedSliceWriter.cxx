@@ -39,7 +39,7 @@ int vtkLacunaTrackedSliceWriter::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info &&
     info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
   {
-    // Any rank writes the whole stack, or none of it.
+    // Also of the pieces that write nothing: filters before this one may need all processes.
     info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
       info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
     info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
@@ -55,7 +55,7 @@ int vtkLacunaTrackedSliceWriter::Write()
 {
   this->FileSize = 0;
   this->Superclass::Write();
-  if (this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
+  if (this->Piece == 0 && this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
   {
     // VTK does not come to WriteData when a filter upstream fails or has nothing
     this->SetErrorCode(vtkErrorCode::UnknownError);
@@ -68,6 +68,10 @@ int vtkLacunaTrackedSliceWriter::Write()
 void vtkLacunaTrackedSliceWriter::WriteData()
 {
   this->FileSize = 0;
+  if (this->Piece > 0)
+  {
+    return; // another process writes
+  }
   unsigned long code = vtkErrorCode::UnknownError;
   std::string error;
   try
@@ -130,5 +134,6 @@ void vtkLacunaTrackedSliceWriter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
   os << indent << "CompressionLevel: " << this->CompressionLevel << "\n";
+  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "FileSize: " << this->FileSize << "\n";
 }

@@ -19,6 +19,9 @@
  * In-plane crops and new pixel spacings go into the transforms from and to the image. Arrays whose
  * names begin with Patient are left out. What cannot be written is named in a warning.
  *
+ * In parallel each process has a writer of its own, with its number as Piece. All of them bring the
+ * whole stack up to date; piece 0 writes it, the others write nothing.
+ *
  * Files get their names when they are complete. On failure Write() returns 0, GetErrorCode() says
  * why, and what was at FileName stays.
  *
@@ -57,7 +60,17 @@ public:
   ///@}
 
   ///@{
-  /// Bytes of the file or files that the last Write() made; 0 when it failed.
+  /// Number of this process, and of processes; only piece 0 writes. ParaView sets them. Default: 0
+  /// and 1.
+  vtkSetClampMacro(Piece, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Piece, int);
+  vtkSetClampMacro(NumberOfPieces, int, 1, VTK_INT_MAX);
+  vtkGetMacro(NumberOfPieces, int);
+  ///@}
+
+  ///@{
+  /// Bytes of the file or files that the last Write() made; 0 when it failed, and
+  /// in pieces that do not write.
   vtkGetMacro(FileSize, vtkTypeInt64);
   ///@}
 
@@ -79,6 +92,8 @@ private:
 
   char* FileName = nullptr;
   int CompressionLevel = 1;
+  int Piece = 0;
+  int NumberOfPieces = 1;
   vtkTypeInt64 FileSize = 0;
 };
 #endif

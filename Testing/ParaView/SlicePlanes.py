@@ -27,7 +27,11 @@ for name in names:
 texts = {"ColorBy": ["Intensity", "Speed", "RegistrationError"], "InvalidSlices": ["LeaveOut", "Outline", "Show"]}
 for name, values in texts.items():
     assert getattr(planes, name) == values[0] and getattr(plain, "Get" + name)() == 0, name
-assert set(planes.ListProperties()) - {"PointData", "CellData", "FieldData"} == {"Input", *names, *texts}
+assert planes.BadPoses == "LeaveOut" and plain.GetBadPoses() == plain.LeaveOutBad
+planes.BadPoses = "KeepOutliers"
+assert planes.GetProperty("BadPoses").GetData() == "KeepOutliers" and planes.SMProxy.GetProperty("BadPoses").GetElement(0) == plain.KeepOutliers
+planes.BadPoses = "LeaveOut"
+assert set(planes.ListProperties()) - {"PointData", "CellData", "FieldData"} == {"Input", "BadPoses", *names, *texts}
 
 # Where the pixels are, and their grey levels.
 with raising():

@@ -342,6 +342,27 @@ void TestCrops()
   LACUNA_CHECK_NEAR(probe.Point({ 1, 2, 0 })[1], 0.6, 1e-12);
 }
 
+// Of several processes one writes.
+void TestPieces()
+{
+  ReaderOf test(MakeSequence(3).GetContent());
+  WriterOf alone(test.Reader->GetOutputPort(), Beside(test, "alone.mha"));
+  LACUNA_CHECK(alone.Writer->Write() == 1);
+  WriterOf first(test.Reader->GetOutputPort(), Beside(test, "first.mha"));
+  first.Writer->SetNumberOfPieces(3);
+  LACUNA_CHECK(first.Writer->Write() == 1);
+  LACUNA_CHECK(ReadAll(Beside(test, "first.mha")) == ReadAll(Beside(test, "alone.mha")));
+  for (const int piece : { 1, 2 })
+  {
+    WriterOf other(test.Reader->GetOutputPort(), Beside(test, "other.mha"));
+    other.Writer->SetNumberOfPieces(3);
+    other.Writer->SetPiece(piece);
+    LACUNA_CHECK(other.Writer->Write() == 1);
+    LACUNA_CHECK(other.Errors.empty() && other.Writer->GetFileSize() == 0);
+    LACUNA_CHECK(!std::filesystem::exists(Beside(test, "other.mha")));
+  }
+}
+
 void TestErrors()
 {
   ReaderOf test(MakeSequence(2).GetContent());
@@ -395,6 +416,7 @@ int TestTrackedSliceWriter(int, char*[])
   TestWarnings();
   TestCorrectedPoses();
   TestCrops();
+  TestPieces();
   TestErrors();
   TestInPlace();
   return lacunaCheck::Result();
