@@ -15,10 +15,12 @@
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkVariant.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <initializer_list>
@@ -31,7 +33,19 @@ namespace
 {
 constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 
-// The numbers of a column; NaN for texts that are none.
+// One number for each tuple; NaN for texts that are none.
+std::vector<double> GetNumbers(vtkAbstractArray* array)
+{
+  std::vector<double> numbers;
+  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+  {
+    bool isNumber = false;
+    const double number = array->GetVariantValue(i).ToDouble(&isNumber);
+    numbers.push_back(isNumber ? number : NotANumber);
+  }
+  return numbers;
+}
+
 std::vector<double> GetColumn(vtkTable* table, const std::string& name)
 {
   vtkAbstractArray* column = table->GetColumnByName(name.c_str());
@@ -46,14 +60,7 @@ std::vector<double> GetColumn(vtkTable* table, const std::string& name)
     }
     throw std::runtime_error(message.str());
   }
-  std::vector<double> numbers;
-  for (vtkIdType row = 0; row < column->GetNumberOfTuples(); ++row)
-  {
-    bool isNumber = false;
-    const double number = column->GetVariantValue(row).ToDouble(&isNumber);
-    numbers.push_back(isNumber ? number : NotANumber);
-  }
-  return numbers;
+  return GetNumbers(column);
 }
 
 // The column that the user named, or the first of the usual ones that there is.
@@ -79,6 +86,30 @@ std::vector<double> GetField(vtkImageData* slices, const char* name, vtkIdType c
     values.push_back(array->GetTuple1(i));
   }
   return values;
+}
+
+// Fields of sequence files come as texts.
+std::vector<double> GetGateField(vtkImageData* slices, const std::string& name, vtkIdType count)
+{
+  auto* texts =
+    vtkStringArray::SafeDownCast(slices->GetFieldData()->GetAbstractArray(name.c_str()));
+  if (!texts)
+  {
+    return GetField(slices, name.c_str(), count);
+  }
+  const std::string which = "field data array '" + name + "' ";
+  if (texts->GetNumberOfValues() != count)
+  {
+    throw std::runtime_error(which + "has " + std::to_string(texts->GetNumberOfValues()) +
+      " texts; expected one for each of the " + std::to_string(count) + " slices");
+  }
+  const std::vector<double> numbers = GetNumbers(texts);
+  if (std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isnan(x); }))
+  {
+    throw std::runtime_error(
+      which + "has no number; that of slice 0 is '" + std::string(texts->GetValue(0)) + "'");
+  }
+  return numbers;
 }
 }
 
@@ -144,7 +175,7 @@ int vtkLacunaGateSlices::RequestData(
       {
         throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
       }
-      const bool hasGate = table || slices->GetFieldData()->GetArray(this->GateColumn.c_str());
+      const bool hasGate = table || slices->GetFieldData()->HasArray(this->GateColumn.c_str());
       if (!hasGate && !(this->SpeedLimit > 0))
       {
         throw std::runtime_error("there is nothing to gate by: connect a table, or slices with a "
@@ -218,7 +249,7 @@ std::vector<double> vtkLacunaGateSlices::GetGates(
     {
       throw std::runtime_error("triggers are rows of a table: connect one");
     }
-    return GetField(slices, this->GateColumn.c_str(), count);
+    return GetGateField(slices, this->GateColumn, count);
   }
   return this->MatchBy == Timestamp ? this->GetGatesByTime(slices, table, count)
                                     : this->GetGatesByFrame(slices, table, count);

@@ -11,7 +11,8 @@
  *
  * Input port 0: tracked slices (see vtkLacunaTrackedSlices.h), with Timestamp (s) unless they are
  * matched by frame number. Port 1, optional: a vtkTable of a gate signal, one row for each sample.
- * Without it the gate values are a field data array of the slices, one value for each.
+ * Without it the gate values are a field data array of the slices, one value for each: numbers, or
+ * the texts of numbers, as fields of sequence files come (an empty text is no value).
  *
  * Gate values at the slices' times are interpolated between the rows (lacunaGateSignal.h): plain
  * values and phases evenly, phases along the shorter way around the cycle; between triggers (R

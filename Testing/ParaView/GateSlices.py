@@ -94,6 +94,18 @@ ungated = wall_movement(volume)
 print("the wall moves by %.2f pixels, by %.2f without gate" % (gated, ungated))
 assert gated < 0.6 and ungated > 3
 
+# the same from a file, whose fields are texts
+gated_slices = GateSlices(Input=slices, GateTable=table, GateType="Phase", GateRange=[0, 1])
+for kind in ("mha", "nrrd"):
+    path = output("GateSlices." + kind)
+    SaveData(path, gated_slices)
+    again = OpenDataFile(path)
+    again.UpdatePipeline()
+    assert again.FieldData["Gate"].GetName() == "Gate"
+    from_file = GateSlices(Input=again, GateType="Phase", GateRange=[0.895, 0.105])
+    assert (status(from_file) == np.where(truth, 0, 8)).all(), kind
+    assert np.array_equal(vtk_to_numpy(servermanager.Fetch(from_file).GetFieldData().GetArray("Gate")), gate)
+
 # R waves
 waves = (np.arange(10) - 0.2) / 1.3
 table = write_table("GateSlicesWaves.csv", {"Timestamp": waves})

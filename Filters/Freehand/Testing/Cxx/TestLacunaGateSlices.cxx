@@ -209,6 +209,36 @@ void TestSpeed()
   LACUNA_CHECK_THAT(gated.Status == "4444c4", gated.Status);
 }
 
+// Fields of sequence files come as texts.
+void TestTexts()
+{
+  const auto slices = MakeStack(MakePoses(6));
+  const auto setTexts = [&](const std::vector<std::string>& texts)
+  {
+    vtkNew<vtkStringArray> array;
+    array->SetName("Gate");
+    for (const std::string& text : texts)
+    {
+      array->InsertNextValue(text);
+    }
+    slices->GetFieldData()->AddArray(array);
+  };
+  setTexts({ "0", "0.5", "1e0", "-3.0", "1.0001", " 0.25 " });
+  Gated gated = Gate(slices, nullptr, [](auto*) {});
+  LACUNA_CHECK_THAT(gated.Errors.empty(), gated.Errors);
+  LACUNA_CHECK_THAT(gated.Status == "000880", gated.Status);
+  LACUNA_CHECK(vtkLacunaFieldData::Get(gated.Slices, "Gate", 1, 6)->GetTuple1(1) == 0.5);
+  setTexts({ "0", "", "nan", "one", "1", "0.5 0.5" });
+  gated = Gate(slices, nullptr, [](auto*) {});
+  LACUNA_CHECK_THAT(gated.Status == "088808", gated.Status);
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "4 of 6 slices have no gate value");
+  setTexts({ "on", "off", "on", "off", "on", "off" });
+  LACUNA_CHECK_CONTAINS(
+    Gate(slices, nullptr, [](auto*) {}).Errors, "'Gate' has no number; that of slice 0 is 'on'");
+  setTexts({ "1" });
+  LACUNA_CHECK_CONTAINS(Gate(slices, nullptr, [](auto*) {}).Errors, "'Gate' has 1 texts");
+}
+
 void TestErrors()
 {
   const auto slices = MakeStack(MakePoses(4));
@@ -286,6 +316,7 @@ int TestLacunaGateSlices(int, char*[])
   TestPhases();
   TestMatching();
   TestSpeed();
+  TestTexts();
   TestErrors();
   TestConsumer();
   return lacunaCheck::Result();
