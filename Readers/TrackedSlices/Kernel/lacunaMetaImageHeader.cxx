@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <system_error>
 
 namespace lacuna
 {
@@ -94,6 +95,7 @@ private:
   void ReadSize();
   void ReadType();
   void ReadDataPlace();
+  void MoveDataPlace(std::int64_t headerSize);
 
   std::map<std::string, std::string> Fields;
   std::string DataFile;
@@ -285,21 +287,57 @@ void MetaImageHeaderReader::ReadDataPlace()
   {
     this->Header.DataFileName = this->Header.FileName;
     this->Header.DataOffset = this->Lines.GetOffset();
-    return;
   }
-  this->SetDataFile("ElementDataFile", this->DataFile);
+  else
+  {
+    this->SetDataFile("ElementDataFile", this->DataFile);
+  }
   const std::vector<std::int64_t> skip = this->FindIntegers("HeaderSize");
-  if (skip.empty())
+  if (!skip.empty() && skip[0] != 0)
   {
-    return;
+    this->MoveDataPlace(skip[0]);
   }
-  if (skip[0] < -1 || (skip[0] == -1 && this->Header.Encoding != PixelEncoding::Raw))
+}
+
+//------------------------------------------------------------------------------
+// HeaderSize is the number of bytes before the pixels in their file, -1: they are its last bytes.
+void MetaImageHeaderReader::MoveDataPlace(std::int64_t headerSize)
+{
+  std::int64_t& offset = this->Header.DataOffset;
+  const std::string given = "HeaderSize is " + std::to_string(headerSize);
+  if (headerSize == -1 && this->Header.Encoding == PixelEncoding::Raw)
   {
-    this->Fail("HeaderSize is " + std::to_string(skip[0]) +
-      "; it must be the number of bytes before the pixels, or -1 for uncompressed pixels at the "
-      "end of the file");
+    this->Header.SkippedBytes = -1;
   }
-  (skip[0] == -1 ? this->Header.SkippedBytes : this->Header.DataOffset) = skip[0];
+  else if (headerSize == -1 && this->Header.Encoding == PixelEncoding::Zlib &&
+    this->Header.CompressedDataSize > 0)
+  {
+    std::error_code error; // that there is no such file is said when it is opened
+    const auto size =
+      static_cast<std::int64_t>(std::filesystem::file_size(this->Header.DataFileName, error));
+    if (!error && size - offset < this->Header.CompressedDataSize)
+    {
+      this->Fail(given + ": the pixels are the last " +
+        std::to_string(this->Header.CompressedDataSize) + " bytes (CompressedDataSize) of '" +
+        this->Header.DataFileName + "', but there are only " + std::to_string(size - offset));
+    }
+    offset = error ? offset : size - this->Header.CompressedDataSize;
+  }
+  else if (headerSize < 0)
+  {
+    this->Fail(given +
+      "; it must be the number of bytes before the pixels, or -1 for pixels at the end of the "
+      "file that are uncompressed or have a CompressedDataSize");
+  }
+  else if (headerSize < offset)
+  {
+    this->Fail(given + ", but the header itself, which ends with ElementDataFile = LOCAL, has " +
+      std::to_string(offset) + " bytes");
+  }
+  else
+  {
+    offset = headerSize;
+  }
 }
 }
 

@@ -72,7 +72,8 @@ public:
     this->Divide(std::max<std::int64_t>(0, fileSize - this->Offset));
     if (header.SkippedBytes < 0)
     {
-      this->Offset = std::max<std::int64_t>(0, fileSize - this->FrameSize * header.Frames);
+      // not before the end of a header in the same file
+      this->Offset = std::max(this->Offset, fileSize - this->FrameSize * header.Frames);
     }
     this->Stream.open(header.DataFileName, std::ios::binary);
     if (!this->Stream)

@@ -226,6 +226,83 @@ TEST(PixelSource, ExternalFiles)
   EXPECT_EQ(frame, pixels.substr(40, 20));
 }
 
+TEST(PixelSource, HeaderSizeSaysWhereThePixelsAre)
+{
+  const auto read = [](const TemporaryFile& file)
+  {
+    const SequenceHeader header = ReadSequenceHeader(file.GetPath());
+    const auto source = PixelSource::Open(header);
+    std::string pixels(60, '?');
+    for (int i = 0; i < 3; ++i)
+    {
+      source->ReadFrame(i, pixels.data() + 20 * static_cast<std::ptrdiff_t>(i));
+    }
+    return pixels;
+  };
+  const SequenceFile raw = MakeSequence();
+  const SequenceFile zipped = Compressed(MakeSequence());
+  for (const bool compressed : { false, true })
+  {
+    for (const bool local : { true, false })
+    {
+      SequenceFile file = compressed ? zipped : raw;
+      file.Set("CompressedDataSize", std::to_string(zipped.Pixels.size()));
+      file.DataFile = local ? "LOCAL" : "pixels.dat";
+      const TemporaryFile written(local ? "sweep.mha" : "sweep.mhd");
+      const auto write = [&](const std::string& headerSize, const std::string& before)
+      {
+        file.Set("HeaderSize", headerSize);
+        written.Write(file.GetHeader() + (local ? before + file.Pixels : ""));
+        written.WriteBeside(local ? "other" : "pixels.dat", before + file.Pixels);
+      };
+      for (const std::string before : { "", "some bytes that no one asked for\n" })
+      {
+        write("-1", before);
+        EXPECT_EQ(read(written), raw.Pixels) << local << compressed;
+        const std::size_t header = local ? file.GetHeader().size() : 0;
+        write(std::to_string(header + before.size()), before);
+        // the number's digits have made the header longer
+        const std::size_t now = local ? file.GetHeader().size() : 0;
+        write(std::to_string(now + before.size()), before);
+        EXPECT_EQ(read(written), raw.Pixels) << local << compressed;
+      }
+      write("0", "");
+      EXPECT_EQ(read(written), raw.Pixels);
+    }
+  }
+  // contradictions
+  SequenceFile file = raw;
+  file.Set("HeaderSize", "100");
+  ExpectError(GetError([&] { read(TemporaryFile("sweep.mha", file.GetContent())); }),
+    { "sweep.mha", "HeaderSize is 100", "the header itself", "bytes" });
+  file.Set("HeaderSize", "1000000");
+  ExpectError(GetError([&] { read(TemporaryFile("sweep.mha", file.GetContent())); }),
+    { "there are 0 bytes of pixels" });
+  file.Set("HeaderSize", "-1");
+  file.Set("BinaryData", "False");
+  ExpectError(GetError([&] { read(TemporaryFile("sweep.mha", file.GetContent())); }),
+    { "HeaderSize is -1", "must be the number of bytes" });
+  file = zipped;
+  file.Set("HeaderSize", "-1");
+  file.Remove("CompressedDataSize");
+  ExpectError(GetError([&] { read(TemporaryFile("sweep.mha", file.GetContent())); }),
+    { "HeaderSize is -1", "CompressedDataSize" });
+  file.Set("CompressedDataSize", std::to_string(zipped.Pixels.size() + 1));
+  ExpectError(GetError([&] { read(TemporaryFile("sweep.mha", file.GetContent())); }),
+    { "CompressedDataSize", "there are only " + std::to_string(zipped.Pixels.size()) });
+  // a file that is cut off has no bytes of its header among the pixels
+  file = raw;
+  file.Set("HeaderSize", "-1");
+  const std::string whole = file.GetContent();
+  const TemporaryFile cut("sweep.mha", whole.substr(0, whole.size() - 5));
+  const SequenceHeader header = ReadSequenceHeader(cut.GetPath());
+  const auto source = PixelSource::Open(header);
+  EXPECT_EQ(source->GetNumberOfWholeFrames(), 2);
+  std::string frame(20, '?');
+  source->ReadFrame(1, frame.data());
+  EXPECT_EQ(frame, raw.Pixels.substr(20, 20));
+}
+
 TEST(PixelSource, ByteOrderAndEveryType)
 {
   const auto check = [](const char* name, auto example)
