@@ -294,8 +294,8 @@ void vtkLacunaSequenceContent::AddStates()
     }
     // an invalid pose is told by its transforms, unless it has numbers nevertheless
     const bool toldElsewhere = !poses || !vtkLacunaFieldData::GetMatrix(poses, slice).IsFinite();
-    const int own = vtkLacunaTrackedSlices::TooFast | vtkLacunaTrackedSlices::GatedOut |
-      (toldElsewhere ? 0 : vtkLacunaTrackedSlices::PoseInvalid);
+    const int own = ~(vtkLacunaTrackedSlices::ImageInvalid |
+      (toldElsewhere ? vtkLacunaTrackedSlices::PoseInvalid : 0));
     if (this->Status[i] & own)
     {
       flagTexts[i] = std::to_string(this->Status[i]);

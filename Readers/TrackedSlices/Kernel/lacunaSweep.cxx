@@ -9,6 +9,7 @@
 #include <climits>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -18,6 +19,8 @@ namespace
 {
 // Arrays of tracked slices with a meaning of their own.
 const std::set<std::string> ReservedNames = { "ImageToReference", "ImageToProbe" };
+
+constexpr std::size_t LongestQuotation = 40;
 
 std::string FrameList(const std::vector<std::size_t>& frames)
 {
@@ -71,6 +74,7 @@ private:
   void KeepFields();
   void ReadTimes();
   void FlagImages();
+  void AddFlags(std::size_t frame, const std::string& text);
   void FindImageToProbe();
   bool FindChain(Chain& chain);
   void BuildPoses();
@@ -81,6 +85,7 @@ private:
   const SweepOptions& Options;
   std::size_t Count;
   SweepTransforms Transforms;
+  std::map<std::string, std::vector<std::size_t>> BadFlags; ///< frames by the text of SliceStatus
   Sweep Result;
 };
 
@@ -149,13 +154,45 @@ void SweepBuilder::FlagImages()
     {
       this->Result.Status[i] |= Sweep::ImageInvalid;
     }
-    std::int64_t given = 0;
-    if (this->Options.DropInvalid && flags != this->Header.FrameFields.end() &&
-      ParseInteger(flags->second[i], given) && given >= 0 && given <= 255)
+    if (flags != this->Header.FrameFields.end())
     {
-      this->Result.Status[i] |=
-        static_cast<unsigned char>(given & (Sweep::PoseInvalid | Sweep::TooFast | Sweep::GatedOut));
+      this->AddFlags(i, flags->second[i]);
     }
+  }
+  if (!this->BadFlags.empty())
+  {
+    std::vector<std::string> texts;
+    for (const auto& [text, frames] : this->BadFlags)
+    {
+      texts.push_back("'" + text + "' in " + FrameList(frames));
+    }
+    this->Warn("field SliceStatus must be a whole number from 0 to 255, but is " + JoinSome(texts) +
+      (this->Options.DropInvalid ? "; what it says against these slices is not known, so they "
+                                   "count as image invalid (2)"
+                                 : ""));
+  }
+}
+
+//------------------------------------------------------------------------------
+void SweepBuilder::AddFlags(std::size_t frame, const std::string& text)
+{
+  std::int64_t given = 0;
+  if (text.empty())
+  {
+    return;
+  }
+  if (!ParseInteger(text, given) || given < 0 || given > 255)
+  {
+    this->BadFlags[text.substr(0, LongestQuotation)].push_back(frame);
+    given = Sweep::ImageInvalid;
+  }
+  else
+  {
+    given &= ~Sweep::ImageInvalid; // ImageStatus tells
+  }
+  if (this->Options.DropInvalid)
+  {
+    this->Result.Status[frame] |= static_cast<unsigned char>(given);
   }
 }
 

@@ -66,8 +66,9 @@ struct Sweep
 /// backwards. A frame's pose is valid when each of the sequence's transforms in the chain is there
 /// for the frame, is 16 finite numbers, can be inverted and has the status OK (any other word,
 /// known or not, is not valid; a transform that has no status in the whole file is taken as valid,
-/// with a warning). Its image is valid when ImageStatus is OK or absent. A field SliceStatus adds
-/// its flags TooFast and GatedOut when DropInvalid is set; the others are found anew.
+/// with a warning). Its image is valid when ImageStatus is OK or absent. With DropInvalid a field
+/// SliceStatus adds its flags but ImageInvalid, which is found anew; one that is no whole number
+/// from 0 to 255 makes the image invalid, with a warning.
 ///
 /// Throws std::runtime_error when there is no chain, naming the missing link and the transforms
 /// there are, or when the calibration file cannot be used.

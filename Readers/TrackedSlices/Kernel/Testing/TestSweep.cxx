@@ -237,8 +237,40 @@ TEST(Sweep, FlagsOfSpeedAndGatingComeFromTheFile)
     file.SetFrame(i, "SliceStatus", flags[i]);
   }
   file.SetFrame(2, "ImageStatus", "INVALID");
-  EXPECT_EQ(Build(file).Status, (Flags{ 4, 13, 3, 0, 0 })); // the image is judged anew
+  EXPECT_EQ(Build(file).Status, (Flags{ 4, 13, 3, 2, 2 })); // the image is judged anew
   EXPECT_EQ(BuildUnchecked(file).Status, (Flags{ 0, 0, 0, 0, 0 }));
+}
+
+TEST(Sweep, FlagsThatCannotBeReadAreNamed)
+{
+  SequenceFile file = MakeSequence(8);
+  const char* const flags[] = { "300", "-1", "abc", "abc", "4 8", "1.5", " 0 ", "64" };
+  for (int i = 0; i < 8; ++i)
+  {
+    file.SetFrame(i, "SliceStatus", flags[i]);
+  }
+  const Sweep sweep = Build(file);
+  EXPECT_EQ(sweep.Status, (Flags{ 2, 2, 2, 2, 2, 2, 0, 64 })); // a flag of the future stays
+  ExpectContains(Warnings(sweep),
+    { "field SliceStatus must be a whole number from 0 to 255", "'300' in frame 0",
+      "'-1' in frame 1", "'abc' in frames 2, 3", "'4 8' in frame 4", "'1.5' in frame 5",
+      "count as image invalid (2)" });
+  for (const Matrix4& pose : sweep.ImageToReference)
+  {
+    EXPECT_TRUE(pose.IsFinite());
+  }
+  const Sweep unchecked = BuildUnchecked(file);
+  EXPECT_EQ(unchecked.Status, Flags(8, 0));
+  ExpectContains(Warnings(unchecked), { "'abc' in frames 2, 3" });
+  EXPECT_EQ(Warnings(unchecked).find("count as"), std::string::npos);
+  file.SetFrame(0, "SliceStatus", std::string(5000, 'x'));
+  EXPECT_LT(Warnings(Build(file)).size(), 500u);
+  for (int i = 0; i < 6; ++i)
+  {
+    file.RemoveFrame(i, "SliceStatus"); // absent is nothing
+  }
+  EXPECT_EQ(Build(file).Status, (Flags{ 0, 0, 0, 0, 0, 0, 0, 64 }));
+  EXPECT_EQ(Warnings(Build(file)), "");
 }
 
 TEST(Sweep, DamagedMatricesSpoilTheirFrame)

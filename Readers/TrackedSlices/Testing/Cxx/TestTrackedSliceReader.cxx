@@ -73,7 +73,7 @@ void TestOutput()
   }
   file.SetFrame(2, "Note", "here");
   file.SetFrame(2, "patientID", "1234");
-  file.SetFrame(2, "SliceStatus", "not the file's to say");
+  file.SetFrame(2, "SliceStatus", "0");
   file.SetFrame(4, "ProbeToTrackerTransformStatus", "MISSING");
   ReaderOf test(file.GetContent());
   test.Reader->Update();
