@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaByteStream.h"
 
+#include "lacunaInputFile.h"
 #include "lacunaSequenceText.h"
 
 #include <zlib.h>
@@ -11,7 +12,6 @@
 #include <cstring>
 #include <limits>
 #include <new>
-#include <stdexcept>
 #include <type_traits>
 
 namespace lacuna
@@ -234,13 +234,10 @@ private:
 //------------------------------------------------------------------------------
 ByteStream::ByteStream(const std::string& fileName, std::int64_t offset)
   : Input(BufferSize)
-  , Stream(fileName, std::ios::binary)
+  , Name(fileName)
+  , Stream(OpenForReading(fileName, fileName))
   , Offset(offset)
 {
-  if (!this->Stream)
-  {
-    throw std::runtime_error(fileName + ": cannot be opened for reading");
-  }
   this->Stream.seekg(static_cast<std::streamoff>(offset));
 }
 
@@ -276,10 +273,8 @@ std::int64_t ByteStream::CountBytes()
 //------------------------------------------------------------------------------
 bool ByteStream::Fill()
 {
-  this->Stream.read(
-    reinterpret_cast<char*>(this->Input.data()), static_cast<std::streamsize>(this->Input.size()));
+  this->Filled = ReadBytes(this->Stream, this->Input.data(), this->Input.size(), this->Name);
   this->Position = 0;
-  this->Filled = static_cast<std::size_t>(this->Stream.gcount());
   return this->Filled > 0;
 }
 

@@ -54,6 +54,7 @@ protected:
   bool Complete = false;
 
 private:
+  std::string Name;
   std::ifstream Stream;
   std::int64_t Offset;
 };

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCalibrationFile.h"
 
+#include "lacunaInputFile.h"
 #include "lacunaSequenceText.h"
 #include "lacunaTransformGraph.h"
 
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -63,11 +65,17 @@ private:
 
   void Load()
   {
-    std::ifstream stream(this->FileName, std::ios::binary);
-    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    if (!stream || text.empty())
+    const std::string shown = "the calibration file '" + this->FileName + "'";
+    std::ifstream stream = OpenForReading(this->FileName, shown);
+    std::string text;
+    std::array<char, 1 << 14> part;
+    while (const std::size_t size = ReadBytes(stream, part.data(), part.size(), shown))
     {
-      this->Fail("the calibration file does not exist, is empty or cannot be read");
+      text.append(part.data(), size);
+    }
+    if (text.empty())
+    {
+      throw std::runtime_error(shown + ": is empty");
     }
     const pugi::xml_parse_result result = this->Document.load_buffer(text.data(), text.size());
     if (!result)

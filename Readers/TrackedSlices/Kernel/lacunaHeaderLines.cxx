@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderLines.h"
 
+#include "lacunaInputFile.h"
+
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 namespace lacuna
@@ -15,34 +16,19 @@ constexpr std::size_t LongestLine = 1 << 20;
 
 HeaderLines::HeaderLines(const std::string& fileName)
   : FileName(fileName)
+  , Stream(OpenForReading(fileName, fileName))
   , Buffer(BufferSize)
 {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(fileName, error);
-  if (!std::filesystem::exists(status))
-  {
-    this->Fail("there is no such file", false);
-  }
-  if (!std::filesystem::is_regular_file(status))
-  {
-    this->Fail("is not a file", false);
-  }
-  this->Stream.open(fileName, std::ios::binary);
-  if (!this->Stream)
-  {
-    this->Fail("cannot be opened for reading", false);
-  }
   if (!this->Fill())
   {
-    this->Fail("is empty or cannot be read", false);
+    this->Fail("is empty", false);
   }
 }
 
 bool HeaderLines::Fill()
 {
-  this->Stream.read(this->Buffer.data(), static_cast<std::streamsize>(this->Buffer.size()));
+  this->Filled = ReadBytes(this->Stream, this->Buffer.data(), this->Buffer.size(), this->FileName);
   this->Position = 0;
-  this->Filled = static_cast<std::size_t>(this->Stream.gcount());
   return this->Filled > 0;
 }
 

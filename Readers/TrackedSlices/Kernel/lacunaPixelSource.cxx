@@ -3,6 +3,7 @@
 
 #include "lacunaByteOrder.h"
 #include "lacunaByteStream.h"
+#include "lacunaInputFile.h"
 
 #include <algorithm>
 #include <array>
@@ -18,13 +19,6 @@ namespace
 {
 /// Deflate cannot shrink data by more than this.
 constexpr double BestCompression = 1032;
-
-std::int64_t FileSize(const std::string& name)
-{
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(name, error);
-  return error ? -1 : static_cast<std::int64_t>(size);
-}
 
 //------------------------------------------------------------------------------
 // Where the encoded pixels begin, after the lines to be skipped.
@@ -75,11 +69,7 @@ public:
       // not before the end of a header in the same file
       this->Offset = std::max(this->Offset, fileSize - this->FrameSize * header.Frames);
     }
-    this->Stream.open(header.DataFileName, std::ios::binary);
-    if (!this->Stream)
-    {
-      this->Fail("cannot be opened for reading");
-    }
+    this->Stream = OpenForReading(header.DataFileName, header.DataFileName);
   }
 
 protected:
@@ -87,9 +77,8 @@ protected:
   {
     this->Stream.clear();
     this->Stream.seekg(static_cast<std::streamoff>(this->Offset + frame * this->FrameSize));
-    this->Stream.read(
-      reinterpret_cast<char*>(pixels), static_cast<std::streamsize>(this->FrameSize));
-    if (!this->Stream)
+    const auto size = static_cast<std::size_t>(this->FrameSize);
+    if (ReadBytes(this->Stream, pixels, size, this->Header.DataFileName) < size)
     {
       this->Fail("the pixels of frame " + std::to_string(frame) + " cannot be read");
     }
@@ -263,12 +252,11 @@ std::unique_ptr<PixelSource> PixelSource::Open(const SequenceHeader& header)
   {
     return std::make_unique<BlankPixelSource>(header);
   }
-  const std::int64_t size = FileSize(header.DataFileName);
-  if (size < 0)
-  {
-    throw std::runtime_error(header.FileName + ": the file of its pixels, '" + header.DataFileName +
-      "' (ElementDataFile or data file), does not exist or cannot be read");
-  }
+  OpenForReading(header.DataFileName,
+    header.DataFileName == header.FileName ? header.FileName
+                                           : header.FileName + ": the file of its pixels '" +
+        header.DataFileName + "' (ElementDataFile or data file)");
+  const auto size = static_cast<std::int64_t>(std::filesystem::file_size(header.DataFileName));
   if (header.Encoding == PixelEncoding::Raw)
   {
     return std::make_unique<RawPixelSource>(header, size);

@@ -80,7 +80,7 @@ TEST(CalibrationFile, RefusesContradictions)
 
 TEST(CalibrationFile, SaysWhatIsWrong)
 {
-  ExpectError("", { "does not exist, is empty" });
+  ExpectError("", { "is empty" });
   ExpectError("<a>\n<b>\n</a>", { "not well-formed XML", "line 3" });
   ExpectError("just text", { "not well-formed XML" });
   ExpectError("<PlusConfiguration/>", { "no CoordinateDefinitions" });

@@ -198,7 +198,7 @@ TEST(PixelSource, ExternalFiles)
   const TemporaryFile header("sweep.mhd", file.GetContent());
   const SequenceHeader read = ReadSequenceHeader(header.GetPath());
   ExpectError(GetError([&] { PixelSource::Open(read); }),
-    { "sweep.mhd", "pixels.raw", "ElementDataFile", "does not exist" });
+    { "sweep.mhd", "pixels.raw", "ElementDataFile", "there is no such file" });
   header.WriteBeside("pixels.raw", pixels);
   std::string frame(20, '?');
   PixelSource::Open(read)->ReadFrame(1, frame.data());

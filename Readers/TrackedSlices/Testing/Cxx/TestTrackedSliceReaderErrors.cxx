@@ -68,7 +68,8 @@ void TestChains()
   test.Reader->Modified();
   ExpectError(test, vtkErrorCode::FileFormatError, "calibration.xml: is not well-formed XML");
   test.Reader->SetCalibrationFileName("/nonexistent.xml");
-  ExpectError(test, vtkErrorCode::FileFormatError, "/nonexistent.xml: the calibration file");
+  ExpectError(test, vtkErrorCode::FileFormatError,
+    "the calibration file '/nonexistent.xml': there is no such file");
   const std::string name = test.GetCalibrationName();
   test.File.WriteBeside("calibration.xml", MakeCalibration());
   test.Reader->SetCalibrationFileName(name.c_str());
