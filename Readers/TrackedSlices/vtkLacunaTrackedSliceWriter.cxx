@@ -12,6 +12,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -113,16 +114,48 @@ void vtkLacunaTrackedSliceWriter::WriteData()
 }
 
 //------------------------------------------------------------------------------
+// A header beside this one may name the pixels that are written over, and pixels from before may
+// lie where no one needs them. Empty when all is well.
+std::string vtkLacunaTrackedSliceWriter::DescribeNeighbour(const lacuna::SequenceKind& kind) const
+{
+  namespace fs = std::filesystem;
+  if (!kind.IsDetached())
+  {
+    return {};
+  }
+  const lacuna::SequenceKind other(this->FileName, !kind.IsCompressed());
+  if (fs::exists(other.GetDataFileName()))
+  {
+    return "'" + other.GetDataFileName() +
+      "' was there before; this header does not name it, and " +
+      "unless another one does it can be removed";
+  }
+  fs::path header = this->FileName;
+  header.replace_extension(kind.IsNrrd() ? ".mhd" : ".nhdr");
+  if (!kind.IsCompressed() && fs::exists(header) && fs::exists(kind.GetDataFileName()))
+  {
+    return "the pixels in '" + kind.GetDataFileName() + "' have been written over; if '" +
+      header.string() + "' names them, too, it has those of this sweep now";
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
 {
   vtkLacunaExecution execution(this);
   const lacuna::SequenceKind kind(this->FileName, this->CompressionLevel > 0);
   const vtkLacunaSequenceContent content(stack, kind);
+  const std::string neighbour = this->DescribeNeighbour(kind);
   this->FileSize =
     lacuna::WriteSequence(this->FileName, content.Get(), this->CompressionLevel, execution);
   for (const std::string& warning : content.GetWarnings())
   {
     vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
+  if (!neighbour.empty())
+  {
+    vtkWarningMacro(<< this->FileName << ": " << neighbour);
   }
   vtkLog(INFO, << "Tracked Slice Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << content.Get().Frames.size() << " slices");

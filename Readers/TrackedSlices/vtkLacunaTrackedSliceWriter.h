@@ -33,7 +33,13 @@
 #include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
 #include "vtkWriter.h"
 
+#include <string> // for std::string
+
 class vtkImageData;
+namespace lacuna
+{
+class SequenceKind;
+}
 
 class VTKLACUNAREADERSTRACKEDSLICES_EXPORT vtkLacunaTrackedSliceWriter : public vtkWriter
 {
@@ -89,6 +95,7 @@ private:
   void operator=(const vtkLacunaTrackedSliceWriter&) = delete;
 
   void WriteStack(vtkImageData* stack);
+  std::string DescribeNeighbour(const lacuna::SequenceKind& kind) const;
 
   char* FileName = nullptr;
   int CompressionLevel = 1;

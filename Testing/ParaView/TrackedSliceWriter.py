@@ -103,7 +103,7 @@ wavelet = Wavelet()
 wavelet.UpdatePipeline()
 volume = SweptVolume(Input=sweep, OutputSpacing=[1, 1, 1])
 volume.UpdatePipeline()
-for extension in ("igs.mha", "mha", "mhd", "nrrd", "igs.nhdr"):
+for extension in ("igs.mha", "mha", "mhd", "nrrd", "igs.nhdr", "MHA", "IGS.MHA", "MHD", "NRRD", "NHDR"):
     assert pick(sweep, extension) == "LacunaTrackedSliceWriter", extension
 assert pick(sweep, "vti") == "XMLImageDataWriter"
 assert pick(wavelet, "mhd") == pick(volume, "mhd") == "MetaImageWriter"
@@ -141,6 +141,15 @@ for extension in ("igs.mha", "mhd", "nrrd", "nhdr"):
                            rtol=0, atol=1e-9)
         assert copy.GetFieldData().GetAbstractArray("Provenance").GetNumberOfValues() == 2
         Delete(again)
+
+# Extensions in capitals, as old systems make them.
+for extension in ("MHA", "MHD", "NRRD", "NHDR"):
+    path = output("CAPITALS." + extension)
+    SaveData(path, sweep)
+    again = OpenDataFile(path)
+    assert again.GetXMLName() == "LacunaTrackedSliceReader"
+    assert np.array_equal(vtk_to_numpy(servermanager.Fetch(again).GetPointData().GetScalars()), pixels.ravel()), extension
+    Delete(again)
 
 # A script may also use the writer by name, and the class in VTK.
 path = output("ByName.mha")

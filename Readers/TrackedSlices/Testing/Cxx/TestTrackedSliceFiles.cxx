@@ -190,6 +190,43 @@ void TestUnwritable()
   }
 }
 
+// Pixels in a file of their own may have been there before.
+void TestNeighbours()
+{
+  ReaderOf test(MakeSequence().GetContent());
+  const auto folder = FolderOf(test);
+  const auto write = [&](const std::string& name, int level)
+  {
+    vtkNew<vtkLacunaTrackedSliceWriter> writer;
+    writer->SetInputConnection(test.Reader->GetOutputPort());
+    writer->SetFileName((folder / name).c_str());
+    writer->SetCompressionLevel(level);
+    const auto messages = lacunaCheck::Watch(writer);
+    LACUNA_CHECK(writer->Write() == 1);
+    return messages->Warnings;
+  };
+  LACUNA_CHECK(write("a.mhd", 0).empty());
+  LACUNA_CHECK(write("a.mhd", 0).empty());
+  LACUNA_CHECK_CONTAINS(write("a.mhd", 1), "a.raw' was there before; this header does not name it");
+  ReaderOf copy("");
+  copy.Reader->SetFileName((folder / "a.mhd").c_str());
+  copy.Reader->Update();
+  LACUNA_CHECK_THAT(copy.Errors.empty(), copy.Errors);
+  std::filesystem::remove(folder / "a.raw");
+  LACUNA_CHECK(write("a.nhdr", 1).empty()); // .zraw and .raw.gz
+  LACUNA_CHECK_CONTAINS(write("a.nhdr", 0), "a.raw.gz' was there before");
+  std::filesystem::remove(folder / "a.raw.gz");
+  std::filesystem::remove(folder / "a.zraw");
+  LACUNA_CHECK_CONTAINS(write("a.mhd", 0), "have been written over; if '");
+  LACUNA_CHECK(write("a.mha", 0).empty() && write("a.nrrd", 1).empty());
+  LACUNA_CHECK(write("B.MHD", 1).empty()); // extensions in any case
+  LACUNA_CHECK(std::filesystem::exists(folder / "B.zraw"));
+  copy.Reader->SetFileName((folder / "B.MHD").c_str());
+  copy.Reader->Update();
+  LACUNA_CHECK_THAT(copy.Errors.empty(), copy.Errors);
+  LACUNA_CHECK(copy.Reader->GetOutput()->GetNumberOfPoints() == 60);
+}
+
 /// Bytes that this process has asked files for; -1 where that cannot be known.
 std::int64_t GetBytesRead()
 {
@@ -254,6 +291,7 @@ int TestTrackedSliceFiles(int, char*[])
 {
   TestUnreadable();
   TestUnwritable();
+  TestNeighbours();
   TestBytesRead();
   return lacunaCheck::Result();
 }
