@@ -346,6 +346,23 @@ std::string vtkLacunaSliceImages::DescribeFlags() const
 }
 
 //------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribeRemedy() const
+{
+  constexpr std::array<const char*, 4> properties{ nullptr, "UseImageInvalid", "UseTooFast",
+    "UseGatedOut" };
+  std::string list;
+  for (std::size_t flag = 1; flag < properties.size(); ++flag)
+  {
+    if (this->FlagCounts[flag] > 0)
+    {
+      list += (list.empty() ? "" : ", ") + std::string(properties[flag]);
+    }
+  }
+  return list.empty() ? "mend the SliceStatus of those whose pose is right"
+                      : "set " + list + " to take the flagged ones";
+}
+
+//------------------------------------------------------------------------------
 std::string vtkLacunaSliceImages::DescribeLeftOut(const std::vector<std::string>& leftOut)
 {
   std::ostringstream text;

@@ -61,6 +61,8 @@ struct vtkLacunaSliceImages
   /// How many slices of the stack are flagged with what, for a message: "20 of 21 are left out: 18
   /// pose invalid, 2 gated out".
   std::string DescribeFlags() const;
+  /// What to do to get more of them: "set UseTooFast, UseGatedOut to take the flagged ones".
+  std::string DescribeRemedy() const;
 
   /// Cuts all slices to a fan; once.
   void ApplyFan(const vtkLacunaSliceFan& fan);

@@ -83,6 +83,7 @@ public:
       {
         message << "; " << this->Images->LeftOut.size() << " have bad poses";
       }
+      message << "; " << this->Images->DescribeRemedy();
       throw std::runtime_error(message.str());
     }
     const vtkLacunaSliceFan fan = vtkLacunaSliceFan::Make(self);

@@ -80,9 +80,8 @@ void AnnounceTimes(vtkInformationVector* inputs, vtkInformation* output)
   output->Set(SDDP::TIME_RANGE(), range, 2);
 }
 
-// Says what is odd about slices between which nothing could be filled. Throws when nothing could at
-// all.
-std::map<std::string, std::string> CheckPairs(
+// Says what is odd about a volume; throws when nothing could be filled.
+std::map<std::string, std::string> CheckVolume(
   const lacuna::SweptVolume& volume, const vtkLacunaSweptVolumePlan& plan)
 {
   const lacuna::SweptVolume::PairCounts& pairs = volume.GetPairCounts();
@@ -90,14 +89,20 @@ std::map<std::string, std::string> CheckPairs(
   {
     throw std::runtime_error("all slices lie in the same plane: there is nothing between them");
   }
-  if (pairs.Turned == 0)
+  std::map<std::string, std::string> warnings;
+  if (pairs.Turned > 0)
   {
-    return {};
-  }
-  return { { "turned",
-    std::to_string(pairs.Turned) + " of " + std::to_string(pairs.All) +
+    warnings["turned"] = std::to_string(pairs.Turned) + " of " + std::to_string(pairs.All) +
       " pairs of consecutive slices are turned by 90 degrees or more against each other; nothing "
-      "was filled between them. The order of the slices or their poses may be wrong." } };
+      "was filled between them. The order of the slices or their poses may be wrong.";
+  }
+  if (plan.Grid.Dimensions == std::array<int, 3>{ 1, 1, 1 })
+  {
+    warnings["one voxel"] =
+      "the volume has only one voxel: OutputSpacing is larger than all that the "
+      "slices cover (or OutputBounds); it is meant in mm";
+  }
+  return warnings;
 }
 }
 
@@ -235,7 +240,7 @@ int vtkLacunaSweptVolume::RequestData(
         }
         const lacuna::SweptVolume& volume = this->Growing->Update(
           sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
-        warnings = CheckPairs(volume, plan);
+        warnings = CheckVolume(volume, plan);
         execution.SetStage(0.9, 1);
         switch (plan.ScalarType)
         {

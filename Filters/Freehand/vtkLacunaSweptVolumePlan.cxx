@@ -39,8 +39,7 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
   vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
 {
   const int count = inputs->GetNumberOfInformationObjects();
-  const std::size_t needed =
-    filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
+  const int needed = filter->GetInterpolation() == vtkLacunaSweptVolume::NearestVoxel ? 1 : 2;
   for (int i = 0; i < count; ++i)
   {
     vtkImageData* stack = vtkImageData::GetData(inputs, i);
@@ -56,17 +55,26 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
     this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
     this->IsMoreToCome |= sweep.IsMoreToCome;
-    if (!sweep.IsMoreToCome && sweep.Slices.size() < needed)
+    if (!sweep.IsMoreToCome && static_cast<int>(sweep.Slices.size()) < needed)
     {
       std::ostringstream message;
       message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()
               << " of " << stack->GetDimensions()[2] << " can be used, at least " << needed
-              << " are needed (" << sweep.DescribeFlags();
-      if (!sweep.LeftOut.empty())
+              << " are needed";
+      if (stack->GetDimensions()[2] < needed)
       {
-        message << "; " << sweep.LeftOut.size() << " have bad poses";
+        message << ", since a volume is made of what lies between slices; give more slices, or set "
+                   "Interpolation to NearestVoxel, which takes one";
       }
-      message << ")";
+      else
+      {
+        message << " (" << sweep.DescribeFlags();
+        if (!sweep.LeftOut.empty())
+        {
+          message << "; " << sweep.LeftOut.size() << " have bad poses";
+        }
+        message << "); " << sweep.DescribeRemedy();
+      }
       throw std::runtime_error(message.str());
     }
   }

@@ -46,6 +46,7 @@ double HatMean(double x, double half, int q)
 FootprintAxis::FootprintAxis(int n, double width)
 {
   const double length = n - 1;
+  width = std::min(width, 4.0 * n); // wider ones have the same mean
   int steps = n - 1;
   double box = 0;
   if (width > std::sqrt(2.0))

@@ -38,13 +38,6 @@ std::vector<const SliceImage*> Flatten(const GrowingVolume::Sweeps& sweeps)
 }
 }
 
-bool GrowingVolume::Record::HasGeometryOf(const Record& other) const
-{
-  return this->Sweep == other.Sweep && this->Type == other.Type && this->Width == other.Width &&
-    this->Height == other.Height && this->Pose == other.Pose && this->HasFan == other.HasFan &&
-    this->Fan == other.Fan;
-}
-
 std::vector<GrowingVolume::Record> GrowingVolume::MakeRecords(const Sweeps& sweeps)
 {
   std::vector<Record> records;
@@ -52,21 +45,7 @@ std::vector<GrowingVolume::Record> GrowingVolume::MakeRecords(const Sweeps& swee
   {
     for (const SliceImage& slice : *sweeps[s])
     {
-      Record record;
-      record.Sweep = s;
-      record.Type = slice.Type;
-      record.Width = slice.Width;
-      record.Height = slice.Height;
-      std::copy_n(slice.PixelToReference.Data(), 16, record.Pose.begin());
-      if (slice.Fan)
-      {
-        const Fan& fan = slice.Fan->GetFan();
-        const Vec2& spacing = slice.Fan->GetPixelSpacing();
-        record.HasFan = true;
-        record.Fan = { fan.Origin[0], fan.Origin[1], fan.Angles[0], fan.Angles[1], fan.Radii[0],
-          fan.Radii[1], spacing[0], spacing[1] };
-      }
-      records.push_back(record);
+      records.push_back({ s, SliceFingerprint(slice, false) });
     }
   }
   return records;
@@ -82,7 +61,7 @@ bool GrowingVolume::HasPixelsOf(
       for (std::int64_t n = begin; n < end && same; ++n)
       {
         const auto i = static_cast<std::size_t>(n);
-        if (!(HashPixels(*slices[i]) == this->Records[i].Pixels))
+        if (!(HashPixels(*slices[i]) == this->Records[i].Slice.Pixels))
         {
           same = false;
         }
@@ -101,7 +80,8 @@ const SweptVolume& GrowingVolume::Update(const Sweeps& sweeps, const VolumeGrid&
   const std::size_t before = this->Records.size();
   const bool isContinued = before > 0 && before <= records.size() &&
     std::equal(this->Records.begin(), this->Records.end(), records.begin(),
-      [](const Record& a, const Record& b) { return a.HasGeometryOf(b); });
+      [](const Record& a, const Record& b)
+      { return a.Sweep == b.Sweep && a.Slice.HasGeometryOf(b.Slice); });
   // grown for the first time, grown again, or made of the same slices in another way
   const bool isKept = isGrowing || (isContinued && (before < records.size() || this->IsKept));
   const bool isReused = this->Volume && this->IsKept && isContinued && AreEqual(grid, this->Grid) &&
@@ -151,7 +131,7 @@ const SweptVolume& GrowingVolume::Update(const Sweeps& sweeps, const VolumeGrid&
           for (std::int64_t n = from; n < to; ++n)
           {
             const std::size_t i = done + static_cast<std::size_t>(n);
-            records[i].Pixels = HashPixels(*slices[i]);
+            records[i].Slice.Pixels = HashPixels(*slices[i]);
           }
         });
     }

@@ -4,7 +4,7 @@
 #ifndef lacunaGrowingVolume_h
 #define lacunaGrowingVolume_h
 
-#include "lacunaPixelHash.h"
+#include "lacunaSliceFingerprint.h"
 #include "lacunaSweptVolume.h"
 
 #include <array>
@@ -20,7 +20,7 @@ namespace lacuna
 /// is the same bit by bit in either case.
 ///
 /// Slices are the same when their poses, windows, types and fans are equal, number by number, and
-/// the hashes of their pixels are (lacunaPixelHash.h). Neither addresses nor times of modification
+/// the hashes of their pixels are (lacunaSliceFingerprint.h). Neither addresses nor times of modification
 /// are trusted: sources reuse their memory, and copy it.
 ///
 /// A volume is kept, and pixels are hashed, only if growth is expected, or when the slices grew for
@@ -48,14 +48,7 @@ private:
   struct Record
   {
     std::size_t Sweep = 0;
-    ScalarType Type = ScalarType::UInt8;
-    int Width = 0;
-    int Height = 0;
-    std::array<double, 16> Pose{};
-    bool HasFan = false;
-    std::array<double, 8> Fan{}; ///< origin, angles, radii, pixel spacing
-    PixelHash Pixels;            ///< when IsKept
-    bool HasGeometryOf(const Record& other) const;
+    SliceFingerprint Slice; ///< with its pixels when IsKept
   };
   static std::vector<Record> MakeRecords(const Sweeps& sweeps);
   bool HasPixelsOf(const std::vector<const SliceImage*>& slices, Execution& execution) const;

@@ -22,7 +22,7 @@ AffineFunction MakeFunction(const VolumeGrid& grid, const Vec3& gradient, const 
 // second moment as the voxel. For cubic voxels it does not depend on the direction.
 double GetVoxelWidth(const AffineFunction& f)
 {
-  return std::sqrt(f.I * f.I + f.J * f.J + f.K * f.K);
+  return std::hypot(f.I, f.J, f.K); // finite for any spacing
 }
 
 // The raster of a slice, which goes on by some columns and rows on each side.

@@ -5,30 +5,29 @@
 
 namespace lacuna
 {
-namespace
+SliceFingerprint::SliceFingerprint(const SliceImage& slice, bool withPixels)
+  : Type(slice.Type)
+  , Size{ slice.Width, slice.Height }
+  , HasFan(slice.Fan != nullptr)
 {
-SliceFingerprint GetFingerprint(const SliceImage& slice)
-{
-  SliceFingerprint fingerprint{};
-  fingerprint.Type = slice.Type;
-  fingerprint.Size = { slice.Width, slice.Height };
-  std::copy_n(slice.PixelToReference.Data(), 16, fingerprint.Pose.begin());
+  std::copy_n(slice.PixelToReference.Data(), 16, this->Pose.begin());
   if (slice.Fan)
   {
-    const Fan& fan = slice.Fan->GetFan();
+    const lacuna::Fan& fan = slice.Fan->GetFan();
     const Vec2& spacing = slice.Fan->GetPixelSpacing();
-    fingerprint.Fan = { fan.Origin[0], fan.Origin[1], fan.Angles[0], fan.Angles[1], fan.Radii[0],
+    this->Fan = { fan.Origin[0], fan.Origin[1], fan.Angles[0], fan.Angles[1], fan.Radii[0],
       fan.Radii[1], spacing[0], spacing[1] };
   }
-  fingerprint.Pixels = HashPixels(slice);
-  return fingerprint;
-}
+  if (withPixels)
+  {
+    this->Pixels = HashPixels(slice);
+  }
 }
 
-bool SliceFingerprint::operator==(const SliceFingerprint& other) const
+bool SliceFingerprint::HasGeometryOf(const SliceFingerprint& other) const
 {
   return this->Type == other.Type && this->Size == other.Size && this->Pose == other.Pose &&
-    this->Fan == other.Fan && this->Pixels == other.Pixels;
+    this->HasFan == other.HasFan && this->Fan == other.Fan;
 }
 
 std::vector<SliceFingerprint> GetFingerprints(
@@ -40,7 +39,7 @@ std::vector<SliceFingerprint> GetFingerprints(
     {
       for (std::int64_t n = begin; n < end; ++n)
       {
-        fingerprints[n] = GetFingerprint(slices[n]);
+        fingerprints[n] = SliceFingerprint(slices[n]);
       }
     });
   return fingerprints;

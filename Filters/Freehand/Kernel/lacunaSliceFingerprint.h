@@ -13,18 +13,27 @@
 
 namespace lacuna
 {
-/// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints,
-/// and different ones as good as never (lacunaPixelHash.h).
+/// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints, and
+/// different ones as good as never (lacunaPixelHash.h).
 struct SliceFingerprint
 {
-  ScalarType Type;
-  std::array<int, 2> Size;
-  std::array<double, 16> Pose;
-  /// Origin, angles, radii, pixel spacing; all 0 without one.
-  std::array<double, 8> Fan;
+  /// Reads the pixels only when withPixels; Pixels is not set otherwise.
+  explicit SliceFingerprint(const SliceImage& slice, bool withPixels = true);
+  SliceFingerprint() = default;
+
+  ScalarType Type = ScalarType::UInt8;
+  std::array<int, 2> Size{};
+  std::array<double, 16> Pose{};
+  bool HasFan = false;
+  std::array<double, 8> Fan{}; ///< origin, angles, radii, pixel spacing
   PixelHash Pixels;
 
-  bool operator==(const SliceFingerprint& other) const;
+  /// Equal but for Pixels.
+  bool HasGeometryOf(const SliceFingerprint& other) const;
+  bool operator==(const SliceFingerprint& other) const
+  {
+    return this->HasGeometryOf(other) && this->Pixels == other.Pixels;
+  }
   bool operator!=(const SliceFingerprint& other) const { return !(*this == other); }
 };
 

@@ -52,6 +52,14 @@ double GetLargestMagnitude(const std::array<double, 4>& values)
   return largest;
 }
 
+// mm. Voxels may be far larger than all slices: what lies apart is then still told apart.
+double GetDistanceTolerance(const SampledSlice& slice, const VolumeGrid& grid)
+{
+  return Tolerance *
+    std::min({ grid.Spacing[0], grid.Spacing[1], grid.Spacing[2],
+      Norm(slice.Corners[1] - slice.Corners[0]), Norm(slice.Corners[2] - slice.Corners[0]) });
+}
+
 void AddImageBounds(
   VoxelRegion& region, const SampledSlice& slice, const SlicePair::Functions& functions)
 {
@@ -66,7 +74,7 @@ SlicePair::SlicePair(const SampledSlice& first, const SampledSlice& second, cons
   double maximumGap, bool acrossSlices)
   : First(&first)
   , Second(&second)
-  , DistanceTolerance(Tolerance * std::min({ grid.Spacing[0], grid.Spacing[1], grid.Spacing[2] }))
+  , DistanceTolerance(GetDistanceTolerance(first, grid))
   , HalfHeight(acrossSlices ? first.FootprintHeight / 2 : 0)
 {
   const double tolerance = this->DistanceTolerance;

@@ -363,6 +363,32 @@ TEST(SweptVolumeBehaviour, RoundsOnceAndStaysInTheRangeOfTheType)
   EXPECT_EQ(WriteOne<double>(0.1), 0.1);
 }
 
+// One voxel larger than all the world, at the corner of slices that lie 0.3 mm apart.
+TEST(SweptVolumeBehaviour, VoxelsMayBeAbsurdlyLarge)
+{
+  SyntheticSweep<std::uint8_t> sweep(21, 11, ScalarType::UInt8);
+  for (int n = 0; n < 3; ++n)
+  {
+    sweep.Add(Matrix4::Translation({ 5, 6, 0.3 * n }) * Matrix4::Scaling({ 0.2, 0.2, 1 }),
+      [](int, int) { return 77; });
+  }
+  for (const double spacing : { 100.0, 1e7, 1e12, 1e300 })
+  {
+    const VolumeGrid grid = MakeGrid(sweep.Slices, { spacing, spacing, spacing });
+    ASSERT_EQ(grid.Dimensions, (std::array<int, 3>{ 1, 1, 1 }));
+    for (const SweptVolume::Options& options : GetAllOptions())
+    {
+      ThreadExecution execution(1);
+      SweptVolume volume(grid, GetExtent(grid), options);
+      volume.AddSlices(sweep.Slices, execution);
+      EXPECT_EQ(volume.GetPairCounts().Coincident, 0) << spacing;
+      const auto written = Write<float>(volume, GetExtent(grid));
+      ASSERT_GT(written.Contributions[0], 0U) << spacing;
+      EXPECT_NEAR(written.Intensity[0], 77, 1e-4) << spacing;
+    }
+  }
+}
+
 TEST(SweptVolumeBehaviour, RefusesUnusableSlicesByName)
 {
   const auto sweep = MakeSpeckleSweep(3, 1);

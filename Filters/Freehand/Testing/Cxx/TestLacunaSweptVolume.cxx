@@ -305,8 +305,11 @@ void TestErrors()
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMaximumSliceGap(-1); }), "MaximumSliceGap");
   LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetFootprintScale(0); }), "FootprintScale");
   LACUNA_CHECK_CONTAINS(with([=](auto* f) { f->SetFootprintScale(notANumber); }), "FootprintScale");
-  LACUNA_CHECK_CONTAINS(
-    with([](auto* f) { f->SetOutputSpacing(0.001, 0.001, 0.001); }), "MemoryLimit");
+  for (const double tiny : { 1e-3, 1e-7, 1e-100, 1e-300 })
+  {
+    LACUNA_CHECK_CONTAINS(
+      with([=](auto* f) { f->SetOutputSpacing(tiny, tiny, tiny); }), "MemoryLimit allows");
+  }
   LACUNA_CHECK_CONTAINS(with(
                           [](auto* f)
                           {
@@ -322,6 +325,34 @@ void TestErrors()
                             f->SetOutputSpacing(0.0002, 0.0002, 0.0002);
                           }),
     "this part of the volume would need");
+
+  // what fits in one voxel is not called flat
+  for (const double huge : { 1e7, 1e300 })
+  {
+    vtkNew<vtkLacunaSweptVolume> one;
+    one->SetInputData(MakeStack(MakePoses(5)));
+    one->SetOutputSpacing(huge, huge, huge);
+    const auto messages = lacunaCheck::Watch(one);
+    one->Update();
+    LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+    LACUNA_CHECK_CONTAINS(messages->Warnings, "the volume has only one voxel");
+    LACUNA_CHECK(one->GetOutput()->GetNumberOfPoints() == 1);
+    LACUNA_CHECK(GetValue(one->GetOutput(), "Contributions", 0, 0, 0) > 0);
+  }
+
+  // one slice
+  const std::string single = GetError(MakeStack(MakePoses(1)));
+  LACUNA_CHECK_CONTAINS(
+    single, "the slices are too few: 1 of 1 can be used, at least 2 are needed");
+  LACUNA_CHECK_CONTAINS(single, "set Interpolation to NearestVoxel");
+  LACUNA_CHECK(GetError(MakeStack(MakePoses(1)),
+    [](auto* f) {
+      f->SetInterpolationToNearestVoxel();
+    }).empty());
+  const std::string flagged = GetError(MakeStack(MakePoses(3), VTK_SHORT, { 0, 4, 8 }));
+  LACUNA_CHECK_CONTAINS(flagged, "set UseTooFast, UseGatedOut to take the flagged ones");
+  LACUNA_CHECK_CONTAINS(GetError(MakeStack(MakePoses(3), VTK_SHORT, { 1, 1, 1 })),
+    "mend the SliceStatus of those whose pose is right");
 
   // a pair turned too far is a warning, the rest is filled
   std::vector<Matrix4> poses = MakePoses(3);
