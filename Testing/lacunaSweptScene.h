@@ -39,18 +39,22 @@ inline double GetSceneTruth(const Vec3& p)
     55 * std::sin(turn * (p[1] / 21 + p[2] / 47));
 }
 
-/// T: std::uint8_t or float.
+/// The sweep of count slices, or the first ones of it. T: std::uint8_t or float.
 template <class T>
 class SceneSweep
 {
 public:
   SceneSweep(int count, bool isNoisy)
-    : Pixels(new T[std::size_t(1) * count * SceneWidth * SceneHeight])
+    : SceneSweep(count, isNoisy, count)
+  {
+  }
+  SceneSweep(int count, bool isNoisy, int first)
+    : Pixels(new T[std::size_t(1) * first * SceneWidth * SceneHeight])
   {
     constexpr double degree = 3.14159265358979323846 / 180;
     const Matrix4 pixels = Matrix4::Scaling({ ScenePixelSpacing, ScenePixelSpacing, 1 }) *
       Matrix4::Translation({ -0.5 * (SceneWidth - 1), -0.5 * (SceneHeight - 1), 0 });
-    for (int n = 0; n < count; ++n)
+    for (int n = 0; n < first; ++n)
     {
       const double t = static_cast<double>(n) / (count - 1);
       const Matrix4 pose = Matrix4::Translation({ 0, 0, SceneTravel * (t - 0.5) }) *
@@ -74,7 +78,7 @@ public:
       this->TruePoses.push_back(pose * pixels);
     }
     ThreadExecution execution;
-    execution.For(count, 1,
+    execution.For(first, 1,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t n = begin; n < end; ++n)
@@ -148,6 +152,14 @@ inline std::vector<char> MarkSweptRegion(const std::vector<Matrix4>& poses, cons
       }
     });
   return region;
+}
+
+/// A grid of cubic voxels (mm) that holds slices.
+inline VolumeGrid MakeSceneGrid(const std::vector<SliceImage>& slices, double spacing)
+{
+  VolumeGridRequest request;
+  request.Spacing = { spacing, spacing, spacing };
+  return MakeVolumeGrid(slices, request);
 }
 
 /// How well a volume shows the scene.
