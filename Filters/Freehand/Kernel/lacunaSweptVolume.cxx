@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweptVolume.h"
 
+#include "lacunaPixelPlacing.h"
 #include "lacunaSlicePair.h"
 #include "lacunaVoxelFilling.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaVoxelFilling.h"
 
+#include "lacunaWide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -30,18 +32,32 @@ struct Raster
   int LastRow;
 };
 
-// Grey level at (column, row), which lies on the raster but for the tolerance of SlicePair: a
-// truncated column is in range, or one too far.
+// Voxels of a line that are worked on at a time. First comes what can be computed side by side, by
+// vectors: where their feet lie and what weighs how much; then grey levels are read and put.
+constexpr int VoxelsAtATime = 64;
+
+// Where feet lie in a raster: the pixel, and the way to its right and lower neighbours.
+template <class Real>
+struct Feet
+{
+  std::array<std::int32_t, VoxelsAtATime> Columns, Rows;
+  std::array<Real, VoxelsAtATime> X, Y;
+};
+
+// Positions lie on the raster but for the tolerance of SlicePair: a truncated one is in range, or one
+// too far. last: the last pixel that has a neighbour.
 template <class T, class Real>
 struct SampleFootprint
 {
-  static Real At(const Raster<T>& raster, double column, double row)
+  LACUNA_INLINE static void Place(double position, int last, std::int32_t& pixel, Real& way)
   {
-    const int c = std::min(static_cast<int>(column), raster.LastColumn);
-    const int r = std::min(static_cast<int>(row), raster.LastRow);
-    const auto x = static_cast<Real>(column - c);
-    const auto y = static_cast<Real>(row - r);
-    const T* const p = raster.Pixels + (raster.RowStride * r + c);
+    const int p = std::min(static_cast<int>(position), last);
+    pixel = p;
+    way = static_cast<Real>(position - p);
+  }
+  static Real Read(const Raster<T>& raster, std::int32_t column, std::int32_t row, Real x, Real y)
+  {
+    const T* const p = raster.Pixels + (raster.RowStride * row + column);
     const T* const q = p + raster.RowStride;
     const Real upper = static_cast<Real>(p[0]) + x * static_cast<Real>(p[1] - p[0]);
     const Real lower = static_cast<Real>(q[0]) + x * static_cast<Real>(q[1] - q[0]);
@@ -51,18 +67,17 @@ struct SampleFootprint
 
 // Outside of the outermost pixel centres their grey level goes on.
 template <class T, class Real>
-struct SampleBilinearly
+struct SampleBilinearly : SampleFootprint<T, Real>
 {
-  static Real At(const Raster<T>& raster, double column, double row)
+  LACUNA_INLINE static void Place(double position, int last, std::int32_t& pixel, Real& way)
   {
-    return SampleFootprint<T, Real>::At(raster,
-      std::min(std::max(column, 0.0), raster.LastColumn + 1.0),
-      std::min(std::max(row, 0.0), raster.LastRow + 1.0));
+    SampleFootprint<T, Real>::Place(
+      std::min(std::max(position, 0.0), last + 1.0), last, pixel, way);
   }
 };
 
 // The nearest whole number of one that is at least -0.5 but for a tolerance.
-int RoundPositive(double x)
+LACUNA_INLINE int RoundPositive(double x)
 {
   return static_cast<int>(x + 0.5);
 }
@@ -70,19 +85,35 @@ int RoundPositive(double x)
 template <class T, class Real>
 struct SampleNearest
 {
-  static Real At(const Raster<T>& raster, double column, double row)
+  LACUNA_INLINE static void Place(double position, int last, std::int32_t& pixel, Real& way)
   {
-    const int c = std::min(RoundPositive(column), raster.LastColumn + 1);
-    const int r = std::min(RoundPositive(row), raster.LastRow + 1);
-    return static_cast<Real>(raster.Pixels[raster.RowStride * r + c]);
+    pixel = std::min(RoundPositive(position), last + 1);
+    way = 0;
+  }
+  static Real Read(const Raster<T>& raster, std::int32_t column, std::int32_t row, Real, Real)
+  {
+    return static_cast<Real>(raster.Pixels[raster.RowStride * row + column]);
   }
 };
+
+// Grey level at one position.
+template <class Sampler, class T, class Real>
+Real Sample(const Raster<T>& raster, double column, double row)
+{
+  std::int32_t c;
+  std::int32_t r;
+  Real x;
+  Real y;
+  Sampler::Place(column, raster.LastColumn, c, x);
+  Sampler::Place(row, raster.LastRow, r, y);
+  return Sampler::Read(raster, c, r, x, y);
+}
 
 // A quantity along one line of voxels.
 struct Line
 {
   double Start, Step;
-  double At(double i) const { return this->Start + this->Step * i; }
+  LACUNA_INLINE double At(double i) const { return this->Start + this->Step * i; }
 };
 
 struct Lines
@@ -102,8 +133,39 @@ struct Lines
   Line Column, Row, Distance, FanX, FanY;
 };
 
-// Puts the sample of a voxel whose feet have the grey levels x and y, at these signed distances
-// from the first and the second slice: what the voxel's centre has.
+// Everything is computed from the voxel's own index, not from its predecessor, so that it does not
+// matter where a piece of the volume begins.
+template <class Sampler, class Real>
+LACUNA_WIDE void FindFeet(
+  Line column, Line row, int lastColumn, int lastRow, int first, int count, Feet<Real>& feet)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    Sampler::Place(
+      column.At(static_cast<double>(first + n)), lastColumn, feet.Columns[n], feet.X[n]);
+  }
+  for (int n = 0; n < count; ++n)
+  {
+    Sampler::Place(row.At(static_cast<double>(first + n)), lastRow, feet.Rows[n], feet.Y[n]);
+  }
+}
+
+// What the sample of a voxel is made of, whose feet have the grey levels x and y: x + Weight (y - x).
+struct Share
+{
+  double Weight;
+  double Length;    ///< mm of the voxel's height; 0 for nothing
+  bool HoldsCentre; ///< the voxel's centre lies between the slices
+};
+
+// part / gap, or a half where slices intersect. Without branches, for vectors.
+LACUNA_INLINE double Divide(double part, double gap, double tolerance)
+{
+  const bool isGap = std::abs(gap) > tolerance;
+  return (isGap ? part : 0.5) / (isGap ? gap : 1);
+}
+
+// Puts what the voxel's centre has. first and second: its signed distances from the slices.
 template <Compounding compounding>
 struct PutCentre
 {
@@ -111,19 +173,21 @@ struct PutCentre
     : Tolerance(pair.GetTolerance())
   {
   }
-  template <class Real>
-  void operator()(Voxel<Real>& voxel, Real x, Real y, double first, double second) const
+  LACUNA_INLINE Share GetShare(double first, double second) const
   {
     const double a = std::abs(first);
     const double gap = a + std::abs(second);
-    const double weight = gap > this->Tolerance ? a / gap : 0.5;
-    voxel.template Put<compounding>(x + static_cast<Real>(weight) * (y - x));
+    return { Divide(a, gap, this->Tolerance), 1, true };
+  }
+  template <class Real>
+  void operator()(Voxel<Real>& voxel, Real x, Real y, Real weight, float, bool) const
+  {
+    voxel.template Put<compounding>(x + weight * (y - x));
   }
   double Tolerance;
 };
 
-// The mean over the part of the voxel's height that lies between the slices, weighted by its
-// length.
+// The mean over the part of the voxel's height that lies between the slices, weighted by its length.
 struct PutHeight
 {
   explicit PutHeight(const SlicePair& pair)
@@ -131,41 +195,80 @@ struct PutHeight
     , Tolerance(pair.GetTolerance())
   {
   }
-  template <class Real>
-  void operator()(WeightedVoxel<Real>& voxel, Real x, Real y, double first, double second) const
+  LACUNA_INLINE Share GetShare(double first, double second) const
   {
     // along the normal, from the voxel's centre: the slices lie at -first and -second
     const double begin = std::max(std::min(-first, -second), -this->HalfHeight);
     const double end = std::min(std::max(-first, -second), this->HalfHeight);
-    const bool holdsCentre = begin <= this->Tolerance && end >= -this->Tolerance;
-    const double length = holdsCentre ? std::max(end - begin, this->Tolerance) : end - begin;
-    if (length > 0)
+    const bool holdsCentre = std::min(this->Tolerance - begin, end + this->Tolerance) >= 0;
+    const double length = std::max(end - begin, holdsCentre ? this->Tolerance : 0.0);
+    // grey levels are linear between the slices: their mean is that in the middle
+    const double weight = Divide(0.5 * (begin + end) + first, first - second, this->Tolerance);
+    return { weight, length, holdsCentre };
+  }
+  template <class Real>
+  void operator()(
+    WeightedVoxel<Real>& voxel, Real x, Real y, Real weight, float length, bool holdsCentre) const
+  {
+    if (length > 0) // else grey levels that are no numbers would still count
     {
-      // grey levels are linear between the slices: their mean is that in the middle
-      const double gap = first - second;
-      const double weight =
-        std::abs(gap) > this->Tolerance ? (0.5 * (begin + end) + first) / gap : 0.5;
-      voxel.Put(x + static_cast<Real>(weight) * (y - x), static_cast<float>(length), holdsCentre);
+      voxel.Put(x + weight * (y - x), length, holdsCentre);
     }
   }
   double HalfHeight;
   double Tolerance;
 };
 
-// Voxels first..last of a line. Everything is computed from the voxel's own index, not from its
-// predecessor, so that it does not matter where a piece of the volume begins.
+template <class Real>
+struct Shares
+{
+  std::array<Real, VoxelsAtATime> Weights;
+  std::array<float, VoxelsAtATime> Lengths;
+  std::array<std::int32_t, VoxelsAtATime> HoldCentre;
+};
+
+template <class Put, class Real>
+LACUNA_WIDE void FindShares(
+  Put put, Line toFirst, Line toSecond, int first, int count, Shares<Real>& shares)
+{
+  for (int n = 0; n < count; ++n)
+  {
+    const auto i = static_cast<double>(first + n);
+    const Share share = put.GetShare(toFirst.At(i), toSecond.At(i));
+    shares.Weights[n] = static_cast<Real>(share.Weight);
+    shares.Lengths[n] = static_cast<float>(share.Length);
+    shares.HoldCentre[n] = share.HoldsCentre ? 1 : 0;
+  }
+}
+
+// Voxels first..last of a line.
 template <template <class, class> class Sampler, class T, class Put, class VoxelType>
 void FillLine(const Raster<T>& firstRaster, const Raster<T>& secondRaster, const Lines& first,
   const Lines& second, const Put& put, IndexInterval interval, VoxelType* voxel,
   std::int64_t stride)
 {
   using Real = decltype(voxel->Value);
-  for (std::int64_t n = interval.First; n <= interval.Last; ++n, voxel += stride)
+  using Sample = Sampler<T, Real>;
+  Feet<Real> a;
+  Feet<Real> b;
+  Shares<Real> shares;
+  while (!interval.IsEmpty())
   {
-    const auto i = static_cast<double>(static_cast<int>(n));
-    const Real x = Sampler<T, Real>::At(firstRaster, first.Column.At(i), first.Row.At(i));
-    const Real y = Sampler<T, Real>::At(secondRaster, second.Column.At(i), second.Row.At(i));
-    put(*voxel, x, y, first.Distance.At(i), second.Distance.At(i));
+    const auto begin = static_cast<int>(interval.First);
+    const auto count =
+      static_cast<int>(std::min<std::int64_t>(interval.Last - interval.First + 1, VoxelsAtATime));
+    FindFeet<Sample>(
+      first.Column, first.Row, firstRaster.LastColumn, firstRaster.LastRow, begin, count, a);
+    FindFeet<Sample>(
+      second.Column, second.Row, secondRaster.LastColumn, secondRaster.LastRow, begin, count, b);
+    FindShares(put, first.Distance, second.Distance, begin, count, shares);
+    for (int n = 0; n < count; ++n, voxel += stride)
+    {
+      const Real x = Sample::Read(firstRaster, a.Columns[n], a.Rows[n], a.X[n], a.Y[n]);
+      const Real y = Sample::Read(secondRaster, b.Columns[n], b.Rows[n], b.X[n], b.Y[n]);
+      put(*voxel, x, y, shares.Weights[n], shares.Lengths[n], shares.HoldCentre[n] != 0);
+    }
+    interval.First += count;
   }
 }
 
@@ -181,12 +284,12 @@ bool SampleInFan(const Raster<Real>& sums, const Raster<Real>& weights, const Fa
   }
   const double column = lines.Column.At(i);
   const double row = lines.Row.At(i);
-  const Real weight = Sampler<Real, Real>::At(weights, column, row);
+  const Real weight = Sample<Sampler<Real, Real>, Real, Real>(weights, column, row);
   if (!(weight > 0)) // a tip of the fan between the pixels
   {
     return false;
   }
-  grey = Sampler<Real, Real>::At(sums, column, row) / weight;
+  grey = Sample<Sampler<Real, Real>, Real, Real>(sums, column, row) / weight;
   return true;
 }
 
@@ -210,7 +313,9 @@ void FillLineInFans(const SlicePair& pair, const Lines& first, const Lines& seco
     if (SampleInFan<Sampler>(firstSums, firstWeights, *firstSlice.Fan, first, i, x) &&
       SampleInFan<Sampler>(secondSums, secondWeights, *secondSlice.Fan, second, i, y))
     {
-      put(*voxel, x, y, first.Distance.At(i), second.Distance.At(i));
+      const Share share = put.GetShare(first.Distance.At(i), second.Distance.At(i));
+      put(*voxel, x, y, static_cast<Real>(share.Weight), static_cast<float>(share.Length),
+        share.HoldsCentre);
     }
   }
 }
@@ -320,68 +425,6 @@ void FillLayerOf(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
     fill(std::integral_constant<Compounding, Compounding::Maximum>{});
   }
 }
-
-template <Compounding compounding, class T, class Real>
-void PutPixelsOf(const SliceImage& slice, const T* pixels, const VolumeGrid& grid,
-  IndexInterval layers, VoxelBlock<Voxel<Real>>& voxels)
-{
-  const std::array<int, 6>& extent = voxels.GetExtent();
-  const std::array<IndexInterval, 3> range{ IndexInterval{ extent[0], extent[1] },
-    IndexInterval{ extent[2], extent[3] }, layers };
-  // The voxel index along each axis, a function of the pixel's column and row.
-  std::array<AffineFunction, 3> index;
-  VoxelRegion region; // of pixels
-  constexpr double margin = 1e-6;
-  for (int a = 0; a < 3; ++a)
-  {
-    const double scale = 1 / grid.Spacing[a];
-    index[a] = { scale * slice.PixelToReference(a, 0), scale * slice.PixelToReference(a, 1), 0,
-      scale * (slice.PixelToReference(a, 3) - grid.Origin[a]) };
-    region.Add(index[a] + (0.5 + margin - static_cast<double>(range[a].First)));
-    region.Add(-index[a] + (0.5 + margin + static_cast<double>(range[a].Last)));
-  }
-  const VoxelRegion::Layer layer = region.GetLayer(0, { 0, slice.Height - 1 });
-  const std::int64_t lineSize = voxels.GetSize(0);
-  const std::int64_t layerSize = lineSize * voxels.GetSize(1);
-  const IndexInterval rows = layer.GetRows();
-  for (std::int64_t j = rows.First; j <= rows.Last; ++j)
-  {
-    const IndexInterval columns = layer.GetRow(j, { 0, slice.Width - 1 });
-    const FanMask::Runs runs =
-      slice.Fan ? slice.Fan->GetRuns(j) : FanMask::Runs{ &columns, &columns + 1 };
-    const T* const line = pixels + slice.RowStride * j;
-    std::array<Line, 3> along;
-    for (int a = 0; a < 3; ++a)
-    {
-      along[a] = { index[a].C + index[a].J * static_cast<double>(j), index[a].I };
-    }
-    const auto put = [&](std::int64_t i)
-    {
-      std::array<std::int64_t, 3> v;
-      bool inside = true;
-      for (int a = 0; a < 3; ++a)
-      {
-        v[a] = RoundPositive(along[a].At(static_cast<double>(i)));
-        inside &= v[a] >= range[a].First && v[a] <= range[a].Last;
-      }
-      if (inside)
-      {
-        voxels
-          .GetData()[(v[2] - extent[4]) * layerSize + (v[1] - extent[2]) * lineSize +
-            (v[0] - extent[0])]
-          .template Put<compounding>(static_cast<Real>(line[i]));
-      }
-    };
-    for (const IndexInterval& run : runs)
-    {
-      const std::int64_t last = std::min(run.Last, columns.Last);
-      for (std::int64_t i = std::max(run.First, columns.First); i <= last; ++i)
-      {
-        put(i);
-      }
-    }
-  }
-}
 }
 
 template <class Real>
@@ -414,32 +457,10 @@ void FillAcross(const SlicePair& pair, std::int64_t k, VoxelBlock<WeightedVoxel<
   FillLayer<Real, SampleFootprint, PutHeight>(pair, k, voxels);
 }
 
-template <class Real>
-void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
-  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels)
-{
-  DispatchScalars(slice.Type, slice.Pixels,
-    [&](const auto* pixels)
-    {
-      if (compounding == Compounding::Mean)
-      {
-        PutPixelsOf<Compounding::Mean>(slice, pixels, grid, layers, voxels);
-      }
-      else
-      {
-        PutPixelsOf<Compounding::Maximum>(slice, pixels, grid, layers, voxels);
-      }
-    });
-}
-
 template void FillBetween(
   const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<Voxel<float>>&);
 template void FillBetween(
   const SlicePair&, std::int64_t, PixelSampling, Compounding, VoxelBlock<Voxel<double>>&);
 template void FillAcross(const SlicePair&, std::int64_t, VoxelBlock<WeightedVoxel<float>>&);
 template void FillAcross(const SlicePair&, std::int64_t, VoxelBlock<WeightedVoxel<double>>&);
-template void PutPixels(
-  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<Voxel<float>>&);
-template void PutPixels(
-  const SliceImage&, const VolumeGrid&, IndexInterval, Compounding, VoxelBlock<Voxel<double>>&);
 }

@@ -18,10 +18,5 @@ void FillBetween(const SlicePair& pair, std::int64_t k, PixelSampling sampling,
 /// The same for footprints that reach across slices.
 template <class Real>
 void FillAcross(const SlicePair& pair, std::int64_t k, VoxelBlock<WeightedVoxel<Real>>& voxels);
-
-/// Adds the pixels of slice whose nearest voxels lie in layers; slice has passed CheckSlice.
-template <class Real>
-void PutPixels(const SliceImage& slice, const VolumeGrid& grid, IndexInterval layers,
-  Compounding compounding, VoxelBlock<Voxel<Real>>& voxels);
 }
 #endif
