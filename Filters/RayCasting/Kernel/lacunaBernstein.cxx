@@ -11,8 +11,8 @@ namespace
 constexpr int Capacity = ScaledBernstein::MaximumDegree + 1;
 // Intervals shorter than 2^-40 of a cell are a point: 1e-12 voxel.
 constexpr int MaximumDepth = 40;
-// Quadratic convergence needs five or so; a multiple root gets the rest from bisection.
-constexpr int MaximumNewtonSteps = 40;
+// Two or three do as a rule; a multiple root gets the rest from bisection.
+constexpr int MaximumSteps = 40;
 
 double Power(double x, int n)
 {
@@ -27,28 +27,41 @@ double Power(double x, int n)
   return power;
 }
 
-/// h(r) = sum a[i] r^i, and its slope. Degree: 3 or 9. Estrin's scheme: short chains of operations.
+struct Jet
+{
+  double Value;
+  double Slope;
+  double HalfCurvature;
+};
+
+/// h(r) = sum a[i] r^i and its derivatives. Degree: 3 or 9. Estrin's scheme: short chains of
+/// operations.
 template <int Degree>
-inline double ValueAndSlope(const double* a, double r, double& slope)
+inline Jet Evaluate(const double* a, double r)
 {
   const double r2 = r * r;
-  if (Degree == 3)
+  if constexpr (Degree == 3)
   {
-    slope = (a[1] + 2 * a[2] * r) + 3 * a[3] * r2;
-    return (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
+    return { (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2, (a[1] + 2 * a[2] * r) + 3 * a[3] * r2,
+      a[2] + 3 * a[3] * r };
   }
-  const double r4 = r2 * r2;
-  const double r8 = r4 * r4;
-  const double low = (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
-  const double high = (a[4] + a[5] * r) + (a[6] + a[7] * r) * r2;
-  const double slopeLow = (a[1] + 2 * a[2] * r) + (3 * a[3] + 4 * a[4] * r) * r2;
-  const double slopeHigh = (5 * a[5] + 6 * a[6] * r) + (7 * a[7] + 8 * a[8] * r) * r2;
-  slope = (slopeLow + slopeHigh * r4) + 9 * a[9] * r8;
-  return (low + high * r4) + (a[8] + a[9] * r) * r8;
+  else
+  {
+    const double r4 = r2 * r2;
+    const double r8 = r4 * r4;
+    const double low = (a[0] + a[1] * r) + (a[2] + a[3] * r) * r2;
+    const double high = (a[4] + a[5] * r) + (a[6] + a[7] * r) * r2;
+    const double slopeLow = (a[1] + 2 * a[2] * r) + (3 * a[3] + 4 * a[4] * r) * r2;
+    const double slopeHigh = (5 * a[5] + 6 * a[6] * r) + (7 * a[7] + 8 * a[8] * r) * r2;
+    const double curveLow = (a[2] + 3 * a[3] * r) + (6 * a[4] + 10 * a[5] * r) * r2;
+    const double curveHigh = (15 * a[6] + 21 * a[7] * r) + (28 * a[8] + 36 * a[9] * r) * r2;
+    return { (low + high * r4) + (a[8] + a[9] * r) * r8,
+      (slopeLow + slopeHigh * r4) + 9 * a[9] * r8, curveLow + curveHigh * r4 };
+  }
 }
 
-/// The root in 0 <= r <= 1 of h(r) = sum a[i] r^i, which has one sign change in its coefficients
-/// and so exactly one positive root; h(1) does not have the sign class of a[0]. start: a guess.
+/// The root in 0 <= r <= 1 of h(r) = sum a[i] r^i, which has exactly one there; h(1) does not have
+/// the sign class of a[0]. start: a guess.
 template <int Degree>
 double SolveMonotone(const double* a, double start)
 {
@@ -56,61 +69,83 @@ double SolveMonotone(const double* a, double start)
   double low = 0;
   double high = 1;
   double r = start;
+  double last = 0;
   for (int iteration = 0; high - low > 1e-15; ++iteration)
   {
-    if (iteration > MaximumNewtonSteps || !(r > low && r < high))
+    if (iteration > MaximumSteps || !(r > low && r < high))
     {
       r = 0.5 * (low + high);
     }
-    double slope;
-    const double value = ValueAndSlope<Degree>(a, r, slope);
-    ((value < 0) == startsNegative ? low : high) = r;
-    // A step out of the bracket comes from a slope the wrong way, near r = 0: bisect then.
-    const double next = r - value / slope;
-    if (std::abs(next - r) <= 1e-9 && next >= low && next <= high)
+    const Jet h = Evaluate<Degree>(a, r);
+    ((h.Value < 0) == startsNegative ? low : high) = r;
+    // Halley's step. One out of the bracket comes from a slope the wrong way: bisect then.
+    const double next = r - h.Value * h.Slope / (h.Slope * h.Slope - h.Value * h.HalfCurvature);
+    const double step = std::abs(next - r);
+    // Steps shrink cubically: the next one is some step^4 / last^3 long. Where the slope vanishes
+    // they are short, but Newton's are long.
+    const double square = step * step;
+    const double newton = std::abs(h.Value); // times the slope
+    const double slope = std::abs(h.Slope);
+    const bool close = newton <= 1e-9 * slope ||
+      (step < 1e-2 && newton <= 2 * step * slope &&
+        square * square <= 1e-13 * (last * last * last));
+    if (close && next >= low && next <= high)
     {
       return next;
     }
+    last = step;
     r = next;
   }
   return high;
 }
 
-/// Where the control polygon of p crosses zero, 0 < s < 1: a root is near.
-double ZeroOfPolygon(const ScaledBernstein& p)
+/// Near the root: by the parabola through p at 0, 1/2 and 1. early: the root lies before 1/2.
+double Guess(double at0, double atHalf, double at1, bool early)
 {
-  const int n = p.Degree;
-  int i = 1;
-  while (i < n && (p.A[i] < 0) == (p.A[0] < 0))
-  {
-    ++i;
-  }
-  // A[i - 1] / (n over i - 1) and A[i] / (n over i), both times (n over i) i
-  const double last = p.A[i - 1] * (n - i + 1);
-  const double next = p.A[i] * i;
-  return (i - 1 + last / (last - next)) / n;
+  const double chord = early ? 0.5 * at0 / (at0 - atHalf) : 0.5 + 0.5 * atHalf / (atHalf - at1);
+  const double slope = 4 * atHalf - 3 * at0 - at1;
+  const double curvature = 2 * (at0 + at1) - 4 * atHalf;
+  const double value = at0 + chord * (slope + chord * curvature);
+  const double better = chord - value / (slope + 2 * chord * curvature);
+  const double first = early ? 0 : 0.5;
+  return better > first && better < first + 0.5 ? better : chord;
 }
 
-template <int Degree>
+double SolveCubic(const ScaledBernstein& p)
+{
+  const double* b = p.A.data();
+  const double atHalf = 0.125 * ((b[0] + b[1]) + (b[2] + b[3]));
+  const double a[4] = { b[0], b[1] - 3 * b[0], (b[2] - 2 * b[1]) + 3 * b[0],
+    (b[3] - b[2]) + (b[1] - b[0]) };
+  return SolveMonotone<3>(a, Guess(b[0], atHalf, b[3], (atHalf < 0) != (b[0] < 0)));
+}
+
 double SolveOneChange(const ScaledBernstein& p)
 {
+  constexpr int degree = ScaledBernstein::MaximumDegree;
   const int n = p.Degree;
+  if (n == 3)
+  {
+    return SolveCubic(p);
+  }
   double atHalf = 0;
+  double scale = 1;
   for (int i = 0; i <= n; ++i)
   {
     atHalf += p.A[i];
+    scale *= i < n ? 0.5 : 1;
   }
-  const double start = ZeroOfPolygon(p);
+  atHalf *= scale;
+  const bool early = (atHalf < 0) != (p.A[0] < 0);
+  const double start = Guess(p.A[0], atHalf, p.A[n], early);
   // With r = s / (1 - s), or its reciprocal, p becomes a plain polynomial on 0 <= r <= 1.
-  if ((atHalf < 0) != (p.A[0] < 0))
+  double a[degree + 1];
+  for (int i = 0; i <= degree; ++i)
   {
-    const double r = SolveMonotone<Degree>(p.A.data(), start / (1 - start));
-    return r / (1 + r);
+    a[i] = i <= n ? p.A[early ? i : n - i] : 0.0;
   }
-  double reversed[Capacity] = {};
-  std::reverse_copy(p.A.begin(), p.A.begin() + n + 1, reversed);
-  const double r = SolveMonotone<Degree>(reversed, (1 - start) / start);
-  return 1 / (1 + r);
+  const double r = SolveMonotone<degree>(a, early ? start / (1 - start) : (1 - start) / start);
+  return early ? r / (1 + r) : 1 / (1 + r);
 }
 
 /// Splits p at 1/2 by de Casteljau's scheme.
@@ -159,7 +194,7 @@ bool Search(
   }
   if (pattern == SignPattern::OneChange)
   {
-    s = low + width * (p.Degree <= 3 ? SolveOneChange<3>(p) : SolveOneChange<9>(p));
+    s = low + width * SolveOneChange(p);
     return true;
   }
   if (depth == MaximumDepth)

@@ -16,8 +16,8 @@ struct ScaledBernstein
   static constexpr int MaximumDegree = 9;
 
   int Degree = 0;
-  /// 12 elements, of which Degree + 1 count: a multiple of the vector width.
-  alignas(32) std::array<double, 12> A{};
+  /// 12 elements, of which Degree + 1 count, and are set: a multiple of the vector width.
+  alignas(32) std::array<double, 12> A;
 
   double Value(double s) const;
 };

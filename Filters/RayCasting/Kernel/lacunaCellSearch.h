@@ -82,10 +82,9 @@ bool FindEntryInCell(const TensorCell<Support>& cell, ScaledBernstein& p, Vec3 f
 /// The same for a ray of which nothing is known. doubt: values of the field up to this are zero but
 /// for rounding.
 template <int Support>
-CellFinding SearchCellAlone(
-  const TensorCell<Support>& cell, const Vec3& from, const Vec3& to, double doubt, double& s)
+CellFinding SearchCellAlone(const TensorCell<Support>& cell, ScaledBernstein& p, const Vec3& from,
+  const Vec3& to, double doubt, double& s)
 {
-  ScaledBernstein p = cell.Along(from, to);
   if (!(std::abs(p.A[0]) > doubt && std::abs(p.A[p.Degree]) > doubt))
   {
     return CellFinding::Doubt;

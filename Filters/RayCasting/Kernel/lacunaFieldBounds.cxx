@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaFieldBounds.h"
 
+#include "lacunaWide.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,6 +32,44 @@ constexpr T Highest()
 
 /// Widens low[x]..high[x] by four rows. Plain loops, so that the compiler vectorises them.
 template <class T>
+LACUNA_INLINE void AccumulateFour(
+  const std::array<const T*, 4>& rows, int n, T* __restrict low, T* __restrict high)
+{
+  const auto lesser = [](T a, T b) { return a < b ? a : b; };
+  const auto greater = [](T a, T b) { return a > b ? a : b; };
+  const T* a = rows[0];
+  const T* b = rows[1];
+  const T* c = rows[2];
+  const T* d = rows[3];
+  for (int x = 0; x < n; ++x)
+  {
+    low[x] = lesser(low[x], lesser(lesser(a[x], b[x]), lesser(c[x], d[x])));
+    high[x] = greater(high[x], greater(greater(a[x], b[x]), greater(c[x], d[x])));
+  }
+}
+
+template <class T>
+void AccumulateFinite(
+  const std::array<const T*, 4>& rows, int n, T* __restrict low, T* __restrict high)
+{
+  AccumulateFour(rows, n, low, high);
+}
+
+// the types that scanners and the spline filter write
+LACUNA_WIDE void AccumulateFinite(const std::array<const std::int16_t*, 4>& rows, int n,
+  std::int16_t* __restrict low, std::int16_t* __restrict high)
+{
+  AccumulateFour(rows, n, low, high);
+}
+
+LACUNA_WIDE void AccumulateFinite(
+  const std::array<const float*, 4>& rows, int n, float* __restrict low, float* __restrict high)
+{
+  AccumulateFour(rows, n, low, high);
+}
+
+/// The same; guard: voxels that are not finite bound nothing.
+template <class T>
 void Accumulate(
   const std::array<const T*, 4>& rows, int n, bool guard, T* __restrict low, T* __restrict high)
 {
@@ -49,17 +89,7 @@ void Accumulate(
       return;
     }
   }
-  const auto lesser = [](T a, T b) { return a < b ? a : b; };
-  const auto greater = [](T a, T b) { return a > b ? a : b; };
-  const T* a = rows[0];
-  const T* b = rows[1];
-  const T* c = rows[2];
-  const T* d = rows[3];
-  for (int x = 0; x < n; ++x)
-  {
-    low[x] = lesser(low[x], lesser(lesser(a[x], b[x]), lesser(c[x], d[x])));
-    high[x] = greater(high[x], greater(greater(a[x], b[x]), greater(c[x], d[x])));
-  }
+  AccumulateFinite(rows, n, low, high);
 }
 
 /// Each element becomes the choice among width elements from it on; the last ones are used up.
@@ -168,31 +198,55 @@ void FieldBounds<T>::BuildFine(
   execution.For(level.Blocks[2], 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      // voxel x is element x + before; those beyond the volume do not count
       const int width = (1 << FineShift) + before + after;
+      // voxel x is element x + before; those beyond the volume do not count
       const std::size_t length = (static_cast<std::size_t>(level.Blocks[0]) << FineShift) + width;
       std::vector<T> low(length);
       std::vector<T> high(length);
+      // the bounds of a block's rows of voxels over the slices of its support; row y is number
+      // y % Ring, and stays for the next block
+      constexpr int ring = 8;
+      const std::size_t row = size[0];
+      std::vector<T> lows(ring * row);
+      std::vector<T> highs(ring * row);
+      const auto fold = [&](const T* first, std::int64_t stride, int count, T* l, T* h)
+      {
+        for (int n = 0; n < count; n += 4)
+        {
+          std::array<const T*, 4> rows;
+          for (int m = 0; m < 4; ++m)
+          {
+            rows[m] = first + std::min(n + m, count - 1) * stride;
+          }
+          Accumulate(rows, size[0], guard, l, h);
+        }
+      };
       for (int k = static_cast<int>(begin); k < end; ++k)
       {
         const Reach rz(k, FineShift, size[2], before, after);
+        int folded = 0; // rows before this one
         for (int j = 0; j < level.Blocks[1]; ++j)
         {
-          // first across rows, which vectorises, then along the result
+          const Reach ry(j, FineShift, size[1], before, after);
+          for (; folded <= ry.Last; ++folded)
+          {
+            T* l = lows.data() + folded % ring * row;
+            T* h = highs.data() + folded % ring * row;
+            std::fill_n(l, row, Highest<T>());
+            std::fill_n(h, row, Lowest<T>());
+            fold(voxels + (static_cast<std::int64_t>(rz.First) * size[1] + folded) * size[0],
+              static_cast<std::int64_t>(size[0]) * size[1], rz.Last - rz.First + 1, l, h);
+          }
           std::fill(low.begin(), low.end(), Highest<T>());
           std::fill(high.begin(), high.end(), Lowest<T>());
-          const Reach ry(j, FineShift, size[1], before, after);
-          for (int z = rz.First; z <= rz.Last; ++z)
+          for (int y = ry.First; y <= ry.Last; ++y)
           {
-            for (int y = ry.First; y <= ry.Last; y += 4)
+            const T* l = lows.data() + y % ring * row;
+            const T* h = highs.data() + y % ring * row;
+            for (std::size_t x = 0; x < row; ++x)
             {
-              std::array<const T*, 4> rows;
-              for (int n = 0; n < 4; ++n)
-              {
-                const int inside = std::min(y + n, ry.Last);
-                rows[n] = voxels + (static_cast<std::int64_t>(z) * size[1] + inside) * size[0];
-              }
-              Accumulate(rows, size[0], guard, low.data() + before, high.data() + before);
+              low[before + x] = l[x] < low[before + x] ? l[x] : low[before + x];
+              high[before + x] = h[x] > high[before + x] ? h[x] : high[before + x];
             }
           }
           Slide(low, width, [](T a, T b) { return a < b ? a : b; });

@@ -268,32 +268,47 @@ double MapCaster::FindThickness(const PixelRay& ray, const Hit& hit, RayFollower
 void MapCaster::Take(
   const std::array<int, 4>& tile, RayFollower& follower, const TileEntries& entries) const
 {
+  const bool hasParts = this->HasParts();
   for (int row = tile[2]; row <= tile[3]; ++row)
   {
     const int line = row - tile[2];
-    for (int column = tile[0]; column <= tile[1]; ++column)
+    std::int64_t i = this->IndexOf(tile[0], row);
+    for (int x = 0; x <= tile[1] - tile[0]; ++x, ++i)
     {
-      const int x = column - tile[0];
-      const std::int64_t i = this->IndexOf(column, row);
       const RayEntry& entry = entries.Entries[TileEntries::Width * line + x];
       const bool found = entries.Found[line] >> x & 1;
-      const PixelRay ray = this->GetRay(column, row);
-      Hit hit{ NotANumber, { 0, 0, 0 }, {} };
-      const bool valid = this->FindHit(ray, i, found, entry, follower, hit);
-      this->Pixels.Depth[i] = (hit.T - ray.Zero) * ray.Length;
+      PixelResult result;
+      if (found || hasParts)
+      {
+        result = this->FindResult(tile[0] + x, row, i, found, entry, follower);
+      }
+      this->Pixels.Depth[i] = result.Depth;
       if (this->Pixels.Valid)
       {
-        this->Pixels.Valid[i] = valid;
+        this->Pixels.Valid[i] = result.Valid;
       }
       if (this->Request.Thickness)
       {
-        this->Request.Thickness[i] = valid ? this->FindThickness(ray, hit, follower) : NotANumber;
+        this->Request.Thickness[i] = result.Thickness;
       }
       for (int a = 0; this->Pixels.Normals && a < 3; ++a)
       {
-        this->Pixels.Normals[3 * i + a] = static_cast<float>(hit.Normal[a]);
+        this->Pixels.Normals[3 * i + a] = static_cast<float>(result.Normal[a]);
       }
     }
   }
+}
+
+MapCaster::PixelResult MapCaster::FindResult(int column, int row, std::int64_t pixel, bool found,
+  const RayEntry& entry, RayFollower& follower) const
+{
+  const PixelRay ray = this->GetRay(column, row);
+  Hit hit;
+  if (!this->FindHit(ray, pixel, found, entry, follower, hit))
+  {
+    return {};
+  }
+  return { true, (hit.T - ray.Zero) * ray.Length, hit.Normal,
+    this->Request.Thickness ? this->FindThickness(ray, hit, follower) : NotANumber };
 }
 }

@@ -8,6 +8,7 @@
 #include "lacunaIsoRayCaster.h"
 
 #include <array>
+#include <limits>
 #include <vector>
 
 namespace lacuna
@@ -52,6 +53,14 @@ private:
     RaySpan Part;
   };
 
+  struct PixelResult
+  {
+    bool Valid = false;
+    double Depth = std::numeric_limits<double>::quiet_NaN();
+    Vec3 Normal{ 0, 0, 0 };
+    double Thickness = std::numeric_limits<double>::quiet_NaN();
+  };
+
   PixelRay GetRay(int column, int row) const;
   std::vector<Part> FindParts(const PixelRay& ray, std::int64_t pixel) const;
   bool IsCapped(const PixelRay& ray, const Part& part, RayFollower& follower) const;
@@ -65,6 +74,8 @@ private:
   void Prepare(const std::array<int, 4>& tile, RayFollower& follower, RaySpan* spans) const;
   void Take(
     const std::array<int, 4>& tile, RayFollower& follower, const TileEntries& entries) const;
+  PixelResult FindResult(int column, int row, std::int64_t pixel, bool found, const RayEntry& entry,
+    RayFollower& follower) const;
   std::int64_t IndexOf(int column, int row) const;
 
   const IsoRayCaster& Caster;

@@ -9,26 +9,42 @@ namespace
 {
 /// Weights of the control points in the field's polar form at (r, s, t): its values at the
 /// arguments' permutations of two ends are the Bernstein coefficients between them.
+template <class Real>
 LACUNA_INLINE void PolarWeights(
-  double r, double s, double t, double& w0, double& w1, double& w2, double& w3)
+  const Real& r, const Real& s, const Real& t, Real& w0, Real& w1, Real& w2, Real& w3)
 {
   // de Boor's scheme for knots -2, -1, 0, 1, 2, 3
   constexpr double third = 1.0 / 3;
-  const double b0 = 0.5 * (1 - s) * (1 - t);
-  const double b1 = 0.5 * ((1 + s) * (1 - t) + (2 - s) * t);
-  const double b2 = 0.5 * s * t;
+  const Real b0 = 0.5 * (1 - s) * (1 - t);
+  const Real b1 = 0.5 * ((1 + s) * (1 - t) + (2 - s) * t);
+  const Real b2 = 0.5 * s * t;
   w0 = third * (1 - r) * b0;
   w1 = third * ((2 + r) * b0 + (2 - r) * b1);
   w2 = third * ((1 + r) * b1 + (3 - r) * b2);
   w3 = third * r * b2;
 }
 
-/// Scaled Bernstein coefficients m of the weights i on x0..x1: w[i][m].
-LACUNA_INLINE void CubicBernstein(double x0, double x1, double (*w)[4])
+/// Scaled Bernstein coefficients m of the weights i on x0..x1: w[i][m], all m side by side.
+LACUNA_INLINE void CubicBernstein(double x0, double x1, Four* w)
 {
-  const double r[4] = { x0, x0, x0, x1 };
-  const double s[4] = { x0, x0, x1, x1 };
-  const double t[4] = { x0, x1, x1, x1 };
+  const Four r{ x0, x0, x0, x1 };
+  const Four s{ x0, x0, x1, x1 };
+  const Four t{ x0, x1, x1, x1 };
+  const Four binomial{ 1, 3, 3, 1 };
+  PolarWeights(r, s, t, w[0], w[1], w[2], w[3]);
+  for (int i = 0; i < 4; ++i)
+  {
+    w[i] *= binomial;
+  }
+}
+
+/// The same of four lines: w[i][m].
+template <class Real>
+LACUNA_INLINE void CubicBernstein(const Real& x0, const Real& x1, Real (*w)[4])
+{
+  const Real r[4] = { x0, x0, x0, x1 };
+  const Real s[4] = { x0, x0, x1, x1 };
+  const Real t[4] = { x0, x1, x1, x1 };
   constexpr double binomial[4] = { 1, 3, 3, 1 };
   for (int m = 0; m < 4; ++m)
   {
@@ -46,19 +62,22 @@ struct Basis;
 template <>
 struct Basis<4>
 {
-  LACUNA_INLINE static void Value(double x, double w[4])
+  template <class Real>
+  LACUNA_INLINE static void Value(const Real& x, Real w[4])
   {
     PolarWeights(x, x, x, w[0], w[1], w[2], w[3]);
   }
-  LACUNA_INLINE static void Slope(double x, double w[4])
+  template <class Real>
+  LACUNA_INLINE static void Slope(const Real& x, Real w[4])
   {
-    const double y = 1 - x;
+    const Real y = 1 - x;
     w[0] = -0.5 * y * y;
     w[1] = x * (1.5 * x - 2);
     w[2] = 0.5 + x * (1 - 1.5 * x);
     w[3] = 0.5 * x * x;
   }
-  LACUNA_INLINE static void Bernstein(double x0, double x1, double w[4][4])
+  template <class Real>
+  LACUNA_INLINE static void Bernstein(const Real& x0, const Real& x1, Real w[4][4])
   {
     CubicBernstein(x0, x1, w);
   }
@@ -67,7 +86,8 @@ struct Basis<4>
 template <>
 struct Basis<2>
 {
-  LACUNA_INLINE static void Value(double x, double w[2])
+  template <class Real>
+  LACUNA_INLINE static void Value(const Real& x, Real w[2])
   {
     w[0] = 1 - x;
     w[1] = x;
@@ -77,7 +97,8 @@ struct Basis<2>
     w[0] = -1;
     w[1] = 1;
   }
-  LACUNA_INLINE static void Bernstein(double x0, double x1, double w[2][2])
+  template <class Real>
+  LACUNA_INLINE static void Bernstein(const Real& x0, const Real& x1, Real w[2][2])
   {
     w[0][0] = 1 - x0;
     w[0][1] = 1 - x1;
@@ -167,49 +188,52 @@ LACUNA_WIDE void CubicAlongAxis(
 LACUNA_WIDE void ComposeCubic(
   const double* points, const Vec3& from, const Vec3& to, double* result)
 {
-  alignas(32) double wx[4][4];
-  alignas(32) double wy[4][4];
-  alignas(32) double wz[4][4];
+  Four wx[4];
+  Four wy[4];
+  Four wz[4];
   CubicBernstein(from[0], to[0], wx);
   CubicBernstein(from[1], to[1], wy);
   CubicBernstein(from[2], to[2], wz);
-  alignas(32) double planes[4][8];
-  for (int k = 0; k < 4; ++k)
-  {
-    alignas(32) double rows[4][4] = {};
-    for (int j = 0; j < 4; ++j)
-    {
-      const double* p = &points[16 * k + 4 * j];
-      for (int m = 0; m < 4; ++m)
-      {
-        rows[j][m] = p[0] * wx[0][m] + p[1] * wx[1][m] + p[2] * wx[2][m] + p[3] * wx[3][m];
-      }
-    }
-    for (int m = 0; m < 8; ++m)
-    {
-      planes[k][m] = 0;
-    }
-    for (int n = 0; n < 4; ++n)
-    {
-      for (int m = 0; m < 4; ++m)
-      {
-        planes[k][m + n] += rows[0][m] * wy[0][n] + rows[1][m] * wy[1][n] + rows[2][m] * wy[2][n] +
-          rows[3][m] * wy[3][n];
-      }
-    }
-  }
-  for (int m = 0; m < 12; ++m)
-  {
-    result[m] = 0;
-  }
+  // along z and y for all points along x side by side: [coefficient][point]
+  Four columns[7];
   for (int n = 0; n < 4; ++n)
   {
-    for (int m = 0; m < 8; ++m)
+    Four rows[4];
+    for (int j = 0; j < 4; ++j)
     {
-      result[m + n] += planes[0][m] * wz[0][n] + planes[1][m] * wz[1][n] + planes[2][m] * wz[2][n] +
-        planes[3][m] * wz[3][n];
+      const double* p = points + 4 * j;
+      rows[j] = LoadFour(p) * wz[0][n] + LoadFour(p + 16) * wz[1][n] + LoadFour(p + 32) * wz[2][n] +
+        LoadFour(p + 48) * wz[3][n];
+    }
+    for (int m = 0; m < 4; ++m)
+    {
+      const Four sum =
+        rows[0] * wy[0][m] + rows[1] * wy[1][m] + rows[2] * wy[2][m] + rows[3] * wy[3][m];
+      columns[m + n] = n == 0 || m == 3 ? sum : columns[m + n] + sum;
     }
   }
+  // along x for its coefficients side by side
+  alignas(32) double products[7][4];
+  for (int m = 0; m < 7; ++m)
+  {
+    const Four product =
+      columns[m][0] * wx[0] + columns[m][1] * wx[1] + columns[m][2] * wx[2] + columns[m][3] * wx[3];
+    for (int n = 0; n < 4; ++n)
+    {
+      products[m][n] = product[n];
+    }
+  }
+  const auto p = products;
+  result[0] = p[0][0];
+  result[1] = p[1][0] + p[0][1];
+  result[2] = p[2][0] + p[1][1] + p[0][2];
+  for (int m = 3; m < 7; ++m)
+  {
+    result[m] = (p[m][0] + p[m - 1][1]) + (p[m - 2][2] + p[m - 3][3]);
+  }
+  result[7] = p[6][1] + p[5][2] + p[4][3];
+  result[8] = p[6][2] + p[5][3];
+  result[9] = p[6][3];
 }
 
 void ComposeLinear(const double* points, const double (*wx)[2], const double (*wy)[2],
@@ -274,6 +298,67 @@ ScaledBernstein TensorCell<S>::Along(const Vec3& from, const Vec3& to) const
   return p;
 }
 
+namespace
+{
+template <int S>
+LACUNA_INLINE void FourAlongAxis(
+  const double* points, int axis, const Four* from, const Four* to, Four* coefficients)
+{
+  const int steps[3] = { 1, S, S * S };
+  const int u = axis == 0 ? 1 : 0;
+  const int v = axis == 2 ? 1 : 2;
+  Four wu[S];
+  Four wv[S];
+  Basis<S>::Value(from[u], wu);
+  Basis<S>::Value(from[v], wv);
+  Four b[S][S];
+  Basis<S>::Bernstein(from[axis], to[axis], b);
+  for (int c = 0; c < S; ++c)
+  {
+    Four rest{};
+    for (int j = 0; j < S; ++j)
+    {
+      const double* p = points + c * steps[axis] + j * steps[v];
+      Four row = p[0] * wu[0] + p[steps[u]] * wu[1];
+      if constexpr (S == 4)
+      {
+        row += p[2 * steps[u]] * wu[S - 2] + p[3 * steps[u]] * wu[S - 1];
+      }
+      rest += row * wv[j];
+    }
+    for (int m = 0; m < S; ++m)
+    {
+      coefficients[m] = c == 0 ? rest * b[c][m] : coefficients[m] + rest * b[c][m];
+    }
+  }
+}
+
+LACUNA_WIDE void FourCubicAlongAxis(
+  const double* points, int axis, const Four* from, const Four* to, Four* coefficients)
+{
+  FourAlongAxis<4>(points, axis, from, to, coefficients);
+}
+
+LACUNA_WIDE void FourLinearAlongAxis(
+  const double* points, int axis, const Four* from, const Four* to, Four* coefficients)
+{
+  FourAlongAxis<2>(points, axis, from, to, coefficients);
+}
+}
+
+template <int S>
+void TensorCell<S>::FourAlong(int axis, const Four* from, const Four* to, Four* coefficients) const
+{
+  if constexpr (S == 4)
+  {
+    FourCubicAlongAxis(this->Points, axis, from, to, coefficients);
+  }
+  else
+  {
+    FourLinearAlongAxis(this->Points, axis, from, to, coefficients);
+  }
+}
+
 template <int S>
 double TensorCell<S>::Value(const Vec3& at) const
 {
@@ -330,12 +415,21 @@ LACUNA_INLINE void ContractGradient(
 
 LACUNA_WIDE void CubicGradient(const double* points, const Vec3& at, double* gradient)
 {
+  // the axes side by side
+  const Four x{ at[0], at[1], at[2], 0 };
+  Four value[4];
+  Four slope[4];
+  Basis<4>::Value(x, value);
+  Basis<4>::Slope(x, slope);
   double w[3][4];
   double d[3][4];
   for (int axis = 0; axis < 3; ++axis)
   {
-    Basis<4>::Value(at[axis], w[axis]);
-    Basis<4>::Slope(at[axis], d[axis]);
+    for (int i = 0; i < 4; ++i)
+    {
+      w[axis][i] = value[i][axis];
+      d[axis][i] = slope[i][axis];
+    }
   }
   ContractGradient<4>(points, w, d, gradient);
 }

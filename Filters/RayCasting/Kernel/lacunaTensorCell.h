@@ -9,6 +9,7 @@
 #define lacunaTensorCell_h
 
 #include "lacunaBernstein.h"
+#include "lacunaFour.h"
 #include "lacunaVector.h"
 
 namespace lacuna
@@ -29,6 +30,10 @@ struct TensorCell
   /// degree Degree times the number of axes along which the line moves. Every coefficient is a
   /// convex combination of the control points, so rounding errors stay at some 1e-16 of them.
   ScaledBernstein Along(const Vec3& from, const Vec3& to) const;
+
+  /// The same of four lines along one axis at once: coefficients[m][l] of line l from
+  /// (from[0][l], from[1][l], from[2][l]) to to.
+  void FourAlong(int axis, const Four* from, const Four* to, Four* coefficients) const;
 
   double Value(const Vec3& at) const;
   /// Per voxel step along each axis.

@@ -15,17 +15,22 @@ TileCaster<Support>::TileCaster(
   : Field(field)
   , Rays(rays)
   , Projection(projection)
-  , InverseB{ 1 / rays.First.B[0], 1 / rays.First.B[1], 1 / rays.First.B[2] }
   , Blocks(field)
 {
   const Vec3& b = rays.First.B;
   const double fastest = std::max(std::max(std::abs(b[0]), std::abs(b[1])), std::abs(b[2]));
   const Index& size = field.GetSize();
   const double length = 1.0 * size[0] + size[1] + size[2]; // no ray crosses more voxels
+  int still = 0;
   for (int a = 0; a < 3; ++a)
   {
-    this->Stops[a] = rays.Parallel && b[a] == 0;
     this->StandsStill[a] = rays.Parallel && std::abs(b[a]) * length < NoMove * fastest;
+    still += b[a] == 0;
+    this->Axis = b[a] == 0 ? this->Axis : a;
+  }
+  if (!rays.Parallel || still != 2)
+  {
+    this->Axis = -1;
   }
 }
 
@@ -141,115 +146,125 @@ void TileCaster<Support>::CastBlock(const Index& block, const PixelBox& box)
       {
         return;
       }
-      if (this->Rays.Parallel)
-      {
-        this->template CastCell<true>(cell, cellBox);
-      }
-      else
-      {
-        this->template CastCell<false>(cell, cellBox);
-      }
+      this->CastCell(cell, cellBox);
     });
 }
 
 template <int Support>
-template <bool Parallel>
 void TileCaster<Support>::CastCell(const Index& cell, const PixelBox& box)
 {
-  CellPlanes planes{};
-  bool hasPlanes = false;
-  TensorCell<Support> points;
-  bool hasPoints = false;
-  Vec3 low;
-  Vec3 high;
+  CellAtWork work;
+  work.Cell = cell;
   for (int a = 0; a < 3; ++a)
   {
     // A line in a face of the volume may miss it by rounding only: the faces' tolerance counts for
     // the axes along which the line stands still.
     const bool still = this->StandsStill[a];
-    low[a] = cell[a] - (still && cell[a] == 0 ? FaceTolerance : 0);
-    high[a] = cell[a] + 1 + (still && cell[a] == this->Field.GetSize()[a] - 2 ? FaceTolerance : 0);
+    work.Low[a] = cell[a] - (still && cell[a] == 0 ? FaceTolerance : 0);
+    work.High[a] =
+      cell[a] + 1 + (still && cell[a] == this->Field.GetSize()[a] - 2 ? FaceTolerance : 0);
   }
-  // The polynomial along an axis is found as fast as the planes.
-  const bool usePlanes = !(Support == 4 && this->Stops[0] + this->Stops[1] + this->Stops[2] == 2);
-  // The tolerance of the block's points is for floats, of 24 bits; here it is doubles, of 53.
-  const double doubt = this->Points.Tolerance * 1e-6;
   const std::uint64_t columns = this->Columns(box);
+  RayBatch batch;
   for (int row = box.FirstRow; row <= box.LastRow; ++row)
   {
     const int line = row - this->Extent[2];
     for (std::uint64_t open = this->Open[line] & columns; open; open &= open - 1)
     {
       const int column = __builtin_ctzll(open);
-      const Ray ray = this->Rays.Get(this->Extent[0] + column, row);
-      double t0 = -std::numeric_limits<double>::infinity();
-      double t1 = std::numeric_limits<double>::infinity();
-      if (this->Spans)
+      const RaySpan span = this->Spans ? this->Spans[Width * line + column] : RaySpan{};
+      batch.Column[batch.Count] = this->Extent[0] + column;
+      batch.Row[batch.Count] = row;
+      batch.First[batch.Count] = span.First;
+      batch.Last[batch.Count] = span.Last;
+      if (++batch.Count == RayBatch::Lanes)
       {
-        t0 = this->Spans[Width * line + column].First;
-        t1 = this->Spans[Width * line + column].Last;
+        this->CastBatch(work, batch);
+        batch.Count = 0;
       }
-      bool within = true;
-      for (int a = 0; a < 3; ++a)
-      {
-        if (Parallel ? this->Stops[a] : ray.B[a] == 0)
-        {
-          within = within && ray.A[a] >= low[a] && ray.A[a] < high[a];
-          continue;
-        }
-        const double inverse = Parallel ? this->InverseB[a] : 1 / ray.B[a];
-        const double u = (low[a] - ray.A[a]) * inverse;
-        const double v = (high[a] - ray.A[a]) * inverse;
-        t0 = std::max(t0, std::min(u, v));
-        t1 = std::min(t1, std::max(u, v));
-      }
-      if (!within || !(t0 < t1))
-      {
-        continue;
-      }
-      const Vec3 from = LocalPoint(ray, cell, t0);
-      const Vec3 to = LocalPoint(ray, cell, t1);
-      if (usePlanes)
-      {
-        if (!hasPlanes)
-        {
-          planes = this->Points.FindPlanes(cell[0] & 3, cell[1] & 3, cell[2] & 3);
-          hasPlanes = true;
-        }
-        const Vec3& n = planes.Slope;
-        const double u = Dot(n, from);
-        const double v = Dot(n, to);
-        if (std::max(u, v) + planes.High < 0 || std::min(u, v) + planes.Low > 0)
-        {
-          continue;
-        }
-      }
-      if (!hasPoints)
-      {
-        this->Field.GetCell(cell, points);
-        hasPoints = true;
-      }
-      double s;
-      RayEntry& entry = this->Out->Entries[Width * line + column];
-      bool found = false;
-      switch (SearchCellAlone(points, from, to, doubt, s))
-      {
-        case CellFinding::Nothing:
-          continue;
-        case CellFinding::Entry:
-          entry.T = t0 + s * (t1 - t0);
-          entry.Gradient = points.Gradient(LocalPoint(ray, cell, entry.T));
-          found = true;
-          break;
-        case CellFinding::Doubt:
-          found = FieldWalker<Support>(this->Blocks, ray)
-                    .FindEntry(this->Spans ? this->Spans[Width * line + column] : RaySpan{}, entry);
-          break;
-      }
-      const std::uint64_t bit = std::uint64_t(1) << column;
-      this->Open[line] &= ~bit;
-      this->Out->Found[line] |= found ? bit : 0;
     }
+  }
+  if (batch.Count > 0)
+  {
+    this->CastBatch(work, batch);
+  }
+}
+
+template <int Support>
+void TileCaster<Support>::CastBatch(CellAtWork& work, RayBatch& batch)
+{
+  const Index& cell = work.Cell;
+  unsigned lanes = batch.Clip(this->Rays, cell, work.Low, work.High);
+  if (!lanes)
+  {
+    return;
+  }
+  if (this->Axis < 0)
+  {
+    if (!work.HasPlanes)
+    {
+      work.Planes = this->Points.FindPlanes(cell[0] & 3, cell[1] & 3, cell[2] & 3);
+      work.HasPlanes = true;
+    }
+    lanes &= batch.FindBetween(work.Planes);
+    if (!lanes)
+    {
+      return;
+    }
+  }
+  if (!work.HasPoints)
+  {
+    this->Field.GetCell(cell, work.Points);
+    work.HasPoints = true;
+  }
+  // The tolerance of the block's points is for floats, of 24 bits; here it is doubles, of 53.
+  const double doubt = this->Points.Tolerance * 1e-6;
+  Four along[Support];
+  if (this->Axis >= 0)
+  {
+    work.Points.FourAlong(this->Axis, batch.From, batch.To, along);
+    lanes &= RayBatch::FindChanges(along, Support, doubt);
+  }
+  for (; lanes; lanes &= lanes - 1)
+  {
+    const int lane = __builtin_ctz(lanes);
+    const Vec3 from = batch.GetFrom(lane);
+    const Vec3 to = batch.GetTo(lane);
+    ScaledBernstein p;
+    if (this->Axis < 0)
+    {
+      p = work.Points.Along(from, to);
+    }
+    else
+    {
+      p.Degree = Support - 1;
+      for (int m = 0; m < Support; ++m)
+      {
+        p.A[m] = along[m][lane];
+      }
+    }
+    const int line = static_cast<int>(batch.Row[lane]) - this->Extent[2];
+    const int column = static_cast<int>(batch.Column[lane]) - this->Extent[0];
+    RayEntry& entry = this->Out->Entries[Width * line + column];
+    bool found = false;
+    double s;
+    switch (SearchCellAlone(work.Points, p, from, to, doubt, s))
+    {
+      case CellFinding::Nothing:
+        continue;
+      case CellFinding::Entry:
+        entry.T = batch.First[lane] + s * (batch.Last[lane] - batch.First[lane]);
+        entry.Gradient = work.Points.Gradient(LocalPoint(batch.GetRay(lane), cell, entry.T));
+        found = true;
+        break;
+      case CellFinding::Doubt:
+        found = FieldWalker<Support>(this->Blocks, batch.GetRay(lane))
+                  .FindEntry(this->Spans ? this->Spans[Width * line + column] : RaySpan{}, entry);
+        break;
+    }
+    const std::uint64_t bit = std::uint64_t(1) << column;
+    this->Open[line] &= ~bit;
+    this->Out->Found[line] |= found ? bit : 0;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "lacunaBlockProjection.h"
 #include "lacunaCellSearch.h"
 #include "lacunaFieldBlocks.h"
+#include "lacunaRayBatch.h"
 #include "lacunaSurfaceBlocks.h"
 
 #include <array>
@@ -47,9 +48,21 @@ public:
   void Cast(const std::array<int, 4>& extent, const RaySpan* spans, TileEntries& result);
 
 private:
+  /// What is found out about a cell when its first ray asks for it.
+  struct CellAtWork
+  {
+    Index Cell;
+    Vec3 Low;
+    Vec3 High;
+    CellPlanes Planes;
+    bool HasPlanes = false;
+    TensorCell<Support> Points;
+    bool HasPoints = false;
+  };
+
   void CastBlock(const Index& block, const PixelBox& box);
-  template <bool Parallel>
   void CastCell(const Index& cell, const PixelBox& box);
+  void CastBatch(CellAtWork& work, RayBatch& batch);
   template <class Body>
   void ForEach(std::uint64_t set, const Index& bigger, int shift, const Body& body) const;
 
@@ -74,10 +87,8 @@ private:
   const FieldBlocks<Support>& Field;
   RayGrid Rays;
   const BlockProjection& Projection;
-  // of a parallel projection:
-  Vec3 InverseB;
-  std::array<bool, 3> Stops;       ///< the rays' B is 0 along an axis
-  std::array<bool, 3> StandsStill; ///< the rays move along it by rounding only
+  std::array<bool, 3> StandsStill; ///< along an axis parallel rays move by rounding only
+  int Axis = -1;                   ///< parallel rays go along this one alone
   SurfaceBlocks<Support> Blocks;   ///< for rays followed alone
   BlockPoints<Support> Points;     ///< of the block at work
   std::array<std::uint64_t, Width> Open;

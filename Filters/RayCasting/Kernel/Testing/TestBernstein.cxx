@@ -17,6 +17,7 @@ ScaledBernstein TimesRoot(const ScaledBernstein& p, double root)
 {
   ScaledBernstein product;
   product.Degree = p.Degree + 1;
+  product.A.fill(0);
   for (int i = 0; i <= p.Degree; ++i)
   {
     product.A[i] -= p.A[i] * root;
