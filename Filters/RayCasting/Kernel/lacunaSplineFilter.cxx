@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSplineFilter.h"
 
-#include "lacunaFieldBounds.h"
+#include "lacunaWide.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -27,29 +28,72 @@ std::vector<double> Factors(int n)
   return factors;
 }
 
-/// Solves count adjacent lines of n values, stride apart, in place (Thomas's algorithm).
-void Solve(float* values, std::int64_t stride, int n, std::int64_t count,
-  const std::vector<double>& factors, std::vector<double>& work)
+/// Solves Lanes lines of n values side by side, in place (Thomas's algorithm): lane l of value i is
+/// values[i * stride + l]. work: n * Lanes.
+LACUNA_WIDE void SolveLanes(
+  float* values, std::int64_t stride, int n, const double* factors, double* __restrict work)
 {
-  work.resize(n * Lanes);
-  for (std::int64_t l = 0; l < count; ++l)
+  for (std::int64_t l = 0; l < Lanes; ++l)
   {
     work[l] = values[l];
   }
   for (int i = 1; i + 1 < n; ++i)
   {
     // row 0 and row n - 1 are c = f: no factor eliminates row 0 from row 1
-    for (std::int64_t l = 0; l < count; ++l)
+    const float* in = values + i * stride;
+    double* out = work + i * Lanes;
+    for (std::int64_t l = 0; l < Lanes; ++l)
     {
-      work[i * Lanes + l] = (6.0 * values[i * stride + l] - work[(i - 1) * Lanes + l]) * factors[i];
+      out[l] = (6.0 * in[l] - out[l - Lanes]) * factors[i];
     }
   }
   for (int i = n - 2; i > 0; --i)
   {
-    for (std::int64_t l = 0; l < count; ++l)
+    float* out = values + i * stride;
+    const double* solved = work + i * Lanes;
+    for (std::int64_t l = 0; l < Lanes; ++l)
     {
-      const double next = values[(i + 1) * stride + l];
-      values[i * stride + l] = static_cast<float>(work[i * Lanes + l] - factors[i] * next);
+      out[l] = static_cast<float>(solved[l] - factors[i] * out[stride + l]);
+    }
+  }
+}
+
+/// The memory of a thread.
+struct Workspace
+{
+  std::vector<double> Work;
+  std::vector<float> Block;
+};
+
+/// Solves count lines of n values; value i of line l is values[i * stride + l * step].
+void Solve(float* values, std::int64_t stride, std::int64_t step, int n, std::int64_t count,
+  const std::vector<double>& factors, Workspace& space)
+{
+  space.Work.resize(n * Lanes);
+  for (std::int64_t first = 0; first < count; first += Lanes)
+  {
+    float* corner = values + first * step;
+    const std::int64_t lanes = std::min(Lanes, count - first);
+    if (step == 1 && lanes == Lanes)
+    {
+      SolveLanes(corner, stride, n, factors.data(), space.Work.data());
+      continue;
+    }
+    space.Block.resize(n * Lanes);
+    for (std::int64_t l = 0; l < lanes; ++l)
+    {
+      for (int i = 0; i < n; ++i)
+      {
+        space.Block[i * Lanes + l] = corner[i * stride + l * step];
+      }
+    }
+    SolveLanes(space.Block.data(), Lanes, n, factors.data(), space.Work.data());
+    for (std::int64_t l = 0; l < lanes; ++l)
+    {
+      for (int i = 0; i < n; ++i)
+      {
+        corner[i * stride + l * step] = space.Block[i * Lanes + l];
+      }
     }
   }
 }
@@ -65,20 +109,21 @@ void FindRange(
   execution.For(count, 1 << 18,
     [&](std::int64_t begin, std::int64_t end)
     {
-      double low = std::numeric_limits<double>::infinity();
-      double high = -std::numeric_limits<double>::infinity();
+      using Limits = std::numeric_limits<T>;
+      T low = Limits::has_infinity ? Limits::infinity() : Limits::max();
+      T high = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
       std::int64_t bad = 0;
       for (std::int64_t i = begin; i < end; ++i)
       {
-        const double v = static_cast<double>(voxels[i]);
-        const bool finite = std::isfinite(v);
+        const T v = voxels[i];
+        const bool finite = !Limits::has_infinity || std::isfinite(static_cast<double>(v));
         bad += !finite;
         low = finite && v < low ? v : low;
         high = finite && v > high ? v : high;
       }
       const std::lock_guard<std::mutex> lock(mutex);
-      result.Minimum = std::min(result.Minimum, low);
-      result.Maximum = std::max(result.Maximum, high);
+      result.Minimum = std::min(result.Minimum, static_cast<double>(low));
+      result.Maximum = std::max(result.Maximum, static_cast<double>(high));
       result.NumberOfNonFinite += bad;
     });
 }
@@ -106,30 +151,30 @@ SplineCoefficients FilterToCoefficients(
         });
     });
 
-  const std::int64_t row = volume.Size[0];
-  const std::int64_t slice = row * volume.Size[1];
+  const std::array<int, 3>& size = volume.Size;
+  const std::int64_t row = size[0];
+  const std::int64_t slice = row * size[1];
   float* values = result.Values.data();
-  // along y and z neighbouring lines are adjacent in memory
-  const auto pass = [&](int n, std::int64_t stride, std::int64_t outer, std::int64_t outerStride,
-                      std::int64_t lines)
-  {
-    const std::vector<double> factors = Factors(n);
-    const std::int64_t groups = (lines + Lanes - 1) / Lanes;
-    execution.For(outer * groups, 16,
-      [&](std::int64_t begin, std::int64_t end)
+  const std::vector<double> factors[3] = { Factors(size[0]), Factors(size[1]), Factors(size[2]) };
+  execution.For((slice + Lanes - 1) / Lanes, 16,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Workspace space;
+      const std::int64_t first = begin * Lanes;
+      Solve(
+        values + first, slice, 1, size[2], std::min(end * Lanes, slice) - first, factors[2], space);
+    });
+  // the other two while the slice is in the cache
+  execution.For(size[2], 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      Workspace space;
+      for (std::int64_t k = begin; k < end; ++k)
       {
-        std::vector<double> work;
-        for (std::int64_t g = begin; g < end; ++g)
-        {
-          const std::int64_t first = g % groups * Lanes;
-          Solve(values + g / groups * outerStride + first, stride, n,
-            std::min(Lanes, lines - first), factors, work);
-        }
-      });
-  };
-  pass(volume.Size[2], slice, 1, 0, slice);
-  pass(volume.Size[1], row, volume.Size[2], slice, row);
-  pass(volume.Size[0], 1, static_cast<std::int64_t>(volume.Size[1]) * volume.Size[2], row, 1);
+        Solve(values + k * slice, row, 1, size[1], row, factors[1], space);
+        Solve(values + k * slice, 1, row, size[0], size[1], factors[0], space);
+      }
+    });
   return result;
 }
 }

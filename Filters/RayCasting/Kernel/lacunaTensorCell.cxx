@@ -92,11 +92,6 @@ struct Basis<2>
     w[0] = 1 - x;
     w[1] = x;
   }
-  LACUNA_INLINE static void Slope(double, double w[2])
-  {
-    w[0] = -1;
-    w[1] = 1;
-  }
   template <class Real>
   LACUNA_INLINE static void Bernstein(const Real& x0, const Real& x1, Real w[2][2])
   {
@@ -379,59 +374,53 @@ double TensorCell<S>::Value(const Vec3& at) const
 
 namespace
 {
-template <int S>
-LACUNA_INLINE void ContractGradient(
-  const double* points, const double (*w)[S], const double (*d)[S], double* gradient)
-{
-  // first along y and z over whole rows, which vectorises, then along x
-  alignas(32) double value[S] = {};
-  alignas(32) double dy[S] = {};
-  alignas(32) double dz[S] = {};
-  for (int k = 0; k < S; ++k)
-  {
-    const double* p = points + S * S * k;
-    for (int i = 0; i < S; ++i)
-    {
-      double row = w[1][0] * p[i] + w[1][1] * p[i + S];
-      double slope = d[1][0] * p[i] + d[1][1] * p[i + S];
-      if constexpr (S == 4)
-      {
-        row += w[1][S - 2] * p[i + 2 * S] + w[1][S - 1] * p[i + 3 * S];
-        slope += d[1][S - 2] * p[i + 2 * S] + d[1][S - 1] * p[i + 3 * S];
-      }
-      value[i] += w[2][k] * row;
-      dy[i] += w[2][k] * slope;
-      dz[i] += d[2][k] * row;
-    }
-  }
-  gradient[0] = gradient[1] = gradient[2] = 0;
-  for (int i = 0; i < S; ++i)
-  {
-    gradient[0] += d[0][i] * value[i];
-    gradient[1] += w[0][i] * dy[i];
-    gradient[2] += w[0][i] * dz[i];
-  }
-}
-
 LACUNA_WIDE void CubicGradient(const double* points, const Vec3& at, double* gradient)
 {
-  // the axes side by side
+  // weights of the axes side by side
   const Four x{ at[0], at[1], at[2], 0 };
-  Four value[4];
-  Four slope[4];
-  Basis<4>::Value(x, value);
-  Basis<4>::Slope(x, slope);
-  double w[3][4];
-  double d[3][4];
+  Four w[4];
+  Four d[4];
+  Basis<4>::Value(x, w);
+  Basis<4>::Slope(x, d);
+  // along y and z for all points along x side by side
+  Four value;
+  Four alongY;
+  Four alongZ;
+  for (int k = 0; k < 4; ++k)
+  {
+    const double* p = points + 16 * k;
+    const Four p0 = LoadFour(p);
+    const Four p1 = LoadFour(p + 4);
+    const Four p2 = LoadFour(p + 8);
+    const Four p3 = LoadFour(p + 12);
+    const Four row = (p0 * w[0][1] + p1 * w[1][1]) + (p2 * w[2][1] + p3 * w[3][1]);
+    const Four slope = (p0 * d[0][1] + p1 * d[1][1]) + (p2 * d[2][1] + p3 * d[3][1]);
+    value = k == 0 ? row * w[k][2] : value + row * w[k][2];
+    alongY = k == 0 ? slope * w[k][2] : alongY + slope * w[k][2];
+    alongZ = k == 0 ? row * d[k][2] : alongZ + row * d[k][2];
+  }
+  gradient[0] =
+    (value[0] * d[0][0] + value[1] * d[1][0]) + (value[2] * d[2][0] + value[3] * d[3][0]);
+  gradient[1] =
+    (alongY[0] * w[0][0] + alongY[1] * w[1][0]) + (alongY[2] * w[2][0] + alongY[3] * w[3][0]);
+  gradient[2] =
+    (alongZ[0] * w[0][0] + alongZ[1] * w[1][0]) + (alongZ[2] * w[2][0] + alongZ[3] * w[3][0]);
+}
+
+void LinearGradient(const double* points, const Vec3& at, double* gradient)
+{
   for (int axis = 0; axis < 3; ++axis)
   {
-    for (int i = 0; i < 4; ++i)
+    const int u = axis == 0 ? 1 : 0;
+    const int v = axis == 2 ? 1 : 2;
+    gradient[axis] = 0;
+    for (int n = 0; n < 4; ++n)
     {
-      w[axis][i] = value[i][axis];
-      d[axis][i] = slope[i][axis];
+      const double* p = points + ((n & 1) << u) + ((n >> 1) << v);
+      gradient[axis] +=
+        (n & 1 ? at[u] : 1 - at[u]) * (n >> 1 ? at[v] : 1 - at[v]) * (p[1 << axis] - p[0]);
     }
   }
-  ContractGradient<4>(points, w, d, gradient);
 }
 }
 
@@ -445,14 +434,7 @@ Vec3 TensorCell<S>::Gradient(const Vec3& at) const
   }
   else
   {
-    double w[3][S];
-    double d[3][S];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      Basis<S>::Value(at[axis], w[axis]);
-      Basis<S>::Slope(at[axis], d[axis]);
-    }
-    ContractGradient<S>(this->Points, w, d, gradient.data());
+    LinearGradient(this->Points, at, gradient.data());
   }
   return gradient;
 }

@@ -128,11 +128,12 @@ TEST(Bernstein, ZeroCountsAsPositive)
 {
   ScaledBernstein zero;
   zero.Degree = 9;
+  zero.A.fill(0);
   double s = -1;
   EXPECT_FALSE(FindFirstSignChange(zero, s)); // a plateau at the iso-value is solid throughout
   ScaledBernstein falling;
   falling.Degree = 1;
-  falling.A[1] = -1;
+  falling.A = { 0, -1 };
   ASSERT_TRUE(FindFirstSignChange(falling, s));
   EXPECT_NEAR(s, 0, 1e-12);
   ScaledBernstein reaching;
