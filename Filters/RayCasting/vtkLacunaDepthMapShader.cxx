@@ -8,15 +8,14 @@
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaFieldData.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkMatrix4x4.h"
+#include "vtkLacunaShadows.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -29,13 +28,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
-#include <tuple>
 
 namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
-
-constexpr double BiasPerVoxel = 0.1;
 
 void CheckChoice(const char* name, int value, int count)
 {
@@ -46,22 +42,13 @@ void CheckChoice(const char* name, int value, int count)
   }
 }
 
-/// (i, j, k) counted from the volume's first voxel to world mm.
-lacuna::Matrix4 IndexToWorld(vtkImageData* volume)
-{
-  const int* extent = volume->GetExtent();
-  return lacuna::Matrix4(volume->GetIndexToPhysicalMatrix()->GetData()) *
-    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
-      static_cast<double>(extent[4]) });
-}
-
 /// The sphere around the box of a volume's voxel centres.
 lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
 {
   const int* dimensions = volume->GetDimensions();
   const lacuna::Vec3 half{ 0.5 * (dimensions[0] - 1), 0.5 * (dimensions[1] - 1),
     0.5 * (dimensions[2] - 1) };
-  const lacuna::Matrix4 toWorld = IndexToWorld(volume);
+  const lacuna::Matrix4 toWorld = vtkLacunaVolumeCaster::IndexToWorld(volume);
   lacuna::Sphere sphere;
   sphere.Centre = toWorld.Point(half);
   for (int corner = 0; corner < 4; ++corner)
@@ -72,121 +59,28 @@ lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
   }
   return sphere;
 }
-
-/// The iso-value of the surface whose depths are in an array: number k of IsoValues for Depth_k, the
-/// first for all others.
-double IsoValueOf(vtkImageData* map, const std::string& depthArray)
-{
-  vtkDataArray* values = vtkLacunaFieldData::Find(map, vtkLacunaDepthMap::IsoValuesName, 1, -1);
-  const std::string further = std::string(vtkLacunaDepthMap::DepthName) + "_";
-  const long number =
-    depthArray.rfind(further, 0) == 0 ? std::atol(depthArray.c_str() + further.size()) : 0;
-  if (!values || number < 0 || number >= values->GetNumberOfTuples())
-  {
-    throw std::runtime_error(std::string("the depth map does not say in field data array '") +
-      vtkLacunaDepthMap::IsoValuesName + "' at which grey level '" + depthArray +
-      "' was found, which shadows need: disconnect the volume or turn CastShadows off");
-  }
-  return values->GetComponent(number, 0);
-}
 }
 
 //------------------------------------------------------------------------------
-/// The prepared volume is kept: other lights need it unchanged.
 class vtkLacunaDepthMapShader::Internals
 {
 public:
-  using Key =
-    std::tuple<vtkDataArray*, vtkMTimeType, std::array<int, 3>, std::array<double, 16>, int, int>;
-  Key CasterKey{};
-  /// What the caster refers to, in a memory layout that serves.
-  vtkSmartPointer<vtkDataArray> Voxels;
-  std::unique_ptr<lacuna::IsoRayCaster> Caster;
+  vtkLacunaShadows Shadows;
+  vtkSmartPointer<vtkImplicitFunction> CutAway;
 
-  static vtkDataArray* FindScalars(vtkLacunaDepthMapShader* self, vtkImageData* volume)
+  lacuna::ShadowCaster PrepareShadows(vtkLacunaDepthMapShader* self, vtkImageData* map,
+    vtkImageData* volume, vtkLacunaExecution& execution)
   {
-    vtkPointData* data = volume->GetPointData();
-    vtkDataArray* scalars =
-      self->VolumeArray.empty() ? data->GetScalars() : data->GetArray(self->VolumeArray.c_str());
-    if (!scalars || scalars->GetNumberOfComponents() != 1 ||
-      scalars->GetNumberOfTuples() != volume->GetNumberOfPoints())
-    {
-      throw std::runtime_error(
-        (self->VolumeArray.empty() ? std::string("the volume has no active point scalars")
-                                   : "the volume has no point array '" + self->VolumeArray + "'") +
-        " of one grey level per voxel, which shadows need");
-    }
-    return scalars;
-  }
-
-  lacuna::ShadowCaster Prepare(vtkLacunaDepthMapShader* self, vtkImageData* map,
-    vtkImageData* input, vtkLacunaExecution& execution)
-  {
-    vtkDataArray* scalars = FindScalars(self, input);
-    const int* dimensions = input->GetDimensions();
-    lacuna::VoxelVolume volume;
-    volume.Type = vtkLacunaScalarType::Get(scalars);
-    volume.Size = { dimensions[0], dimensions[1], dimensions[2] };
-    volume.IndexToWorld = IndexToWorld(input);
-    CheckLights(self, volume);
-    std::array<double, 16> matrix;
-    std::copy_n(volume.IndexToWorld.Data(), 16, matrix.begin());
-    const Key key{ scalars, scalars->GetMTime(), volume.Size, matrix, self->Interpolation,
-      self->SolidSide };
-    if (!this->Caster || key != this->CasterKey)
-    {
-      this->Caster.reset();
-      this->Voxels = scalars;
-      if (!scalars->HasStandardMemoryLayout())
-      {
-        this->Voxels.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-        this->Voxels->DeepCopy(scalars);
-      }
-      volume.Voxels = this->Voxels->GetVoidPointer(0);
-      this->Caster = std::make_unique<lacuna::IsoRayCaster>(volume,
-        static_cast<lacuna::FieldInterpolation>(self->Interpolation),
-        self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below, execution);
-      this->CasterKey = key;
-    }
-    lacuna::ShadowCaster shadows;
-    shadows.Caster = this->Caster.get();
-    shadows.IsoValue = IsoValueOf(map, self->DepthArray);
-    if (!(shadows.IsoValue >= this->Caster->GetMinimum() &&
-          shadows.IsoValue <= this->Caster->GetMaximum()))
-    {
-      vtkWarningWithObjectMacro(self,
-        "the map's iso-value " << shadows.IsoValue
-                               << " lies outside the volume's values, which range "
-                               << "from " << this->Caster->GetMinimum() << " to "
-                               << this->Caster->GetMaximum() << ": it throws no shadows");
-    }
-    const double* spacing = input->GetSpacing();
-    shadows.Bias = self->ShadowBias > 0 ? self->ShadowBias
-                                        : BiasPerVoxel *
-        std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
-    return shadows;
-  }
-
-  /// Shadow rays come from the light, so it has to be before all that may hide it.
-  static void CheckLights(vtkLacunaDepthMapShader* self, const lacuna::VoxelVolume& volume)
-  {
-    const lacuna::Matrix4 toIndex = volume.IndexToWorld.Inverse();
-    for (std::size_t i = 0; i < self->Lights.size(); ++i)
-    {
-      const auto& light = self->Lights[i];
-      const lacuna::Vec3 index = toIndex.Point({ light[0], light[1], light[2] });
-      bool inside = light[3] != 0;
-      for (int a = 0; a < 3; ++a)
-      {
-        inside = inside && index[a] > 0 && index[a] < volume.Size[a] - 1;
-      }
-      if (inside)
-      {
-        throw std::runtime_error("light " + std::to_string(i) +
-          " lies within the volume that throws shadows; move it out of the volume or turn "
-          "CastShadows off");
-      }
-    }
+    vtkLacunaShadows::Settings settings;
+    settings.DepthArray = self->DepthArray;
+    settings.VolumeArray = self->VolumeArray;
+    settings.Interpolation = self->Interpolation;
+    settings.SolidSide = self->SolidSide;
+    settings.Bias = self->ShadowBias;
+    settings.CutAway = this->CutAway;
+    settings.CapCutAway = self->CapCutAway;
+    settings.CapBoundary = self->CapBoundary;
+    return this->Shadows.Prepare(self, map, volume, settings, execution);
   }
 
   static lacuna::ShadingSettings MakeSettings(vtkLacunaDepthMapShader* self)
@@ -318,6 +212,9 @@ public:
       .Add("Interpolation", self->Interpolation)
       .Add("SolidSide", self->SolidSide)
       .Add("ShadowBias", self->ShadowBias)
+      .Add("CutAway", self->GetCutAway() ? self->GetCutAway()->GetClassName() : "None")
+      .Add("CapCutAway", self->CapCutAway)
+      .Add("CapBoundary", self->CapBoundary)
       .Get();
   }
 };
@@ -349,6 +246,30 @@ void vtkLacunaDepthMapShader::RemoveAllLights()
     this->Lights.clear();
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDepthMapShader::SetCutAway(vtkImplicitFunction* function)
+{
+  if (this->Internal->CutAway != function)
+  {
+    this->Internal->CutAway = function;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkImplicitFunction* vtkLacunaDepthMapShader::GetCutAway() const
+{
+  return this->Internal->CutAway;
+}
+
+//------------------------------------------------------------------------------
+vtkMTimeType vtkLacunaDepthMapShader::GetMTime()
+{
+  const vtkMTimeType time = this->Superclass::GetMTime();
+  vtkImplicitFunction* function = this->GetCutAway();
+  return function ? std::max(time, function->GetMTime()) : time;
 }
 
 //------------------------------------------------------------------------------
@@ -451,7 +372,7 @@ int vtkLacunaDepthMapShader::RequestData(
       const bool hasVolume = volume && volume->GetNumberOfPoints() > 0;
       if (hasVolume && this->CastShadows && this->Shading == Phong && !this->Lights.empty())
       {
-        shadows = this->Internal->Prepare(this, input, volume, execution);
+        shadows = this->Internal->PrepareShadows(this, input, volume, execution);
       }
       if (hasVolume)
       {

@@ -26,7 +26,9 @@
  * Lights: any number, parallel or at positions; none: one at the viewpoint. With a volume at the second
  * input, a point that the volume's surface hides from a light gets none of it. The iso-value is that of
  * the map's IsoValues; what lies nearer to the point than ShadowBias along the ray is the point's own
- * surface and throws no shadow. The light at the viewpoint throws none that could be seen.
+ * surface and throws no shadow, nor does what CutAway takes away or what lies behind a lamp. The light
+ * of a lamp in the solid has to leave the solid before it can be stopped. The light at the viewpoint
+ * throws no shadow that could be seen.
  *
  * Input 0: a depth map, see vtkLacunaDepthMap.h. Input 1 (optional): vtkImageData with point scalars of
  * one component, at least two voxels along each axis.
@@ -38,8 +40,7 @@
  * Requested extents are honoured.
  *
  * Errors: input 0 is no depth map or has no such DepthArray, no normals are stored, a setting is out
- * of range, a light has no direction or lies within the volume, the volume has no scalars or the map
- * no IsoValues.
+ * of range, a light has no direction, the volume has no scalars or the map no IsoValues.
  *
  * Source: Carr 1996, 3.3; Gordon & Reynolds 1985.
  *
@@ -55,6 +56,8 @@
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 #include <vector> // for std::vector
+
+class vtkImplicitFunction;
 
 class VTKLACUNAFILTERSRAYCASTING_EXPORT vtkLacunaDepthMapShader : public vtkImageAlgorithm
 {
@@ -112,13 +115,12 @@ public:
   ///@}
 
   ///@{
-  /** Of Predicate: what is steeper may be a discontinuity. Degrees, 0..90, default 65. */
+  /**
+   * Of Predicate: what is steeper may be a discontinuity (degrees, 0..90, default 65), and angles that
+   * differ less are one surface (0..180, default 20).
+   */
   vtkSetMacro(MaximumAngle, double);
   vtkGetMacro(MaximumAngle, double);
-  ///@}
-
-  ///@{
-  /** Of Predicate: angles that differ less are one surface. Degrees, 0..180, default 20. */
   vtkSetMacro(MaximumAngleChange, double);
   vtkGetMacro(MaximumAngleChange, double);
   ///@}
@@ -130,17 +132,16 @@ public:
   ///@}
 
   ///@{
-  /** Parts of the light, >= 0. Defaults 0.1, 0.7, 0.2: a surface towards the viewer is white. */
+  /**
+   * Parts of the light, >= 0. Defaults 0.1, 0.7, 0.2: a surface towards the viewer is white. And Phong's
+   * exponent: greater makes highlights smaller; at least 0.001, default 20.
+   */
   vtkSetMacro(Ambient, double);
   vtkGetMacro(Ambient, double);
   vtkSetMacro(Diffuse, double);
   vtkGetMacro(Diffuse, double);
   vtkSetMacro(Specular, double);
   vtkGetMacro(Specular, double);
-  ///@}
-
-  ///@{
-  /** Phong's exponent; greater makes highlights smaller. At least 0.001, default 20. */
   vtkSetMacro(SpecularPower, double);
   vtkGetMacro(SpecularPower, double);
   ///@}
@@ -156,13 +157,12 @@ public:
   ///@}
 
   ///@{
-  /** How much darker the far end of the data is, 0..1. Default 0. */
+  /**
+   * How much darker the far end of the data is (0..1, default 0), and how brightness falls with depth
+   * (default InverseSquare).
+   */
   vtkSetMacro(DepthCue, double);
   vtkGetMacro(DepthCue, double);
-  ///@}
-
-  ///@{
-  /** How brightness falls with depth. Default InverseSquare. */
   vtkSetMacro(DepthLaw, int);
   vtkGetMacro(DepthLaw, int);
   ///@}
@@ -176,20 +176,16 @@ public:
   ///@}
 
   ///@{
-  /** Whether the volume, if there is one, throws shadows. Default on. */
+  /**
+   * Whether the volume, if there is one, throws shadows (default on); its point array with the grey
+   * levels (default empty: the active scalars); the field between the voxels and its solid side, as the
+   * map was made (default BSpline, Above).
+   */
   vtkSetMacro(CastShadows, bool);
   vtkGetMacro(CastShadows, bool);
   vtkBooleanMacro(CastShadows, bool);
-  ///@}
-
-  ///@{
-  /** The volume's point array with the grey levels. Default empty: the active scalars. */
   vtkSetMacro(VolumeArray, std::string);
   vtkGetMacro(VolumeArray, std::string);
-  ///@}
-
-  ///@{
-  /** The field between the voxels and its solid side, as the map was made. Default BSpline, Above. */
   vtkSetMacro(Interpolation, int);
   vtkGetMacro(Interpolation, int);
   vtkSetMacro(SolidSide, int);
@@ -201,6 +197,24 @@ public:
   vtkSetMacro(ShadowBias, double);
   vtkGetMacro(ShadowBias, double);
   ///@}
+
+  ///@{
+  /**
+   * What throws no shadow: the volume where this function is negative; and whether the solid is opaque
+   * where it is cut and where the volume ends. As the map was made, see vtkLacunaBSplineIsoRayCaster.
+   * Default none, on, off.
+   */
+  void SetCutAway(vtkImplicitFunction* function);
+  vtkImplicitFunction* GetCutAway() const;
+  vtkSetMacro(CapCutAway, bool);
+  vtkGetMacro(CapCutAway, bool);
+  vtkBooleanMacro(CapCutAway, bool);
+  vtkSetMacro(CapBoundary, bool);
+  vtkGetMacro(CapBoundary, bool);
+  vtkBooleanMacro(CapBoundary, bool);
+  ///@}
+
+  vtkMTimeType GetMTime() override;
 
 protected:
   vtkLacunaDepthMapShader();
@@ -229,6 +243,8 @@ protected:
   int Interpolation = BSpline;
   int SolidSide = Above;
   double ShadowBias = 0;
+  bool CapCutAway = true;
+  bool CapBoundary = false;
   std::vector<std::array<double, 5>> Lights;
 
 private:

@@ -18,7 +18,7 @@ depth_map = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[0, 
 shader = DepthMapShader(Input=depth_map)
 algorithm = lacuna.vtkLacunaDepthMapShader()
 for name in ("MaximumAngle", "MaximumAngleChange", "Ambient", "Diffuse", "Specular", "SpecularPower", "DepthCue",
-             "SurfaceColor", "BackgroundColor", "CastShadows", "ShadowBias"):
+             "SurfaceColor", "BackgroundColor", "CastShadows", "CapCutAway", "CapBoundary", "ShadowBias"):
     shown, actual = getattr(shader, name), getattr(algorithm, "Get" + name)()
     assert (tuple(shown) if hasattr(shown, "__len__") else shown) == actual, name
 assert shader.DepthArray == algorithm.GetDepthArray() == "Depth"
@@ -28,6 +28,7 @@ enumerations = {"NormalMethod": "Stored", "Shading": "Phong", "DepthLaw": "Inver
 for name, text in enumerations.items():
     assert getattr(shader, name) == text, name
     assert getattr(algorithm, "Get" + name)() == 0, name
+assert type(shader.CutAway).__name__ == "None" and algorithm.GetCutAway() is None
 assert list(shader.Lights) == [] and algorithm.GetNumberOfLights() == 0
 
 
@@ -90,6 +91,22 @@ print(len(darker), "pixels in shadow")
 assert 150 < len(darker) < 0.2 * columns * rows, len(darker)
 off = picture(CastShadows=0)
 assert mean(off) == mean(slanting)
+
+# what is cut away throws no shadow, if the shader is told; lamps may stand inside the skull
+shader.CastShadows = 1
+depth_map.CutAway = "Plane"
+depth_map.CutAway.Origin, depth_map.CutAway.Normal = [0, 0, 0], [0, 0, -1]
+unaware = mean(picture(Specular=0))
+shader.CutAway = "Plane"
+shader.CutAway.Origin, shader.CutAway.Normal = [0, 0, 0], [0, 0, -1]
+aware = mean(picture())
+print("mean brightness inside an opened skull:", unaware, "with the calotte's shadow,", aware, "without it")
+assert aware > unaware + 10, (aware, unaware)
+off = mean(picture(CastShadows=0))
+assert aware < off, "the side of the skull throws its shadow still"
+depth_map.CutAway = shader.CutAway = "None"
+inside = mean(picture(CastShadows=1, Lights=[0, 0, 0, 1, 1]))
+assert inside > 25.5, "a lamp in the skull shows through its hole"
 
 # the depth cue darkens what is far, and colours are colours
 cue = picture(Lights=[], DepthCue=1, SurfaceColor=[1, 0.5, 0])

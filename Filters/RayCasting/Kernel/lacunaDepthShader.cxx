@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -43,10 +44,9 @@ void Store(const Vec3& color, unsigned char* out)
 class PointShader
 {
 public:
-  PointShader(const DepthGrid& grid, const ShadingSettings& settings, const ShadowCaster& shadows)
+  PointShader(const DepthGrid& grid, const ShadingSettings& settings)
     : Grid(grid)
     , Settings(settings)
-    , Shadows(shadows)
     , View(Normalized(grid.ImageToWorld.Column(2)))
   {
     const Sphere& data = settings.Data;
@@ -68,7 +68,8 @@ public:
     }
   }
 
-  Vec3 Color(const Vec3& point, const Vec3& ray, const Vec3& normal) const
+  Vec3 Color(
+    const Vec3& point, const Vec3& ray, const Vec3& normal, const ShadowProbe& shadows) const
   {
     const ShadingSettings& s = this->Settings;
     if (s.Model == ShadingModel::DepthOnly)
@@ -84,8 +85,11 @@ public:
     }
     for (const ShaderLight& light : this->Lights)
     {
-      const Vec3 towardsLight = light.IsPosition ? Normalized(light.Place - point) : light.Place;
-      if (Dot(normal, towardsLight) > 0 && !this->IsShadowed(point, towardsLight))
+      const Vec3 way = light.Place - point;
+      const Vec3 towardsLight = light.IsPosition ? Normalized(way) : light.Place;
+      const double distance =
+        light.IsPosition ? Norm(way) : std::numeric_limits<double>::infinity();
+      if (Dot(normal, towardsLight) > 0 && !shadows.IsShadowed(point, towardsLight, distance))
       {
         this->Reflect(normal, towardsLight, towardsViewer, light.Intensity, diffuse, specular);
       }
@@ -126,17 +130,8 @@ private:
     }
   }
 
-  bool IsShadowed(const Vec3& point, const Vec3& towardsLight) const
-  {
-    RayHit hit;
-    return this->Shadows.Caster &&
-      this->Shadows.Caster->CastRay(point, -1 * towardsLight, this->Shadows.IsoValue, hit) &&
-      hit.Distance < -this->Shadows.Bias;
-  }
-
   const DepthGrid& Grid;
   const ShadingSettings& Settings;
-  const ShadowCaster& Shadows;
   Vec3 View;
   double Near;
   double Far;
@@ -186,7 +181,7 @@ void ShadeDepths(const DepthGrid& grid, const float* normals, const ShadingSetti
   Execution& execution)
 {
   settings.Check();
-  const PointShader shader(grid, settings, shadows);
+  const PointShader shader(grid, settings);
   const std::int64_t columns = static_cast<std::int64_t>(extent[1]) - extent[0] + 1;
   const std::int64_t rows = static_cast<std::int64_t>(extent[3]) - extent[2] + 1;
   if (columns <= 0 || rows <= 0)
@@ -196,6 +191,7 @@ void ShadeDepths(const DepthGrid& grid, const float* normals, const ShadingSetti
   execution.For(rows, RowGrain,
     [&](std::int64_t begin, std::int64_t end)
     {
+      const ShadowProbe probe(shadows);
       for (std::int64_t i = begin * columns; i < end * columns; ++i)
       {
         const int column = static_cast<int>(extent[0] + i % columns);
@@ -207,8 +203,8 @@ void ShadeDepths(const DepthGrid& grid, const float* normals, const ShadingSetti
         }
         const Vec3 normal = normals ? Vec3{ normals[3 * i], normals[3 * i + 1], normals[3 * i + 2] }
                                     : Vec3{ 0, 0, 0 };
-        Store(
-          shader.Color(grid.PointOf(column, row), grid.RayOf(column, row), normal), colors + 3 * i);
+        Store(shader.Color(grid.PointOf(column, row), grid.RayOf(column, row), normal, probe),
+          colors + 3 * i);
       }
     });
 }

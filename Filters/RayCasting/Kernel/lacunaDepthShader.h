@@ -6,7 +6,7 @@
 
 #include "lacunaDepthGrid.h"
 #include "lacunaExecution.h"
-#include "lacunaIsoRayCaster.h"
+#include "lacunaShadowCaster.h"
 
 #include <array>
 #include <vector>
@@ -53,16 +53,6 @@ struct ShadingSettings
 
   /// Throws std::invalid_argument that names the setting that is out of range or not a number.
   void Check() const;
-};
-
-/// What throws shadows. A point gets no light from a source if its ray to the source meets the
-/// surface farther than Bias from the point; what meets it nearer is the point's own surface. Rays
-/// come from the light, so a light may not lie within the volume.
-struct ShadowCaster
-{
-  const IsoRayCaster* Caster = nullptr; ///< null: no shadows
-  double IsoValue = 0;
-  double Bias = 0; ///< mm
 };
 
 /// Colours the pixels of extent, which lies within the grid: 3 bytes each, row-major. normals: x 3 for

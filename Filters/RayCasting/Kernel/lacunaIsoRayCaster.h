@@ -81,6 +81,10 @@ public:
   double GetMaximum() const;
   std::int64_t GetNumberOfNonFiniteVoxels() const;
 
+  /// For rays that follow rules of their own.
+  const VoxelVolume& GetVolume() const { return this->Volume; }
+  const IsoField& GetField() const { return *this->Field; }
+
   /// The first hit of the straight line origin + distance * direction (unit), wherever it is on the
   /// line: distances before the origin are negative. False when there is none.
   bool CastRay(const Vec3& origin, const Vec3& direction, double isoValue, RayHit& hit) const;

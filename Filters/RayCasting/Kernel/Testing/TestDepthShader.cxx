@@ -317,7 +317,10 @@ TEST(DepthShader, ShadowOfABallIsAnEllipse)
   settings.Specular = 0;
   // from the left, 60 degrees off the vertical: semi-axes 8 and 16, its middle 14 tan 60 to the right
   const Vec3 towards{ -std::sqrt(0.75), 0, 0.5 };
-  const ShaderLight lights[] = { { towards, false, 1 }, { { -6, 10, 60 }, true, 1 } };
+  // and lamps: outside of the volume, in it beside the ball (which throws a shadow away from it only),
+  // and close to the ground under the ball
+  const ShaderLight lights[] = { { towards, false, 1 }, { { -6, 10, 60 }, true, 1 },
+    { { 34, 25, 15 }, true, 1 }, { { 15, 24, 7 }, true, 1 } };
   for (const ShaderLight& light : lights)
   {
     settings.Lights = { light };
@@ -336,8 +339,11 @@ TEST(DepthShader, ShadowOfABallIsAnEllipse)
       const bool ball = p[2] > BallOnPlane::Ground + 1;
       ASSERT_NEAR(ball ? Norm(d) : p[2], ball ? BallOnPlane::Radius : BallOnPlane::Ground, 1e-8);
       const Vec3 l = Normalized(light.IsPosition ? light.Place - p : light.Place);
-      // distance of the ball's centre from the line to the light
-      const double distance = Norm(d - Dot(d, l) * l);
+      // distance of the ball's centre from the line to the light, which ends there
+      const double end =
+        light.IsPosition ? Norm(light.Place - p) : std::numeric_limits<double>::infinity();
+      const double along = std::min(std::max(-Dot(d, l), 0.0), end);
+      const double distance = Norm(d + along * l);
       const Vec3 n = ball ? (1 / BallOnPlane::Radius) * d : Vec3{ 0, 0, 1 };
       const double cosine = Dot(n, l);
       if (ball ? std::abs(cosine) < 1e-6 : std::abs(distance - BallOnPlane::Radius) < 1e-6)

@@ -13,9 +13,11 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkSphere.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTrivialProducer.h"
@@ -251,12 +253,48 @@ void TestShadows()
   p.Shader->RemoveAllLights();
   p.Shader->AddLight(40, 26, 60, 1, 1);
   LACUNA_CHECK(p.At(6, 26) == 26 && p.At(30, 26) > 60);
-  // a lamp in the volume would have surface behind it
-  const auto messages = lacunaCheck::Watch(p.Shader);
-  p.Shader->AddLight(30, 26, 20, 1, 1);
-  p.Shader->Update();
-  LACUNA_CHECK_CONTAINS(messages->Errors, "light 1 lies within the volume");
-  LACUNA_CHECK(p.Shader->GetOutput()->GetNumberOfPoints() == 0);
+  // one within the volume throws the ball's shadow away from itself only
+  p.Shader->RemoveAllLights();
+  p.Shader->AddLight(30, 26, 25, 1, 1);
+  p.Shader->SetSpecular(0);
+  LACUNA_CHECK_THAT(p.At(6, 26) == 26, "behind the ball");
+  for (const double x : { 25.0, 30.0, 40.0 })
+  {
+    const double cosine = 19 / std::hypot(19, x - 30);
+    LACUNA_CHECK_NEAR(p.At(x, 26), 255 * (0.1 + 0.7 * cosine), 4);
+  }
+}
+
+void TestCutAway()
+{
+  Pipeline p;
+  p.Shader->SetInputConnection(1, p.Caster->GetInputConnection(0, 0));
+  p.Shader->AddLight(-1, 0, 1, 0, 1);
+  vtkNew<vtkSphere> ball;
+  ball->SetCenter(16, 26, 19);
+  ball->SetRadius(8);
+  p.Caster->SetCutAway(ball);
+  const int lit = p.At(45, 10);
+  LACUNA_CHECK_THAT(p.At(29, 26) == 26, "the map has no ball, but its shadow");
+  p.Shader->SetCutAway(ball);
+  LACUNA_CHECK(p.Shader->GetCutAway() == ball);
+  LACUNA_CHECK_THAT(p.At(29, 26) == lit && p.At(16, 26) == lit, "what is not there has no shadow");
+  ball->SetRadius(0.5); // the functions are watched
+  LACUNA_CHECK(p.At(29, 26) == 26);
+  // half a ball: its cut face stops the light unless it is open
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(16, 26, 19);
+  plane->SetNormal(0, 0, -1);
+  p.Caster->SetCutAway(plane);
+  p.Shader->SetCutAway(plane);
+  LACUNA_CHECK(p.At(29, 26) == 26);
+  p.Shader->CapCutAwayOff();
+  LACUNA_CHECK(p.At(29, 26) == lit);
+  std::ostringstream text;
+  p.Shader->Print(text);
+  LACUNA_CHECK_CONTAINS(text.str(), "CutAway=vtkPlane CapCutAway=0");
+  p.Shader->SetCutAway(nullptr);
+  LACUNA_CHECK(p.At(29, 26) == 26);
 }
 
 void TestPieces()
@@ -487,6 +525,7 @@ int TestDepthMapShader(int, char*[])
   TestMethodsAreTheKernels();
   TestDepthCue();
   TestShadows();
+  TestCutAway();
   TestPieces();
   TestPerspective();
   TestSurfaceCarriesColors();
