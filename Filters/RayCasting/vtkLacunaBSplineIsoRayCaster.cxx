@@ -19,7 +19,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeCaster.h"
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -35,11 +35,6 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <tuple>
-
-static_assert(vtkLacunaBSplineIsoRayCaster::Trilinear ==
-    static_cast<int>(lacuna::FieldInterpolation::Trilinear),
-  "the property is the kernel's enumeration");
 
 namespace
 {
@@ -71,16 +66,10 @@ lacuna::Matrix4 IndexToWorld(
 }
 
 //------------------------------------------------------------------------------
-/// The prepared volume is kept: a new view or iso-value of the same volume needs it unchanged.
 class vtkLacunaBSplineIsoRayCaster::Internals
 {
 public:
-  using Key =
-    std::tuple<vtkDataArray*, vtkMTimeType, std::array<int, 3>, std::array<double, 16>, int, int>;
-  Key CasterKey{};
-  /// What the caster refers to when the input's own memory layout does not serve.
-  vtkSmartPointer<vtkDataArray> Copy;
-  std::unique_ptr<lacuna::IsoRayCaster> Caster;
+  vtkLacunaVolumeCaster Caster;
 
   static lacuna::Vec3 Eye(vtkLacunaBSplineIsoRayCaster* self)
   {
@@ -192,36 +181,6 @@ public:
     const double greatest = std::max(below, above);
     return greatest > 1e5 * std::min(below, above) ||
       greatest > 1e10 * std::max(1.0, std::abs(isoValue));
-  }
-
-  const lacuna::IsoRayCaster& Prepare(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* input,
-    vtkDataArray* scalars, vtkLacunaExecution& execution)
-  {
-    lacuna::VoxelVolume volume;
-    volume.Type = vtkLacunaScalarType::Get(scalars);
-    volume.Size = SizeOf(input->GetExtent());
-    volume.IndexToWorld = IndexToWorld(input->GetOrigin(), input->GetSpacing(),
-      input->GetDirectionMatrix()->GetData(), input->GetExtent());
-    std::array<double, 16> matrix;
-    std::copy_n(volume.IndexToWorld.Data(), 16, matrix.begin());
-    const Key key{ scalars, scalars->GetMTime(), volume.Size, matrix, self->Interpolation,
-      self->SolidSide };
-    if (!this->Caster || key != this->CasterKey)
-    {
-      this->Caster.reset();
-      this->Copy = nullptr;
-      if (!scalars->HasStandardMemoryLayout())
-      {
-        this->Copy.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-        this->Copy->DeepCopy(scalars);
-      }
-      volume.Voxels = (this->Copy ? this->Copy.Get() : scalars)->GetVoidPointer(0);
-      this->Caster = std::make_unique<lacuna::IsoRayCaster>(volume,
-        static_cast<lacuna::FieldInterpolation>(self->Interpolation),
-        self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below, execution);
-      this->CasterKey = key;
-    }
-    return *this->Caster;
   }
 };
 
@@ -403,7 +362,8 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       const lacuna::ImagePlane plane =
         Internals::MakePlane(this, inputVector[0]->GetInformationObject(0));
       execution.SetStage(0, 0.1);
-      const lacuna::IsoRayCaster& caster = this->Internal->Prepare(this, input, scalars, execution);
+      const lacuna::IsoRayCaster& caster = this->Internal->Caster.Prepare(
+        input, scalars, this->Interpolation, this->SolidSide, execution);
 
       int extent[6];
       outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
@@ -440,8 +400,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       std::unique_ptr<lacuna::CutRegion> cutAway;
       if (this->CutAway)
       {
-        const lacuna::Matrix4 indexToWorld = IndexToWorld(input->GetOrigin(), input->GetSpacing(),
-          input->GetDirectionMatrix()->GetData(), input->GetExtent());
+        const lacuna::Matrix4& indexToWorld = caster.GetVolume().IndexToWorld;
         cutAway =
           vtkLacunaCutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(indexToWorld),
             lacuna::CornersOf(indexToWorld, SizeOf(input->GetExtent())));
