@@ -12,6 +12,14 @@ if (LACUNA_WITH_PARAVIEW)
   # 15 more. RemotingViews brings the X11 and GLEW targets of the C++ rendering tests.
   find_package(ParaView 5.11 REQUIRED
     COMPONENTS RemotingCore RemotingServerManager RemotingViews)
+  if (LACUNA_WITH_QT)
+    # what ParaView's component libraries link; asking for them as COMPONENTS would ask for Qt's help
+    find_package(Qt5 5.15 QUIET COMPONENTS Widgets OpenGL)
+    if (NOT Qt5_FOUND)
+      message(FATAL_ERROR "LACUNA_WITH_QT needs Qt 5 (Debian: qtbase5-dev libqt5opengl5-dev); "
+        "turn it off to do without the buttons in ParaView's properties panel")
+    endif ()
+  endif ()
   set(lacuna_flavor "pv${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}")
 else ()
   # ParaView carries a whole VTK: it serves when no plain VTK is installed.

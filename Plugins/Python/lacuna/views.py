@@ -61,5 +61,8 @@ def copy_camera(caster, view=None, rows=None):
             # the map's plane goes through the focal point, where the spacing of its pixels holds
             properties["EyePosition"] = properties["PlaneOrigin"]
             properties["PlaneOrigin"] = properties["FocalPoint"]
+            distance = math.dist(camera.GetPosition(), camera.GetFocalPoint())
+            shown = properties["PixelSpacing"] * properties["ImageSize"][1]
+            properties["ViewAngle"] = math.degrees(2 * math.atan(shown / 2 / distance))
     for name, value in properties.items():
         setattr(caster, name, value)
