@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Rules that a tool can check: format, license tags, kernels without VTK. With --tidy also
+# Rules that a tool can check: format, license tags, kernels without VTK, links of the pages. With --tidy also
 # clang-tidy on every source (needs build/release).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -23,6 +23,8 @@ bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
 [ -z "$bad" ] || complain "kernels must not include VTK: $bad"
 bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
+
+python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
 
 if [ "${1:-}" = --tidy ]; then
   cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
