@@ -85,19 +85,12 @@ public:
   ///@{
   /// How a row gives a pose: Matrix (12 or 16 columns), Quaternion (position and unit quaternion)
   /// or Euler (position, then degrees: azimuth about z, elevation about the new y, roll about the
-  /// new x). Default: Matrix.
+  /// new x). PoseTransform is what it maps, AToB turns coordinates in A into coordinates in B;
+  /// LengthUnit is that of the table. Default: Matrix, ProbeToReference, Millimetre.
   vtkSetClampMacro(PoseFormat, int, Matrix, Euler);
   vtkGetMacro(PoseFormat, int);
-  ///@}
-
-  ///@{
-  /// What a pose maps: AToB turns coordinates in A into coordinates in B. Default: ProbeToReference.
   vtkSetClampMacro(PoseTransform, int, ProbeToReference, ReferenceToImage);
   vtkGetMacro(PoseTransform, int);
-  ///@}
-
-  ///@{
-  /// Unit of the lengths in the table. Default: Millimetre.
   vtkSetClampMacro(LengthUnit, int, Millimetre, Inch);
   vtkGetMacro(LengthUnit, int);
   ///@}
@@ -167,27 +160,17 @@ public:
   ///@}
 
   ///@{
-  /// Frame number of the first slice, for MatchBy FrameNumber. Default: 0.
+  /// What MatchBy needs. FrameNumber: FirstFrameNumber is that of the first slice. Time: FrameRate
+  /// is the slices per second from time 0, or 0 where times are in the input's field data array
+  /// Timestamp or are its time steps; TimeOffset is added to the slices' times to have the poses'
+  /// times, s; between poses further apart than MaximumTimeGap, s, nothing is interpolated, 0 = no
+  /// limit. Default: 0, 0, 0 and 0.1.
   vtkSetMacro(FirstFrameNumber, int);
   vtkGetMacro(FirstFrameNumber, int);
-  ///@}
-
-  ///@{
-  /// Slices per second from time 0, for MatchBy Time; 0: times are in the input's field data array
-  /// Timestamp or are its time steps. Default: 0.
   vtkSetMacro(FrameRate, double);
   vtkGetMacro(FrameRate, double);
-  ///@}
-
-  ///@{
-  /// Seconds added to the slices' times to have the poses' times, for MatchBy Time. Default: 0.
   vtkSetMacro(TimeOffset, double);
   vtkGetMacro(TimeOffset, double);
-  ///@}
-
-  ///@{
-  /// Poses further apart than this many seconds are not interpolated between, 0 = no limit.
-  /// Default: 0.1.
   vtkSetMacro(MaximumTimeGap, double);
   vtkGetMacro(MaximumTimeGap, double);
   ///@}

@@ -16,8 +16,8 @@
  *
  * Gate values at the slices' times are interpolated between the rows (lacunaGateSignal.h): plain
  * values and phases evenly, phases along the shorter way around the cycle; between triggers (R
- * waves) the phase grows evenly from 0 to Period. Slices before the first row, after the last one or
- * in a gap of the table have no gate value: they are gated out, and a warning says how many.
+ * waves) the phase grows evenly from 0 to Period. Slices before the first row, after the last one
+ * or in a gap of the table have no gate value: they are gated out, and a warning says how many.
  *
  * Output: the slices, with SliceStatus, and field data array Gate (double, NaN where there is no
  * value), Provenance.
@@ -60,8 +60,8 @@ public:
 
   ///@{
   /// What the gate values are. Value: a number that goes up and down. Phase: a number that grows by
-  /// Period in each cycle. Trigger: the rows of the table are the instants at which cycles begin, and
-  /// the gate value is the phase since, 0 to Period. Default: Value.
+  /// Period in each cycle. Trigger: the rows of the table are the instants at which cycles begin,
+  /// and the gate value is the phase since, 0 to Period. Default: Value.
   vtkSetClampMacro(GateType, int, Value, Trigger);
   vtkGetMacro(GateType, int);
   void SetGateTypeToValue() { this->SetGateType(Value); }

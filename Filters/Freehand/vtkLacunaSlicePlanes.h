@@ -25,10 +25,10 @@
  * ColorBy chooses the active scalars, which ParaView colours by. Field data: PixelStep (the n
  * above), SpeedLimit, Provenance. All points are finite.
  *
- * RegistrationError = sqrt(TranslationAccuracy^2 + (2 r sin(AngularAccuracy / 2))^2), r the distance
- * of the pixel from the origin of the probe frame, the tracker's sensor; it needs ImageToProbe.
- * Speed and Timestamp need Timestamp. Without these arrays the others are made, unless ColorBy asks
- * for one: then it is an error.
+ * RegistrationError = sqrt(TranslationAccuracy^2 + (2 r sin(AngularAccuracy / 2))^2), r the
+ * distance of the pixel from the origin of the probe frame, the tracker's sensor; it needs
+ * ImageToProbe. Speed and Timestamp need Timestamp. Without these arrays the others are made,
+ * unless ColorBy asks for one: then it is an error.
  *
  * In parallel, pieces are runs of slices; they do not depend on each other, and the result is the
  * same bit by bit for any number of threads.

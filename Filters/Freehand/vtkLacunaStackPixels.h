@@ -25,9 +25,9 @@ bool IsBottomRowFirst(vtkDataArray* pixels);
 /// there is not enough memory.
 vtkSmartPointer<vtkDataArray> Allocate(vtkDataArray* pixels, const std::array<int, 6>& extent);
 
-/// Fills slices toSlice ... toSlice + count - 1 of grey, which is of that extent, with those of image
-/// from fromSlice on. rows are the first and the last row of a picture: with flip, row r of image
-/// becomes rows[0] + rows[1] - r. Throws std::runtime_error when image lacks any of it.
+/// Fills slices toSlice ... toSlice + count - 1 of grey, which is of that extent, with those of
+/// image from fromSlice on. rows are the first and the last row of a picture: with flip, row r of
+/// image becomes rows[0] + rows[1] - r. Throws std::runtime_error when image lacks any of it.
 void Copy(vtkImageData* image, int fromSlice, int count, bool flip, const std::array<int, 2>& rows,
   vtkDataArray* grey, const std::array<int, 6>& extent, int toSlice);
 }

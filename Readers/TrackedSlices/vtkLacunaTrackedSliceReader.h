@@ -35,8 +35,9 @@
  * (missing, malformed, not finite, singular) or its pixels are missing because the file is cut off.
  * Frames whose fields are damaged are named in a warning.
  *
- * **Poses without pictures** (DimSize 0 0 0, or 1 x 1 dummy pixels without ImageStatus) give a stack
- * of 1 x 1 blank pixels, with a warning; all slices have bit 2 set, poses and fields are complete.
+ * **Poses without pictures** (DimSize 0 0 0, or 1 x 1 dummy pixels without ImageStatus) give a
+ * stack of 1 x 1 blank pixels, with a warning; all slices have bit 2 set, poses and fields are
+ * complete.
  *
  * **Replay.** With ReplayInTime the reader has time steps. At time t the slices up to the last one
  * taken by then are there; the later ones are blank and have bit 2 (no valid image) set, so that

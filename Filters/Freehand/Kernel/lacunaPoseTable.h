@@ -57,8 +57,9 @@ constexpr double RigidTolerance = 0.01;
 /// a matrix with another last row than 0 0 0 1, a mirroring or singular one, one that is not rigid
 /// within RigidTolerance, a quaternion that is not of length 1 within RigidTolerance; it is
 /// normalised. Matrices are taken as they are. Angles are degrees: azimuth about z, elevation about
-/// the new y, roll about the new x (Carr 1996, ch. 2), so R = Rz(azimuth) Ry(elevation) Rx(roll). All
-/// 0 is then a pose, but a warning names such rows after the first, since ParaView reads empty ones so.
+/// the new y, roll about the new x (Carr 1996, ch. 2), so R = Rz(azimuth) Ry(elevation) Rx(roll).
+/// All 0 is then a pose, but a warning names such rows after the first, since ParaView reads empty
+/// ones so.
 ///
 /// Only poses of an image frame in pixels may have columns of other lengths than 1: pixel sizes,
 /// the same in all rows within RigidTolerance.
@@ -78,12 +79,12 @@ struct PoseChain
 /// Checks the calibration and the pixel spacing together. Not calibrated when the poses are the
 /// probe's, ImageToProbe is the identity and PixelSpacing 0 0. The columns of ImageToProbe have the
 /// length 1, or that of PixelSpacing once more, or carry the size of a pixel alone. Throws
-/// std::runtime_error when it is given twice and differently or not at all, and when ImageToProbe is singular, mirrors, or is
-/// not rigid but for pixel sizes.
+/// std::runtime_error when it is given twice and differently or not at all, and when ImageToProbe
+/// is singular, mirrors, or is not rigid but for pixel sizes.
 PoseChain MakePoseChain(const PoseTableOptions& options);
 
-/// Between two rigid transforms (or with the same pixel sizes), at 0 <= t <= 1: straight on, turning
-/// evenly about one axis.
+/// Between two rigid transforms (or with the same pixel sizes), at 0 <= t <= 1: straight on,
+/// turning evenly about one axis.
 Matrix4 InterpolatePose(const Matrix4& first, const Matrix4& second, double t);
 
 /// "row 3", "rows 3 to 7, 12 and 20 more": for messages; items ascend.

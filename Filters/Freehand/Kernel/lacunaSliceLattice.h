@@ -33,10 +33,10 @@ public:
       static_cast<std::int64_t>(this->Rows.size());
   }
 
-  /// The picture at the lattice's points, row by row: means over step x step pixels, so that speckle
-  /// averages out instead of aliasing. Nearer to an edge than half a step the box shrinks towards its
-  /// centre: grey levels that are linear in the picture are reproduced exactly everywhere.
-  /// pixels are width * height numbers of the type.
+  /// The picture at the lattice's points, row by row: means over step x step pixels, so that
+  /// speckle averages out instead of aliasing. Nearer to an edge than half a step the box shrinks
+  /// towards its centre: grey levels that are linear in the picture are reproduced exactly
+  /// everywhere. pixels are width * height numbers of the type.
   void Reduce(ScalarType type, const void* pixels, float* levels) const;
 
 private:

@@ -12,10 +12,10 @@
 namespace lacuna
 {
 /// For each slice the speed in mm/s of its fastest corner since the slice before that is usable and
-/// has a time; for the first one, to the slice after it (Carr 1996, ch. 2: the extreme points of the
-/// field of view). poses map corners (column, row, 0) to mm. NaN where there is no speed: for slices
-/// that are not usable or whose time is not finite, and where two slices have no time between them
-/// or times run backwards.
+/// has a time; for the first one, to the slice after it (Carr 1996, ch. 2: the extreme points of
+/// the field of view). poses map corners (column, row, 0) to mm. NaN where there is no speed: for
+/// slices that are not usable or whose time is not finite, and where two slices have no time
+/// between them or times run backwards.
 std::vector<double> GetSliceSpeeds(const std::vector<Matrix4>& poses,
   const std::vector<char>& usable, const std::vector<double>& times,
   const std::array<Vec3, 4>& corners);

@@ -10,8 +10,8 @@ namespace lacuna
 {
 namespace
 {
-// Fields of NRRD that are interpreted here or, like the position of the image in space, do not apply
-// to sequences.
+// Fields of NRRD that are interpreted here or, like the position of the image in space, do not
+// apply to sequences.
 const std::set<std::string> KnownFields = { "dimension", "type", "block size", "blocksize",
   "encoding", "endian", "min", "max", "old min", "oldmin", "old max", "oldmax", "data file",
   "datafile", "line skip", "lineskip", "byte skip", "byteskip", "number", "sample units",

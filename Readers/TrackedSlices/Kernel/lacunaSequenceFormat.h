@@ -34,8 +34,8 @@ struct SequenceDescription
 class SequenceKind
 {
 public:
-  /// .mha, .mhd, .nrrd or .nhdr in any case. compressed: one zlib (MetaImage) or gzip stream. Throws
-  /// std::invalid_argument for another extension, or a name that a header cannot hold.
+  /// .mha, .mhd, .nrrd or .nhdr in any case. compressed: one zlib (MetaImage) or gzip stream.
+  /// Throws std::invalid_argument for another extension, or a name that a header cannot hold.
   SequenceKind(const std::string& fileName, bool compressed);
 
   bool IsNrrd() const { return this->Nrrd; }

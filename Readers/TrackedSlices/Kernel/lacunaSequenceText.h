@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Reading and writing the words and numbers of sequence headers. Independent of the locale, and exact: a word
-/// is a number only when all of it is.
+/// Reading and writing the words and numbers of sequence headers. Independent of the locale, and
+/// exact: a word is a number only when all of it is.
 #ifndef lacunaSequenceText_h
 #define lacunaSequenceText_h
 

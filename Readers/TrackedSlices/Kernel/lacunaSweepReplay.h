@@ -9,7 +9,8 @@
 
 namespace lacuna
 {
-/// At a time t those slices are shown that had been taken by then: the first n of the stack, n being the number of slices whose replay time is at most t. A slice's replay time is its
+/// At a time t those slices are shown that had been taken by then: the first n of the stack, n
+/// being the number of slices whose replay time is at most t. A slice's replay time is its
 /// timestamp, or that of a slice before it when that is later: slices appear in their order, also
 /// when clocks jump back. A slice without a timestamp appears with the one before it; those before
 /// the first timestamp appear with it. Without any timestamp a slice's time is its number in s.
