@@ -33,7 +33,7 @@
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm : public vtkImageAlgorithm
 {
 public:
-  vtkTypeMacro(vtkLacunaSliceAlgorithm, vtkImageAlgorithm);
+  vtkAbstractTypeMacro(vtkLacunaSliceAlgorithm, vtkImageAlgorithm);
 
   enum BadPoseRules
   {
