@@ -20,8 +20,8 @@ namespace lacuna
 /// is the same bit by bit in either case.
 ///
 /// Slices are the same when their poses, windows, types and fans are equal, number by number, and
-/// the hashes of their pixels are (lacunaSliceFingerprint.h). Neither addresses nor times of modification
-/// are trusted: sources reuse their memory, and copy it.
+/// the hashes of their pixels are (lacunaSliceFingerprint.h). Neither addresses nor times of
+/// modification are trusted: sources reuse their memory, and copy it.
 ///
 /// A volume is kept, and pixels are hashed, only if growth is expected, or when the slices grew for
 /// the first time: so what does not grow costs neither memory nor time.

@@ -13,8 +13,8 @@
 
 namespace lacuna
 {
-/// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints, and
-/// different ones as good as never (lacunaPixelHash.h).
+/// All that matters of a slice, the grey levels as a hash: equal slices have equal fingerprints,
+/// and different ones as good as never (lacunaPixelHash.h).
 struct SliceFingerprint
 {
   /// Reads the pixels only when withPixels; Pixels is not set otherwise.

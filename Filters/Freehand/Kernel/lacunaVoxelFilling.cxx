@@ -44,8 +44,8 @@ struct Feet
   std::array<Real, VoxelsAtATime> X, Y;
 };
 
-// Positions lie on the raster but for the tolerance of SlicePair: a truncated one is in range, or one
-// too far. last: the last pixel that has a neighbour.
+// Positions lie on the raster but for the tolerance of SlicePair: a truncated one is in range, or
+// one too far. last: the last pixel that has a neighbour.
 template <class T, class Real>
 struct SampleFootprint
 {
@@ -150,7 +150,8 @@ LACUNA_WIDE void FindFeet(
   }
 }
 
-// What the sample of a voxel is made of, whose feet have the grey levels x and y: x + Weight (y - x).
+// What the sample of a voxel is made of, whose feet have the grey levels x and y: x + Weight (y -
+// x).
 struct Share
 {
   double Weight;
@@ -187,7 +188,8 @@ struct PutCentre
   double Tolerance;
 };
 
-// The mean over the part of the voxel's height that lies between the slices, weighted by its length.
+// The mean over the part of the voxel's height that lies between the slices, weighted by its
+// length.
 struct PutHeight
 {
   explicit PutHeight(const SlicePair& pair)
