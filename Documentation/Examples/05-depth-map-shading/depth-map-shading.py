@@ -5,7 +5,8 @@
 
 shadings: depth only, stored normals, central differences, nine cases. edge: an occluding edge by stored normals,
 central differences, Gordon's weights, nine cases. lights: Phong with depth cue, one light from the upper left with
-shadows, two lights with shadows.
+shadows, two lights with shadows. opened: the calotte cut away; light from the upper left with the calotte's shadow,
+without it, a lamp inside the skull. tears: Depth Map Surface from a side, joined everywhere and torn at discontinuities.
 """
 import os
 import sys
@@ -14,10 +15,11 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import shaded_pixels, write_pixels
+from lacuna.pictures import BONE, new_view, shaded_pixels, show_surface, write_pixels
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -27,6 +29,15 @@ def write(name, pictures, gap=6):
     white = np.full((pictures[0].shape[0], gap, 3), 255, dtype=np.uint8)
     parts = [part for picture in pictures for part in (picture, white)][:-1]
     write_pixels(name, np.concatenate(parts, axis=1))
+
+
+def read_pixels(name):
+    """Red, green and blue of a screenshot; row 0 on top."""
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)[::-1]
 
 
 def main(folder, head=None):
@@ -84,6 +95,43 @@ def main(folder, head=None):
               picture(DepthCue=0, Lights=[*upper_left, 0, 1]),
               picture(Lights=[*upper_left, 0, 0.8, *lower_right, 0, 0.3])]
     write(os.path.join(folder, "lights.png"), lights)
+
+    # the calotte cut away; without its cut-away the shader does not know
+    bounds = volume.GetDataInformation().GetBounds()
+    middle = np.array([sum(bounds[a:a + 2]) / 2 for a in (0, 2, 4)])
+    top = middle + [0, 0, 0.2 * (bounds[5] - bounds[4])]
+    depth_map.ViewDirection = view + [0, 0, -0.9]
+    depth_map.CutAway = "Plane"
+    depth_map.CutAway.Origin, depth_map.CutAway.Normal = top, [0, 0, -1]
+    opened = [picture(Lights=[*upper_left, 0, 1])]
+    shader.CutAway = "Plane"
+    shader.CutAway.Origin, shader.CutAway.Normal = top, [0, 0, -1]
+    opened += [picture(), picture(Lights=[*middle, 1, 1, *towards_viewer, 0, 0.3])]
+    write(os.path.join(folder, "opened.png"), opened)
+    assert opened[1].mean() > opened[0].mean() + 5, "less is in shadow"
+    depth_map.CutAway = shader.CutAway = "None"
+    depth_map.ViewDirection = view
+
+    surface = DepthMapSurface(Input=depth_map)
+    scene = new_view((480, 480))
+    show_surface(surface, scene, BONE)
+    scene.OrientationAxesVisibility = 0
+    tears = []
+    for joined in (True, False):
+        surface.BreakAtDiscontinuities = not joined
+        Render(scene)
+        scene.CameraParallelProjection = 1
+        aside = view / np.linalg.norm(view) + 0.9 * right
+        scene.CameraFocalPoint = middle
+        scene.CameraPosition = middle - 400 * aside
+        scene.CameraViewUp = UP
+        scene.CameraParallelScale = 0.37 * np.linalg.norm(np.subtract(bounds[1::2], bounds[::2]))
+        Render(scene)
+        name = os.path.join(folder, "tears.png")
+        SaveScreenshot(name, scene, ImageResolution=scene.ViewSize)
+        tears.append(read_pixels(name))
+    write(os.path.join(folder, "tears.png"), tears)
+    assert (tears[0] != tears[1]).any(axis=2).mean() > 0.01, "skins hide what is behind them"
 
     # a light takes from no pixel what it had
     assert depth.shape == diffuse["Stored"].shape == lights[0].shape
