@@ -8,7 +8,7 @@ from paraview.simple import *
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 import lacuna  # after the plugin: the wrapped classes, for the C++ defaults
-from lacuna import pictures
+from lacuna import pictures, views
 from lacuna_test import output
 from vtkmodules.vtkIOImage import vtkPNGReader
 
@@ -132,6 +132,29 @@ view.ViewSize = [500, 500]
 view.UseColorPaletteForBackground = 0
 view.Background = [0, 0, 0]
 view.OrientationAxesVisibility = 0
+
+
+def compare(what, name, size, colors):
+    """That a screenshot, four pixels for each of the map's, looks like the map's colours and not like their mirror image."""
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    seen = reader.GetOutput().GetPointData().GetScalars()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    assert (width, height) == (4 * size[0], 4 * size[1]), (width, height)
+    differences, upside_down, swapped = [], [], []
+    for row in range(2, size[1] - 2, 3):
+        for column in range(2, size[0] - 2, 3):
+            expected = colors.GetComponent(column + size[0] * row, 0)
+            x, y = 4 * column + 2, height - 1 - (4 * row + 2)
+            if expected > 0:
+                for found, i, j in ((differences, x, y), (upside_down, x, height - 1 - y), (swapped, width - 1 - x, y)):
+                    found.append(abs(seen.GetComponent(i + width * j, 0) - expected))
+    medians = [sorted(found)[len(found) // 2] for found in (differences, upside_down, swapped)]
+    print(what, "against the picture: median difference", medians[0], "if mirrored", medians[1:])
+    assert len(differences) > 300 and medians[0] <= 2 < 10 < min(medians[1:]), what
+
+
 # seen along the map's own rays, the surface and the map look like the picture
 size = image.GetDimensions()
 middle = [(a + b) / 2 for a, b in zip(image.GetPoint(0), image.GetPoint(image.GetNumberOfPoints() - 1))]
@@ -149,23 +172,23 @@ for proxy in (surface, shader):
     Render(view)
     name = output(f"DepthMapShader{proxy.GetXMLLabel().split()[-1]}.png")
     SaveScreenshot(name, view, ImageResolution=view.ViewSize)
-    reader = vtkPNGReader()
-    reader.SetFileName(name)
-    reader.Update()
-    seen = reader.GetOutput().GetPointData().GetScalars()
-    width, height, _ = reader.GetOutput().GetDimensions()
-    assert (width, height) == (4 * size[0], 4 * size[1]), (width, height)
-    differences, mirrored = [], []
-    for row in range(2, size[1] - 2, 3):
-        for column in range(2, size[0] - 2, 3):
-            expected = map_colors.GetComponent(column + size[0] * row, 0)
-            if expected > 0:
-                for found, y in ((differences, height - 1 - (4 * row + 2)), (mirrored, 4 * row + 2)):
-                    found.append(abs(seen.GetComponent(4 * column + 2 + width * y, 0) - expected))
-    median, median_mirrored = (sorted(found)[len(found) // 2] for found in (differences, mirrored))
-    print(proxy.GetXMLLabel(), "against the picture: median difference", median, "if mirrored", median_mirrored)
-    assert len(differences) > 300 and median <= 2 < 10 < median_mirrored, proxy.GetXMLLabel()
+    compare(proxy.GetXMLLabel(), name, size, map_colors)
     Hide(proxy, view)
+
+# the same in perspective: the map takes the camera over, and its surface looks like its picture
+view.CameraParallelProjection, view.ViewSize = 0, [800, 640]
+view.CameraPosition, view.CameraViewAngle = [m - 330 * d + 40 for m, d in zip(middle, direction)], 40
+views.copy_camera(depth_map, view, rows=160)
+picture(Lights=[-2.0, -1.0, 2.5, 0, 1])
+Show(surface, view)
+pictures.show_shaded(surface, view)
+Render(view)
+name = output("DepthMapShaderPerspective.png")
+SaveScreenshot(name, view, ImageResolution=view.ViewSize)
+seen_in_perspective = servermanager.Fetch(shader)
+assert seen_in_perspective.GetFieldData().GetArray("EyePosition") is not None
+compare("in perspective, the surface", name, seen_in_perspective.GetDimensions(),
+        seen_in_perspective.GetPointData().GetArray("Color"))
 
 # a file shows what the viewer sees: row 0 of the map on top (VTK counts a picture's rows from below)
 pictures.save_shaded(shader, output("DepthMapShader.png"))
@@ -174,6 +197,8 @@ reader.SetFileName(output("DepthMapShader.png"))
 reader.Update()
 file = reader.GetOutput()
 width, height, _ = file.GetDimensions()
+image = servermanager.Fetch(shader)
+map_colors = image.GetPointData().GetArray("Color")
 assert (width, height, 1) == image.GetDimensions()
 assert all(file.GetPointData().GetScalars().GetTuple3(column + width * (height - 1 - row)) ==
            map_colors.GetTuple3(column + width * row)

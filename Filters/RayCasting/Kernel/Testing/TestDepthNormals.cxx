@@ -389,6 +389,32 @@ TEST(DepthNormals, SphereAgainstTheFormulas)
   EXPECT_LT(worst, 0.002) << "second order of the pixel spacing";
 }
 
+TEST(DepthNormals, CasesGoByThePerspectiveRay)
+{
+  // two spheres around the eye, seen 60 degrees off the axis where the map changes from one to the
+  // other: against its ray each is flat and the step is steep, against the axis neither is steep
+  const int last = 34;
+  Map map(41, 3, [](int, int) { return 0.0; }, { 0.5, 0.5 });
+  DepthGrid& grid = map.Grid;
+  grid.Eye = grid.ImageToWorld.Point({ 0, 1, -10 });
+  grid.Perspective = true;
+  for (int row = 0; row < 3; ++row)
+  {
+    for (int column = 0; column < 41; ++column)
+    {
+      const Vec3 pixel = grid.ImageToWorld.Point({ 1.0 * column, 1.0 * row, 0 });
+      map.Depth[grid.PixelOf(column, row)] = (column <= last ? 100 : 105) - Norm(pixel - grid.Eye);
+    }
+  }
+  const std::vector<float> normals = map.Normals(DepthNormalMethod::Predicate);
+  for (int column = 1; column < 40; ++column)
+  {
+    const std::int64_t i = 3 * grid.PixelOf(column, 1);
+    const Vec3 normal{ normals[i], normals[i + 1], normals[i + 2] };
+    EXPECT_LT(Norm(normal + grid.RayOf(column, 1)), 0.01) << column;
+  }
+}
+
 TEST(DepthNormals, StepAndCrease)
 {
   // two planes of slope 0.25, 10 mm apart in depth
