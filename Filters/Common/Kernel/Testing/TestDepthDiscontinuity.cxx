@@ -56,6 +56,30 @@ double ByTheBook(double before, double here, double after, double spacing)
   }
   return tangent(std::abs(b) > 65 ? f : c);
 }
+
+/// Figure 3.8 read aloud, with the mended cases 2 and 3.
+int CaseByTheBook(double back, double forward, double limit, double change)
+{
+  const bool left = !std::isnan(back);
+  const bool right = !std::isnan(forward);
+  if (!left && !right)
+    return 1;
+  if (!left)
+    return 2;
+  if (!right)
+    return 3;
+  if (std::fabs(back - forward) < change)
+    return 4;
+  if (std::fabs(forward) > limit && std::fabs(back) > limit && forward * back < 0)
+    return 5;
+  if (std::fabs(forward) > limit && std::fabs(back) > limit && forward * back >= 0)
+    return 6;
+  if (std::fabs(forward) > limit)
+    return 7;
+  if (std::fabs(back) > limit)
+    return 8;
+  return 9;
+}
 }
 
 TEST(SlopeAt, NineCases)
@@ -96,4 +120,58 @@ TEST(SlopeAt, SameAsByAngles)
       Rule.SlopeAt(before, 0.25, after, spacing), expected, 1e-9 * (1 + expected * expected))
       << before << " " << after << " " << spacing;
   }
+}
+
+TEST(DepthDiscontinuity, ClassifiesByTheBook)
+{
+  const double limits[][2] = { { 65, 20 }, { 0, 0 }, { 90, 180 }, { 30, 75 } };
+  int seen[10] = {};
+  for (const auto& limit : limits)
+  {
+    const SlopeRule rule({ limit[0], limit[1] });
+    for (int i = -91; i < 90; ++i)
+    {
+      for (int j = -91; j < 90; ++j)
+      {
+        // never at a limit, where rounding decides
+        const double back = i < -90 ? Nothing : i + 0.25;
+        const double forward = j < -90 ? Nothing : j + 0.7;
+        const int expected = CaseByTheBook(back, forward, limit[0], limit[1]);
+        const auto step = [](double degrees, double length) {
+          return DepthStep{ length * std::sin(degrees * Degree),
+            length * std::cos(degrees * Degree) };
+        };
+        const SlopeCase found = rule.Classify(step(back, 0.3), step(forward, 20));
+        ASSERT_EQ(static_cast<int>(found), expected) << back << " " << forward;
+        ASSERT_EQ(IsTornForward(found), expected == 5 || expected == 7);
+        ASSERT_EQ(IsTornBackward(found), expected == 5 || expected == 8);
+        ++seen[expected];
+      }
+    }
+  }
+  for (int c = 1; c <= 9; ++c)
+  {
+    EXPECT_GT(seen[c], 0) << c;
+  }
+}
+
+TEST(DepthDiscontinuity, StepsAlongTheRayAndLimitsAtTheirEnds)
+{
+  const DepthStep away{ 2, 0 };
+  const DepthStep back{ -3, 0 };
+  const DepthStep flat{ 0, 1 };
+  const SlopeRule usual{ DiscontinuityLimits() };
+  EXPECT_EQ(usual.Classify(away, back), SlopeCase::Spike);
+  EXPECT_EQ(usual.Classify(away, away), SlopeCase::Smooth);
+  EXPECT_EQ(usual.Classify(flat, away), SlopeCase::TornForward);
+  EXPECT_EQ(usual.Classify(back, flat), SlopeCase::TornBackward);
+  const SlopeRule nothingIsSteep({ 90, 20 });
+  EXPECT_FALSE(nothingIsSteep.IsSteep(away));
+  EXPECT_EQ(nothingIsSteep.Classify(away, back), SlopeCase::Crease);
+  const SlopeRule noChangeIsSmall({ 65, 0 });
+  EXPECT_EQ(noChangeIsSmall.Classify(flat, flat), SlopeCase::Crease);
+  EXPECT_EQ(noChangeIsSmall.Classify(away, away), SlopeCase::Steep);
+  const SlopeRule anyChangeIsSmall({ 0, 180 });
+  EXPECT_EQ(anyChangeIsSmall.Classify(away, { -2, 1e-3 }), SlopeCase::Smooth);
+  EXPECT_EQ(anyChangeIsSmall.Classify(away, away), SlopeCase::Smooth);
 }
