@@ -14,6 +14,7 @@
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCasterView.h"
 #include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
@@ -21,8 +22,6 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaVolumeCaster.h"
 #include "vtkMath.h"
-#include "vtkMatrix3x3.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -41,28 +40,7 @@ namespace
 constexpr const char* ThicknessName = "Thickness";
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
-
-std::array<int, 3> SizeOf(const int extent[6])
-{
-  return { extent[1] - extent[0] + 1, extent[3] - extent[2] + 1, extent[5] - extent[4] + 1 };
-}
-
-bool IsEmpty(const int extent[6])
-{
-  const auto size = SizeOf(extent);
-  return size[0] <= 0 || size[1] <= 0 || size[2] <= 0;
-}
-
-/// The kernel's indices start at the extent's first voxel.
-lacuna::Matrix4 IndexToWorld(
-  const double* origin, const double* spacing, const double* direction, const int* extent)
-{
-  vtkNew<vtkMatrix4x4> m;
-  vtkImageData::ComputeIndexToPhysicalMatrix(origin, spacing, direction, m->GetData());
-  return lacuna::Matrix4(m->GetData()) *
-    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
-      static_cast<double>(extent[4]) });
-}
+using View = vtkLacunaCasterView;
 }
 
 //------------------------------------------------------------------------------
@@ -78,36 +56,7 @@ public:
 
   static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkInformation* inInfo)
   {
-    int extent[6];
-    double origin[3] = { 0, 0, 0 };
-    double spacing[3] = { 1, 1, 1 };
-    double direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-    inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-    if (inInfo->Has(vtkDataObject::ORIGIN()))
-    {
-      inInfo->Get(vtkDataObject::ORIGIN(), origin);
-    }
-    if (inInfo->Has(vtkDataObject::SPACING()))
-    {
-      inInfo->Get(vtkDataObject::SPACING(), spacing);
-    }
-    vtkImageData* data = vtkImageData::GetData(inInfo);
-    if (inInfo->Has(vtkDataObject::DIRECTION()))
-    {
-      inInfo->Get(vtkDataObject::DIRECTION(), direction);
-    }
-    else if (data && !IsEmpty(data->GetExtent()))
-    {
-      std::copy_n(data->GetDirectionMatrix()->GetData(), 9, direction);
-    }
-    for (const double edge : spacing)
-    {
-      if (!(std::abs(edge) > 0) || !std::isfinite(edge))
-      {
-        throw std::runtime_error("the voxels of the volume are " + lacuna::FormatValue(spacing) +
-          " mm: every edge must be longer than 0; mend the spacing of the input");
-      }
-    }
+    const View::Frame frame = View::FrameOf(inInfo);
     lacuna::ViewSettings view;
     std::copy_n(self->ViewDirection, 3, view.Direction.data());
     std::copy_n(self->ViewUp, 3, view.Up.data());
@@ -117,60 +66,18 @@ public:
     view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
     view.PixelSpacing = self->PixelSpacing;
     view.Size = { self->ImageSize[0], self->ImageSize[1] };
-    const lacuna::Matrix4 indexToWorld = IndexToWorld(origin, spacing, direction, extent);
-    const auto size = SizeOf(extent);
     if (self->Projection == Parallel)
     {
-      return lacuna::MakeImagePlane(indexToWorld, size, view);
+      return lacuna::MakeImagePlane(frame.IndexToWorld, frame.Size, view);
     }
     if (!vtkLacunaDepthMap::IsGiven(self->EyePosition))
     {
       throw std::runtime_error(
         "a perspective view needs EyePosition: the point from which the viewer looks");
     }
-    lacuna::CheckVolumeSize(size);
-    return lacuna::MakePerspectivePlane(lacuna::CornersOf(indexToWorld, size),
-      lacuna::SmallestEdgeOf(indexToWorld), view, Eye(self), self->ViewAngle);
-  }
-
-  /// The depths of the start map in extent. Throws unless it shows the same view as plane.
-  static std::vector<double> StartDepths(vtkImageData* map, const lacuna::ImagePlane& plane,
-    const lacuna::Vec3* eye, const int extent[6])
-  {
-    const vtkLacunaDepthMap start(map);
-    const lacuna::Matrix4 wanted = lacuna::Matrix4::FromColumns(
-      plane.PixelSpacing * plane.Right, plane.PixelSpacing * plane.Down, plane.View, plane.Origin);
-    bool same = start.IsPerspective() == (eye != nullptr);
-    for (int i = 0; i < 12; ++i)
-    {
-      const double difference = wanted(i / 4, i % 4) - start.GetImageToWorld()(i / 4, i % 4);
-      same = same && std::abs(difference) <= 1e-6 * plane.PixelSpacing;
-    }
-    if (same && eye)
-    {
-      const lacuna::Vec3 seen = start.GetPoint(0, 0, 0) - *eye;
-      same = lacuna::Norm(lacuna::Normalized(seen) - start.GetRay(0, 0)) < 1e-9;
-    }
-    const int* has = map->GetExtent();
-    for (int a = 0; a < 2; ++a)
-    {
-      same = same && has[2 * a] <= extent[2 * a] && has[2 * a + 1] >= extent[2 * a + 1];
-    }
-    if (!same)
-    {
-      throw std::runtime_error("the start depth map shows another view: give both filters the same "
-                               "view, PixelSpacing, ImageSize and PlaneOrigin");
-    }
-    std::vector<double> depths;
-    for (int y = extent[2]; y <= extent[3]; ++y)
-    {
-      for (int x = extent[0]; x <= extent[1]; ++x)
-      {
-        int pixel[3] = { x, y, has[4] };
-        depths.push_back(start.GetDepth()->GetTuple1(map->ComputePointId(pixel)));
-      }
-    }
-    return depths;
+    lacuna::CheckVolumeSize(frame.Size);
+    return lacuna::MakePerspectivePlane(lacuna::CornersOf(frame.IndexToWorld, frame.Size),
+      lacuna::SmallestEdgeOf(frame.IndexToWorld), view, Eye(self), self->ViewAngle);
   }
 
   /// Rings round voxels like +-1e20 reach far: say so.
@@ -280,7 +187,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       vtkInformation* outInfo = outputVector->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-      if (IsEmpty(extent))
+      if (View::IsEmpty(extent))
       {
         outInfo->Set(SDDP::WHOLE_EXTENT(), extent, 6);
         return;
@@ -329,7 +236,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
     {
       vtkImageData* input = vtkImageData::GetData(inputVector[0]);
       vtkImageData* output = vtkImageData::GetData(outputVector);
-      if (!input || IsEmpty(input->GetExtent()))
+      if (!input || View::IsEmpty(input->GetExtent()))
       {
         return;
       }
@@ -375,13 +282,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       output->SetExtent(extent);
       vtkLacunaDepthMap::SetGeometry(output, plane);
       const vtkIdType pixels = output->GetNumberOfPoints();
-      vtkNew<vtkCharArray> mask;
-      mask->SetName(vtkLacunaDepthMap::MaskName);
-      mask->SetNumberOfTuples(pixels);
-      vtkNew<vtkFloatArray> normals;
-      normals->SetName(vtkLacunaDepthMap::NormalsName);
-      normals->SetNumberOfComponents(3);
-      normals->SetNumberOfTuples(pixels);
+      const auto mask = View::MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, pixels);
 
       const lacuna::Vec3 eye = Internals::Eye(this);
       lacuna::RayRequest request;
@@ -394,28 +295,29 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       vtkImageData* start = vtkImageData::GetData(inputVector[1]);
       if (start)
       {
-        startDepths = Internals::StartDepths(start, plane, request.Eye, extent);
+        startDepths = View::StartDepths(start, plane, request.Eye, extent);
         request.StartDepth = startDepths.data();
       }
       std::unique_ptr<lacuna::CutRegion> cutAway;
       if (this->CutAway)
       {
-        const lacuna::Matrix4& indexToWorld = caster.GetVolume().IndexToWorld;
-        cutAway =
-          vtkLacunaCutAway::MakeRegion(this->CutAway, 0.5 * lacuna::SmallestEdgeOf(indexToWorld),
-            lacuna::CornersOf(indexToWorld, SizeOf(input->GetExtent())));
+        const View::Frame frame = View::FrameOf(input);
+        cutAway = vtkLacunaCutAway::MakeRegion(this->CutAway,
+          0.5 * lacuna::SmallestEdgeOf(frame.IndexToWorld),
+          lacuna::CornersOf(frame.IndexToWorld, frame.Size));
         request.CutAway = cutAway.get();
       }
-      vtkNew<vtkDoubleArray> thickness;
-      thickness->SetName(ThicknessName);
+      vtkSmartPointer<vtkDoubleArray> thickness;
 
       const std::size_t count = this->IsoValues.size();
       for (std::size_t i = 0; i < count; ++i)
       {
         const double isoValue = this->IsoValues[i];
-        vtkNew<vtkDoubleArray> depth;
-        depth->SetName((vtkLacunaDepthMap::DepthName + (i ? "_" + std::to_string(i) : "")).c_str());
-        depth->SetNumberOfTuples(pixels);
+        const std::string number = i ? "_" + std::to_string(i) : "";
+        const auto depth =
+          View::MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName + number, pixels);
+        const auto normals =
+          View::MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName + number, pixels, 3);
         if (!(isoValue >= caster.GetMinimum() && isoValue <= caster.GetMaximum()))
         {
           vtkWarningMacro("iso-value " << isoValue << " lies outside the values of array '" << name
@@ -435,22 +337,24 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
         request.Thickness = nullptr;
         if (i == 0 && this->ComputeThickness)
         {
-          thickness->SetNumberOfTuples(pixels);
+          thickness = View::MakeArray<vtkDoubleArray>(ThicknessName, pixels);
           request.Thickness = thickness->GetPointer(0);
         }
         execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
         caster.Cast(plane, isoValue,
           { { extent[0], extent[1], extent[2], extent[3] }, depth->GetPointer(0),
-            i ? nullptr : mask->GetPointer(0), i ? nullptr : normals->GetPointer(0) },
+            i ? nullptr : mask->GetPointer(0), normals->GetPointer(0) },
           request, execution);
-        output->GetPointData()->AddArray(depth);
+        vtkPointData* pointData = output->GetPointData();
+        pointData->AddArray(depth);
+        pointData->AddArray(normals);
         if (i == 0)
         {
-          output->GetPointData()->AddArray(mask);
-          output->GetPointData()->SetNormals(normals);
-          if (this->ComputeThickness)
+          pointData->AddArray(mask);
+          pointData->SetNormals(normals);
+          if (thickness)
           {
-            output->GetPointData()->AddArray(thickness);
+            pointData->AddArray(thickness);
           }
         }
       }

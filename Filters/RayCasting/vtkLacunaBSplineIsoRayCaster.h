@@ -17,7 +17,8 @@
  * Output: a depth map, see vtkLacunaDepthMap.h: vtkImageData of W x H x 1, x = the viewer's right,
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
- * x 3, unit, world, towards the viewer), Depth_1, Depth_2, ... for the second iso-value and so on.
+ * x 3, unit, world, towards the viewer), Depth_1 and Normals_1, ... for the second iso-value and so
+ * on.
  * With ComputeThickness: Thickness (double, mm along the ray from the first hit to where it leaves
  * the solid; NaN without a hit and where the volume ends before). Field data: ImageToWorld,
  * IsoValues, Provenance, of perspective maps EyePosition and ViewAngle. Requested extents are
@@ -38,8 +39,8 @@
  * which is no surface.
  *
  * Errors: no scalars or several components, fewer than two voxels along an axis, a zero
- * ViewDirection or ViewUp, voxels without size, a start depth map of another view, ViewUp parallel to ViewDirection, a negative or not finite PixelSpacing,
- * more than 2^28 pixels.
+ * ViewDirection or ViewUp, ViewUp parallel to ViewDirection, voxels without size, a start depth map
+ * of another view, a negative or not finite PixelSpacing, more than 2^28 pixels, no memory.
  *
  * Source: Carr 1996, 3.2 and 3.3.3.
  *
@@ -88,7 +89,7 @@ public:
   ///@{
   /**
    * Grey levels of the surfaces to find, in any order; default one of 500 (bone in Hounsfield
-   * units). The first gives Depth, the mask and the normals, the others Depth_1, Depth_2, ...
+   * units). The first gives Depth, the mask and Normals, the others Depth_1, Normals_1, ...
    */
   void SetNumberOfIsoValues(int number);
   int GetNumberOfIsoValues() const { return static_cast<int>(this->IsoValues.size()); }

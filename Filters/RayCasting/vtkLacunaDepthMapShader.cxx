@@ -47,7 +47,7 @@ lacuna::Sphere CircumscribedSphere(vtkImageData* volume)
   const int* dimensions = volume->GetDimensions();
   const lacuna::Vec3 half{ 0.5 * (dimensions[0] - 1), 0.5 * (dimensions[1] - 1),
     0.5 * (dimensions[2] - 1) };
-  const lacuna::Matrix4 toWorld = vtkLacunaVolumeCaster::IndexToWorld(volume);
+  const lacuna::Matrix4 toWorld = vtkLacunaCasterView::FrameOf(volume).IndexToWorld;
   lacuna::Sphere sphere;
   sphere.Centre = toWorld.Point(half);
   for (int corner = 0; corner < 4; ++corner)

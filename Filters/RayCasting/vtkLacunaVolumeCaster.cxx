@@ -2,9 +2,9 @@
 #include "vtkLacunaVolumeCaster.h"
 
 #include "vtkImageData.h"
+#include "vtkLacunaCasterView.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaScalarType.h"
-#include "vtkMatrix4x4.h"
 
 #include <algorithm>
 
@@ -14,23 +14,14 @@ static_assert(static_cast<int>(lacuna::SolidSide::Above) == 0 &&
   "the filters' properties are the kernel's enumerations");
 
 //------------------------------------------------------------------------------
-lacuna::Matrix4 vtkLacunaVolumeCaster::IndexToWorld(vtkImageData* volume)
-{
-  const int* extent = volume->GetExtent();
-  return lacuna::Matrix4(volume->GetIndexToPhysicalMatrix()->GetData()) *
-    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
-      static_cast<double>(extent[4]) });
-}
-
-//------------------------------------------------------------------------------
 const lacuna::IsoRayCaster& vtkLacunaVolumeCaster::Prepare(vtkImageData* volume,
   vtkDataArray* scalars, int interpolation, int solidSide, vtkLacunaExecution& execution)
 {
-  const int* dimensions = volume->GetDimensions();
+  const vtkLacunaCasterView::Frame frame = vtkLacunaCasterView::FrameOf(volume);
   lacuna::VoxelVolume voxels;
   voxels.Type = vtkLacunaScalarType::Get(scalars);
-  voxels.Size = { dimensions[0], dimensions[1], dimensions[2] };
-  voxels.IndexToWorld = IndexToWorld(volume);
+  voxels.Size = frame.Size;
+  voxels.IndexToWorld = frame.IndexToWorld;
   std::array<double, 16> matrix;
   std::copy_n(voxels.IndexToWorld.Data(), 16, matrix.begin());
   const Key key{ scalars, scalars->GetMTime(), voxels.Size, matrix, interpolation, solidSide };

@@ -20,9 +20,6 @@ class vtkLacunaExecution;
 class vtkLacunaVolumeCaster
 {
 public:
-  /// (i, j, k) counted from the volume's first voxel to world mm.
-  static lacuna::Matrix4 IndexToWorld(vtkImageData* volume);
-
   /// scalars: of the volume, one component per voxel; interpolation and solidSide: the numbers of
   /// lacuna::FieldInterpolation and lacuna::SolidSide. Throws what lacuna::IsoRayCaster throws. The
   /// result holds until the next call, and while volume and scalars do.

@@ -51,12 +51,13 @@ caster.UpdatePipeline()
 depth_map = servermanager.Fetch(caster)
 assert depth_map.GetDimensions() == (81, 81, 1), depth_map.GetDimensions()
 point_data = depth_map.GetPointData()
-depth, further, normals = (point_data.GetArray(n) for n in ("Depth", "Depth_1", "Normals"))
+depth, further, normals, further_normals = (
+    point_data.GetArray(n) for n in ("Depth", "Depth_1", "Normals", "Normals_1"))
 worst = hits = 0
 for i in range(depth_map.GetNumberOfPoints()):
     x, y, z = depth_map.GetPoint(i)
     assert z == 20, "the plane touches the volume"
-    for array, radius in ((depth, 10), (further, 15)):
+    for array, radius, directions in ((depth, 10, normals), (further, 15, further_normals)):
         inside = radius * radius - x * x - y * y
         if inside == 0:
             continue  # the ray touches the sphere
@@ -64,9 +65,8 @@ for i in range(depth_map.GetNumberOfPoints()):
         if inside > 0:
             worst = max(worst, abs(array.GetTuple1(i) - (20 - math.sqrt(inside))))
             hits += 1
-            if radius == 10:
-                n = normals.GetTuple3(i)
-                assert abs(n[0] - x / 10) + abs(n[1] - y / 10) < 1e-6, (n, x, y)
+            n = directions.GetTuple3(i)
+            assert abs(n[0] - x / radius) + abs(n[1] - y / radius) < 1e-6, (n, x, y)
 assert hits > 3000 and worst < 1e-9, (hits, worst)
 assert depth_map.GetFieldData().GetArray("IsoValues").GetNumberOfTuples() == 2
 

@@ -19,11 +19,16 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <sstream>
 #include <string>
+
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
 
 namespace
 {
@@ -338,8 +343,32 @@ void TestBadInput()
   const auto holed = MakeVolume(VTK_FLOAT, false,
     [](const double* p) { return p[2] < 95 && p[0] < -4 ? vtkMath::Nan() : 420 + p[2]; });
   std::string message = MessageOf(holed, true, [](Caster* c) { c->SetIsoValue(0, 520); });
-  LACUNA_CHECK_THAT(
-    message.find("voxels of array 'Values' are not finite") != std::string::npos, message);
+  int missing = 0;
+  vtkDataArray* values = holed->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+  {
+    missing += std::isnan(values->GetTuple1(i));
+  }
+  LACUNA_CHECK_THAT(missing > 0 &&
+      message.find(std::to_string(missing) + " voxels of array 'Values' are not finite") !=
+        std::string::npos,
+    message);
+
+  vtkNew<Caster> beyond;
+  beyond->SetInputData(volume);
+  beyond->SetIsoValue(0, 4000);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  beyond->AddObserver(vtkCommand::WarningEvent, observer);
+  beyond->Update();
+  vtkImageData* nothing = beyond->GetOutput();
+  LACUNA_CHECK_THAT(nothing->GetNumberOfPoints() > 0, "a map, with nothing in it");
+  for (vtkIdType i = 0; i < nothing->GetNumberOfPoints(); ++i)
+  {
+    LACUNA_CHECK_THAT(std::isnan(nothing->GetPointData()->GetArray("Depth")->GetTuple1(i)) &&
+        nothing->GetPointData()->GetArray("vtkValidPointMask")->GetTuple1(i) == 0 &&
+        nothing->GetPointData()->GetNormals()->GetTuple3(i)[2] == 0,
+      "nothing is hit");
+  }
 
   // an empty input gives an empty output and no error
   vtkNew<Caster> caster;
@@ -347,6 +376,21 @@ void TestBadInput()
   caster->SetInputData(empty);
   caster->Update();
   LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "empty in, empty out");
+}
+
+/// A map for which there is no memory: an error, and the filter works again.
+void TestMemory()
+{
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  const auto volume = MakeVolume(VTK_SHORT, false, [](const double* p) { return 500 + p[2]; });
+  rlimit before;
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit little{ std::min<rlim_t>(rlim_t(3) << 30, before.rlim_max), before.rlim_max };
+  setrlimit(RLIMIT_AS, &little);
+  std::string message = MessageOf(volume, false, [](Caster* c) { c->SetImageSize(16384, 16384); });
+  setrlimit(RLIMIT_AS, &before);
+  LACUNA_CHECK_THAT(message.find("memory") != std::string::npos, message);
+#endif
 }
 
 void TestDefaultsAndCache()
@@ -414,6 +458,7 @@ int TestBSplineIsoRayCaster(int, char*[])
   TestTypes();
   TestRequestedExtent();
   TestBadInput();
+  TestMemory();
   TestDefaultsAndCache();
   return lacunaCheck::Result();
 }
