@@ -148,7 +148,7 @@ void TestPicture()
   p.Shader->SetDepthArray("Depth_1");
   image = p.Update();
   LACUNA_CHECK(image->GetPointData()->HasArray("Normals_1") &&
-    !image->GetPointData()->HasArray("NormalDifference"));
+    image->GetPointData()->HasArray("NormalDifference"));
 }
 
 void TestMethodsAreTheKernels()
