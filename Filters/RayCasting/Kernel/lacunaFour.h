@@ -7,7 +7,7 @@
 
 #include "lacunaWide.h"
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__)
 // Functions that are inlined everywhere have no binary interface which could change.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
@@ -28,17 +28,17 @@ LACUNA_INLINE Four LoadFour(const double* p)
   return Four{ p[0], p[1], p[2], p[3] };
 }
 
-LACUNA_INLINE Four Lesser(Four a, Four b)
+LACUNA_INLINE Four Lesser(const Four& a, const Four& b)
 {
   return a < b ? a : b;
 }
 
-LACUNA_INLINE Four Greater(Four a, Four b)
+LACUNA_INLINE Four Greater(const Four& a, const Four& b)
 {
   return a > b ? a : b;
 }
 
-LACUNA_INLINE unsigned ToBits(FourMask mask)
+LACUNA_INLINE unsigned ToBits(const FourMask& mask)
 {
   return static_cast<unsigned>((mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8));
 }

@@ -9,7 +9,7 @@ namespace lacuna
 {
 namespace
 {
-LACUNA_INLINE Four Clamp(Four a)
+LACUNA_INLINE Four Clamp(const Four& a)
 {
   return Lesser(Greater(a, All(0)), All(1));
 }
@@ -41,7 +41,7 @@ LACUNA_INLINE unsigned Clip(const RayGrid& rays, const std::array<int, 3>& cell,
     {
       // a ray that does not move along the axis is between the faces throughout, or never
       const Four beyond =
-        (start >= All(low[a])) & (start < All(high[a])) ? All(infinity) : All(-infinity);
+        ((start >= All(low[a])) & (start < All(high[a]))) ? All(infinity) : All(-infinity);
       enters = step == All(0) ? -beyond : enters;
       leaves = step == All(0) ? beyond : leaves;
     }
