@@ -234,6 +234,10 @@ LACUNA_WIDE void ComposeCubic(
 void ComposeLinear(const double* points, const double (*wx)[2], const double (*wy)[2],
   const double (*wz)[2], double* result)
 {
+  for (int m = 0; m < 4; ++m)
+  {
+    result[m] = 0;
+  }
   for (int k = 0; k < 2; ++k)
   {
     for (int j = 0; j < 2; ++j)
