@@ -32,3 +32,17 @@ else ()
     PATHS ${lacuna_paraview_vtk})
   set(lacuna_flavor "vtk${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
 endif ()
+
+# GDCM decodes compressed DICOM pixels; without it the CT Series Reader is not built. Not through its
+# CMake package: Debian's can bring the VTK that GDCM's own filters were built with.
+find_path(LACUNA_GDCM_INCLUDE_DIR gdcmImage.h
+  PATH_SUFFIXES gdcm-3.0 gdcm-3.1 gdcm-3.2)
+set(LACUNA_GDCM_LIBRARIES)
+foreach (library IN ITEMS gdcmMSFF gdcmDSED gdcmCommon)
+  find_library(LACUNA_GDCM_${library} ${library})
+  list(APPEND LACUNA_GDCM_LIBRARIES "${LACUNA_GDCM_${library}}")
+endforeach ()
+set(LACUNA_HAS_GDCM OFF)
+if (LACUNA_GDCM_INCLUDE_DIR AND NOT LACUNA_GDCM_LIBRARIES MATCHES "NOTFOUND")
+  set(LACUNA_HAS_GDCM ON)
+endif ()

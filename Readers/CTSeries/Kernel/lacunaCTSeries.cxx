@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCTSeries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and what begins so
+
+[[noreturn]] void Fail(const CTFrame& frame, const std::string& what)
+{
+  throw std::runtime_error(frame.GetName() + ": " + what);
+}
+
+bool IsLocalizer(const CTFrame& frame)
+{
+  return std::any_of(frame.ImageType.begin(), frame.ImageType.end(),
+    [](const std::string& value) { return value == "LOCALIZER" || value == "SCOUT"; });
+}
+
+bool IsPositive(double x)
+{
+  return std::isfinite(x) && x > 0;
+}
+
+// The largest difference of elements; infinite unless both are there.
+template <std::size_t N>
+double Difference(
+  const std::optional<std::array<double, N>>& a, const std::optional<std::array<double, N>>& b)
+{
+  double largest = a && b ? 0 : HUGE_VAL;
+  for (std::size_t i = 0; a && b && i < N; ++i)
+  {
+    largest = std::max(largest, std::abs((*a)[i] - (*b)[i]));
+  }
+  return largest;
+}
+
+void CheckImage(const CTFrame& frame)
+{
+  const CTFileHeader& header = *frame.Header;
+  if (!header.PixelError.empty())
+  {
+    Fail(frame, header.PixelError);
+  }
+  if (header.Columns < 1 || header.Rows < 1)
+  {
+    Fail(frame, "has no valid Rows (0028,0010) and Columns (0028,0011)");
+  }
+  if (!frame.Position)
+  {
+    Fail(frame, "has no valid Image Position (Patient) (0020,0032), so where it lies is unknown");
+  }
+  if (!frame.Axes)
+  {
+    Fail(frame, "has no valid Image Orientation (Patient) (0020,0037), so how it lies is unknown");
+  }
+  if (!frame.Spacing || !IsPositive((*frame.Spacing)[0]) || !IsPositive((*frame.Spacing)[1]))
+  {
+    Fail(frame, "has no valid Pixel Spacing (0028,0030)");
+  }
+}
+
+void CheckSame(const CTFrame& frame, const CTFrame& first)
+{
+  const CTFileHeader& a = *frame.Header;
+  const CTFileHeader& b = *first.Header;
+  if (a.Columns != b.Columns || a.Rows != b.Rows)
+  {
+    std::ostringstream what;
+    what << "has " << a.Columns << " x " << a.Rows << " pixels, but " << first.GetName() << " has "
+         << b.Columns << " x " << b.Rows;
+    Fail(frame, what.str());
+  }
+  if (Difference(frame.Spacing, first.Spacing) > 1e-4 * (*first.Spacing)[0])
+  {
+    std::ostringstream what;
+    what << "has Pixel Spacing (0028,0030) " << (*frame.Spacing)[0] << " x " << (*frame.Spacing)[1]
+         << " mm, but " << first.GetName() << " has " << (*first.Spacing)[0] << " x "
+         << (*first.Spacing)[1] << " mm";
+    Fail(frame, what.str());
+  }
+  if (Difference(frame.Axes, first.Axes) > 1e-4)
+  {
+    Fail(frame,
+      "has another Image Orientation (Patient) (0020,0037) than " + first.GetName() +
+        "; the images of a volume are parallel");
+  }
+  if (a.Patient.Id != b.Patient.Id || a.Patient.Name != b.Patient.Name)
+  {
+    Fail(frame, "is of another patient (0010,0020) than " + first.GetName());
+  }
+  if (a.FrameOfReferenceUid != b.FrameOfReferenceUid)
+  {
+    Fail(frame,
+      "has another Frame of Reference UID (0020,0052) than " + first.GetName() +
+        "; their positions cannot be compared");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+std::string CTFrame::GetName() const
+{
+  const std::string& path = this->Header->File;
+  std::string name = path.substr(path.find_last_of('/') + 1);
+  if (this->Header->Frames > 1)
+  {
+    name += " frame " + std::to_string(this->Number + 1);
+  }
+  return name;
+}
+
+//------------------------------------------------------------------------------
+std::string CTSeries::Describe() const
+{
+  std::ostringstream text;
+  const CTFileHeader& header = *this->Frames.front().Header;
+  text << this->Uid << "  ";
+  if (!header.SeriesNumber.empty())
+  {
+    text << "series " << header.SeriesNumber << ", ";
+  }
+  if (!header.SeriesDescription.empty())
+  {
+    text << "\"" << header.SeriesDescription << "\", ";
+  }
+  text << this->Frames.size() << (this->Frames.size() == 1 ? " image of " : " images of ")
+       << header.Columns << " x " << header.Rows;
+  const std::size_t acquisitions = this->GetAcquisitions().size();
+  if (acquisitions > 1)
+  {
+    text << ", " << acquisitions << " acquisitions";
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> CTSeries::GetAcquisitions() const
+{
+  std::set<int> numbers;
+  for (const CTFrame& frame : this->Frames)
+  {
+    if (frame.Acquisition)
+    {
+      numbers.insert(*frame.Acquisition);
+    }
+  }
+  return { numbers.begin(), numbers.end() };
+}
+
+//------------------------------------------------------------------------------
+std::string CTSeriesList::Describe() const
+{
+  std::string text;
+  for (const CTSeries& series : this->Series)
+  {
+    text += "\n  " + series.Describe();
+  }
+  return text;
+}
+
+//------------------------------------------------------------------------------
+std::string WhyNotInVolume(const CTFrame& frame)
+{
+  const CTFileHeader& header = *frame.Header;
+  if (header.Modality != "CT")
+  {
+    return header.Modality.empty() ? "has no Modality (0008,0060)"
+                                   : "is of modality " + header.Modality + ", not CT (0008,0060)";
+  }
+  if (header.SopClassUid.rfind(SecondaryCapture, 0) == 0)
+  {
+    return "is a secondary capture (0008,0016)";
+  }
+  if (IsLocalizer(frame))
+  {
+    return "is a localizer (0008,0008)";
+  }
+  if (header.SamplesPerPixel != 1)
+  {
+    return "is a colour image (0028,0002)";
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
+CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
+{
+  struct Omission
+  {
+    std::string Example;
+    int Count = 0;
+  };
+  std::map<std::string, Omission> omitted;
+  std::map<std::pair<long, std::string>, CTSeries> found;
+  for (const CTFrame& frame : frames)
+  {
+    const std::string why = WhyNotInVolume(frame);
+    if (!why.empty())
+    {
+      Omission& omission = omitted[why];
+      omission.Example = omission.Count == 0 ? frame.GetName() : omission.Example;
+      ++omission.Count;
+      continue;
+    }
+    const std::string& uid = frame.Header->SeriesUid;
+    const long number = std::strtol(frame.Header->SeriesNumber.c_str(), nullptr, 10);
+    CTSeries& series = found[{ number, uid }];
+    series.Uid = uid;
+    series.Frames.push_back(frame);
+  }
+  CTSeriesList list;
+  for (auto& entry : found)
+  {
+    // a series whose files disagree on its number is one nevertheless
+    const auto same = std::find_if(list.Series.begin(), list.Series.end(),
+      [&](const CTSeries& series) { return series.Uid == entry.second.Uid; });
+    if (same != list.Series.end())
+    {
+      same->Frames.insert(
+        same->Frames.end(), entry.second.Frames.begin(), entry.second.Frames.end());
+      continue;
+    }
+    list.Series.push_back(std::move(entry.second));
+  }
+  for (const auto& [why, omission] : omitted)
+  {
+    std::string note = omission.Example + ": left out, it " + why;
+    if (omission.Count > 1)
+    {
+      note += "; so are " + std::to_string(omission.Count - 1) + " others";
+    }
+    list.Notes.push_back(note);
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
+const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& requested,
+  const std::string& file, const std::string& openedUid)
+{
+  std::string notes;
+  for (const std::string& note : list.Notes)
+  {
+    notes += "\n  " + note;
+  }
+  if (list.Series.empty())
+  {
+    throw std::runtime_error(file + ": there is no CT image" + notes);
+  }
+  const std::string uid = requested.substr(0, requested.find(' '));
+  const std::string wanted = uid.empty() ? openedUid : uid;
+  if (wanted.empty() && list.Series.size() == 1)
+  {
+    return list.Series.front();
+  }
+  if (wanted.empty())
+  {
+    throw std::runtime_error(file + ": there are " + std::to_string(list.Series.size()) +
+      " CT series; set SeriesUID to one of these:" + list.Describe());
+  }
+  for (const CTSeries& series : list.Series)
+  {
+    if (series.Uid == wanted)
+    {
+      return series;
+    }
+  }
+  const std::string what = uid.empty() ? ": the series of this file has no image for a CT volume"
+                                       : ": there is no CT series " + wanted;
+  throw std::runtime_error(file + what + "; there are:" + list.Describe() + notes);
+}
+
+//------------------------------------------------------------------------------
+std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition)
+{
+  std::vector<CTFrame> frames;
+  for (const CTFrame& frame : series.Frames)
+  {
+    if (acquisition == -1 || frame.Acquisition == acquisition)
+    {
+      frames.push_back(frame);
+    }
+  }
+  if (frames.empty())
+  {
+    std::string numbers;
+    for (const int number : series.GetAcquisitions())
+    {
+      numbers += " " + std::to_string(number);
+    }
+    throw std::runtime_error("series " + series.Uid + " has no image of acquisition " +
+      std::to_string(acquisition) +
+      " (0020,0012); there are:" + (numbers.empty() ? " none" : numbers));
+  }
+  return frames;
+}
+
+//------------------------------------------------------------------------------
+void CheckSameVolume(const std::vector<CTFrame>& frames)
+{
+  for (const CTFrame& frame : frames)
+  {
+    CheckImage(frame);
+    CheckSame(frame, frames.front());
+  }
+}
+}

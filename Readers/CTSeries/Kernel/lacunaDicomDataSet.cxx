@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDicomDataSet.h"
+
+#include "lacunaDicomText.h"
+#include "lacunaFileBytes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::int64_t PreambleSize = 132;
+constexpr std::uint32_t Undefined = 0xFFFFFFFF;
+constexpr std::int64_t LongestValue = 16384; // kept in memory
+constexpr int DeepestSequence = 16;
+constexpr DicomTag TransferSyntaxTag = 0x00020010;
+constexpr DicomTag PixelTag = 0x7FE00010;
+constexpr DicomTag ItemTag = 0xFFFEE000;
+constexpr DicomTag ItemEndTag = 0xFFFEE00D;
+constexpr DicomTag SequenceEndTag = 0xFFFEE0DD;
+constexpr const char* DeflatedSyntax = "1.2.840.10008.1.2.1.99";
+constexpr const char* BigEndianSyntax = "1.2.840.10008.1.2.2";
+constexpr const char* ImplicitSyntax = "1.2.840.10008.1.2";
+
+std::string Name(DicomTag tag)
+{
+  char text[16];
+  std::snprintf(text, sizeof(text), "(%04X,%04X)", tag >> 16, tag & 0xFFFFU);
+  return text;
+}
+
+// Sequences that matter, for files that do not say what is one.
+bool IsKnownSequence(DicomTag tag)
+{
+  static const std::vector<DicomTag> known = { 0x00189329, 0x00209111, 0x00209113, 0x00209116,
+    0x00289110, 0x00289145, 0x52009229, 0x52009230 };
+  return std::find(known.begin(), known.end(), tag) != known.end();
+}
+
+bool HasLongLength(const std::string& vr)
+{
+  static const std::vector<std::string> all = { "OB", "OD", "OF", "OL", "OV", "OW", "SQ", "SV",
+    "UC", "UN", "UR", "UT", "UV" };
+  return std::find(all.begin(), all.end(), vr) != all.end();
+}
+}
+
+/// Reads elements one after the other; no length is believed that goes beyond what holds it.
+class DicomParser
+{
+public:
+  explicit DicomParser(const std::string& path)
+    : Path(path)
+    , Bytes(path)
+  {
+  }
+
+  DicomFile Parse();
+
+private:
+  struct Element
+  {
+    DicomTag Tag = 0;
+    std::string Vr; // empty in implicit syntaxes and of items
+    std::uint32_t Length = 0;
+    std::int64_t Value = 0; // offset
+  };
+
+  [[noreturn]] void Fail(const std::string& what) const
+  {
+    throw std::runtime_error(this->Path + ": " + what);
+  }
+  const unsigned char* Get(std::int64_t offset, std::int64_t count, DicomTag tag)
+  {
+    const unsigned char* bytes = this->Bytes.Get(offset, count);
+    if (!bytes)
+    {
+      this->Fail("is cut off near element " + Name(tag) + ", at byte " +
+        std::to_string(this->Bytes.GetSize()));
+    }
+    return bytes;
+  }
+  std::uint32_t Number(const unsigned char* bytes, int count) const
+  {
+    std::uint32_t number = 0;
+    for (int i = 0; i < count; ++i)
+    {
+      const int shift = 8 * (this->BigEndian ? count - 1 - i : i);
+      number |= static_cast<std::uint32_t>(bytes[i]) << shift;
+    }
+    return number;
+  }
+  Element ReadElement(std::int64_t offset, bool implicit, DicomTag before);
+  std::int64_t ReadValue(
+    const Element& element, DicomDataSet& data, std::int64_t end, bool implicit, int depth);
+  std::int64_t ReadDataSet(std::int64_t offset, std::int64_t end, DicomDataSet& data, bool implicit,
+    int depth, Element* pixels);
+  std::int64_t ReadSequence(const Element& element, std::int64_t end,
+    std::vector<DicomDataSet>& items, bool implicit, int depth);
+  std::int64_t SkipFragments(const Element& element, std::int64_t end);
+  std::int64_t ReadMeta(DicomFile& file);
+  void ReadFragments(DicomFile& file);
+
+  std::string Path;
+  FileBytes Bytes;
+  bool BigEndian = false;
+};
+
+//------------------------------------------------------------------------------
+DicomParser::Element DicomParser::ReadElement(std::int64_t offset, bool implicit, DicomTag before)
+{
+  Element element;
+  const unsigned char* bytes = this->Get(offset, 8, before);
+  element.Tag = this->Number(bytes, 2) << 16 | this->Number(bytes + 2, 2);
+  if (implicit || element.Tag >> 16 == 0xFFFE)
+  {
+    element.Length = this->Number(bytes + 4, 4);
+    element.Value = offset + 8;
+    return element;
+  }
+  element.Vr.assign(reinterpret_cast<const char*>(bytes) + 4, 2);
+  if (!std::all_of(
+        element.Vr.begin(), element.Vr.end(), [](char c) { return c >= 'A' && c <= 'Z'; }))
+  {
+    this->Fail("element " + Name(element.Tag) + " has no valid type (VR)");
+  }
+  if (HasLongLength(element.Vr))
+  {
+    element.Length = this->Number(this->Get(offset + 8, 4, element.Tag), 4);
+    element.Value = offset + 12;
+    return element;
+  }
+  element.Length = this->Number(bytes + 6, 2);
+  element.Value = offset + 8;
+  return element;
+}
+
+//------------------------------------------------------------------------------
+// Returns the offset after the value.
+std::int64_t DicomParser::ReadValue(
+  const Element& element, DicomDataSet& data, std::int64_t end, bool implicit, int depth)
+{
+  const bool undefined = element.Length == Undefined;
+  const bool sequence = element.Vr == "SQ" || (undefined && (implicit || element.Vr == "UN")) ||
+    (element.Vr.empty() && IsKnownSequence(element.Tag));
+  if (sequence && !undefined && !IsKnownSequence(element.Tag) &&
+    element.Length <= end - element.Value)
+  {
+    return element.Value + element.Length;
+  }
+  if (sequence)
+  {
+    std::vector<DicomDataSet> items;
+    // a sequence of unknown type is implicit (CP 246)
+    const std::int64_t next =
+      this->ReadSequence(element, end, items, implicit || element.Vr == "UN", depth + 1);
+    if (IsKnownSequence(element.Tag))
+    {
+      data.Sequences[element.Tag] = std::move(items);
+    }
+    return next;
+  }
+  if (undefined)
+  {
+    return this->SkipFragments(element, end);
+  }
+  if (element.Length > end - element.Value)
+  {
+    this->Fail("is cut off or damaged: element " + Name(element.Tag) + " shall have " +
+      std::to_string(element.Length) + " bytes, " +
+      std::to_string(std::max<std::int64_t>(0, end - element.Value)) + " are there");
+  }
+  if (element.Length <= LongestValue && (element.Tag >> 16) % 2 == 0)
+  {
+    const unsigned char* bytes = this->Get(element.Value, element.Length, element.Tag);
+    data.Values[element.Tag].assign(
+      reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(element.Length));
+  }
+  return element.Value + element.Length;
+}
+
+//------------------------------------------------------------------------------
+// Compressed pixels in an item, such as those of an icon.
+std::int64_t DicomParser::SkipFragments(const Element& element, std::int64_t end)
+{
+  std::int64_t offset = element.Value;
+  while (offset < end)
+  {
+    const Element item = this->ReadElement(offset, true, element.Tag);
+    if (item.Tag == SequenceEndTag)
+    {
+      return item.Value;
+    }
+    if (item.Tag != ItemTag || item.Length > end - item.Value)
+    {
+      break;
+    }
+    offset = item.Value + item.Length;
+  }
+  this->Fail("is cut off or damaged: element " + Name(element.Tag) + " has no end");
+}
+
+//------------------------------------------------------------------------------
+// Up to end, to the end of an item, or to the pixels, when pixels is not null.
+std::int64_t DicomParser::ReadDataSet(std::int64_t offset, std::int64_t end, DicomDataSet& data,
+  bool implicit, int depth, Element* pixels)
+{
+  data.BigEndian = this->BigEndian;
+  DicomTag before = 0;
+  while (offset < end)
+  {
+    const Element element = this->ReadElement(offset, implicit, before);
+    if (element.Tag == ItemEndTag && depth > 0)
+    {
+      return element.Value;
+    }
+    if (pixels && element.Tag == PixelTag)
+    {
+      *pixels = element;
+      return element.Value;
+    }
+    offset = this->ReadValue(element, data, end, implicit, depth);
+    before = element.Tag;
+  }
+  return offset;
+}
+
+//------------------------------------------------------------------------------
+std::int64_t DicomParser::ReadSequence(const Element& element, std::int64_t end,
+  std::vector<DicomDataSet>& items, bool implicit, int depth)
+{
+  if (depth > DeepestSequence)
+  {
+    this->Fail("sequences within sequences at " + Name(element.Tag) + " are too deep");
+  }
+  const bool undefined = element.Length == Undefined;
+  if (!undefined && element.Length > end - element.Value)
+  {
+    this->Fail("is cut off or damaged: sequence " + Name(element.Tag) + " shall have " +
+      std::to_string(element.Length) + " bytes");
+  }
+  const std::int64_t last = undefined ? end : element.Value + element.Length;
+  std::int64_t offset = element.Value;
+  while (offset < last)
+  {
+    const Element item = this->ReadElement(offset, true, element.Tag);
+    if (item.Tag == SequenceEndTag)
+    {
+      return item.Value;
+    }
+    if (item.Tag != ItemTag)
+    {
+      this->Fail("sequence " + Name(element.Tag) + " holds " + Name(item.Tag) +
+        " where an item "
+        "should begin");
+    }
+    const bool open = item.Length == Undefined;
+    if (!open && item.Length > last - item.Value)
+    {
+      this->Fail("is cut off or damaged: an item of " + Name(element.Tag) + " is longer than it");
+    }
+    items.emplace_back();
+    offset = this->ReadDataSet(
+      item.Value, open ? last : item.Value + item.Length, items.back(), implicit, depth, nullptr);
+  }
+  if (undefined)
+  {
+    this->Fail("is cut off in sequence " + Name(element.Tag));
+  }
+  return last;
+}
+
+//------------------------------------------------------------------------------
+// The file meta information, always explicit and little endian. Returns where the data begin.
+std::int64_t DicomParser::ReadMeta(DicomFile& file)
+{
+  const unsigned char* preamble = this->Bytes.Get(0, PreambleSize);
+  if (!preamble || std::string(preamble + 128, preamble + 132) != "DICM")
+  {
+    this->Fail("is not a DICOM file");
+  }
+  DicomDataSet meta;
+  std::int64_t offset = PreambleSize;
+  while (offset < this->Bytes.GetSize())
+  {
+    const unsigned char* bytes = this->Get(offset, 4, TransferSyntaxTag);
+    if (this->Number(bytes, 2) != 2)
+    {
+      break;
+    }
+    const Element element = this->ReadElement(offset, false, TransferSyntaxTag);
+    offset = this->ReadValue(element, meta, this->Bytes.GetSize(), false, 0);
+  }
+  file.TransferSyntax = meta.GetText(TransferSyntaxTag);
+  if (file.TransferSyntax.empty())
+  {
+    this->Fail("has no Transfer Syntax UID (0002,0010)");
+  }
+  return offset;
+}
+
+//------------------------------------------------------------------------------
+void DicomParser::ReadFragments(DicomFile& file)
+{
+  std::int64_t offset = file.PixelOffset;
+  bool table = true;
+  while (const unsigned char* bytes = this->Bytes.Get(offset, 8))
+  {
+    const DicomTag tag = this->Number(bytes, 2) << 16 | this->Number(bytes + 2, 2);
+    const std::int64_t length = this->Number(bytes + 4, 4);
+    offset += 8;
+    if (tag == SequenceEndTag)
+    {
+      file.FragmentsComplete = true;
+      return;
+    }
+    if (tag != ItemTag || length > this->Bytes.GetSize() - offset)
+    {
+      return;
+    }
+    if (table)
+    {
+      table = false;
+      const unsigned char* offsets = this->Bytes.Get(offset, length);
+      for (std::int64_t i = 0; offsets && i + 4 <= length; i += 4)
+      {
+        file.FrameOffsets.push_back(this->Number(offsets + i, 4));
+      }
+    }
+    else
+    {
+      file.Fragments.push_back({ offset, length });
+    }
+    offset += length;
+  }
+}
+
+//------------------------------------------------------------------------------
+DicomFile DicomParser::Parse()
+{
+  DicomFile file;
+  file.FileSize = this->Bytes.GetSize();
+  const std::int64_t begin = this->ReadMeta(file);
+  if (file.TransferSyntax == DeflatedSyntax)
+  {
+    this->Fail(
+      "is deflated as a whole (transfer syntax 1.2.840.10008.1.2.1.99), which is not read; "
+      "dcmconv +te makes an ordinary file of it");
+  }
+  this->BigEndian = file.BigEndian = file.TransferSyntax == BigEndianSyntax;
+  Element pixels;
+  this->ReadDataSet(
+    begin, file.FileSize, file.Data, file.TransferSyntax == ImplicitSyntax, 0, &pixels);
+  if (pixels.Tag == PixelTag)
+  {
+    file.PixelOffset = pixels.Value;
+    file.PixelLength = pixels.Length == Undefined ? -1 : std::int64_t{ pixels.Length };
+    if (file.PixelLength == -1)
+    {
+      this->ReadFragments(file);
+    }
+  }
+  return file;
+}
+
+//------------------------------------------------------------------------------
+std::string DicomDataSet::GetBytes(DicomTag tag) const
+{
+  const auto found = this->Values.find(tag);
+  return found == this->Values.end() ? std::string() : found->second;
+}
+
+//------------------------------------------------------------------------------
+std::string DicomDataSet::GetText(DicomTag tag) const
+{
+  return TrimDicomText(this->GetBytes(tag));
+}
+
+//------------------------------------------------------------------------------
+std::optional<std::vector<double>> DicomDataSet::GetNumbers(DicomTag tag, std::size_t count) const
+{
+  return ParseDicomNumbers(this->GetBytes(tag), count);
+}
+
+//------------------------------------------------------------------------------
+std::optional<double> DicomDataSet::GetNumber(DicomTag tag) const
+{
+  const auto numbers = this->GetNumbers(tag, 1);
+  return numbers ? std::optional<double>((*numbers)[0]) : std::nullopt;
+}
+
+//------------------------------------------------------------------------------
+std::optional<int> DicomDataSet::GetInteger(DicomTag tag) const
+{
+  const auto number = this->GetNumber(tag);
+  if (!number || *number != std::nearbyint(*number) ||
+    std::abs(*number) > std::numeric_limits<int>::max())
+  {
+    return std::nullopt;
+  }
+  return static_cast<int>(*number);
+}
+
+//------------------------------------------------------------------------------
+std::optional<std::int64_t> DicomDataSet::GetBinary(DicomTag tag, bool isSigned) const
+{
+  const std::string bytes = this->GetBytes(tag);
+  if (bytes.size() != 2 && bytes.size() != 4)
+  {
+    return std::nullopt;
+  }
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+  {
+    const std::size_t shift = 8 * (this->BigEndian ? bytes.size() - 1 - i : i);
+    number |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << shift;
+  }
+  if (!isSigned)
+  {
+    return number;
+  }
+  return bytes.size() == 2 ? std::int64_t{ static_cast<std::int16_t>(number) }
+                           : std::int64_t{ static_cast<std::int32_t>(number) };
+}
+
+//------------------------------------------------------------------------------
+const std::vector<DicomDataSet>& DicomDataSet::GetItems(DicomTag tag) const
+{
+  static const std::vector<DicomDataSet> none;
+  const auto found = this->Sequences.find(tag);
+  return found == this->Sequences.end() ? none : found->second;
+}
+
+//------------------------------------------------------------------------------
+bool IsDicomFile(const std::string& path)
+{
+  try
+  {
+    FileBytes bytes(path);
+    const unsigned char* preamble = bytes.Get(0, PreambleSize);
+    return preamble && std::string(preamble + 128, preamble + 132) == "DICM";
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+}
+
+//------------------------------------------------------------------------------
+DicomFile ReadDicomFile(const std::string& path)
+{
+  return DicomParser(path).Parse();
+}
+}

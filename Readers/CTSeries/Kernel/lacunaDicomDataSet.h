@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The data elements of a DICOM file before its pixels (PS3.5 and PS3.10). Written here since a
+/// damaged file stops the whole program inside of Debian's GDCM, whose assertions are on.
+#ifndef lacunaDicomDataSet_h
+#define lacunaDicomDataSet_h
+
+#include "lacunaCTFrame.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// Group and element as one number: 0x00280010.
+using DicomTag = std::uint32_t;
+
+/// Elements by tag. Values of more than a few KiB are not kept, private ones neither.
+class DicomDataSet
+{
+public:
+  /// The bytes of a value; empty when it is absent.
+  std::string GetBytes(DicomTag tag) const;
+  /// The value without padding.
+  std::string GetText(DicomTag tag) const;
+  /// count decimal numbers of a text value; nothing when it is absent or malformed.
+  std::optional<std::vector<double>> GetNumbers(DicomTag tag, std::size_t count) const;
+  std::optional<double> GetNumber(DicomTag tag) const;
+  /// A whole number of a text value.
+  std::optional<int> GetInteger(DicomTag tag) const;
+  /// A binary number of 2 or 4 bytes.
+  std::optional<std::int64_t> GetBinary(DicomTag tag, bool isSigned) const;
+  /// The items of a sequence; none when it is absent.
+  const std::vector<DicomDataSet>& GetItems(DicomTag tag) const;
+  bool IsEmpty() const { return this->Values.empty() && this->Sequences.empty(); }
+
+private:
+  friend class DicomParser;
+  std::map<DicomTag, std::string> Values;
+  std::map<DicomTag, std::vector<DicomDataSet>> Sequences;
+  bool BigEndian = false;
+};
+
+/// A file up to its pixels.
+struct DicomFile
+{
+  std::string TransferSyntax;
+  DicomDataSet Data;
+  bool BigEndian = false;
+  std::int64_t PixelOffset = 0; ///< first byte of the pixel element's value; 0 when there is none
+  std::int64_t PixelLength = 0; ///< -1 when the pixels are in fragments
+  /// The fragments after the offset table, as far as they are whole.
+  std::vector<DicomFragment> Fragments;
+  std::vector<std::int64_t> FrameOffsets; ///< basic offset table, from the first fragment's item
+  bool FragmentsComplete = false;
+  std::int64_t FileSize = 0;
+};
+
+/// Whether a file begins as DICOM files do. False when it cannot be read.
+bool IsDicomFile(const std::string& path);
+
+/// Throws std::runtime_error naming the file and the element when it is no DICOM file, cut off
+/// before its pixels or malformed, or in a transfer syntax that is not understood.
+DicomFile ReadDicomFile(const std::string& path);
+}
+#endif

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDicomFolder.h"
+
+#include "lacunaDicomDataSet.h"
+#include "lacunaDicomHeader.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr std::size_t MostFiles = 200000;
+constexpr int MostTried = 200; // files of a folder, until one is CT
+
+bool IsDirectoryRecord(const fs::path& path)
+{
+  return path.filename() == "DICOMDIR" || path.filename() == "dicomdir";
+}
+
+// Calls visit with each regular file until it returns false.
+template <class Visit>
+void ForEachFile(const fs::path& folder, bool deep, Visit&& visit)
+{
+  std::error_code error;
+  fs::recursive_directory_iterator file(
+    folder, fs::directory_options::skip_permission_denied, error);
+  if (error)
+  {
+    throw std::runtime_error(folder.string() + ": the folder cannot be read: " + error.message());
+  }
+  for (; file != fs::recursive_directory_iterator(); file.increment(error))
+  {
+    if (!deep)
+    {
+      file.disable_recursion_pending();
+    }
+    std::error_code ignored;
+    if (file->is_regular_file(ignored) && !visit(*file))
+    {
+      return;
+    }
+  }
+}
+
+bool IsCTFile(const std::string& path)
+{
+  try
+  {
+    return IsDicomFile(path) && ReadDicomFile(path).Data.GetText(0x00080060) == "CT";
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+bool IsCTFileOrFolder(const std::string& path)
+{
+  std::error_code error;
+  if (!fs::is_directory(path, error))
+  {
+    return IsCTFile(path) || (IsDirectoryRecord(path) && IsDicomFile(path));
+  }
+  int tried = 0;
+  bool found = false;
+  try
+  {
+    ForEachFile(path, true,
+      [&](const fs::directory_entry& file)
+      {
+        found = IsCTFile(file.path().string());
+        return !found && ++tried < MostTried;
+      });
+  }
+  catch (const std::exception&)
+  {
+    return false;
+  }
+  return found;
+}
+
+//------------------------------------------------------------------------------
+void DicomFolder::Scan(const std::string& path, Execution& execution)
+{
+  this->Frames.clear();
+  this->Notes.clear();
+  this->Warnings.clear();
+  this->Opened.clear();
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+  {
+    throw std::runtime_error(path + ": there is no such file or folder");
+  }
+  const bool single = !fs::is_directory(status) && !IsDirectoryRecord(path);
+  fs::path folder = path;
+  if (!fs::is_directory(status))
+  {
+    folder = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  }
+
+  std::map<std::string, Entry> files;
+  ForEachFile(folder, !single,
+    [&](const fs::directory_entry& file)
+    {
+      std::error_code ignored;
+      Entry entry;
+      entry.Size = static_cast<std::int64_t>(file.file_size(ignored));
+      entry.Time = file.last_write_time(ignored).time_since_epoch().count();
+      const std::string name = file.path().string();
+      const auto known = this->Files.find(name);
+      const bool same = known != this->Files.end() && known->second.Size == entry.Size &&
+        known->second.Time == entry.Time;
+      files[name] = same ? known->second : std::move(entry);
+      if (!same)
+      {
+        files[name].Error = "new";
+      }
+      if (files.size() > MostFiles)
+      {
+        throw std::runtime_error(
+          folder.string() + ": holds more than 200000 files; open the folder of one patient");
+      }
+      return true;
+    });
+  std::vector<std::pair<const std::string, Entry>*> fresh;
+  for (auto& file : files)
+  {
+    if (file.second.Error == "new")
+    {
+      fresh.push_back(&file);
+    }
+  }
+  execution.For(static_cast<std::int64_t>(fresh.size()), 8,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        Entry& entry = fresh[static_cast<std::size_t>(i)]->second;
+        entry.Error.clear();
+        entry.IsDicom = IsDicomFile(fresh[static_cast<std::size_t>(i)]->first);
+        if (!entry.IsDicom)
+        {
+          continue;
+        }
+        try
+        {
+          entry.Frames = ReadDicomFrames(fresh[static_cast<std::size_t>(i)]->first);
+        }
+        catch (const std::exception& e)
+        {
+          entry.Error = e.what();
+        }
+      }
+    });
+  this->Files = std::move(files);
+
+  std::size_t others = 0;
+  for (const auto& [name, entry] : this->Files)
+  {
+    others += entry.IsDicom ? 0 : 1;
+    if (!entry.Error.empty())
+    {
+      this->Warnings.push_back(entry.Error + "; the file is left out");
+    }
+    if (!IsDirectoryRecord(name))
+    {
+      this->Frames.insert(this->Frames.end(), entry.Frames.begin(), entry.Frames.end());
+    }
+  }
+  if (others > 0)
+  {
+    this->Notes.push_back(std::to_string(others) + " files are no DICOM files");
+  }
+  if (single)
+  {
+    const std::string name = fs::path(path).filename().string();
+    for (const auto& file : this->Files)
+    {
+      if (fs::path(file.first).filename() == name)
+      {
+        this->Opened = file.first;
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string DicomFolder::GetOpenedSeries() const
+{
+  if (this->Opened.empty())
+  {
+    return {};
+  }
+  const Entry& entry = this->Files.at(this->Opened);
+  if (!entry.Error.empty() || entry.Frames.empty())
+  {
+    throw std::runtime_error(
+      entry.Error.empty() ? this->Opened + ": is not a DICOM file" : entry.Error);
+  }
+  const std::string& uid = entry.Frames.front().Header->SeriesUid;
+  if (uid.empty())
+  {
+    throw std::runtime_error(this->Opened + ": has no Series Instance UID (0020,000E)");
+  }
+  return uid;
+}
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The images of a DICOM file, single or multi-frame.
+#ifndef lacunaDicomHeader_h
+#define lacunaDicomHeader_h
+
+#include "lacunaCTFrame.h"
+
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// One frame for each image of a file: of ordinary CT files one, of enhanced CT as many as it says,
+/// each with the values of its functional groups. Of a file that holds no image (a report, a folder
+/// record) one without pixels. Throws std::runtime_error naming the file and what is wrong when it
+/// cannot be understood; pixels that are missing or cut off are noted in PixelError instead.
+std::vector<CTFrame> ReadDicomFrames(const std::string& path);
+
+/// The bytes of a frame: its pixels in the machine's byte order, or a compressed stream. Throws
+/// std::runtime_error naming the file when they cannot be read.
+std::vector<unsigned char> ReadDicomBytes(const CTFrame& frame);
+}
+#endif

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaCTSeriesReader.h"
+
+#include "lacunaCTGeometry.h"
+#include "lacunaCTSeries.h"
+#include "lacunaCTVolume.h"
+#include "lacunaDicomDecoder.h"
+#include "lacunaDicomFolder.h"
+#include "lacunaHounsfield.h"
+#include "lacunaMemory.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkErrorCode.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <iomanip>
+#include <new>
+#include <sstream>
+
+namespace
+{
+constexpr const char* ScalarsName = "HounsfieldUnits";
+
+std::string Text(const char* s)
+{
+  return s ? s : "";
+}
+
+// FNV-1a: tells which scan it was to one who has it, and nothing to others.
+std::string Hash(const std::string& text)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const char c : text)
+  {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  }
+  std::ostringstream digits;
+  digits << std::hex << std::setw(16) << std::setfill('0') << hash;
+  return digits.str();
+}
+
+void AddString(vtkDataObject* data, const char* name, const std::string& text)
+{
+  if (text.empty())
+  {
+    return;
+  }
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  array->InsertNextValue(text);
+  data->GetFieldData()->AddArray(array);
+}
+
+// Headers are read before the request for data, when VTK has not yet reset an abort of before.
+class HeaderExecution : public vtkLacunaExecution
+{
+public:
+  using vtkLacunaExecution::vtkLacunaExecution;
+
+protected:
+  bool OnProgress(double) override { return true; }
+};
+
+bool IsSameImage(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
+{
+  if (a.RescaleSlope != b.RescaleSlope || a.RescaleIntercept != b.RescaleIntercept)
+  {
+    return false;
+  }
+  const lacuna::CTPixels first = lacuna::ReadDicomPixels(a);
+  const lacuna::CTPixels second = lacuna::ReadDicomPixels(b);
+  return a.GetSize() == b.GetSize() && first.Format.Signed == second.Format.Signed &&
+    std::memcmp(first.Bytes.get(), second.Bytes.get(), static_cast<std::size_t>(a.GetSize())) == 0;
+}
+}
+
+struct vtkLacunaCTSeriesReader::Content
+{
+  lacuna::DicomFolder Folder;
+  vtkNew<vtkStringArray> SeriesList;
+  vtkNew<vtkStringArray> Notes;
+  bool Opened = false;
+  bool Warned = false; // of what follows
+  std::vector<std::string> Warnings;
+  lacuna::CTGeometry Geometry;
+  lacuna::ScalarType Type = lacuna::ScalarType::Int16;
+};
+
+vtkStandardNewMacro(vtkLacunaCTSeriesReader);
+
+//------------------------------------------------------------------------------
+vtkLacunaCTSeriesReader::vtkLacunaCTSeriesReader()
+  : Found(std::make_unique<Content>())
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaCTSeriesReader::~vtkLacunaCTSeriesReader()
+{
+  this->SetFileName(nullptr);
+  this->SetSeriesUID(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaCTSeriesReader::CanReadFile(const char* fileName)
+{
+  return fileName && lacuna::IsCTFileOrFolder(fileName) ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+vtkStringArray* vtkLacunaCTSeriesReader::GetSeriesList()
+{
+  return this->Found->SeriesList;
+}
+
+//------------------------------------------------------------------------------
+vtkStringArray* vtkLacunaCTSeriesReader::GetNotes()
+{
+  return this->Found->Notes;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::OpenSeries()
+{
+  Content& found = *this->Found;
+  HeaderExecution execution(this);
+  found.Folder.Scan(this->FileName, execution);
+  const lacuna::CTSeriesList list = lacuna::ListSeries(found.Folder.GetFrames());
+  for (const lacuna::CTSeries& series : list.Series)
+  {
+    found.SeriesList->InsertNextValue(series.Describe());
+  }
+  const lacuna::CTSeries& series = lacuna::SelectSeries(
+    list, Text(this->SeriesUID), this->FileName, found.Folder.GetOpenedSeries());
+  const std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
+  lacuna::CheckSameVolume(frames);
+  found.Type = lacuna::GetHounsfieldType(frames, this->PaddingValue);
+
+  lacuna::CTGeometryOptions options;
+  options.InterpolateMissing = this->MissingSlices == MISSING_SLICES_INTERPOLATE;
+  options.CorrectTilt = this->GantryTilt == GANTRY_TILT_CORRECT;
+  options.PositionTolerance = this->PositionTolerance;
+  options.SameImage = IsSameImage;
+  found.Geometry = lacuna::FindCTGeometry(frames, options);
+
+  const auto add = [&](const std::vector<std::string>& notes)
+  {
+    for (const std::string& note : notes)
+    {
+      found.Notes->InsertNextValue(note);
+    }
+  };
+  add(found.Folder.GetNotes());
+  add(list.Notes);
+  add(found.Geometry.Notes);
+  found.Warnings = found.Folder.GetWarnings();
+  found.Warnings.insert(
+    found.Warnings.end(), found.Geometry.Warnings.begin(), found.Geometry.Warnings.end());
+  found.Opened = true;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaCTSeriesReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  Content& found = *this->Found;
+  found.Opened = false;
+  found.Warned = false;
+  found.SeriesList->Reset();
+  found.Notes->Reset();
+  this->SetErrorCode(vtkErrorCode::NoError);
+  vtkInformation* info = outputs->GetInformationObject(0);
+  if (Text(this->FileName).empty())
+  {
+    // Not yet an error: ParaView asks as soon as one of several properties is set.
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
+    return 1;
+  }
+  const int opened = vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      this->OpenSeries();
+      const lacuna::CTGeometry& geometry = found.Geometry;
+      const int extent[6] = { 0, static_cast<int>(geometry.Columns) - 1, 0,
+        static_cast<int>(geometry.Rows) - 1, 0, static_cast<int>(geometry.Planes.size()) - 1 };
+      double direction[9];
+      for (int i = 0; i < 9; ++i)
+      {
+        direction[i] = geometry.Axes[i % 3][i / 3];
+      }
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), geometry.Origin.data(), 3);
+      info->Set(vtkDataObject::SPACING(), geometry.Spacing.data(), 3);
+      info->Set(vtkDataObject::DIRECTION(), direction, 9);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
+    });
+  if (!opened)
+  {
+    std::error_code ignored;
+    this->SetErrorCode(std::filesystem::exists(this->FileName, ignored)
+        ? vtkErrorCode::FileFormatError
+        : vtkErrorCode::FileNotFoundError);
+  }
+  return opened;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaCTSeriesReader::DescribeParameters() const
+{
+  const lacuna::CTGeometry& geometry = this->Found->Geometry;
+  std::ostringstream text;
+  text << "Series=fnv1a:" << Hash(geometry.Slices[0].Frame.Header->SeriesUid)
+       << " Images=" << geometry.Slices.size() << " MissingSlices="
+       << (this->MissingSlices == MISSING_SLICES_ERROR ? "Error" : "Interpolate")
+       << " GantryTilt=" << (this->GantryTilt == GANTRY_TILT_CORRECT ? "Correct" : "Refuse")
+       << " Acquisition=" << this->Acquisition << " PositionTolerance=" << this->PositionTolerance
+       << " PaddingValue=" << this->PaddingValue << " Interpolated=" << geometry.Interpolated.size()
+       << " Tilt=" << geometry.TiltDegrees;
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
+{
+  const lacuna::CTGeometry& geometry = this->Found->Geometry;
+  const lacuna::CTFileHeader& header = *geometry.Slices[0].Frame.Header;
+  AddString(output, "PatientPosition", header.PatientPosition);
+  AddString(output, "ConvolutionKernel", header.ConvolutionKernel);
+  if (geometry.TiltDegrees != 0)
+  {
+    vtkLacunaFieldData::Set(output, "GantryTilt", { geometry.TiltDegrees }, 1);
+  }
+  if (!geometry.Interpolated.empty())
+  {
+    vtkNew<vtkIntArray> array;
+    array->SetName("InterpolatedSlices");
+    for (const int plane : geometry.Interpolated)
+    {
+      array->InsertNextValue(plane);
+    }
+    output->GetFieldData()->AddArray(array);
+  }
+  if (this->KeepPatientIdentity)
+  {
+    AddString(output, "PatientName", header.Patient.Name);
+    AddString(output, "PatientID", header.Patient.Id);
+    AddString(output, "PatientBirthDate", header.Patient.BirthDate);
+    AddString(output, "PatientSex", header.Patient.Sex);
+    AddString(output, "StudyDate", header.StudyDate);
+    AddString(output, "StudyInstanceUID", header.StudyUid);
+    AddString(output, "SeriesInstanceUID", header.SeriesUid);
+  }
+  vtkLacunaProvenance::Record(
+    output, const_cast<vtkLacunaCTSeriesReader*>(this), {}, this->DescribeParameters());
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaCTSeriesReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  Content& found = *this->Found;
+  if (!found.Opened)
+  {
+    vtkDataObject::GetData(outputs, 0)->Initialize();
+    if (Text(this->FileName).empty()) // else RequestInformation has said what is wrong
+    {
+      this->SetErrorCode(vtkErrorCode::NoFileNameError);
+      vtkErrorMacro("FileName is not set; it must be a DICOM file of a CT series, or its folder");
+    }
+    return 0;
+  }
+  for (const std::string& warning : found.Warnings)
+  {
+    if (!found.Warned)
+    {
+      vtkWarningMacro(<< warning);
+    }
+  }
+  found.Warned = true;
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkInformation* info = outputs->GetInformationObject(0);
+      vtkImageData* output = vtkImageData::GetData(outputs, 0);
+      std::array<int, 6> extent{};
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
+      output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+      output->SetSpacing(info->Get(vtkDataObject::SPACING()));
+      output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
+      output->SetExtent(extent.data());
+      this->AddFieldData(output);
+      if (output->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      try
+      {
+        lacuna::RequireMemory("The CT volume",
+          static_cast<double>(output->GetNumberOfPoints()) *
+            static_cast<double>(lacuna::GetScalarSize(found.Type)));
+        output->AllocateScalars(vtkLacunaScalarType::ToVTK(found.Type), 1);
+        output->GetPointData()->GetScalars()->SetName(ScalarsName);
+        void* voxels = output->GetScalarPointer();
+        if (!voxels)
+        {
+          throw std::bad_alloc();
+        }
+        lacuna::PreferLargePages(voxels,
+          static_cast<std::size_t>(output->GetNumberOfPoints()) *
+            lacuna::GetScalarSize(found.Type));
+        lacuna::ReadCTVolume(found.Geometry, extent, found.Type, this->PaddingValue,
+          lacuna::ReadDicomPixels, voxels, execution);
+      }
+      catch (const lacuna::Aborted&)
+      {
+        throw;
+      }
+      catch (const std::exception&)
+      {
+        this->SetErrorCode(vtkErrorCode::FileFormatError);
+        throw;
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << Text(this->FileName) << "\n";
+  os << indent << "SeriesUID: " << Text(this->SeriesUID) << "\n";
+  os << indent << "MissingSlices: " << this->MissingSlices << "\n";
+  os << indent << "GantryTilt: " << this->GantryTilt << "\n";
+  os << indent << "Acquisition: " << this->Acquisition << "\n";
+  os << indent << "PositionTolerance: " << this->PositionTolerance << "\n";
+  os << indent << "PaddingValue: " << this->PaddingValue << "\n";
+  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
+}
