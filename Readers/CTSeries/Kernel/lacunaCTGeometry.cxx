@@ -207,7 +207,16 @@ void FindPlanes(CTGeometry& geometry, const CTGeometryOptions& options)
   {
     positions.push_back(slice.Position);
   }
-  const SliceSpacing spacing = FindSliceSpacing(positions, options.PositionTolerance);
+  SliceSpacing spacing;
+  try
+  {
+    spacing = FindSliceSpacing(positions, options.PositionTolerance);
+  }
+  catch (const std::runtime_error& e)
+  {
+    throw std::runtime_error("the slices reach from " + Place(geometry.Slices.front()) + " to " +
+      Place(geometry.Slices.back()) + ", and " + e.what());
+  }
   const bool fitted = spacing.UnequalGaps.empty() && spacing.Deviation <= spacing.Tolerance;
   MakePlanes(geometry, spacing);
   if (!geometry.Interpolated.empty() || !fitted)

@@ -182,6 +182,10 @@ std::string WhyNotInVolume(const CTFrame& frame)
   {
     return "is a secondary capture (0008,0016)";
   }
+  if (header.SeriesUid.empty())
+  {
+    return "has no Series Instance UID (0020,000E)";
+  }
   if (IsLocalizer(frame))
   {
     return "is a localizer (0008,0008)";

@@ -106,9 +106,8 @@ SliceSpacing FindSliceSpacing(const std::vector<double>& positions, double toler
   if (!(length < MostPlanes))
   {
     std::ostringstream message;
-    message << "the slices lie between " << positions[0] << " and " << positions.back()
-            << " mm along their normal, and at " << planes.Spacing
-            << " mm from slice to slice that cannot be";
+    message << "at " << planes.Spacing << " mm from slice to slice that would be " << length
+            << " slices";
     throw std::runtime_error(message.str());
   }
   if (FitPlanes(positions, planes))

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever would make a wrong volume ends in an error that says where, and an empty output.
+#include "CTSeriesReaderTesting.h"
+#include "CTTestCases.h"
+#include "vtkCallbackCommand.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkPointData.h"
+
+#include <cmath>
+#include <fstream>
+
+namespace
+{
+using Edit = CTTestSeries::Edit;
+
+CTTestSeries Edited(const std::vector<Edit>& edits)
+{
+  CTTestSeries series;
+  series.Slices = 6;
+  series.Edits = edits;
+  return series;
+}
+
+std::string BaseName(const std::string& path)
+{
+  return std::filesystem::path(path).filename().string();
+}
+
+// One slice of a series is changed; the error names its file and says part.
+void ExpectEditError(const Edit& edit, const std::string& part)
+{
+  ReaderOf test(Edited({ edit }));
+  test.ExpectError(part);
+  LACUNA_CHECK_CONTAINS(
+    test.Errors, edit.Only.empty() ? "IM00" : BaseName(test.Files[edit.Only[0]]));
+}
+
+void TestTags()
+{
+  ExpectEditError({ 0x0020, 0x0032, "DS", "", { 3 } }, "Image Position (Patient) (0020,0032)");
+  ExpectEditError({ 0x0020, 0x0032, "DS", "1\\2", { 3 } }, "Image Position (Patient) (0020,0032)");
+  ExpectEditError({ 0x0020, 0x0032, "DS", "1\\2\\x", { 3 } }, "(0020,0032)");
+  ExpectEditError({ 0x0020, 0x0037, "DS", "", { 3 } }, "Image Orientation (Patient) (0020,0037)");
+  ExpectEditError({ 0x0020, 0x0037, "DS", "1\\0\\0\\0\\0.8\\0.6", { 3 } },
+    "another Image Orientation (Patient) (0020,0037)");
+  ExpectEditError({ 0x0020, 0x0037, "DS", "1\\0\\0\\0.1\\1\\0", {} },
+    "is 1\\0\\0\\0.1\\1\\0; it must be two unit vectors at a right angle");
+  ExpectEditError({ 0x0020, 0x0037, "DS", "2\\0\\0\\0\\1\\0", {} }, "two unit vectors");
+  ExpectEditError({ 0x0028, 0x0030, "DS", "", { 2 } }, "Pixel Spacing (0028,0030)");
+  ExpectEditError({ 0x0028, 0x0030, "DS", "0\\1", { 2 } }, "Pixel Spacing (0028,0030)");
+  ExpectEditError(
+    { 0x0028, 0x0030, "DS", "1.3\\0.8", { 2 } }, "Pixel Spacing (0028,0030) 1.3 x 0.8");
+  ExpectEditError({ 0x0028, 0x1053, "DS", "", { 4 } }, "Rescale Slope (0028,1053)");
+  ExpectEditError({ 0x0028, 0x1052, "DS", "", { 4 } }, "Rescale Intercept (0028,1052)");
+  ExpectEditError({ 0x0028, 0x1053, "DS", "0", { 4 } }, "Rescale Slope (0028,1053)");
+  ExpectEditError({ 0x0028, 0x0010, "US", "20", { 1 } }, "has 44 x 20 pixels, but");
+  ExpectEditError({ 0x0028, 0x0010, "US", "80", { 1 } }, "take 7040");
+  ExpectEditError({ 0x0028, 0x0100, "US", "12", { 1 } }, "Bits Allocated (0028,0100)");
+  ExpectEditError({ 0x0028, 0x0101, "US", "17", { 1 } }, "Bits Stored (0028,0101)");
+  ExpectEditError({ 0x0028, 0x0102, "US", "3", { 1 } }, "High Bit");
+  ExpectEditError({ 0x0010, 0x0020, "LO", "OTHER", { 5 } }, "another patient (0010,0020)");
+  ExpectEditError({ 0x0020, 0x0052, "UI", "1.2.3", { 5 } }, "Frame of Reference UID (0020,0052)");
+  ExpectEditError({ 0x7FE0, 0x0010, "OW", "", { 2 } }, "has no Pixel Data (7FE0,0010)");
+  ExpectEditError({ 0x0020, 0x0032, "DS", "1e300\\0\\-10", { 3 } }, "displaced sideways");
+  ExpectEditError(
+    { 0x0020, 0x0032, "DS", "0\\0\\1e12", { 5 } }, "from slice to slice that would be");
+}
+
+void TestLeftOut()
+{
+  CTTestSeries other = Edited({ { 0x0008, 0x0060, "CS", "MR", {} } });
+  ReaderOf test(other);
+  test.ExpectError("there is no CT image");
+  LACUNA_CHECK_CONTAINS(test.Errors, "is of modality MR, not CT (0008,0060); so are 5 others");
+
+  ReaderOf mixed(Edited({ { 0x0008, 0x0008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER", { 5 } },
+    { 0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.7", { 4 } },
+    { 0x0028, 0x0002, "US", "3", { 0 } } }));
+  std::ofstream(mixed.Folder + "/liesmich.txt") << "no image";
+  mixed.ExpectGood();
+  LACUNA_CHECK(mixed.Warnings.empty());
+  LACUNA_CHECK(mixed.Reader->GetOutput()->GetDimensions()[2] == 3);
+  const std::string notes = mixed.GetNotes();
+  LACUNA_CHECK_CONTAINS(notes, BaseName(mixed.Files[5]) + ": left out, it is a localizer");
+  LACUNA_CHECK_CONTAINS(notes, BaseName(mixed.Files[4]) + ": left out, it is a secondary capture");
+  LACUNA_CHECK_CONTAINS(notes, BaseName(mixed.Files[0]) + ": left out, it is a colour image");
+  LACUNA_CHECK_CONTAINS(notes, "1 files are no DICOM files");
+}
+
+void TestSeries()
+{
+  ReaderOf test{ CTTestSeries() };
+  CTTestSeries second;
+  second.SeriesUid = "1.2.3.77";
+  second.Description = "Other";
+  second.Slices = 4;
+  const std::string file = second.Write(test.Folder + "/inner folder")[2];
+  second.MultiFrame = true;
+  test.ExpectError("there are 2 CT series; set SeriesUID to one of these:");
+  const std::string line = "1.2.3.77  series 4, \"Other\", 4 images of 44 x 36";
+  LACUNA_CHECK_CONTAINS(test.Errors, line);
+  LACUNA_CHECK_CONTAINS(test.GetSeriesList(), line);
+  test.Reader->SetSeriesUID("1.2.3.78");
+  test.ExpectError("there is no CT series 1.2.3.78; there are:");
+  test.Reader->SetSeriesUID(line.c_str());
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 4);
+  test.Reader->SetSeriesUID("1.2.826.0.1.3680043.2.1125.1");
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 17);
+  // a file stands for its own series
+  test.Reader->SetSeriesUID(nullptr);
+  test.Reader->SetFileName(file.c_str());
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 4);
+}
+
+void TestFiles()
+{
+  ReaderOf test(Edited({}));
+  test.Reader->SetFileName(nullptr);
+  test.ExpectError("FileName is not set", vtkErrorCode::NoFileNameError);
+  test.Reader->SetFileName("/nonexistent/scan");
+  test.ExpectError("there is no such file or folder", vtkErrorCode::FileNotFoundError);
+  const std::string text = test.Folder + "/text.dcm";
+  std::ofstream(text) << "no image";
+  test.Reader->SetFileName(text.c_str());
+  test.ExpectError("text.dcm: is not a DICOM file");
+  LACUNA_CHECK(test.Reader->CanReadFile(text.c_str()) == 0);
+  LACUNA_CHECK(test.Reader->CanReadFile(test.Files[0].c_str()) == 1);
+  LACUNA_CHECK(test.Reader->CanReadFile(test.Folder.c_str()) == 1);
+  LACUNA_CHECK(test.Reader->CanReadFile("/nonexistent/scan") == 0);
+  LACUNA_CHECK(test.Reader->CanReadFile(nullptr) == 0);
+  test.Reader->SetFileName(test.Files[0].c_str());
+  test.ExpectGood();
+
+  // a change on the disk is seen
+  std::filesystem::remove(test.Files[0]);
+  test.Reader->SetFileName(test.Folder.c_str());
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 5);
+  std::filesystem::remove(test.Files[2]);
+  test.Reader->Modified();
+  test.ExpectError("1 slice is missing at -12 mm");
+}
+
+// A file that ends anywhere is named, and nothing crashes.
+void TestTruncated()
+{
+  for (const char* syntax :
+    { "1.2.840.10008.1.2.1", "1.2.840.10008.1.2", "1.2.840.10008.1.2.4.70", "1.2.840.10008.1.2.5" })
+  {
+    CTTestSeries series = Edited({});
+    series.Slices = 3;
+    series.TransferSyntax = syntax;
+    ReaderOf test(series);
+    const auto size = std::filesystem::file_size(test.Files[1]);
+    std::filesystem::copy(test.Files[1], test.Folder + "/whole.keep");
+    for (std::uintmax_t cut = size - 1; cut > 140; cut -= cut > 1500 ? 97 : 7)
+    {
+      std::filesystem::resize_file(test.Files[1], cut);
+      std::filesystem::remove(test.Folder + "/whole.keep");
+      test.Errors.clear();
+      test.Warnings.clear();
+      test.Reader->Modified();
+      test.Reader->Update();
+      const std::string said = test.Errors + test.Warnings + test.GetNotes();
+      LACUNA_CHECK_CONTAINS(said, BaseName(test.Files[1]));
+    }
+  }
+}
+
+void TestGaps()
+{
+  CTTestSeries series;
+  series.Places = { 0, 1, 2, 4, 5, 6, 7, 10, 11, 12 }; // -16 mm and 2 mm for each
+  ReaderOf test(series);
+  test.ExpectError("3 slices are missing at -10 mm, 0 mm, 2 mm along the slice normal");
+  LACUNA_CHECK_CONTAINS(test.Errors, "set MissingSlices to Interpolate");
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.ExpectGood();
+  vtkImageData* image = test.Reader->GetOutput();
+  LACUNA_CHECK(image->GetDimensions()[2] == 13);
+  vtkDataArray* planes = image->GetFieldData()->GetArray("InterpolatedSlices");
+  LACUNA_CHECK(planes && planes->GetNumberOfTuples() == 3);
+  for (int i = 0; planes && i < 3; ++i)
+  {
+    LACUNA_CHECK(planes->GetTuple1(i) == (i == 0 ? 3 : 7 + i));
+  }
+  // the truth is linear outside of the letter
+  double worst = 0;
+  for (vtkIdType id = 0; id < image->GetNumberOfPoints(); ++id)
+  {
+    lacuna::Vec3 point{};
+    image->GetPoint(id, point.data());
+    if (IsInLetter(point, 6.1) == IsInLetter(point, -6.1))
+    {
+      worst = std::max(
+        worst, std::abs(image->GetPointData()->GetScalars()->GetTuple1(id) - CTTruth(point)));
+    }
+  }
+  LACUNA_CHECK_NEAR(worst, 0, 1.0);
+  LACUNA_CHECK_CONTAINS(test.GetNotes(), "3 planes are interpolated");
+}
+
+void TestUnequal()
+{
+  CTTestSeries series;
+  series.Places = { 0, 1, 2, 3, 4.3, 5, 6, 7, 8 };
+  ReaderOf test(series);
+  test.ExpectError("the slices are not equally spaced: mostly 2 mm, but 2.6 mm between ");
+  LACUNA_CHECK_CONTAINS(test.Errors,
+    BaseName(test.Files[3]) + " at -10 mm and " + BaseName(test.Files[4]) +
+      " at -7.4 mm, 1.4 mm between ");
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.ExpectGood();
+  vtkDataArray* planes = test.Reader->GetOutput()->GetFieldData()->GetArray("InterpolatedSlices");
+  LACUNA_CHECK(planes && planes->GetNumberOfTuples() == 1 && planes->GetTuple1(0) == 4);
+  LACUNA_CHECK_NEAR(test.Reader->GetOutput()->GetScalarComponentAsDouble(2, 1, 4, 0),
+    CTTruth({ -18.2, -22.7, -8 }), 1);
+
+  // thin slices at the base, thick ones above
+  series.Places = { 0, 1, 2, 3, 4, 6.5, 9, 11.5 };
+  ReaderOf thick(series);
+  thick.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  thick.ExpectGood();
+  LACUNA_CHECK_NEAR(thick.Reader->GetOutput()->GetSpacing()[2], 2, 1e-9);
+  LACUNA_CHECK(thick.Reader->GetOutput()->GetDimensions()[2] == 12);
+
+  // positions rounded to a tenth of a millimetre are equal spacing
+  CTTestSeries rounded;
+  rounded.Step = { 0, 0, 0.1 };
+  rounded.Places = { 0, 6, 13, 19, 25, 31, 38, 44, 50 };
+  ReaderOf fine(rounded);
+  fine.ExpectGood();
+  LACUNA_CHECK_NEAR(fine.Reader->GetOutput()->GetSpacing()[2], 0.625, 0.003);
+  LACUNA_CHECK_CONTAINS(fine.GetNotes(), "mm from equal spacing");
+  fine.Reader->SetPositionTolerance(0.001);
+  fine.ExpectError("not equally spaced");
+}
+
+void TestDuplicates()
+{
+  CTTestSeries series = Edited({});
+  ReaderOf copied(series);
+  std::filesystem::copy(copied.Files[2], copied.Folder + "/copy of IM.dcm");
+  copied.ExpectGood();
+  LACUNA_CHECK_CONTAINS(copied.Warnings, "1 slices are there twice with the same image");
+  LACUNA_CHECK(copied.Reader->GetOutput()->GetDimensions()[2] == 6);
+
+  // a second acquisition over the first
+  ReaderOf test(Edited({ { 0x0020, 0x0012, "IS", "1", {} } }));
+  CTTestSeries second = Edited({ { 0x0020, 0x0012, "IS", "2", {} } });
+  second.Stored = [](int, int, int) { return 77; };
+  second.Write(test.Folder + "/second");
+  test.ExpectError("6 slices are there twice with different images: ");
+  LACUNA_CHECK_CONTAINS(test.Errors, "set Acquisition to the number");
+  LACUNA_CHECK_CONTAINS(test.GetSeriesList(), "12 images of 44 x 36, 2 acquisitions");
+  test.Reader->SetAcquisition(2);
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetScalarComponentAsDouble(5, 5, 3, 0) == 77);
+  test.Reader->SetAcquisition(3);
+  test.ExpectError("no image of acquisition 3 (0020,0012); there are: 1 2");
+
+  CTTestSeries sideways = Edited({ { 0x0020, 0x0032, "DS", "-19\\-24\\-10", { 3 } } });
+  ReaderOf shifted(sideways);
+  shifted.ExpectError("displaced sideways");
+  LACUNA_CHECK_CONTAINS(shifted.Errors, BaseName(shifted.Files[3]) + " at -10 mm");
+}
+
+void TestStatedTilt()
+{
+  ReaderOf test(Edited({ { 0x0018, 0x1120, "DS", "15", {} } }));
+  test.ExpectGood();
+  LACUNA_CHECK_CONTAINS(test.Warnings, "Gantry/Detector Tilt (0018,1120) is 15 degrees");
+}
+
+void TestCompressedGarbage()
+{
+  ReaderOf unknown(Edited({}));
+  for (const std::string& file : unknown.Files)
+  {
+    // the transfer syntax is in the first few hundred bytes
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    std::string head(400, ' ');
+    stream.read(head.data(), 400);
+    const std::size_t place = head.find("1.2.840.10008.1.2.1");
+    LACUNA_CHECK(place != std::string::npos);
+    stream.seekp(static_cast<std::streamoff>(place + 18));
+    stream.put('9');
+  }
+  unknown.ExpectError("do not fit its transfer syntax 1.2.840.10008.1.2.9");
+}
+
+void TestAbort()
+{
+  ReaderOf test{ CTTestSeries() };
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
+  test.Reader->UpdateInformation();
+  const unsigned long tag = test.Reader->AddObserver(vtkCommand::ProgressEvent, stop);
+  test.Reader->Update();
+  LACUNA_CHECK(test.Errors.empty());
+  LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
+  test.Reader->RemoveObserver(tag);
+  test.Reader->SetAbortExecute(0);
+  test.Reader->Modified();
+  test.ExpectGood();
+}
+}
+
+int TestCTSeriesReaderErrors(int, char*[])
+{
+  TestTags();
+  TestLeftOut();
+  TestSeries();
+  TestFiles();
+  TestTruncated();
+  TestGaps();
+  TestUnequal();
+  TestDuplicates();
+  TestStatedTilt();
+  TestCompressedGarbage();
+  TestAbort();
+  return lacunaCheck::Result();
+}
