@@ -43,6 +43,13 @@ std::string Text(const char* s)
   return s ? s : "";
 }
 
+unsigned long GetReadError(const char* path)
+{
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? vtkErrorCode::FileFormatError
+                                                : vtkErrorCode::FileNotFoundError;
+}
+
 // FNV-1a: tells which scan it was to one who has it, and nothing to others.
 std::string Hash(const std::string& text)
 {
@@ -97,6 +104,7 @@ struct vtkLacunaCTSeriesReader::Content
   vtkNew<vtkStringArray> SeriesList;
   vtkNew<vtkStringArray> Notes;
   bool Opened = false;
+  std::string Error;   // why it is not
   bool Warned = false; // of what follows
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
@@ -198,7 +206,15 @@ int vtkLacunaCTSeriesReader::RequestInformation(
   const int opened = vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
-      this->OpenSeries();
+      try
+      {
+        this->OpenSeries();
+      }
+      catch (const std::exception& e)
+      {
+        found.Error = e.what();
+        throw;
+      }
       const lacuna::CTGeometry& geometry = found.Geometry;
       const int extent[6] = { 0, static_cast<int>(geometry.Columns) - 1, 0,
         static_cast<int>(geometry.Rows) - 1, 0, static_cast<int>(geometry.Planes.size()) - 1 };
@@ -216,10 +232,7 @@ int vtkLacunaCTSeriesReader::RequestInformation(
     });
   if (!opened)
   {
-    std::error_code ignored;
-    this->SetErrorCode(std::filesystem::exists(this->FileName, ignored)
-        ? vtkErrorCode::FileFormatError
-        : vtkErrorCode::FileNotFoundError);
+    this->SetErrorCode(GetReadError(this->FileName));
   }
   return opened;
 }
@@ -282,11 +295,15 @@ int vtkLacunaCTSeriesReader::RequestData(
   if (!found.Opened)
   {
     vtkDataObject::GetData(outputs, 0)->Initialize();
-    if (Text(this->FileName).empty()) // else RequestInformation has said what is wrong
+    if (Text(this->FileName).empty())
     {
       this->SetErrorCode(vtkErrorCode::NoFileNameError);
       vtkErrorMacro("FileName is not set; it must be a DICOM file of a CT series, or its folder");
+      return 0;
     }
+    // Said before, but perhaps long before: ParaView asks for information when it makes a reader.
+    this->SetErrorCode(GetReadError(this->FileName));
+    vtkErrorMacro(<< found.Error);
     return 0;
   }
   for (const std::string& warning : found.Warnings)
