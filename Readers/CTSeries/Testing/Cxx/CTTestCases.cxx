@@ -3,6 +3,8 @@
 
 #include "lacunaMatrix4.h"
 
+#include <algorithm>
+
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
@@ -127,5 +129,38 @@ std::map<std::string, CTTestSeries> MakeTiltedCases()
   both.Column = swivel.Vector({ 0, 1, 0 });
   cases["tilted both ways"] = both;
   cases["tilted and turned"] = Turn(tilted, lacuna::Matrix4::Rotation({ 0.3, 1, 2 }, 1.1));
+  return cases;
+}
+
+//------------------------------------------------------------------------------
+std::map<std::string, CTTestSeries> MakeBodyCases()
+{
+  std::map<std::string, CTTestSeries> cases;
+  CTTestSeries axial;
+  axial.First = { -27, -38, -28 };
+  axial.Step = { 0, 0, 1.4 };
+  axial.RowSpacing = 1.1;
+  axial.Columns = 58;
+  axial.Rows = 52;
+  axial.Slices = 40;
+  axial.Truth = [](const lacuna::Vec3& point)
+  { return std::clamp(300 - 100 * DistanceToLetter(point), -700.0, 1300.0); };
+  cases["body axial"] = axial;
+
+  CTTestSeries feetFirst = axial;
+  feetFirst.Row = { -1, 0, 0 };
+  feetFirst.First = { 25, -38, -28 };
+  feetFirst.PatientPosition = "FFS";
+  feetFirst.TransferSyntax = "1.2.840.10008.1.2.4.70";
+  cases["body feet first"] = feetFirst;
+
+  CTTestSeries oblique = Turn(axial, lacuna::Matrix4::Rotation({ 1, -2, 0.5 }, 0.4));
+  oblique.MultiFrame = true;
+  cases["body oblique"] = oblique;
+
+  CTTestSeries tilted = axial;
+  const lacuna::Matrix4 tilt = lacuna::Matrix4::Rotation({ 1, 0, 0 }, 15 * Pi / 180);
+  tilted.Column = tilt.Vector(tilted.Column);
+  cases["body tilted"] = tilted;
   return cases;
 }

@@ -13,4 +13,6 @@
 std::map<std::string, CTTestSeries> MakeExactCases();
 /// Scans with a tilted gantry, which are resampled.
 std::map<std::string, CTTestSeries> MakeTiltedCases();
+/// The letter as a body whose surface has 300 HU, with 100 HU more for each mm inwards.
+std::map<std::string, CTTestSeries> MakeBodyCases();
 #endif

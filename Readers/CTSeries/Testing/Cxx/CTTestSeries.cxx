@@ -99,7 +99,7 @@ std::vector<char> MakePixels(const CTTestSeries& series, int slice)
         j * series.RowSpacing * series.Column;
       const std::int64_t stored = series.Stored
         ? series.Stored(i, j, slice)
-        : std::llround((CTTruth(point) - series.Intercept) / series.Slope);
+        : std::llround((series.Truth(point) - series.Intercept) / series.Slope);
       for (int b = 0; b < bytes; ++b)
       {
         pixels.push_back(static_cast<char>(stored >> 8 * b & 0xFF));
@@ -287,6 +287,25 @@ bool IsInLetter(const lacuna::Vec3& point, double margin)
       }
       return true;
     });
+}
+
+//------------------------------------------------------------------------------
+double DistanceToLetter(const lacuna::Vec3& point)
+{
+  double nearest = HUGE_VAL;
+  for (const std::array<double, 6>& bar : Bars)
+  {
+    lacuna::Vec3 outside{};
+    double inside = -HUGE_VAL;
+    for (int i = 0; i < 3; ++i)
+    {
+      const double beyond = std::max(bar[i] - point[i], point[i] - bar[i + 3]);
+      outside[i] = std::max(0.0, beyond);
+      inside = std::max(inside, beyond);
+    }
+    nearest = std::min(nearest, lacuna::Norm(outside) + std::min(0.0, inside));
+  }
+  return nearest;
 }
 
 //------------------------------------------------------------------------------

@@ -18,6 +18,9 @@ double CTTruth(const lacuna::Vec3& point);
 /// Whether a point lies in the letter, whose bars are grown by margin mm.
 bool IsInLetter(const lacuna::Vec3& point, double margin = 0);
 
+/// Distance of a point from the surface of the letter, mm; negative inside.
+double DistanceToLetter(const lacuna::Vec3& point);
+
 /// A scan. What is not set is that of an ordinary axial one, head first and supine.
 struct CTTestSeries
 {
@@ -57,6 +60,8 @@ struct CTTestSeries
   std::vector<Edit> Edits;
   /// Stored values instead of those of the truth: column, row, slice.
   std::function<std::int64_t(int, int, int)> Stored;
+  /// Hounsfield units at a point of the patient.
+  std::function<double(const lacuna::Vec3&)> Truth = CTTruth;
 
   /// Position of the first pixel of a slice.
   lacuna::Vec3 GetPosition(int slice) const;

@@ -15,7 +15,7 @@ int main(int argc, char* argv[])
   const std::string folder = argv[1];
   try
   {
-    for (const auto& cases : { MakeExactCases(), MakeTiltedCases() })
+    for (const auto& cases : { MakeExactCases(), MakeTiltedCases(), MakeBodyCases() })
     {
       for (const auto& [name, series] : cases)
       {
