@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaDicomDecoder.h"
 
+#include "lacunaCompressedImage.h"
 #include "lacunaDicomHeader.h"
 
 #include <gdcmFragment.h>
@@ -16,6 +17,8 @@ namespace lacuna
 {
 namespace
 {
+constexpr const char* RunLengthSyntax = "1.2.840.10008.1.2.5";
+
 [[noreturn]] void Fail(const CTFrame& frame, const std::string& what)
 {
   throw std::runtime_error(frame.GetName() + ": its compressed pixels " + what +
@@ -64,6 +67,21 @@ CTPixels ReadDicomPixels(const CTFrame& frame)
   {
     return Hold(std::move(stream), header.Format);
   }
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(frame.GetSize()));
+  if (header.TransferSyntax == RunLengthSyntax)
+  {
+    if (!DecodeRunLength(stream, header.Format.BitsAllocated / 8, bytes))
+    {
+      Fail(frame, "cannot be decoded");
+    }
+    return Hold(std::move(bytes), header.Format);
+  }
+  const std::string wrong =
+    WhyNotImage(stream, header.Columns, header.Rows, header.Format.BitsAllocated);
+  if (!wrong.empty())
+  {
+    Fail(frame, wrong);
+  }
   const gdcm::TransferSyntax syntax =
     gdcm::TransferSyntax::GetTSType(header.TransferSyntax.c_str());
   if (syntax == gdcm::TransferSyntax::TS_END)
@@ -77,7 +95,6 @@ CTPixels ReadDicomPixels(const CTFrame& frame)
   }
   stream.resize(stream.size() + stream.size() % 2);
   const gdcm::Image image = MakeImage(frame, stream, syntax);
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(frame.GetSize()));
   bool decoded = false;
   try
   {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What must be known of a compressed image before a codec may have it: codecs trust the stream and
+/// write as much as it says.
+#ifndef lacunaCompressedImage_h
+#define lacunaCompressedImage_h
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// Why a JPEG, JPEG-LS or JPEG 2000 stream is not one component of columns x rows pixels of at most
+/// bits each ("is of 512 x 400 pixels ..."); empty when it is.
+std::string WhyNotImage(
+  const std::vector<unsigned char>& stream, std::int64_t columns, std::int64_t rows, int bits);
+
+/// Decodes RLE (PS3.5, annex G): pixels of so many bytes, little endian. False when the stream is
+/// damaged or gives another amount.
+bool DecodeRunLength(
+  const std::vector<unsigned char>& stream, int bytesPerPixel, std::vector<unsigned char>& pixels);
+}
+#endif
