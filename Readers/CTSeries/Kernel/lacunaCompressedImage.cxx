@@ -60,9 +60,13 @@ bool IsStartOfFrame(std::uint32_t marker)
     (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC);
 }
 
-// JPEG and JPEG-LS: the markers up to the start of frame.
+// JPEG and JPEG-LS: the markers up to the first scan. A lossless one must name a predictor.
 ImageSize ReadJpegSize(const Stream& stream, std::size_t length)
 {
+  constexpr std::uint32_t Lossless = 0xC3;
+  constexpr std::uint32_t StartOfScan = 0xDA;
+  ImageSize size;
+  bool lossless = false;
   std::size_t at = 2;
   while (at + 4 <= length && stream.Big(at, 1) == 0xFF)
   {
@@ -72,9 +76,15 @@ ImageSize ReadJpegSize(const Stream& stream, std::size_t length)
       ++at;
       continue;
     }
+    if (marker == StartOfScan)
+    {
+      const std::uint32_t predictor = stream.Big(at + 5 + 2 * stream.Big(at + 4, 1), 1);
+      return lossless && (predictor < 1 || predictor > 7) ? ImageSize() : size;
+    }
     if (IsStartOfFrame(marker))
     {
-      return { stream.Big(at + 7, 2), stream.Big(at + 5, 2),
+      lossless = marker == Lossless;
+      size = { stream.Big(at + 7, 2), stream.Big(at + 5, 2),
         static_cast<int>(stream.Big(at + 4, 1)), static_cast<int>(stream.Big(at + 9, 1)) };
     }
     at += 2 + std::max<std::size_t>(2, stream.Big(at + 2, 2));

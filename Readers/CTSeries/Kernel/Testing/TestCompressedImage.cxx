@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCompressedImage.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace lacuna;
+
+namespace
+{
+using Bytes = std::vector<unsigned char>;
+
+// Start of image, of frame (lossless), of scan.
+Bytes MakeJpeg(unsigned char marker, unsigned char predictor)
+{
+  return { 0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 1, 2, 0xFF, marker, 0, 11, 12, 0, 20, 0, 30, 1, 1, 0x11, 0,
+    0xFF, 0xFF, 0xDA, 0, 8, 1, 1, 0, predictor, 0, 0, 99, 99, 0xFF, 0xD9 };
+}
+
+// One byte for each of 8 pixels of 16 bits: a run and a literal, high bytes first.
+Bytes MakeRuns()
+{
+  Bytes stream(64);
+  stream[0] = 2;
+  stream[4] = 64;
+  stream[8] = 66;
+  const Bytes data = { 0xF9, 7, 0xFD, 1, 0x80, 3, 10, 11, 12, 13 };
+  stream.insert(stream.end(), data.begin(), data.end());
+  return stream;
+}
+}
+
+TEST(CompressedImage, SizeOfJpeg)
+{
+  EXPECT_EQ(WhyNotImage(MakeJpeg(0xC3, 1), 30, 20, 16), "");
+  EXPECT_EQ(WhyNotImage(MakeJpeg(0xF7, 0), 30, 20, 16), "");
+  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 0), 30, 20, 16), "");
+  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 8), 30, 20, 16), "");
+  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 31, 20, 16), "");
+  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 30, 21, 16), "");
+  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 30, 20, 8), "");
+  EXPECT_NE(WhyNotImage({}, 30, 20, 16), "");
+  EXPECT_NE(WhyNotImage(Bytes(500, 0xFF), 30, 20, 16), "");
+}
+
+TEST(CompressedImage, RunLength)
+{
+  Bytes pixels(16);
+  ASSERT_TRUE(DecodeRunLength(MakeRuns(), 2, pixels));
+  EXPECT_EQ(pixels, (Bytes{ 1, 7, 1, 7, 1, 7, 1, 7, 10, 7, 11, 7, 12, 7, 13, 7 }));
+  pixels.resize(18);
+  EXPECT_FALSE(DecodeRunLength(MakeRuns(), 2, pixels));
+  pixels.resize(14);
+  EXPECT_FALSE(DecodeRunLength(MakeRuns(), 2, pixels));
+  EXPECT_FALSE(DecodeRunLength(MakeRuns(), 1, pixels));
+}
+
+// Neither crash nor a byte beyond the buffers (under the sanitizers).
+TEST(CompressedImage, Damaged)
+{
+  std::mt19937 random(7);
+  for (int trial = 0; trial < 20000; ++trial)
+  {
+    Bytes runs = MakeRuns();
+    Bytes jpeg = MakeJpeg(0xC3, 1);
+    for (int i = 0; i < 2; ++i)
+    {
+      runs[random() % runs.size()] = static_cast<unsigned char>(random());
+      jpeg[random() % jpeg.size()] = static_cast<unsigned char>(random());
+    }
+    runs.resize(random() % runs.size() + 1);
+    Bytes pixels(16);
+    DecodeRunLength(runs, 2, pixels);
+    WhyNotImage(jpeg, 30, 20, 16);
+  }
+}
