@@ -11,9 +11,11 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
+#include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaExecution.h"
@@ -228,6 +230,8 @@ int vtkLacunaCTSeriesReader::RequestInformation(
       info->Set(vtkDataObject::SPACING(), geometry.Spacing.data(), 3);
       info->Set(vtkDataObject::DIRECTION(), direction, 9);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      // Ranks share out whole images, each of which is read by one of them.
+      info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
       vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
     });
   if (!opened)

@@ -116,6 +116,17 @@ void TestTiltAngle()
   LACUNA_CHECK_NEAR(tilt ? tilt->GetTuple1(0) : 0, 20, 1e-9);
 }
 
+// A rank gets whole slices.
+void TestPieces()
+{
+  ReaderOf test{ CTTestSeries() };
+  test.Reader->UpdatePiece(1, 3, 0);
+  const int* extent = test.Reader->GetOutput()->GetExtent();
+  LACUNA_CHECK(extent[0] == 0 && extent[1] == 43 && extent[2] == 0 && extent[3] == 35);
+  LACUNA_CHECK(extent[4] > 0 && extent[5] < 16 && extent[5] > extent[4]);
+  CheckVoxels(test.Reader->GetOutput(), 0.5);
+}
+
 // Any part of the volume is the same part of the whole.
 void TestExtents()
 {
@@ -123,6 +134,9 @@ void TestExtents()
   {
     ReaderOf test(series);
     test.Reader->Update();
+    const vtkMTimeType read = test.Reader->GetOutput()->GetUpdateTime();
+    test.Reader->Update();
+    LACUNA_CHECK(test.Reader->GetOutput()->GetUpdateTime() == read); // not once more
     vtkNew<vtkImageData> whole;
     whole->DeepCopy(test.Reader->GetOutput());
     for (const auto& part :
@@ -230,6 +244,7 @@ int TestCTSeriesReader(int, char*[])
   TestTilted();
   TestTiltAngle();
   TestExtents();
+  TestPieces();
   TestPadding();
   TestRescalePerSlice();
   TestIdentity();
