@@ -39,6 +39,7 @@ lacuna::IncompleteShape vtkLacunaIncompleteShape::MakeShape()
   std::copy_n(this->Dimensions, 3, p.Dimensions.begin());
   p.PresentFraction = this->PresentFraction;
   p.Patches = this->Patches;
+  p.PatchRadii = { this->PatchRadii[0], this->PatchRadii[1] };
   p.GapAngle = this->GapAngle;
   p.OutlierFraction = this->OutlierFraction;
   p.Seed = static_cast<std::uint64_t>(this->Seed);
@@ -118,6 +119,7 @@ int vtkLacunaIncompleteShape::RequestData(
         .Add("Dimensions", this->Dimensions)
         .Add("PresentFraction", this->PresentFraction)
         .Add("Patches", this->Patches)
+        .Add("PatchRadii", this->PatchRadii)
         .Add("GapAngle", this->GapAngle)
         .Add("OutlierFraction", this->OutlierFraction)
         .Add("Seed", this->Seed);
@@ -134,6 +136,7 @@ void vtkLacunaIncompleteShape::PrintSelf(ostream& os, vtkIndent indent)
      << this->Dimensions[2] << "\n";
   os << indent << "PresentFraction: " << this->PresentFraction << "\n";
   os << indent << "Patches: " << this->Patches << "\n";
+  os << indent << "PatchRadii: " << this->PatchRadii[0] << " " << this->PatchRadii[1] << "\n";
   os << indent << "GapAngle: " << this->GapAngle << "\n";
   os << indent << "OutlierFraction: " << this->OutlierFraction << "\n";
   os << indent << "Seed: " << this->Seed << "\n";

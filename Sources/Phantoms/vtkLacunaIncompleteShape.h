@@ -57,10 +57,16 @@ public:
   ///@}
 
   ///@{
-  /// Missing in patches (3 to 8 voxels in radius), not voxel by voxel. Default off.
+  /// Missing in patches, not voxel by voxel. Default off.
   vtkSetMacro(Patches, bool);
   vtkGetMacro(Patches, bool);
   vtkBooleanMacro(Patches, bool);
+  ///@}
+
+  ///@{
+  /// Least and largest radius of patches, mm. Default 3 8.
+  vtkSetVector2Macro(PatchRadii, double);
+  vtkGetVector2Macro(PatchRadii, double);
   ///@}
 
   ///@{
@@ -95,6 +101,7 @@ protected:
   int Dimensions[3] = { 200, 200, 200 };
   double PresentFraction = 1;
   bool Patches = false;
+  double PatchRadii[2] = { 3, 8 };
   double GapAngle = 0;
   double OutlierFraction = 0;
   int Seed = 0;

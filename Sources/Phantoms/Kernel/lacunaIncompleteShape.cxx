@@ -69,6 +69,10 @@ IncompleteShape::IncompleteShape(const Parameters& parameters)
   Require(parameters.GapAngle >= 0 && parameters.GapAngle < 360,
     "GapAngle is " + std::to_string(parameters.GapAngle) +
       " degrees; it must be 0 or more and below 360");
+  const std::array<double, 2>& radii = parameters.PatchRadii;
+  Require(radii[0] >= 0 && radii[0] <= radii[1] && std::isfinite(radii[1]),
+    "PatchRadii are " + std::to_string(radii[0]) + " and " + std::to_string(radii[1]) +
+      "; they must be finite, not negative, the smaller one first");
   Require(parameters.OutlierFraction >= 0 && parameters.OutlierFraction <= 10,
     "OutlierFraction is " + std::to_string(parameters.OutlierFraction) +
       "; it must be between 0 and 10");
@@ -208,7 +212,8 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
     while (present > kept)
     {
       const auto centre = at(object[draw(static_cast<std::int64_t>(object.size()))]);
-      const double radius = 3 + 5 * choice.Uniform(drawn++);
+      const std::array<double, 2>& radii = this->Values.PatchRadii;
+      const double radius = radii[0] + (radii[1] - radii[0]) * choice.Uniform(drawn++);
       for (std::int64_t i : object)
       {
         const auto p = at(i);

@@ -36,6 +36,7 @@ public:
     double GapAngle = 0;        ///< degrees, 0 <= a < 360: none in this wedge or cone about +x
     double OutlierFraction = 0; ///< of the present voxels, 0...10, anywhere in the grid
     bool Patches = false;       ///< missing in patches, not voxel by voxel
+    std::array<double, 2> PatchRadii{ 3, 8 }; ///< evenly from the first to the second, voxels
     std::uint64_t Seed = 0;
   };
 

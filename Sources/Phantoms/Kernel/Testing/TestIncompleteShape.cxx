@@ -50,6 +50,14 @@ TEST(IncompleteShape, FractionsAreExact)
   const int patches = Count(Sample(p));
   EXPECT_LE(patches, 0.4 * all + 1);
   EXPECT_GT(patches, 0.3 * all);
+  p.PatchRadii = { 1, 2 };
+  EXPECT_NEAR(Count(Sample(p)), 0.4 * all, 20); // smaller ones come closer to the fraction
+  for (const std::array<double, 2>& bad : { std::array<double, 2>{ -1, 2 }, { 3, 2 } })
+  {
+    p.PatchRadii = bad;
+    EXPECT_THROW(IncompleteShape{ p }, std::invalid_argument);
+  }
+  p.PatchRadii = { 3, 8 };
   p.Patches = false;
   const int clean = Count(Sample(p));
   p.OutlierFraction = 0.2;
