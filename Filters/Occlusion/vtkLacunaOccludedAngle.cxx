@@ -106,6 +106,7 @@ private:
     options.Binary = this->Self->Mode == BINARY;
     options.Directions = this->Self->NumberOfDirections + this->Self->NumberOfDirections % 2;
     options.ObjectOpacity = this->Self->ObjectOpacity;
+    options.Dilation = this->Self->Dilation;
     options.KeepData = this->Self->KeepData;
     options.MedianKernel = this->Self->MedianKernel;
     for (std::size_t i = 0; i < thresholds.size(); ++i)
@@ -371,6 +372,7 @@ int vtkLacunaOccludedAngle::RequestData(
         .Add("ThresholdsOverPi", this->ThresholdsOverPi)
         .Add("LocalRadii", this->LocalRadii)
         .Add("ObjectOpacity", this->ObjectOpacity)
+        .Add("Dilation", this->Dilation)
         .Add("KeepData", this->KeepData)
         .Add("MedianKernel", this->MedianKernel);
       std::vector<vtkDataObject*> inputs{ input };
@@ -402,6 +404,7 @@ void vtkLacunaOccludedAngle::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << radius;
   }
   os << "\n" << indent << "ObjectOpacity: " << this->ObjectOpacity << "\n";
+  os << indent << "Dilation: " << this->Dilation << "\n";
   os << indent << "KeepData: " << this->KeepData << "\n";
   os << indent << "MedianKernel: " << this->MedianKernel << "\n";
   os << indent << "ReconstructionSpace: " << this->ReconstructionSpace.Get() << "\n";

@@ -120,6 +120,13 @@ public:
   ///@}
 
   ///@{
+  /// In Mode BINARY voxels hide as if they were larger by this, 0...0.9 voxels, so that gaps of that
+  /// width between them are closed. Default 0: cubes of one voxel.
+  vtkSetMacro(Dilation, double);
+  vtkGetMacro(Dilation, double);
+  ///@}
+
+  ///@{
   /// Keep data voxels that are at least half opaque as object in every iteration. Default off.
   vtkSetMacro(KeepData, bool);
   vtkGetMacro(KeepData, bool);
@@ -169,6 +176,7 @@ protected:
   std::vector<double> ThresholdsOverPi = { 0 };
   std::vector<double> LocalRadii = { 0 };
   double ObjectOpacity = 0.95;
+  double Dilation = 0;
   bool KeepData = false;
   int MedianKernel = 1;
   vtkSmartPointer<vtkImplicitFunction> ReconstructionSpace;

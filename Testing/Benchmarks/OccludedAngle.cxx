@@ -59,7 +59,7 @@ void Cube(benchmark::State& state)
   const std::int64_t n = state.range(0);
   lacuna::AttenuationField field = MakeField(n, n, n);
   lacuna::OccludedAngleOptions options;
-  options.Directions = 60;
+  options.Directions = n > 200 ? 60 : 200;
   options.Binary = state.range(2) != 0;
   options.Radius = static_cast<double>(state.range(3));
   std::vector<float> angle(field.GetNumberOfVoxels());

@@ -14,7 +14,7 @@ LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 source = IncompleteShape()
 plain = lacuna.vtkLacunaIncompleteShape()
-for name, value in dict(Shape="Circle", Dimensions=[200, 200, 200], PresentFraction=1.0, Patches=0, GapAngle=0.0,
+for name, value in dict(Shape="Circle", Dimensions=[200, 200, 200], PresentFraction=1.0, Patches=0, PatchRadii=[3.0, 8.0], GapAngle=0.0,
                         OutlierFraction=0.0, Seed=0).items():
     assert np.all(np.ravel(getattr(source, name)) == np.ravel(value)), (name, getattr(source, name))
     if name != "Shape":
@@ -25,7 +25,7 @@ source = IncompleteShape(GapAngle=40, Dimensions=[200, 200, 1 + 199])
 angle = OccludedAngle(Input=source)
 filter = lacuna.vtkLacunaOccludedAngle()
 for name, value in dict(ScalarArray="", Mode="Continuous", Attenuation="Linear in Range", NumberOfDirections=1000,
-                        ObjectOpacity=0.95, KeepData=0, MedianKernel=1, KeepIterations=0).items():
+                        ObjectOpacity=0.95, Dilation=0, KeepData=0, MedianKernel=1, KeepIterations=0).items():
     assert getattr(angle, name) == value, (name, getattr(angle, name))
     if not isinstance(value, str):
         assert getattr(filter, "Get" + name)() == value, name

@@ -5,6 +5,7 @@
 #include "lacunaOcclusionTile.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -60,10 +61,18 @@ public:
   }
 
 private:
+  struct Line
+  {
+    Vec3 Voxels; ///< per mm
+    double OffsetX;
+    double OffsetY;
+  };
+
   void SortLines()
   {
     const int count = this->Options.Directions / 2;
     const Vec3& spacing = this->Field.GetSpacing();
+    double number = 0;
     for (const Vec3& line : this->Field.IsFlat() ? EqualAngleLines(count) : EqualAreaLines(count))
     {
       const Vec3 voxels{ line[0] / spacing[0], line[1] / spacing[1], line[2] / spacing[2] };
@@ -72,7 +81,11 @@ private:
       {
         axis = std::abs(voxels[candidate]) > std::abs(voxels[axis]) ? candidate : axis;
       }
-      this->Lines[axis].push_back(voxels);
+      // Offsets of low discrepancy: no place of the grid lies on rays of many directions.
+      ++number;
+      const double offsetX = std::fmod(number * 0.7548776662466927, 1.0);
+      const double offsetY = std::fmod(number * 0.5698402909980532, 1.0);
+      this->Lines[axis].push_back({ voxels, offsetX, this->Field.IsFlat() ? 0 : offsetY });
     }
   }
 
@@ -92,18 +105,19 @@ private:
       this->Field.GetStride(axis), hidden, strides[row], strides[axis] };
   }
 
-  static LinePath GetPath(const Vec3& line, int axis, bool swapped, std::int64_t layers)
+  static LinePath GetPath(const Line& line, int axis, bool swapped, std::int64_t layers)
   {
-    const Vec3 v = swapped ? Vec3{ line[1], line[0], line[2] } : line;
+    const Vec3 v = swapped ? Vec3{ line.Voxels[1], line.Voxels[0], line.Voxels[2] } : line.Voxels;
     const int row = axis == 2 ? 1 : 2;
-    return { v[0] / v[axis], v[row] / v[axis], 1 / std::abs(v[axis]), layers };
+    return { v[0] / v[axis], v[row] / v[axis], line.OffsetX, line.OffsetY, 1 / std::abs(v[axis]),
+      layers };
   }
 
   std::vector<RayTile> GetTiles(const MarchFrame& frame, const LinePath& path) const
   {
     RayTile all{};
-    path.GetRays(frame.Length, path.GetSlopeX(), all.FirstX, all.LastX);
-    path.GetRays(frame.Rows, path.GetSlopeY(), all.FirstY, all.LastY);
+    path.GetRays(0, frame.Length, all.FirstX, all.LastX);
+    path.GetRays(1, frame.Rows, all.FirstY, all.LastY);
     const bool flat = frame.Rows == 1;
     const std::int64_t width = all.LastX - all.FirstX;
     const std::int64_t length = flat ? std::min(width, FlatTileLength) : width;
@@ -121,6 +135,12 @@ private:
     return tiles;
   }
 
+  MarchOptions GetMarchOptions() const
+  {
+    return { this->Options.Binary, this->Options.Radius, this->Space,
+      static_cast<float>(this->Options.Dilation) };
+  }
+
   void SetStage(std::int64_t lines)
   {
     const double all = this->Options.Directions / 2;
@@ -131,13 +151,13 @@ private:
   }
 
   /// Marches lines along an axis of the field as it lies now.
-  void March(int axis, const std::vector<Vec3>& lines, bool swapped)
+  void March(int axis, const std::vector<Line>& lines, bool swapped)
   {
     const std::int64_t count = static_cast<std::int64_t>(lines.size());
     const std::int64_t layers = this->Field.GetDimensions()[axis];
     if (this->Parts.empty())
     {
-      for (const Vec3& line : lines)
+      for (const Line& line : lines)
       {
         const MarchFrame frame = this->GetFrame(axis, this->Hidden);
         const LinePath path = GetPath(line, axis, swapped, layers);
@@ -146,7 +166,7 @@ private:
         this->Runner.For(static_cast<std::int64_t>(tiles.size()), 1,
           [&](std::int64_t begin, std::int64_t end)
           {
-            TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
+            TileMarch march(this->GetMarchOptions());
             for (std::int64_t t = begin; t < end; ++t)
             {
               march.March(frame, path, tiles[t]);
@@ -159,7 +179,7 @@ private:
     this->Runner.For(LineParts, 1,
       [&](std::int64_t begin, std::int64_t end)
       {
-        TileMarch march(this->Options.Binary, this->Options.Radius, this->Space);
+        TileMarch march(this->GetMarchOptions());
         for (std::int64_t part = begin; part < end; ++part)
         {
           const MarchFrame frame =
@@ -193,7 +213,7 @@ private:
   float* Hidden;
   Execution& Runner;
   std::vector<float> Parts;
-  std::vector<Vec3> Lines[3];
+  std::vector<Line> Lines[3];
   double LinesDone = 0;
 };
 
@@ -209,6 +229,11 @@ void Check(const AttenuationField& field, const OccludedAngleOptions& options)
     throw std::invalid_argument("a local radius of " + std::to_string(options.Radius) +
       " mm is smaller than a voxel; give at least " + std::to_string(field.GetShortestEdge()) +
       " mm, or 0 for the whole reconstruction space");
+  }
+  if (!(options.Dilation >= 0 && options.Dilation <= 0.9))
+  {
+    throw std::invalid_argument("the dilation is " + std::to_string(options.Dilation) +
+      " voxels; it must be between 0 and 0.9");
   }
 }
 }

@@ -18,6 +18,9 @@ struct OccludedAngleOptions
   int Directions = 1000;
   /// Rays end at this distance (mm); 0: at the end of the reconstruction space.
   double Radius = 0;
+  /// In Binary mode voxels hide as if they were larger by this, 0...0.9 voxels: then gaps of that
+  /// width between them are closed.
+  double Dilation = 0;
   /// The part of the whole progress that this is.
   double FirstProgress = 0;
   double LastProgress = 1;
@@ -31,9 +34,13 @@ double GetFullAngle(const AttenuationField& field);
 /// AttenuationField::OutsideSpace().
 ///
 /// For each line the rays run one voxel apart along the grid axis nearest to it. Their path
-/// lengths through voxels are exact; what a voxel's centre sees is interpolated bilinearly between
-/// the four rays that enclose it, where they enter its layer, and weakened by the exact path
-/// through its own half voxel. A voxel outside the space gets 0.
+/// lengths through voxels are exact; a voxel sees half of itself and, beyond, the bilinear
+/// interpolation between the four rays that enclose it:
+/// - of their paths (Carr 1996, section 5.4). In the mean over ray positions this is attenuation
+///   interpolated linearly between voxel centres.
+/// - in Binary mode of whether they are hidden, after the exact path of the voxel's own ray
+///   through the next layer. In the mean voxels are cubes.
+/// A voxel outside the space gets 0.
 ///
 /// angle has a value per voxel, x fastest. The field is unchanged in the end (its axes are swapped
 /// meanwhile). Cost: voxels times directions; memory: a few megabytes per thread. The

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaOcclusionRows.h"
 
-#include <cmath>
 #include <cstring>
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -14,20 +13,21 @@ namespace lacuna
 {
 namespace
 {
-/// exp(-x) for x >= 0 to a relative error of 2e-7 up to 10, 6e-6 up to LargestPath; exactly 1 at 0.
-LACUNA_INLINE float ExpMinus(float x)
+constexpr float LongestPath = 100; // beyond it nothing gets through that a float's angle could show
+
+/// 2^-x for x >= 0 to a relative error of 2e-7; exactly 1 at 0.
+LACUNA_INLINE float PowerOfTwo(float x)
 {
-  const float bounded = x < LargestPath ? x : LargestPath;
-  const float y = bounded * -1.44269504F; // exp(-x) = 2^y
-  const float magic = 12582912.0F;        // 1.5 * 2^23: the sum's low bits are y rounded
-  const float shifted = y + magic;
-  const float f = y - (shifted - magic);
-  // 2^f for |f| <= 1/2, relative error 9e-8
-  float p = 0.00132647250F;
+  const float bounded = x < LongestPath ? x : LongestPath;
+  const float magic = 12582912.0F; // 1.5 * 2^23: the difference's low bits are -x rounded
+  const float shifted = magic - bounded;
+  const float f = bounded + (shifted - magic);
+  // 2^-f for |f| <= 1/2, relative error 9e-8
+  float p = -0.00132647250F;
   p = p * f + 0.00967151299F;
-  p = p * f + 0.0555073358F;
+  p = p * f - 0.0555073358F;
   p = p * f + 0.240222424F;
-  p = p * f + 0.693147004F;
+  p = p * f - 0.693147004F;
   p = p * f + 1.0F;
   std::uint32_t bits;
   std::uint32_t exponent;
@@ -39,54 +39,60 @@ LACUNA_INLINE float ExpMinus(float x)
   return result;
 }
 
-template <bool Binary>
-LACUNA_INLINE float LetThrough(float path)
+LACUNA_INLINE float LayerPath(const LayerCrossing& c, std::int64_t i)
 {
-  return Binary ? (path > 0 ? 0.0F : 1.0F) : ExpMinus(path);
+  return (c.Weights[0] * c.Voxels[0][i] + c.Weights[1] * c.Voxels[1][i]) +
+    c.Weights[2] * c.Voxels[2][i];
 }
 
-LACUNA_INLINE float LayerPath(
-  const float* m0, const float* m1, const PathLengths& w, std::int64_t i)
+/// Equal neighbours give exactly their value.
+LACUNA_INLINE float Interpolate(float a, float b, float toB)
 {
-  return (w[0] * m0[i] + w[1] * m0[i + 1]) + (w[2] * m1[i] + w[3] * m1[i + 1]);
+  return a + toB * (b - a);
 }
 
-LACUNA_INLINE void AddPathBody(float* __restrict path, const float* __restrict m0,
-  const float* __restrict m1, const PathLengths& lengths, std::int64_t n)
+LACUNA_INLINE void AddPathBody(float* __restrict path, const LayerCrossing& layer, std::int64_t n)
 {
-  const PathLengths w = lengths;
+  const LayerCrossing c = layer;
   for (std::int64_t i = 0; i < n; ++i)
   {
-    path[i] += LayerPath(m0, m1, w, i);
+    path[i] += LayerPath(c, i);
   }
 }
 
 template <bool Binary>
-LACUNA_INLINE void SeeBody(const float* __restrict path, const float* __restrict first,
-  float* __restrict root, std::int64_t n)
+LACUNA_INLINE void SeeBody(const float* __restrict first, const float* __restrict last,
+  float* __restrict row, float* __restrict between, float fy, std::int64_t n)
 {
   for (std::int64_t i = 0; i < n; ++i)
   {
-    const float length = 0.5F * (path[i] - first[i]);
-    root[i] = LetThrough<Binary>(length > 0 ? length : 0.0F);
+    const float path = last[i] - first[i];
+    const float none = 0;
+    const float all = Binary ? 1.0F : path;
+    const float seen = path > 0 ? all : none;
+    between[i] = Interpolate(seen, row[i], fy);
+    row[i] = seen;
   }
 }
 
-/// What reaches voxel i from one side.
+/// How much of the ray of voxel i is hidden on one side.
 template <bool Binary>
-LACUNA_INLINE float Reach(float ownPath, const float* m0, const float* m1, const PathLengths& w,
-  const float* near, const float* far, float fx, float fy, std::int64_t i)
+LACUNA_INLINE float HiddenOn(
+  float own, const OcclusionRows::Side& side, float fx, float gain, std::int64_t i)
 {
-  // Written so that equal neighbours give exactly their value.
-  const float left = near[i - 1] + fy * (far[i - 1] - near[i - 1]);
-  const float right = near[i] + fy * (far[i] - near[i]);
-  const float root = right + fx * (left - right);
-  return LetThrough<Binary>(ownPath + LayerPath(m0, m1, w, i)) * (root * root);
+  const float rest = Interpolate(side.Between[i], side.Between[i - 1], fx);
+  if (Binary)
+  {
+    const float part = gain * rest;
+    const float bounded = part < 1.0F ? part : 1.0F;
+    return own + LayerPath(side.Next, i) > 0 ? 1.0F : bounded;
+  }
+  return 1.0F - PowerOfTwo(own + rest);
 }
 
 template <bool Binary>
 LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float fy,
+  const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,
   std::int64_t n)
 {
   const OcclusionRows::Side a = before;
@@ -95,21 +101,19 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
   for (std::int64_t i = 0; i < n; ++i)
   {
     const float path = half * own[i];
-    hidden[i] += (1.0F - Reach<Binary>(path, a.M0, a.M1, a.Lengths, a.Near, a.Far, fx, fy, i)) +
-      (1.0F - Reach<Binary>(path, b.M0, b.M1, b.Lengths, b.Near, b.Far, fx, fy, i));
+    hidden[i] += HiddenOn<Binary>(path, a, fx, gain, i) + HiddenOn<Binary>(path, b, fx, gain, i);
   }
 }
 
 template <bool Binary>
 LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const OcclusionRows::Side& side, float fx, float fy, std::int64_t n)
+  const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)
 {
   const OcclusionRows::Side a = side;
 #pragma GCC ivdep
   for (std::int64_t i = 0; i < n; ++i)
   {
-    hidden[i] +=
-      1.0F - Reach<Binary>(half * own[i], a.M0, a.M1, a.Lengths, a.Near, a.Far, fx, fy, i);
+    hidden[i] += HiddenOn<Binary>(half * own[i], a, fx, gain, i);
   }
 }
 
@@ -118,25 +122,25 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
   template <bool Binary>                                                                           \
   struct NAME                                                                                      \
   {                                                                                                \
-    TARGET static void AddPath(                                                                    \
-      float* path, const float* m0, const float* m1, const PathLengths& lengths, std::int64_t n)   \
+    TARGET static void AddPath(float* path, const LayerCrossing& layer, std::int64_t n)            \
     {                                                                                              \
-      AddPathBody(path, m0, m1, lengths, n);                                                       \
+      AddPathBody(path, layer, n);                                                                 \
     }                                                                                              \
-    TARGET static void See(const float* path, const float* first, float* root, std::int64_t n)     \
+    TARGET static void See(                                                                        \
+      const float* first, const float* last, float* row, float* between, float fy, std::int64_t n) \
     {                                                                                              \
-      SeeBody<Binary>(path, first, root, n);                                                       \
+      SeeBody<Binary>(first, last, row, between, fy, n);                                           \
     }                                                                                              \
     TARGET static void Hide(float* hidden, const float* own, float half,                           \
-      const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float fy,     \
+      const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,   \
       std::int64_t n)                                                                              \
     {                                                                                              \
-      HideBody<Binary>(hidden, own, half, before, after, fx, fy, n);                               \
+      HideBody<Binary>(hidden, own, half, before, after, fx, gain, n);                             \
     }                                                                                              \
     TARGET static void HideSide(float* hidden, const float* own, float half,                       \
-      const OcclusionRows::Side& side, float fx, float fy, std::int64_t n)                         \
+      const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)                       \
     {                                                                                              \
-      HideSideBody<Binary>(hidden, own, half, side, fx, fy, n);                                    \
+      HideSideBody<Binary>(hidden, own, half, side, fx, gain, n);                                  \
     }                                                                                              \
     static OcclusionRows Get() { return { AddPath, See, Hide, HideSide }; }                        \
   };

@@ -4,50 +4,50 @@
 #ifndef lacunaOcclusionRows_h
 #define lacunaOcclusionRows_h
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace lacuna
 {
-/// Path lengths (mm) of a ray inside one layer through the voxels (i, j), (i + 1, j), (i, j + 1),
-/// (i + 1, j + 1); the same for all rays of a direction.
-using PathLengths = std::array<float, 4>;
+/// Paths are attenuations in doublings: a path x lets 2^-x through. 1 / ln 2 of these are one in
+/// the usual attenuation.
+constexpr double PathPerAttenuation = 1.4426950408889634;
 
-/// Attenuations beyond this let nothing through that a float's angle could show.
-constexpr float LargestPath = 80;
+/// The voxels that a row of parallel rays passes in one layer: ray i passes Voxels[v][i], up to
+/// three of them, and adds Weights[v] of their attenuation to its path.
+struct LayerCrossing
+{
+  const float* Voxels[3];
+  float Weights[3];
+};
 
-/// Operations on rows of n values. `m0` and `m1` are the attenuations of the two voxel rows that
-/// rays pass, from voxel i on (n + 1 values are read). What a path lets through is T = exp(-path),
-/// in Binary mode 0 where path > 0 and else 1. All implementations give the same bits.
+/// Operations on rows of n values. What is interpolated between rays is their path; in Binary mode
+/// whether they are hidden, 1 where path > 0 and else 0. All implementations give the same bits.
 struct OcclusionRows
 {
   /// path += what the layer adds.
-  void (*AddPath)(
-    float* path, const float* m0, const float* m1, const PathLengths& lengths, std::int64_t n);
+  void (*AddPath)(float* path, const LayerCrossing& layer, std::int64_t n);
 
-  /// root = square root of T(path - first, at least 0).
-  void (*See)(const float* path, const float* first, float* root, std::int64_t n);
+  /// row = the path from first to last (at least 0), or whether it hides; between = fy of the way
+  /// from there to what was in row before: the row of rays before.
+  void (*See)(
+    const float* first, const float* last, float* row, float* between, float fy, std::int64_t n);
 
-  /// What a voxel's ray meets on one side: the next layer, then what the rays around it let
-  /// through. Voxel i lies fy of the way from ray row near to far, and fx of the way from ray i to
-  /// ray i - 1 (the rows are read from -1 on).
+  /// What voxels see on one side: voxel i lies fx of the way from ray i to ray i - 1 of Between
+  /// (read from -1 on). In Binary mode the voxel's own ray hits Next first.
   struct Side
   {
-    const float* M0;
-    const float* M1;
-    PathLengths Lengths;
-    const float* Near;
-    const float* Far;
+    const float* Between;
+    LayerCrossing Next;
   };
 
-  /// hidden += sum over both sides of 1 - T(half * own + path through the next layer) * root^2,
-  /// root being interpolated bilinearly to the voxels.
+  /// hidden += sum over both sides of 1 - 2^-(half * own + path); in Binary mode of 1 where own or
+  /// Next attenuate, else of gain times what is between the rays, at most 1.
   void (*Hide)(float* hidden, const float* own, float half, const Side& before, const Side& after,
-    float fx, float fy, std::int64_t n);
+    float fx, float gain, std::int64_t n);
   /// The same for one side.
   void (*HideSide)(float* hidden, const float* own, float half, const Side& side, float fx,
-    float fy, std::int64_t n);
+    float gain, std::int64_t n);
 };
 
 /// The operations for this processor's widest vectors.

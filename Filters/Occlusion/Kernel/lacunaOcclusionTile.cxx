@@ -9,10 +9,27 @@
 
 namespace lacuna
 {
+namespace
+{
+void Prefetch(const float* first, std::int64_t n)
+{
+#if defined(__GNUC__)
+  constexpr std::int64_t Line = 16; // floats
+  for (std::int64_t i = 0; i < n; i += Line)
+  {
+    __builtin_prefetch(first + i);
+  }
+#endif
+}
+}
+
 //------------------------------------------------------------------------------
-LinePath::LinePath(double slopeX, double slopeY, double step, std::int64_t layers)
+LinePath::LinePath(
+  double slopeX, double slopeY, double offsetX, double offsetY, double step, std::int64_t layers)
   : SlopeX(slopeX)
   , SlopeY(slopeY)
+  , OffsetX(offsetX)
+  , OffsetY(offsetY)
   , Step(step)
   , Layers(layers)
 {
@@ -21,64 +38,55 @@ LinePath::LinePath(double slopeX, double slopeY, double step, std::int64_t layer
 LinePath::Layer LinePath::GetLayer(std::int64_t k) const
 {
   const double fromMiddle = static_cast<double>(k) - 0.5 * static_cast<double>(this->Layers - 1);
-  const double x = this->SlopeX * fromMiddle;
-  const double y = this->SlopeY * fromMiddle;
-  const double fx = x - std::floor(x);
-  const double fy = y - std::floor(y);
-  return { static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)),
-    static_cast<float>(fx), static_cast<float>(fy), this->GetLengths(fx, fy) };
+  return this->GetLayerAt(
+    this->OffsetX + this->SlopeX * fromMiddle, this->OffsetY + this->SlopeY * fromMiddle);
 }
 
 LinePath::Layer LinePath::GetNeighborLayer(int side) const
 {
-  const double x = side * this->SlopeX;
-  const double y = side * this->SlopeY;
-  const int shiftX = x < 0 ? -1 : 0;
-  const int shiftY = y < 0 ? -1 : 0;
-  const double fx = x - shiftX;
-  const double fy = y - shiftY;
-  return { shiftX, shiftY, static_cast<float>(fx), static_cast<float>(fy),
-    this->GetLengths(fx, fy) };
+  return this->GetLayerAt(side * this->SlopeX, side * this->SlopeY);
 }
 
-/// Over the layer, -1/2 <= t <= 1/2, the ray is at (fx + SlopeX t, fy + SlopeY t). It changes
-/// voxel where that is 1/2, at most once in x and once in y.
-PathLengths LinePath::GetLengths(double fractionX, double fractionY) const
+LinePath::Layer LinePath::GetLayerAt(double x, double y) const
 {
+  const double fx = x - std::floor(x);
+  const double fy = y - std::floor(y);
+  Layer layer{ static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)),
+    static_cast<float>(fx), static_cast<float>(fy), {} };
+  // Over the layer, -1/2 <= t <= 1/2, the ray is at (fx + SlopeX t, fy + SlopeY t). It changes
+  // voxel where that is 1/2, at most once in x and once in y.
   const auto change = [](double fraction, double slope)
   {
     const double t = slope != 0 ? (0.5 - fraction) / slope : 1;
     return std::abs(t) < 0.5 ? t : 0.5;
   };
-  const double changeX = change(fractionX, this->SlopeX);
-  const double changeY = change(fractionY, this->SlopeY);
+  const double changeX = change(fx, this->SlopeX);
+  const double changeY = change(fy, this->SlopeY);
   const double cuts[4] = { -0.5, std::min(changeX, changeY), std::max(changeX, changeY), 0.5 };
-  PathLengths lengths{};
   for (int i = 0; i < 3; ++i)
   {
     const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
-    const int voxel = (fractionX + this->SlopeX * middle > 0.5 ? 1 : 0) +
-      (fractionY + this->SlopeY * middle > 0.5 ? 2 : 0);
-    lengths[voxel] += static_cast<float>(this->Step * (cuts[i + 1] - cuts[i]));
+    layer.Parts[i] = { fx + this->SlopeX * middle > 0.5 ? 1 : 0,
+      fy + this->SlopeY * middle > 0.5 ? 1 : 0,
+      static_cast<float>(this->Step * PathPerAttenuation * (cuts[i + 1] - cuts[i])) };
   }
-  return lengths;
+  return layer;
 }
 
-void LinePath::GetRays(
-  std::int64_t length, double slope, std::int64_t& first, std::int64_t& last) const
+void LinePath::GetRays(int axis, std::int64_t length, std::int64_t& first, std::int64_t& last) const
 {
   // Voxel i lies between the rays i - shift - 1 and i - shift.
+  const double slope = axis == 0 ? this->SlopeX : this->SlopeY;
+  const double offset = axis == 0 ? this->OffsetX : this->OffsetY;
   const double reach = 0.5 * std::abs(slope) * static_cast<double>(this->Layers - 1);
-  first = -static_cast<std::int64_t>(std::floor(reach));
-  last = length - static_cast<std::int64_t>(std::floor(-reach));
+  first = -static_cast<std::int64_t>(std::floor(offset + reach));
+  last = length - static_cast<std::int64_t>(std::floor(offset - reach));
 }
 
 //------------------------------------------------------------------------------
-TileMarch::TileMarch(bool binary, double radius, bool space)
-  : Windowed(radius > 0 || space)
-  , Radius(radius)
-  , Space(space)
-  , Rows(GetOcclusionRows(binary))
+TileMarch::TileMarch(const MarchOptions& options)
+  : Options(options)
+  , Rows(GetOcclusionRows(options.Binary))
 {
 }
 
@@ -90,31 +98,37 @@ void TileMarch::March(const MarchFrame& frame, const LinePath& line, const RayTi
   this->FirstRow = frame.Rows == 1 ? 0 : tile.FirstY - 1;
   this->Width = tile.LastX - tile.FirstX + 1;
   this->Plane = this->Width * (tile.LastY - this->FirstRow);
-  this->Zero.assign(this->Width, 0);
-  for (auto& side : this->Roots)
-  {
-    side[0].resize(this->Width);
-    side[1].resize(this->Width);
-  }
-  // A voxel's own ray is followed exactly through half the voxel and the next layer, as far as
-  // the radius reaches.
-  const double step = line.GetStep();
-  const double own = this->Radius > 0 ? std::min(0.5 * step, this->Radius) : 0.5 * step;
-  const double next = this->Radius > 0 ? std::min(step, this->Radius - own) : step;
-  this->OwnHalf = static_cast<float>(own);
+  this->Zero.resize(this->Width);
   for (int side : { 0, 1 })
   {
-    this->Neighbors[side] = line.GetNeighborLayer(side == 0 ? -1 : 1);
-    for (float& length : this->Neighbors[side].Lengths)
+    this->Seen[side].resize(this->Width);
+    this->Between[side].resize(this->Width);
+    this->Neighbors[side] = line.GetNeighborLayer(side == BeforeSide ? -1 : 1);
+  }
+  const double step = line.GetStep();
+  const double radius = this->Options.Radius > 0 ? this->Options.Radius : 2 * step;
+  this->OwnHalf = static_cast<float>(PathPerAttenuation * std::min(0.5 * step, radius));
+  for (int side : { BeforeSide, AfterSide })
+  {
+    // the next layer as far as the radius reaches
+    auto reach = static_cast<float>(PathPerAttenuation * std::max(0.0, radius - 0.5 * step));
+    LinePath::Part* parts = this->Neighbors[side].Parts;
+    for (int p : { 0, 1, 2 })
     {
-      length *= static_cast<float>(next / step);
+      LinePath::Part& part = parts[side == AfterSide ? p : 2 - p];
+      part.Length = std::min(part.Length, reach);
+      reach -= part.Length;
     }
   }
-  if (this->Windowed)
+  if (this->Options.Radius > 0 || this->Options.Space)
   {
     this->StorePaths();
-    this->MarchWindowed(0);
-    this->MarchWindowed(1);
+    this->MarchWindowed(BeforeSide);
+    this->MarchWindowed(AfterSide);
+  }
+  else if (this->Options.Binary)
+  {
+    this->MarchBinary();
   }
   else
   {
@@ -130,8 +144,7 @@ std::int64_t TileMarch::GetOffset(const Span& span) const
 
 const float* TileMarch::GetStored(std::int64_t plane) const
 {
-  const std::int64_t last = this->Frame->Layers;
-  return this->Store.data() + std::min(std::max<std::int64_t>(plane, 0), last) * this->Plane;
+  return this->Store.data() + plane * this->Plane;
 }
 
 template <class Body>
@@ -154,26 +167,67 @@ void TileMarch::ForRows(std::int64_t k, Body&& body)
   }
 }
 
+/// What rays meet in a layer, the first one being layer's from voxel (i, j) of layer k.
+LayerCrossing TileMarch::GetCrossing(
+  const LinePath::Layer& layer, std::int64_t i, std::int64_t j, std::int64_t k) const
+{
+  const float* first = this->Frame->FieldAt(i + layer.ShiftX, j + layer.ShiftY, k);
+  const LinePath::Part* parts = layer.Parts;
+  const std::int64_t stride = this->Frame->FieldRowStride;
+  return { { first + parts[0].X + parts[0].Y * stride, first + parts[1].X + parts[1].Y * stride,
+             first + parts[2].X + parts[2].Y * stride },
+    { parts[0].Length, parts[1].Length, parts[2].Length } };
+}
+
+/// Rows lie too far apart for the processor to foresee them: asks for what the rays of span meet in
+/// layer k, about the time of a layer ahead.
+void TileMarch::Foresee(const Span& span, std::int64_t k, bool hidden) const
+{
+  const MarchFrame& frame = *this->Frame;
+  if (k < 0 || k >= frame.Layers)
+  {
+    return;
+  }
+  const std::int64_t i = std::max<std::int64_t>(0, span.FirstX + span.Layer.ShiftX);
+  const std::int64_t j = span.Q + span.Layer.ShiftY;
+  Prefetch(frame.FieldAt(i, std::min(frame.Rows - 1, j + 1), k), span.Count);
+  if (hidden)
+  {
+    const std::int64_t row = std::max<std::int64_t>(0, j);
+    Prefetch(
+      frame.Hidden + k * frame.HiddenLayerStride + row * frame.HiddenRowStride + i, span.Count);
+  }
+}
+
+void TileMarch::AddPath(float* plane, const Span& span) const
+{
+  this->Rows.AddPath(plane + this->GetOffset(span),
+    this->GetCrossing(span.Layer, span.FirstX, span.Q, span.K), span.Count);
+}
+
 /// Adds a layer to the path of each ray.
 void TileMarch::Advance(float* plane, std::int64_t k)
 {
-  const std::int64_t next = this->Frame->Rows == 1 ? 0 : 1;
   this->ForRows(k,
     [&](const Span& span)
     {
-      const std::int64_t i = span.FirstX + span.Layer.ShiftX;
-      const std::int64_t j = span.Q + span.Layer.ShiftY;
-      this->Rows.AddPath(plane + this->GetOffset(span), this->Frame->FieldAt(i, j, k),
-        this->Frame->FieldAt(i, j + next, k), span.Layer.Lengths, span.Count);
+      this->Foresee(span, k + 1, false);
+      this->AddPath(plane, span);
     });
 }
 
-/// Serves the voxels between the rows of rays span.Q - 1 and span.Q, with what lies at lower
-/// layers (BeforeSide), at higher ones or both.
-void TileMarch::Hide(const Span& span, int sides)
+/// What the rays of span see on one side; first and last are its first ray's.
+void TileMarch::See(Sides side, const float* first, const float* last, const Span& span)
+{
+  const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
+  this->Rows.See(first, last, this->Seen[side].data() + column, this->Between[side].data() + column,
+    span.Layer.FractionY, span.Count);
+}
+
+/// Serves the voxels between the rows of rays span.Q - 1 and span.Q.
+void TileMarch::Hide(const Span& span, Sides sides)
 {
   const MarchFrame& frame = *this->Frame;
-  const bool flat = frame.Rows == 1;
   const LinePath::Layer& layer = span.Layer;
   const std::int64_t first = std::max(this->Tile.FirstX, -layer.ShiftX);
   const std::int64_t count = std::min(this->Tile.LastX, frame.Length - layer.ShiftX) - first;
@@ -183,44 +237,71 @@ void TileMarch::Hide(const Span& span, int sides)
     return;
   }
   const std::int64_t i = first + layer.ShiftX;
-  const std::int64_t offset = first - this->Tile.FirstX + 1;
-  const auto getSide = [&](int side) -> OcclusionRows::Side
+  const auto getSide = [&](Sides side) -> OcclusionRows::Side
   {
-    const LinePath::Layer& next = this->Neighbors[side];
-    const std::int64_t k = side == BeforeSide ? span.K - 1 : span.K + 1;
-    const std::int64_t row = flat ? j : j + next.ShiftY;
-    const float* near = this->Roots[side][1].data() + offset;
-    const float* far = flat ? near : this->Roots[side][0].data() + offset;
-    return { frame.FieldAt(i + next.ShiftX, row, k),
-      frame.FieldAt(i + next.ShiftX, flat ? row : row + 1, k), next.Lengths, near, far };
+    const float* between = this->Between[side].data() + (first - this->Tile.FirstX + 1);
+    if (!this->Options.Binary)
+    {
+      return { between, {} };
+    }
+    return { between,
+      this->GetCrossing(
+        this->Neighbors[side], i, j, side == BeforeSide ? span.K - 1 : span.K + 1) };
   };
   float* hidden = frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i;
   const float* own = frame.FieldAt(i, j, span.K);
+  const float gain = 1 / (1 - this->Options.Dilation);
   if (sides == BothSides)
   {
     this->Rows.Hide(hidden, own, this->OwnHalf, getSide(BeforeSide), getSide(AfterSide),
-      layer.FractionX, layer.FractionY, count);
+      layer.FractionX, gain, count);
   }
   else
   {
-    this->Rows.HideSide(
-      hidden, own, this->OwnHalf, getSide(sides), layer.FractionX, layer.FractionY, count);
+    this->Rows.HideSide(hidden, own, this->OwnHalf, getSide(sides), layer.FractionX, gain, count);
   }
 }
 
-/// One pass for the whole path of each ray; then, with the path before and after each layer, what
-/// both directions see.
+/// One pass for the whole path of each ray; then back again, while the last layers are still in the
+/// cache, with what both directions see.
 void TileMarch::MarchWhole()
 {
   const std::int64_t layers = this->Frame->Layers;
   this->Total.assign(this->Plane, 0);
-  this->Before.assign(this->Plane, 0);
-  this->After.assign(this->Plane, 0);
   for (std::int64_t k = 0; k < layers; ++k)
   {
     this->Advance(this->Total.data(), k);
   }
-  this->Advance(this->After.data(), 0);
+  this->Path.assign(this->Plane, 0);
+  for (std::int64_t k = layers - 1; k >= 0; --k)
+  {
+    this->ForRows(k,
+      [&](const Span& span)
+      {
+        const std::int64_t offset = this->GetOffset(span);
+        const float* path = this->Path.data() + offset;
+        this->Foresee(span, k - 1, true);
+        this->See(AfterSide, this->Zero.data(), path, span);
+        this->AddPath(this->Path.data(), span);
+        this->See(BeforeSide, path, this->Total.data() + offset, span);
+        this->Hide(span, BothSides);
+      });
+  }
+}
+
+/// The same in Binary mode: the layer before and the one after are left to the voxels' own rays.
+/// In one order, so that a path that ends is exactly the total.
+void TileMarch::MarchBinary()
+{
+  const std::int64_t layers = this->Frame->Layers;
+  this->Total.assign(this->Plane, 0);
+  for (std::int64_t k = 0; k < layers; ++k)
+  {
+    this->Advance(this->Total.data(), k);
+  }
+  this->Before.assign(this->Plane, 0);
+  this->Path.assign(this->Plane, 0);
+  this->Advance(this->Path.data(), 0);
   for (std::int64_t k = 0; k < layers; ++k)
   {
     if (k >= 2)
@@ -229,21 +310,15 @@ void TileMarch::MarchWhole()
     }
     if (k + 1 < layers)
     {
-      this->Advance(this->After.data(), k + 1);
+      this->Advance(this->Path.data(), k + 1);
     }
     this->ForRows(k,
       [&](const Span& span)
       {
         const std::int64_t offset = this->GetOffset(span);
-        const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
-        for (auto& side : this->Roots)
-        {
-          std::swap(side[0], side[1]);
-        }
-        this->Rows.See(this->Before.data() + offset, this->Zero.data(),
-          this->Roots[0][1].data() + column, span.Count);
-        this->Rows.See(this->Total.data() + offset, this->After.data() + offset,
-          this->Roots[1][1].data() + column, span.Count);
+        this->Foresee(span, k + 1, true);
+        this->See(BeforeSide, this->Zero.data(), this->Before.data() + offset, span);
+        this->See(AfterSide, this->Path.data() + offset, this->Total.data() + offset, span);
         this->Hide(span, BothSides);
       });
   }
@@ -292,40 +367,42 @@ void TileMarch::UpdateSpace(const Span& span, const float* path)
   }
 }
 
-/// side 0: what lies at lower layers, in ascending order; 1: at higher ones, in descending order.
-void TileMarch::MarchWindowed(int side)
+/// What lies at lower layers in ascending order, at higher ones in descending order.
+void TileMarch::MarchWindowed(Sides side)
 {
   const std::int64_t layers = this->Frame->Layers;
   const double all = static_cast<double>(layers) + 1;
-  const double reach = this->Radius > 0 ? this->Radius / this->Line->GetStep() : all;
-  const float* start = this->GetStored(side == 0 ? 0 : layers);
+  const double reach =
+    this->Options.Radius > 0 ? this->Options.Radius / this->Line->GetStep() : all;
+  const float* start = this->GetStored(side == BeforeSide ? 0 : layers);
   this->Bound.assign(start, start + this->Plane);
-  this->Before.resize(this->Width);
-  float* end = this->Before.data();
+  this->End.resize(this->Width);
+  float* end = this->End.data();
   const auto serve = [&](const Span& span)
   {
-    std::swap(this->Roots[side][0], this->Roots[side][1]);
     const std::int64_t offset = this->GetOffset(span);
     const double middle = static_cast<double>(span.K) + 0.5;
-    this->PathAt(side == 0 ? middle - reach : middle + reach, span, end);
-    if (this->Space)
+    this->PathAt(side == BeforeSide ? middle - reach : middle + reach, span, end);
+    if (this->Options.Space)
     {
       const float* bound = this->Bound.data() + offset;
       for (std::int64_t i = 0; i < span.Count; ++i)
       {
-        end[i] = side == 0 ? std::max(end[i], bound[i]) : std::min(end[i], bound[i]);
+        end[i] = side == BeforeSide ? std::max(end[i], bound[i]) : std::min(end[i], bound[i]);
       }
-      this->UpdateSpace(span, this->GetStored(side == 0 ? span.K + 1 : span.K) + offset);
+      this->UpdateSpace(span, this->GetStored(side == BeforeSide ? span.K + 1 : span.K) + offset);
     }
-    // from beyond the neighbour layer
-    const float* begin = this->GetStored(side == 0 ? span.K - 1 : span.K + 2) + offset;
-    float* roots = this->Roots[side][1].data() + (span.FirstX - this->Tile.FirstX + 1);
-    this->Rows.See(side == 0 ? begin : end, side == 0 ? end : begin, roots, span.Count);
+    this->Foresee(span, side == BeforeSide ? span.K + 1 : span.K - 1, true);
+    const std::int64_t exact = this->Options.Binary ? 1 : 0;
+    const std::int64_t plane = side == BeforeSide ? std::max<std::int64_t>(0, span.K - exact)
+                                                  : std::min(layers, span.K + 1 + exact);
+    const float* begin = this->GetStored(plane) + offset;
+    this->See(side, side == BeforeSide ? end : begin, side == BeforeSide ? begin : end, span);
     this->Hide(span, side);
   };
   for (std::int64_t n = 0; n < layers; ++n)
   {
-    this->ForRows(side == 0 ? n : layers - 1 - n, serve);
+    this->ForRows(side == BeforeSide ? n : layers - 1 - n, serve);
   }
 }
 }

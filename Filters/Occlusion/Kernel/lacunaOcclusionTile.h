@@ -38,33 +38,44 @@ struct MarchFrame
 class LinePath
 {
 public:
+  /// A part of a ray's way through a layer.
+  struct Part
+  {
+    int X; ///< of its voxel, relative to the first of the four that lie around the ray: 0 or 1
+    int Y;
+    float Length; ///< exact, mm times PathPerAttenuation; 0 where the ray meets fewer voxels
+  };
+
   struct Layer
   {
     std::int64_t ShiftX;
     std::int64_t ShiftY;
     float FractionX;
     float FractionY;
-    PathLengths Lengths; ///< through the up to three voxels met in this layer, exact
+    Part Parts[3];
   };
 
-  /// Slopes in voxels per layer, at most 1 in size; step is the path length per layer in mm.
-  LinePath(double slopeX, double slopeY, double step, std::int64_t layers);
+  /// Slopes in voxels per layer, at most 1 in size; offsets, 0 <= o < 1, of the rays from voxel
+  /// centres in the middle layer; step is the path length per layer in mm.
+  LinePath(
+    double slopeX, double slopeY, double offsetX, double offsetY, double step, std::int64_t layers);
 
   Layer GetLayer(std::int64_t k) const;
   /// The ray through a voxel's centre one layer later (side 1) or earlier (side -1), relative to
   /// that voxel: shifts in -1, 0.
   Layer GetNeighborLayer(int side) const;
   double GetStep() const { return this->Step; }
-  /// The rays that some voxel of the frame needs: First <= r < Last.
-  void GetRays(std::int64_t length, double slope, std::int64_t& first, std::int64_t& last) const;
-  double GetSlopeX() const { return this->SlopeX; }
-  double GetSlopeY() const { return this->SlopeY; }
+  /// The rays that some voxel of the frame needs along its rows (axis 0) or across (1):
+  /// first <= r < last.
+  void GetRays(int axis, std::int64_t length, std::int64_t& first, std::int64_t& last) const;
 
 private:
-  PathLengths GetLengths(double fractionX, double fractionY) const;
+  Layer GetLayerAt(double x, double y) const;
 
   double SlopeX;
   double SlopeY;
+  double OffsetX;
+  double OffsetY;
   double Step;
   std::int64_t Layers;
 };
@@ -78,13 +89,20 @@ struct RayTile
   std::int64_t LastY;
 };
 
+/// How rays see.
+struct MarchOptions
+{
+  bool Binary;
+  double Radius;  ///< mm: rays end there; 0: they do not
+  bool Space;     ///< some voxels are outside the reconstruction space
+  float Dilation; ///< 0 <= d < 1, see OccludedAngleOptions
+};
+
 /// Marches tiles. Holds scratch memory: one object per thread.
 class TileMarch
 {
 public:
-  /// radius (mm) > 0: rays end there, 0: they do not. space: some voxels are outside the
-  /// reconstruction space.
-  TileMarch(bool binary, double radius, bool space);
+  explicit TileMarch(const MarchOptions& options);
 
   /// Adds to frame.Hidden, for each voxel of the tile, the hidden fraction along the line in both
   /// of its directions.
@@ -101,28 +119,32 @@ private:
     std::int64_t Count;
   };
 
-  void MarchWhole();
-  void MarchWindowed(int side);
-  void StorePaths();
-  void Advance(float* plane, std::int64_t k);
-  void PathAt(double plane, const Span& span, float* path) const;
-  void UpdateSpace(const Span& span, const float* path);
   enum Sides
   {
     BeforeSide = 0,
     AfterSide = 1,
     BothSides = 2
   };
-  void Hide(const Span& span, int sides);
+  void MarchWhole();
+  void MarchBinary();
+  void MarchWindowed(Sides side);
+  void StorePaths();
+  LayerCrossing GetCrossing(
+    const LinePath::Layer& layer, std::int64_t i, std::int64_t j, std::int64_t k) const;
+  void Foresee(const Span& span, std::int64_t k, bool hidden) const;
+  void AddPath(float* plane, const Span& span) const;
+  void Advance(float* plane, std::int64_t k);
+  void PathAt(double plane, const Span& span, float* path) const;
+  void UpdateSpace(const Span& span, const float* path);
+  void See(Sides side, const float* first, const float* last, const Span& span);
+  void Hide(const Span& span, Sides sides);
   template <class Body>
   void ForRows(std::int64_t k, Body&& body);
 
   std::int64_t GetOffset(const Span& span) const;
   const float* GetStored(std::int64_t plane) const;
 
-  bool Windowed;
-  double Radius;
-  bool Space;
+  MarchOptions Options;
   const OcclusionRows& Rows;
 
   const MarchFrame* Frame = nullptr;
@@ -130,17 +152,19 @@ private:
   RayTile Tile{};
   std::int64_t FirstRow = 0; ///< of the rays of the tile, with the neighbours that voxels need
   std::int64_t Width = 0;
-  std::int64_t Height = 0;
-  std::int64_t Plane = 0; ///< rays of the tile
-  float OwnHalf = 0;
-  LinePath::Layer Neighbors[2];   ///< before and after
-  std::vector<float> Zero;        ///< a row
-  std::vector<float> Before;      ///< path of each ray before the neighbour layer
-  std::vector<float> After;       ///< path up to and with the neighbour layer after
-  std::vector<float> Total;       ///< path through everything
-  std::vector<float> Store;       ///< path of each ray up to each plane between layers
-  std::vector<float> Bound;       ///< path where a ray entered the space last
-  std::vector<float> Roots[2][2]; ///< per side, what two rows of rays let through
+  std::int64_t Plane = 0;       ///< rays of the tile
+  float OwnHalf = 0;            ///< way through half of a voxel, as Part::Length
+  LinePath::Layer Neighbors[2]; ///< before and after
+  std::vector<float> Zero;      ///< a row
+  std::vector<float> Total;     ///< path of each ray through everything
+  std::vector<float> Path;      ///< beyond the layers served, in Binary mode up to the next one
+  std::vector<float> Before;    ///< in Binary mode, up to the layer before
+  std::vector<float> Store;     ///< up to each plane between layers
+  std::vector<float> Bound;     ///< where a ray entered the space last
+  std::vector<float> End;       ///< where a row of rays ends
+  /// What a row of rays sees on each side, and between that row and the one before
+  std::vector<float> Seen[2];
+  std::vector<float> Between[2];
 };
 }
 #endif

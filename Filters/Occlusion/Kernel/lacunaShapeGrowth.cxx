@@ -236,6 +236,7 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
     OccludedAngleOptions seeing;
     seeing.Binary = options.Binary;
     seeing.Directions = options.Directions;
+    seeing.Dilation = options.Dilation;
     seeing.Radius = options.Steps[iteration].Radius;
     seeing.FirstProgress = static_cast<double>(iteration) / count;
     seeing.LastProgress = (iteration + 0.9) / count;

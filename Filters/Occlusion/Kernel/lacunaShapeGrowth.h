@@ -24,6 +24,7 @@ struct GrowthOptions
 {
   bool Binary = false;
   int Directions = 1000;
+  double Dilation = 0; ///< see OccludedAngleOptions
   /// The fraction of a ray that an object voxel of the second and later iterations takes over the
   /// shortest voxel edge, above 0 and at most 1.
   double ObjectOpacity = 0.95;

@@ -21,18 +21,18 @@ from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkFlyingEdges2D, vtkFl
 import lacuna
 
 # The published schedule for a cube of which up to 80 % of the surface is missing (Carr 1996, section 5.8).
-CUBE = dict(Mode="Binary", ThresholdsOverPi=[2.5, 2.5, 2.0, 2.0])
+CUBE = dict(Mode="Binary", Dilation=1 / 3, ThresholdsOverPi=[2.5, 2.5, 2.0, 2.0])
 
 # The same with up to 90 % missing; radii in mm on voxels of 1 mm. For flat faces: it fills hollows.
-SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.4] * 2 + [2.4] * 2 + [3.95] * 2 + [2.05] * 8,
+SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.4] * 2 + [2.4] * 2 + [3.9] * 2 + [2.25] * 8,
                    LocalRadii=[2] * 2 + [0] * 2 + [3] * 2 + [0] * 8)
 
 # For surfaces of which up to 90 % is missing, at random or in patches, also with outliers, on voxels of 1 mm: grow the
 # data into a shell (two), fill it (one), shrink it again (two), grow to where the data are (eight). Scale the radii
 # with the voxels.
 GROW_AND_SNAP = dict(Mode="Continuous", KeepData=1,
-                     ThresholdsOverPi=[0.35] * 2 + [2.3] + [3.9] * 2 + [2.25] * 6 + [2.4] * 2,
-                     LocalRadii=[1.5] * 2 + [0] + [3] * 2 + [0] * 8)
+                     ThresholdsOverPi=[0.49] * 2 + [2.5] + [3.92] * 2 + [2.4] * 5 + [2.66] * 2,
+                     LocalRadii=[1.5] * 2 + [0] + [3] * 2 + [0] * 7)
 
 
 class Surface:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lacuna
 {
@@ -19,32 +20,80 @@ std::vector<float> Random(std::size_t n, double scale, std::uint64_t seed)
   return values;
 }
 
-// exp(-x) as the row operations see it: a row without interpolation.
-double LetThrough(const OcclusionRows& rows, double path)
+// 2^-x as the row operations see it: one voxel that sees through a path on one side.
+double LetThrough(const OcclusionRows& rows, float path)
 {
-  std::vector<float> paths{ static_cast<float>(2 * path) };
-  const std::vector<float> zero(1, 0.0F);
-  std::vector<float> root(1);
-  rows.See(paths.data(), zero.data(), root.data(), 1);
-  return root[0];
+  const float own = 0;
+  const float between[2] = { path, path };
+  float hidden = 0;
+  const OcclusionRows::Side side{ between + 1, { { &own, &own, &own }, { 0, 0, 0 } } };
+  rows.HideSide(&hidden, &own, 1, side, 0, 1, 1);
+  return 1 - static_cast<double>(hidden);
 }
 }
 
-TEST(OcclusionRows, ExponentialIsAccurate)
+TEST(OcclusionRows, PowerIsAccurate)
 {
-  const OcclusionRows rows = GetAllOcclusionRows(false).front();
-  EXPECT_EQ(LetThrough(rows, 0), 1);
-  double worst = 0;
-  double worstFar = 0;
-  for (double x = 1e-6; x < 200; x = x * 1.001 + 1e-5)
+  for (const OcclusionRows& rows : GetAllOcclusionRows(false))
   {
-    const double path = static_cast<float>(2 * x) / 2.0;
-    const double truth = std::exp(-std::min(path, 80.0));
-    double& bound = x < 10 ? worst : worstFar;
-    bound = std::max(bound, std::abs(LetThrough(rows, x) / truth - 1));
+    EXPECT_EQ(LetThrough(rows, 0), 1);
+    for (double x = 1e-6; x < 300; x = x * 1.001 + 1e-5)
+    {
+      const auto path = static_cast<float>(x);
+      ASSERT_NEAR(LetThrough(rows, path), std::exp2(-static_cast<double>(path)), 1.5e-7) << x;
+    }
   }
-  EXPECT_LT(worst, 1.5e-6);
-  EXPECT_LT(worstFar, 1e-5);
+}
+
+// By the definition, one value after the other.
+TEST(OcclusionRows, DoWhatTheySay)
+{
+  for (bool binary : { false, true })
+  {
+    const OcclusionRows rows = GetAllOcclusionRows(binary).back();
+    const int n = 40;
+    const auto a = Random(n, 1, 1);
+    const auto b = Random(n, 1, 2);
+    const auto c = Random(n, 1, 3);
+    const LayerCrossing layer{ { a.data(), b.data(), c.data() }, { 0.5F, 0.2F, 0.7F } };
+    auto path = Random(n, 2, 4);
+    const auto first = path;
+    rows.AddPath(path.data(), layer, n);
+    auto row = Random(n, 1, 5);
+    const auto previous = row;
+    std::vector<float> between(n);
+    const auto from = Random(n, 2, 6);
+    rows.See(from.data(), path.data(), row.data(), between.data(), 0.25F, n);
+    auto hidden = Random(n, 1, 7);
+    const auto start = hidden;
+    const OcclusionRows::Side one{ between.data() + 1, layer };
+    const OcclusionRows::Side two{ previous.data() + 1, layer };
+    rows.Hide(hidden.data() + 1, c.data() + 1, 0.3F, one, two, 0.6F, 1.25F, n - 1);
+    auto hiddenSide = start;
+    rows.HideSide(hiddenSide.data() + 1, c.data() + 1, 0.3F, one, 0.6F, 1.25F, n - 1);
+    for (int i = 0; i < n; ++i)
+    {
+      EXPECT_NEAR(path[i], first[i] + 0.5 * a[i] + 0.2 * b[i] + 0.7 * c[i], 1e-5);
+      const double length = std::max(0.0F, path[i] - from[i]);
+      const double seen = binary ? (length > 0 ? 1 : 0) : length;
+      EXPECT_NEAR(row[i], seen, 1e-5);
+      EXPECT_NEAR(between[i], 0.75 * seen + 0.25 * previous[i], 1e-5);
+      if (i == 0)
+      {
+        continue;
+      }
+      const auto side = [&](const std::vector<float>& rest)
+      {
+        const double between2 = 0.4 * rest[i] + 0.6 * rest[i - 1];
+        const double own = 0.3 * c[i];
+        const double next = 0.5 * a[i - 1] + 0.2 * b[i - 1] + 0.7 * c[i - 1];
+        const double part = std::min(1.0, 1.25 * between2);
+        return binary ? (own + next > 0 ? 1 : part) : 1 - std::exp2(-own - between2);
+      };
+      EXPECT_NEAR(hidden[i], start[i] + side(between) + side(previous), 1e-5);
+      EXPECT_NEAR(hiddenSide[i], start[i] + side(between), 1e-5);
+    }
+  }
 }
 
 TEST(OcclusionRows, AllInstructionSetsGiveTheSameBits)
@@ -53,26 +102,25 @@ TEST(OcclusionRows, AllInstructionSetsGiveTheSameBits)
   {
     for (std::int64_t n : { 1, 7, 16, 33, 250 })
     {
-      const auto m0 = Random(n + 2, 0.4, 1);
-      const auto m1 = Random(n + 2, 0.4, 2);
-      const auto near = Random(n + 1, 1.4, 3);
-      const auto far = Random(n + 1, 1.4, 4);
-      const PathLengths lengths{ 0.5F, 0.25F, 0.0F, 0.4F };
+      const auto m0 = Random(n + 1, 0.4, 1);
+      const auto m1 = Random(n + 1, 0.4, 2);
+      const LayerCrossing layer{ { m0.data(), m0.data() + 1, m1.data() + 1 },
+        { 0.5F, 0.25F, 0.4F } };
       std::vector<float> first;
       for (const OcclusionRows& rows : GetAllOcclusionRows(binary))
       {
         std::vector<float> result = Random(n, 3, 5);
-        rows.AddPath(result.data(), m0.data(), m1.data(), lengths, n);
-        std::vector<float> root(n);
-        rows.See(result.data(), m1.data(), root.data(), n);
+        rows.AddPath(result.data(), layer, n);
+        std::vector<float> row = Random(n, 1, 3);
+        std::vector<float> between(n + 1, 0.5F);
+        rows.See(m1.data(), result.data(), row.data(), between.data() + 1, 0.2F, n);
         std::vector<float> hidden = Random(n, 3, 6);
-        const OcclusionRows::Side before{ m0.data(), m1.data(), lengths, near.data() + 1,
-          far.data() + 1 };
-        const OcclusionRows::Side after{ m1.data(), m0.data(), lengths, far.data() + 1,
-          near.data() + 1 };
-        rows.Hide(hidden.data(), m0.data() + 1, 0.6F, before, after, 0.3F, 0.8F, n);
-        rows.HideSide(hidden.data(), m0.data() + 1, 0.6F, after, 0.1F, 0.4F, n);
-        result.insert(result.end(), root.begin(), root.end());
+        const OcclusionRows::Side before{ between.data() + 1, layer };
+        const OcclusionRows::Side after{ m1.data() + 1, layer };
+        rows.Hide(hidden.data(), m0.data() + 1, 0.6F, before, after, 0.3F, 1.2F, n);
+        rows.HideSide(hidden.data(), m0.data(), 0.8F, after, 0.1F, 1.0F, n);
+        result.insert(result.end(), row.begin(), row.end());
+        result.insert(result.end(), between.begin(), between.end());
         result.insert(result.end(), hidden.begin(), hidden.end());
         if (first.empty())
         {

@@ -82,6 +82,7 @@ TEST(ShapeGrowth, RebuildsTheCube)
     AttenuationField field = MakeCube(0.2, seed);
     GrowthOptions options;
     options.Binary = true;
+    options.Dilation = 1.0 / 3;
     options.Steps = { { 2.5 * Pi, 0 }, { 2.5 * Pi, 0 }, { 2 * Pi, 0 }, { 2 * Pi, 0 } };
     const Growth growth(field, options);
     int inside = 0;
@@ -107,8 +108,8 @@ TEST(ShapeGrowth, RebuildsASparseCube)
   options.Directions = 300;
   options.KeepData = true;
   options.Steps = { { 0.4 * Pi, 2 }, { 0.4 * Pi, 2 }, { 2.4 * Pi, 0 }, { 2.4 * Pi, 0 },
-    { 3.95 * Pi, 3 }, { 3.95 * Pi, 3 } };
-  options.Steps.resize(14, { 2.05 * Pi, 0 });
+    { 3.9 * Pi, 3 }, { 3.9 * Pi, 3 } };
+  options.Steps.resize(14, { 2.25 * Pi, 0 });
   const Growth growth(field, options);
   int inside = 0;
   for (std::size_t i = 0; i < growth.Object.size(); ++i)

@@ -301,8 +301,8 @@ int TestOccludedAngle(int, char*[])
   std::ostringstream text;
   filter->Print(text);
   for (const char* name : { "ScalarArray", "Mode", "Attenuation", "OpacityFunction",
-         "NumberOfDirections", "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "KeepData",
-         "MedianKernel", "ReconstructionSpace", "KeepIterations" })
+         "NumberOfDirections", "ThresholdsOverPi", "LocalRadii", "ObjectOpacity", "Dilation",
+         "KeepData", "MedianKernel", "ReconstructionSpace", "KeepIterations" })
   {
     LACUNA_CHECK(text.str().find(name) != std::string::npos);
   }

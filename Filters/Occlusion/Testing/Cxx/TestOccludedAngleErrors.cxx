@@ -106,6 +106,7 @@ int TestOccludedAngleErrors(int, char*[])
   Expect(
     "ObjectOpacity is 1.5", [](Filter* filter, vtkImageData*) { filter->SetObjectOpacity(1.5); });
   Expect("MedianKernel is 4", [](Filter* filter, vtkImageData*) { filter->SetMedianKernel(4); });
+  Expect("the dilation is 1.0", [](Filter* filter, vtkImageData*) { filter->SetDilation(1); });
   Expect("contains none of the data",
     [](Filter* filter, vtkImageData*)
     {
