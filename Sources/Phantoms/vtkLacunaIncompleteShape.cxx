@@ -41,6 +41,7 @@ lacuna::IncompleteShape vtkLacunaIncompleteShape::MakeShape()
   p.Patches = this->Patches;
   p.PatchRadii = { this->PatchRadii[0], this->PatchRadii[1] };
   p.GapAngle = this->GapAngle;
+  p.TissueFraction = this->TissueFraction;
   p.OutlierFraction = this->OutlierFraction;
   p.Seed = static_cast<std::uint64_t>(this->Seed);
   return lacuna::IncompleteShape(p);
@@ -121,6 +122,7 @@ int vtkLacunaIncompleteShape::RequestData(
         .Add("Patches", this->Patches)
         .Add("PatchRadii", this->PatchRadii)
         .Add("GapAngle", this->GapAngle)
+        .Add("TissueFraction", this->TissueFraction)
         .Add("OutlierFraction", this->OutlierFraction)
         .Add("Seed", this->Seed);
       vtkLacunaProvenance::Record(output, this, {}, parameters.Get());
@@ -138,6 +140,7 @@ void vtkLacunaIncompleteShape::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Patches: " << this->Patches << "\n";
   os << indent << "PatchRadii: " << this->PatchRadii[0] << " " << this->PatchRadii[1] << "\n";
   os << indent << "GapAngle: " << this->GapAngle << "\n";
+  os << indent << "TissueFraction: " << this->TissueFraction << "\n";
   os << indent << "OutlierFraction: " << this->OutlierFraction << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
 }

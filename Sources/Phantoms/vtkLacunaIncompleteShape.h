@@ -76,6 +76,12 @@ public:
   ///@}
 
   ///@{
+  /// Echoes from inside of the shape: fraction of the voxels there, 0 to 1. Default 0.
+  vtkSetMacro(TissueFraction, double);
+  vtkGetMacro(TissueFraction, double);
+  ///@}
+
+  ///@{
   /// Wrong voxels anywhere in the image, as a fraction of the right ones, 0 to 10. Default 0.
   vtkSetMacro(OutlierFraction, double);
   vtkGetMacro(OutlierFraction, double);
@@ -103,6 +109,7 @@ protected:
   bool Patches = false;
   double PatchRadii[2] = { 3, 8 };
   double GapAngle = 0;
+  double TissueFraction = 0;
   double OutlierFraction = 0;
   int Seed = 0;
 

@@ -14,8 +14,9 @@ LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 source = IncompleteShape()
 plain = lacuna.vtkLacunaIncompleteShape()
-for name, value in dict(Shape="Circle", Dimensions=[200, 200, 200], PresentFraction=1.0, Patches=0, PatchRadii=[3.0, 8.0], GapAngle=0.0,
-                        OutlierFraction=0.0, Seed=0).items():
+for name, value in dict(Shape="Circle", Dimensions=[200, 200, 200], PresentFraction=1.0, Patches=0,
+                        PatchRadii=[3.0, 8.0], GapAngle=0.0, TissueFraction=0.0, OutlierFraction=0.0,
+                        Seed=0).items():
     assert np.all(np.ravel(getattr(source, name)) == np.ravel(value)), (name, getattr(source, name))
     if name != "Shape":
         assert np.all(np.ravel(getattr(plain, "Get" + name)()) == np.ravel(value)), name

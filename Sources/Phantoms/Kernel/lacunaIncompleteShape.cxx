@@ -73,6 +73,9 @@ IncompleteShape::IncompleteShape(const Parameters& parameters)
   Require(radii[0] >= 0 && radii[0] <= radii[1] && std::isfinite(radii[1]),
     "PatchRadii are " + std::to_string(radii[0]) + " and " + std::to_string(radii[1]) +
       "; they must be finite, not negative, the smaller one first");
+  Require(parameters.TissueFraction >= 0 && parameters.TissueFraction <= 1,
+    "TissueFraction is " + std::to_string(parameters.TissueFraction) +
+      "; it must be between 0 and 1");
   Require(parameters.OutlierFraction >= 0 && parameters.OutlierFraction <= 10,
     "OutlierFraction is " + std::to_string(parameters.OutlierFraction) +
       "; it must be between 0 and 10");
@@ -236,6 +239,23 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
       voxels[object[a]] = a < kept;
     }
     present = kept;
+  }
+  if (this->Values.TissueFraction > 0)
+  {
+    const CounterNoise echo(this->Values.Seed, 1);
+    execution.For(count, 1 << 14,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t i = begin; i < end; ++i)
+        {
+          const auto p = at(i);
+          const bool inside = this->GetDistance(p[0], p[1], p[2]) < -0.5;
+          if (inside && echo.Uniform(i) < this->Values.TissueFraction)
+          {
+            voxels[i] = 1;
+          }
+        }
+      });
   }
   const auto outliers = std::llround(this->Values.OutlierFraction * static_cast<double>(present));
   for (std::int64_t o = 0; o < outliers; ++o)

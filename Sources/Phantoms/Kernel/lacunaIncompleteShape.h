@@ -34,6 +34,7 @@ public:
     std::array<int, 3> Dimensions{ 200, 200, 200 }; ///< curves use the first two
     double PresentFraction = 1;                     ///< of the object voxels, above 0 and at most 1
     double GapAngle = 0;        ///< degrees, 0 <= a < 360: none in this wedge or cone about +x
+    double TissueFraction = 0;  ///< of the voxels inside, 0...1: echoes from the interior
     double OutlierFraction = 0; ///< of the present voxels, 0...10, anywhere in the grid
     bool Patches = false;       ///< missing in patches, not voxel by voxel
     std::array<double, 2> PatchRadii{ 3, 8 }; ///< evenly from the first to the second, voxels

@@ -60,6 +60,11 @@ TEST(IncompleteShape, FractionsAreExact)
   p.PatchRadii = { 3, 8 };
   p.Patches = false;
   const int clean = Count(Sample(p));
+  p.TissueFraction = 0.1;
+  EXPECT_NEAR(Count(Sample(p)) - clean, 0.1 * 4.18879 * 17 * 17 * 17, 150); // radius 17.5
+  p.TissueFraction = 1.5;
+  EXPECT_THROW(IncompleteShape{ p }, std::invalid_argument);
+  p.TissueFraction = 0;
   p.OutlierFraction = 0.2;
   EXPECT_NEAR(Count(Sample(p)), 1.2 * clean, 0.02 * clean);
 }
