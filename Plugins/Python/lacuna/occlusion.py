@@ -24,7 +24,7 @@ import lacuna
 CUBE = dict(Mode="Binary", Dilation=1 / 3, ThresholdsOverPi=[2.5, 2.5, 2.0, 2.0])
 
 # The same with up to 90 % missing; radii in mm on voxels of 1 mm. For flat faces: it fills hollows.
-SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.4] * 2 + [2.4] * 2 + [3.9] * 2 + [2.25] * 8,
+SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.5] * 2 + [2.4] * 2 + [3.9] * 2 + [2.25] * 8,
                    LocalRadii=[2] * 2 + [0] * 2 + [3] * 2 + [0] * 8)
 
 # For surfaces of which up to 90 % is missing, at random or in patches, also with outliers, on voxels of 1 mm: grow the

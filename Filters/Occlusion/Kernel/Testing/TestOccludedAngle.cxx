@@ -19,7 +19,7 @@ using Dimensions = std::array<std::int64_t, 3>;
 double GetPath(const AttenuationField& field, const Dimensions& voxel, const Vec3& direction,
   double radius, bool linear)
 {
-  const double step = 0.02;
+  const double step = linear ? 0.04 : 0.015;
   const auto& n = field.GetDimensions();
   const auto get = [&](std::int64_t i, std::int64_t j, std::int64_t k) -> double
   {

@@ -73,11 +73,12 @@ bool InCube(std::int64_t voxel)
 }
 
 // The thesis's schedule rebuilds the cube of which 80 % of the surface is missing, and adds nothing
-// outside.
+// outside, if voxels may close gaps of a third of a voxel between them: as plain cubes they grow to
+// 88 % only (90 % with exact rays), at an iteration's delay.
 TEST(ShapeGrowth, RebuildsTheCube)
 {
   std::vector<double> rebuilt;
-  for (std::uint64_t seed = 0; seed < 3; ++seed)
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
   {
     AttenuationField field = MakeCube(0.2, seed);
     GrowthOptions options;
@@ -96,28 +97,32 @@ TEST(ShapeGrowth, RebuildsTheCube)
     EXPECT_LT(growth.Statistics[1].ObjectVoxels, 2400); // small clusters
   }
   std::sort(rebuilt.begin(), rebuilt.end());
-  EXPECT_GE(rebuilt[1], 0.97);
+  EXPECT_GE(0.5 * (rebuilt[9] + rebuilt[10]), 0.97);
+  EXPECT_GE(rebuilt[0], 0.96);
 }
 
 // With 90 % missing the thesis's schedule does not grow; one of thresholds and radii does: it grows
 // the data into a shell, fills it, shrinks it below the data and grows again up to them.
 TEST(ShapeGrowth, RebuildsASparseCube)
 {
-  AttenuationField field = MakeCube(0.1, 4);
-  GrowthOptions options;
-  options.Directions = 300;
-  options.KeepData = true;
-  options.Steps = { { 0.4 * Pi, 2 }, { 0.4 * Pi, 2 }, { 2.4 * Pi, 0 }, { 2.4 * Pi, 0 },
-    { 3.9 * Pi, 3 }, { 3.9 * Pi, 3 } };
-  options.Steps.resize(14, { 2.25 * Pi, 0 });
-  const Growth growth(field, options);
-  int inside = 0;
-  for (std::size_t i = 0; i < growth.Object.size(); ++i)
+  for (std::uint64_t seed = 0; seed < 5; ++seed)
   {
-    inside += growth.Object[i];
-    ASSERT_FALSE(growth.Object[i] && !InCube(static_cast<std::int64_t>(i)));
+    AttenuationField field = MakeCube(0.1, seed);
+    GrowthOptions options;
+    options.Directions = 300;
+    options.KeepData = true;
+    options.Steps = { { 0.5 * Pi, 2 }, { 0.5 * Pi, 2 }, { 2.4 * Pi, 0 }, { 2.4 * Pi, 0 },
+      { 3.9 * Pi, 3 }, { 3.9 * Pi, 3 } };
+    options.Steps.resize(14, { 2.25 * Pi, 0 });
+    const Growth growth(field, options);
+    int inside = 0;
+    for (std::size_t i = 0; i < growth.Object.size(); ++i)
+    {
+      inside += growth.Object[i];
+      ASSERT_FALSE(growth.Object[i] && !InCube(static_cast<std::int64_t>(i)));
+    }
+    EXPECT_GE(inside, 0.97 * 8000);
   }
-  EXPECT_GE(inside, 0.97 * 8000);
 }
 
 TEST(ShapeGrowth, DoesNotDependOnThreads)
