@@ -75,6 +75,30 @@ LACUNA_INLINE void SeeBody(const float* __restrict first, const float* __restric
   }
 }
 
+LACUNA_INLINE void SeeBothBody(float* __restrict path, const float* __restrict total,
+  const LayerCrossing& layer, const OcclusionRows::View& after, const OcclusionRows::View& before,
+  float fy, std::int64_t n)
+{
+  const LayerCrossing c = layer;
+  float* __restrict afterRow = after.Row;
+  float* __restrict afterBetween = after.Between;
+  float* __restrict beforeRow = before.Row;
+  float* __restrict beforeBetween = before.Between;
+#pragma GCC ivdep
+  for (std::int64_t i = 0; i < n; ++i)
+  {
+    const float beyond = path[i];
+    const float with = beyond + LayerPath(c, i);
+    path[i] = with;
+    const float rest = total[i] - with;
+    const float bounded = rest > 0 ? rest : 0.0F;
+    afterBetween[i] = Interpolate(beyond, afterRow[i], fy);
+    afterRow[i] = beyond;
+    beforeBetween[i] = Interpolate(bounded, beforeRow[i], fy);
+    beforeRow[i] = bounded;
+  }
+}
+
 /// How much of the ray of voxel i is hidden on one side.
 template <bool Binary>
 LACUNA_INLINE float HiddenOn(
@@ -131,6 +155,12 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
     {                                                                                              \
       SeeBody<Binary>(first, last, row, between, fy, n);                                           \
     }                                                                                              \
+    TARGET static void SeeBoth(float* path, const float* total, const LayerCrossing& layer,        \
+      const OcclusionRows::View& after, const OcclusionRows::View& before, float fy,               \
+      std::int64_t n)                                                                              \
+    {                                                                                              \
+      SeeBothBody(path, total, layer, after, before, fy, n);                                       \
+    }                                                                                              \
     TARGET static void Hide(float* hidden, const float* own, float half,                           \
       const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,   \
       std::int64_t n)                                                                              \
@@ -142,7 +172,7 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
     {                                                                                              \
       HideSideBody<Binary>(hidden, own, half, side, fx, gain, n);                                  \
     }                                                                                              \
-    static OcclusionRows Get() { return { AddPath, See, Hide, HideSide }; }                        \
+    static OcclusionRows Get() { return { AddPath, See, SeeBoth, Hide, HideSide }; }               \
   };
 
 LACUNA_ROWS(PlainRows, )

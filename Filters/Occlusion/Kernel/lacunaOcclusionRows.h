@@ -33,6 +33,16 @@ struct OcclusionRows
   void (*See)(
     const float* first, const float* last, float* row, float* between, float fy, std::int64_t n);
 
+  /// Not in Binary mode, both sides of a layer at once: See of the path itself, then path += what the
+  /// layer adds, then See of what remains of total.
+  struct View
+  {
+    float* Row;
+    float* Between;
+  };
+  void (*SeeBoth)(float* path, const float* total, const LayerCrossing& layer, const View& after,
+    const View& before, float fy, std::int64_t n);
+
   /// What voxels see on one side: voxel i lies fx of the way from ray i to ray i - 1 of Between
   /// (read from -1 on). In Binary mode the voxel's own ray hits Next first.
   struct Side

@@ -216,12 +216,17 @@ void TileMarch::Advance(float* plane, std::int64_t k)
     });
 }
 
+OcclusionRows::View TileMarch::GetView(Sides side, const Span& span)
+{
+  const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
+  return { this->Seen[side].data() + column, this->Between[side].data() + column };
+}
+
 /// What the rays of span see on one side; first and last are its first ray's.
 void TileMarch::See(Sides side, const float* first, const float* last, const Span& span)
 {
-  const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
-  this->Rows.See(first, last, this->Seen[side].data() + column, this->Between[side].data() + column,
-    span.Layer.FractionY, span.Count);
+  const OcclusionRows::View view = this->GetView(side, span);
+  this->Rows.See(first, last, view.Row, view.Between, span.Layer.FractionY, span.Count);
 }
 
 /// Serves the voxels between the rows of rays span.Q - 1 and span.Q.
@@ -279,11 +284,11 @@ void TileMarch::MarchWhole()
       [&](const Span& span)
       {
         const std::int64_t offset = this->GetOffset(span);
-        const float* path = this->Path.data() + offset;
         this->Foresee(span, k - 1, true);
-        this->See(AfterSide, this->Zero.data(), path, span);
-        this->AddPath(this->Path.data(), span);
-        this->See(BeforeSide, path, this->Total.data() + offset, span);
+        this->Rows.SeeBoth(this->Path.data() + offset, this->Total.data() + offset,
+          this->GetCrossing(span.Layer, span.FirstX, span.Q, span.K),
+          this->GetView(AfterSide, span), this->GetView(BeforeSide, span), span.Layer.FractionY,
+          span.Count);
         this->Hide(span, BothSides);
       });
   }

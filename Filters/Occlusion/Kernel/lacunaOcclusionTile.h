@@ -136,6 +136,7 @@ private:
   void Advance(float* plane, std::int64_t k);
   void PathAt(double plane, const Span& span, float* path) const;
   void UpdateSpace(const Span& span, const float* path);
+  OcclusionRows::View GetView(Sides side, const Span& span);
   void See(Sides side, const float* first, const float* last, const Span& span);
   void Hide(const Span& span, Sides sides);
   template <class Body>

@@ -64,6 +64,27 @@ TEST(OcclusionRows, DoWhatTheySay)
     std::vector<float> between(n);
     const auto from = Random(n, 2, 6);
     rows.See(from.data(), path.data(), row.data(), between.data(), 0.25F, n);
+    if (!binary)
+    {
+      // the same as step by step
+      const std::vector<float> zero(n, 0.0F);
+      const std::vector<float> total(n, 2.5F);
+      std::vector<float> paths[2]{ first, first };
+      std::vector<float> seen[2][2]{ { previous, from }, { previous, from } };
+      std::vector<float> betweens[2][2]{ { zero, zero }, { zero, zero } };
+      rows.SeeBoth(paths[0].data(), total.data(), layer,
+        { seen[0][0].data(), betweens[0][0].data() }, { seen[0][1].data(), betweens[0][1].data() },
+        0.4F, n);
+      rows.See(zero.data(), paths[1].data(), seen[1][0].data(), betweens[1][0].data(), 0.4F, n);
+      rows.AddPath(paths[1].data(), layer, n);
+      rows.See(paths[1].data(), total.data(), seen[1][1].data(), betweens[1][1].data(), 0.4F, n);
+      EXPECT_EQ(paths[0], paths[1]);
+      for (int side : { 0, 1 })
+      {
+        EXPECT_EQ(seen[0][side], seen[1][side]);
+        EXPECT_EQ(betweens[0][side], betweens[1][side]);
+      }
+    }
     auto hidden = Random(n, 1, 7);
     const auto start = hidden;
     const OcclusionRows::Side one{ between.data() + 1, layer };
@@ -119,6 +140,12 @@ TEST(OcclusionRows, AllInstructionSetsGiveTheSameBits)
         const OcclusionRows::Side after{ m1.data() + 1, layer };
         rows.Hide(hidden.data(), m0.data() + 1, 0.6F, before, after, 0.3F, 1.2F, n);
         rows.HideSide(hidden.data(), m0.data(), 0.8F, after, 0.1F, 1.0F, n);
+        std::vector<float> second = Random(n, 1, 8);
+        std::vector<float> secondBetween(n);
+        rows.SeeBoth(result.data(), m1.data(), layer, { row.data(), between.data() + 1 },
+          { second.data(), secondBetween.data() }, 0.7F, n);
+        result.insert(result.end(), second.begin(), second.end());
+        result.insert(result.end(), secondBetween.begin(), secondBetween.end());
         result.insert(result.end(), row.begin(), row.end());
         result.insert(result.end(), between.begin(), between.end());
         result.insert(result.end(), hidden.begin(), hidden.end());
