@@ -6,7 +6,9 @@
 ///   Power       the degree k of homogeneity: phi(r/L) = phi(r)/L^k, up to terms that the side
 ///               conditions of a linear polynomial annul;
 ///   Energy      the factor C of the smoothness energy C sum_ij a_i a_j phi(|x_i - x_j|), in 2-D;
-///   Phi(r2)     phi as a function of the squared distance, 0 at r2 = 0;
+///   Degree      the degree of the polynomial part;
+///   Shaped      whether phi has a length of its own; then that is the unit of r, and Power is 0;
+///   Phi(r2)     phi as a function of the squared distance;
 ///   Slope(r2)   phi'(r)/r, so that the gradient of phi(|x|) is Slope(|x|^2) x; finite at r2 = 0.
 /// The sign of phi is such that the energy is positive. A pack is a vector type of the compiler
 /// (vector_size); all operations are IEEE additions, multiplications, divisions and square roots of
@@ -72,6 +74,32 @@ LACUNA_PACK_INLINE Real PackLog(const Real& x)
   return k * 0.6931471805599453 + (s + s + s * (z * p));
 }
 
+/// exp(-x) for x >= 0, within 2 units in the last place; not below exp(-700).
+template <int Width, class Real = typename Packs<Width>::Real>
+LACUNA_PACK_INLINE Real PackExpMinus(const Real& x)
+{
+  using Bits = typename Packs<Width>::Bits;
+  // -x = k log 2 + r, |r| <= log(2)/2; adding the magic number rounds k and leaves it in low bits
+  constexpr double magic = 6755399441055744.0; // 1.5 x 2^52
+  const Real y = x > 700.0 ? Real{} - 700.0 : -x;
+  const Real shifted = y * 1.4426950408889634 + magic;
+  const Real k = shifted - magic;
+  const Real r = (y - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10;
+  Real p = r * (1.0 / 479001600.0) + 1.0 / 39916800.0;
+  p = p * r + 1.0 / 3628800.0;
+  p = p * r + 1.0 / 362880.0;
+  p = p * r + 1.0 / 40320.0;
+  p = p * r + 1.0 / 5040.0;
+  p = p * r + 1.0 / 720.0;
+  p = p * r + 1.0 / 120.0;
+  p = p * r + 1.0 / 24.0;
+  p = p * r + 1.0 / 6.0;
+  p = p * r + 0.5;
+  p = p * (r * r) + r + 1.0;
+  const Bits power = ((Bits)shifted + std::uint64_t(1023)) << 52;
+  return p * (Real)power;
+}
+
 template <int Width, class Real = typename Packs<Width>::Real>
 LACUNA_PACK_INLINE Real PackSqrt(const Real& x)
 {
@@ -87,6 +115,8 @@ LACUNA_PACK_INLINE Real PackSqrt(const Real& x)
 struct ThinPlateKernel
 {
   static constexpr int Power = 2;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = false;
   static constexpr double Energy = 25.132741228718345; // 8 pi
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -105,6 +135,8 @@ struct ThinPlateKernel
 struct LinearKernel
 {
   static constexpr int Power = 1;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = false;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -124,6 +156,8 @@ struct LinearKernel
 struct CubicKernel
 {
   static constexpr int Power = 3;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = false;
   static constexpr double Energy = 1;
 
   template <int Width, class Real = typename Packs<Width>::Real>
@@ -135,6 +169,66 @@ struct CubicKernel
   static LACUNA_PACK_INLINE Real Slope(const Real& r2)
   {
     return 3.0 * PackSqrt<Width>(r2);
+  }
+};
+
+/// -r^4 log r, the 2-D triharmonic: smooth to the third derivative.
+struct TriharmonicKernel
+{
+  static constexpr int Power = 4;
+  static constexpr int Degree = 2;
+  static constexpr bool Shaped = false;
+  static constexpr double Energy = 1;
+
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Phi(const Real& r2)
+  {
+    return (-0.5 * r2 * r2) * PackLog<Width>(r2);
+  }
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Slope(const Real& r2)
+  {
+    return -r2 * (2.0 * PackLog<Width>(r2) + 1.0);
+  }
+};
+
+/// exp(-r^2).
+struct GaussianKernel
+{
+  static constexpr int Power = 0;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = true;
+  static constexpr double Energy = 1;
+
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Phi(const Real& r2)
+  {
+    return PackExpMinus<Width>(r2);
+  }
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Slope(const Real& r2)
+  {
+    return -2.0 * PackExpMinus<Width>(r2);
+  }
+};
+
+/// -sqrt(1 + r^2).
+struct MultiquadricKernel
+{
+  static constexpr int Power = 0;
+  static constexpr int Degree = 1;
+  static constexpr bool Shaped = true;
+  static constexpr double Energy = 1;
+
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Phi(const Real& r2)
+  {
+    return -PackSqrt<Width>(r2 + 1.0);
+  }
+  template <int Width, class Real = typename Packs<Width>::Real>
+  static LACUNA_PACK_INLINE Real Slope(const Real& r2)
+  {
+    return -1.0 / PackSqrt<Width>(r2 + 1.0);
   }
 };
 }

@@ -147,8 +147,14 @@ auto Visit(RadialKernel kernel, const Visitor& visit)
       return visit(ThinPlateKernel());
     case RadialKernel::Linear:
       return visit(LinearKernel());
+    case RadialKernel::Triharmonic:
+      return visit(TriharmonicKernel());
     case RadialKernel::Cubic:
       return visit(CubicKernel());
+    case RadialKernel::Gaussian:
+      return visit(GaussianKernel());
+    case RadialKernel::Multiquadric:
+      return visit(MultiquadricKernel());
   }
   throw std::invalid_argument("unknown radial kernel");
 }
@@ -186,5 +192,15 @@ int GetRadialPower(RadialKernel kernel)
 double GetRadialEnergyFactor(RadialKernel kernel)
 {
   return Visit(kernel, [](auto k) { return decltype(k)::Energy; });
+}
+
+int GetRadialDegree(RadialKernel kernel)
+{
+  return Visit(kernel, [](auto k) { return decltype(k)::Degree; });
+}
+
+bool IsRadialShaped(RadialKernel kernel)
+{
+  return Visit(kernel, [](auto k) { return decltype(k)::Shaped; });
 }
 }

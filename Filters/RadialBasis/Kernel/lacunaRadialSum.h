@@ -14,9 +14,12 @@ namespace lacuna
 /// The radial functions; the numbers are those of the filters' Kernel property.
 enum class RadialKernel
 {
-  ThinPlate = 0, ///< r^2 log r
-  Linear = 1,    ///< r
-  Cubic = 3      ///< r^3
+  ThinPlate = 0,   ///< r^2 log r
+  Linear = 1,      ///< r
+  Triharmonic = 2, ///< r^4 log r
+  Cubic = 3,       ///< r^3
+  Gaussian = 4,    ///< exp(-r^2), r in units of its length
+  Multiquadric = 5 ///< sqrt(1 + r^2), r in units of its length
 };
 
 enum class InstructionSet
@@ -61,5 +64,9 @@ RadialLoops<Dimension> GetRadialLoops(RadialKernel kernel, InstructionSet set);
 /// k of phi(r/L) = phi(r)/L^k and the factor of the energy, see lacunaRadialKernels.h.
 int GetRadialPower(RadialKernel kernel);
 double GetRadialEnergyFactor(RadialKernel kernel);
+/// Degree of the polynomial part: 2 for the triharmonic, else 1.
+int GetRadialDegree(RadialKernel kernel);
+/// Whether the kernel has a length of its own.
+bool IsRadialShaped(RadialKernel kernel);
 }
 #endif

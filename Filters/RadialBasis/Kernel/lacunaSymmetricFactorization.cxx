@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSymmetricFactorization.h"
 
-#include <cblas.h>
+#include "lacunaSingleBlasThread.h"
 
 #include <limits>
-#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -27,30 +26,6 @@ namespace lacuna
 namespace
 {
 constexpr std::align_val_t Alignment{ 64 };
-
-// OpenBLAS divides its work by the number of threads, and sums accordingly.
-class SingleBlasThread
-{
-public:
-  SingleBlasThread()
-    : Lock(Mutex())
-    , Threads(openblas_get_num_threads())
-  {
-    openblas_set_num_threads(1);
-  }
-  ~SingleBlasThread() { openblas_set_num_threads(this->Threads); }
-  SingleBlasThread(const SingleBlasThread&) = delete;
-  SingleBlasThread& operator=(const SingleBlasThread&) = delete;
-
-private:
-  static std::mutex& Mutex()
-  {
-    static std::mutex mutex;
-    return mutex;
-  }
-  std::lock_guard<std::mutex> Lock;
-  int Threads;
-};
 }
 
 SquareMatrix::SquareMatrix(std::size_t size)

@@ -13,7 +13,8 @@ namespace
 {
 constexpr std::size_t Block = lacuna::RadialBlock;
 constexpr lacuna::RadialKernel Kernels[] = { lacuna::RadialKernel::ThinPlate,
-  lacuna::RadialKernel::Linear, lacuna::RadialKernel::Cubic };
+  lacuna::RadialKernel::Linear, lacuna::RadialKernel::Triharmonic, lacuna::RadialKernel::Cubic,
+  lacuna::RadialKernel::Gaussian, lacuna::RadialKernel::Multiquadric };
 
 std::vector<lacuna::InstructionSet> AvailableSets()
 {
@@ -33,8 +34,14 @@ double Phi(lacuna::RadialKernel kernel, double r)
       return r > 0 ? r * r * std::log(r) : 0;
     case lacuna::RadialKernel::Linear:
       return -r;
-    default:
+    case lacuna::RadialKernel::Triharmonic:
+      return r > 0 ? -r * r * r * r * std::log(r) : 0;
+    case lacuna::RadialKernel::Cubic:
       return r * r * r;
+    case lacuna::RadialKernel::Gaussian:
+      return std::exp(-r * r);
+    default:
+      return -std::sqrt(1 + r * r);
   }
 }
 
@@ -46,8 +53,14 @@ double PhiPrime(lacuna::RadialKernel kernel, double r)
       return r > 0 ? 2 * r * std::log(r) + r : 0;
     case lacuna::RadialKernel::Linear:
       return r > 0 ? -1 : 0;
-    default:
+    case lacuna::RadialKernel::Triharmonic:
+      return r > 0 ? -4 * r * r * r * std::log(r) - r * r * r : 0;
+    case lacuna::RadialKernel::Cubic:
       return 3 * r * r;
+    case lacuna::RadialKernel::Gaussian:
+      return -2 * r * std::exp(-r * r);
+    default:
+      return -r / std::sqrt(1 + r * r);
   }
 }
 
@@ -182,7 +195,31 @@ TEST(RadialSum, ThinPlateIsAccurateToAFewUlps)
   }
 }
 
-TEST(RadialSum, IsZeroAtANode)
+TEST(RadialSum, GaussianIsAccurateToAFewUlps)
+{
+  std::vector<double> x;
+  for (double r = 1e-9; r < 60; r *= 1.003)
+  {
+    x.push_back(r);
+  }
+  const std::vector<double> zero(x.size(), 0.0);
+  const double center[2] = { 0, 0 };
+  std::vector<double> phi(x.size());
+  for (const lacuna::InstructionSet set : AvailableSets())
+  {
+    lacuna::GetRadialLoops<2>(lacuna::RadialKernel::Gaussian, set)
+      .Column({ { x.data(), zero.data() } }, x.size(), center, phi.data());
+    for (std::size_t i = 0; i < x.size(); ++i)
+    {
+      const long double r2 = x[i] * x[i];
+      const auto exact = static_cast<double>(std::exp(-r2));
+      EXPECT_NEAR(phi[i], exact, 4 * std::numeric_limits<double>::epsilon() * exact + 1e-300)
+        << x[i];
+    }
+  }
+}
+
+TEST(RadialSum, IsFiniteAtANode)
 {
   const double x[3] = { 0.25, 0.25, 0.75 };
   const double center[2] = { 0.25, 0.25 };
@@ -193,9 +230,9 @@ TEST(RadialSum, IsZeroAtANode)
       const auto loops = lacuna::GetRadialLoops<2>(kernel, set);
       double phi[3] = { 1, 1, 1 };
       loops.Column({ { x, x } }, 3, center, phi); // fewer than a pack
-      EXPECT_EQ(phi[0], 0);
-      EXPECT_EQ(phi[1], 0);
-      EXPECT_NE(phi[2], 0);
+      EXPECT_EQ(phi[0], Phi(kernel, 0));
+      EXPECT_EQ(phi[1], Phi(kernel, 0));
+      EXPECT_NE(phi[2], Phi(kernel, 0));
 
       const double weight = 1;
       const std::vector<double> here(Block, 0.25);
@@ -203,7 +240,7 @@ TEST(RadialSum, IsZeroAtANode)
       double gradient[2 * Block];
       loops.SumAndGradient(
         { { x, x } }, &weight, 1, { { here.data(), here.data() } }, value, gradient);
-      EXPECT_EQ(value[Block - 1], 0);
+      EXPECT_EQ(value[Block - 1], Phi(kernel, 0));
       EXPECT_EQ(gradient[0], 0);
       EXPECT_EQ(gradient[2 * Block - 1], 0);
     }

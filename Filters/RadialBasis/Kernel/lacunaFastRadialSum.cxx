@@ -1,0 +1,844 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFastRadialSum.h"
+
+#include "lacunaExecution.h"
+#include "lacunaSingleBlasThread.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+// Where direct sums and interpolants take about the same time.
+constexpr int SourceCapacity2D = 48;
+constexpr int SourceCapacity3D = 160;
+constexpr int GridSourceCapacity = 24;
+constexpr int GridCapacity2D = 144;
+constexpr int GridCapacity3D = 512;
+// Direct sums instead where no interpolant is accurate enough, up to so many evaluations.
+constexpr double MaximumDirect = 2e11;
+// Points of which the Chebyshev polynomials are computed at once.
+constexpr std::int64_t Batch = 128;
+
+// The nodes of a box's interpolant, padded to whole blocks by the last one.
+template <int Dimension>
+struct NodeLattice
+{
+  std::array<std::vector<double>, Dimension> Axis;
+
+  void Set(const std::vector<double>& roots, double halfSize,
+    const std::array<double, Dimension>& center, int size)
+  {
+    const std::size_t padded = (size + RadialBlock - 1) / RadialBlock * RadialBlock;
+    const auto order = roots.size();
+    std::size_t stride = 1;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      this->Axis[c].resize(padded);
+      for (std::size_t k = 0; k < padded; ++k)
+      {
+        const std::size_t node = std::min<std::size_t>(k, size - 1);
+        this->Axis[c][k] = center[c] + halfSize * roots[node / stride % order];
+      }
+      stride *= order;
+    }
+  }
+  Coordinates<Dimension> Get(std::size_t first = 0) const
+  {
+    Coordinates<Dimension> coordinates;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      coordinates.Axis[c] = this->Axis[c].data() + first;
+    }
+    return coordinates;
+  }
+};
+
+template <int Dimension>
+std::array<const double*, Dimension> Repeat(const double* matrix)
+{
+  std::array<const double*, Dimension> all;
+  all.fill(matrix);
+  return all;
+}
+
+template <int Dimension>
+std::array<int, Dimension> RepeatSize(int size)
+{
+  std::array<int, Dimension> all;
+  all.fill(size);
+  return all;
+}
+
+// The Chebyshev polynomials at points of a box: of the first axis T[i + count j]; of the others
+// their products, Product[i + count (k1 + order k2)].
+template <int Dimension>
+struct PointBasis
+{
+  std::vector<double> First;
+  std::vector<double> Product;
+  std::vector<double> Position;
+  std::vector<double> Other[2];
+
+  void Set(int order, const Coordinates<Dimension>& points, std::size_t count,
+    const std::array<double, Dimension>& center, double halfSize)
+  {
+    this->Position.resize(count);
+    for (int c = 0; c < Dimension; ++c)
+    {
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        this->Position[i] = (points.Axis[c][i] - center[c]) / halfSize;
+      }
+      std::vector<double>& values = c == 0 ? this->First : this->Other[c - 1];
+      values.resize(count * order);
+      ChebyshevBasis::Evaluate(order, this->Position.data(), count, values.data());
+    }
+    if (Dimension == 2)
+    {
+      this->Product = this->Other[0];
+      return;
+    }
+    this->Product.resize(count * order * order);
+    for (int l = 0; l < order; ++l)
+    {
+      for (int k = 0; k < order; ++k)
+      {
+        double* product = this->Product.data() + count * (k + order * l);
+        const double* a = this->Other[0].data() + count * k;
+        const double* b = this->Other[1].data() + count * l;
+        for (std::size_t i = 0; i < count; ++i)
+        {
+          product[i] = a[i] * b[i];
+        }
+      }
+    }
+  }
+};
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+FastRadialSum<Dimension>::FastRadialSum(
+  RadialKernel kernel, const std::vector<Point>& sources, const std::vector<Point>& points)
+  : Kernel(kernel)
+  , Loops(GetRadialLoops<Dimension>(kernel, BestInstructionSet()))
+  , SameTree(&sources == &points)
+{
+  if (sources.empty() || points.empty())
+  {
+    throw std::invalid_argument("a sum needs sources and points");
+  }
+  constexpr int capacity = Dimension == 2 ? SourceCapacity2D : SourceCapacity3D;
+  RootCube<Dimension> root = RootCube<Dimension>::Around(sources);
+  root.Add(RootCube<Dimension>::Around(points));
+  this->Sources = std::make_unique<PointTree<Dimension>>(root, sources, capacity);
+  if (!this->SameTree)
+  {
+    this->Points = std::make_unique<PointTree<Dimension>>(root, points, capacity);
+  }
+  this->Prepare();
+}
+
+template <int Dimension>
+FastRadialSum<Dimension>::FastRadialSum(
+  RadialKernel kernel, const std::vector<Point>& sources, const RegularGrid<Dimension>& grid)
+  : Kernel(kernel)
+  , Loops(GetRadialLoops<Dimension>(kernel, BestInstructionSet()))
+{
+  if (sources.empty() || grid.GetNumberOfPoints() < 1)
+  {
+    throw std::invalid_argument("a sum needs sources and points");
+  }
+  RootCube<Dimension> root = RootCube<Dimension>::Around(sources);
+  Point last = grid.Origin;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    last[c] += static_cast<double>(grid.Size[c] - 1) * grid.Spacing[c];
+  }
+  root.Add(RootCube<Dimension>::Around({ grid.Origin, last }));
+  this->Sources = std::make_unique<PointTree<Dimension>>(root, sources, GridSourceCapacity);
+  this->Grid = std::make_unique<GridTree<Dimension>>(
+    root, grid, Dimension == 2 ? GridCapacity2D : GridCapacity3D);
+  this->Prepare();
+}
+
+template <int Dimension>
+FastRadialSum<Dimension>::~FastRadialSum() = default;
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Prepare()
+{
+  this->Lists = std::make_unique<InteractionLists<Dimension>>(
+    this->GetTargets(), *this->Sources, Dimension == 2 ? 64 : 216);
+  this->Magnitudes.resize(this->Sources->Cells.size());
+  this->Levels.assign(
+    std::max(this->Sources->GetNumberOfLevels(), this->GetTargets().GetNumberOfLevels()), 0);
+  const InteractionLists<Dimension>& lists = *this->Lists;
+  const std::vector<Cell>& targets = this->GetTargets().Cells;
+  for (const typename InteractionLists<Dimension>::Block& block : lists.Blocks)
+  {
+    this->Levels[targets[block.FirstTarget].Level] = 1;
+  }
+  for (const std::int32_t s : lists.MultipolesToPoints.Items)
+  {
+    this->Levels[this->Sources->Cells[s].Level] = 1;
+  }
+  for (std::size_t t = 0; t < targets.size(); ++t)
+  {
+    if (lists.PointsToLocal.Begin[t] < lists.PointsToLocal.Begin[t + 1])
+    {
+      this->Levels[targets[t].Level] = 1;
+    }
+  }
+  this->FarFields.resize(MaximumOrder + 1);
+}
+
+template <int Dimension>
+const CellTree<Dimension>& FastRadialSum<Dimension>::GetTargets() const
+{
+  if (this->Grid)
+  {
+    return *this->Grid;
+  }
+  return this->SameTree ? *this->Sources : *this->Points;
+}
+
+template <int Dimension>
+std::int64_t FastRadialSum<Dimension>::GetNumberOfPoints() const
+{
+  return this->GetTargets().Cells[0].Count;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+double FastRadialSum<Dimension>::Apply(
+  Execution& execution, const std::vector<double>& weights, double tolerance, double* values)
+{
+  const Execution::NestedStages stages(execution);
+  const SingleBlasThread single;
+  this->Weights.resize(weights.size());
+  for (std::size_t k = 0; k < weights.size(); ++k)
+  {
+    this->Weights[k] = weights[this->Sources->Order[k]];
+  }
+  execution.SetStage(0, 0.1);
+  this->SumMagnitudes();
+  const double bound = this->ChooseOrder(execution, tolerance);
+  if (this->Order > MaximumOrder)
+  {
+    execution.SetStage(0, 1);
+    this->SumDirectly(execution, values);
+    return bound;
+  }
+  execution.SetStage(0.1, 0.3);
+  this->Upward(execution);
+  execution.SetStage(0.3, 0.6);
+  this->Across(execution);
+  execution.SetStage(0.6, 0.65);
+  this->Downward(execution);
+  execution.SetStage(0.65, 1);
+  this->Evaluate(execution, values);
+  return bound;
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::SumMagnitudes()
+{
+  const std::vector<Cell>& cells = this->Sources->Cells;
+  for (std::size_t s = cells.size(); s-- > 0;)
+  {
+    double sum = 0;
+    for (int child = 0; child < cells[s].Children; ++child)
+    {
+      sum += this->Magnitudes[cells[s].FirstChild + child];
+    }
+    for (std::int64_t i = 0; cells[s].Children == 0 && i < cells[s].Count; ++i)
+    {
+      sum += std::abs(this->Weights[cells[s].First + i]);
+    }
+    this->Magnitudes[s] = sum;
+  }
+}
+
+template <int Dimension>
+FarField<Dimension>& FastRadialSum<Dimension>::GetFarField(Execution& execution, int order)
+{
+  std::unique_ptr<FarField<Dimension>>& far = this->FarFields[order];
+  if (!far)
+  {
+    far = std::make_unique<FarField<Dimension>>(
+      execution, this->Kernel, order, this->Sources->Root.Size, this->Levels);
+  }
+  return *far;
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::GetBound(const FarField<Dimension>& far) const
+{
+  const std::vector<Cell>& targets = this->GetTargets().Cells;
+  std::vector<double> bound(targets.size(), 0.0);
+  const InteractionLists<Dimension>& lists = *this->Lists;
+  for (const FarPair& pair : lists.Pairs)
+  {
+    bound[pair.Target] +=
+      this->Magnitudes[pair.Source] * far.GetError(targets[pair.Target].Level, pair.Operator);
+  }
+  double largest = 0;
+  for (std::size_t t = 0; t < targets.size(); ++t)
+  {
+    for (std::size_t i = lists.PointsToLocal.Begin[t]; i < lists.PointsToLocal.Begin[t + 1]; ++i)
+    {
+      bound[t] +=
+        this->Magnitudes[lists.PointsToLocal.Items[i]] * far.GetLargestError(targets[t].Level);
+    }
+    for (std::size_t i = lists.MultipolesToPoints.Begin[t];
+         i < lists.MultipolesToPoints.Begin[t + 1]; ++i)
+    {
+      const std::int32_t s = lists.MultipolesToPoints.Items[i];
+      bound[t] += this->Magnitudes[s] * far.GetLargestError(this->Sources->Cells[s].Level);
+    }
+    bound[t] += targets[t].Parent >= 0 ? bound[targets[t].Parent] : 0;
+    largest = std::max(largest, bound[t]);
+  }
+  return largest;
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolerance)
+{
+  if (!(tolerance > 0))
+  {
+    throw std::invalid_argument("the tolerance of a sum must be above 0");
+  }
+  const auto bound = [&](int order) { return this->GetBound(this->GetFarField(execution, order)); };
+  // From the order of the sum before, upwards by steps that the rate of convergence suggests.
+  int order = std::min(std::max(this->Order, 4), MaximumOrder);
+  double error = bound(order);
+  while (error > tolerance && order < MaximumOrder)
+  {
+    const double steps = std::floor(0.7 * std::log(error / tolerance));
+    order =
+      static_cast<int>(std::min<double>(MaximumOrder, order + std::min(std::max(steps, 1.0), 6.0)));
+    error = bound(order);
+  }
+  while (error <= tolerance && order > 2)
+  {
+    const double lower = bound(order - 1);
+    if (lower > tolerance)
+    {
+      break;
+    }
+    --order;
+    error = lower;
+  }
+  if (!(error <= tolerance))
+  {
+    const double evaluations =
+      static_cast<double>(this->Weights.size()) * static_cast<double>(this->GetNumberOfPoints());
+    if (!(evaluations <= MaximumDirect))
+    {
+      std::ostringstream message;
+      message << "a fast sum cannot be sure of an error below " << tolerance
+              << ", only of one below " << error << "; raise the tolerance";
+      throw std::runtime_error(message.str());
+    }
+    this->Order = MaximumOrder + 1;
+    this->Far = nullptr;
+    return 0;
+  }
+  if (order != this->Order || this->Permutations.empty())
+  {
+    this->Permutations.clear();
+    for (int symmetry = 0; symmetry < FarOffsets<Dimension>::Symmetries; ++symmetry)
+    {
+      this->Permutations.push_back(FarOffsets<Dimension>::GetPermutation(symmetry, order));
+    }
+  }
+  this->Order = order;
+  this->FarFields[order]->MakeOperators(execution);
+  this->Far = this->FarFields[order].get();
+  return error;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+void FastRadialSum<Dimension>::PointsToMultipole(const Cell& cell, double* multipole) const
+{
+  const int size = this->Far->GetSize();
+  const int rest = size / this->Order;
+  const double half = this->Sources->GetCellSize(cell.Level) / 2;
+  const Point center = this->Sources->GetCenter(cell);
+  PointBasis<Dimension> basis;
+  std::vector<double> moments(size, 0.0);
+  for (std::int64_t first = 0; first < cell.Count; first += Batch)
+  {
+    const auto count = static_cast<int>(std::min(Batch, cell.Count - first));
+    const std::int64_t at = cell.First + first;
+    basis.Set(this->Order, this->Sources->GetCoordinates(at), count, center, half);
+    for (int j = 0; j < this->Order; ++j)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        basis.First[i + count * j] *= this->Weights[at + i];
+      }
+    }
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, this->Order, rest, count, 1.0,
+      basis.First.data(), count, basis.Product.data(), count, 1.0, moments.data(), this->Order);
+  }
+  std::vector<double> scratch;
+  TransformTensor<Dimension>(Repeat<Dimension>(this->Far->GetBasis().GetCoefficients()),
+    RepeatSize<Dimension>(this->Order), this->Order, moments.data(), multipole, scratch);
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Upward(Execution& execution)
+{
+  const PointTree<Dimension>& tree = *this->Sources;
+  const auto size = static_cast<std::size_t>(this->Far->GetSize());
+  this->Multipoles.assign(tree.Cells.size() * size, 0.0);
+  const ChebyshevBasis& basis = this->Far->GetBasis();
+  execution.For(static_cast<std::int64_t>(tree.Cells.size()), 16,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t s = begin; s < end; ++s)
+      {
+        if (tree.Cells[s].Children == 0)
+        {
+          this->PointsToMultipole(tree.Cells[s], this->Multipoles.data() + s * size);
+        }
+      }
+    });
+  const auto addChildren = [&](std::int64_t begin, std::int64_t end)
+  {
+    std::vector<double> scratch;
+    std::vector<double> moved(size);
+    for (std::int64_t s = begin; s < end; ++s)
+    {
+      const Cell& cell = tree.Cells[s];
+      for (int child = cell.FirstChild; child < cell.FirstChild + cell.Children; ++child)
+      {
+        std::array<const double*, Dimension> halves;
+        for (int c = 0; c < Dimension; ++c)
+        {
+          halves[c] = basis.GetHalf(static_cast<int>(tree.Cells[child].Index[c] & 1U));
+        }
+        TransformTensor<Dimension>(halves, RepeatSize<Dimension>(this->Order), this->Order,
+          this->Multipoles.data() + child * size, moved.data(), scratch);
+        double* multipole = this->Multipoles.data() + s * size;
+        for (std::size_t k = 0; k < size; ++k)
+        {
+          multipole[k] += moved[k];
+        }
+      }
+    }
+  };
+  // Boxes at levels 0 and 1 touch all others.
+  for (int level = tree.GetNumberOfLevels() - 2; level > 1; --level)
+  {
+    this->ForCells(execution, tree.LevelBegin[level], tree.LevelBegin[level + 1], addChildren);
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::ForCells(Execution& execution, int first, int last,
+  const std::function<void(std::int64_t, std::int64_t)>& body)
+{
+  // Threads are not worth starting for a few boxes.
+  if (last - first < 64)
+  {
+    body(first, last);
+    return;
+  }
+  execution.For(last - first, 16,
+    [&](std::int64_t begin, std::int64_t end) { body(first + begin, first + end); });
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+void FastRadialSum<Dimension>::ApplyPairs(const typename InteractionLists<Dimension>::Block& block)
+{
+  constexpr std::size_t columns = 256;
+  const auto size = static_cast<std::size_t>(this->Far->GetSize());
+  const int level = this->GetTargets().Cells[block.FirstTarget].Level;
+  const double scale = this->Far->GetScale(level);
+  const std::vector<FarPair>& pairs = this->Lists->Pairs;
+  std::vector<double> in(size * columns);
+  std::vector<double> out(size * columns);
+  std::vector<double> scratch;
+  for (std::size_t first = block.FirstPair; first < block.LastPair;)
+  {
+    const int op = pairs[first].Operator;
+    std::size_t last = first;
+    for (; last < std::min(first + columns, block.LastPair) && pairs[last].Operator == op; ++last)
+    {
+      const std::int32_t* to = this->Permutations[pairs[last].Symmetry].data();
+      const double* multipole = this->Multipoles.data() + pairs[last].Source * size;
+      double* column = in.data() + (last - first) * size;
+      for (std::size_t k = 0; k < size; ++k)
+      {
+        column[to[k]] = multipole[k];
+      }
+    }
+    this->Far->Get(level, op).Apply(in.data(), static_cast<int>(last - first), out.data(), scratch);
+    for (std::size_t p = first; p < last; ++p)
+    {
+      const std::int32_t* to = this->Permutations[pairs[p].Symmetry].data();
+      const double* column = out.data() + (p - first) * size;
+      double* local = this->Locals.data() + pairs[p].Target * size;
+      for (std::size_t k = 0; k < size; ++k)
+      {
+        local[k] += scale * column[to[k]];
+      }
+    }
+    first = last;
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::PointsToLocal(int target)
+{
+  const CellLists<std::int32_t>& lists = this->Lists->PointsToLocal;
+  if (lists.Begin[target] == lists.Begin[target + 1])
+  {
+    return;
+  }
+  const CellTree<Dimension>& tree = this->GetTargets();
+  const Cell& cell = tree.Cells[target];
+  const int size = this->Far->GetSize();
+  NodeLattice<Dimension> nodes;
+  nodes.Set(
+    this->Far->GetBasis().GetRoots(), tree.GetCellSize(cell.Level) / 2, tree.GetCenter(cell), size);
+  double* local = this->Locals.data() + static_cast<std::size_t>(target) * size;
+  alignas(64) double sums[RadialBlock];
+  for (std::size_t i = lists.Begin[target]; i < lists.Begin[target + 1]; ++i)
+  {
+    const Cell& source = this->Sources->Cells[lists.Items[i]];
+    for (int first = 0; first < size; first += static_cast<int>(RadialBlock))
+    {
+      this->Loops.Sum(this->Sources->GetCoordinates(source.First),
+        this->Weights.data() + source.First, source.Count, nodes.Get(first), sums);
+      for (int k = 0; k < std::min(static_cast<int>(RadialBlock), size - first); ++k)
+      {
+        local[first + k] += sums[k];
+      }
+    }
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Across(Execution& execution)
+{
+  const auto cells = static_cast<std::int64_t>(this->GetTargets().Cells.size());
+  this->Locals.assign(static_cast<std::size_t>(cells) * this->Far->GetSize(), 0.0);
+  execution.For(static_cast<std::int64_t>(this->Lists->Blocks.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t b = begin; b < end; ++b)
+      {
+        this->ApplyPairs(this->Lists->Blocks[b]);
+      }
+    });
+  if (!this->Lists->PointsToLocal.Items.empty())
+  {
+    execution.For(cells, 16,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t t = begin; t < end; ++t)
+        {
+          this->PointsToLocal(static_cast<int>(t));
+        }
+      });
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Downward(Execution& execution)
+{
+  const CellTree<Dimension>& tree = this->GetTargets();
+  const auto size = static_cast<std::size_t>(this->Far->GetSize());
+  const ChebyshevBasis& basis = this->Far->GetBasis();
+  const auto addParent = [&](std::int64_t begin, std::int64_t end)
+  {
+    std::vector<double> scratch;
+    std::vector<double> moved(size);
+    for (std::int64_t t = begin; t < end; ++t)
+    {
+      const Cell& cell = tree.Cells[t];
+      std::array<const double*, Dimension> halves;
+      for (int c = 0; c < Dimension; ++c)
+      {
+        halves[c] = basis.GetHalfTransposed(static_cast<int>(cell.Index[c] & 1U));
+      }
+      TransformTensor<Dimension>(halves, RepeatSize<Dimension>(this->Order), this->Order,
+        this->Locals.data() + cell.Parent * size, moved.data(), scratch);
+      double* local = this->Locals.data() + t * size;
+      for (std::size_t k = 0; k < size; ++k)
+      {
+        local[k] += moved[k];
+      }
+    }
+  };
+  for (int level = 3; level < tree.GetNumberOfLevels(); ++level)
+  {
+    this->ForCells(execution, tree.LevelBegin[level], tree.LevelBegin[level + 1], addParent);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+void FastRadialSum<Dimension>::EvaluateLocal(
+  const Cell& cell, const double* local, double* values) const
+{
+  const CellTree<Dimension>& tree = this->GetTargets();
+  const int size = this->Far->GetSize();
+  const double half = tree.GetCellSize(cell.Level) / 2;
+  const Point center = tree.GetCenter(cell);
+  std::vector<double> coefficients(size);
+  std::vector<double> scratch;
+  TransformTensor<Dimension>(Repeat<Dimension>(this->Far->GetBasis().GetCoefficientsTransposed()),
+    RepeatSize<Dimension>(this->Order), this->Order, local, coefficients.data(), scratch);
+  if (this->Grid)
+  {
+    std::array<std::vector<double>, Dimension> along;
+    std::array<const double*, Dimension> matrices;
+    std::array<int, Dimension> counts;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      counts[c] = cell.Range[c][1] - cell.Range[c][0];
+      std::vector<double> x(counts[c]);
+      for (int i = 0; i < counts[c]; ++i)
+      {
+        x[i] = (this->Grid->Grid.Origin[c] + (cell.Range[c][0] + i) * this->Grid->Grid.Spacing[c] -
+                 center[c]) /
+          half;
+      }
+      along[c].resize(x.size() * this->Order);
+      ChebyshevBasis::Evaluate(this->Order, x.data(), x.size(), along[c].data());
+      matrices[c] = along[c].data();
+    }
+    TransformTensor<Dimension>(matrices, counts, this->Order, coefficients.data(), values, scratch);
+    return;
+  }
+  const PointTree<Dimension>& points = this->SameTree ? *this->Sources : *this->Points;
+  const int rest = size / this->Order;
+  PointBasis<Dimension> basis;
+  std::vector<double> partial;
+  for (std::int64_t first = 0; first < cell.Count; first += Batch)
+  {
+    const auto count = static_cast<int>(std::min(Batch, cell.Count - first));
+    basis.Set(this->Order, points.GetCoordinates(cell.First + first), count, center, half);
+    partial.resize(static_cast<std::size_t>(count) * rest);
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, count, rest, this->Order, 1.0,
+      basis.First.data(), count, coefficients.data(), this->Order, 0.0, partial.data(), count);
+    std::fill_n(values + first, count, 0.0);
+    for (int k = 0; k < rest; ++k)
+    {
+      for (int i = 0; i < count; ++i)
+      {
+        values[first + i] += partial[i + count * k] * basis.Product[i + count * k];
+      }
+    }
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::EvaluateDirect(int target, double* values) const
+{
+  const Cell& cell = this->GetTargets().Cells[target];
+  const auto count = static_cast<std::size_t>(cell.Count);
+  const std::size_t padded = (count + RadialBlock - 1) / RadialBlock * RadialBlock;
+  std::array<std::vector<double>, Dimension> axis;
+  this->GetTargetPoints(cell, padded, axis);
+  const auto add = [&](const Coordinates<Dimension>& nodes, const double* weights, std::size_t n)
+  {
+    alignas(64) double sums[RadialBlock];
+    for (std::size_t first = 0; first < count; first += RadialBlock)
+    {
+      Coordinates<Dimension> at;
+      for (int c = 0; c < Dimension; ++c)
+      {
+        at.Axis[c] = axis[c].data() + first;
+      }
+      this->Loops.Sum(nodes, weights, n, at, sums);
+      for (std::size_t p = 0; p < std::min(RadialBlock, count - first); ++p)
+      {
+        values[first + p] += sums[p];
+      }
+    }
+  };
+
+  // Sources of boxes that follow one another are summed at once.
+  std::vector<std::array<std::int64_t, 2>> ranges;
+  const CellLists<std::int32_t>& near = this->Lists->PointsToPoints;
+  for (std::size_t i = near.Begin[target]; i < near.Begin[target + 1]; ++i)
+  {
+    const Cell& source = this->Sources->Cells[near.Items[i]];
+    ranges.push_back({ source.First, source.First + source.Count });
+  }
+  std::sort(ranges.begin(), ranges.end());
+  for (std::size_t i = 0; i < ranges.size();)
+  {
+    std::int64_t last = ranges[i][1];
+    std::size_t next = i + 1;
+    for (; next < ranges.size() && ranges[next][0] == last; ++next)
+    {
+      last = ranges[next][1];
+    }
+    add(this->Sources->GetCoordinates(ranges[i][0]), this->Weights.data() + ranges[i][0],
+      last - ranges[i][0]);
+    i = next;
+  }
+
+  const CellLists<std::int32_t>& multipoles = this->Lists->MultipolesToPoints;
+  NodeLattice<Dimension> nodes;
+  const auto size = static_cast<std::size_t>(this->Far->GetSize());
+  for (std::size_t i = multipoles.Begin[target]; i < multipoles.Begin[target + 1]; ++i)
+  {
+    const std::int32_t s = multipoles.Items[i];
+    const Cell& source = this->Sources->Cells[s];
+    nodes.Set(this->Far->GetBasis().GetRoots(), this->Sources->GetCellSize(source.Level) / 2,
+      this->Sources->GetCenter(source), static_cast<int>(size));
+    add(nodes.Get(), this->Multipoles.data() + s * size, size);
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::GetTargetPoints(
+  const Cell& cell, std::size_t padded, std::array<std::vector<double>, Dimension>& axis) const
+{
+  const auto count = static_cast<std::size_t>(cell.Count);
+  for (int c = 0; c < Dimension; ++c)
+  {
+    axis[c].resize(padded);
+  }
+  if (!this->Grid)
+  {
+    const PointTree<Dimension>& points = this->SameTree ? *this->Sources : *this->Points;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      std::copy_n(points.Axis[c].data() + cell.First, count, axis[c].data());
+    }
+  }
+  else
+  {
+    std::size_t stride = 1;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      const auto n = static_cast<std::size_t>(cell.Range[c][1] - cell.Range[c][0]);
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        axis[c][i] = this->Grid->Grid.Origin[c] +
+          static_cast<double>(cell.Range[c][0] + i / stride % n) * this->Grid->Grid.Spacing[c];
+      }
+      stride *= n;
+    }
+  }
+  for (int c = 0; c < Dimension; ++c)
+  {
+    std::fill(
+      axis[c].begin() + static_cast<std::ptrdiff_t>(count), axis[c].end(), axis[c][count - 1]);
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Store(const Cell& cell, const double* from, double* values) const
+{
+  if (!this->Grid)
+  {
+    const PointTree<Dimension>& points = this->SameTree ? *this->Sources : *this->Points;
+    for (std::int64_t i = 0; i < cell.Count; ++i)
+    {
+      values[points.Order[cell.First + i]] = from[i];
+    }
+    return;
+  }
+  const auto& size = this->Grid->Grid.Size;
+  const std::int64_t columns = cell.Range[0][1] - cell.Range[0][0];
+  for (std::int64_t row = 0; row < cell.Count / columns; ++row)
+  {
+    std::int64_t at = cell.Range[0][0];
+    std::int64_t rest = row;
+    std::int64_t stride = size[0];
+    for (int c = 1; c < Dimension; ++c)
+    {
+      const std::int64_t n = cell.Range[c][1] - cell.Range[c][0];
+      at += (cell.Range[c][0] + rest % n) * stride;
+      rest /= n;
+      stride *= size[c];
+    }
+    std::copy_n(from + row * columns, columns, values + at);
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::Evaluate(Execution& execution, double* values) const
+{
+  const CellTree<Dimension>& tree = this->GetTargets();
+  const auto size = static_cast<std::size_t>(this->Far->GetSize());
+  execution.For(static_cast<std::int64_t>(tree.Cells.size()), 8,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<double> results;
+      for (std::int64_t t = begin; t < end; ++t)
+      {
+        const Cell& cell = tree.Cells[t];
+        if (cell.Children > 0)
+        {
+          continue;
+        }
+        results.assign(cell.Count, 0.0);
+        if (cell.Level > 1)
+        {
+          this->EvaluateLocal(cell, this->Locals.data() + t * size, results.data());
+        }
+        this->EvaluateDirect(static_cast<int>(t), results.data());
+        this->Store(cell, results.data(), values);
+      }
+    });
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::SumDirectly(Execution& execution, double* values) const
+{
+  const CellTree<Dimension>& tree = this->GetTargets();
+  execution.For(static_cast<std::int64_t>(tree.Cells.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::array<std::vector<double>, Dimension> axis;
+      std::vector<double> results;
+      for (std::int64_t t = begin; t < end; ++t)
+      {
+        const Cell& cell = tree.Cells[t];
+        if (cell.Children > 0)
+        {
+          continue;
+        }
+        const std::size_t padded =
+          (static_cast<std::size_t>(cell.Count) + RadialBlock - 1) / RadialBlock * RadialBlock;
+        this->GetTargetPoints(cell, padded, axis);
+        results.resize(padded);
+        for (std::size_t first = 0; first < padded; first += RadialBlock)
+        {
+          Coordinates<Dimension> at;
+          for (int c = 0; c < Dimension; ++c)
+          {
+            at.Axis[c] = axis[c].data() + first;
+          }
+          this->Loops.Sum(this->Sources->GetCoordinates(0), this->Weights.data(),
+            this->Weights.size(), at, results.data() + first);
+        }
+        this->Store(cell, results.data(), values);
+      }
+    });
+}
+
+template class FastRadialSum<2>;
+template class FastRadialSum<3>;
+}

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Sums of radial functions over many nodes at many points, with a bound for the error.
+#ifndef lacunaFastRadialSum_h
+#define lacunaFastRadialSum_h
+
+#include "lacunaFarField.h"
+#include "lacunaInteractionLists.h"
+#include "lacunaRadialSum.h"
+#include "lacunaRadialTree.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lacuna
+{
+class Execution;
+
+/// u(x) = sum_i w_i phi(|x - y_i|) at fixed points x, for fixed sources y, by a black-box fast
+/// multipole method (Fong & Darve 2009): boxes that do not touch act on one another through tensor
+/// Chebyshev interpolants of phi, compressed (Messner, Schanz & Darve 2012); those that touch by
+/// direct sums. Time and memory grow in proportion to the number of sources and points.
+///
+/// The order of interpolation is chosen for each sum so that the error cannot exceed the tolerance:
+/// the largest error of the interpolated phi for each pair of boxes, times the absolute weights in
+/// the box of sources, adds up to less. (Since weights differ in sign, the true error usually is
+/// ten to a hundred times smaller.) Results are the same, bit for bit, for any number of threads.
+template <int Dimension>
+class FastRadialSum
+{
+public:
+  using Point = std::array<double, Dimension>;
+
+  /// Sums at scattered points. Throws std::invalid_argument when there are no sources or points.
+  FastRadialSum(
+    RadialKernel kernel, const std::vector<Point>& sources, const std::vector<Point>& points);
+  /// Sums at the points of a grid: there interpolants are evaluated axis by axis.
+  FastRadialSum(
+    RadialKernel kernel, const std::vector<Point>& sources, const RegularGrid<Dimension>& grid);
+  ~FastRadialSum();
+
+  std::int64_t GetNumberOfPoints() const;
+
+  /// values[k] = u(x_k) within tolerance (> 0, in the unit of weight x phi); the grid's points with
+  /// the first index fastest. Returns the bound of the error. Throws std::runtime_error when
+  /// doubles cannot give the tolerance.
+  double Apply(
+    Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
+
+  /// Order of the interpolation that the last sum used.
+  int GetOrder() const { return this->Order; }
+
+  /// Largest order that is tried: beyond, round-off is all there is to gain.
+  static constexpr int MaximumOrder = Dimension == 2 ? 18 : 11;
+
+private:
+  using Cell = TreeCell<Dimension>;
+
+  void Prepare();
+  const CellTree<Dimension>& GetTargets() const;
+  FarField<Dimension>& GetFarField(Execution& execution, int order);
+  /// Returns the bound of the error.
+  double ChooseOrder(Execution& execution, double tolerance);
+  double GetBound(const FarField<Dimension>& far) const;
+  void SumMagnitudes();
+  void Upward(Execution& execution);
+  void PointsToMultipole(const Cell& cell, double* multipole) const;
+  void Across(Execution& execution);
+  void ApplyPairs(const typename InteractionLists<Dimension>::Block& block);
+  void PointsToLocal(int target);
+  void Downward(Execution& execution);
+  void Evaluate(Execution& execution, double* values) const;
+  void EvaluateLocal(const Cell& cell, const double* local, double* values) const;
+  void EvaluateDirect(int target, double* values) const;
+  /// The points of a box without children, the last repeated up to padded.
+  void GetTargetPoints(
+    const Cell& cell, std::size_t padded, std::array<std::vector<double>, Dimension>& axis) const;
+  void Store(const Cell& cell, const double* from, double* values) const;
+  void SumDirectly(Execution& execution, double* values) const;
+  static void ForCells(Execution& execution, int first, int last,
+    const std::function<void(std::int64_t, std::int64_t)>& body);
+
+  RadialKernel Kernel;
+  RadialLoops<Dimension> Loops;
+  std::unique_ptr<PointTree<Dimension>> Sources;
+  std::unique_ptr<PointTree<Dimension>> Points;
+  std::unique_ptr<GridTree<Dimension>> Grid;
+  bool SameTree = false;
+  std::unique_ptr<InteractionLists<Dimension>> Lists;
+  std::vector<char> Levels;                                    // where interpolants are used
+  std::vector<std::unique_ptr<FarField<Dimension>>> FarFields; // by order
+  std::vector<std::vector<std::int32_t>> Permutations;         // for Order
+
+  // of the sum at hand
+  int Order = 0;
+  const FarField<Dimension>* Far = nullptr;
+  std::vector<double> Weights;    // in the order of Sources
+  std::vector<double> Magnitudes; // sum of |w| in each box of sources
+  std::vector<double> Multipoles; // each box's weights of the nodes of its interpolant
+  std::vector<double> Locals;     // each target box's values at the nodes of its interpolant
+};
+}
+#endif
