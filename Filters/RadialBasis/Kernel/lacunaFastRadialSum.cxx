@@ -223,20 +223,55 @@ double FastRadialSum<Dimension>::Apply(
 {
   const Execution::NestedStages stages(execution);
   const SingleBlasThread single;
+  this->SortWeights(weights);
+  execution.SetStage(0, 0.1);
+  const double bound = this->ChooseOrder(execution, tolerance, MaximumOrder);
+  if (bound <= tolerance)
+  {
+    this->SumByInterpolants(execution, values);
+    return bound;
+  }
+  const double evaluations =
+    static_cast<double>(weights.size()) * static_cast<double>(this->GetNumberOfPoints());
+  if (!(evaluations <= MaximumDirect))
+  {
+    std::ostringstream message;
+    message << "a fast sum cannot be sure of an error below " << tolerance << ", only of one below "
+            << bound << "; raise the tolerance";
+    throw std::runtime_error(message.str());
+  }
+  execution.SetStage(0.1, 1);
+  this->SumDirectly(execution, values);
+  return 0;
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::ApplyUpTo(int order, Execution& execution,
+  const std::vector<double>& weights, double tolerance, double* values)
+{
+  const Execution::NestedStages stages(execution);
+  const SingleBlasThread single;
+  this->SortWeights(weights);
+  execution.SetStage(0, 0.1);
+  const double bound = this->ChooseOrder(execution, tolerance, order);
+  this->SumByInterpolants(execution, values);
+  return bound;
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::SortWeights(const std::vector<double>& weights)
+{
   this->Weights.resize(weights.size());
   for (std::size_t k = 0; k < weights.size(); ++k)
   {
     this->Weights[k] = weights[this->Sources->Order[k]];
   }
-  execution.SetStage(0, 0.1);
   this->SumMagnitudes();
-  const double bound = this->ChooseOrder(execution, tolerance);
-  if (this->Order > MaximumOrder)
-  {
-    execution.SetStage(0, 1);
-    this->SumDirectly(execution, values);
-    return bound;
-  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::SumByInterpolants(Execution& execution, double* values)
+{
   execution.SetStage(0.1, 0.3);
   this->Upward(execution);
   execution.SetStage(0.3, 0.6);
@@ -245,7 +280,6 @@ double FastRadialSum<Dimension>::Apply(
   this->Downward(execution);
   execution.SetStage(0.65, 1);
   this->Evaluate(execution, values);
-  return bound;
 }
 
 template <int Dimension>
@@ -311,7 +345,7 @@ double FastRadialSum<Dimension>::GetBound(const FarField<Dimension>& far) const
 }
 
 template <int Dimension>
-double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolerance)
+double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolerance, int maximum)
 {
   if (!(tolerance > 0))
   {
@@ -319,13 +353,13 @@ double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolera
   }
   const auto bound = [&](int order) { return this->GetBound(this->GetFarField(execution, order)); };
   // From the order of the sum before, upwards by steps that the rate of convergence suggests.
-  int order = std::min(std::max(this->Order, 4), MaximumOrder);
+  int order = std::min(std::max(this->Order, 4), maximum);
   double error = bound(order);
-  while (error > tolerance && order < MaximumOrder)
+  while (error > tolerance && order < maximum)
   {
     const double steps = std::floor(0.7 * std::log(error / tolerance));
     order =
-      static_cast<int>(std::min<double>(MaximumOrder, order + std::min(std::max(steps, 1.0), 6.0)));
+      static_cast<int>(std::min<double>(maximum, order + std::min(std::max(steps, 1.0), 6.0)));
     error = bound(order);
   }
   while (error <= tolerance && order > 2)
@@ -337,21 +371,6 @@ double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolera
     }
     --order;
     error = lower;
-  }
-  if (!(error <= tolerance))
-  {
-    const double evaluations =
-      static_cast<double>(this->Weights.size()) * static_cast<double>(this->GetNumberOfPoints());
-    if (!(evaluations <= MaximumDirect))
-    {
-      std::ostringstream message;
-      message << "a fast sum cannot be sure of an error below " << tolerance
-              << ", only of one below " << error << "; raise the tolerance";
-      throw std::runtime_error(message.str());
-    }
-    this->Order = MaximumOrder + 1;
-    this->Far = nullptr;
-    return 0;
   }
   if (order != this->Order || this->Permutations.empty())
   {

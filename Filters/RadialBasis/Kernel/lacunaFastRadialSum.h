@@ -49,6 +49,9 @@ public:
   /// doubles cannot give the tolerance.
   double Apply(
     Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
+  /// The same with interpolants of at most some order, whatever bound they have.
+  double ApplyUpTo(int order, Execution& execution, const std::vector<double>& weights,
+    double tolerance, double* values);
 
   /// Order of the interpolation that the last sum used.
   int GetOrder() const { return this->Order; }
@@ -63,7 +66,9 @@ private:
   const CellTree<Dimension>& GetTargets() const;
   FarField<Dimension>& GetFarField(Execution& execution, int order);
   /// Returns the bound of the error.
-  double ChooseOrder(Execution& execution, double tolerance);
+  double ChooseOrder(Execution& execution, double tolerance, int maximum);
+  void SumByInterpolants(Execution& execution, double* values);
+  void SortWeights(const std::vector<double>& weights);
   double GetBound(const FarField<Dimension>& far) const;
   void SumMagnitudes();
   void Upward(Execution& execution);

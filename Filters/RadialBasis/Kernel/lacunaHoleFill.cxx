@@ -136,8 +136,11 @@ RadialBasis<2> Fit(Execution& execution, const HoleFillInput& input, const HoleF
   }
   try
   {
-    return RadialBasis<2>(
-      execution, nodes, values, { options.Kernel, options.Smoothing, options.MaximumBytes });
+    RadialBasisOptions fit;
+    fit.Kernel = options.Kernel;
+    fit.Smoothing = options.Smoothing;
+    fit.MaximumBytes = options.MaximumBytes;
+    return RadialBasis<2>(execution, nodes, values, fit);
   }
   catch (const std::length_error& e)
   {

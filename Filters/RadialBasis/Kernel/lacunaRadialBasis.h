@@ -4,7 +4,9 @@
 #ifndef lacunaRadialBasis_h
 #define lacunaRadialBasis_h
 
+#include "lacunaRadialNodes.h"
 #include "lacunaRadialSum.h"
+#include "lacunaRadialTree.h"
 
 #include <array>
 #include <cstdint>
@@ -14,15 +16,36 @@ namespace lacuna
 {
 class Execution;
 
+/// How the equations are solved and sums are evaluated.
+enum class RadialSolver
+{
+  Auto = 0,   ///< directly up to RadialBasisOptions::AutoDirectNodes nodes, else fast
+  Direct = 1, ///< by LAPACK
+  Fast = 2    ///< by preconditioned iteration with fast sums
+};
+
 struct RadialBasisOptions
 {
+  /// Auto solves directly up to so many nodes.
+  static constexpr std::size_t AutoDirectNodes = 1500;
+
   RadialKernel Kernel = RadialKernel::ThinPlate;
-  /// mu >= 0: instead of interpolating, s minimises sum_i (f_i - s(x_i))^2 + mu E(s). In 2-D and
-  /// for the thin plate E is the bending energy (no unit when values and nodes are in mm, so that
-  /// mu is in mm^2); for the others see RadialBasisReport::Energy (mu in mm^Power).
+  /// mu >= 0: instead of interpolating, s minimises sum_i ((f_i - s(x_i)) / e_i)^2 + mu E(s). In
+  /// 2-D and for the thin plate E is the bending energy (no unit when values and nodes are in mm, so
+  /// that mu is in mm^2); for the others see RadialBasisReport::Energy (mu in mm^Power).
   double Smoothing = 0;
-  /// Limit for the dense matrix, (n + Dimension + 1)^2 x 8 bytes.
+  /// Limit for the dense matrix, (n + monomials)^2 x 8 bytes.
   std::uint64_t MaximumBytes = std::uint64_t(1) << 32;
+  /// Length of the Gaussian and multiquadric, in the unit of the nodes; 0: 1.25 times the
+  /// mean distance of neighbours.
+  double Shape = 0;
+  /// 0: all is exact up to round-off, and Solver Fast is refused. Above 0, relative to the range of
+  /// the values: a fast solution misses no value by more, and fast sums are wrong by no more.
+  double Accuracy = 0;
+  RadialSolver Solver = RadialSolver::Auto;
+  /// e_i > 0, how much each value may be wrong, relative to the others; empty: all 1. Counts
+  /// with Smoothing only.
+  std::vector<double> Errors;
 };
 
 /// What a fit found out about itself.
@@ -32,19 +55,21 @@ struct RadialBasisReport
   /// max_i |f_i - s(x_i) - (smoothing term)|, in the unit of the values, after refinement.
   double Residual = 0;
   bool Refined = false;         ///< one step of iterative refinement was needed and helped
-  double ConditionEstimate = 0; ///< 1-norm, of the scaled system
+  double ConditionEstimate = 0; ///< 1-norm, of the scaled system; 0: unknown (fast solution)
+  int Iterations = 0;           ///< of a fast solution, else 0
   /// C sum_ij a_i a_j phi(|x_i - x_j|) >= 0 in the unit of the nodes. For the thin plate in 2-D,
   /// C = 8 pi makes it the bending energy, the integral of s_xx^2 + 2 s_xy^2 + s_yy^2 over the
-  /// whole plane; for the others C = 1.
+  /// whole plane; for the others C = 1. Of all right-hand sides together.
   double Energy = 0;
 };
 
-/// s(x) = p(x) + sum_i a_i phi(|x - x_i|), p a linear polynomial, with the side conditions
-/// sum_i a_i q(x_i) = 0 for all linear polynomials q. Nodes are shifted and scaled uniformly to the
-/// unit square (cube) before solving. Dimension is 2 or 3.
+/// s(x) = p(x) + sum_i a_i phi(|x - x_i|) with the side conditions sum_i a_i q(x_i) = 0 for all
+/// polynomials q like p: linear, or quadratic for the triharmonic. Nodes are shifted and scaled
+/// uniformly to the unit square (cube) before solving, for kernels with a length to its multiple.
+/// Dimension is 2 or 3.
 ///
-/// The same input gives the same bits for any number of threads. Evaluation does not depend on the
-/// machine either; the coefficients do, as far as OpenBLAS chooses its loops by the machine
+/// The same input gives the same bits for any number of threads. Direct evaluation does not depend
+/// on the machine either; the rest does, as far as OpenBLAS chooses its loops by the machine
 /// (relative differences around 1e-16 times the condition number).
 template <int Dimension>
 class RadialBasis
@@ -54,55 +79,61 @@ public:
 
   /// Fits values given at nodes; reports progress over the current stage of execution.
   /// Nodes at the same place with the same value are merged. Throws std::invalid_argument when two
-  /// nodes at the same place have different values, when there are fewer than Dimension + 1 nodes,
-  /// when they lie on one line (plane), or when a number is not finite; std::length_error when the
-  /// matrix would exceed MaximumBytes; std::runtime_error when the system is numerically singular
-  /// (nodes too close together).
+  /// nodes at the same place have different values, when there are fewer than Dimension + 1 nodes
+  /// (6 and 10 for the triharmonic), when they lie on one line (plane), or when a number is not
+  /// finite; std::length_error when the matrix would exceed MaximumBytes; std::runtime_error when
+  /// the system is numerically singular (nodes too close together) or the accuracy out of reach.
   RadialBasis(Execution& execution, const std::vector<Point>& nodes,
     const std::vector<double>& values, const RadialBasisOptions& options);
+  /// The same for several values at each node, values[component][node]: they share all work but the
+  /// last of a solution.
+  RadialBasis(Execution& execution, const std::vector<Point>& nodes,
+    const std::vector<std::vector<double>>& values, const RadialBasisOptions& options);
 
   const RadialBasisReport& GetReport() const { return this->Report; }
+  int GetNumberOfComponents() const { return static_cast<int>(this->Means.size()); }
+  /// Largest less smallest value of a component.
+  double GetRange(int component = 0) const { return this->Ranges[component]; }
 
-  /// s at points; values is resized.
-  void Evaluate(
-    Execution& execution, const std::vector<Point>& points, std::vector<double>& values) const;
-  /// s and its gradient at points; both are resized.
+  /// s at points, by direct sums; values is resized.
   void Evaluate(Execution& execution, const std::vector<Point>& points, std::vector<double>& values,
-    std::vector<Point>& gradients) const;
+    int component = 0) const;
+  /// s and its gradient at points, by direct sums; both are resized.
+  void Evaluate(Execution& execution, const std::vector<Point>& points, std::vector<double>& values,
+    std::vector<Point>& gradients, int component = 0) const;
+  /// s at the points of a grid, the first index fastest: by direct sums when Accuracy is 0, else
+  /// with an error of at most Accuracy x GetRange. values has room for all points.
+  void EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid, double* values,
+    int component = 0) const;
 
-  /// Coefficients of p: constant, then one for each axis, for nodes in their own unit (the constant
-  /// belongs to a thin plate r^2 log r with r in that unit; it would differ in another one).
-  const std::array<double, Dimension + 1>& GetPolynomial() const { return this->Polynomial; }
+  /// Coefficients of p for one component, up to the linear ones: constant, then one for each axis,
+  /// for nodes in their own unit (the constant belongs to a thin plate r^2 log r with r in that
+  /// unit; it would differ in another one). Of the triharmonic they belong to r in units of the
+  /// longest edge of the nodes' bounding box, with the quadratic terms about its lowest corner.
+  std::array<double, Dimension + 1> GetPolynomial(int component = 0) const;
 
   /// Loops to evaluate with; by default those of BestInstructionSet(). Results do not depend on it.
   void SetInstructionSet(InstructionSet set);
 
 private:
-  void SetNodes(const std::vector<Point>& nodes, const std::vector<double>& values);
-  void CheckSpread() const;
-  void Solve(Execution& execution, double diagonal);
-  std::vector<double> GetResidual(double diagonal) const;
-  void ConvertPolynomial();
+  void SetNodes(const std::vector<Point>& nodes, const std::vector<std::vector<double>>& values);
+  void SetDiagonal(const std::vector<std::size_t>& distinct);
   void ComputeEnergy();
-  Coordinates<Dimension> GetNodes() const;
-  Point ToScaled(const Point& point) const;
+  double EvaluatePolynomial(const double* coefficients, const Point& u, Point* gradient) const;
   /// One block of up to RadialBlock points.
   void EvaluateBlock(
-    const Point* points, std::size_t count, double* values, Point* gradients) const;
-  void EvaluateBlocks(
-    Execution& execution, const std::vector<Point>& points, double* values, Point* gradients) const;
+    int component, const Point* points, std::size_t count, double* values, Point* gradients) const;
+  void EvaluateBlocks(Execution& execution, int component, const std::vector<Point>& points,
+    double* values, Point* gradients) const;
 
-  RadialKernel Kernel;
+  RadialBasisOptions Options;
   RadialLoops<Dimension> Loops;
   RadialBasisReport Report;
-  // The scaled problem: u = Scale (x - Origin), values less their mean.
-  Point Origin{};
-  double Scale = 1;
-  std::array<std::vector<double>, Dimension> Nodes;
-  std::vector<double> Values;
-  double Mean = 0;
-  std::vector<double> Coefficients; // a_i, then those of p, in scaled coordinates
-  std::array<double, Dimension + 1> Polynomial{};
+  RadialFrame<Dimension> Frame;
+  RadialSystem<Dimension> System; // scaled, values less their mean
+  std::vector<double> Means;
+  std::vector<double> Ranges;
+  std::vector<std::vector<double>> Coefficients; // a_i, then those of p, scaled
 };
 }
 #endif

@@ -235,6 +235,61 @@ TEST(RadialBasis, AgreesWithScipyIn2D)
   }
 }
 
+TEST(RadialBasis, AgreesWithScipyForKernelsWithALength)
+{
+  // epsilon = 1/15, degree=1, smoothing 0 and 0.1; 2-D and 3-D as above
+  struct Case
+  {
+    RadialKernel Kernel;
+    double Smoothing;
+    double In2D[8];
+    double In3D[8];
+  };
+  const Case cases[] = {
+    { RadialKernel::Gaussian, 0,
+      { 5.56216136643894, 9.17831629655737, 21.1116920547309, 31.7400332417173, 41.0232889881519,
+        49.1824286324345, 52.6492760587631, 61.8776412553371 },
+      { 10.6114716592203, 17.5586817124308, 24.5531577296492, 33.0574522142688, 41.4412933981483,
+        48.9282199043449, 53.0153404354986, 61.5872212490504 } },
+    { RadialKernel::Gaussian, 0.1,
+      { 6.13639008648213, 10.1684071299766, 21.4528133305727, 32.0624048734074, 40.8386261030583,
+        48.8747935585192, 53.3234291029227, 63.5924278084337 },
+      { 10.727920406838, 17.7728282206379, 24.7960645600204, 33.0737868627194, 41.5749020970324,
+        48.8721310739911, 53.2574782382396, 62.0771762578205 } },
+    { RadialKernel::Multiquadric, 0,
+      { -0.0246895614505025, 8.6706976893438, 21.0298504985773, 31.7332681185497, 40.8256745417551,
+        49.0336650636264, 52.6918030874923, 56.3796387819426 },
+      { 5.70359022732377, 13.7213482886832, 23.5465200097424, 32.9427404799796, 41.0977727591233,
+        48.7371366656099, 53.2488734283112, 58.5165653289918 } },
+    { RadialKernel::Multiquadric, 0.1,
+      { 1.22816328808854, 9.9550011019481, 21.6177451991337, 32.2117848747529, 40.9292754084277,
+        48.3451983790275, 53.4923481502332, 60.4187307280803 },
+      { 6.65409596798197, 14.6611879177078, 23.7185854276251, 32.9079602294481, 41.3562625606282,
+        48.3951117687937, 53.4547118314893, 60.0060649995027 } },
+  };
+  const std::vector<Point3> nodes3 = ReferenceNodes();
+  const std::vector<Point3> points3 = ReferencePoints();
+  const auto flat = [](const Point3& p) { return Point2{ p[0], p[1] }; };
+  const std::vector<Point2> nodes2 = Transformed(nodes3, flat);
+  const std::vector<Point2> points2 = Transformed(points3, flat);
+  for (const Case& c : cases)
+  {
+    lacuna::RadialBasisOptions options;
+    options.Kernel = c.Kernel;
+    options.Shape = 15;
+    options.Smoothing = c.Smoothing;
+    const std::vector<double> in2D =
+      Evaluate<2>(Fit<2>(nodes2, ReferenceValues(nodes3), options), points2);
+    const std::vector<double> in3D =
+      Evaluate<3>(Fit<3>(nodes3, ReferenceValues(nodes3), options), points3);
+    for (int k = 0; k < 8; ++k)
+    {
+      EXPECT_NEAR(in2D[k], c.In2D[k], 1e-10 * 60) << static_cast<int>(c.Kernel) << " " << k;
+      EXPECT_NEAR(in3D[k], c.In3D[k], 1e-10 * 60) << static_cast<int>(c.Kernel) << " " << k;
+    }
+  }
+}
+
 TEST(RadialBasis, AgreesWithScipyIn3D)
 {
   // as in 2-D, points (12 k - 5, 9 k - 6, 33 - 5 k)

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaRadialSolver.h"
+
+#include "lacunaExecution.h"
+#include "lacunaFastRadialSum.h"
+#include "lacunaSchwarzPreconditioner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+// Directions that are kept, and how often one starts anew from the true residual.
+constexpr int MaximumDirections = 40;
+constexpr int MaximumCycles = 8;
+// Error of the products in the iteration, relative to what the tolerance leaves room for. Bounds
+// are far above the true errors, and the true residual is looked at in the end.
+constexpr double ProductAccuracy = 1.0;
+// Error bound of the sums that the true residual is made of, relative to the tolerance.
+constexpr double ResidualAccuracy = 0.1;
+
+double Dot(const std::vector<double>& a, const std::vector<double>& b)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+void AddMultiple(std::vector<double>& a, double factor, const std::vector<double>& b)
+{
+  for (std::size_t i = 0; i < a.size(); ++i)
+  {
+    a[i] += factor * b[i];
+  }
+}
+
+double MaximumNorm(const std::vector<double>& values)
+{
+  double norm = 0;
+  for (const double v : values)
+  {
+    norm = std::max(norm, std::abs(v));
+  }
+  return norm;
+}
+
+template <int Dimension>
+class Solver
+{
+public:
+  Solver(Execution& execution, const RadialSystem<Dimension>& system, double tolerance)
+    : Run(execution)
+    , System(system)
+    , Tolerance(tolerance)
+    , Sum(system.Kernel, system.Nodes, system.Nodes)
+    , Projection(system.Polynomial, system.Nodes)
+  {
+    execution.SetStage(0, 0.3);
+    this->Preconditioner = std::make_unique<SchwarzPreconditioner<Dimension>>(execution, system);
+  }
+
+  // Coefficients; adds to what solution says of how it was found.
+  std::vector<double> Solve(const std::vector<double>& values, RadialSolution& solution)
+  {
+    const std::size_t n = this->System.GetSize();
+    std::vector<double> weights(n, 0.0);
+    std::vector<double> residual = values;
+    this->Projection.Remove(residual);
+    double norm = MaximumNorm(residual);
+    this->Iterations = 0;
+    std::vector<double> left = values; // values - (A + D) weights
+    for (int cycle = 0; cycle < MaximumCycles && norm > this->Tolerance; ++cycle)
+    {
+      const double before = norm;
+      this->Cycle(residual, weights);
+      std::vector<double> product(n);
+      const double bound =
+        this->Sum.Apply(this->Run, weights, ResidualAccuracy * this->Tolerance, product.data());
+      this->AddDiagonal(weights, product);
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        left[i] = values[i] - product[i];
+      }
+      residual = left;
+      this->Projection.Remove(residual);
+      norm = MaximumNorm(residual) + bound;
+      if (norm > 0.5 * before)
+      {
+        break; // round-off stands in the way
+      }
+    }
+    if (!(norm <= this->Tolerance))
+    {
+      std::ostringstream message;
+      message << "the interpolation equations could only be solved to " << norm << ", not to "
+              << this->Tolerance << "; raise the tolerance, add smoothing"
+              << (IsRadialShaped(this->System.Kernel) ? ", or make the kernel narrower" : "");
+      throw std::runtime_error(message.str());
+    }
+    solution.Residual = std::max(solution.Residual, norm);
+    solution.Iterations = std::max(solution.Iterations, this->Iterations);
+    const std::vector<double> polynomial = this->Projection.GetCoefficients(left);
+    weights.insert(weights.end(), polynomial.begin(), polynomial.end());
+    return weights;
+  }
+
+private:
+  void AddDiagonal(const std::vector<double>& weights, std::vector<double>& product) const
+  {
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+      product[i] += this->System.Diagonal[i] * weights[i];
+    }
+  }
+
+  // One run of flexible GMRES on residual, which becomes what it thinks is left.
+  void Cycle(std::vector<double>& residual, std::vector<double>& weights)
+  {
+    const std::size_t n = residual.size();
+    const double length = std::sqrt(Dot(residual, residual));
+    const double start = MaximumNorm(residual);
+    std::vector<std::vector<double>> v(1, residual);
+    std::vector<std::vector<double>> z;
+    for (double& x : v[0])
+    {
+      x /= length;
+    }
+    // The upper triangle that Givens rotations leave of the Hessenberg matrix
+    std::vector<std::vector<double>> columns;
+    std::vector<std::array<double, 2>> rotations;
+    std::vector<double> right(1, length);
+    double left = length;
+    for (int k = 0; k < MaximumDirections; ++k)
+    {
+      z.push_back(this->Preconditioner->Apply(this->Run, v[k]));
+      std::vector<double> w(n);
+      this->Sum.ApplyUpTo(
+        ProductOrder, this->Run, z[k], ProductAccuracy * this->Tolerance / left, w.data());
+      this->AddDiagonal(z[k], w);
+      this->Projection.Remove(w);
+      std::vector<double> column(k + 2, 0.0);
+      for (int pass = 0; pass < 2; ++pass)
+      {
+        for (int j = 0; j <= k; ++j)
+        {
+          const double part = Dot(w, v[j]);
+          column[j] += part;
+          AddMultiple(w, -part, v[j]);
+        }
+      }
+      column[k + 1] = std::sqrt(Dot(w, w));
+      const double next = column[k + 1];
+      for (int j = 0; j < k; ++j)
+      {
+        const double upper = rotations[j][0] * column[j] + rotations[j][1] * column[j + 1];
+        column[j + 1] = -rotations[j][1] * column[j] + rotations[j][0] * column[j + 1];
+        column[j] = upper;
+      }
+      const double radius = std::hypot(column[k], column[k + 1]);
+      if (radius == 0)
+      {
+        z.pop_back();
+        break;
+      }
+      rotations.push_back({ column[k] / radius, column[k + 1] / radius });
+      column[k] = radius;
+      columns.push_back(column);
+      right.push_back(-rotations[k][1] * right[k]);
+      right[k] *= rotations[k][0];
+      left = std::abs(right[k + 1]);
+      ++this->Iterations;
+      if (next == 0)
+      {
+        break;
+      }
+      v.push_back(std::move(w));
+      for (double& x : v.back())
+      {
+        x /= next;
+      }
+      // The residual itself: right[k + 1] times the last column of the rotations in terms of v
+      std::vector<double> factors(k + 2, 0.0);
+      factors[k + 1] = right[k + 1];
+      for (int j = k; j >= 0; --j)
+      {
+        factors[j] = -rotations[j][1] * factors[j + 1];
+        factors[j + 1] *= rotations[j][0];
+      }
+      std::fill(residual.begin(), residual.end(), 0.0);
+      for (int j = 0; j <= k + 1; ++j)
+      {
+        AddMultiple(residual, factors[j], v[j]);
+      }
+      const double norm = MaximumNorm(residual);
+      this->ReportProgress(norm / start, start);
+      if (norm <= 0.6 * this->Tolerance)
+      {
+        break;
+      }
+    }
+    std::vector<double> y(columns.size());
+    for (std::size_t k = columns.size(); k-- > 0;)
+    {
+      y[k] = right[k];
+      for (std::size_t j = k + 1; j < columns.size(); ++j)
+      {
+        y[k] -= columns[j][k] * y[j];
+      }
+      y[k] /= columns[k][k];
+    }
+    for (std::size_t k = 0; k < y.size(); ++k)
+    {
+      AddMultiple(weights, y[k], z[k]);
+    }
+  }
+
+  void ReportProgress(double reduction, double start)
+  {
+    const double whole = std::log(std::min(0.5, this->Tolerance / start));
+    const double done = std::min(1.0, std::max(0.0, std::log(std::max(reduction, 1e-300)) / whole));
+    // Each product is a stage between this iteration and about where the next will be.
+    this->Run.SetStage(0.3 + 0.7 * done, 0.3 + 0.7 * std::min(1.0, done + 0.1));
+    this->Run.Report(0);
+  }
+
+  static constexpr int ProductOrder = Dimension == 2 ? 12 : 8;
+
+  Execution& Run;
+  const RadialSystem<Dimension>& System;
+  double Tolerance;
+  FastRadialSum<Dimension> Sum;
+  PolynomialProjection Projection;
+  std::unique_ptr<SchwarzPreconditioner<Dimension>> Preconditioner;
+  int Iterations = 0;
+};
+}
+
+template <int Dimension>
+RadialSolution SolveIteratively(
+  Execution& execution, const RadialSystem<Dimension>& system, double tolerance)
+{
+  const Execution::NestedStages stages(execution);
+  Solver<Dimension> solver(execution, system, tolerance);
+  RadialSolution solution;
+  for (const std::vector<double>& values : system.Values)
+  {
+    solution.Coefficients.push_back(solver.Solve(values, solution));
+  }
+  return solution;
+}
+
+template RadialSolution SolveIteratively<2>(Execution&, const RadialSystem<2>&, double);
+template RadialSolution SolveIteratively<3>(Execution&, const RadialSystem<3>&, double);
+}
