@@ -50,9 +50,8 @@ show("gap", "Gap of 40 degrees, threshold pi",
      OccludedAngle(Input=gap, Mode="Binary", NumberOfDirections=100, ThresholdsOverPi=[1]))
 
 quarter = IncompleteShape(Dimensions=SIZE, PresentFraction=0.25)
-# 2 p would be 0.5; a ray of this filter touches wider pixels than Bresenham's, so p is about a third
-show("quarter", "A quarter of the pixels, 0.66 pi, median",
-     OccludedAngle(Input=quarter, Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.66], MedianKernel=5))
+show("quarter", "A quarter of the pixels, 0.5 pi, median",
+     OccludedAngle(Input=quarter, Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.5], MedianKernel=5))
 
 blob = IncompleteShape(Shape="Blob", Dimensions=SIZE, PresentFraction=0.4, OutlierFraction=0.1, Seed=2)
 show("blob", "Noisy blob, 1.6 1.6 1.3 1.3 pi",
@@ -64,7 +63,8 @@ space = Calculator(Input=cavity, ResultArrayName="Space",
                    Function="if(abs(coordsY) < 15 & (coordsX > 0 | coordsX^2 + coordsY^2 < 225), 0, 1)")
 show("cavity-doughnut", "Cavity, reconstruction space without the bay, 1.6 pi x 3",
      OccludedAngle(Input=cavity, SpaceMask=space, NumberOfDirections=100, ThresholdsOverPi=[1.6] * 3))
-small = IncompleteShape(Shape="Cavity", Dimensions=[60, 60, 60], PresentFraction=0.8)  # arms within the radii
+# Local radii need data inside the tissue.
+tissue = IncompleteShape(Shape="Cavity", Dimensions=SIZE, PresentFraction=0.6, TissueFraction=0.15)
 show("cavity-local", "Cavity, local radii, 1.4 pi x 3 at 10 mm, 1.5 pi x 2 at 15 mm",
-     OccludedAngle(Input=small, NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2,
+     OccludedAngle(Input=tissue, NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2,
                    LocalRadii=[10] * 3 + [15] * 2))

@@ -46,5 +46,6 @@ show("cube", "20-cube, 80 % missing: 2.5 2.5 2 2 pi",
 show("sparse-cube", "20-cube, 90 % missing",
      IncompleteShape(Shape="Cube", Dimensions=[44, 44, 44], PresentFraction=0.1), occlusion.SPARSE_CUBE, (-1, -2, -0.8))
 show("kumara", "Kumara, 60 % missing in patches, 2 % outliers",
-     IncompleteShape(Shape="Kumara", Dimensions=[105, 75, 53], PresentFraction=0.4, Patches=1, OutlierFraction=0.02),
+     IncompleteShape(Shape="Kumara", Dimensions=[105, 75, 53], PresentFraction=0.4, Patches=1, PatchRadii=[2, 5],
+                     OutlierFraction=0.02),
      occlusion.GROW_AND_SNAP, (-0.5, -2, -1))

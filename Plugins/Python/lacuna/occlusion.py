@@ -28,11 +28,11 @@ SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.5] * 2 + [
                    LocalRadii=[2] * 2 + [0] * 2 + [3] * 2 + [0] * 8)
 
 # For surfaces of which up to 90 % is missing, at random or in patches, also with outliers, on voxels of 1 mm: grow the
-# data into a shell (two), fill it (one), shrink it again (two), grow to where the data are (eight). Scale the radii
+# data into a shell (two), fill it (one), shrink it again (two), grow to where the data are (nine). Scale the radii
 # with the voxels.
 GROW_AND_SNAP = dict(Mode="Continuous", KeepData=1,
-                     ThresholdsOverPi=[0.49] * 2 + [2.5] + [3.92] * 2 + [2.4] * 5 + [2.66] * 2,
-                     LocalRadii=[1.5] * 2 + [0] + [3] * 2 + [0] * 7)
+                     ThresholdsOverPi=[0.32] * 2 + [2.67] + [3.92] * 2 + [2.69] * 6 + [2.52] * 3,
+                     LocalRadii=[1.5] * 2 + [0] + [1.5] * 2 + [0] * 9)
 
 
 class Surface:
