@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Warps by landmarks against VTK's thin plate spline, and errors.
+#include "lacunaCheck.h"
+#include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaRBFImageWarp.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkThinPlateSplineTransform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace
+{
+constexpr double Origin[3] = { 10, -5, 30 };
+constexpr double Spacing[3] = { 1.5, 2, 2.5 };
+// turned about z and x: an image of a tilted scanner
+const double Direction[9] = { 0.8, -0.6, 0, 0.36, 0.48, -0.8, 0.48, 0.64, 0.6 };
+
+// Grey levels that say which place they belong to: the world coordinates, three components.
+vtkSmartPointer<vtkImageData> MakeImage(int layers)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetExtent(2, 41, 0, 29, 5, 4 + layers);
+  image->SetOrigin(Origin);
+  image->SetSpacing(Spacing);
+  if (layers > 1)
+  {
+    image->SetDirectionMatrix(Direction);
+  }
+  vtkNew<vtkDoubleArray> place;
+  place->SetName("Place");
+  place->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    place->InsertNextTuple(image->GetPoint(i));
+  }
+  image->GetPointData()->SetScalars(place);
+  return image;
+}
+
+double Fraction(double x)
+{
+  return x - std::floor(x);
+}
+
+// Landmarks scattered in the image, and targets some mm away.
+void MakeLandmarks(vtkImageData* image, int count, vtkPolyData* landmarks, vtkPolyData* targets)
+{
+  vtkNew<vtkPoints> from;
+  vtkNew<vtkPoints> to;
+  from->SetDataTypeToDouble();
+  to->SetDataTypeToDouble();
+  const int* extent = image->GetExtent();
+  for (int i = 1; i <= count; ++i)
+  {
+    const double index[3] = { extent[0] + (extent[1] - extent[0]) * Fraction(i * 0.7548776662),
+      extent[2] + (extent[3] - extent[2]) * Fraction(i * 0.5698402910),
+      extent[4] + (extent[5] - extent[4]) * Fraction(i * 0.8191725134) };
+    double x[3];
+    image->TransformContinuousIndexToPhysicalPoint(index, x);
+    from->InsertNextPoint(x);
+    x[0] += 2 * std::sin(i);
+    x[1] += 3 * std::cos(2.0 * i);
+    x[2] += image->GetDimensions()[2] > 1 ? 2 * std::sin(3.0 * i) : 0;
+    to->InsertNextPoint(x);
+  }
+  landmarks->SetPoints(from);
+  targets->SetPoints(to);
+}
+
+void CompareWithVTK(int layers, int kernel)
+{
+  const vtkSmartPointer<vtkImageData> image = MakeImage(layers);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  vtkNew<vtkLacunaRBFImageWarp> warp;
+  warp->SetInputData(0, image);
+  warp->SetInputData(1, landmarks);
+  warp->SetInputData(2, targets);
+  warp->SetKernel(kernel);
+  warp->SetOutsideValue(-1000);
+  warp->Update();
+  vtkImageData* output = warp->GetOutput();
+  LACUNA_CHECK(output->GetNumberOfPoints() == image->GetNumberOfPoints());
+
+  vtkNew<vtkThinPlateSplineTransform> back;
+  back->SetSourceLandmarks(targets->GetPoints());
+  back->SetTargetLandmarks(landmarks->GetPoints());
+  if (kernel == vtkLacunaRBFImageWarp::Linear)
+  {
+    back->SetBasisToR();
+  }
+  else
+  {
+    back->SetBasisToR2LogR();
+  }
+  vtkDataArray* place = output->GetPointData()->GetArray("Place");
+  vtkDataArray* valid = output->GetPointData()->GetArray("vtkValidPointMask");
+  LACUNA_CHECK(place && valid);
+  double worst = 0;
+  vtkIdType inside = 0;
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    output->GetPoint(i, x);
+    double expected[3];
+    back->TransformPoint(x, expected);
+    if (valid->GetComponent(i, 0) != 0)
+    {
+      ++inside;
+      worst =
+        std::max(worst, std::sqrt(vtkMath::Distance2BetweenPoints(expected, place->GetTuple3(i))));
+    }
+    else
+    {
+      LACUNA_CHECK(place->GetComponent(i, 1) == -1000);
+    }
+  }
+  // 0.01 voxels
+  if (!(worst < 0.015))
+  {
+    lacunaCheck::Fail(__FILE__, __LINE__, "differs from VTK by " + std::to_string(worst));
+  }
+  LACUNA_CHECK(inside > image->GetNumberOfPoints() / 2);
+  LACUNA_CHECK(inside < image->GetNumberOfPoints());
+  LACUNA_CHECK(output->GetFieldData()->GetArray("NodeCount")->GetComponent(0, 0) == 25);
+  LACUNA_CHECK(output->GetFieldData()->GetArray("FoldedFraction")->GetComponent(0, 0) == 0);
+}
+
+// A shift by whole voxels moves labels, of their type, the way the landmarks say.
+void CheckShift()
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(20, 15, 1);
+  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    image->GetPointData()->GetScalars()->SetComponent(i, 0, static_cast<double>(i % 251));
+  }
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  vtkNew<vtkPoints> from;
+  vtkNew<vtkPoints> to;
+  const double places[4][2] = { { 2, 2 }, { 15, 3 }, { 4, 12 }, { 14, 11 } };
+  for (const auto& p : places)
+  {
+    from->InsertNextPoint(p[0], p[1], 0);
+    to->InsertNextPoint(p[0] + 3, p[1] - 1, 77); // z does not count
+  }
+  landmarks->SetPoints(from);
+  targets->SetPoints(to);
+  vtkNew<vtkLacunaRBFImageWarp> warp;
+  warp->SetInputData(0, image);
+  warp->SetInputData(1, landmarks);
+  warp->SetInputData(2, targets);
+  warp->SetInterpolation(vtkLacunaRBFImageWarp::Nearest);
+  warp->SetOutsideValue(300); // more than the type has
+  warp->Update();
+  vtkImageData* output = warp->GetOutput();
+  LACUNA_CHECK(output->GetScalarType() == VTK_UNSIGNED_CHAR);
+  for (int j = 0; j < 15; ++j)
+  {
+    for (int i = 0; i < 20; ++i)
+    {
+      const bool inside = i >= 3 && j <= 13;
+      LACUNA_CHECK(output->GetScalarComponentAsDouble(i, j, 0, 0) ==
+        (inside ? image->GetScalarComponentAsDouble(i - 3, j + 1, 0, 0) : 255));
+    }
+  }
+}
+
+struct Case
+{
+  const char* Name;
+  std::function<void(vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp*)> Spoil;
+  const char* Expected;
+};
+
+const Case Errors[] = {
+  { "number",
+    [](vtkPolyData*, vtkPolyData* to, vtkLacunaRBFImageWarp*)
+    { to->GetPoints()->InsertNextPoint(1, 2, 3); },
+    "25 landmarks but 26 targets" },
+  { "few",
+    [](vtkPolyData* from, vtkPolyData* to, vtkLacunaRBFImageWarp*)
+    {
+      from->GetPoints()->SetNumberOfPoints(3);
+      to->GetPoints()->SetNumberOfPoints(3);
+    },
+    "at least 4 are needed" },
+  { "none",
+    [](vtkPolyData* from, vtkPolyData* to, vtkLacunaRBFImageWarp*)
+    {
+      from->GetPoints()->SetNumberOfPoints(0);
+      to->GetPoints()->SetNumberOfPoints(0);
+    },
+    "at least 4 are needed" },
+  { "contradiction",
+    [](vtkPolyData*, vtkPolyData* to, vtkLacunaRBFImageWarp*)
+    { to->GetPoints()->SetPoint(4, to->GetPoint(7)); },
+    "nodes 4 and 7 lie at the same place" },
+  { "NaN",
+    [](vtkPolyData* from, vtkPolyData*, vtkLacunaRBFImageWarp*)
+    { from->GetPoints()->SetPoint(6, std::nan(""), 0, 0); },
+    "node 6" },
+  { "kernel", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetKernel(4); },
+    "Kernel is 4" },
+  { "interpolation",
+    [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetInterpolation(3); },
+    "Interpolation is 3" },
+  { "accuracy", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetAccuracy(0); },
+    "Accuracy" },
+  { "smoothing", [](vtkPolyData*, vtkPolyData*, vtkLacunaRBFImageWarp* w) { w->SetSmoothing(-1); },
+    "smoothing" },
+};
+
+void CheckErrors()
+{
+  for (const Case& c : Errors)
+  {
+    const vtkSmartPointer<vtkImageData> image = MakeImage(12);
+    vtkNew<vtkPolyData> landmarks;
+    vtkNew<vtkPolyData> targets;
+    MakeLandmarks(image, 25, landmarks, targets);
+    vtkNew<vtkLacunaRBFImageWarp> warp;
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(warp);
+    messages->Watch(warp->GetExecutive());
+    c.Spoil(landmarks, targets, warp);
+    warp->SetInputData(0, image);
+    warp->SetInputData(1, landmarks);
+    warp->SetInputData(2, targets);
+    warp->Update();
+    if (!messages->HasError(c.Expected))
+    {
+      lacunaCheck::Fail(__FILE__, __LINE__, std::string(c.Name) + ": " + messages->Errors);
+    }
+    LACUNA_CHECK(warp->GetOutput()->GetNumberOfPoints() == 0);
+  }
+}
+
+// Two landmarks that change places fold the image.
+void CheckFolds()
+{
+  const vtkSmartPointer<vtkImageData> image = MakeImage(12);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  targets->GetPoints()->SetPoint(4, landmarks->GetPoint(7));
+  targets->GetPoints()->SetPoint(7, landmarks->GetPoint(4));
+  vtkNew<vtkLacunaRBFImageWarp> warp;
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(warp);
+  warp->SetInputData(0, image);
+  warp->SetInputData(1, landmarks);
+  warp->SetInputData(2, targets);
+  warp->Update();
+  LACUNA_CHECK(messages->Warnings.find("folds") != std::string::npos);
+  LACUNA_CHECK(
+    warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction")->GetComponent(0, 0) > 0);
+}
+}
+
+int TestRBFImageWarp(int, char*[])
+{
+  CompareWithVTK(12, vtkLacunaRBFImageWarp::Linear);
+  CompareWithVTK(12, vtkLacunaRBFImageWarp::ThinPlate);
+  CheckShift();
+  CheckFolds();
+  CheckErrors();
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaRBFImageWarp.h"
+
+#include "lacunaMemory.h"
+#include "lacunaRadialBasis.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkImageInterpolator.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaRBFImageWarp);
+
+namespace
+{
+// Positions in mm along the image's own axes, from its first voxel: there its grid is regular
+// whatever its direction matrix.
+class Geometry
+{
+public:
+  explicit Geometry(vtkImageData* image)
+    : Image(image)
+  {
+    image->GetDimensions(this->Size);
+    image->GetSpacing(this->Spacing);
+    image->GetExtent(this->Extent);
+    for (int c = 0; c < 3; ++c)
+    {
+      if (this->Size[c] > 1)
+      {
+        this->Axes.push_back(c);
+      }
+    }
+  }
+
+  std::array<double, 3> ToOwn(const double* world) const
+  {
+    double index[3];
+    this->Image->TransformPhysicalPointToContinuousIndex(world, index);
+    std::array<double, 3> own;
+    for (int c = 0; c < 3; ++c)
+    {
+      own[c] = (index[c] - this->Extent[2 * c]) * this->Spacing[c];
+    }
+    return own;
+  }
+
+  vtkImageData* Image;
+  int Size[3];
+  double Spacing[3];
+  int Extent[6];
+  std::vector<int> Axes; // with more than one voxel
+};
+
+std::vector<std::array<double, 3>> GetPoints(vtkDataSet* points, const Geometry& geometry)
+{
+  std::vector<std::array<double, 3>> own;
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    points->GetPoint(i, x);
+    own.push_back(geometry.ToOwn(x));
+  }
+  return own;
+}
+
+template <int Dimension>
+class Warp
+{
+public:
+  Warp(vtkLacunaExecution& execution, const Geometry& geometry,
+    const std::vector<std::array<double, 3>>& landmarks,
+    const std::vector<std::array<double, 3>>& targets, lacuna::RadialBasisOptions options,
+    double accuracy)
+    : Shape(geometry)
+  {
+    std::vector<std::array<double, Dimension>> nodes(targets.size());
+    std::vector<std::vector<double>> values(Dimension, std::vector<double>(targets.size()));
+    double smallest = geometry.Spacing[geometry.Axes[0]];
+    double largest = 0;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      const int axis = geometry.Axes[c];
+      smallest = std::min(smallest, geometry.Spacing[axis]);
+      for (std::size_t i = 0; i < targets.size(); ++i)
+      {
+        nodes[i][c] = targets[i][axis];
+        values[c][i] = landmarks[i][axis] - targets[i][axis];
+      }
+      const auto range = std::minmax_element(values[c].begin(), values[c].end());
+      largest = targets.empty() ? 0 : std::max(largest, *range.second - *range.first);
+    }
+    // of each component, so that positions keep it
+    const double wanted = accuracy * smallest / std::sqrt(Dimension);
+    options.Accuracy = largest > 0 ? std::min(0.5, wanted / largest) : 0.5;
+    execution.SetStage(0, 0.3);
+    const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
+    this->Report = function.GetReport();
+
+    lacuna::RegularGrid<Dimension> grid;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      grid.Spacing[c] = geometry.Spacing[geometry.Axes[c]];
+      grid.Size[c] = geometry.Size[geometry.Axes[c]];
+    }
+    for (int c = 0; c < Dimension; ++c)
+    {
+      execution.SetStage(0.3 + 0.3 * c / Dimension, 0.3 + 0.3 * (c + 1) / Dimension);
+      this->Way[c].resize(grid.GetNumberOfPoints());
+      function.EvaluateGrid(execution, grid, this->Way[c].data(), c);
+    }
+  }
+
+  // The voxel's place in the input, as an index of the image.
+  void GetIndex(std::int64_t voxel, double* index) const
+  {
+    std::int64_t rest = voxel;
+    for (int c = 0; c < 3; ++c)
+    {
+      index[c] = static_cast<double>(this->Shape.Extent[2 * c] + rest % this->Shape.Size[c]);
+      rest /= this->Shape.Size[c];
+    }
+    for (int c = 0; c < Dimension; ++c)
+    {
+      const int axis = this->Shape.Axes[c];
+      index[axis] += this->Way[c][voxel] / this->Shape.Spacing[axis];
+    }
+  }
+
+  // Whether the mapping turns the cell at a voxel inside out.
+  bool IsFolded(std::int64_t voxel) const
+  {
+    // derivatives by forward differences, backward at the last voxel
+    double jacobian[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+    std::int64_t stride = 1;
+    std::int64_t rest = voxel;
+    int d = 0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t size = this->Shape.Size[axis];
+      const std::int64_t i = rest % size;
+      rest /= size;
+      if (size > 1)
+      {
+        const std::int64_t from = i + 1 < size ? voxel : voxel - stride;
+        for (int c = 0; c < Dimension; ++c)
+        {
+          jacobian[c][d] +=
+            (this->Way[c][from + stride] - this->Way[c][from]) / this->Shape.Spacing[axis];
+        }
+        ++d;
+      }
+      stride *= size;
+    }
+    return vtkMatrix3x3::Determinant(&jacobian[0][0]) <= 0;
+  }
+
+  lacuna::RadialBasisReport Report;
+
+private:
+  const Geometry& Shape;
+  std::array<std::vector<double>, Dimension> Way;
+};
+
+struct Sampling
+{
+  int Interpolation;
+  double OutsideValue;
+};
+
+// Returns the share of folded voxels.
+template <class Mapping>
+double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* scalars,
+  const Mapping& mapping, const Sampling& sampling, vtkImageData* output)
+{
+  const vtkIdType count = image->GetNumberOfPoints();
+  const int components = scalars->GetNumberOfComponents();
+  const auto warped = vtkSmartPointer<vtkDataArray>::Take(scalars->NewInstance());
+  warped->SetName(scalars->GetName());
+  warped->SetNumberOfComponents(components);
+  warped->SetNumberOfTuples(count);
+  vtkNew<vtkCharArray> valid;
+  valid->SetName("vtkValidPointMask");
+  valid->SetNumberOfTuples(count);
+
+  vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
+  input->ShallowCopy(image);
+  input->GetPointData()->SetScalars(scalars);
+  vtkNew<vtkImageInterpolator> interpolator;
+  interpolator->SetInterpolationMode(sampling.Interpolation);
+  interpolator->SetOutValue(sampling.OutsideValue);
+  interpolator->Initialize(input);
+  interpolator->Update();
+  const bool integral = scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE;
+  const double low = scalars->GetDataTypeMin();
+  const double high = scalars->GetDataTypeMax();
+  constexpr std::int64_t grain = 4096;
+  std::vector<std::int64_t> folded((count + grain - 1) / grain, 0);
+  execution.SetStage(0.6, 1);
+  execution.For(static_cast<std::int64_t>(folded.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      std::vector<double> tuple(components);
+      for (std::int64_t block = begin; block < end; ++block)
+      {
+        for (std::int64_t i = block * grain; i < std::min<std::int64_t>((block + 1) * grain, count);
+             ++i)
+        {
+          double index[3];
+          mapping.GetIndex(i, index);
+          const bool inside = interpolator->CheckBoundsIJK(index);
+          if (inside)
+          {
+            interpolator->InterpolateIJK(index, tuple.data());
+          }
+          else
+          {
+            std::fill(tuple.begin(), tuple.end(), sampling.OutsideValue);
+          }
+          for (int k = 0; k < components; ++k)
+          {
+            const double value =
+              integral ? std::floor(std::min(std::max(tuple[k], low), high) + 0.5) : tuple[k];
+            warped->SetComponent(i, k, value);
+          }
+          valid->SetValue(i, inside ? 1 : 0);
+          folded[block] += mapping.IsFolded(i) ? 1 : 0;
+        }
+      }
+    });
+  output->GetPointData()->Initialize();
+  output->GetPointData()->SetScalars(warped);
+  output->GetPointData()->AddArray(valid);
+  std::int64_t sum = 0;
+  for (const std::int64_t f : folded)
+  {
+    sum += f;
+  }
+  return static_cast<double>(sum) / static_cast<double>(count);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaRBFImageWarp::vtkLacunaRBFImageWarp()
+{
+  this->SetNumberOfInputPorts(3);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFImageWarp::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  // Any voxel may show any place, and each depends on all landmarks.
+  for (int port = 0; port < 3; ++port)
+  {
+    vtkInformation* info = inputs[port]->GetInformationObject(0);
+    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+    {
+      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+        info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+    }
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFImageWarp::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkImageData* image = vtkImageData::GetData(inputs[0]);
+  vtkImageData* output = vtkImageData::GetData(outputs);
+  if (!image || image->GetNumberOfPoints() == 0)
+  {
+    return 1; // empty in, empty out
+  }
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
+      vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
+      vtkDataArray* scalars = image->GetPointData()->GetScalars();
+      if (!scalars)
+      {
+        throw std::runtime_error("the image has no active point scalars");
+      }
+      if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
+      {
+        std::ostringstream message;
+        message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
+                << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
+                << "equal index";
+        throw std::runtime_error(message.str());
+      }
+      if (this->Kernel < ThinPlate || this->Kernel > Cubic)
+      {
+        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+          "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
+      }
+      if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
+      {
+        throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+          "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
+      }
+      if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
+      {
+        throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
+      }
+      const Geometry geometry(image);
+      lacuna::RequireMemory(
+        "the warped image", static_cast<double>(image->GetNumberOfPoints()) * 8 * 5);
+      const std::vector<std::array<double, 3>> from = GetPoints(landmarks, geometry);
+      const std::vector<std::array<double, 3>> to = GetPoints(targets, geometry);
+      lacuna::RadialBasisOptions options;
+      options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+      options.Smoothing = this->Smoothing;
+
+      vtkNew<vtkImageData> whole;
+      whole->ShallowCopy(image);
+      const Sampling sampling{ this->Interpolation, this->OutsideValue };
+      double folded = 0;
+      lacuna::RadialBasisReport report;
+      const auto run = [&](const auto& mapping)
+      {
+        report = mapping.Report;
+        folded = Sample(execution, image, scalars, mapping, sampling, whole);
+      };
+      switch (geometry.Axes.size())
+      {
+        case 3:
+          run(Warp<3>(execution, geometry, from, to, options, this->Accuracy));
+          break;
+        case 2:
+          run(Warp<2>(execution, geometry, from, to, options, this->Accuracy));
+          break;
+        default:
+          throw std::runtime_error("the image is but a row of voxels; warps are two- or "
+                                   "three-dimensional");
+      }
+      if (folded > 0)
+      {
+        vtkWarningMacro(<< "the mapping folds in " << 100 * folded << " % of the voxels: landmarks "
+                        << "cross or contradict one another there; check the pairs, or add "
+                        << "Smoothing");
+      }
+      vtkLacunaFieldData::Set(whole, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
+      vtkLacunaFieldData::Set(whole, "Residual", { report.Residual }, 1);
+      vtkLacunaFieldData::Set(whole, "FoldedFraction", { folded }, 1);
+      std::ostringstream parameters;
+      parameters << "Kernel=" << this->Kernel << " Smoothing=" << this->Smoothing
+                 << " Interpolation=" << this->Interpolation
+                 << " OutsideValue=" << this->OutsideValue << " Accuracy=" << this->Accuracy;
+      vtkLacunaProvenance::Record(whole, this, { image, landmarks, targets }, parameters.str());
+      output->ShallowCopy(whole);
+      int piece[6];
+      outputs->GetInformationObject(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
+      output->Crop(piece);
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Kernel: " << this->Kernel << "\n";
+  os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "Interpolation: " << this->Interpolation << "\n";
+  os << indent << "OutsideValue: " << this->OutsideValue << "\n";
+  os << indent << "Accuracy: " << this->Accuracy << "\n";
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaRBFImageWarp
+ * @brief warps an image so that landmarks move to where they shall be
+ *
+ * Inputs: an image (port 0), the landmarks in it (port 1) and where they shall come to lie (port
+ * 2): data sets whose points with equal index are a pair. World coordinates. Of an image of one
+ * layer, the landmarks' position across it is not looked at and the warp is two-dimensional.
+ *
+ * A radial basis function with a linear polynomial (quadratic for the triharmonic) is fitted to
+ * the way back from each target to its landmark, and says for each voxel of the output which place
+ * of the input it shows (inverse mapping): so the output has no gaps. Its geometry, scalar type and
+ * components are those of the input. A translation, rotation or other affine map of all landmarks
+ * is reproduced exactly; with Smoothing above 0 landmarks are met approximately only.
+ *
+ * Output: the warped active scalars under their name; vtkValidPointMask (char, 1 where the voxel
+ * shows a place in the input). Field data:
+ * | array          | components | meaning                                                        |
+ * |----------------|------------|----------------------------------------------------------------|
+ * | NodeCount      | 1          | landmark pairs at different places                             |
+ * | Residual       | 1          | mm, largest in a component at a landmark, less what smoothing  |
+ * |                |            | allows                                                         |
+ * | FoldedFraction | 1          | share of the voxels where the mapping turns space inside out   |
+ * A folded image shows some places more than once, one of them mirrored: there is a warning, since
+ * landmarks cross or contradict one another then.
+ *
+ * Source: Carr 1996, section 6.1; Bookstein 1989.
+ */
+#ifndef vtkLacunaRBFImageWarp_h
+#define vtkLacunaRBFImageWarp_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+
+class vtkAlgorithmOutput;
+
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaRBFImageWarp* New();
+  vtkTypeMacro(vtkLacunaRBFImageWarp, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum KernelType
+  {
+    ThinPlate = 0,   ///< r^2 log r: bends least in two dimensions
+    Linear = 1,      ///< r: bends least in three dimensions
+    Triharmonic = 2, ///< r^4 log r
+    Cubic = 3        ///< r^3
+  };
+  enum InterpolationType
+  {
+    Nearest = 0, ///< for labels
+    LinearInterpolation = 1,
+    CubicInterpolation = 2
+  };
+
+  ///@{
+  /** The landmarks in the image (port 1), and where they shall come to lie (port 2). */
+  void SetLandmarkConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  void SetTargetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  ///@}
+
+  ///@{
+  /** Radial function. Default ThinPlate. */
+  vtkSetMacro(Kernel, int);
+  vtkGetMacro(Kernel, int);
+  ///@}
+
+  ///@{
+  /**
+   * mu >= 0. Above 0 the mapping minimises the sum of squares of its distances (mm) from the
+   * landmarks plus mu times its energy; see lacuna::RadialBasisOptions. Default 0.
+   */
+  vtkSetMacro(Smoothing, double);
+  vtkGetMacro(Smoothing, double);
+  ///@}
+
+  ///@{
+  /** How grey levels between voxels are found. Default LinearInterpolation. */
+  vtkSetMacro(Interpolation, int);
+  vtkGetMacro(Interpolation, int);
+  ///@}
+
+  ///@{
+  /** Grey level of voxels that show no place of the input. Default 0. */
+  vtkSetMacro(OutsideValue, double);
+  vtkGetMacro(OutsideValue, double);
+  ///@}
+
+  ///@{
+  /** How wrong a position may be, in voxels, > 0 and < 1. Default 0.01. */
+  vtkSetMacro(Accuracy, double);
+  vtkGetMacro(Accuracy, double);
+  ///@}
+
+protected:
+  vtkLacunaRBFImageWarp();
+  ~vtkLacunaRBFImageWarp() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkLacunaRBFImageWarp(const vtkLacunaRBFImageWarp&) = delete;
+  void operator=(const vtkLacunaRBFImageWarp&) = delete;
+
+  int Kernel = ThinPlate;
+  double Smoothing = 0;
+  int Interpolation = LinearInterpolation;
+  double OutsideValue = 0;
+  double Accuracy = 0.01;
+};
+#endif

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaRBFInterpolator.h"
+
+#include "lacunaMemory.h"
+#include "lacunaRadialBasis.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaRBFInterpolator);
+
+namespace
+{
+// Of the longest edge: how flat points are that lie in a plane across an axis.
+constexpr double Flatness = 1e-9;
+constexpr int AutomaticSteps = 100;
+
+struct OutputGrid
+{
+  lacuna::RegularGrid<3> Grid;
+  std::vector<int> Axes; // along which the points differ
+
+  // With what the data set and the properties say. Throws when there is no such grid.
+  OutputGrid(vtkDataSet* points, const double* spacing, const double* bounds)
+  {
+    double own[6];
+    points->GetBounds(own);
+    double longestOwn = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      longestOwn = std::max(longestOwn, own[2 * c + 1] - own[2 * c]);
+    }
+    double longest = 0;
+    double ends[6];
+    for (int c = 0; c < 3; ++c)
+    {
+      if (own[2 * c + 1] - own[2 * c] > Flatness * longestOwn)
+      {
+        this->Axes.push_back(c);
+      }
+      const double* from = bounds[2 * c] > bounds[2 * c + 1] ? own : bounds;
+      std::copy_n(from + 2 * c, 2, ends + 2 * c);
+      if (!std::isfinite(ends[2 * c]) || !std::isfinite(ends[2 * c + 1]))
+      {
+        throw std::runtime_error(from == own ? "a point has a coordinate that is not a finite "
+                                               "number; remove it (Threshold, or Clean "
+                                               "to Grid)"
+                                             : "OutputBounds must be finite numbers");
+      }
+      longest = std::max(longest, ends[2 * c + 1] - ends[2 * c]);
+    }
+    double count = 1;
+    for (int c = 0; c < 3; ++c)
+    {
+      if (!std::isfinite(spacing[c]) || spacing[c] < 0)
+      {
+        throw std::runtime_error("OutputSpacing must be three finite numbers >= 0");
+      }
+      const bool flat = std::find(this->Axes.begin(), this->Axes.end(), c) == this->Axes.end();
+      double step = spacing[c] > 0 ? spacing[c] : longest / AutomaticSteps;
+      step = step > 0 ? step : 1;
+      // Across points that are flat there is nothing to interpolate.
+      const double steps = flat ? 0 : std::floor((ends[2 * c + 1] - ends[2 * c]) / step + 1e-9);
+      if (steps >= std::numeric_limits<int>::max())
+      {
+        throw std::runtime_error("OutputSpacing is too small for OutputBounds");
+      }
+      this->Grid.Origin[c] = flat ? own[2 * c] : ends[2 * c];
+      this->Grid.Spacing[c] = step;
+      this->Grid.Size[c] = static_cast<std::int64_t>(steps) + 1;
+      count *= steps + 1;
+    }
+    lacuna::RequireMemory("the interpolated image", 16 * count);
+  }
+};
+
+vtkDataArray* FindArray(vtkDataSet* points, const std::string& name, const char* property)
+{
+  vtkPointData* data = points->GetPointData();
+  vtkDataArray* array = name.empty() ? data->GetScalars() : data->GetArray(name.c_str());
+  if (!array)
+  {
+    std::ostringstream message;
+    message << property << ": the input has no "
+            << (name.empty() ? "active point scalars" : "numeric point array '" + name + "'")
+            << "; its point arrays are";
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      message << (i ? ", '" : " '") << data->GetArrayName(i) << "'";
+    }
+    message << (data->GetNumberOfArrays() > 0 ? "" : " none");
+    throw std::runtime_error(message.str());
+  }
+  return array;
+}
+
+template <int Dimension>
+void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray* array,
+  const OutputGrid& to, const lacuna::RadialBasisOptions& options, vtkDoubleArray* image,
+  vtkImageData* output)
+{
+  const vtkIdType n = points->GetNumberOfPoints();
+  const int components = array->GetNumberOfComponents();
+  std::vector<std::array<double, Dimension>> nodes(n);
+  std::vector<std::vector<double>> values(components, std::vector<double>(n));
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    double x[3];
+    points->GetPoint(i, x);
+    for (int c = 0; c < Dimension; ++c)
+    {
+      nodes[i][c] = x[to.Axes[c]];
+    }
+    for (int k = 0; k < components; ++k)
+    {
+      values[k][i] = array->GetComponent(i, k);
+    }
+  }
+  execution.SetStage(0, 0.7);
+  const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
+
+  lacuna::RegularGrid<Dimension> grid;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    grid.Origin[c] = to.Grid.Origin[to.Axes[c]];
+    grid.Spacing[c] = to.Grid.Spacing[to.Axes[c]];
+    grid.Size[c] = to.Grid.Size[to.Axes[c]];
+  }
+  const std::int64_t count = grid.GetNumberOfPoints();
+  image->SetNumberOfComponents(components);
+  image->SetNumberOfTuples(count);
+  std::vector<double> one(components > 1 ? count : 0);
+  for (int k = 0; k < components; ++k)
+  {
+    execution.SetStage(0.7 + 0.3 * k / components, 0.7 + 0.3 * (k + 1) / components);
+    double* to1 = components > 1 ? one.data() : image->GetPointer(0);
+    function.EvaluateGrid(execution, grid, to1, k);
+    for (std::int64_t i = 0; components > 1 && i < count; ++i)
+    {
+      image->SetTypedComponent(i, k, one[i]);
+    }
+  }
+  const lacuna::RadialBasisReport& report = function.GetReport();
+  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
+  vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
+  vtkLacunaFieldData::Set(output, "ConditionEstimate", { report.ConditionEstimate }, 1);
+  vtkLacunaFieldData::Set(output, "Iterations", { static_cast<double>(report.Iterations) }, 1);
+}
+
+void SetName(vtkLacunaRBFInterpolator* filter, std::string& member, const char* name)
+{
+  const std::string value = !name || !std::strcmp(name, "None") ? "" : name;
+  if (member != value)
+  {
+    member = value;
+    filter->Modified();
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFInterpolator::SetScalarArray(const char* name)
+{
+  SetName(this, this->ScalarArray, name);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFInterpolator::SetErrorArray(const char* name)
+{
+  SetName(this, this->ErrorArray, name);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+{
+  // Each value of the image depends on all points.
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
+      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // The grid follows from the points, and is asked for before any data are.
+  this->RequestUpdateExtent(request, inputs, outputs);
+  this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
+      vtkInformation* info = outputs->GetInformationObject(0);
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      info->Remove(vtkDataObject::DIRECTION());
+      if (points && points->GetNumberOfPoints() > 0)
+      {
+        const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
+        for (int c = 0; c < 3; ++c)
+        {
+          extent[2 * c + 1] = static_cast<int>(to.Grid.Size[c]) - 1;
+        }
+        info->Set(vtkDataObject::ORIGIN(), to.Grid.Origin.data(), 3);
+        info->Set(vtkDataObject::SPACING(), to.Grid.Spacing.data(), 3);
+        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, -1);
+      }
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      output->GetFieldData()->Initialize(); // VTK passes the points' own
+      if (!points || points->GetNumberOfPoints() == 0)
+      {
+        output->Initialize(); // empty in, empty out
+        return;
+      }
+      if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
+      {
+        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+          "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 "
+          "(Multiquadric)");
+      }
+      if (this->Solver < Auto || this->Solver > Fast)
+      {
+        throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
+          "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
+      }
+      const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
+      vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
+      lacuna::RadialBasisOptions options;
+      options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+      options.Shape = this->KernelLength;
+      options.Smoothing = this->Smoothing;
+      options.Accuracy = this->Accuracy;
+      options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
+      if (!this->ErrorArray.empty())
+      {
+        vtkDataArray* errors = FindArray(points, this->ErrorArray, "ErrorArray");
+        for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
+        {
+          options.Errors.push_back(errors->GetComponent(i, 0));
+        }
+      }
+      vtkNew<vtkImageData> whole;
+      whole->SetExtent(0, static_cast<int>(to.Grid.Size[0]) - 1, 0,
+        static_cast<int>(to.Grid.Size[1]) - 1, 0, static_cast<int>(to.Grid.Size[2]) - 1);
+      whole->SetOrigin(to.Grid.Origin.data());
+      whole->SetSpacing(to.Grid.Spacing.data());
+      vtkNew<vtkDoubleArray> image;
+      image->SetName(array->GetName() ? array->GetName() : "Values");
+      switch (to.Axes.size())
+      {
+        case 3:
+          Interpolate<3>(execution, points, array, to, options, image, whole);
+          break;
+        case 2:
+          Interpolate<2>(execution, points, array, to, options, image, whole);
+          break;
+        default:
+          throw std::runtime_error("all points lie at one place or on one line along an axis: that "
+                                   "does not determine a function in two or three dimensions");
+      }
+      whole->GetPointData()->SetScalars(image);
+
+      std::ostringstream parameters;
+      parameters << "ScalarArray=" << this->ScalarArray << " Kernel=" << this->Kernel
+                 << " KernelLength=" << this->KernelLength << " Smoothing=" << this->Smoothing
+                 << " ErrorArray=" << this->ErrorArray << " Accuracy=" << this->Accuracy
+                 << " Solver=" << this->Solver;
+      vtkLacunaProvenance::Record(whole, this, { points }, parameters.str());
+      output->ShallowCopy(whole);
+      int piece[6];
+      outputs->GetInformationObject(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
+      output->Crop(piece);
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFInterpolator::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ScalarArray: " << this->ScalarArray << "\n";
+  os << indent << "Kernel: " << this->Kernel << "\n";
+  os << indent << "KernelLength: " << this->KernelLength << "\n";
+  os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "ErrorArray: " << this->ErrorArray << "\n";
+  os << indent << "Accuracy: " << this->Accuracy << "\n";
+  os << indent << "Solver: " << this->Solver << "\n";
+  os << indent << "OutputSpacing: " << this->OutputSpacing[0] << " " << this->OutputSpacing[1]
+     << " " << this->OutputSpacing[2] << "\n";
+  os << indent << "OutputBounds:";
+  for (const double b : this->OutputBounds)
+  {
+    os << " " << b;
+  }
+  os << "\n";
+}
