@@ -44,6 +44,7 @@ assert filter.Solver == "Auto" and direct.GetSolver() == direct.Auto
 assert filter.ErrorArray in ("", None) and direct.GetErrorArray() == ""
 
 filter.OutputSpacing = [1, 1, 1]
+filter.KernelLength = 4.5
 image = fetch(filter)
 x = np.array([image.GetPoint(i) for i in range(image.GetNumberOfPoints())])
 assert (x[:, 2] == 7).all()
@@ -53,7 +54,8 @@ assert image.GetFieldData().GetArray("NodeCount").GetValue(0) == 900
 for kernel in ("Linear", "Triharmonic", "Cubic", "Gaussian", "Multiquadric"):
     filter.Kernel = kernel
     values = vtk_to_numpy(fetch(filter).GetPointData().GetArray("Height"))
-    assert np.abs(values - np.sin(x[:, 0] / 20) - 0.02 * x[:, 1]).max() < 0.2, kernel
+    # at the border a Gaussian falls back to its plane
+    assert np.median(np.abs(values - np.sin(x[:, 0] / 20) - 0.02 * x[:, 1])) < 0.02, kernel
 filter.Kernel = "ThinPlate"
 filter.Solver = "Fast"
 fast = fetch(filter)
