@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Radial basis functions on Franke's function in the unit square: fit, and evaluation on a grid,
-// beside the direct sum that one would write first. CPU is processor time over all threads.
+// Radial basis functions on Franke's function in the unit square (in 3-D times cos 3z): fit, and
+// evaluation on a grid, beside the direct sum that one would write first and VTK's thin plate
+// spline. CPU is processor time over all threads.
 #include "lacunaExecution.h"
 #include "lacunaRadialBasis.h"
 
 #include <benchmark/benchmark.h>
 
+#ifdef LACUNA_WITH_VTK_TRANSFORMS
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkThinPlateSplineTransform.h"
+#endif
+
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <random>
 #include <vector>
 
 namespace
@@ -122,6 +131,113 @@ void PlainSum(benchmark::State& state)
   }
 }
 
+template <int Dimension>
+struct Scattered
+{
+  std::vector<std::array<double, Dimension>> Nodes;
+  std::vector<double> Values;
+
+  explicit Scattered(std::int64_t count)
+  {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (std::int64_t i = 0; i < count; ++i)
+    {
+      std::array<double, Dimension> p;
+      for (double& x : p)
+      {
+        x = uniform(random);
+      }
+      this->Nodes.push_back(p);
+      this->Values.push_back(
+        Franke({ p[0], p[1] }) * (Dimension == 3 ? std::cos(3 * p[Dimension - 1]) : 1));
+    }
+  }
+};
+
+lacuna::RadialBasisOptions MakeFastOptions(const benchmark::State& state)
+{
+  lacuna::RadialBasisOptions options = MakeOptions(state.range(0));
+  options.Accuracy = std::pow(10.0, -static_cast<double>(state.range(2)));
+  return options;
+}
+
+// arguments: kernel, nodes, digits of the accuracy
+template <int Dimension>
+void FastFit(benchmark::State& state)
+{
+  const Scattered<Dimension> problem(state.range(1));
+  lacuna::ThreadExecution execution;
+  for (auto _ : state)
+  {
+    const lacuna::RadialBasis<Dimension> s(
+      execution, problem.Nodes, problem.Values, MakeFastOptions(state));
+    state.counters["iterations"] = s.GetReport().Iterations;
+    state.counters["residual"] = s.GetReport().Residual;
+  }
+}
+
+// The set-up of the sums included. arguments: kernel, nodes, digits of the accuracy, grid size
+template <int Dimension>
+void FastGrid(benchmark::State& state)
+{
+  const Scattered<Dimension> problem(state.range(1));
+  lacuna::ThreadExecution execution;
+  const lacuna::RadialBasis<Dimension> s(
+    execution, problem.Nodes, problem.Values, MakeFastOptions(state));
+  lacuna::RegularGrid<Dimension> grid;
+  grid.Size.fill(state.range(3));
+  grid.Spacing.fill(1.0 / static_cast<double>(state.range(3) - 1));
+  std::vector<double> values(grid.GetNumberOfPoints());
+  for (auto _ : state)
+  {
+    s.EvaluateGrid(execution, grid, values.data());
+    benchmark::DoNotOptimize(values.data());
+  }
+}
+
+// What it takes to set up a warp by landmarks in space. arguments: pairs
+void WarpSetUp(benchmark::State& state)
+{
+  const Scattered<3> problem(state.range(0));
+  std::vector<std::vector<double>> ways(3, problem.Values);
+  lacuna::RadialBasisOptions options = MakeOptions(0);
+  options.Accuracy = 1e-4;
+  lacuna::ThreadExecution execution;
+  for (auto _ : state)
+  {
+    const lacuna::RadialBasis<3> s(execution, problem.Nodes, ways, options);
+    benchmark::DoNotOptimize(s.GetReport().Residual);
+  }
+}
+
+#ifdef LACUNA_WITH_VTK_TRANSFORMS
+// The same by the peer. arguments: pairs
+void WarpSetUpVTK(benchmark::State& state)
+{
+  const Scattered<3> problem(state.range(0));
+  vtkNew<vtkPoints> from;
+  vtkNew<vtkPoints> to;
+  from->SetDataTypeToDouble();
+  to->SetDataTypeToDouble();
+  for (std::size_t i = 0; i < problem.Nodes.size(); ++i)
+  {
+    const auto& p = problem.Nodes[i];
+    const double way = problem.Values[i];
+    from->InsertNextPoint(p[0], p[1], p[2]);
+    to->InsertNextPoint(p[0] + way, p[1] + way, p[2] + way);
+  }
+  for (auto _ : state)
+  {
+    vtkNew<vtkThinPlateSplineTransform> transform;
+    transform->SetSourceLandmarks(from);
+    transform->SetTargetLandmarks(to);
+    transform->SetBasisToR2LogR();
+    transform->Update();
+  }
+}
+#endif
+
 constexpr std::int64_t ThinPlate = static_cast<std::int64_t>(lacuna::RadialKernel::ThinPlate);
 constexpr std::int64_t Linear = static_cast<std::int64_t>(lacuna::RadialKernel::Linear);
 }
@@ -148,4 +264,47 @@ BENCHMARK(Evaluate)
   ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(FastFit, 2)
+  ->ArgNames({ "kernel", "nodes", "digits" })
+  ->Args({ ThinPlate, 20000, 4 })
+  ->Args({ ThinPlate, 100000, 4 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(FastFit, 3)
+  ->ArgNames({ "kernel", "nodes", "digits" })
+  ->Args({ Linear, 100000, 3 })
+  ->Args({ Linear, 1000000, 3 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(FastGrid, 2)
+  ->ArgNames({ "kernel", "nodes", "digits", "grid" })
+  ->ArgsProduct({ { ThinPlate }, { 700 }, { 4 }, { 205, 512 } })
+  ->Args({ ThinPlate, 20000, 4, 512 })
+  ->Args({ ThinPlate, 100000, 4, 512 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(FastGrid, 3)
+  ->ArgNames({ "kernel", "nodes", "digits", "grid" })
+  ->Args({ Linear, 100000, 3, 64 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(WarpSetUp)
+  ->ArgNames({ "pairs" })
+  ->Args({ 700 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+#ifdef LACUNA_WITH_VTK_TRANSFORMS
+BENCHMARK(WarpSetUpVTK)
+  ->ArgNames({ "pairs" })
+  ->Args({ 700 })
+  ->Iterations(1)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+#endif
 BENCHMARK_MAIN();
