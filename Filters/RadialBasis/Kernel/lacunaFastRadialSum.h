@@ -34,7 +34,7 @@ class FastRadialSum
 public:
   using Point = std::array<double, Dimension>;
 
-  /// Sums at scattered points. Throws std::invalid_argument when there are no sources or points.
+  /// Sums at scattered points; when these are the very list of sources, one tree serves both. Throws std::invalid_argument when there are no sources or points.
   FastRadialSum(
     RadialKernel kernel, const std::vector<Point>& sources, const std::vector<Point>& points);
   /// Sums at the points of a grid: there interpolants are evaluated axis by axis.

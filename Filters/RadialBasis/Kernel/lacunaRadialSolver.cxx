@@ -3,6 +3,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaFastRadialSum.h"
+#include "lacunaMemory.h"
 #include "lacunaSchwarzPreconditioner.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace lacuna
@@ -66,6 +68,10 @@ public:
     , Sum(system.Kernel, system.Nodes, system.Nodes)
     , Projection(system.Polynomial, system.Nodes)
   {
+    const auto n = static_cast<double>(system.GetSize());
+    RequireMemory("the fast solution of " + std::to_string(system.GetSize()) + " equations",
+      SchwarzPreconditioner<Dimension>::EstimateBytes(system.GetSize()) +
+        n * sizeof(double) * (2 * MaximumDirections + 20));
     execution.SetStage(0, 0.3);
     this->Preconditioner = std::make_unique<SchwarzPreconditioner<Dimension>>(execution, system);
   }
