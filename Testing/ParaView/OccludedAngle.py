@@ -80,3 +80,8 @@ truth = servermanager.Fetch(ball).GetFieldData().GetArray("CompleteVolume").GetV
 assert abs(surface.volume / truth - 1) < 0.05, (surface.volume, truth)
 assert surface.area > 0
 print("sphere:", surface.volume, "ml, truth", truth)
+
+# An object that reaches the edge of the image is closed there.
+whole = OccludedAngle(Input=ball, NumberOfDirections=40, ThresholdsOverPi=[0.01])
+surface = occlusion.closed_surface(whole, compensate=False)
+assert abs(surface.volume / (65 ** 3 / 1000) - 1) < 0.03, surface.volume

@@ -15,7 +15,7 @@ CASES = [
     ("circle with a gap", dict(Dimensions=FLAT, GapAngle=40),
      dict(Mode="Binary", NumberOfDirections=100, ThresholdsOverPi=[1]), 2, 4),
     ("quarter of a circle", dict(Dimensions=FLAT, PresentFraction=0.25),
-     dict(Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.5], MedianKernel=5), 8, 12),
+     dict(Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.6], MedianKernel=5), 6, 12),
     ("noisy blob", dict(Shape="Blob", Dimensions=FLAT, PresentFraction=0.4, OutlierFraction=0.1, Seed=2),
      dict(NumberOfDirections=100, ThresholdsOverPi=[1.6, 1.6, 1.3, 1.3]), 3, 6),
     ("cavity, local radii", dict(Shape="Cavity", Dimensions=FLAT, PresentFraction=0.6, TissueFraction=0.15),

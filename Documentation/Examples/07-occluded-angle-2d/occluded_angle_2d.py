@@ -50,8 +50,8 @@ show("gap", "Gap of 40 degrees, threshold pi",
      OccludedAngle(Input=gap, Mode="Binary", NumberOfDirections=100, ThresholdsOverPi=[1]))
 
 quarter = IncompleteShape(Dimensions=SIZE, PresentFraction=0.25)
-show("quarter", "A quarter of the pixels, 0.5 pi, median",
-     OccludedAngle(Input=quarter, Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.5], MedianKernel=5))
+show("quarter", "A quarter of the pixels, 0.6 pi, median",
+     OccludedAngle(Input=quarter, Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.6], MedianKernel=5))
 
 blob = IncompleteShape(Shape="Blob", Dimensions=SIZE, PresentFraction=0.4, OutlierFraction=0.1, Seed=2)
 show("blob", "Noisy blob, 1.6 1.6 1.3 1.3 pi",

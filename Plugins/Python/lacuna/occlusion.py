@@ -17,6 +17,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkFlyingEdges2D, vtkFlyingEdges3D, vtkMassProperties,
                                        vtkPolyDataConnectivityFilter, vtkPolyDataNormals, vtkStripper)
+from vtkmodules.vtkImagingCore import vtkImageConstantPad
 
 import lacuna
 
@@ -74,8 +75,13 @@ def _solid_angle(image, directions):
 
 
 def _contour(image, level, largest):
+    pad = vtkImageConstantPad()  # an object at the edge of the image is closed there
+    pad.SetInputData(image)
+    extent = image.GetExtent()
+    pad.SetOutputWholeExtent([e + (2 * (i % 2) - 1) * (extent[i // 2 * 2] < extent[i // 2 * 2 + 1])
+                              for i, e in enumerate(extent)])
     contour = vtkFlyingEdges2D() if _flat(image) else vtkFlyingEdges3D()
-    contour.SetInputData(image)
+    contour.SetInputConnection(pad.GetOutputPort())
     contour.SetValue(0, level)
     if not _flat(image):
         contour.ComputeNormalsOff()
