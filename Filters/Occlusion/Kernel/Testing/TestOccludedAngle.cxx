@@ -228,6 +228,30 @@ TEST(OccludedAngle, DilationEnlargesVoxels)
   EXPECT_NEAR(getMean(0.4), 4 / Pi + 0.4 * 4 / Pi * std::sqrt(0.5), 0.02); // across the grid axis
 }
 
+// Also at the middle of the grid, where the rays of all lines would pass without their offsets.
+TEST(OccludedAngle, VoxelsAreCubesInTheMean)
+{
+  const int n = 41;
+  AttenuationField field({ n, n, n }, { 1, 1, 1 });
+  field.Row(20, 20)[20] = 1;
+  const auto angle = GetAngle(field, { true, 4000, 0 });
+  double sum = 0;
+  int count = 0;
+  for (int v = 0; v < n * n * n; ++v)
+  {
+    const double x = v % n - 20;
+    const double y = v / n % n - 20;
+    const double z = v / n / n - 20;
+    const double distance = std::sqrt(x * x + y * y + z * z);
+    if (distance > 13 && distance < 20)
+    {
+      sum += distance * distance * angle[v];
+      ++count;
+    }
+  }
+  EXPECT_NEAR(sum / count, 1.5, 0.03); // a quarter of the surface
+}
+
 TEST(OccludedAngle, LargeRadiusIsTheWholeSpace)
 {
   AttenuationField field({ 21, 17, 13 }, { 1, 0.8, 1.5 });
