@@ -70,6 +70,11 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
   std::atomic<bool> stop(false);
   std::exception_ptr error;
   std::mutex errorMutex;
+  using Clock = std::chrono::steady_clock;
+  const bool works = this->LaunchWorks();
+  const std::thread::id caller = std::this_thread::get_id();
+  Clock::time_point next = Clock::now() + ReportInterval; // of the calling thread
+  const auto report = [&] { this->Report(static_cast<double>(done) / static_cast<double>(count)); };
   // Back ends hand out ranges as they like and let no exception through: divide and guard here.
   const Body guarded = [&](std::int64_t begin, std::int64_t end)
   {
@@ -79,6 +84,11 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
       try
       {
         body(b, e);
+        if (works && std::this_thread::get_id() == caller && Clock::now() >= next)
+        {
+          report();
+          next = Clock::now() + ReportInterval;
+        }
       }
       catch (...)
       {
@@ -93,35 +103,42 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
     }
   };
 
-  // Not every back end lets the calling thread work, and only that thread may report: so the
-  // loop is launched from another one and this one watches it.
-  std::future<void> loop =
-    std::async(std::launch::async, [&] { this->Launch(count, grain, guarded); });
-  bool aborted = false;
-  while (loop.wait_for(ReportInterval) != std::future_status::ready)
+  if (works)
   {
-    if (aborted)
+    this->Launch(count, grain, guarded);
+  }
+  else
+  {
+    // Only the calling thread may report: so the loop is launched from another one, and this one
+    // watches it.
+    std::future<void> loop =
+      std::async(std::launch::async, [&] { this->Launch(count, grain, guarded); });
+    bool aborted = false;
+    while (loop.wait_for(ReportInterval) != std::future_status::ready)
     {
-      continue;
+      if (aborted)
+      {
+        continue;
+      }
+      try
+      {
+        report();
+      }
+      catch (const Aborted&)
+      {
+        stop = true;
+        aborted = true;
+      }
     }
-    try
+    loop.get();
+    if (aborted && !error)
     {
-      this->Report(static_cast<double>(done) / static_cast<double>(count));
-    }
-    catch (const Aborted&)
-    {
-      stop = true;
-      aborted = true;
+      throw Aborted();
     }
   }
-  loop.get();
   if (error)
   {
     std::rethrow_exception(error);
-  }
-  if (aborted)
-  {
-    throw Aborted();
   }
   this->Report(1);
 }

@@ -29,8 +29,8 @@ public:
 
   /// Calls body over disjoint ranges of at most grain indices that cover 0 <= i < count, in
   /// parallel and in any order, and returns when all are done. The calling thread reports progress
-  /// meanwhile. Throws Aborted when the user stopped, or the first exception of body.
-  /// The set-up costs some 50 microseconds: for loops of a millisecond or more.
+  /// meanwhile, between ranges if it works too. Throws Aborted when the user stopped, or the first
+  /// exception of body. The set-up costs some 50 microseconds: for loops of a millisecond or more.
   void For(std::int64_t count, std::int64_t grain, const Body& body);
 
   /// The next loops and reports cover this part of the whole progress, 0 <= first <= last <= 1; of
@@ -61,6 +61,9 @@ public:
 protected:
   /// Runs body over ranges that cover 0 <= i < count, in parallel; returns when all are done.
   virtual void Launch(std::int64_t count, std::int64_t grain, const Body& body) = 0;
+  /// Whether the thread that calls Launch takes ranges itself, one after the other, and can so
+  /// report between them. Then For needs no thread besides, which would wait for a core.
+  virtual bool LaunchWorks() const { return false; }
   /// Called on the thread that called For or Report; returns false to stop.
   virtual bool OnProgress(double fraction) = 0;
 
@@ -81,6 +84,7 @@ public:
 
 protected:
   void Launch(std::int64_t count, std::int64_t grain, const Body& body) override;
+  bool LaunchWorks() const override { return true; }
   bool OnProgress(double fraction) override;
 
 private:

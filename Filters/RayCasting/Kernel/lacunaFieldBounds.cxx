@@ -4,6 +4,7 @@
 #include "lacunaWide.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -138,8 +139,7 @@ FieldBounds<T>::FieldBounds(
   const T* voxels, const std::array<int, 3>& size, int before, int after, Execution& execution)
 {
   this->FindRange(voxels, size, execution);
-  this->BuildFine(voxels, size, before, after, execution);
-  this->BuildCoarse();
+  this->Build(voxels, size, before, after, execution);
   if constexpr (std::is_integral<T>::value)
   {
     T low = Highest<T>();
@@ -187,13 +187,19 @@ void FieldBounds<T>::FindRange(
 }
 
 template <class T>
-void FieldBounds<T>::BuildFine(
+void FieldBounds<T>::Build(
   const T* voxels, const std::array<int, 3>& size, int before, int after, Execution& execution)
 {
   Level& level = this->Fine;
   level.Shift = FineShift;
   level.Blocks = CountBlocks(size, FineShift);
   level.Bounds.resize(level.IndexOf(0, 0, level.Blocks[2]));
+  constexpr int step = CoarseShift - FineShift;
+  this->Coarse.Shift = CoarseShift;
+  this->Coarse.Blocks = CountBlocks(size, CoarseShift);
+  this->Coarse.Bounds.resize(this->Coarse.IndexOf(0, 0, this->Coarse.Blocks[2]));
+  // Who builds the last layer of blocks in a coarse one builds that too.
+  std::vector<std::atomic<int>> built(this->Coarse.Blocks[2]);
   const bool guard = this->NumberOfNonFinite > 0;
   execution.For(level.Blocks[2], 1,
     [&](std::int64_t begin, std::int64_t end)
@@ -258,34 +264,34 @@ void FieldBounds<T>::BuildFine(
             bounds[2 * i + 1] = high[i << FineShift];
           }
         }
+        const int layer = k >> step;
+        const int layers = std::min(1 << step, level.Blocks[2] - (layer << step));
+        if (++built[layer] == layers)
+        {
+          this->BuildCoarse(layer);
+        }
       }
     });
 }
 
 template <class T>
-void FieldBounds<T>::BuildCoarse()
+void FieldBounds<T>::BuildCoarse(int layer)
 {
   Level& level = this->Coarse;
   constexpr int step = CoarseShift - FineShift;
-  level.Shift = CoarseShift;
-  for (int a = 0; a < 3; ++a)
-  {
-    level.Blocks[a] = ((this->Fine.Blocks[a] - 1) >> step) + 1;
-  }
-  level.Bounds.resize(level.IndexOf(0, 0, level.Blocks[2]));
-  for (std::size_t b = 0; b < level.Bounds.size(); b += 2)
+  for (std::size_t b = level.IndexOf(0, 0, layer); b < level.IndexOf(0, 0, layer + 1); b += 2)
   {
     level.Bounds[b] = Highest<T>();
     level.Bounds[b + 1] = Lowest<T>();
   }
-  for (int k = 0; k < this->Fine.Blocks[2]; ++k)
+  for (int k = layer << step; k < std::min((layer + 1) << step, this->Fine.Blocks[2]); ++k)
   {
     for (int j = 0; j < this->Fine.Blocks[1]; ++j)
     {
       for (int i = 0; i < this->Fine.Blocks[0]; ++i)
       {
         const T* fine = this->Fine.Bounds.data() + this->Fine.IndexOf(i, j, k);
-        T* coarse = level.Bounds.data() + level.IndexOf(i >> step, j >> step, k >> step);
+        T* coarse = level.Bounds.data() + level.IndexOf(i >> step, j >> step, layer);
         coarse[0] = std::min(coarse[0], fine[0]);
         coarse[1] = std::max(coarse[1], fine[1]);
       }

@@ -50,9 +50,10 @@ public:
 
 private:
   void FindRange(const T* voxels, const std::array<int, 3>& size, Execution& execution);
-  void BuildFine(
+  void Build(
     const T* voxels, const std::array<int, 3>& size, int before, int after, Execution& execution);
-  void BuildCoarse();
+  /// layer: of the coarse blocks; its fine ones must be there.
+  void BuildCoarse(int layer);
 
   Level Fine;
   Level Coarse;
