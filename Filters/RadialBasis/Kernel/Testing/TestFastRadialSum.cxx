@@ -188,7 +188,7 @@ TEST(FastRadialSum, KeepsItsBoundIn2D)
   {
     for (const Shape shape : Shapes)
     {
-      CheckBound<2>(kernel, shape, 3000, { 1e-1, 1e-3, 1e-6, 1e-9 });
+      CheckBound<2>(kernel, shape, 2000, { 1e-1, 1e-3, 1e-6, 1e-9 });
     }
   }
 }
@@ -199,7 +199,7 @@ TEST(FastRadialSum, KeepsItsBoundIn3D)
   {
     for (const Shape shape : Shapes)
     {
-      CheckBound<3>(kernel, shape, 4000, { 1e-2, 1e-4 });
+      CheckBound<3>(kernel, shape, 2500, { 1e-2, 1e-4 });
     }
   }
   CheckBound<3>(RadialKernel::Linear, Shape::Uniform, 6000, { 1e-7 });
