@@ -146,7 +146,8 @@ TEST(RadialSolver, MeetsTheValuesOfNodesOfUnevenDensity)
   for (int i = 0; i < 3600; ++i)
   {
     curve.push_back({ 100 * std::cos(i * 0.00173), 60 * std::sin(i * 0.00173) });
-    grid.push_back({ 1.5 * (i % 60), 1.5 * (i / 60) });
+    const int row = i / 60;
+    grid.push_back({ 1.5 * (i % 60), 1.5 * row });
   }
   CheckFit<2>(RadialKernel::ThinPlate, curve, 1e-4);
   CheckFit<2>(RadialKernel::ThinPlate, grid, 1e-6);
