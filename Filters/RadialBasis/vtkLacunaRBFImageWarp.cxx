@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <sstream>
 #include <stdexcept>
@@ -56,7 +57,7 @@ public:
     double index[3];
     this->Image->TransformPhysicalPointToContinuousIndex(world, index);
     std::array<double, 3> own;
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
       own[c] = (index[c] - this->Extent[2 * c]) * this->Spacing[c];
     }
@@ -133,7 +134,7 @@ public:
   void GetIndex(std::int64_t voxel, double* index) const
   {
     std::int64_t rest = voxel;
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
       index[c] = static_cast<double>(this->Shape.Extent[2 * c] + rest % this->Shape.Size[c]);
       rest /= this->Shape.Size[c];

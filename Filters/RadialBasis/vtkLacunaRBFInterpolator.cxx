@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -40,7 +41,7 @@ constexpr int AutomaticSteps = 100;
 struct OutputGrid
 {
   lacuna::RegularGrid<3> Grid;
-  std::vector<int> Axes; // along which the points differ
+  std::vector<std::size_t> Axes; // along which the points differ
 
   // With what the data set and the properties say. Throws when there is no such grid.
   OutputGrid(vtkDataSet* points, const double* spacing, const double* bounds)
@@ -48,13 +49,13 @@ struct OutputGrid
     double own[6];
     points->GetBounds(own);
     double longestOwn = 0;
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
       longestOwn = std::max(longestOwn, own[2 * c + 1] - own[2 * c]);
     }
     double longest = 0;
     double ends[6];
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
       if (own[2 * c + 1] - own[2 * c] > Flatness * longestOwn)
       {
@@ -72,7 +73,7 @@ struct OutputGrid
       longest = std::max(longest, ends[2 * c + 1] - ends[2 * c]);
     }
     double count = 1;
-    for (int c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
     {
       if (!std::isfinite(spacing[c]) || spacing[c] < 0)
       {

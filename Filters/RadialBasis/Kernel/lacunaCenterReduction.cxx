@@ -36,6 +36,7 @@ std::vector<std::size_t> ReduceCenters(Execution& execution,
   const std::vector<std::size_t> distinct =
     FindDistinctNodes<Dimension>(nodes, { values }, Dimension + 1);
   std::vector<Point> all;
+  all.reserve(distinct.size());
   for (const std::size_t i : distinct)
   {
     all.push_back(nodes[i]);

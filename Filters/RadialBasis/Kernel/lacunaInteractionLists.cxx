@@ -13,7 +13,8 @@ namespace
 double GetPadded(std::int64_t count)
 {
   constexpr auto block = static_cast<std::int64_t>(RadialBlock);
-  return static_cast<double>((count + block - 1) / block * block);
+  const std::int64_t blocks = (count + block - 1) / block;
+  return static_cast<double>(blocks * block);
 }
 
 // Goes down the target tree with, for each box, the boxes of sources that touch it: those are of its

@@ -77,6 +77,7 @@ void RadialBasis<Dimension>::SetNodes(
   const std::vector<std::size_t> distinct =
     FindDistinctNodes<Dimension>(nodes, values, system.Polynomial.GetCount());
   std::vector<Point> own;
+  own.reserve(distinct.size());
   for (const std::size_t i : distinct)
   {
     own.push_back(nodes[i]);

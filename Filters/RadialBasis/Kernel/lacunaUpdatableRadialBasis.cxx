@@ -120,6 +120,7 @@ void UpdatableRadialBasis<Dimension>::Build(const std::vector<Node>& nodes)
 {
   const auto count = static_cast<std::size_t>(this->Polynomial.GetCount());
   std::vector<Point> places;
+  places.reserve(nodes.size());
   for (const Node& node : nodes)
   {
     places.push_back(node.Scaled);
