@@ -5,11 +5,9 @@
  *
  * Casts one ray per pixel of an image plane into a volume and reports where it first passes into
  * the solid, and the surface normal there. Between the voxels the field is a tensor product of
- * uniform cubic B-splines (C2 continuous; with BSpline the voxels are the control points, which
- * smooths partial-volume ripple) or trilinear. The first hit is certified: inside a cell the field
- * along the ray is a polynomial whose Bernstein coefficients exclude or isolate every crossing, so
- * no wall is missed however thin, and there is no step size. Hits lie on the field's surface to
- * 1e-9 of a voxel (InterpolatingBSpline, whose coefficients are floats: to 2e-5).
+ * uniform cubic B-splines or trilinear. The first hit is certified: no wall is missed however thin,
+ * and there is no step size. Hits lie on the field's surface to 1e-9 of a voxel
+ * (InterpolatingBSpline, whose coefficients are floats: to 2e-5).
  *
  * Input: vtkImageData, at least two voxels along each axis, point scalars of one component and any
  * real type; any origin, spacing, direction matrix and extent.
@@ -28,15 +26,10 @@
  * voxel behind it, and not at all where it is NaN): to a higher iso-value, to the next layer, or
  * with the other SolidSide to the far side of the wall.
  *
- * Rules. A field equal to the iso-value is solid. A ray that is inside the solid where it enters
- * the volume has not met a surface there (a head cut by the scan field is open): it goes on until
- * it has left the solid and enters it again. The field ends at the centres of the outermost voxels;
- * beyond them control points are extrapolated linearly. Voxels that are not finite are empty (they
- * take the least solid value of the volume); their number is given in a warning. An iso-value
- * outside the volume's values gives an empty map and a warning with their range. Where a ray leaves
- * what is cut away into the solid it hits there, with the cut's normal (CapCutAway), and with
- * CapBoundary also where it enters the volume in the solid. A perspective ray starts at the eye,
- * which is no surface.
+ * Rules: a field equal to the iso-value is solid; a ray that starts in the solid leaves it first
+ * (unless capped); voxels that are not finite are empty, a warning gives their number; an iso-value
+ * outside the volume's values gives an empty map and a warning. All of them, and what to do about
+ * messages: Documentation/UserGuide/b-spline-iso-ray-caster.md.
  *
  * Errors: no scalars or several components, fewer than two voxels along an axis, a zero
  * ViewDirection or ViewUp, ViewUp parallel to ViewDirection, voxels without size, a start depth map
@@ -80,6 +73,18 @@ public:
     Below
   };
 
+  enum ProjectionType
+  {
+    Parallel = 0,
+    Perspective ///< rays start at EyePosition
+  };
+
+  enum NormalMethodType
+  {
+    Analytic = 0, ///< gradient of the field
+    GreyLevel     ///< differences of voxels, interpolated trilinearly (Carr 1996, eq. 3.5)
+  };
+
   ///@{
   /** Name of the point array with the grey levels. Default empty: the active scalars. */
   vtkSetMacro(ScalarArray, std::string);
@@ -98,80 +103,46 @@ public:
   ///@}
 
   ///@{
-  /** The field between the voxels. Default BSpline. */
+  /**
+   * The field between the voxels, default BSpline; which side of the iso-value is solid, default
+   * Above (Below for vessels filled with fluid); where normals come from, default Analytic.
+   */
   vtkSetClampMacro(Interpolation, int, BSpline, Trilinear);
   vtkGetMacro(Interpolation, int);
-  ///@}
-
-  ///@{
-  /** Which side of the iso-value is solid. Default Above; Below for vessels filled with fluid. */
   vtkSetClampMacro(SolidSide, int, Above, Below);
   vtkGetMacro(SolidSide, int);
-  ///@}
-
-  enum ProjectionType
-  {
-    Parallel = 0,
-    Perspective ///< rays start at EyePosition
-  };
-
-  enum NormalMethodType
-  {
-    Analytic = 0, ///< gradient of the field
-    GreyLevel     ///< differences of voxels, interpolated trilinearly (Carr 1996, eq. 3.5)
-  };
-
-  ///@{
-  /** How rays run. Default Parallel. */
-  vtkSetClampMacro(Projection, int, Parallel, Perspective);
-  vtkGetMacro(Projection, int);
-  ///@}
-
-  ///@{
-  /**
-   * Perspective: where the viewer is, world mm. No default. The image plane is perpendicular to
-   * ViewDirection through PlaneOrigin, else through FocalPoint, else through the corner of the
-   * volume nearest the eye; the line from the eye along ViewDirection meets the map's middle.
-   */
-  vtkSetVector3Macro(EyePosition, double);
-  vtkGetVector3Macro(EyePosition, double);
-  ///@}
-
-  ///@{
-  /**
-   * Perspective: the angle that the rows of the map span, degrees, default 30. It gives the pixel
-   * spacing for a given number of rows, or the number of rows for a spacing; if both are given it
-   * follows from them.
-   */
-  vtkSetMacro(ViewAngle, double);
-  vtkGetMacro(ViewAngle, double);
-  ///@}
-
-  ///@{
-  /** Where normals come from. Default Analytic. */
   vtkSetClampMacro(NormalMethod, int, Analytic, GreyLevel);
   vtkGetMacro(NormalMethod, int);
   ///@}
 
   ///@{
   /**
+   * How rays run, default Parallel. Perspective: EyePosition is where the viewer is, world mm, no
+   * default; the line from there along ViewDirection meets the map's middle. The image plane is
+   * perpendicular to it through PlaneOrigin, else FocalPoint, else the corner of the volume nearest
+   * the eye. ViewAngle is the angle that the map's rows span, degrees, default 30; it gives the
+   * pixel spacing for a number of rows, or the rows for a spacing; if both are given it follows.
+   */
+  vtkSetClampMacro(Projection, int, Parallel, Perspective);
+  vtkGetMacro(Projection, int);
+  vtkSetVector3Macro(EyePosition, double);
+  vtkGetVector3Macro(EyePosition, double);
+  vtkSetMacro(ViewAngle, double);
+  vtkGetMacro(ViewAngle, double);
+  ///@}
+
+  ///@{
+  /**
    * What is cut away: the volume where this function is negative (inside a box, sphere or cylinder,
    * behind a plane). Default none. Planes, boxes, spheres and cylinders are cut exactly, other
-   * functions are sampled twice per smallest voxel edge.
+   * functions are sampled twice per smallest voxel edge. The solid shows a surface where it is cut
+   * with CapCutAway (default on), where the volume ends with CapBoundary (default off).
    */
   void SetCutAway(vtkImplicitFunction* function);
   vtkImplicitFunction* GetCutAway() const;
-  ///@}
-
-  ///@{
-  /** Whether the solid shows a surface where it is cut away. Default on. */
   vtkSetMacro(CapCutAway, bool);
   vtkGetMacro(CapCutAway, bool);
   vtkBooleanMacro(CapCutAway, bool);
-  ///@}
-
-  ///@{
-  /** Whether the solid shows a surface where the volume ends. Default off. */
   vtkSetMacro(CapBoundary, bool);
   vtkGetMacro(CapBoundary, bool);
   vtkBooleanMacro(CapBoundary, bool);
@@ -193,48 +164,37 @@ public:
   vtkMTimeType GetMTime() override;
 
   ///@{
-  /** The way the viewer looks, world, any length. Default 0 0 -1: from the top. */
+  /**
+   * The way the viewer looks, world, any length; default 0 0 -1: from the top. And what is shown
+   * upwards, which need not be perpendicular to it; default 0 1 0.
+   */
   vtkSetVector3Macro(ViewDirection, double);
   vtkGetVector3Macro(ViewDirection, double);
-  ///@}
-
-  ///@{
-  /** What is shown upwards, world; need not be perpendicular to ViewDirection. Default 0 1 0. */
   vtkSetVector3Macro(ViewUp, double);
   vtkGetVector3Macro(ViewUp, double);
   ///@}
 
   ///@{
   /**
-   * What is shown in the middle of the map, world mm. While a coordinate is VTK_DOUBLE_MAX (the
-   * default), the middle of the volume.
+   * What is shown in the middle of the map, and a point of the image plane, where depth is 0; world
+   * mm. While a coordinate is VTK_DOUBLE_MAX (the default): the middle of the volume, and its corner
+   * nearest the viewer, so that no depth is negative. The plane does not cut: a surface before it
+   * has a negative depth.
    */
   vtkSetVector3Macro(FocalPoint, double);
   vtkGetVector3Macro(FocalPoint, double);
-  ///@}
-
-  ///@{
-  /**
-   * A point of the image plane, world mm: where depth is 0. While a coordinate is VTK_DOUBLE_MAX
-   * (the default) the plane goes through the corner of the volume nearest the viewer, so that no
-   * depth is negative. The plane does not cut: a surface before it has a negative depth.
-   */
   vtkSetVector3Macro(PlaneOrigin, double);
   vtkGetVector3Macro(PlaneOrigin, double);
   ///@}
 
   ///@{
-  /** mm between pixels. Default 0: the smallest voxel edge. */
+  /**
+   * mm between pixels, default 0: the smallest voxel edge. And columns and rows of the map, 0
+   * (default): as many as show the whole volume, the first pixels on the volume's edge (with a
+   * FocalPoint, the middle one on it); otherwise the map is centred on the volume or FocalPoint.
+   */
   vtkSetMacro(PixelSpacing, double);
   vtkGetMacro(PixelSpacing, double);
-  ///@}
-
-  ///@{
-  /**
-   * Columns and rows of the map. 0 (default): as many as show the whole volume, the first pixels
-   * on the volume's edge (with a FocalPoint, the middle one on it). Otherwise the map is centred on
-   * the volume or the FocalPoint.
-   */
   vtkSetVector2Macro(ImageSize, int);
   vtkGetVector2Macro(ImageSize, int);
   ///@}

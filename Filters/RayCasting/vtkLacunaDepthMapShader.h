@@ -4,31 +4,21 @@
  * @brief picture of a depth map: Phong or depth-only shading, depth cue, lights, shadows
  *
  * Normals. Stored: those of the map (analytic or grey-level, as its maker wrote them). The other
- * methods look at the depths alone. Along its row and its column a pixel has an edge to the point
- * before (backward) and to the next (forward); the chosen tangents are perpendicular to the normal.
- * CentralDifference: between both neighbours, which darkens occluding edges. Gordon: mean of both
- * slopes (depth per mm across the ray), weighted by 1 up to a slope of 2, 1e-5 from 5 on, and a half
- * wave of the cosine between. Predicate: the first of nine cases, with the angles of both edges
- * against the plane perpendicular to the ray: (1) no neighbour: slope 0; (2, 3) one neighbour: its
- * edge; (4) angles differ by less than MaximumAngleChange: central; (5) both steeper than
- * MaximumAngle, opposite signs: 0; (6) both steeper, same sign: central; (7, 8) one steeper: the
- * other; (9) central. Where one neighbour is missing all methods take the other edge. Points are
+ * methods look at the depths alone: CentralDifference between both neighbours, which darkens
+ * occluding edges; Gordon: mean of both slopes, steep ones weighted down; Predicate: the first of the
+ * thesis's nine cases, which tell a discontinuity by MaximumAngle and MaximumAngleChange. Points are
  * taken in space, so a plane has its exact normal in perspective maps too.
  *
- * Shading. Phong: color x (Ambient + Diffuse sum I N.L) + white x Specular sum I cos^n, n =
- * SpecularPower, the angle being that between the mirrored light and the viewer. (Diffuse shading is
- * Specular 0.) DepthOnly: a brightness of 1 at the near end of the sphere around the data, 0 at its far
- * end, falling as 1/d^2 or 1/d (DepthLaw) from a source one diameter before the sphere. DepthCue 0..1
- * mixes that brightness into Phong: the far end is 1 - DepthCue as bright. The sphere is around the
- * volume if there is one, otherwise around the box of the map's points; distances are along the view,
- * in perspective from the eye.
+ * Shading. Phong: SurfaceColor x (Ambient + Diffuse sum I N.L) + white x Specular sum I cos^n, n =
+ * SpecularPower. DepthOnly: the nearer, the brighter. DepthCue mixes that brightness into Phong. It
+ * counts over the sphere around the volume, or around the map's points.
  *
- * Lights: any number, parallel or at positions; none: one at the viewpoint. With a volume at the second
- * input, a point that the volume's surface hides from a light gets none of it. The iso-value is that of
- * the map's IsoValues; what lies nearer to the point than ShadowBias along the ray is the point's own
- * surface and throws no shadow, nor does what CutAway takes away or what lies behind a lamp. The light
- * of a lamp in the solid has to leave the solid before it can be stopped. The light at the viewpoint
- * throws no shadow that could be seen.
+ * Shadows: a point that the volume's surface, at the iso-value of the map's depths, hides from a
+ * light gets none of it. What lies nearer to the point than ShadowBias along the ray is its own surface and
+ * throws no shadow, nor does what CutAway takes away or what lies behind a lamp. The light at the
+ * viewpoint throws none that could be seen.
+ *
+ * Formulas, the nine cases and pictures: Documentation/UserGuide/depth-map-shader.md.
  *
  * Input 0: a depth map, see vtkLacunaDepthMap.h. Input 1 (optional): vtkImageData with point scalars of
  * one component, at least two voxels along each axis.
@@ -86,13 +76,13 @@ public:
     Inverse            ///< between a point source and parallel light
   };
 
+  /// As in vtkLacunaBSplineIsoRayCaster.
   enum InterpolationType
   {
     BSpline = 0,
     InterpolatingBSpline,
     Trilinear
   };
-
   enum SolidSideType
   {
     Above = 0,
@@ -109,16 +99,12 @@ public:
   ///@}
 
   ///@{
-  /** Where the normals come from. Default Stored. */
+  /**
+   * Where the normals come from, default Stored. Of Predicate: what is steeper may be a discontinuity
+   * (degrees, 0..90, default 65), and angles that differ less are one surface (0..180, default 20).
+   */
   vtkSetMacro(NormalMethod, int);
   vtkGetMacro(NormalMethod, int);
-  ///@}
-
-  ///@{
-  /**
-   * Of Predicate: what is steeper may be a discontinuity (degrees, 0..90, default 65), and angles that
-   * differ less are one surface (0..180, default 20).
-   */
   vtkSetMacro(MaximumAngle, double);
   vtkGetMacro(MaximumAngle, double);
   vtkSetMacro(MaximumAngleChange, double);
@@ -126,16 +112,12 @@ public:
   ///@}
 
   ///@{
-  /** Phong (default) or DepthOnly. */
+  /**
+   * Phong (default) or DepthOnly. Parts of the light, >= 0, defaults 0.1, 0.7, 0.2: a surface towards
+   * the viewer is white. Phong's exponent: greater makes highlights smaller; at least 0.001, default 20.
+   */
   vtkSetMacro(Shading, int);
   vtkGetMacro(Shading, int);
-  ///@}
-
-  ///@{
-  /**
-   * Parts of the light, >= 0. Defaults 0.1, 0.7, 0.2: a surface towards the viewer is white. And Phong's
-   * exponent: greater makes highlights smaller; at least 0.001, default 20.
-   */
   vtkSetMacro(Ambient, double);
   vtkGetMacro(Ambient, double);
   vtkSetMacro(Diffuse, double);
@@ -158,17 +140,14 @@ public:
 
   ///@{
   /**
-   * How much darker the far end of the data is (0..1, default 0), and how brightness falls with depth
-   * (default InverseSquare).
+   * How much darker the far end of the data is (0..1, default 0); how brightness falls with depth
+   * (default InverseSquare); colors of the surface and of pixels without a depth, red green blue, 0..1
+   * (default white; black).
    */
   vtkSetMacro(DepthCue, double);
   vtkGetMacro(DepthCue, double);
   vtkSetMacro(DepthLaw, int);
   vtkGetMacro(DepthLaw, int);
-  ///@}
-
-  ///@{
-  /** Colors of the surface and of pixels without a depth, red green blue, 0..1. Default white; black. */
   vtkSetVector3Macro(SurfaceColor, double);
   vtkGetVector3Macro(SurfaceColor, double);
   vtkSetVector3Macro(BackgroundColor, double);
@@ -179,7 +158,8 @@ public:
   /**
    * Whether the volume, if there is one, throws shadows (default on); its point array with the grey
    * levels (default empty: the active scalars); the field between the voxels and its solid side, as the
-   * map was made (default BSpline, Above).
+   * map was made (default BSpline, Above). ShadowBias, see above: mm, >= 0; default 0: a tenth of the
+   * smallest voxel edge.
    */
   vtkSetMacro(CastShadows, bool);
   vtkGetMacro(CastShadows, bool);
@@ -190,10 +170,6 @@ public:
   vtkGetMacro(Interpolation, int);
   vtkSetMacro(SolidSide, int);
   vtkGetMacro(SolidSide, int);
-  ///@}
-
-  ///@{
-  /** See above. mm, >= 0; default 0: a tenth of the smallest voxel edge. */
   vtkSetMacro(ShadowBias, double);
   vtkGetMacro(ShadowBias, double);
   ///@}
