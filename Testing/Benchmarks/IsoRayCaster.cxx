@@ -206,11 +206,17 @@ void CTHeadReference(benchmark::State& state)
             Vec3 normal{ 0, 0, 0 };
             const double depth = caster.Distance(
               map.Plane.PixelPosition(column, static_cast<int>(row)), map.Plane.View, 500, normal);
-            map.Depth[column + 512 * row] = depth;
-            map.Valid[column + 512 * row] = !std::isnan(depth);
+            const std::int64_t i = column + 512 * row;
+            map.Depth[i] = depth;
+            map.Valid[i] = !std::isnan(depth);
+            for (int a = 0; a < 3; ++a)
+            {
+              map.Normals[3 * i + a] = static_cast<float>(-normal[a]);
+            }
           }
         }
       });
+    benchmark::DoNotOptimize(map.Normals.data());
   }
   state.counters["hits"] = static_cast<double>(std::count(map.Valid.begin(), map.Valid.end(), 1));
 }
