@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceRayCaster.h"
 
+#include "lacunaGreyRange.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaSliceFingerprint.h"
@@ -141,6 +142,8 @@ public:
   double IsoValue = 0;
   int SolidSide = 0;
   std::vector<lacuna::SliceFingerprint> Slices;
+  /// Of the first slices that have been cast; kept up only while it is of interest.
+  lacuna::GreyRange GreyLevels;
 
   /// Brings the casting up to date and returns how many slices had to be cast for that.
   std::size_t Update(const vtkLacunaSliceRayCaster* self, const Plan& plan,
@@ -162,6 +165,7 @@ public:
     else
     {
       known = 0;
+      this->GreyLevels = {};
       caster = nullptr; // its memory goes before there is a new one
       caster = std::make_unique<lacuna::SliceRayCaster>(plan.Plane, extent, self->IsoValue,
         self->SolidSide == Above ? lacuna::SolidSide::Above : lacuna::SolidSide::Below);
@@ -305,16 +309,29 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
          << across[0] << " " << across[1] << " " << across[2] << " or its opposite";
     warnings["edge-on"] = text.str();
   }
-  double range[2];
-  plan.Images->GreyLevels->GetFiniteRange(range, 0);
-  if (!hasSurface && !plan.IsMoreToCome() &&
-    !(this->IsoValue >= range[0] && this->IsoValue <= range[1]))
+  if (!hasSurface && !plan.IsMoreToCome())
   {
-    std::ostringstream text;
-    text << "IsoValue " << this->IsoValue
-         << " lies outside the grey levels of the slices, which range from " << range[0] << " to "
-         << range[1] << ": the map is empty";
-    warnings["IsoValue " + std::to_string(this->IsoValue)] = text.str();
+    // the pixels are looked at only now: it takes longer than to cast a slice
+    lacuna::GreyRange& range = this->Kept->GreyLevels;
+    if (!range.Contains(this->IsoValue))
+    {
+      range.Update(plan.GetSlices());
+    }
+    if (!range.Contains(this->IsoValue))
+    {
+      std::ostringstream text;
+      text << "IsoValue " << this->IsoValue << " lies outside the grey levels of the slices, ";
+      if (range.HasLevels())
+      {
+        text << "which range from " << range.GetLow() << " to " << range.GetHigh();
+      }
+      else
+      {
+        text << "none of which is a number";
+      }
+      text << ": the map is empty";
+      warnings["IsoValue " + std::to_string(this->IsoValue)] = text.str();
+    }
   }
   this->WarnOfNews(warnings, plan.Images->LeftOut);
 }

@@ -4,6 +4,7 @@
 #include "lacunaTestCasters.h"
 #include "lacunaTestReplay.h"
 #include "vtkCallbackCommand.h"
+#include "vtkDataArray.h"
 #include "vtkMath.h"
 
 #include <cmath>
@@ -104,6 +105,61 @@ void TestGrowingInput()
   caster->SetInputData(MakeStack(wider));
   caster->Update();
   LACUNA_CHECK(caster->GetNumberOfCastSlices() == 3);
+}
+
+// What is old is not looked at again: only casting tells whether there is a surface. VTK keeps the
+// range of an array that was asked for it.
+bool IsRangeKnown(vtkImageData* stack)
+{
+  vtkDataArray* levels = stack->GetPointData()->GetScalars();
+  return levels->HasInformation() &&
+    (levels->GetInformation()->Has(vtkDataArray::PER_FINITE_COMPONENT()) ||
+      levels->GetInformation()->Has(vtkDataArray::PER_COMPONENT()));
+}
+
+void TestNoPassOverAllPixels()
+{
+  vtkNew<Caster> caster;
+  FixView(caster);
+  const auto messages = lacunaCheck::Watch(caster);
+  const std::vector<Matrix4> poses = MakePoses(6);
+  for (const double isoValue : { 30.0, 90.0, 1000.0 })
+  {
+    caster->SetIsoValue(isoValue);
+    messages->Warnings.clear();
+    for (int count = 2; count <= 6; ++count)
+    {
+      const auto stack = MakeStack({ poses.begin(), poses.begin() + count });
+      caster->SetInputData(stack);
+      caster->Update();
+      LACUNA_CHECK_THAT(!IsRangeKnown(stack), "range of all at " + std::to_string(isoValue));
+    }
+  }
+  // what a live source has shown when the warning comes, and that it comes once
+  LACUNA_CHECK_CONTAINS(messages->Warnings,
+    "IsoValue 1000 lies outside the grey levels of the slices, which range from 0 to 38: ");
+  LACUNA_CHECK(messages->Warnings.find("IsoValue") == messages->Warnings.rfind("IsoValue"));
+}
+
+// Slices are counted with those of before.
+void TestRangeGrows()
+{
+  vtkNew<Caster> caster;
+  FixView(caster);
+  caster->SetIsoValue(70);
+  const auto messages = lacunaCheck::Watch(caster);
+  const std::vector<Matrix4> poses = MakePoses(6);
+  const auto update = [&](int count)
+  {
+    messages->Warnings.clear();
+    caster->SetInputData(MakeStack({ poses.begin(), poses.begin() + count }));
+    caster->Update();
+    return messages->Warnings;
+  };
+  LACUNA_CHECK_CONTAINS(update(2), "which range from 0 to 38");
+  caster->SetIsoValue(71);
+  LACUNA_CHECK_CONTAINS(update(3), "which range from 0 to 48");
+  LACUNA_CHECK_THAT(update(6).empty(), "now there is a surface");
 }
 
 // Slices that are still to come are not taken as black ones, and what has been said is not
@@ -300,6 +356,8 @@ void TestPipeline()
 int TestSliceRayCasterGrowth(int, char*[])
 {
   TestGrowingInput();
+  TestNoPassOverAllPixels();
+  TestRangeGrows();
   TestReplay();
   TestWarnings();
   TestPipeline();
