@@ -6,7 +6,7 @@
 Every third slice of the volume is kept. Depth maps of these by the three interpolations are compared with that of all
 slices (InterpolatingBSpline), along the surface's normal. Pixels count where all maps see the same surface, away from
 edges. bias: the mean. residual: RMS of what is left of the difference when its mean over 10 mm is taken away: ripple and
-detail that three slices do not hold. ripple: RMS of the part of the residual that repeats from slice to slice (3 mm and
+an error that depends on tilt, curvature and thin bone. ripple: RMS of the part of the residual that repeats from slice to slice (3 mm and
 its half; the same at other lengths is taken away as noise), and the median over the pixels.
 differences.png: trilinear, B-spline, interpolating B-spline, -0.5 mm (blue) to 0.5 mm (red, into the bone).
 """
