@@ -3,6 +3,7 @@
 
 #include "lacunaGateSignal.h"
 #include "lacunaParameterText.h"
+#include "lacunaPoseMatching.h"
 #include "lacunaSliceMotion.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -256,6 +257,16 @@ std::vector<double> vtkLacunaGateSlices::GetGates(
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaGateSlices::WarnOfEmptyKeys(const std::vector<double>& keys)
+{
+  const std::string warning = lacuna::DescribeEmptyKeys("the gate table's key", keys);
+  if (!warning.empty())
+  {
+    vtkWarningMacro(<< warning);
+  }
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
   vtkImageData* slices, vtkTable* table, vtkIdType count)
 {
@@ -263,6 +274,7 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByTime(
     lacuna::GateKind::Trigger };
   const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
   std::vector<double> rows = GetKeyColumnOf(table, this->KeyColumn, { "Timestamp", "Time" });
+  this->WarnOfEmptyKeys(rows);
   for (double& row : rows)
   {
     row += this->TimeOffset;
@@ -301,6 +313,7 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByFrame(
     GetField(slices, vtkLacunaTrackedSlices::FrameNumberName, count);
   const std::vector<double> rows =
     GetKeyColumnOf(table, this->KeyColumn, { "FrameNumber", "Frame" });
+  this->WarnOfEmptyKeys(rows);
   const std::vector<double> values = GetColumn(table, this->GateColumn);
   std::map<double, double> gateOfFrame;
   for (std::size_t row = 0; row < rows.size(); ++row)

@@ -138,6 +138,7 @@ private:
   std::vector<double> GetGates(vtkImageData* slices, vtkTable* table, vtkIdType count);
   std::vector<double> GetGatesByTime(vtkImageData* slices, vtkTable* table, vtkIdType count);
   std::vector<double> GetGatesByFrame(vtkImageData* slices, vtkTable* table, vtkIdType count);
+  void WarnOfEmptyKeys(const std::vector<double>& keys);
   std::vector<double> GetSpeeds(vtkImageData* slices, vtkIdType count);
   std::string DescribeParameters() const;
 

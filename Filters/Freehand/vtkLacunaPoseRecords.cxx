@@ -116,6 +116,17 @@ vtkLacunaPoseRecords::vtkLacunaPoseRecords(vtkTable* data, std::size_t slices,
   const lacuna::PoseTable table = lacuna::ReadPoseTable(
     columns.GetNumbers(poseColumns), poseColumns.size(), refused, request.Poses);
   this->Warnings = table.Warnings;
+  for (const int column : { others.Time, others.Frame })
+  {
+    const std::string warning = column < 0
+      ? std::string()
+      : lacuna::DescribeEmptyKeys(
+          "column '" + columns.GetNames()[column] + "'", columns.GetNumbers(column));
+    if (!warning.empty())
+    {
+      this->Warnings.push_back(warning);
+    }
+  }
   const Matches matches = Match(columns, others, table, slices, times, request);
   this->ToReference = lacuna::GatherPoses(table, matches);
 

@@ -155,6 +155,47 @@ std::vector<PoseMatch> MatchByTime(const std::vector<double>& sliceTimes,
 }
 
 //------------------------------------------------------------------------------
+std::string DescribeEmptyKeys(const std::string& name, const std::vector<double>& keys)
+{
+  std::vector<std::size_t> zeros;
+  double last = -std::numeric_limits<double>::infinity();
+  std::size_t pending = 0; // zeros since last that may be in their place
+  for (std::size_t row = 0; row < keys.size(); ++row)
+  {
+    if (keys[row] == 0)
+    {
+      zeros.push_back(row);
+      pending += last <= 0 ? 1 : 0;
+    }
+    else if (std::isfinite(keys[row]))
+    {
+      if (keys[row] < last)
+      {
+        return {}; // in no order: nothing is known
+      }
+      if (keys[row] > 0 && last <= 0)
+      {
+        // the zeros between a negative key and a positive one, or before all
+        zeros.erase(zeros.end() - static_cast<std::ptrdiff_t>(pending), zeros.end());
+      }
+      pending = 0;
+      last = keys[row];
+    }
+  }
+  if (last <= 0)
+  {
+    zeros.resize(zeros.size() - pending);
+  }
+  if (zeros.empty())
+  {
+    return {};
+  }
+  return name + " is 0 in " + DescribeItems("row", zeros) +
+    " and grows from row to row otherwise: if the cell is empty, write nan there, since ParaView "
+    "reads empty cells as 0";
+}
+
+//------------------------------------------------------------------------------
 std::vector<Matrix4> GatherPoses(const PoseTable& table, const std::vector<PoseMatch>& matches)
 {
   std::array<double, 16> nothing;

@@ -41,6 +41,12 @@ std::vector<PoseMatch> MatchByFrameNumber(
 std::vector<PoseMatch> MatchByTime(const std::vector<double>& sliceTimes,
   const std::vector<double>& rowTimes, const std::vector<char>& usable, double maximumGap);
 
+/// A warning when some cells of a column of keys (times, frame numbers) were probably empty in their
+/// file, which ParaView's reader of texts turns into 0; else an empty text. So are cells of 0 if
+/// those of all others grow from row to row, none backwards, and the zeros do not lie between their
+/// neighbours. name: what the column is called.
+std::string DescribeEmptyKeys(const std::string& name, const std::vector<double>& keys);
+
 /// The pose of every slice, to mm in the reference frame; all NaN where it has no row or no usable
 /// one.
 std::vector<Matrix4> GatherPoses(const PoseTable& table, const std::vector<PoseMatch>& matches);

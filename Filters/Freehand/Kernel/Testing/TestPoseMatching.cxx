@@ -101,3 +101,23 @@ TEST(PoseMatching, PosesAreInterpolated)
   EXPECT_FALSE(poses[2].IsFinite());
   EXPECT_FALSE(poses[3].IsFinite());
 }
+
+TEST(PoseMatching, TellsEmptyKeys)
+{
+  const auto describe = [](const std::vector<double>& keys)
+  { return DescribeEmptyKeys("t", keys); };
+  // those that are in their place, or whose place is not known
+  for (const std::vector<double>& keys :
+    { std::vector<double>{}, { 0 }, { 0, 1, 2 }, { 0, 0, 1 }, { -2, -1, 0, 1 }, { -2, -1, 0 },
+      { -1, NaN, 0, 0, NaN, 1 }, { 3, 1, 0, 2 }, { 3, 2, 1, 0 }, { 1, 2, 3 }, { 0, 0, 0 } })
+  {
+    EXPECT_EQ(describe(keys), "") << keys.size();
+  }
+  EXPECT_EQ(describe({ 5, 0, 7 }),
+    "t is 0 in row 1 and grows from row to row otherwise: if the cell is empty, write nan there, "
+    "since ParaView reads empty cells as 0");
+  EXPECT_EQ(describe({ 0, 0.1, 0, 0.3, 0 }).substr(0, 20), "t is 0 in rows 2, 4 ");
+  EXPECT_EQ(describe({ 5, NaN, 0, 7, 8 }).substr(0, 15), "t is 0 in row 2");
+  EXPECT_EQ(describe({ -5, 0, -3, 0, 3 }).substr(0, 16), "t is 0 in row 1 ");
+  EXPECT_EQ(describe({ 0, -3, 3 }).substr(0, 16), "t is 0 in row 0 ");
+}

@@ -69,6 +69,14 @@ void TestMatching()
   filter->SetFrameRate(2);
   filter->Update();
   CheckPose(filter->GetOutput(), 3, GetPose(1.5) * Matrix4::Scaling({ 0.5, 0.5, 0.5 }));
+
+  // a cell of the time that was empty
+  table = MakePoses(4);
+  AddColumn(table, "time", { 0, 1, 0, 3 });
+  filter = MakeFilter(stack, table, byTime);
+  messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("column 'time' is 0 in row 2 and grows"));
 }
 
 void TestStates()

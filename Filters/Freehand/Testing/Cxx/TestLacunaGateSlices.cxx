@@ -196,6 +196,22 @@ void TestMatching()
   LACUNA_CHECK_THAT(gated.Status == "88000", gated.Status);
 }
 
+// ParaView's reader of texts turns empty cells into 0.
+void TestEmptyCells()
+{
+  const auto slices = MakeStack(MakePoses(5)); // 0 .. 0.4 s
+  auto table = MakeTable("Time", { 0, 0.1, 0, 0.3, 0.4 }, "Gate", { 1, 1, 1, 1, 1 });
+  Gated gated = Gate(slices, table, [](auto*) {});
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "the gate table's key is 0 in row 2");
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "write nan");
+  table = MakeTable("Frame", { 0, 1, 2, 3, 4 }, "Gate", { 1, 1, 1, 1, 1 });
+  const auto byFrame = [](auto* f) { f->SetMatchByToFrameNumber(); };
+  gated = Gate(slices, table, byFrame);
+  LACUNA_CHECK_THAT(gated.Warnings.empty(), gated.Warnings);
+  table = MakeTable("Frame", { 1, 2, 0, 4 }, "Gate", { 1, 1, 1, 1 });
+  LACUNA_CHECK_CONTAINS(Gate(slices, table, byFrame).Warnings, "key is 0 in row 2");
+}
+
 void TestSpeed()
 {
   std::vector<Matrix4> poses = MakePoses(6); // 1 mm in 0.1 s
@@ -315,6 +331,7 @@ int TestLacunaGateSlices(int, char*[])
   TestValues();
   TestPhases();
   TestMatching();
+  TestEmptyCells();
   TestSpeed();
   TestTexts();
   TestErrors();
