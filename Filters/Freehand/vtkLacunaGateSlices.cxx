@@ -12,10 +12,12 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
@@ -162,6 +164,8 @@ int vtkLacunaGateSlices::RequestData(
     [&](vtkLacunaExecution&)
     {
       vtkImageData* slices = vtkImageData::GetData(inputs[0]);
+      const int* whole =
+        inputs[0]->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT());
       vtkImageData* output = vtkImageData::GetData(outputs);
       vtkTable* table = vtkTable::GetData(inputs[1]);
       output->ShallowCopy(slices);
@@ -213,7 +217,7 @@ int vtkLacunaGateSlices::RequestData(
       }
       if (this->SpeedLimit > 0)
       {
-        const std::vector<double> speeds = this->GetSpeeds(slices, count);
+        const std::vector<double> speeds = this->GetSpeeds(slices, whole, count);
         for (vtkIdType i = 0; i < count; ++i)
         {
           if (speeds[i] > this->SpeedLimit)
@@ -345,21 +349,46 @@ std::vector<double> vtkLacunaGateSlices::GetGatesByFrame(
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> vtkLacunaGateSlices::GetSpeeds(vtkImageData* slices, vtkIdType count)
+// As Slice Planes has them: a bad pose has none, and the slice after it has its speed since the
+// slice before it.
+std::vector<double> vtkLacunaGateSlices::GetSpeeds(
+  vtkImageData* slices, const int whole[6], vtkIdType count)
 {
   const vtkLacunaTrackedSlices tracked(slices);
   const std::vector<double> times = GetField(slices, vtkLacunaTrackedSlices::TimestampName, count);
+  const vtkLacunaPoseJudge::Sweep sweep =
+    vtkLacunaPoseJudge::JudgeSweep(slices, tracked, whole, false);
   std::vector<lacuna::Matrix4> poses;
-  std::vector<char> usable;
+  std::vector<std::string> problems;
   for (vtkIdType i = 0; i < count; ++i)
   {
     poses.push_back(tracked.GetImageToReference(i));
-    usable.push_back(tracked.IsUsable(i, 0xff) && poses.back().IsFinite() ? 1 : 0);
+    if (!sweep.Problems[i].empty())
+    {
+      problems.push_back(sweep.Problems[i]);
+    }
   }
-  const double* bounds = slices->GetBounds(); // columns and rows
-  return lacuna::GetSliceSpeeds(poses, usable, times,
-    { lacuna::Vec3{ bounds[0], bounds[2], 0 }, lacuna::Vec3{ bounds[1], bounds[2], 0 },
-      lacuna::Vec3{ bounds[0], bounds[3], 0 }, lacuna::Vec3{ bounds[1], bounds[3], 0 } });
+  if (!problems.empty())
+  {
+    constexpr std::size_t most = 10;
+    std::ostringstream text;
+    text << "the speed is not known of slices with bad poses, of which there "
+         << (problems.size() == 1 ? "is 1" : "are " + std::to_string(problems.size()))
+         << "; they are not marked";
+    for (std::size_t i = 0; i < problems.size() && i < most; ++i)
+    {
+      text << "\n" << problems[i];
+    }
+    text << (problems.size() > most ? "\n..." : "");
+    vtkWarningMacro(<< text.str());
+  }
+  const double* origin = slices->GetOrigin();
+  const double* spacing = slices->GetSpacing();
+  const double first[2] = { origin[0] + spacing[0] * whole[0], origin[1] + spacing[1] * whole[2] };
+  const double last[2] = { origin[0] + spacing[0] * whole[1], origin[1] + spacing[1] * whole[3] };
+  return lacuna::GetSliceSpeeds(poses, sweep.HasPose, times,
+    { lacuna::Vec3{ first[0], first[1], 0 }, lacuna::Vec3{ last[0], first[1], 0 },
+      lacuna::Vec3{ first[0], last[1], 0 }, lacuna::Vec3{ last[0], last[1], 0 } });
 }
 
 //------------------------------------------------------------------------------

@@ -118,7 +118,9 @@ public:
 
   ///@{
   /// Slices whose fastest corner moved by more than this many mm/s since the slice before are too
-  /// fast. 0 = no limit. Default: 0.
+  /// fast. Slices whose pose cannot be true (see vtkLacunaPoseJudge.h; a warning names them) have
+  /// no speed, and the slice after one has its speed since the slice before it, as in
+  /// vtkLacunaSlicePlanes. 0 = no limit. Default: 0.
   vtkSetMacro(SpeedLimit, double);
   vtkGetMacro(SpeedLimit, double);
   ///@}
@@ -139,7 +141,7 @@ private:
   std::vector<double> GetGatesByTime(vtkImageData* slices, vtkTable* table, vtkIdType count);
   std::vector<double> GetGatesByFrame(vtkImageData* slices, vtkTable* table, vtkIdType count);
   void WarnOfEmptyKeys(const std::vector<double>& keys);
-  std::vector<double> GetSpeeds(vtkImageData* slices, vtkIdType count);
+  std::vector<double> GetSpeeds(vtkImageData* slices, const int whole[6], vtkIdType count);
   std::string DescribeParameters() const;
 
   int GateType = Value;

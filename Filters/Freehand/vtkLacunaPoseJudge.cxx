@@ -3,6 +3,9 @@
 
 #include "lacunaPoseOutliers.h"
 #include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaTrackedSlices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -69,6 +72,51 @@ void vtkLacunaPoseJudge::AddOutliers(
          << " mm, more than " << found.LongestStep << " mm is a jump";
     problems[i] = text.str();
   }
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaPoseJudge::Sweep vtkLacunaPoseJudge::JudgeSweep(
+  vtkImageData* stack, const vtkLacunaTrackedSlices& tracked, const int whole[6], bool keepOutliers)
+{
+  const vtkIdType count = tracked.GetNumberOfSlices();
+  vtkDataArray* frames =
+    vtkLacunaFieldData::Find(stack, vtkLacunaTrackedSlices::FrameNumberName, 1, count);
+  const double* origin = stack->GetOrigin();
+  const double* spacing = stack->GetSpacing();
+  const lacuna::Matrix4 pixelToImage =
+    lacuna::Matrix4::Translation(
+      { origin[0] + spacing[0] * whole[0], origin[1] + spacing[1] * whole[2], 0 }) *
+    lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
+  std::vector<lacuna::SliceImage> images;
+  std::vector<Slice> slices;
+  images.reserve(static_cast<std::size_t>(count)); // slices refer to them
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    if (!(tracked.GetStatus(i) & vtkLacunaTrackedSlices::PoseInvalid))
+    {
+      lacuna::SliceImage image;
+      image.Width = std::max(2, whole[1] - whole[0] + 1); // poses may come without pictures
+      image.Height = std::max(2, whole[3] - whole[2] + 1);
+      image.PixelToReference = tracked.GetImageToReference(i) * pixelToImage;
+      image.Label = MakeLabel(i, frames, "");
+      images.push_back(image);
+      slices.push_back({ i, &images.back() });
+    }
+  }
+  std::vector<std::string> problems = FindUnusable(slices);
+  if (!keepOutliers)
+  {
+    AddOutliers(slices, problems);
+  }
+  Sweep sweep;
+  sweep.HasPose.assign(static_cast<std::size_t>(count), 0);
+  sweep.Problems.resize(static_cast<std::size_t>(count));
+  for (std::size_t s = 0; s < slices.size(); ++s)
+  {
+    sweep.HasPose[slices[s].Number] = problems[s].empty() ? 1 : 0;
+    sweep.Problems[slices[s].Number] = problems[s];
+  }
+  return sweep;
 }
 
 //------------------------------------------------------------------------------

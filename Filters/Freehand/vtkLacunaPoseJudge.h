@@ -11,6 +11,8 @@
 #include <vector>
 
 class vtkDataArray;
+class vtkImageData;
+class vtkLacunaTrackedSlices;
 
 /// Not a part of the module's interface.
 namespace vtkLacunaPoseJudge
@@ -32,6 +34,18 @@ std::vector<std::string> FindUnusable(const std::vector<Slice>& slices);
 /// Adds a sentence for each slice without one whose pose is an outlier among those without one (see
 /// lacunaPoseOutliers.h).
 void AddOutliers(const std::vector<Slice>& slices, std::vector<std::string>& problems);
+
+/// Which poses of all slices of a sweep can be used, whatever part of it a stack has.
+struct Sweep
+{
+  std::vector<char> HasPose; ///< that can be used
+  std::vector<std::string>
+    Problems; ///< of those whose pose cannot, though SliceStatus has no flag 1
+};
+
+/// whole: the extent of the stack's whole slices. Outliers cannot be used unless keepOutliers.
+Sweep JudgeSweep(vtkImageData* stack, const vtkLacunaTrackedSlices& tracked, const int whole[6],
+  bool keepOutliers);
 
 /// What messages call slice number of the stack: "slice 7 (frame 12)", with the frame's number from
 /// frames, which may be null, where it is another one. suffix ends it.

@@ -111,10 +111,12 @@ void vtkLacunaSlicePlaneBuilder::ReadSweep()
     poses.push_back(this->Tracked.GetImageToReference(i));
     times.push_back(this->Tracked.GetTimestamp(i));
   }
-  this->JudgePoses(poses);
+  // also of slices that are not in the stack: speeds depend on their poses
+  this->Sweep = vtkLacunaPoseJudge::JudgeSweep(
+    this->Stack, this->Tracked, this->Whole.data(), this->Settings.KeepOutliers);
   if (vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::TimestampName, 1, count))
   {
-    this->Speeds = lacuna::GetSliceSpeeds(poses, this->HasPose, times, this->GetCorners());
+    this->Speeds = lacuna::GetSliceSpeeds(poses, this->Sweep.HasPose, times, this->GetCorners());
   }
   vtkDataArray* calibration =
     vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::ImageToProbeName, 16, -1);
@@ -127,47 +129,6 @@ void vtkLacunaSlicePlaneBuilder::ReadSweep()
       this->BadCalibration |= !(radius <= vtkLacunaPoseJudge::LargestCoordinate);
     }
     this->Calibrated = !this->BadCalibration;
-  }
-}
-
-//------------------------------------------------------------------------------
-// Also of slices that are not in the stack: speeds depend on their poses.
-void vtkLacunaSlicePlaneBuilder::JudgePoses(const std::vector<lacuna::Matrix4>& poses)
-{
-  const auto count = static_cast<vtkIdType>(poses.size());
-  vtkDataArray* frames =
-    vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::FrameNumberName, 1, count);
-  const lacuna::Vec3 pixel = this->GetPixel(this->Whole[0], this->Whole[2]);
-  const lacuna::Vec3 step = this->GetPixel(this->Whole[0] + 1, this->Whole[2] + 1) - pixel;
-  const lacuna::Matrix4 pixelToImage =
-    lacuna::Matrix4::Translation(pixel) * lacuna::Matrix4::Scaling({ step[0], step[1], 1 });
-  std::vector<lacuna::SliceImage> images;
-  std::vector<vtkLacunaPoseJudge::Slice> slices;
-  images.reserve(poses.size()); // slices refer to them
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    if (!(this->Tracked.GetStatus(i) & vtkLacunaTrackedSlices::PoseInvalid))
-    {
-      lacuna::SliceImage image;
-      image.Width = Size(this->Whole, 0);
-      image.Height = Size(this->Whole, 1);
-      image.PixelToReference = poses[i] * pixelToImage;
-      image.Label = vtkLacunaPoseJudge::MakeLabel(i, frames, "");
-      images.push_back(image);
-      slices.push_back({ i, &images.back() });
-    }
-  }
-  std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(slices);
-  if (!this->Settings.KeepOutliers)
-  {
-    vtkLacunaPoseJudge::AddOutliers(slices, problems);
-  }
-  this->HasPose.assign(poses.size(), 0);
-  this->Problems.resize(poses.size());
-  for (std::size_t s = 0; s < slices.size(); ++s)
-  {
-    this->HasPose[slices[s].Number] = problems[s].empty() ? 1 : 0;
-    this->Problems[slices[s].Number] = problems[s];
   }
 }
 
@@ -195,9 +156,9 @@ void vtkLacunaSlicePlaneBuilder::ChooseSlices(int first, int last)
     {
       continue;
     }
-    if (!this->HasPose[slice.Number])
+    if (!this->Sweep.HasPose[slice.Number])
     {
-      const std::string& problem = this->Problems[slice.Number];
+      const std::string& problem = this->Sweep.Problems[slice.Number];
       firstProblem = firstProblem.empty() ? problem : firstProblem;
       if (k >= first && k <= last)
       {

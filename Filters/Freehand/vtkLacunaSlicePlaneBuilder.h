@@ -6,6 +6,7 @@
 
 #include "lacunaSliceLattice.h"
 #include "lacunaSliceMotion.h"
+#include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkSmartPointer.h"
 
@@ -77,7 +78,6 @@ private:
   };
 
   void ReadSweep();
-  void JudgePoses(const std::vector<lacuna::Matrix4>& poses);
   bool MayShow(vtkIdType slice) const;
   void ChooseSlices(int first, int last);
   vtkIdType GetCellsPerLattice() const;
@@ -94,8 +94,7 @@ private:
   vtkLacunaTrackedSlices Tracked;
   vtkSmartPointer<vtkDataArray> GreyLevels; // in one piece of memory
   std::array<int, 6> Whole;
-  std::vector<char> HasPose;         // that can be used
-  std::vector<std::string> Problems; // of the slices whose pose cannot, though SliceStatus has none
+  vtkLacunaPoseJudge::Sweep Sweep;
   std::vector<std::string> LeftOut;
   std::vector<double> Speeds;
   bool Calibrated = false;

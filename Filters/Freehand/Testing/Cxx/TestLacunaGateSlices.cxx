@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaGateSlices: flags, tables, phases, speed, errors, and what consumers make of it.
 #include "lacunaTestStacks.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGateSlices.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaSlicePlanes.h"
+#include "vtkPolyData.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -225,6 +228,53 @@ void TestSpeed()
   LACUNA_CHECK_THAT(gated.Status == "4444c4", gated.Status);
 }
 
+// A good slice is not too fast because the pose before it is bad; Slice Planes agrees.
+void TestSpeedBesideBadPoses()
+{
+  std::vector<Matrix4> poses = MakePoses(16); // 1 mm in 0.1 s
+  poses[5] = Matrix4::Translation({ 0, 500, 0 }) * poses[5];
+  poses[9](0, 3) = 1e60;
+  poses[12](1, 1) = 0; // singular
+  poses[14] = Matrix4::Translation({ 0, 0, 2 }) * poses[14];
+  const auto slices = MakeStack(poses);
+  const Gated gated = Gate(slices, nullptr, [](auto* f) { f->SetSpeedLimit(15); });
+  LACUNA_CHECK_THAT(gated.Status == "0000000000000040", gated.Status);
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "of which there are 3");
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "slice 5: its pose is an outlier");
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "slice 9: its pose puts a corner");
+  LACUNA_CHECK_CONTAINS(gated.Warnings, "slice 12");
+  vtkNew<vtkLacunaSlicePlanes> planes;
+  planes->SetInputData(slices);
+  planes->SetSpeedLimit(15);
+  planes->OutlineOnlyOn();
+  const auto messages = lacunaCheck::Watch(planes);
+  planes->Update();
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  vtkCellData* cells = planes->GetOutput()->GetCellData();
+  LACUNA_CHECK(planes->GetOutput()->GetNumberOfCells() == 13);
+  for (vtkIdType c = 0; c < planes->GetOutput()->GetNumberOfCells(); ++c)
+  {
+    const auto slice = static_cast<std::size_t>(cells->GetArray("SliceNumber")->GetTuple1(c));
+    LACUNA_CHECK_THAT(
+      (cells->GetArray("TooFast")->GetTuple1(c) != 0) == (gated.Status[slice] == '4'),
+      "slice " + std::to_string(slice));
+  }
+}
+
+// Poses without pictures have speeds, too.
+void TestSpeedOfPosesAlone()
+{
+  const auto poses = MakePoses(4);
+  vtkNew<vtkImageData> stack;
+  stack->SetDimensions(1, 1, 4);
+  stack->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  vtkLacunaTrackedSlices::Write(
+    stack, poses, { 0, 0.1, 0.15, 0.25 }, std::vector<unsigned char>(4, 2), { 0, 1, 2, 3 });
+  const Gated gated = Gate(stack, nullptr, [](auto* f) { f->SetSpeedLimit(15); });
+  LACUNA_CHECK_THAT(gated.Status == "2262", gated.Status + gated.Errors);
+  LACUNA_CHECK_THAT(gated.Warnings.empty(), gated.Warnings);
+}
+
 // Fields of sequence files come as texts.
 void TestTexts()
 {
@@ -333,6 +383,8 @@ int TestLacunaGateSlices(int, char*[])
   TestMatching();
   TestEmptyCells();
   TestSpeed();
+  TestSpeedBesideBadPoses();
+  TestSpeedOfPosesAlone();
   TestTexts();
   TestErrors();
   TestConsumer();
