@@ -242,10 +242,25 @@ int vtkLacunaSweptVolume::RequestData(
           sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
         warnings = CheckVolume(volume, plan);
         execution.SetStage(0.9, 1);
+        std::int64_t faults = 0;
         switch (plan.ScalarType)
         {
-          vtkTemplateMacro(volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
-            contributions->GetPointer(0), mask->GetPointer(0), execution));
+          vtkTemplateMacro(faults = volume.Write(static_cast<VTK_TT*>(intensity->GetVoidPointer(0)),
+                             contributions->GetPointer(0), mask->GetPointer(0), execution));
+        }
+        if (faults > 0)
+        {
+          warnings["not finite"] = std::to_string(faults) +
+            " voxels stay empty, since their grey levels would not be finite numbers: some pixels "
+            "are not (NaN or infinite), or are too large for the output";
+        }
+        const char* const filled = mask->GetPointer(0);
+        if (plan.Options.MaximumSliceGap > 0 && !plan.IsMoreToCome &&
+          plan.Options.Interpolation == lacuna::SweptVolume::Method::BetweenSlices &&
+          std::equal(whole, whole + 6, updateExtent) && !std::count(filled, filled + size, 1))
+        {
+          warnings["gap"] = "the volume is empty: all slices are further apart than "
+                            "MaximumSliceGap, which is in mm; 0 is no limit";
         }
         this->Growing->Finish();
       }

@@ -6,6 +6,7 @@
 #include "lacunaVoxelFilling.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -62,21 +63,31 @@ double GetIntensity(const WeightedVoxel<Real>& voxel, Compounding)
 }
 
 template <class T, class VoxelType>
-void WriteVoxels(const VoxelBlock<VoxelType>& voxels, Compounding compounding, T* intensity,
+std::int64_t WriteVoxels(const VoxelBlock<VoxelType>& voxels, Compounding compounding, T* intensity,
   unsigned int* contributions, char* mask, Execution& execution)
 {
   constexpr std::int64_t grain = 65536;
+  std::atomic<std::int64_t> faults{ 0 };
   execution.For(voxels.GetNumberOfVoxels(), grain,
     [&](std::int64_t begin, std::int64_t end)
     {
+      std::int64_t own = 0;
       for (std::int64_t i = begin; i < end; ++i)
       {
         const VoxelType& voxel = voxels.GetData()[i];
-        intensity[i] = Convert<T>(GetIntensity(voxel, compounding));
-        contributions[i] = voxel.Count;
-        mask[i] = voxel.Count > 0 ? 1 : 0;
+        const double value = GetIntensity(voxel, compounding);
+        const T grey = Convert<T>(value);
+        // of integers, the number that they were made of
+        const bool isFinite =
+          std::is_integral<T>::value ? std::isfinite(value) : std::isfinite(double(grey));
+        intensity[i] = isFinite ? grey : T(0);
+        contributions[i] = isFinite ? voxel.Count : 0;
+        mask[i] = isFinite && voxel.Count > 0 ? 1 : 0;
+        own += isFinite ? 0 : 1;
       }
+      faults += own;
     });
+  return faults;
 }
 
 // Footprints that reach across slices collect weighted samples.
@@ -313,17 +324,20 @@ void SweptVolume::AddPixels(
 }
 
 template <class T>
-void SweptVolume::Write(
+std::int64_t SweptVolume::Write(
   T* intensity, unsigned int* contributions, char* mask, Execution& execution) const
 {
-  std::visit([&](const auto& voxels)
-    { WriteVoxels(voxels, this->Settings.Compound, intensity, contributions, mask, execution); },
+  return std::visit(
+    [&](const auto& voxels) {
+      return WriteVoxels(
+        voxels, this->Settings.Compound, intensity, contributions, mask, execution);
+    },
     this->Voxels);
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): a type
 #define LACUNA_INSTANTIATE(T)                                                                      \
-  template void SweptVolume::Write(T*, unsigned int*, char*, Execution&) const
+  template std::int64_t SweptVolume::Write(T*, unsigned int*, char*, Execution&) const
 LACUNA_INSTANTIATE(char);
 LACUNA_INSTANTIATE(signed char);
 LACUNA_INSTANTIATE(unsigned char);

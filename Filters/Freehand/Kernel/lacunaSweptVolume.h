@@ -86,9 +86,12 @@ public:
 
   /// Writes the present state, x fastest: intensity (T is any arithmetic type; rounded once and cut
   /// to the range of T when T is an integer; 0 where nothing contributed), contributions (how many
-  /// samples made a voxel) and mask (1 where there are any, else 0).
+  /// samples made a voxel) and mask (1 where there are any, else 0). A voxel whose grey level is not
+  /// finite, because it needs pixels that are not or is beyond the range of T, is written as if
+  /// nothing contributed. Returns the number of these.
   template <class T>
-  void Write(T* intensity, unsigned int* contributions, char* mask, Execution& execution) const;
+  std::int64_t Write(
+    T* intensity, unsigned int* contributions, char* mask, Execution& execution) const;
 
 private:
   void AddPairs(

@@ -35,9 +35,10 @@ struct Voxel
     {
       this->Value += sample;
     }
-    else if (this->Count == 0 || sample > this->Value)
+    else
     {
-      this->Value = sample;
+      // a sample that is not finite makes the sum, and so the voxel, not finite in any order
+      this->Value = this->Count == 0 || sample > this->Value ? sample : this->Value + 0 * sample;
     }
     ++this->Count;
   }

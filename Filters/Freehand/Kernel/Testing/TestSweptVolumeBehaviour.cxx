@@ -69,7 +69,7 @@ std::string GetError(const std::vector<SliceImage>& slices)
 
 // A volume of one voxel that holds the given grey level.
 template <class T>
-T WriteOne(double grey)
+T WriteOne(double grey, unsigned int contributions = 1)
 {
   SyntheticSweep<double> sweep(2, 2, ScalarType::Float64);
   sweep.Add({}, [&](int, int) { return grey; });
@@ -79,7 +79,8 @@ T WriteOne(double grey)
   options.Sampling = PixelSampling::Bilinear;
   options.DoublePrecision = true;
   const auto volume = Reconstruct<T>(sweep.Slices, grid, GetExtent(grid), options);
-  EXPECT_EQ(volume.Contributions[0], 1U);
+  EXPECT_EQ(volume.Contributions[0], contributions);
+  EXPECT_EQ(volume.Mask[0], contributions > 0 ? 1 : 0);
   return volume.Intensity[0];
 }
 }
@@ -358,9 +359,71 @@ TEST(SweptVolumeBehaviour, RoundsOnceAndStaysInTheRangeOfTheType)
   EXPECT_EQ(WriteOne<int>(-1e30), std::numeric_limits<int>::min());
   EXPECT_EQ(WriteOne<long long>(9.3e18), std::numeric_limits<long long>::max());
   EXPECT_EQ(WriteOne<long long>(4503599627370497.0), 4503599627370497LL);
-  EXPECT_EQ(WriteOne<unsigned char>(std::nan("")), 0);
-  EXPECT_TRUE(std::isnan(WriteOne<float>(std::nan(""))));
   EXPECT_EQ(WriteOne<double>(0.1), 0.1);
+  // what is not finite does not exist
+  EXPECT_EQ(WriteOne<unsigned char>(std::nan(""), 0), 0);
+  EXPECT_EQ(WriteOne<float>(std::nan(""), 0), 0);
+  EXPECT_EQ(WriteOne<double>(std::numeric_limits<double>::infinity(), 0), 0);
+  EXPECT_EQ(WriteOne<double>(1e300), 1e300);
+  EXPECT_EQ(WriteOne<float>(1e300, 0), 0);
+}
+
+// A pixel that is not finite makes holes of the voxels that need it, and of no others.
+TEST(SweptVolumeBehaviour, PixelsThatAreNotFiniteDoNotExist)
+{
+  for (const double bad : { std::nan(""), std::numeric_limits<double>::infinity() })
+  {
+    for (const int slice : { 0, 2, 4 })
+    {
+      const auto make = [&](double grey)
+      {
+        SyntheticSweep<float> sweep(21, 17, ScalarType::Float32);
+        for (int n = 0; n < 5; ++n)
+        {
+          sweep.Add(Matrix4::Translation({ 0, 0, static_cast<double>(n) }),
+            [&](int x, int y)
+            { return n == slice && x == 10 && y == 8 ? grey : 100.0 + x + 3 * y + 20 * n; });
+        }
+        return sweep;
+      };
+      const auto sweep = make(bad);
+      const auto good = make(50);
+      for (const SweptVolume::Options& options : GetAllOptions())
+      {
+        const VolumeGrid grid = MakeGrid(sweep.Slices, { 1, 1, 0.5 });
+        const auto volume = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options);
+        const auto other = Reconstruct<float>(good.Slices, grid, GetExtent(grid), options);
+        int holes = 0;
+        for (int k = 0; k < grid.Dimensions[2]; ++k)
+        {
+          for (int j = 0; j < grid.Dimensions[1]; ++j)
+          {
+            for (int i = 0; i < grid.Dimensions[0]; ++i)
+            {
+              const std::size_t v = i +
+                static_cast<std::size_t>(grid.Dimensions[0]) *
+                  (j + static_cast<std::size_t>(grid.Dimensions[1]) * k);
+              if (volume.Mask[v] == other.Mask[v])
+              {
+                ASSERT_EQ(volume.Intensity[v], other.Intensity[v]);
+                ASSERT_EQ(volume.Contributions[v], other.Contributions[v]);
+                continue;
+              }
+              ++holes;
+              ASSERT_EQ(volume.Intensity[v], 0);
+              ASSERT_EQ(volume.Contributions[v], 0U);
+              const double reach = 2 + 2 * options.FootprintScale;
+              EXPECT_LE(std::abs(i - 10), reach);
+              EXPECT_LE(std::abs(j - 8), reach);
+              EXPECT_LE(std::abs(0.5 * k - slice), reach);
+            }
+          }
+        }
+        EXPECT_GT(holes, 0);
+        EXPECT_EQ(volume.Faults, holes);
+      }
+    }
+  }
 }
 
 // One voxel larger than all the world, at the corner of slices that lie 0.3 mm apart.

@@ -76,6 +76,7 @@ struct WrittenVolume
   std::vector<T> Intensity;
   std::vector<unsigned int> Contributions;
   std::vector<char> Mask;
+  std::int64_t Faults = 0; ///< voxels left empty since they are not finite
 
   bool operator==(const WrittenVolume& other) const
   {
@@ -110,7 +111,7 @@ WrittenVolume<T> Write(const SweptVolume& volume, const std::array<int, 6>& exte
   written.Contributions.resize(size);
   written.Mask.resize(size);
   ThreadExecution execution(threads);
-  volume.Write(
+  written.Faults = volume.Write(
     written.Intensity.data(), written.Contributions.data(), written.Mask.data(), execution);
   return written;
 }

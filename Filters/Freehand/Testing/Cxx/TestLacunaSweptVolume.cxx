@@ -434,6 +434,41 @@ void TestPipeline()
   stopped->Update();
   LACUNA_CHECK_THAT(stopped->GetOutput()->GetNumberOfPoints() == 0, "nothing is left when stopped");
 }
+
+// Pixels that are not finite make holes, and gaps that are too wide an empty volume: both are said.
+void TestWarningsOfHoles()
+{
+  const auto stack = MakeStack(MakePoses(5), VTK_FLOAT);
+  stack->SetScalarComponentFromDouble(6, 4, 2, 0, std::numeric_limits<double>::quiet_NaN());
+  vtkNew<vtkLacunaSweptVolume> filter;
+  filter->SetInputData(stack);
+  filter->SetOutputSpacing(0.5, 0.5, 0.5);
+  filter->SetPixelSamplingToNearest();
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "5 voxels stay empty");
+  vtkImageData* volume = filter->GetOutput();
+  LACUNA_CHECK(GetValue(volume, "vtkValidPointMask", 6, 4, 4) == 0);
+  LACUNA_CHECK(GetValue(volume, "Contributions", 6, 4, 4) == 0);
+  LACUNA_CHECK(GetValue(volume, "Intensity", 6, 4, 4) == 0);
+  LACUNA_CHECK(GetValue(volume, "vtkValidPointMask", 5, 4, 4) == 1);
+  messages->Warnings.clear();
+  filter->Modified();
+  filter->Update();
+  LACUNA_CHECK_THAT(messages->Warnings.empty(), "said once");
+
+  vtkNew<vtkLacunaSweptVolume> narrow;
+  narrow->SetInputData(MakeStack(MakePoses(5)));
+  narrow->SetOutputSpacing(0.5, 0.5, 0.5);
+  narrow->SetMaximumSliceGap(1.5);
+  const auto said = lacunaCheck::Watch(narrow);
+  narrow->Update();
+  LACUNA_CHECK_THAT(said->Warnings.empty(), said->Warnings);
+  narrow->SetMaximumSliceGap(0.5);
+  narrow->Update();
+  LACUNA_CHECK_CONTAINS(said->Warnings, "the volume is empty: all slices are further apart");
+  LACUNA_CHECK_THAT(said->Errors.empty(), said->Errors);
+}
 }
 
 int TestLacunaSweptVolume(int, char*[])
@@ -444,5 +479,6 @@ int TestLacunaSweptVolume(int, char*[])
   TestParts();
   TestErrors();
   TestPipeline();
+  TestWarningsOfHoles();
   return lacunaCheck::Result();
 }
