@@ -80,14 +80,160 @@ public:
       lacuna::SmallestEdgeOf(frame.IndexToWorld), view, Eye(self), self->ViewAngle);
   }
 
-  /// Rings round voxels like +-1e20 reach far: say so.
+  /// Voxels so far from the iso-value that the rings of the interpolating spline round them reach
+  /// far, like padding of 1e9 and more. No data of 16 bits are, whatever the iso-value.
   static bool IsPadded(const lacuna::IsoRayCaster& caster, double isoValue)
   {
-    const double below = isoValue - caster.GetMinimum();
-    const double above = caster.GetMaximum() - isoValue;
-    const double greatest = std::max(below, above);
-    return greatest > 1e5 * std::min(below, above) ||
-      greatest > 1e10 * std::max(1.0, std::abs(isoValue));
+    const double greatest =
+      std::max(isoValue - caster.GetMinimum(), caster.GetMaximum() - isoValue);
+    return greatest > 1e4 * std::max(65536.0, std::abs(isoValue));
+  }
+
+  /// What the iso-values of one request share.
+  struct Casting
+  {
+    const lacuna::IsoRayCaster& Caster;
+    std::string ArrayName;
+    lacuna::ImagePlane Plane;
+    std::array<int, 4> Extent;
+    lacuna::RayRequest Request;
+    vtkImageData* Output;
+  };
+
+  static vtkDataArray* FindScalars(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* input)
+  {
+    vtkPointData* inputData = input->GetPointData();
+    vtkDataArray* scalars = self->ScalarArray.empty()
+      ? inputData->GetScalars()
+      : inputData->GetArray(self->ScalarArray.c_str());
+    if (!scalars)
+    {
+      throw std::runtime_error(self->ScalarArray.empty()
+          ? "the volume has no active point scalars: choose an array"
+          : "the volume has no point array '" + self->ScalarArray + "' of numbers");
+    }
+    const std::string name = scalars->GetName() ? scalars->GetName() : "";
+    if (scalars->GetNumberOfComponents() != 1)
+    {
+      throw std::runtime_error("array '" + name + "' has " +
+        std::to_string(scalars->GetNumberOfComponents()) +
+        " components; a surface needs one grey level per voxel");
+    }
+    if (scalars->GetNumberOfTuples() != input->GetNumberOfPoints())
+    {
+      throw std::runtime_error("array '" + name + "' has not one value per voxel");
+    }
+    return scalars;
+  }
+
+  /// An iso-value that the voxels do not reach may still have a surface: caps, and with an
+  /// interpolating spline its overshoot. So this is said after the cast.
+  static void WarnOfIsoValue(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting,
+    double isoValue, vtkDataArray* depth)
+  {
+    const double minimum = casting.Caster.GetMinimum();
+    const double maximum = casting.Caster.GetMaximum();
+    if (minimum > maximum)
+    {
+      vtkWarningWithObjectMacro(self,
+        "no voxel of array '" << casting.ArrayName << "' is a finite number: " << depth->GetName()
+                              << " is empty");
+      return;
+    }
+    if (!(isoValue >= minimum && isoValue <= maximum))
+    {
+      bool hit = false;
+      for (vtkIdType i = 0; i < depth->GetNumberOfTuples() && !hit; ++i)
+      {
+        hit = !std::isnan(depth->GetComponent(i, 0));
+      }
+      const bool isAllSolid = self->SolidSide == Above ? isoValue < minimum : isoValue > maximum;
+      std::string seen = std::string(depth->GetName()) + " is empty";
+      if (hit)
+      {
+        seen = self->Interpolation == InterpolatingBSpline
+          ? "what is seen is the overshoot of the spline between the voxels"
+          : "what is seen is";
+        seen += isAllSolid
+          ? (self->Interpolation == InterpolatingBSpline ? ", or where the solid is cut or ends"
+                                                         : " where the solid is cut or ends")
+          : "";
+      }
+      vtkWarningWithObjectMacro(self,
+        "iso-value " << isoValue << " lies outside the values of array '" << casting.ArrayName
+                     << "', which range from " << minimum << " to " << maximum << ": " << seen);
+    }
+    if (self->Interpolation == InterpolatingBSpline && IsPadded(casting.Caster, isoValue))
+    {
+      vtkWarningWithObjectMacro(self,
+        "array '" << casting.ArrayName << "' has values from " << minimum << " to " << maximum
+                  << ", very far from the iso-value " << isoValue
+                  << ": round such voxels the spline that goes through all voxels "
+                     "swings far up and down. Replace padding values by that of "
+                     "air with Threshold or Calculator, or choose BSpline");
+    }
+  }
+
+  /// Adds the arrays of one iso-value to the map.
+  static void Cast(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting, std::size_t i,
+    vtkLacunaExecution& execution)
+  {
+    const bool isFirst = i == 0;
+    const double isoValue = self->IsoValues[i];
+    const std::string number = isFirst ? "" : "_" + std::to_string(i);
+    const vtkIdType pixels = casting.Output->GetNumberOfPoints();
+    vtkPointData* pointData = casting.Output->GetPointData();
+    const auto depth =
+      View::MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName + number, pixels);
+    const auto normals =
+      View::MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName + number, pixels, 3);
+    const auto mask =
+      isFirst ? View::MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, pixels) : nullptr;
+    const auto thickness = isFirst && self->ComputeThickness
+      ? View::MakeArray<vtkDoubleArray>(ThicknessName, pixels)
+      : nullptr;
+    lacuna::RayRequest request = casting.Request;
+    request.Thickness = thickness ? thickness->GetPointer(0) : nullptr;
+    casting.Caster.Cast(casting.Plane, isoValue,
+      { casting.Extent, depth->GetPointer(0), mask ? mask->GetPointer(0) : nullptr,
+        normals->GetPointer(0) },
+      request, execution);
+    WarnOfIsoValue(self, casting, isoValue, depth);
+    pointData->AddArray(depth);
+    pointData->AddArray(normals);
+    if (isFirst)
+    {
+      pointData->AddArray(mask);
+      pointData->SetNormals(normals);
+      if (thickness)
+      {
+        pointData->AddArray(thickness);
+      }
+    }
+  }
+
+  /// The parameters that the map says of itself.
+  static std::string Describe(vtkLacunaBSplineIsoRayCaster* self, const Casting& casting)
+  {
+    lacuna::ParameterText parameters;
+    parameters.Add("Array", casting.ArrayName)
+      .Add("IsoValues", self->IsoValues)
+      .Add("Interpolation", self->Interpolation)
+      .Add("SolidSide", self->SolidSide)
+      .Add("ViewDirection", self->ViewDirection)
+      .Add("ViewUp", self->ViewUp)
+      .Add("PlaneOrigin", casting.Plane.Origin.Elements)
+      .Add("PixelSpacing", casting.Plane.PixelSpacing)
+      .Add("ImageSize", casting.Plane.Size);
+    if (casting.Request.Eye)
+    {
+      parameters.Add("EyePosition", casting.Request.Eye->Elements);
+    }
+    parameters.Add("NormalMethod", self->NormalMethod)
+      .Add("CutAway", self->CutAway ? self->CutAway->GetClassName() : "None")
+      .Add("CapCutAway", self->CapCutAway)
+      .Add("CapBoundary", self->CapBoundary);
+    return parameters.Get();
   }
 };
 
@@ -240,27 +386,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       {
         return;
       }
-      vtkPointData* inputData = input->GetPointData();
-      vtkDataArray* scalars = this->ScalarArray.empty()
-        ? inputData->GetScalars()
-        : inputData->GetArray(this->ScalarArray.c_str());
-      if (!scalars)
-      {
-        throw std::runtime_error(this->ScalarArray.empty()
-            ? "the volume has no active point scalars: choose an array"
-            : "the volume has no point array '" + this->ScalarArray + "' of numbers");
-      }
-      const std::string name = scalars->GetName() ? scalars->GetName() : "";
-      if (scalars->GetNumberOfComponents() != 1)
-      {
-        throw std::runtime_error("array '" + name + "' has " +
-          std::to_string(scalars->GetNumberOfComponents()) +
-          " components; a surface needs one grey level per voxel");
-      }
-      if (scalars->GetNumberOfTuples() != input->GetNumberOfPoints())
-      {
-        throw std::runtime_error("array '" + name + "' has not one value per voxel");
-      }
+      vtkDataArray* scalars = Internals::FindScalars(this, input);
       if (this->IsoValues.empty())
       {
         throw std::runtime_error("no iso-value is given: add one to IsoValues");
@@ -281,11 +407,11 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       }
       output->SetExtent(extent);
       vtkLacunaDepthMap::SetGeometry(output, plane);
-      const vtkIdType pixels = output->GetNumberOfPoints();
-      const auto mask = View::MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, pixels);
 
       const lacuna::Vec3 eye = Internals::Eye(this);
-      lacuna::RayRequest request;
+      Internals::Casting casting{ caster, scalars->GetName() ? scalars->GetName() : "", plane,
+        { extent[0], extent[1], extent[2], extent[3] }, {}, output };
+      lacuna::RayRequest& request = casting.Request;
       request.Eye = this->Projection == Perspective ? &eye : nullptr;
       request.CapCutAway = this->CapCutAway;
       request.CapBoundary = this->CapBoundary;
@@ -307,61 +433,17 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
           lacuna::CornersOf(frame.IndexToWorld, frame.Size));
         request.CutAway = cutAway.get();
       }
-      vtkSmartPointer<vtkDoubleArray> thickness;
-
       const std::size_t count = this->IsoValues.size();
       for (std::size_t i = 0; i < count; ++i)
       {
-        const double isoValue = this->IsoValues[i];
-        const std::string number = i ? "_" + std::to_string(i) : "";
-        const auto depth =
-          View::MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName + number, pixels);
-        const auto normals =
-          View::MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName + number, pixels, 3);
-        if (!(isoValue >= caster.GetMinimum() && isoValue <= caster.GetMaximum()))
-        {
-          vtkWarningMacro("iso-value " << isoValue << " lies outside the values of array '" << name
-                                       << "', which range from " << caster.GetMinimum() << " to "
-                                       << caster.GetMaximum() << ": " << depth->GetName()
-                                       << " is empty");
-        }
-        if (this->Interpolation == InterpolatingBSpline && Internals::IsPadded(caster, isoValue))
-        {
-          vtkWarningMacro("array '"
-            << name << "' has values from " << caster.GetMinimum() << " to " << caster.GetMaximum()
-            << ", very far from the iso-value " << isoValue
-            << ": round such voxels the spline that goes through all voxels "
-               "swings far up and down. Replace padding values by that of "
-               "air with Threshold or Calculator, or choose BSpline");
-        }
-        request.Thickness = nullptr;
-        if (i == 0 && this->ComputeThickness)
-        {
-          thickness = View::MakeArray<vtkDoubleArray>(ThicknessName, pixels);
-          request.Thickness = thickness->GetPointer(0);
-        }
         execution.SetStage(0.1 + 0.9 * i / count, 0.1 + 0.9 * (i + 1) / count);
-        caster.Cast(plane, isoValue,
-          { { extent[0], extent[1], extent[2], extent[3] }, depth->GetPointer(0),
-            i ? nullptr : mask->GetPointer(0), normals->GetPointer(0) },
-          request, execution);
-        vtkPointData* pointData = output->GetPointData();
-        pointData->AddArray(depth);
-        pointData->AddArray(normals);
-        if (i == 0)
-        {
-          pointData->AddArray(mask);
-          pointData->SetNormals(normals);
-          if (thickness)
-          {
-            pointData->AddArray(thickness);
-          }
-        }
+        Internals::Cast(this, casting, i, execution);
       }
       output->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
-      if (caster.GetNumberOfNonFiniteVoxels() > 0)
+      if (caster.GetNumberOfNonFiniteVoxels() > 0 && caster.GetMinimum() <= caster.GetMaximum())
       {
-        vtkWarningMacro("" << caster.GetNumberOfNonFiniteVoxels() << " voxels of array '" << name
+        vtkWarningMacro("" << caster.GetNumberOfNonFiniteVoxels() << " voxels of array '"
+                           << casting.ArrayName
                            << "' are not finite numbers and are taken to be empty");
       }
 
@@ -378,25 +460,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       {
         sources.push_back(start);
       }
-      lacuna::ParameterText parameters;
-      parameters.Add("Array", name)
-        .Add("IsoValues", this->IsoValues)
-        .Add("Interpolation", this->Interpolation)
-        .Add("SolidSide", this->SolidSide)
-        .Add("ViewDirection", this->ViewDirection)
-        .Add("ViewUp", this->ViewUp)
-        .Add("PlaneOrigin", plane.Origin.Elements)
-        .Add("PixelSpacing", plane.PixelSpacing)
-        .Add("ImageSize", plane.Size);
-      if (request.Eye)
-      {
-        parameters.Add("EyePosition", eye.Elements);
-      }
-      parameters.Add("NormalMethod", this->NormalMethod)
-        .Add("CutAway", this->CutAway ? this->CutAway->GetClassName() : "None")
-        .Add("CapCutAway", this->CapCutAway)
-        .Add("CapBoundary", this->CapBoundary);
-      vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
+      vtkLacunaProvenance::Record(output, this, sources, Internals::Describe(this, casting));
     });
 }
 

@@ -57,13 +57,21 @@ lacuna::ShadowCaster vtkLacunaShadows::Prepare(vtkObject* owner, vtkImageData* m
   lacuna::ShadowCaster shadows;
   shadows.Caster = &caster;
   shadows.IsoValue = IsoValueOf(map, settings.DepthArray);
-  if (!(shadows.IsoValue >= caster.GetMinimum() && shadows.IsoValue <= caster.GetMaximum()))
+  if (caster.GetMinimum() > caster.GetMaximum())
   {
+    vtkWarningWithObjectMacro(
+      owner, "no voxel of the volume is a finite number: it throws no shadows");
+  }
+  else if (!(shadows.IsoValue >= caster.GetMinimum() && shadows.IsoValue <= caster.GetMaximum()))
+  {
+    const bool mayOvershoot =
+      settings.Interpolation == static_cast<int>(lacuna::FieldInterpolation::InterpolatingBSpline);
     vtkWarningWithObjectMacro(owner,
       "the map's iso-value " << shadows.IsoValue
                              << " lies outside the volume's values, which range "
                              << "from " << caster.GetMinimum() << " to " << caster.GetMaximum()
-                             << ": it throws no shadows");
+                             << (mayOvershoot ? ": only the spline's overshoot throws shadows"
+                                              : ": it throws no shadows"));
   }
   const lacuna::VoxelVolume& voxels = caster.GetVolume();
   const double edge = lacuna::SmallestEdgeOf(voxels.IndexToWorld);

@@ -20,6 +20,7 @@
 #include "vtkSphere.h"
 #include "vtkTransform.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -269,6 +270,98 @@ void TestErrors()
   LACUNA_CHECK_THAT(
     messages->HasWarning("-1e+20") && messages->HasWarning("Threshold"), "padding values ring");
 }
+
+/// What is warned of at an iso-value.
+std::string WarningsOf(
+  vtkImageData* volume, double isoValue, int interpolation,
+  const std::function<void(Caster*)>& set = [](Caster*) {})
+{
+  const auto caster = MakeCaster(volume);
+  caster->SetIsoValue(0, isoValue);
+  caster->SetInterpolation(interpolation);
+  set(caster);
+  const auto messages = lacunaCheck::Watch(caster);
+  caster->Update();
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  return messages->Warnings;
+}
+
+int CountHits(vtkImageData* volume, double isoValue, int interpolation)
+{
+  const auto caster = MakeCaster(volume);
+  caster->SetIsoValue(0, isoValue);
+  caster->SetInterpolation(interpolation);
+  caster->Update();
+  vtkDataArray* depth = caster->GetOutput()->GetPointData()->GetArray("Depth");
+  int hits = 0;
+  for (vtkIdType i = 0; i < depth->GetNumberOfTuples(); ++i)
+  {
+    hits += !std::isnan(depth->GetTuple1(i));
+  }
+  return hits;
+}
+
+/// Iso-values that no voxel reaches.
+void TestBeyondTheVoxels()
+{
+  const auto box = MakeVolume(
+    [](const double* p) {
+      return std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) < 7 ? 100.0 : 0.0;
+    });
+  LACUNA_CHECK(CountHits(box, 104, Caster::InterpolatingBSpline) > 100);
+  const std::string overshoot = WarningsOf(box, 104, Caster::InterpolatingBSpline);
+  LACUNA_CHECK_CONTAINS(overshoot, "range from 0 to 100: what is seen is the overshoot");
+  LACUNA_CHECK_THAT(overshoot.find("empty") == std::string::npos, overshoot);
+  LACUNA_CHECK_CONTAINS(
+    WarningsOf(box, 1000, Caster::InterpolatingBSpline), "from 0 to 100: Depth is empty");
+  for (const int interpolation : { Caster::BSpline, Caster::Trilinear })
+  {
+    LACUNA_CHECK(CountHits(box, 104, interpolation) == 0);
+    LACUNA_CHECK_CONTAINS(WarningsOf(box, 104, interpolation), "from 0 to 100: Depth is empty");
+  }
+  LACUNA_CHECK_CONTAINS(WarningsOf(box, -1, Caster::BSpline, [](Caster* c) { c->CapBoundaryOn(); }),
+    "from 0 to 100: what is seen is where the solid is cut or ends");
+  LACUNA_CHECK(WarningsOf(box, 100, Caster::BSpline).empty());
+
+  const auto nothing = MakeVolume([](const double*) { return std::nan(""); });
+  for (const int interpolation : { Caster::BSpline, Caster::InterpolatingBSpline })
+  {
+    const std::string warnings = WarningsOf(nothing, 5, interpolation);
+    LACUNA_CHECK_CONTAINS(warnings, "no voxel of array 'Values' is a finite number");
+    LACUNA_CHECK_THAT(warnings.find("inf") == std::string::npos, warnings);
+    LACUNA_CHECK(CountHits(nothing, 5, interpolation) == 0);
+  }
+}
+
+/// Padding is found, and nothing is taken for it in data of 16 bits.
+void TestPadding()
+{
+  const auto swings = [](vtkImageData* volume, double isoValue)
+  {
+    return WarningsOf(volume, isoValue, Caster::InterpolatingBSpline).find("swings") !=
+      std::string::npos;
+  };
+  const auto bytes = MakeVolume([](const double* p) { return std::abs(p[0]) < 7 ? 255.0 : 0.0; });
+  const auto shorts =
+    MakeVolume([](const double* p) { return std::abs(p[0]) < 7 ? 32767.0 : -32768.0; });
+  const auto words = MakeVolume([](const double* p) { return std::abs(p[0]) < 7 ? 65535.0 : 0.0; });
+  for (const double isoValue : { 255.0, 254.9995, 0.0005, 0.0, 128.0, 1e-12 })
+  {
+    LACUNA_CHECK_THAT(!swings(bytes, isoValue), std::to_string(isoValue));
+    LACUNA_CHECK_THAT(!swings(shorts, isoValue), std::to_string(isoValue));
+    LACUNA_CHECK_THAT(!swings(words, isoValue), std::to_string(isoValue));
+  }
+  LACUNA_CHECK(!swings(shorts, 32767) && !swings(shorts, -32768) && !swings(words, 65535));
+  for (const double padding : { 1e9, -1e9, -1e12, 1e20, -1e20, -3.4e38 })
+  {
+    for (const double isoValue : { 500.0, 0.0005, 0.0, -1000.0, 30000.0 })
+    {
+      const auto padded = MakeVolume(
+        [padding](const double* p) { return p[0] > 12 ? padding : 1000 - 100 * std::abs(p[0]); });
+      LACUNA_CHECK_THAT(swings(padded, isoValue), std::to_string(padding));
+    }
+  }
+}
 }
 
 int TestIsoRayCasterRequests(int, char*[])
@@ -277,5 +370,7 @@ int TestIsoRayCasterRequests(int, char*[])
   TestPerspective();
   TestStartDepthMap();
   TestErrors();
+  TestBeyondTheVoxels();
+  TestPadding();
   return lacunaCheck::Result();
 }
