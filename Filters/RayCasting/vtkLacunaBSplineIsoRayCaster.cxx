@@ -230,9 +230,10 @@ public:
       parameters.Add("EyePosition", casting.Request.Eye->Elements);
     }
     parameters.Add("NormalMethod", self->NormalMethod)
-      .Add("CutAway", self->CutAway ? self->CutAway->GetClassName() : "None")
+      .Add("CutAway", vtkLacunaCutAway::Describe(self->CutAway))
       .Add("CapCutAway", self->CapCutAway)
-      .Add("CapBoundary", self->CapBoundary);
+      .Add("CapBoundary", self->CapBoundary)
+      .Add("ComputeThickness", self->ComputeThickness);
     return parameters.Get();
   }
 };

@@ -12,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaCasterView.h"
+#include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaMapDepths.h"
@@ -212,7 +213,7 @@ public:
       .Add("Interpolation", self->Interpolation)
       .Add("SolidSide", self->SolidSide)
       .Add("ShadowBias", self->ShadowBias)
-      .Add("CutAway", self->GetCutAway() ? self->GetCutAway()->GetClassName() : "None")
+      .Add("CutAway", vtkLacunaCutAway::Describe(self->GetCutAway()))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Get();

@@ -3,7 +3,9 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaCheck.h"
+#include "vtkAbstractArray.h"
 #include "vtkBox.h"
+#include "vtkCallbackCommand.h"
 #include "vtkCylinder.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -16,9 +18,11 @@
 #include "vtkPlanes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkQuadric.h"
 #include "vtkSmartPointer.h"
 #include "vtkSphere.h"
 #include "vtkTransform.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
@@ -146,6 +150,71 @@ void TestCutAways()
   LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 16), "any function: the deeper of two");
   caster->SetCutAway(nullptr);
   LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), top), "whole again");
+}
+
+std::string ProvenanceOf(Caster* caster)
+{
+  caster->Update();
+  vtkAbstractArray* text = caster->GetOutput()->GetFieldData()->GetAbstractArray("Provenance");
+  return text ? text->GetVariantValue(text->GetNumberOfValues() - 1).ToString() : "";
+}
+
+/// The provenance tells what was cut away.
+void TestCutAwayProvenance()
+{
+  const auto caster = MakeCaster(MakeBall());
+  const auto tells = [&caster](vtkImplicitFunction* function, const std::string& part)
+  {
+    caster->SetCutAway(function);
+    const std::string text = ProvenanceOf(caster);
+    LACUNA_CHECK_CONTAINS(text, part);
+    LACUNA_CHECK_THAT(text.find("0x") == std::string::npos, text);
+    LACUNA_CHECK_THAT(text.find("Time") == std::string::npos, text);
+  };
+  tells(nullptr, "CutAway=None");
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "ComputeThickness=off");
+  caster->ComputeThicknessOn();
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "ComputeThickness=on");
+  vtkNew<vtkPlane> plane;
+  plane->SetOrigin(0, 0.5, 4);
+  plane->SetNormal(0, 0, -1);
+  tells(plane, "CutAway=\"vtkPlane Origin=0,0.5,4 Normal=0,0,-1\"");
+  vtkNew<vtkTransform> transform;
+  transform->Translate(1, 2, 3);
+  transform->Scale(2, 2, 4);
+  plane->SetTransform(transform);
+  tells(plane, "Normal=0,0,-1 Transform=2,0,0,1,0,2,0,2,0,0,4,3,0,0,0,1");
+  vtkNew<vtkBox> box;
+  box->SetBounds(-3, 3, -4, 4.25, -2, 30);
+  tells(box, "\"vtkBox Bounds=-3,3,-4,4.25,-2,30\"");
+  vtkNew<vtkSphere> sphere;
+  sphere->SetCenter(1, 2, 3);
+  sphere->SetRadius(4.5);
+  tells(sphere, "\"vtkSphere Center=1,2,3 Radius=4.5\"");
+  vtkNew<vtkCylinder> cylinder;
+  cylinder->SetAxis(0, 0, 2);
+  cylinder->SetCenter(1, 2, 3);
+  tells(cylinder, "\"vtkCylinder Center=1,2,3 Axis=0,0,1 Radius=0.5\"");
+  vtkNew<vtkPlanes> planes;
+  planes->SetBounds(-1, 1, -2, 2, -3, 3.5);
+  tells(planes, "\"vtkPlanes Origins=-1,");
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "Normals=-1,0,0,1,0,0,0,-1,0,");
+  vtkNew<vtkImplicitBoolean> both;
+  both->SetOperationTypeToDifference();
+  both->AddFunction(sphere);
+  both->AddFunction(box);
+  tells(both, "vtkImplicitBoolean Operation=Difference Part=");
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "vtkSphere Center=1,2,3 Radius=4.5");
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "vtkBox Bounds=-3,3,-4,4.25,-2,30");
+  vtkNew<vtkQuadric> quadric; // prints itself
+  quadric->SetCoefficients(1, 1, 0, 0, 0, 0, 0, 0, 0, -4.75);
+  tells(quadric, "vtkQuadric Printed=");
+  LACUNA_CHECK_CONTAINS(ProvenanceOf(caster), "-4.75");
+  const std::string before = ProvenanceOf(caster);
+  vtkNew<vtkCallbackCommand> observer;
+  quadric->AddObserver(vtkCommand::ModifiedEvent, observer);
+  quadric->Modified();
+  LACUNA_CHECK(ProvenanceOf(caster) == before);
 }
 
 void TestPerspective()
@@ -367,6 +436,7 @@ void TestPadding()
 int TestIsoRayCasterRequests(int, char*[])
 {
   TestCutAways();
+  TestCutAwayProvenance();
   TestPerspective();
   TestStartDepthMap();
   TestErrors();
