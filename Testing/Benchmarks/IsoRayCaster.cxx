@@ -3,6 +3,7 @@
 /// Times the iso ray caster from volume to depth map: the CT head at 500 HU with 512 x 512 rays and
 /// normals, by us, by the thesis's algorithm and by VTK's FlyingEdges3D with a z-buffer; and how the
 /// time grows with voxels and rays.
+#include "lacunaCTHead.h"
 #include "lacunaIsoRayCaster.h"
 #include "lacunaReferenceCaster.h"
 #ifdef LACUNA_WITH_FLYING_EDGES
@@ -10,83 +11,16 @@
 #endif
 
 #include <benchmark/benchmark.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <limits>
 #include <map>
-#include <string>
 #include <vector>
 
 namespace
 {
 using namespace lacuna;
-
-struct ShortVolume
-{
-  std::vector<std::int16_t> Voxels;
-  VoxelVolume Volume;
-};
-
-/// The number or numbers of a MetaImage header's line.
-std::vector<double> HeaderNumbers(const std::string& text, const std::string& key)
-{
-  std::vector<double> numbers;
-  std::size_t at = text.find("\n" + key + " =");
-  if (at == std::string::npos)
-  {
-    return numbers;
-  }
-  const char* p = text.c_str() + text.find('=', at) + 1;
-  for (int i = 0; i < 3; ++i)
-  {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(p, &end));
-    p = end;
-  }
-  return numbers;
-}
-
-/// The CT head: a local, compressed MetaImage of short. Empty when it is absent.
-const ShortVolume& Head()
-{
-  static const ShortVolume head = []
-  {
-    ShortVolume result;
-    std::ifstream file(LACUNA_TEST_DATA "/ct_head/head.mha", std::ios::binary);
-    const std::string text(
-      (std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    const std::string local = "ElementDataFile = LOCAL\n";
-    const std::size_t start = text.find(local);
-    const auto size = HeaderNumbers(text, "DimSize");
-    const auto spacing = HeaderNumbers(text, "ElementSpacing");
-    if (start == std::string::npos || size.size() != 3 || spacing.size() != 3)
-    {
-      return result;
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      result.Volume.Size[a] = static_cast<int>(size[a]);
-    }
-    result.Volume.IndexToWorld = Matrix4::Scaling({ spacing[0], spacing[1], spacing[2] });
-    result.Voxels.resize(result.Volume.NumberOfVoxels());
-    uLongf bytes = static_cast<uLongf>(result.Voxels.size() * sizeof(std::int16_t));
-    const auto* packed = reinterpret_cast<const Bytef*>(text.data() + start + local.size());
-    if (uncompress(reinterpret_cast<Bytef*>(result.Voxels.data()), &bytes, packed,
-          static_cast<uLong>(text.size() - start - local.size())) != Z_OK)
-    {
-      result.Voxels.clear();
-    }
-    result.Volume.Voxels = result.Voxels.data();
-    result.Volume.Type = ScalarType::Int16;
-    return result;
-  }();
-  return head;
-}
 
 /// A shell of bone in a cube of 200 mm.
 const ShortVolume& Shell(int n)
