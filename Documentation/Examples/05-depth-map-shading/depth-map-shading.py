@@ -15,7 +15,7 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import BONE, new_view, shaded_pixels, show_surface, write_pixels
+from lacuna.pictures import BONE, new_view, shaded_pixels, show_surface, side_by_side, write_pixels
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -24,11 +24,9 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def write(name, pictures, gap=6):
-    """One PNG of pictures (row, column, color), side by side; row 0 on top."""
-    white = np.full((pictures[0].shape[0], gap, 3), 255, dtype=np.uint8)
-    parts = [part for picture in pictures for part in (picture, white)][:-1]
-    write_pixels(name, np.concatenate(parts, axis=1))
+def write(name, panels):
+    """One PNG of pictures (row, column, color) by their titles, side by side; row 0 on top."""
+    write_pixels(name, side_by_side(list(panels.items())))
 
 
 def read_pixels(name):
@@ -83,8 +81,11 @@ def main(folder, head=None):
         degrees = differences()
         print(f"{method}: {np.median(degrees):.2f} {degrees.mean():.2f} {100 * (degrees > 30).mean():.2f} %")
     write(os.path.join(folder, "shadings.png"),
-          [depth, diffuse["Stored"], diffuse["CentralDifference"], diffuse["Predicate"]])
-    write(os.path.join(folder, "edge.png"), [enlarged(rgb) for rgb in diffuse.values()])
+          {"Depth only": depth, "Stored normals": diffuse["Stored"],
+           "Central differences": diffuse["CentralDifference"], "Nine cases (Predicate)": diffuse["Predicate"]})
+    titles = {"Stored": "Stored normals", "CentralDifference": "Central differences", "Gordon": "Gordon's weights",
+              "Predicate": "Nine cases (Predicate)"}
+    write(os.path.join(folder, "edge.png"), {titles[method]: enlarged(rgb) for method, rgb in diffuse.items()})
 
     right = np.cross(view, UP)
     right /= np.linalg.norm(right)
@@ -94,7 +95,8 @@ def main(folder, head=None):
     lights = [picture(NormalMethod="Stored", Specular=0.2, DepthCue=0.7, SurfaceColor=[0.95, 0.9, 0.8]),
               picture(DepthCue=0, Lights=[*upper_left, 0, 1]),
               picture(Lights=[*upper_left, 0, 0.8, *lower_right, 0, 0.3])]
-    write(os.path.join(folder, "lights.png"), lights)
+    write(os.path.join(folder, "lights.png"),
+          dict(zip(("Phong, depth cue", "One light, shadows", "Two lights, shadows"), lights)))
 
     # the calotte cut away; without its cut-away the shader does not know
     bounds = volume.GetDataInformation().GetBounds()
@@ -107,7 +109,8 @@ def main(folder, head=None):
     shader.CutAway = "Plane"
     shader.CutAway.Origin, shader.CutAway.Normal = top, [0, 0, -1]
     opened += [picture(), picture(Lights=[*middle, 1, 1, *towards_viewer, 0, 0.3])]
-    write(os.path.join(folder, "opened.png"), opened)
+    write(os.path.join(folder, "opened.png"),
+          dict(zip(("Shadow of what is cut away", "Cut away for the light too", "Lamp inside"), opened)))
     assert opened[1].mean() > opened[0].mean() + 5, "less is in shadow"
     depth_map.CutAway = shader.CutAway = "None"
     depth_map.ViewDirection = view
@@ -130,7 +133,7 @@ def main(folder, head=None):
         name = os.path.join(folder, "tears.png")
         SaveScreenshot(name, scene, ImageResolution=scene.ViewSize)
         tears.append(read_pixels(name))
-    write(os.path.join(folder, "tears.png"), tears)
+    write(os.path.join(folder, "tears.png"), dict(zip(("Joined everywhere", "Torn at discontinuities"), tears)))
     assert (tears[0] != tears[1]).any(axis=2).mean() > 0.01, "skins hide what is behind them"
 
     # a light takes from no pixel what it had

@@ -8,7 +8,8 @@ slices (InterpolatingBSpline), along the surface's normal. Pixels count where al
 edges. bias: the mean. residual: RMS of what is left of the difference when its mean over 10 mm is taken away: ripple and
 an error that depends on tilt, curvature and thin bone. ripple: RMS of the part of the residual that repeats from slice to slice (3 mm and
 its half; the same at other lengths is taken away as noise), and the median over the pixels.
-differences.png: trilinear, B-spline, interpolating B-spline, -0.5 mm (blue) to 0.5 mm (red, into the bone).
+differences.png: above the differences by the three interpolations, -0.5 mm (blue) to 0.5 mm (red, into the bone); below
+their residuals, -0.3 to 0.3 mm.
 """
 import os
 import sys
@@ -17,7 +18,7 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import write_pixels
+from lacuna.pictures import color_bar, side_by_side, write_pixels
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -111,6 +112,15 @@ def colors(difference, same, limit=0.5):
     return np.where(same[..., None], rgb, 235).astype(np.uint8)
 
 
+def make_row(comparison, cut, title, measure, limit):
+    """Pixels of one measure of the differences by the three interpolations, with a scale."""
+    panels = [(title.format(name), colors(measure(difference), comparison.same, limit)[cut])
+              for name, difference in comparison.differences.items()]
+    height = panels[0][1].shape[0]
+    bar = color_bar(lambda values: colors(values, np.ones(values.shape, dtype=bool), limit), -limit, limit, "mm", height)
+    return side_by_side([*panels, ("", bar)])
+
+
 def write_histograms(name, comparison):
     """Of the differences, as parts of the pixels."""
     edges = np.linspace(-0.6, 1, 81)
@@ -172,11 +182,9 @@ def main(folder, head=None):
         if name == "right":
             rows, columns = (np.nonzero(comparison.same.sum(axis=axis) > 20)[0] for axis in (1, 0))
             cut = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-            parts = []
-            for difference in comparison.differences.values():
-                picture = colors(difference, comparison.same)[cut]
-                parts += [picture, np.full((picture.shape[0], 6, 3), 255, dtype=np.uint8)]
-            write_pixels(os.path.join(folder, "differences.png"), np.concatenate(parts[:-1], axis=1))
+            rows = [make_row(comparison, cut, "{}: difference", lambda d: d, 0.5),
+                    make_row(comparison, cut, "{}: residual", lambda d: d - comparison.mean(d), 0.3)]
+            write_pixels(os.path.join(folder, "differences.png"), np.concatenate(rows))
             write_histograms(os.path.join(folder, "histograms.png"), comparison)
     return results
 

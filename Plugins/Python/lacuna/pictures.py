@@ -6,6 +6,8 @@ from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
+import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
 
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
@@ -162,6 +164,62 @@ def write_pixels(name, pixels):
     writer.SetFileName(name)
     writer.SetInputData(image)
     writer.Write()
+
+
+def text_pixels(text, size=13, dpi=72):
+    """Dark text on white as (rows, columns, red green blue), row 0 on top."""
+    style = vtkTextProperty()
+    style.SetFontSize(size)
+    style.SetColor(0, 0, 0)
+    image = vtkImageData()
+    if not vtkTextRenderer.GetInstance().RenderString(style, text, image, [0, 0], dpi):
+        raise RuntimeError("no text can be rendered: " + text)
+    width, height, _ = image.GetDimensions()
+    values = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1]
+    opacity = values[..., 3:].astype(float) / 255
+    grey = np.where(opacity > 0, 255 - 215 * opacity, 255).astype(np.uint8)
+    filled = np.nonzero((grey < 255).any(axis=(1, 2)))[0]
+    columns = np.nonzero((grey < 255).any(axis=(0, 2)))[0]
+    grey = grey[filled[0]:filled[-1] + 1, columns[0]:columns[-1] + 1]
+    return grey.repeat(3, axis=2)
+
+
+def put_pixels(pixels, part, row, column):
+    """Writes part into pixels with its upper left corner at row and column; what lies outside is left out."""
+    row, column = max(row, 0), max(column, 0)
+    height, width = min(part.shape[0], pixels.shape[0] - row), min(part.shape[1], pixels.shape[1] - column)
+    if height > 0 and width > 0:
+        pixels[row:row + height, column:column + width] = part[:height, :width]
+
+
+def side_by_side(panels, gap=6):
+    """One picture of (title, pixels) side by side, each with its title above; row 0 on top."""
+    margin = 22
+    height = max(pixels.shape[0] for _, pixels in panels)
+    parts = []
+    for title, pixels in panels:
+        part = np.full((height + margin, pixels.shape[1] + gap, 3), 255, dtype=np.uint8)
+        if title:
+            label = text_pixels(title)
+            put_pixels(part, label, 4, (pixels.shape[1] - label.shape[1]) // 2)
+        put_pixels(part, pixels, margin, 0)
+        parts.append(part)
+    return np.concatenate(parts, axis=1)[:, :-gap]
+
+
+def color_bar(to_colors, low, high, unit, height, ticks=5):
+    """A scale of that height: to_colors makes (rows, columns, red green blue) of an array of values."""
+    margin = 8
+    bar = np.full((height, 95, 3), 255, dtype=np.uint8)
+    length = height - 2 * margin
+    values = np.linspace(high, low, length)[:, None].repeat(16, axis=1)
+    put_pixels(bar, to_colors(values), margin, 8)
+    for value in np.linspace(low, high, ticks):
+        row = margin + int(round((high - value) / (high - low) * (length - 1)))
+        bar[row, 24:28] = 60
+        label = text_pixels(f"{value:+.2f} {unit}" if value else f"0 {unit}", 11)
+        put_pixels(bar, label, row - label.shape[0] // 2, 31)
+    return bar
 
 
 def save_shaded(proxy, name):
