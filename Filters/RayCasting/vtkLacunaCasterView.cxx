@@ -12,6 +12,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -20,6 +21,25 @@ namespace
 lacuna::Matrix4 IndexToWorld(
   const double* origin, const double* spacing, const double* direction, const int* extent)
 {
+  for (int a = 0; a < 3; ++a)
+  {
+    if (!(std::abs(spacing[a]) > 0) || !std::isfinite(spacing[a]))
+    {
+      throw std::runtime_error("the voxels of the volume are " +
+        lacuna::FormatValue(std::array<double, 3>{ spacing[0], spacing[1], spacing[2] }) +
+        " mm: every edge must be longer than 0; mend the spacing of the input");
+    }
+  }
+  const double volume = vtkMatrix3x3::Determinant(direction);
+  if (!(std::abs(volume) > 1e-9) || !std::isfinite(volume))
+  {
+    std::array<double, 9> elements;
+    std::copy_n(direction, 9, elements.begin());
+    throw std::runtime_error("the direction matrix of the volume is " +
+      lacuna::FormatValue(elements) +
+      ": its columns, the axes of the voxels, must be numbers and must not lie in one plane; mend "
+      "the directions of the input");
+  }
   vtkNew<vtkMatrix4x4> m;
   vtkImageData::ComputeIndexToPhysicalMatrix(origin, spacing, direction, m->GetData());
   return lacuna::Matrix4(m->GetData()) *
@@ -73,14 +93,6 @@ vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkInformation* volume)
   else if (data && !IsEmpty(data->GetExtent()))
   {
     std::copy_n(data->GetDirectionMatrix()->GetData(), 9, direction);
-  }
-  for (const double edge : spacing)
-  {
-    if (!(std::abs(edge) > 0) || !std::isfinite(edge))
-    {
-      throw std::runtime_error("the voxels of the volume are " + lacuna::FormatValue(spacing) +
-        " mm: every edge must be longer than 0; mend the spacing of the input");
-    }
   }
   return { SizeOf(extent), IndexToWorld(origin, spacing, direction, extent) };
 }

@@ -325,6 +325,11 @@ void TestErrors()
   ball->SetSpacing(1, 1, std::nan(""));
   CheckError(caster, "every edge must be longer than 0");
   ball->SetSpacing(1, 1, 1);
+  ball->SetDirectionMatrix(1, 0, 1, 0, 1, 0, 0, 0, 0);
+  CheckError(caster, "the direction matrix of the volume is 1,0,1,0,1,0,0,0,0:");
+  ball->SetDirectionMatrix(1, 0, 0, 0, std::nan(""), 0, 0, 0, 1);
+  CheckError(caster, "the direction matrix of the volume is 1,0,0,0,nan,0,0,0,1:");
+  ball->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 20 - std::sqrt(99.0)), "recovered");
 
   ball->GetPointData()->GetScalars()->SetTuple1(0, -1e20);
