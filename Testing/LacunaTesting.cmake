@@ -27,6 +27,22 @@ function (lacuna_add_paraview_test script)
     ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
 endfunction ()
 
+# lacuna_find_cgal()
+# Makes the target LacunaCGAL (header-only geometry library, for tests only) if it is installed.
+function (lacuna_find_cgal)
+  if (TARGET LacunaCGAL)
+    return ()
+  endif ()
+  find_path(LACUNA_CGAL_INCLUDE_DIR CGAL/Polygon_mesh_processing/self_intersections.h)
+  find_library(LACUNA_GMP gmp)
+  find_library(LACUNA_MPFR mpfr)
+  if (LACUNA_CGAL_INCLUDE_DIR AND LACUNA_GMP AND LACUNA_MPFR)
+    add_library(LacunaCGAL INTERFACE)
+    target_include_directories(LacunaCGAL SYSTEM INTERFACE "${LACUNA_CGAL_INCLUDE_DIR}")
+    target_link_libraries(LacunaCGAL INTERFACE "${LACUNA_MPFR}" "${LACUNA_GMP}")
+  endif ()
+endfunction ()
+
 # lacuna_find_opencascade()
 # Makes the target LacunaOpenCASCADE (data exchange of the CAD kernel, for tests and benchmarks only)
 # if it is installed. Not through its CMake package: Debian's links libtbb, which it does not depend

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaPlateOutline.h"
+
+#include "lacunaExecution.h"
+#include "lacunaParameterText.h"
+#include "lacunaReliefSurface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double MaximumNodes = 1e8;
+
+std::vector<Vec3> Lift(const ReliefSurface& surface, const Loop& loop)
+{
+  std::vector<Vec3> curve;
+  curve.reserve(loop.size());
+  for (const Vec2& p : loop)
+  {
+    curve.push_back(surface.GetPoint(p));
+  }
+  return curve;
+}
+
+// Points of the loop at equal distances in space of about spacing.
+Loop Resample(const ReliefSurface& surface, const Loop& loop, double spacing, double& length)
+{
+  const std::vector<Vec3> curve = Lift(surface, loop);
+  std::vector<double> at(loop.size() + 1, 0);
+  for (std::size_t k = 0; k < loop.size(); ++k)
+  {
+    at[k + 1] = at[k] + Norm(curve[(k + 1) % loop.size()] - curve[k]);
+  }
+  length = at.back();
+  const auto count =
+    std::max<std::size_t>(8, static_cast<std::size_t>(std::ceil(length / spacing)));
+  Loop result;
+  result.reserve(count);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const double s = length * static_cast<double>(i) / static_cast<double>(count);
+    while (at[k + 1] < s)
+    {
+      ++k;
+    }
+    const double t = at[k + 1] > at[k] ? (s - at[k]) / (at[k + 1] - at[k]) : 0;
+    const Vec2& a = loop[k];
+    const Vec2& b = loop[(k + 1) % loop.size()];
+    result.push_back({ a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]) });
+  }
+  return result;
+}
+
+// The loop of the largest area among those that go counterclockwise; empty without one. others
+// counts the rest with more than a speck of area.
+Loop TakeLargest(const std::vector<Loop>& loops, double speck, int& pieces, int& islands)
+{
+  const Loop* largest = nullptr;
+  double area = 0;
+  pieces = islands = 0;
+  for (const Loop& loop : loops)
+  {
+    const double a = SignedArea(loop);
+    pieces += a > speck;
+    islands += a < -speck;
+    if (a > area)
+    {
+      area = a;
+      largest = &loop;
+    }
+  }
+  return largest ? *largest : Loop();
+}
+
+// Takes the staircase of pixels out of a loop: a Gaussian along it, of the fourth order, so that
+// curves of constant curvature stay where they are.
+Loop SmoothStaircase(const Loop& loop, double pixel)
+{
+  // equal steps of about half a pixel
+  const double sigma = 3 * pixel;
+  std::vector<double> at(loop.size() + 1, 0);
+  for (std::size_t k = 0; k < loop.size(); ++k)
+  {
+    const Vec2& a = loop[k];
+    const Vec2& b = loop[(k + 1) % loop.size()];
+    at[k + 1] = at[k] + std::hypot(b[0] - a[0], b[1] - a[1]);
+  }
+  const auto count = std::max<std::int64_t>(16, std::llround(at.back() / (0.5 * pixel)));
+  const double step = at.back() / static_cast<double>(count);
+  Loop even;
+  std::size_t k = 0;
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    const double s = step * static_cast<double>(i);
+    while (at[k + 1] < s)
+    {
+      ++k;
+    }
+    const double t = at[k + 1] > at[k] ? (s - at[k]) / (at[k + 1] - at[k]) : 0;
+    const Vec2& a = loop[k];
+    const Vec2& b = loop[(k + 1) % loop.size()];
+    even.push_back({ a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]) });
+  }
+  // not farther than half of a small loop
+  const auto reach = std::min(static_cast<std::int64_t>(std::ceil(4 * sigma / step)), count / 2);
+  const double width = std::min(sigma, static_cast<double>(reach) * step / 4);
+  std::vector<double> weights;
+  double sum = 0;
+  for (std::int64_t i = -reach; i <= reach; ++i)
+  {
+    const double x = step * static_cast<double>(i) / width;
+    weights.push_back((1.5 - 0.5 * x * x) * std::exp(-0.5 * x * x));
+    sum += weights.back();
+  }
+  Loop smooth;
+  for (std::int64_t i = 0; i < count; ++i)
+  {
+    Vec2 p{};
+    for (std::int64_t o = -reach; o <= reach; ++o)
+    {
+      const Vec2& q = even[(i + o + count) % count];
+      p[0] += weights[o + reach] / sum * q[0];
+      p[1] += weights[o + reach] / sum * q[1];
+    }
+    smooth.push_back(p);
+  }
+  return smooth;
+}
+
+Loop FindDefect(GridSize size, const Vec2& spacing, const std::vector<unsigned char>& mask,
+  std::vector<std::string>& warnings)
+{
+  // Gaussian of one pixel on a frame of four more
+  constexpr int reach = 4;
+  double weights[2 * reach + 1];
+  double sum = 0;
+  for (int k = -reach; k <= reach; ++k)
+  {
+    sum += weights[k + reach] = std::exp(-0.5 * k * k);
+  }
+  const std::int64_t columns = size.Columns + 2 * reach;
+  const std::int64_t rows = size.Rows + 2 * reach;
+  std::vector<double> across(static_cast<std::size_t>(columns * rows), 0);
+  std::vector<double> smooth(across.size(), 0);
+  for (std::int64_t j = 0; j < size.Rows; ++j)
+  {
+    for (std::int64_t i = 0; i < size.Columns; ++i)
+    {
+      if (!mask[i + size.Columns * j])
+      {
+        continue;
+      }
+      if (i == 0 || j == 0 || i + 1 == size.Columns || j + 1 == size.Rows)
+      {
+        throw std::runtime_error("the defect reaches the border of the fit (pixel " +
+          std::to_string(i) + ", " + std::to_string(j) +
+          " of Fitted), so its outline is not known there; make a larger depth map");
+      }
+      for (int k = -reach; k <= reach; ++k)
+      {
+        across[i + reach + k + columns * (j + reach)] += weights[k + reach] / sum;
+      }
+    }
+  }
+  for (std::int64_t j = reach; j < rows - reach; ++j)
+  {
+    for (std::int64_t i = 0; i < columns; ++i)
+    {
+      for (int k = -reach; k <= reach; ++k)
+      {
+        smooth[i + columns * (j + k)] += across[i + columns * j] * weights[k + reach] / sum;
+      }
+    }
+  }
+  const PlanarGrid grid{ { -reach * spacing[0], -reach * spacing[1] }, spacing, columns, rows };
+  int pieces;
+  int islands;
+  Loop loop = TakeLargest(FindContours(grid, smooth, 0.5), 0, pieces, islands);
+  if (loop.size() < 8)
+  {
+    throw std::runtime_error(
+      "the defect is too small for a plate: fewer than a few pixels of FilledMask are marked");
+  }
+  if (pieces > 1)
+  {
+    warnings.push_back("the map has " + std::to_string(pieces) +
+      " separate defects; the plate is made for the largest. Mark one alone with DefectRegion of "
+      "RBF Hole Filler to make it for another");
+  }
+  if (islands > 0)
+  {
+    warnings.push_back(
+      std::to_string(islands) + " islands of sound bone lie in the defect; the plate covers them");
+  }
+  return SmoothStaircase(loop, std::sqrt(spacing[0] * spacing[1]));
+}
+
+// Signed distances in space to a loop on the surface, positive inside, exact up to limit.
+std::vector<double> GetDistances(Execution& execution, const ReliefSurface& surface,
+  const PlanarGrid& grid, const Loop& loop, double limit)
+{
+  const CurveIndex index({ Lift(surface, loop) }, 2 * std::max(grid.Spacing[0], grid.Spacing[1]));
+  std::vector<double> distances(static_cast<std::size_t>(grid.Columns * grid.Rows));
+  execution.For(grid.Rows, 4,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t j = begin; j < end; ++j)
+      {
+        const std::vector<double> crossings = FindCrossings({ loop }, grid.GetNode(0, j)[1]);
+        std::size_t passed = 0;
+        for (std::int64_t i = 0; i < grid.Columns; ++i)
+        {
+          const Vec2 p = grid.GetNode(i, j);
+          while (passed < crossings.size() && crossings[passed] <= p[0])
+          {
+            ++passed;
+          }
+          const double d = index.Find(surface.GetPoint(p), limit).Distance;
+          distances[i + grid.Columns * j] = passed % 2 ? d : -d;
+        }
+      }
+    });
+  return distances;
+}
+}
+
+//------------------------------------------------------------------------------
+Vec2 PlateOutline::GetInset(std::size_t k, double distance) const
+{
+  const double t = distance / this->CornerRadius;
+  const Vec2& p = this->Points[k];
+  const Vec2& q = this->Core[k];
+  return { p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]) };
+}
+
+//------------------------------------------------------------------------------
+PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface, GridSize size,
+  const Vec2& spacing, const std::vector<unsigned char>& mask, const PlateOutlineOptions& options)
+{
+  PlateOutline outline;
+  const double radius = outline.CornerRadius = options.CornerRadius;
+  outline.Defect = FindDefect(size, spacing, mask, outline.Warnings);
+
+  const double h = options.Spacing;
+  const double margin = std::max(0.0, -options.Clearance) + 4 * h;
+  PlanarGrid grid;
+  grid.Spacing = { h, h };
+  double high[2];
+  for (int i = 0; i < 2; ++i)
+  {
+    const auto less = [i](const Vec2& a, const Vec2& b) { return a[i] < b[i]; };
+    const auto range = std::minmax_element(outline.Defect.begin(), outline.Defect.end(), less);
+    grid.Origin[i] = (*range.first)[i] - margin;
+    high[i] = (*range.second)[i] + margin;
+  }
+  const double columns = std::ceil((high[0] - grid.Origin[0]) / h) + 1;
+  const double rows = std::ceil((high[1] - grid.Origin[1]) / h) + 1;
+  if (columns * rows > MaximumNodes)
+  {
+    throw std::runtime_error("the plate would have over a hundred million triangles; make "
+                             "TriangleSize larger than " +
+      FormatNumber(h) + " mm");
+  }
+  grid.Columns = static_cast<std::int64_t>(columns);
+  grid.Rows = static_cast<std::int64_t>(rows);
+
+  const double inset = options.Clearance + radius;
+  std::vector<double> distances =
+    GetDistances(execution, surface, grid, outline.Defect, std::abs(inset) + 8 * h);
+  int pieces;
+  int islands;
+  const double speck = h * h;
+  const Loop core = TakeLargest(FindContours(grid, distances, inset), speck, pieces, islands);
+  if (core.size() < 3)
+  {
+    throw std::runtime_error("no plate is left: the defect is nowhere wider than twice " +
+      FormatNumber(inset) + " mm (EdgeClearance and the radius of corners)");
+  }
+  if (pieces > 1)
+  {
+    outline.Warnings.push_back("the outline is narrower than " + FormatNumber(2 * inset) +
+      " mm at places, where the plate would come apart into " + std::to_string(pieces) +
+      " pieces; only the largest is made. Reduce EdgeClearance, Bevel or CornerRadius");
+  }
+  distances = GetDistances(execution, surface, grid, core, radius + 8 * h);
+  const Loop outer = TakeLargest(FindContours(grid, distances, -radius), speck, pieces, islands);
+  outline.Points = Resample(surface, outer, h, outline.Length);
+
+  // exactly at the distance
+  const CurveIndex index({ Lift(surface, core) }, 2 * h);
+  for (Vec2& p : outline.Points)
+  {
+    Vec2 q = p;
+    for (int iteration = 0; iteration < 4; ++iteration)
+    {
+      const CurveIndex::Nearest nearest = index.Find(surface.GetPoint(p), 2 * radius + 8 * h);
+      q = { nearest.Point[0], nearest.Point[1] };
+      const double t = nearest.Distance > 0 ? radius / nearest.Distance : 0;
+      p = { q[0] + t * (p[0] - q[0]), q[1] + t * (p[1] - q[1]) };
+    }
+    outline.Core.push_back(q);
+    if (!surface.Contains(p))
+    {
+      throw std::runtime_error(
+        "the plate would reach beyond the fitted surface; raise "
+        "SupportMargin or OutputMargin of RBF Hole Filler, or EdgeClearance");
+    }
+  }
+  return outline;
+}
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The outline of a plate from the pixels of a defect.
+#ifndef lacunaPlateOutline_h
+#define lacunaPlateOutline_h
+
+#include "lacunaPlanarCurves.h"
+#include "lacunaSurfaceFit.h"
+
+#include <string>
+
+namespace lacuna
+{
+class Execution;
+class ReliefSurface;
+
+/// How an outline is drawn.
+struct PlateOutlineOptions
+{
+  /// mm from the defect's outline inwards; negative: outwards.
+  double Clearance = 0;
+  /// mm: no corner is sharper.
+  double CornerRadius = 1;
+  /// mm between the points of the outline.
+  double Spacing = 0.5;
+};
+
+/// A smooth closed curve on a surface, counterclockwise in (x, y), and the way inwards from each of
+/// its points.
+struct PlateOutline
+{
+  Loop Points;
+  /// Where each point ends after going CornerRadius mm inwards.
+  Loop Core;
+  double CornerRadius = 0;
+  /// Of the defect itself, before clearance.
+  Loop Defect;
+  double Length = 0; ///< mm, on the surface
+  std::vector<std::string> Warnings;
+
+  /// Point k after going distance mm inwards, up to CornerRadius.
+  Vec2 GetInset(std::size_t k, double distance) const;
+};
+
+/// The defect's own outline is the half-way contour of the mask (not 0: defect), blurred by a
+/// Gaussian of one pixel, then smoothed along itself by one of the fourth order with sigma 3 pixels:
+/// straight edges and arcs stay in place, steps of pixels and corners vanish. Of several defects the one of the largest
+/// area is taken, islands in it are covered; both with a warning. All further distances are those in
+/// space between points of the surface: the outline is first moved inwards by Clearance plus
+/// CornerRadius, then outwards by CornerRadius, which rounds the corners and changes nothing else.
+/// Throws std::runtime_error when no plate is left, or when it leaves the surface.
+PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface, GridSize size,
+  const Vec2& spacing, const std::vector<unsigned char>& mask, const PlateOutlineOptions& options);
+}
+#endif

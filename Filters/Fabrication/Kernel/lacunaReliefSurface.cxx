@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaReliefSurface.h"
+
+#include <algorithm>
+
+namespace lacuna
+{
+//------------------------------------------------------------------------------
+ReliefSurface::ReliefSurface(
+  Execution& execution, GridSize size, const std::vector<double>& depths, const Vec2& spacing)
+  : Spacing(spacing)
+  , Extent{ static_cast<double>(size.Columns - 1) * spacing[0],
+    static_cast<double>(size.Rows - 1) * spacing[1] }
+{
+  SurfaceFitOptions options;
+  options.Tolerance = 0;
+  this->Surface = FitHeights(execution, size, depths,
+    Matrix4::FromColumns({ spacing[0], 0, 0 }, { 0, spacing[1], 0 }, { 0, 0, 1 }, { 0, 0, 0 }),
+    options)
+                    .Surface;
+}
+
+//------------------------------------------------------------------------------
+bool ReliefSurface::Contains(const Vec2& p) const
+{
+  return p[0] >= 0 && p[0] <= this->Extent[0] && p[1] >= 0 && p[1] <= this->Extent[1];
+}
+
+//------------------------------------------------------------------------------
+Vec3 ReliefSurface::GetPoint(const Vec2& p) const
+{
+  const Vec3 s = this->Surface.Evaluate(p[0] / this->Spacing[0], p[1] / this->Spacing[1]);
+  return { p[0], p[1], s[2] };
+}
+
+//------------------------------------------------------------------------------
+ReliefSurface::Frame ReliefSurface::GetFrame(const Vec2& p) const
+{
+  const double u = p[0] / this->Spacing[0];
+  const double v = p[1] / this->Spacing[1];
+  const auto derivative = [&](int i, int j)
+  {
+    double value = this->Surface.Evaluate(u, v, i, j)[2];
+    for (; i > 0; --i)
+    {
+      value /= this->Spacing[0];
+    }
+    for (; j > 0; --j)
+    {
+      value /= this->Spacing[1];
+    }
+    return value;
+  };
+  const double fx = derivative(1, 0);
+  const double fy = derivative(0, 1);
+  const double fxx = derivative(2, 0);
+  const double fxy = derivative(1, 1);
+  const double fyy = derivative(0, 2);
+  const double w2 = 1 + fx * fx + fy * fy;
+  const double w = std::sqrt(w2);
+  Frame frame;
+  frame.Point = { p[0], p[1], derivative(0, 0) };
+  frame.AlongX = { 1, 0, fx };
+  frame.AlongY = { 0, 1, fy };
+  frame.Normal = { fx / w, fy / w, -1 / w };
+  const double wx = (fx * fxx + fy * fxy) / w;
+  const double wy = (fx * fxy + fy * fyy) / w;
+  frame.NormalAlongX = (1 / w) * (Vec3{ fxx, fxy, 0 } - wx * frame.Normal);
+  frame.NormalAlongY = (1 / w) * (Vec3{ fxy, fyy, 0 } - wy * frame.Normal);
+  const double mean =
+    ((1 + fy * fy) * fxx - 2 * fx * fy * fxy + (1 + fx * fx) * fyy) / (2 * w2 * w);
+  const double gauss = (fxx * fyy - fxy * fxy) / (w2 * w2);
+  const double half = std::sqrt(std::max(0.0, mean * mean - gauss));
+  frame.Curvatures[0] = -mean - half;
+  frame.Curvatures[1] = -mean + half;
+  return frame;
+}
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A depth field as a smooth surface: normals, curvature, offsets.
+#ifndef lacunaReliefSurface_h
+#define lacunaReliefSurface_h
+
+#include "lacunaBSplineSurface.h"
+#include "lacunaSurfaceFit.h"
+
+namespace lacuna
+{
+/// The C2 surface z = f(x, y), x and y in mm from the first sample, z = depth away from a viewer who
+/// looks along +z. An offset by t > 0 goes towards the viewer.
+class ReliefSurface
+{
+public:
+  /// Bicubic spline through all samples. Throws as FitHeights.
+  ReliefSurface(
+    Execution& execution, GridSize size, const std::vector<double>& depths, const Vec2& spacing);
+
+  /// mm, of the last sample.
+  Vec2 GetExtent() const { return this->Extent; }
+  /// Whether p is on the surface (the spline is clamped beyond).
+  bool Contains(const Vec2& p) const;
+
+  Vec3 GetPoint(const Vec2& p) const;
+
+  /// Differential geometry at a point.
+  struct Frame
+  {
+    Vec3 Point;
+    Vec3 AlongX; ///< derivative of Point by x
+    Vec3 AlongY;
+    Vec3 Normal; ///< unit, towards the viewer
+    Vec3 NormalAlongX;
+    Vec3 NormalAlongY;
+    /// Principal curvatures, 1/mm, ascending; positive where the centre is on the viewer's side.
+    double Curvatures[2];
+
+    Vec3 Offset(double t) const { return this->Point + t * this->Normal; }
+  };
+  Frame GetFrame(const Vec2& p) const;
+
+private:
+  BSplineSurface Surface;
+  Vec2 Spacing;
+  Vec2 Extent;
+};
+}
+#endif
