@@ -215,7 +215,28 @@ private:
     }
   }
 
-  // A hexagonal pattern around the middle of the plate, seen along z, where there is room.
+  // Whether a disc about p, seen along z, is over the defect, not over bone.
+  bool IsOverDefect(const Vec2& p, double radius) const
+  {
+    for (const double dy : { -radius, 0.0, radius })
+    {
+      const double dx = dy == 0 ? radius : 0;
+      const std::vector<double> crossings =
+        FindCrossings({ this->Plate.Outline.Defect }, p[1] + dy);
+      for (const double x : { p[0] - dx, p[0] + dx })
+      {
+        const auto passed = std::upper_bound(crossings.begin(), crossings.end(), x);
+        if ((passed - crossings.begin()) % 2 == 0)
+        {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  // A hexagonal pattern around the middle of the plate, seen along z, where there is room and no
+  // bone below.
   void AddDrainage()
   {
     const double step = this->Options.DrainageSpacing;
@@ -252,7 +273,7 @@ private:
       for (int i = -columns; i <= columns; ++i)
       {
         const Vec2 p{ middle[0] + step * (i + (j % 2 ? 0.5 : 0)), middle[1] + rise * j };
-        if (!this->Surface.Contains(p) || this->GetEdgeDistance(p) < needed)
+        if (!this->IsOverDefect(p, 0.5 * shape.Diameter) || this->GetEdgeDistance(p) < needed)
         {
           continue;
         }

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TestSurfaces.h"
+#include "lacunaCheck.h"
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkLacunaImplantPlate.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <functional>
+#include <map>
+
+namespace
+{
+using lacuna::Vec3;
+
+// A thick letter F, upright as the viewer sees it; x, y in mm from the middle of the map.
+bool IsLetter(double x, double y)
+{
+  return (x > -8 && x < -3 && y > -10 && y < 10) || (x >= -3 && x < 8 && y > -10 && y < -5.5) ||
+    (x >= -3 && x < 4 && y > -2 && y < 2.5);
+}
+
+double X(int i)
+{
+  return 0.5 * (i - 49);
+}
+
+double Y(int j)
+{
+  return 0.75 * (j - 30);
+}
+
+// The map of TestSurfaces with the letter as filled defect and bone that grows thinner to the right.
+vtkSmartPointer<vtkImageData> FilledMap(const vtkLacunaDepthMap::Geometry& geometry,
+  const std::function<bool(double, double)>& inside = IsLetter)
+{
+  auto map = TestSurfaces::Map(geometry, true);
+  vtkNew<vtkCharArray> filled;
+  filled->SetName(vtkLacunaDepthMap::FilledMaskName);
+  vtkNew<vtkDoubleArray> thickness;
+  thickness->SetName("Thickness");
+  for (int j = -3; j <= 66; ++j)
+  {
+    for (int i = 5; i <= 94; ++i)
+    {
+      filled->InsertNextValue(inside(X(i), Y(j)));
+      thickness->InsertNextValue(inside(X(i), Y(j)) ? TestSurfaces::NaN : 5 - 0.2 * X(i));
+    }
+  }
+  map->GetPointData()->AddArray(filled);
+  map->GetPointData()->AddArray(thickness);
+  return map;
+}
+
+double GetField(vtkPolyData* plate, const char* name, vtkIdType tuple = 0, int component = 0)
+{
+  vtkDataArray* array = plate->GetFieldData()->GetArray(name);
+  return array && tuple < array->GetNumberOfTuples() ? array->GetComponent(tuple, component)
+                                                     : TestSurfaces::NaN;
+}
+
+// How often the closed surface winds around p: 1 inside, 0 outside, -1 when it is inside out.
+double GetWinding(vtkPolyData* plate, const Vec3& p)
+{
+  double sum = 0;
+  auto cells = vtk::TakeSmartPointer(plate->GetPolys()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType n;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(n, ids);
+    Vec3 v[3];
+    double length[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      plate->GetPoint(ids[k], v[k].data());
+      v[k] = v[k] - p;
+      length[k] = lacuna::Norm(v[k]);
+    }
+    sum += 2 *
+      std::atan2(lacuna::Dot(v[0], lacuna::Cross(v[1], v[2])),
+        length[0] * length[1] * length[2] + lacuna::Dot(v[0], v[1]) * length[2] +
+          lacuna::Dot(v[1], v[2]) * length[0] + lacuna::Dot(v[2], v[0]) * length[1]);
+  }
+  return sum / (4 * 3.14159265358979323846);
+}
+
+// Every edge has two triangles, one each way.
+bool IsClosed(vtkPolyData* plate)
+{
+  std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+  auto cells = vtk::TakeSmartPointer(plate->GetPolys()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType n;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(n, ids);
+    for (int k = 0; k < 3; ++k)
+    {
+      ++edges[{ ids[k], ids[(k + 1) % 3] }];
+    }
+  }
+  for (const auto& edge : edges)
+  {
+    if (edge.second != 1 || !edges.count({ edge.first.second, edge.first.first }))
+    {
+      return false;
+    }
+  }
+  return !edges.empty();
+}
+
+// The plate fills the letter and nothing else, wherever the viewer stands.
+void TestPlace()
+{
+  const Vec3 views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, -2, 0.5 } };
+  int turn = 0;
+  vtkNew<vtkPolyData> first;
+  vtkLacunaDepthMap::Geometry firstGeometry{};
+  for (const Vec3& view : views)
+  {
+    const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
+    vtkNew<vtkLacunaImplantPlate> filter;
+    filter->SetInputData(FilledMap(geometry));
+    filter->SetThickness(2);
+    filter->SetEdgeClearance(0);
+    filter->SetEdgeShape(vtkLacunaImplantPlate::Square);
+    filter->Update();
+    vtkPolyData* plate = filter->GetOutput();
+    LACUNA_CHECK(IsClosed(plate));
+    const auto place = [&](int i, int j, double depth)
+    {
+      const double x = 0.5 * i;
+      const double y = 0.75 * j;
+      return geometry.Origin + x * geometry.Right + y * geometry.Down + depth * geometry.View;
+    };
+    int wrong = 0;
+    for (int j = 14; j <= 46; j += 2)
+    {
+      for (int i = 30; i <= 68; i += 3)
+      {
+        const double x = X(i);
+        const double y = Y(j);
+        int corners = 0;
+        for (const double dx : { -1.2, 1.2 })
+        {
+          for (const double dy : { -1.2, 1.2 })
+          {
+            corners += IsLetter(x + dx, y + dy);
+          }
+        }
+        if (corners == 0 || corners == 4)
+        {
+          const double winding = GetWinding(plate, place(i, j, TestSurfaces::Depth(x, y) + 1.0));
+          wrong += std::abs(winding - (corners == 4)) > 1e-6;
+          // nothing is in front of the fitted surface
+          wrong += std::abs(GetWinding(plate, place(i, j, TestSurfaces::Depth(x, y) - 0.1))) > 1e-6;
+        }
+      }
+    }
+    LACUNA_CHECK_THAT(wrong == 0,
+      std::to_string(wrong) +
+        " points inside that should be outside, "
+        "or the other way round");
+    // the same plate from everywhere
+    if (first->GetNumberOfPoints() == 0)
+    {
+      first->DeepCopy(plate);
+      firstGeometry = geometry;
+      continue;
+    }
+    LACUNA_CHECK(plate->GetNumberOfPoints() == first->GetNumberOfPoints());
+    double most = 0;
+    for (vtkIdType k = 0; k < plate->GetNumberOfPoints(); ++k)
+    {
+      Vec3 p;
+      Vec3 q;
+      plate->GetPoint(k, p.data());
+      first->GetPoint(k, q.data());
+      p = p - geometry.Origin;
+      q = q - firstGeometry.Origin;
+      const Vec3 difference{ lacuna::Dot(p, geometry.Right) - lacuna::Dot(q, firstGeometry.Right),
+        lacuna::Dot(p, geometry.Down) - lacuna::Dot(q, firstGeometry.Down),
+        lacuna::Dot(p, geometry.View) - lacuna::Dot(q, firstGeometry.View) };
+      most = std::max(most, lacuna::Norm(difference));
+    }
+    LACUNA_CHECK_THAT(most < 1e-9, "points differ by " + std::to_string(most) + " mm");
+  }
+}
+
+// Screws through an overlap, over bone that is known.
+void TestHoles()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  const auto disc = [](double x, double y) { return std::hypot(x, y) < 5; };
+  const auto picked = [&](double x, double y)
+  {
+    return geometry.Origin + (x + 24.5) * geometry.Right + (y + 22.5) * geometry.Down +
+      TestSurfaces::Depth(x, y) * geometry.View;
+  };
+  vtkNew<vtkLacunaImplantPlate> filter;
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  filter->SetInputData(FilledMap(geometry, disc));
+  filter->SetThickness(0.7);
+  filter->SetSide(vtkLacunaImplantPlate::Outward);
+  filter->SetEdgeClearance(-5);
+  filter->SetBevel(0.3);
+  filter->SetHoleDiameter(1.6);
+  const Vec3 left = picked(-7.4, 0);
+  const Vec3 right = picked(7.4, 0);
+  filter->AddHolePoint(left[0], left[1], left[2]);
+  filter->AddHolePoint(right[0], right[1], right[2]);
+  filter->SetMinimumBoneThickness(4.5);
+  filter->Update();
+  vtkPolyData* plate = filter->GetOutput();
+  LACUNA_CHECK(IsClosed(plate));
+  LACUNA_CHECK_NEAR(GetField(plate, "MinimumThickness"), 0.7, 0.007);
+  // obliquely, bone is thinner than along the ray
+  const double bone[2] = { GetField(plate, "HoleBoneThickness", 0),
+    GetField(plate, "HoleBoneThickness", 1) };
+  LACUNA_CHECK(bone[0] > 5.9 && bone[0] < 6.4);
+  LACUNA_CHECK(bone[1] > 3.1 && bone[1] < 3.5);
+  LACUNA_CHECK(messages->HasWarning("screw hole 2 lies over bone only"));
+  LACUNA_CHECK(!messages->HasWarning("screw hole 1"));
+  for (int k = 0; k < 2; ++k)
+  {
+    Vec3 center;
+    Vec3 axis;
+    for (int i = 0; i < 3; ++i)
+    {
+      center[i] = GetField(plate, "HoleCenters", k, i);
+      axis[i] = GetField(plate, "HoleAxes", k, i);
+    }
+    LACUNA_CHECK(std::abs(lacuna::Norm(center - (k ? right : left)) - 0.7) < 1e-4);
+    LACUNA_CHECK(lacuna::Dot(axis, geometry.View) < 0);
+    LACUNA_CHECK(std::abs(GetWinding(plate, center - 0.35 * axis)) < 1e-6); // open
+    const Vec3 beside = lacuna::Normalized(lacuna::Cross(axis, geometry.Down));
+    LACUNA_CHECK(std::abs(GetWinding(plate, center - 0.35 * axis + 1.0 * beside) - 1) < 1e-6);
+  }
+  LACUNA_CHECK(std::abs(GetField(plate, "Mass") - 1.3e-3 * GetField(plate, "Volume")) < 1e-12);
+  const auto steps = vtkLacunaProvenance::Get(plate);
+  LACUNA_CHECK(!steps.empty() && steps.back().find("HoleDiameter=1.6") != std::string::npos);
+
+  filter->SetSide(vtkLacunaImplantPlate::Inward);
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("overlaps the bone"));
+  filter->RemoveAllHolePoints();
+  filter->Update();
+  LACUNA_CHECK(plate->GetFieldData()->GetArray("HoleCenters")->GetNumberOfTuples() == 0);
+}
+
+void TestErrors()
+{
+  const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
+  const auto refuses = [](vtkImageData* map, const char* words,
+                         const std::function<void(vtkLacunaImplantPlate*)>& change)
+  {
+    vtkNew<vtkLacunaImplantPlate> filter;
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(filter);
+    messages->Watch(filter->GetExecutive());
+    filter->SetInputData(map);
+    change(filter);
+    filter->Update();
+    LACUNA_CHECK_THAT(messages->HasError(words), std::string("an error with '") + words + "'");
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+  };
+  const auto nothing = [](vtkLacunaImplantPlate*) {};
+  refuses(TestSurfaces::Map(geometry, false), "run RBF Hole Filler", nothing);
+  refuses(TestSurfaces::Map(geometry, true), "FilledMask", nothing);
+  const auto never = [](double, double) { return false; };
+  refuses(FilledMap(geometry, never), "no defect", nothing);
+  refuses(
+    FilledMap(geometry, [](double x, double) { return x < 0; }), "Fitted is no number", nothing);
+  auto holed = FilledMap(geometry);
+  holed->GetPointData()->GetArray("Fitted")->SetComponent(90 * 15 + 20, 0, TestSurfaces::NaN);
+  refuses(holed, "Fitted has a hole", nothing);
+  auto perspective = FilledMap(geometry);
+  vtkLacunaFieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
+  vtkLacunaFieldData::Set(perspective, "ViewAngle", { 20 }, 1);
+  refuses(perspective, "perspective", nothing);
+  const auto map = FilledMap(geometry);
+  refuses(map, "Thickness is -1", [](vtkLacunaImplantPlate* f) { f->SetThickness(-1); });
+  refuses(map, "Side is 7", [](vtkLacunaImplantPlate* f) { f->SetSide(7); });
+  refuses(map, "EdgeShape is 3", [](vtkLacunaImplantPlate* f) { f->SetEdgeShape(3); });
+  refuses(map, "Density is 0", [](vtkLacunaImplantPlate* f) { f->SetDensity(0); });
+  refuses(map, "screw hole 1", [](vtkLacunaImplantPlate* f) { f->AddHolePoint(0, 0, 0); });
+}
+}
+
+int TestImplantPlate(int, char*[])
+{
+  TestPlace();
+  TestHoles();
+  TestErrors();
+  return lacunaCheck::Result();
+}
