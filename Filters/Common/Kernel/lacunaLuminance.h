@@ -20,6 +20,15 @@ void MakeLuminance(const T* pixels, std::int64_t count, std::int64_t channels, T
   for (std::int64_t i = 0; i < count; ++i)
   {
     const T* colour = pixels + i * channels;
+    if constexpr (std::is_integral_v<T> && sizeof(T) <= 4)
+    {
+      // exact: the sum of doubles falls short of some ties
+      const std::int64_t sum = 299 * static_cast<std::int64_t>(colour[0]) +
+        587 * static_cast<std::int64_t>(colour[1]) + 114 * static_cast<std::int64_t>(colour[2]) +
+        500;
+      grey[i] = static_cast<T>(sum / 1000 - (sum % 1000 < 0 ? 1 : 0));
+      continue;
+    }
     const double level = 0.299 * static_cast<double>(colour[0]) +
       0.587 * static_cast<double>(colour[1]) + 0.114 * static_cast<double>(colour[2]);
     if constexpr (std::is_integral_v<T>)

@@ -27,3 +27,20 @@ TEST(Luminance, IsRoundedAndStaysInRange)
   MakeLuminance(colour.data(), 1, 3, &level);
   EXPECT_DOUBLE_EQ(level, -0.1495 + 0.14675 + 0.456);
 }
+
+TEST(Luminance, TiesAreRoundedUp)
+{
+  // 0.587 * 36 + 0.114 * 12 = 22.5, which the sum of doubles falls short of
+  const std::vector<std::uint8_t> tie{ 0, 36, 12 };
+  std::uint8_t grey = 0;
+  MakeLuminance(tie.data(), 1, 3, &grey);
+  EXPECT_EQ(grey, 23);
+  const std::vector<std::int16_t> pixels{ 0, -36, -12, -10, -200, -50, -32768, -32768, -32768 };
+  std::vector<std::int16_t> greys(3);
+  MakeLuminance(pixels.data(), 3, 3, greys.data());
+  EXPECT_EQ(greys, (std::vector<std::int16_t>{ -22, -126, -32768 }));
+  const std::vector<std::uint32_t> white(3, std::numeric_limits<std::uint32_t>::max());
+  std::uint32_t level = 0;
+  MakeLuminance(white.data(), 1, 3, &level);
+  EXPECT_EQ(level, white[0]);
+}

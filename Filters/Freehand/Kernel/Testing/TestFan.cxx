@@ -149,10 +149,12 @@ TEST(Fan, NothingElseGetsIntoTheVolume)
       options.Sampling = sampling;
       const auto volume = Reconstruct<float>(sweep.Slices, grid, GetExtent(grid), options, 2);
       // without fans: between the slices; with them, only where all feet lie in the fan
+      const std::vector<float> white(61 * 49, 80);
       std::vector<SliceImage> plain = sweep.Slices;
       for (SliceImage& slice : plain)
       {
         slice.Fan.reset();
+        slice.Pixels = white.data();
       }
       const auto all = Reconstruct<float>(plain, grid, GetExtent(grid), options, 2);
       std::size_t n = 0;
