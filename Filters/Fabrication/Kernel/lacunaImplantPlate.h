@@ -6,6 +6,7 @@
 
 #include "lacunaPlanarTriangulation.h"
 #include "lacunaPlateHole.h"
+#include "lacunaPlateOptions.h"
 #include "lacunaPlateOutline.h"
 
 #include <limits>
@@ -14,21 +15,6 @@
 
 namespace lacuna
 {
-/// Which way the plate grows from the surface.
-enum class PlateSide
-{
-  Inward, ///< away from the viewer: the surface is the plate's outer face
-  Outward ///< towards the viewer: the surface is the plate's inner face
-};
-
-/// The form of the plate's edge.
-enum class PlateEdge
-{
-  Square,
-  Bevel, ///< a flat of 45 degrees
-  Round  ///< a quarter of a circle
-};
-
 /// What a triangle of the plate belongs to.
 enum class PlateFace : unsigned char
 {
@@ -37,24 +23,6 @@ enum class PlateFace : unsigned char
   Edge,
   ScrewHole,
   DrainageHole
-};
-
-struct ImplantPlateOptions
-{
-  double Thickness = 3; ///< mm, > 0
-  PlateSide Side = PlateSide::Inward;
-  double EdgeClearance = 0.5; ///< mm, see PlateOutlineOptions
-  double CornerRadius = 1;    ///< mm, >= 0
-  PlateEdge Edge = PlateEdge::Round;
-  /// mm of width and depth of bevel or rounding at the outer face; at most the thickness, half of
-  /// it when at both faces.
-  double EdgeSize = 0.5;
-  bool BothFaces = false;
-  double TriangleSize = 0.5;    ///< mm, > 0, of triangles seen along z
-  std::vector<Vec3> HolePoints; ///< near the plate, in the surface's coordinates
-  HoleShape Hole;
-  double DrainageSpacing = 0; ///< mm between the middles of drainage holes, 0: none
-  double DrainageDiameter = 2;
 };
 
 /// A closed, oriented triangle mesh and what was measured on it.
@@ -74,9 +42,6 @@ struct ImplantPlate
   double MinimumRadius = std::numeric_limits<double>::infinity();
   Vec3 MinimumRadiusPoint{};
 };
-
-/// The least material between holes, and between a hole and the edge, mm.
-constexpr double MinimumWeb = 0.5;
 
 /// Both faces are true normal offsets: their vertices lie exactly on the offset surface. The faces
 /// are constrained Delaunay triangulations of their outlines and a hexagonal lattice; walls run
