@@ -230,6 +230,14 @@ TEST(ImplantPlate, EdgesOnAFlatDisc)
       options.Edge = edge;
       const ImplantPlate plate = scene.Make(options);
       EXPECT_EQ(CheckManifold(plate), 2);
+      // the rim of the outer face lies inwards, straight across the edge
+      for (std::size_t k = 0; k < plate.Outline.Points.size(); ++k)
+      {
+        const Vec2& p = plate.Outline.Points[k];
+        const Vec2 q = plate.Outline.GetInset(k, 1);
+        EXPECT_NEAR(std::hypot(q[0] - p[0], q[1] - p[1]), 1, 1e-6);
+        EXPECT_NEAR(std::hypot(p[0] - 40, p[1] - 40) - std::hypot(q[0] - 40, q[1] - 40), 1, 0.01);
+      }
       // the polygon of the rounding leaves 1.3 % more
       EXPECT_NEAR((square - plate.Volume) / (both ? 2 : 1) / expected[i], 1, 0.03);
       ++i;
