@@ -426,6 +426,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
     options.SupportMargin = this->SupportMargin;
     options.NodeSpacing = this->NodeSpacing;
     options.Smoothing = this->Smoothing;
+    options.CutoffWavelength = this->CutoffWavelength;
     options.OutputMargin = this->OutputMargin;
 
     lacuna::HoleFillResult result;
@@ -458,6 +459,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
       .Add("SupportMargin", this->SupportMargin)
       .Add("NodeSpacing", this->NodeSpacing)
       .Add("Smoothing", this->Smoothing)
+      .Add("CutoffWavelength", this->CutoffWavelength)
       .Add("OutputMargin", this->OutputMargin);
     vtkLacunaProvenance::Record(filled, this, { map }, parameters.Get());
     output->ShallowCopy(filled);
@@ -480,5 +482,6 @@ void vtkLacunaRBFHoleFiller::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SupportMargin: " << this->SupportMargin << "\n";
   os << indent << "NodeSpacing: " << this->NodeSpacing << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "CutoffWavelength: " << this->CutoffWavelength << "\n";
   os << indent << "OutputMargin: " << this->OutputMargin << "\n";
 }

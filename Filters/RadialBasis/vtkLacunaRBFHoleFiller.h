@@ -130,6 +130,16 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Cut-off wavelength of the fit, mm, >= 0. Above 0 it determines the smoothing, for any kernel and
+   * NodeSpacing: of waves of this length the fit follows half the amplitude, of shorter ones less
+   * (the spline filter of ISO 16610-22). Smoothing must be 0 then. Default 0.
+   */
+  vtkSetMacro(CutoffWavelength, double);
+  vtkGetMacro(CutoffWavelength, double);
+  ///@}
+
+  ///@{
   /** Fitted goes so far beyond defect and support, mm, >= 0, up to the map's border. Default 0. */
   vtkSetMacro(OutputMargin, double);
   vtkGetMacro(OutputMargin, double);
@@ -156,6 +166,7 @@ private:
   double SupportMargin = 12;
   double NodeSpacing = 1;
   double Smoothing = 0;
+  double CutoffWavelength = 0;
   double OutputMargin = 0;
 };
 #endif

@@ -30,9 +30,15 @@ void CheckOptions(const HoleFillOptions& options)
   check("SupportMargin", options.SupportMargin, true);
   check("NodeSpacing", options.NodeSpacing, true);
   check("OutputMargin", options.OutputMargin, false);
+  check("CutoffWavelength", options.CutoffWavelength, false);
   if (!std::isfinite(options.Smoothing) || options.Smoothing < 0)
   {
     throw std::invalid_argument("Smoothing must be a finite number >= 0");
+  }
+  if (options.Smoothing > 0 && options.CutoffWavelength > 0)
+  {
+    throw std::invalid_argument("Smoothing and CutoffWavelength are both above 0, and each "
+                                "determines the other; set one of them to 0");
   }
 }
 
@@ -139,6 +145,12 @@ RadialBasis<2> Fit(Execution& execution, const HoleFillInput& input, const HoleF
     RadialBasisOptions fit;
     fit.Kernel = options.Kernel;
     fit.Smoothing = options.Smoothing;
+    if (options.CutoffWavelength > 0 && !nodes.empty())
+    {
+      const auto pixels = static_cast<double>(std::count(support.begin(), support.end(), 1));
+      fit.Smoothing = GetCutoffSmoothing(options.Kernel, options.CutoffWavelength,
+        pixels * input.Grid.Spacing[0] * input.Grid.Spacing[1] / static_cast<double>(nodes.size()));
+    }
     fit.MaximumBytes = options.MaximumBytes;
     return RadialBasis<2>(execution, nodes, values, fit);
   }
@@ -197,6 +209,33 @@ void EvaluateDefect(Execution& execution, const HoleFillInput& input,
     result.DefectArea += pixelArea * std::sqrt(1 + g[0] * g[0] + g[1] * g[1]);
   }
 }
+}
+
+//------------------------------------------------------------------------------
+double GetCutoffSmoothing(RadialKernel kernel, double wavelength, double areaPerNode)
+{
+  constexpr double pi = 3.14159265358979323846;
+  double transform = 0; // F
+  switch (kernel)
+  {
+    case RadialKernel::ThinPlate:
+      transform = 8 * pi;
+      break;
+    case RadialKernel::Linear:
+      transform = 2 * pi;
+      break;
+    case RadialKernel::Triharmonic:
+      transform = 128 * pi;
+      break;
+    case RadialKernel::Cubic:
+      transform = 18 * pi;
+      break;
+    default:
+      throw std::invalid_argument(
+        "a cut-off wavelength needs a kernel that is a power of distance");
+  }
+  return transform / GetRadialEnergyFactor(kernel) / areaPerNode *
+    std::pow(wavelength / (2 * pi), GetRadialPower(kernel) + 2);
 }
 
 //------------------------------------------------------------------------------

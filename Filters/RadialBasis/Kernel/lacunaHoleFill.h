@@ -30,10 +30,11 @@ struct HoleFillInput
 struct HoleFillOptions
 {
   RadialKernel Kernel = RadialKernel::ThinPlate;
-  double SupportMargin = 12; ///< mm, > 0
-  double NodeSpacing = 1;    ///< mm, > 0
-  double Smoothing = 0;      ///< see RadialBasisOptions
-  double OutputMargin = 0;   ///< mm, >= 0
+  double SupportMargin = 12;   ///< mm, > 0
+  double NodeSpacing = 1;      ///< mm, > 0
+  double Smoothing = 0;        ///< see RadialBasisOptions
+  double CutoffWavelength = 0; ///< mm, >= 0; above 0 it determines Smoothing, which must be 0
+  double OutputMargin = 0;     ///< mm, >= 0
   std::uint64_t MaximumBytes = RadialBasisOptions().MaximumBytes;
 };
 
@@ -60,6 +61,13 @@ struct HoleFillResult
   RadialBasisReport Fit;
   std::vector<std::string> Warnings; ///< sentences for the user
 };
+
+/// The Smoothing with which a fit to nodes of areaPerNode mm^2 each transmits half the amplitude of
+/// waves of this length, mm, and less of shorter ones: the spline filter of ISO 16610-22 for a
+/// surface. phi has the Fourier transform F / k^(Power + 2), its energy is C times that of
+/// |s^|^2 k^(Power + 2) / F, so the transmission is 1 / (1 + Smoothing C areaPerNode k^(Power + 2) /
+/// F). Throws std::invalid_argument for kernels without a power (Gaussian, multiquadric).
+double GetCutoffSmoothing(RadialKernel kernel, double wavelength, double areaPerNode);
 
 /// Nodes are the support thinned by ThinNodes; support is the painted pixels, or the valid ones
 /// within SupportMargin of the defect, outside of the defect and not beyond a depth step

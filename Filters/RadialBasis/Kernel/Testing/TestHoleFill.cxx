@@ -260,6 +260,50 @@ TEST(HoleFill, SmoothingSuppressesRipple)
   EXPECT_LT(worst(20), 0.5 * worst(0));
 }
 
+// A long wave in a wide frame around a small defect: half of its amplitude is left at the cut-off,
+// for any kernel and node spacing.
+TEST(HoleFill, CutoffWavelengthHalvesTheAmplitude)
+{
+  constexpr double wavelength = 15;
+  constexpr double pi = 3.14159265358979323846;
+  const auto wave = [](double x, double) { return 20 + 0.1 * std::cos(2 * pi * x / wavelength); };
+  lacuna::ThreadExecution execution(2);
+  for (const auto kernel :
+    { lacuna::RadialKernel::ThinPlate, lacuna::RadialKernel::Linear, lacuna::RadialKernel::Cubic })
+  {
+    for (const double spacing : { 1.5, 3.0 })
+    {
+      HoleFillInput input = MakeMap(wave, 1);
+      HoleFillOptions options;
+      options.Kernel = kernel;
+      options.SupportMargin = 200;
+      options.NodeSpacing = spacing;
+      options.CutoffWavelength = wavelength;
+      const HoleFillResult result = lacuna::FillHole(execution, input, options);
+      double product = 0;
+      double square = 0;
+      for (std::size_t i = 0; i < input.Grid.GetSize(); ++i)
+      {
+        const double x = GetX(i);
+        const double y = GetY(i);
+        if (x >= 30 && x < 75 && y > 15 && y < 45) // three waves, away from the border
+        {
+          const double c = std::cos(2 * pi * x / wavelength);
+          product += c * (result.Fitted[i] - 20);
+          square += c * c;
+        }
+      }
+      EXPECT_NEAR(product / square, 0.05, 0.003) << static_cast<int>(kernel) << " " << spacing;
+    }
+  }
+
+  HoleFillInput input = MakeMap(wave);
+  HoleFillOptions both;
+  both.Smoothing = 1;
+  both.CutoffWavelength = 5;
+  EXPECT_THROW(lacuna::FillHole(execution, input, both), std::invalid_argument);
+}
+
 TEST(HoleFill, RefusesBadInput)
 {
   const HoleFillInput good = MakeMap(Plane);
