@@ -28,8 +28,8 @@
  *
  * Rules: a field equal to the iso-value is solid; a ray that starts in the solid leaves it first
  * (unless capped); voxels that are not finite are empty, a warning gives their number; an iso-value
- * outside the volume's values gives a warning and, mostly, an empty map. All of them, and what to do about
- * messages: Documentation/UserGuide/b-spline-iso-ray-caster.md.
+ * outside the volume's values gives a warning and, mostly, an empty map. All of them, and what to do
+ * about messages: Documentation/UserGuide/b-spline-iso-ray-caster.md.
  *
  * Errors: no scalars or several components, fewer than two voxels along an axis, a zero
  * ViewDirection or ViewUp, ViewUp parallel to ViewDirection, voxels without size, a start depth map
