@@ -13,7 +13,7 @@ namespace lacuna
 {
 namespace
 {
-constexpr double MaximumNodes = 1e8;
+constexpr double MaximumNodes = 3e7;
 
 std::vector<Vec3> Lift(const ReliefSurface& surface, const Loop& loop)
 {
@@ -262,7 +262,7 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
   const double rows = std::ceil((high[1] - grid.Origin[1]) / h) + 1;
   if (columns * rows > MaximumNodes)
   {
-    throw std::runtime_error("the plate would have over a hundred million triangles; make "
+    throw std::runtime_error("the outline would be sought on over thirty million points; make "
                              "TriangleSize larger than " +
       FormatNumber(h) + " mm");
   }
@@ -279,7 +279,8 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
   if (core.size() < 3)
   {
     throw std::runtime_error("no plate is left: the defect is nowhere wider than twice " +
-      FormatNumber(inset) + " mm (EdgeClearance and the radius of corners)");
+      FormatNumber(inset) +
+      " mm (EdgeClearance plus the radius of corners, which is at least Bevel plus TriangleSize)");
   }
   if (pieces > 1)
   {

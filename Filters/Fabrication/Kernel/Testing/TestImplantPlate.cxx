@@ -363,6 +363,7 @@ TEST(ImplantPlate, NamesWhatCannotBeMade)
   says("no plate is left", [](O& o) { o.EdgeClearance = 31; });
   says("beyond the fitted surface", [](O& o) { o.EdgeClearance = -13; });
   says("TriangleSize", [](O& o) { o.TriangleSize = 1e-4; });
+  says("plus TriangleSize", [](O& o) { o.TriangleSize = 50; });
   says("radius of 60", [](O& o) { o.Thickness = 61; });
   says("Bevel is 4",
     [](O& o)
