@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHoleFill.h"
 
+#include "lacunaDepthDiscontinuity.h"
 #include "lacunaExecution.h"
 
 #include <algorithm>
@@ -82,6 +83,41 @@ MapMask SelectSupport(Execution& execution, const HoleFillInput& input,
     warnings.push_back(message.str());
   }
   return support;
+}
+
+// Where the support is so steep that depths are uncertain: a small shift of the surface across the
+// view is a large one along it.
+void WarnOfSteepSupport(
+  const HoleFillInput& input, const MapMask& support, std::vector<std::string>& warnings)
+{
+  const DiscontinuityLimits limits;
+  const SlopeRule rule(limits);
+  const auto width = static_cast<std::size_t>(input.Grid.Width);
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+  {
+    const auto isSteep = [&](bool inside, std::size_t neighbour, double spacing)
+    {
+      return inside && support[pixel] && support[neighbour] &&
+        rule.IsSteep({ input.Depth[neighbour] - input.Depth[pixel], spacing });
+    };
+    if (isSteep((pixel + 1) % width != 0, pixel + 1, input.Grid.Spacing[0]) ||
+      isSteep(pixel + width < support.size(), pixel + width, input.Grid.Spacing[1]))
+    {
+      first = count++ == 0 ? pixel : first;
+    }
+  }
+  if (count > 0)
+  {
+    std::ostringstream message;
+    message << "at " << count << " pixels around the defect, first at column "
+            << input.Grid.GetColumn(first) << ", row " << input.Grid.GetRow(first)
+            << ", the surface is steeper than " << limits.MaximumAngle
+            << " degrees against the map: depths are uncertain there. Choose a view that faces the "
+            << "defect, or leave these pixels out with SupportArray";
+    warnings.push_back(message.str());
+  }
 }
 
 bool TouchesBorder(const MapGrid& grid, const MapMask& mask)
@@ -246,6 +282,7 @@ HoleFillResult FillHole(
   HoleFillResult result;
   execution.SetStage(0.1, 0.2);
   result.Support = SelectSupport(execution, input, options, result.Warnings);
+  WarnOfSteepSupport(input, result.Support, result.Warnings);
   if (TouchesBorder(input.Grid, input.Defect))
   {
     result.Warnings.emplace_back("the defect touches the border of the map: there is no surface "

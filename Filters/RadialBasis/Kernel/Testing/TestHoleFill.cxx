@@ -260,6 +260,21 @@ TEST(HoleFill, SmoothingSuppressesRipple)
   EXPECT_LT(worst(20), 0.5 * worst(0));
 }
 
+TEST(HoleFill, WarnsOfASteepRim)
+{
+  lacuna::ThreadExecution execution(2);
+  const auto getWarnings = [&](double slope)
+  {
+    return lacuna::FillHole(
+      execution, MakeMap([&](double x, double) { return 10 + slope * x; }), HoleFillOptions())
+      .Warnings;
+  };
+  EXPECT_TRUE(getWarnings(2.1).empty());                      // 64.5 degrees
+  const std::vector<std::string> warnings = getWarnings(2.2); // 65.6 degrees, no step of 79
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("steeper than 65 degrees"), std::string::npos) << warnings[0];
+}
+
 // A long wave in a wide frame around a small defect: half of its amplitude is left at the cut-off,
 // for any kernel and node spacing.
 TEST(HoleFill, CutoffWavelengthHalvesTheAmplitude)
