@@ -12,6 +12,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseRecords.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaStackPixels.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
@@ -183,13 +184,8 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
     const auto last = static_cast<int>(this->TimeSteps.size()) - 1;
     in->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[std::max(0, std::min(wanted[4], last))]);
   }
-  in->Set(SDDP::UPDATE_EXTENT(), extent.data(), 6);
-  for (vtkInformation* info : { in, table })
-  {
-    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  }
+  vtkLacunaRequest::Extent(in, extent.data());
+  vtkLacunaRequest::OnePiece(table);
   return 1;
 }
 
@@ -268,9 +264,7 @@ vtkImageData* vtkLacunaAssembleTrackedSlices::UpdatePicture(int step)
   requests->SetNumberOfInformationObjects(producer->GetNumberOfOutputPorts());
   vtkInformation* info = requests->GetInformationObject(port);
   info->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[step]);
-  info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-  info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  vtkLacunaRequest::OnePiece(info);
   auto* picture = producer->Update(port, requests)
     ? vtkImageData::SafeDownCast(producer->GetOutputDataObject(port))
     : nullptr;

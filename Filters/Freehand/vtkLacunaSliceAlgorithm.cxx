@@ -4,6 +4,7 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -30,14 +31,7 @@ int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
 {
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
-    vtkInformation* info = inputs[0]->GetInformationObject(i);
-    if (info->Has(SDDP::WHOLE_EXTENT()))
-    {
-      info->Set(SDDP::UPDATE_EXTENT(), info->Get(SDDP::WHOLE_EXTENT()), 6);
-    }
-    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(i));
   }
   return 1;
 }

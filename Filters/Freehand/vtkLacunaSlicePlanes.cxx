@@ -11,6 +11,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSlicePlaneBuilder.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -79,10 +80,7 @@ int vtkLacunaSlicePlanes::RequestUpdateExtent(
   {
     extent[5] = extent[4]; // what the sweep is, is asked for even where no slice is wanted
   }
-  in->Set(SDDP::UPDATE_EXTENT(), extent, 6);
-  in->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  in->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-  in->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  vtkLacunaRequest::Extent(in, extent);
   return 1;
 }
 

@@ -14,6 +14,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -311,10 +312,7 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
-      vtkInformation* info = inputVector[port]->GetInformationObject(i);
-      int whole[6];
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), whole, 6);
+      vtkLacunaRequest::Whole(inputVector[port]->GetInformationObject(i));
     }
   }
   return 1;

@@ -20,6 +20,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeCaster.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
@@ -362,13 +363,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
   {
     if (inputVector[port]->GetNumberOfInformationObjects() > 0)
     {
-      vtkInformation* inInfo = inputVector[port]->GetInformationObject(0);
-      int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
-      inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
-      // this very extent: a producer of sub-extents would split it once more by piece
-      inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-      inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+      vtkLacunaRequest::Whole(inputVector[port]->GetInformationObject(0));
     }
   }
   return 1;

@@ -17,6 +17,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaShadows.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -323,19 +324,10 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
       extent[3] = std::min(whole[3], extent[3] + 1);
     }
   }
-  const auto request = [](vtkInformation* info, const int wanted[6])
-  {
-    info->Set(SDDP::UPDATE_EXTENT(), wanted, 6);
-    // this very extent: a producer of sub-extents would split it once more by piece
-    info->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
-  };
-  request(inInfo, extent);
+  vtkLacunaRequest::Extent(inInfo, extent);
   if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
   {
-    int volume[6] = { 0, -1, 0, -1, 0, -1 };
-    volumeInfo->Get(SDDP::WHOLE_EXTENT(), volume);
-    request(volumeInfo, volume);
+    vtkLacunaRequest::Whole(volumeInfo);
   }
   return 1;
 }

@@ -17,6 +17,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -123,10 +124,7 @@ int vtkLacunaDepthMapSurface::RequestUpdateExtent(
   // one more row on either side for the rule
   extent[2] = std::max(extent[2], rows.First - 1);
   extent[3] = std::min(extent[3], rows.Last + 1);
-  inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
-  // this very extent: a producer of sub-extents would split it once more by piece
-  inInfo->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
-  inInfo->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
+  vtkLacunaRequest::Extent(inInfo, extent);
   return 1;
 }
 

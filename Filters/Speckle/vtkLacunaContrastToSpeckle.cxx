@@ -11,6 +11,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkMatrix4x4.h"
@@ -157,12 +158,7 @@ int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // All of the image, on every rank: what is upstream may need all ranks to make it.
-  vtkInformation* input = inputs[0]->GetInformationObject(0);
-  int whole[6];
-  input->Get(Pipeline::WHOLE_EXTENT(), whole);
-  input->Set(Pipeline::UPDATE_EXTENT(), whole, 6);
-  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
   return 1;
 }
 

@@ -12,6 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -193,11 +194,7 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     // RequestData reports it.
   }
-  input->Set(Pipeline::UPDATE_EXTENT(), needed.data(), 6);
-  // This very extent: a producer of sub-extents would divide it once more by piece.
-  input->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  input->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  vtkLacunaRequest::Extent(input, needed.data());
   return 1;
 }
 

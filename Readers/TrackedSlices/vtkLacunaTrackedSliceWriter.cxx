@@ -7,6 +7,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSequenceContent.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
@@ -41,11 +42,7 @@ int vtkLacunaTrackedSliceWriter::ProcessRequest(
     info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
   {
     // Also of the pieces that write nothing: filters before this one may need all processes.
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    vtkLacunaRequest::Whole(info);
     return 1;
   }
   return this->Superclass::ProcessRequest(request, inputs, outputs);

@@ -12,6 +12,7 @@
 #include "vtkNew.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
+#include "vtkRTAnalyticSource.h"
 #include "vtkSphere.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -262,6 +263,39 @@ void TestPieces()
   }
 }
 
+// A source that can make parts is asked for all of its image, whatever piece is wanted.
+void TestPieceOfSource()
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  source->SetWholeExtent(-8, 8, -8, 8, -8, 8);
+  vtkNew<vtkLacunaOccludedAngle> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->SetNumberOfDirections(20);
+  filter->Update();
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(filter->GetOutput());
+  vtkNew<vtkRTAnalyticSource> fresh;
+  fresh->SetWholeExtent(-8, 8, -8, 8, -8, 8);
+  filter->SetInputConnection(fresh->GetOutputPort());
+  for (int piece : { 0, 1, 2 })
+  {
+    filter->Modified();
+    filter->UpdatePiece(piece, 3, 0);
+    vtkImageData* part = filter->GetOutput();
+    const int* e = part->GetExtent();
+    LACUNA_CHECK(part->GetNumberOfPoints() > 0);
+    for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+    {
+      const int nx = e[1] - e[0] + 1;
+      const int ny = e[3] - e[2] + 1;
+      const int at[3] = { e[0] + static_cast<int>(i % nx), e[2] + static_cast<int>(i / nx % ny),
+        e[4] + static_cast<int>(i / nx / ny) };
+      LACUNA_CHECK(part->GetScalarComponentAsDouble(at[0], at[1], at[2], 0) ==
+        whole->GetScalarComponentAsDouble(at[0], at[1], at[2], 0));
+    }
+  }
+}
+
 void TestAbort()
 {
   vtkNew<vtkImageData> image;
@@ -296,6 +330,7 @@ int TestOccludedAngle(int, char*[])
   TestAttenuations();
   TestSpace();
   TestPieces();
+  TestPieceOfSource();
   TestAbort();
   vtkNew<vtkLacunaOccludedAngle> filter;
   std::ostringstream text;

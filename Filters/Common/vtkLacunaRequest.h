@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What filters ask of their inputs, whatever piece is asked of them.
+#ifndef vtkLacunaRequest_h
+#define vtkLacunaRequest_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+class vtkInformation;
+
+/// For RequestUpdateExtent. An extent alone does not do: a producer of sub-extents divides it once
+/// more by the piece that was asked for, so that ranks would get parts of it.
+namespace vtkLacunaRequest
+{
+/// All of an input, on every rank: images by their whole extent, other data as one piece.
+VTKLACUNAFILTERSCOMMON_EXPORT void Whole(vtkInformation* input);
+
+/// This very extent of an image.
+VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);
+
+/// Data of any kind as one piece.
+VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
+}
+#endif
