@@ -2,6 +2,7 @@
 #include "vtkLacunaRBFImageWarp.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -13,6 +14,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -279,15 +281,7 @@ int vtkLacunaRBFImageWarp::RequestUpdateExtent(
   // Any voxel may show any place, and each depends on all landmarks.
   for (int port = 0; port < 3; ++port)
   {
-    vtkInformation* info = inputs[port]->GetInformationObject(0);
-    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-    {
-      info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-        info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
-    }
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    vtkLacunaRequest::Whole(inputs[port]->GetInformationObject(0));
   }
   return 1;
 }
@@ -374,11 +368,13 @@ int vtkLacunaRBFImageWarp::RequestData(
       vtkLacunaFieldData::Set(whole, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
       vtkLacunaFieldData::Set(whole, "Residual", { report.Residual }, 1);
       vtkLacunaFieldData::Set(whole, "FoldedFraction", { folded }, 1);
-      std::ostringstream parameters;
-      parameters << "Kernel=" << this->Kernel << " Smoothing=" << this->Smoothing
-                 << " Interpolation=" << this->Interpolation
-                 << " OutsideValue=" << this->OutsideValue << " Accuracy=" << this->Accuracy;
-      vtkLacunaProvenance::Record(whole, this, { image, landmarks, targets }, parameters.str());
+      lacuna::ParameterText parameters;
+      parameters.Add("Kernel", this->Kernel)
+        .Add("Smoothing", this->Smoothing)
+        .Add("Interpolation", this->Interpolation)
+        .Add("OutsideValue", this->OutsideValue)
+        .Add("Accuracy", this->Accuracy);
+      vtkLacunaProvenance::Record(whole, this, { image, landmarks, targets }, parameters.Get());
       output->ShallowCopy(whole);
       int piece[6];
       outputs->GetInformationObject(0)->Get(

@@ -2,6 +2,7 @@
 #include "vtkLacunaRBFInterpolator.h"
 
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
@@ -14,6 +15,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -205,15 +207,7 @@ int vtkLacunaRBFInterpolator::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // Each value of the image depends on all points.
-  vtkInformation* info = inputs[0]->GetInformationObject(0);
-  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
-  }
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), 0);
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
   return 1;
 }
 
@@ -310,12 +304,15 @@ int vtkLacunaRBFInterpolator::RequestData(
       }
       whole->GetPointData()->SetScalars(image);
 
-      std::ostringstream parameters;
-      parameters << "ScalarArray=" << this->ScalarArray << " Kernel=" << this->Kernel
-                 << " KernelLength=" << this->KernelLength << " Smoothing=" << this->Smoothing
-                 << " ErrorArray=" << this->ErrorArray << " Accuracy=" << this->Accuracy
-                 << " Solver=" << this->Solver;
-      vtkLacunaProvenance::Record(whole, this, { points }, parameters.str());
+      lacuna::ParameterText parameters;
+      parameters.Add("ScalarArray", this->ScalarArray)
+        .Add("Kernel", this->Kernel)
+        .Add("KernelLength", this->KernelLength)
+        .Add("Smoothing", this->Smoothing)
+        .Add("ErrorArray", this->ErrorArray)
+        .Add("Accuracy", this->Accuracy)
+        .Add("Solver", this->Solver);
+      vtkLacunaProvenance::Record(whole, this, { points }, parameters.Get());
       output->ShallowCopy(whole);
       int piece[6];
       outputs->GetInformationObject(0)->Get(

@@ -8,6 +8,7 @@
 #include "lacunaDicomFolder.h"
 #include "lacunaHounsfield.h"
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
@@ -245,15 +246,17 @@ int vtkLacunaCTSeriesReader::RequestInformation(
 std::string vtkLacunaCTSeriesReader::DescribeParameters() const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
-  std::ostringstream text;
-  text << "Series=fnv1a:" << Hash(geometry.Slices[0].Frame.Header->SeriesUid)
-       << " Images=" << geometry.Slices.size() << " MissingSlices="
-       << (this->MissingSlices == MISSING_SLICES_ERROR ? "Error" : "Interpolate")
-       << " GantryTilt=" << (this->GantryTilt == GANTRY_TILT_CORRECT ? "Correct" : "Refuse")
-       << " Acquisition=" << this->Acquisition << " PositionTolerance=" << this->PositionTolerance
-       << " PaddingValue=" << this->PaddingValue << " Interpolated=" << geometry.Interpolated.size()
-       << " Tilt=" << geometry.TiltDegrees;
-  return text.str();
+  return lacuna::ParameterText()
+    .Add("Series", "fnv1a:" + Hash(geometry.Slices[0].Frame.Header->SeriesUid))
+    .Add("Images", geometry.Slices.size())
+    .Add("MissingSlices", this->MissingSlices == MISSING_SLICES_ERROR ? "Error" : "Interpolate")
+    .Add("GantryTilt", this->GantryTilt == GANTRY_TILT_CORRECT ? "Correct" : "Refuse")
+    .Add("Acquisition", this->Acquisition)
+    .Add("PositionTolerance", this->PositionTolerance)
+    .Add("PaddingValue", this->PaddingValue)
+    .Add("Interpolated", geometry.Interpolated.size())
+    .Add("Tilt", geometry.TiltDegrees)
+    .Get();
 }
 
 //------------------------------------------------------------------------------
