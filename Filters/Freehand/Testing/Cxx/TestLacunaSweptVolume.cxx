@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Ports, arrays, extents, pieces, time, errors of vtkLacunaSweptVolume.
 #include "lacunaCheck.h"
+#include "lacunaTestReplay.h"
 #include "lacunaTestStacks.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkImageAlgorithm.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSweptVolume.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
-#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -33,48 +31,10 @@ using namespace lacunaTestStacks;
 
 namespace
 {
-// A source of slices that knows how often it ran; its poses move with time.
-class SliceSource : public vtkImageAlgorithm
+vtkSmartPointer<vtkImageData> MovingStack(double time)
 {
-public:
-  static SliceSource* New();
-  vtkTypeMacro(SliceSource, vtkImageAlgorithm);
-  int Executions = 0;
-  bool HasTime = false;
-
-protected:
-  SliceSource() { this->SetNumberOfInputPorts(0); }
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
-  {
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const int extent[6] = { 0, 12, 0, 8, 0, 4 };
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    if (this->HasTime)
-    {
-      const double steps[2] = { 0, 100 };
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, 2);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), steps, 2);
-    }
-    return 1;
-  }
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
-  {
-    ++this->Executions;
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      : 0;
-    vtkImageData* output = vtkImageData::GetData(outputs);
-    output->ShallowCopy(MakeStack(MakePoses(5, time)));
-    if (this->HasTime)
-    {
-      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    }
-    return 1;
-  }
-};
-vtkStandardNewMacro(SliceSource);
+  return MakeStack(MakePoses(5, time));
+}
 
 void TestContract()
 {
@@ -394,6 +354,7 @@ void TestErrors()
 void TestPipeline()
 {
   vtkNew<SliceSource> source;
+  source->Show = MovingStack;
   vtkNew<vtkLacunaSweptVolume> filter;
   filter->SetInputConnection(source->GetOutputPort());
   filter->SetOutputSpacing(0.5, 0.5, 0.5);
@@ -412,6 +373,7 @@ void TestPipeline()
 
   // a source that moves with time
   vtkNew<SliceSource> moving;
+  moving->Show = MovingStack;
   moving->HasTime = true;
   filter->SetInputConnection(moving->GetOutputPort());
   filter->UpdateTimeStep(0);

@@ -225,66 +225,34 @@ void TestWarnings()
   LACUNA_CHECK_CONTAINS(update(8, 4), "IsoValue 2000");
 }
 
-// A source of slices whose poses move with time, or that come with time.
-class SliceSource : public vtkImageAlgorithm
+vtkSmartPointer<vtkImageData> MovingStack(double time)
 {
-public:
-  static SliceSource* New();
-  vtkTypeMacro(SliceSource, vtkImageAlgorithm);
-  int Executions = 0;
-  bool HasTime = false;
-  bool IsReplay = false;
+  return MakeStack(MakePoses(5, time), VTK_SHORT);
+}
 
-protected:
-  SliceSource() { this->SetNumberOfInputPorts(0); }
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+// Slices that stand still, of which the one at the time and all later ones are still to come.
+vtkSmartPointer<vtkImageData> ReplayedStack(double time)
+{
+  std::vector<unsigned char> status(5, 0);
+  for (int slice = 0; slice < 5; ++slice)
   {
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const int extent[6] = { 0, 12, 0, 8, 0, 4 };
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    if (this->HasTime)
-    {
-      const double steps[2] = { 0, 100 };
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, 2);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), steps, 2);
-    }
-    return 1;
+    status[slice] = slice < time ? 0 : 2;
   }
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  const auto stack = MakeStack(MakePoses(5, 0), VTK_SHORT, status);
+  for (vtkIdType i = 0; i < stack->GetNumberOfPoints(); ++i)
   {
-    ++this->Executions;
-    vtkInformation* info = outputs->GetInformationObject(0);
-    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      : 0;
-    vtkImageData* output = vtkImageData::GetData(outputs);
-    std::vector<unsigned char> status(5, 0);
-    for (int slice = 0; this->IsReplay && slice < 5; ++slice)
+    if (status[i / (13 * 9)] != 0)
     {
-      status[slice] = slice < time ? 0 : 2; // the image is still to come
+      stack->GetPointData()->GetScalars()->SetTuple1(i, 0);
     }
-    const auto stack = MakeStack(MakePoses(5, this->IsReplay ? 0 : time), VTK_SHORT, status);
-    for (vtkIdType i = 0; i < stack->GetNumberOfPoints(); ++i)
-    {
-      if (status[i / (13 * 9)] != 0)
-      {
-        stack->GetPointData()->GetScalars()->SetTuple1(i, 0);
-      }
-    }
-    output->ShallowCopy(stack);
-    if (this->HasTime)
-    {
-      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    }
-    return 1;
   }
-};
-vtkStandardNewMacro(SliceSource);
+  return stack;
+}
 
 void TestPipeline()
 {
   vtkNew<SliceSource> source;
+  source->Show = MovingStack;
   vtkNew<Caster> caster;
   LookAlong(caster);
   caster->SetInputConnection(source->GetOutputPort());
@@ -303,6 +271,7 @@ void TestPipeline()
 
   // a source that moves with time; the map goes with it
   vtkNew<SliceSource> moving;
+  moving->Show = MovingStack;
   moving->HasTime = true;
   caster->SetInputConnection(moving->GetOutputPort());
   for (const double time : { 0.0, 100.0, 0.0 })
@@ -314,7 +283,8 @@ void TestPipeline()
 
   // slices that come with time: the map is that of the whole sweep from the beginning
   vtkNew<SliceSource> replay;
-  replay->HasTime = replay->IsReplay = true;
+  replay->Show = ReplayedStack;
+  replay->HasTime = true;
   vtkNew<Caster> watching;
   LookAlong(watching);
   watching->SetInputConnection(replay->GetOutputPort());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A sweep replayed in time, as by the reader: slices that are still to come are blank and flagged.
+/// Sources of slices that change with time: a replay, as by the reader, in which slices that are still
+/// to come are blank and flagged, and any stack as a function of time.
 #ifndef lacunaTestReplay_h
 #define lacunaTestReplay_h
 
@@ -13,6 +14,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace lacunaTestStacks
 {
@@ -58,6 +60,48 @@ protected:
 
 private:
   int Slices = 0;
+};
+
+/// The stack of a function of time (0 as long as HasTime is not set), with a count of executions.
+class SliceSource : public vtkImageAlgorithm
+{
+public:
+  static SliceSource* New() { VTK_STANDARD_NEW_BODY(SliceSource); }
+  vtkTypeMacro(SliceSource, vtkImageAlgorithm);
+  std::function<vtkSmartPointer<vtkImageData>(double time)> Show;
+  int Executions = 0;
+  bool HasTime = false;
+
+protected:
+  SliceSource() { this->SetNumberOfInputPorts(0); }
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Show(0)->GetExtent(), 6);
+    if (this->HasTime)
+    {
+      const double steps[2] = { 0, 100 };
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps, 2);
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), steps, 2);
+    }
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    ++this->Executions;
+    vtkInformation* info = outputs->GetInformationObject(0);
+    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
+      ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
+      : 0;
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    output->ShallowCopy(this->Show(time));
+    if (this->HasTime)
+    {
+      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+    }
+    return 1;
+  }
 };
 }
 #endif
