@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkBMPReader, vtkBMPWriter, vtkJPEGWriter
 
-from lacuna_test import output
+from lacuna_test import check_defaults, output
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 from lacuna.errors import PipelineError, raising
@@ -61,18 +61,7 @@ enumerations = {
     "MatchBy": ["Order", "FrameNumber", "Time"]}
 names = ["FrameColumn", "TimestampColumn", "StatusColumn", "GateColumn", "GateRange", "FirstFrameNumber",
          "FrameRate", "TimeOffset", "MaximumTimeGap", "SkipInvalidPoses"]
-for name, texts in enumerations.items():
-    assert getattr(first, name) == texts[0] and getattr(plain, "Get" + name)() == 0, name
-    for value, text in enumerate(texts):
-        setattr(first, name, text)
-        first.UpdateVTKObjects()
-        assert getattr(first.GetClientSideObject(), "Get" + name)() == value, text
-    setattr(first, name, texts[0])
-for name in names:
-    value, expected = getattr(first, name), getattr(plain, "Get" + name)()
-    value = value if isinstance(value, str) else np.ravel(value).tolist()
-    expected = expected if isinstance(expected, str) else np.ravel(expected).astype(float).tolist()
-    assert value == expected, (name, value, expected)
+check_defaults(first, plain, names, enumerations)
 assert list(first.PixelSpacing) == [0] and plain.GetPixelSpacing() == (0, 0)
 assert list(first.ImageToProbe) == np.eye(4).ravel().tolist()
 assert plain.GetNumberOfPoseColumns() == 0 and len(first.PoseColumns) == 0

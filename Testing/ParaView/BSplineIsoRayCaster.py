@@ -5,18 +5,10 @@ import os
 
 from paraview import servermanager
 from paraview.simple import *
+from lacuna_test import check_defaults
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 import lacuna  # after the plugin: the wrapped classes, for the C++ defaults
-
-
-def check_defaults(proxy, algorithm, names):
-    """The panel's defaults are the class's."""
-    for name in names:
-        shown = getattr(proxy, name)
-        actual = getattr(algorithm, "Get" + name)()
-        assert (tuple(shown) if hasattr(shown, "__len__") else shown) == actual, (name, actual)
-
 
 wavelet = Wavelet(WholeExtent=[-20, 20, -20, 20, -20, 20])
 wavelet.UpdatePipeline()
@@ -24,14 +16,13 @@ caster = BSplineIsoRayCaster(Input=wavelet)
 algorithm = lacuna.vtkLacunaBSplineIsoRayCaster()
 assert list(caster.IsoValues) == [algorithm.GetIsoValue(0)] == [500.0], caster.IsoValues
 assert algorithm.GetNumberOfIsoValues() == 1
-assert (caster.Interpolation, caster.SolidSide) == ("BSpline", "Above")
-assert (algorithm.GetInterpolation(), algorithm.GetSolidSide()) == (0, 0)
-check_defaults(caster, algorithm,
-               ["ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin", "PixelSpacing", "ImageSize"])
-check_defaults(caster, algorithm, ["FocalPoint", "EyePosition", "ViewAngle", "CapCutAway", "CapBoundary",
-                                   "ComputeThickness"])
-assert (caster.Projection, caster.NormalMethod) == ("Parallel", "Analytic")
-assert (algorithm.GetProjection(), algorithm.GetNormalMethod()) == (0, 0)
+names = ["ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin", "PixelSpacing", "ImageSize", "EyePosition",
+         "ViewAngle", "CapCutAway", "CapBoundary", "ComputeThickness"]
+check_defaults(caster, algorithm, names, {
+    "Interpolation": ["BSpline", "InterpolatingBSpline", "Trilinear"],
+    "SolidSide": ["Above", "Below"],
+    "Projection": ["Parallel", "Perspective"],
+    "NormalMethod": ["Analytic", "GreyLevel"]})
 assert type(caster.CutAway).__name__ == "None" and caster.StartDepthMap is None, caster.CutAway
 assert caster.ScalarArray == algorithm.GetScalarArray() == ""
 surface = DepthMapSurface(Input=caster)

@@ -7,7 +7,7 @@ from paraview.simple import *
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from lacuna_test import output
+from lacuna_test import check_defaults, output
 from tracked_slice_files import array, open_slices
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
@@ -49,18 +49,9 @@ slices = open_slices("GateSlices", pixels.astype(np.uint8), poses)
 proxy = GateSlices(Input=slices)
 own = vtkLacunaGateSlices()
 enumerations = {"GateType": ["Value", "Phase", "Trigger"], "MatchBy": ["Timestamp", "FrameNumber"]}
-for name in ("GateType", "GateRange", "Period", "SpeedLimit", "GateColumn", "MatchBy", "KeyColumn",
-             "TimeOffset", "MaximumTimeGap"):
-    default = getattr(own, "Get" + name)()
-    if name in enumerations:
-        default = enumerations[name][default]
-        for text in enumerations[name]:
-            setattr(proxy, name, text)
-            assert getattr(proxy, name) == text
-        setattr(proxy, name, default)
-    value = proxy.GetProperty(name).GetData()
-    value = tuple(value) if isinstance(default, tuple) else value
-    assert value == default, (name, value, default)
+names = ["GateRange", "Period", "SpeedLimit", "GateColumn", "KeyColumn", "TimeOffset",
+         "MaximumTimeGap"]
+check_defaults(proxy, own, names, enumerations)
 
 # speed alone needs no table: 2 mm/s
 proxy.SpeedLimit = 1

@@ -5,6 +5,7 @@ import os
 
 import lacuna
 import numpy as np
+from lacuna_test import check_defaults
 from paraview.simple import *
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -34,14 +35,12 @@ plain = lacuna.vtkLacunaPhantomSweep()
 names = [
     "NumberOfSlices", "ImageSize", "PixelSpacing", "NumberOfSweeps", "SpeckleLevel", "PoseNoise",
     "Seed", "Travel", "SweepAngle", "TwistAngle", "FanAngle", "Wander", "EdgeWidth", "Center"]
-for name in names:
-    value = getattr(sweep, name)
-    expected = getattr(plain, "Get" + name)()
-    assert np.array_equal(np.ravel(value), np.ravel(expected)), (name, value, expected)
-for name, text in (
-        ("Motion", "Sweep"), ("Anatomy", "Ellipsoids"), ("OutputScalarType", "UnsignedChar")):
-    assert getattr(sweep, name) == text and getattr(plain, "Get" + name)() == 0, name
-listed = set(names) | {"Motion", "Anatomy", "OutputScalarType", "Input", "TrueIsoValue", "TrueVolume"}
+enumerations = {
+    "Motion": ["Sweep", "Fan", "Twist", "Arbitrary"],
+    "Anatomy": ["Ellipsoids", "Kumara", "Vessels", "Linear"],
+    "OutputScalarType": ["UnsignedChar", "Float"]}
+check_defaults(sweep, plain, names, enumerations)
+listed = set(names) | set(enumerations) | {"Input", "TrueIsoValue", "TrueVolume"}
 assert set(sweep.ListProperties()) - {"PointData", "CellData", "FieldData"} == listed, (
     sweep.ListProperties())
 

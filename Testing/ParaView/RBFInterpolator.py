@@ -5,7 +5,7 @@ import os
 
 import lacuna
 import numpy as np
-from lacuna_test import output
+from lacuna_test import check_defaults, output
 from paraview.simple import CSVReader, LoadPlugin, TableToPoints, Wavelet
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -35,12 +35,9 @@ scattered = write_points("RBFInterpolator", points, Height=height)
 filter = RBFInterpolator(Input=scattered, ScalarArray="Height")
 
 direct = lacuna.vtkLacunaRBFInterpolator()
-for name in ("Smoothing", "KernelLength", "Accuracy"):
-    assert filter.GetPropertyValue(name) == getattr(direct, "Get" + name)(), name
-for name in ("OutputSpacing", "OutputBounds"):
-    assert tuple(filter.GetPropertyValue(name)) == tuple(getattr(direct, "Get" + name)()), name
+check_defaults(filter, direct, ["Smoothing", "KernelLength", "Accuracy", "OutputSpacing", "OutputBounds"],
+               {"Solver": ["Auto", "Direct", "Fast"]})
 assert filter.Kernel == "ThinPlate" and direct.GetKernel() == direct.ThinPlate
-assert filter.Solver == "Auto" and direct.GetSolver() == direct.Auto
 assert filter.ErrorArray in ("", None) and direct.GetErrorArray() == ""
 
 filter.OutputSpacing = [1, 1, 1]

@@ -5,6 +5,7 @@ import os
 
 import lacuna
 import numpy as np
+from lacuna_test import check_defaults
 from paraview.simple import *
 from paraview.vtk.util.numpy_support import vtk_to_numpy
 
@@ -22,10 +23,7 @@ skull = SkullPhantom()
 assert skull.SMProxy.GetXMLName() == "LacunaSkullPhantom"
 plain = lacuna.vtkLacunaSkullPhantom()
 names = ["Spacing", "DefectRadius", "DefectDirection", "NoiseLevel", "Seed", "Center"]
-for name in names:
-    value = getattr(skull, name)
-    expected = getattr(plain, "Get" + name)()
-    assert np.array_equal(np.ravel(value), np.ravel(expected)), (name, value, expected)
+check_defaults(skull, plain, names)
 assert set(skull.ListProperties()) - {"PointData", "CellData", "FieldData"} == set(names)
 
 data, defect = fetch(skull)

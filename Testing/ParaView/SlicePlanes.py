@@ -4,6 +4,7 @@ import os
 
 import lacuna
 import numpy as np
+from lacuna_test import check_defaults
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -22,16 +23,15 @@ pixels = vtk_to_numpy(stack.GetPointData().GetScalars()).reshape(20, 48, 64)
 planes = SlicePlanes(Input=sweep)
 plain = lacuna.vtkLacunaSlicePlanes()
 names = ["Stride", "TranslationAccuracy", "AngularAccuracy", "SpeedLimit", "OutlineOnly", "MaximumNumberOfPoints"]
-for name in names:
-    assert getattr(planes, name) == getattr(plain, "Get" + name)(), name
-texts = {"ColorBy": ["Intensity", "Speed", "RegistrationError"], "InvalidSlices": ["LeaveOut", "Outline", "Show"]}
-for name, values in texts.items():
-    assert getattr(planes, name) == values[0] and getattr(plain, "Get" + name)() == 0, name
+enumerations = {
+    "ColorBy": ["Intensity", "Speed", "RegistrationError"],
+    "InvalidSlices": ["LeaveOut", "Outline", "Show"]}
+check_defaults(planes, plain, names, enumerations)
 assert planes.BadPoses == "LeaveOut" and plain.GetBadPoses() == plain.LeaveOutBad
 planes.BadPoses = "KeepOutliers"
-assert planes.GetProperty("BadPoses").GetData() == "KeepOutliers" and planes.SMProxy.GetProperty("BadPoses").GetElement(0) == plain.KeepOutliers
+assert planes.GetClientSideObject().GetBadPoses() == plain.KeepOutliers
 planes.BadPoses = "LeaveOut"
-assert set(planes.ListProperties()) - {"PointData", "CellData", "FieldData"} == {"Input", "BadPoses", *names, *texts}
+assert set(planes.ListProperties()) - {"PointData", "CellData", "FieldData"} == {"Input", "BadPoses", *names, *enumerations}
 
 # Where the pixels are, and their grey levels.
 with raising():

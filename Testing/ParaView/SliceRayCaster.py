@@ -7,7 +7,7 @@ from paraview.simple import *
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from lacuna_test import compare_with_baseline, output
+from lacuna_test import check_defaults, compare_with_baseline, output
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 import lacuna
@@ -78,23 +78,14 @@ def slopes(depth, spacing):
     return np.hypot(down, right)
 
 
-def check_defaults():
+def check_panel():
     proxy = SliceRayCaster(Input=PhantomSweep(NumberOfSlices=2, ImageSize=[8, 8]))
     own = lacuna.vtkLacunaSliceRayCaster()
     enumerations = {"SolidSide": ["Above", "Below"], "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"]}
-    for name in ("IsoValue", "SolidSide", "MaximumGap", "ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin",
-                 "PixelSpacing", "ImageSize", "ClipRectangle", "FanOrigin", "FanAngles", "FanRadii", "BadPoses", "UseTooFast", "UseGatedOut",
-                 "UseImageInvalid"):
-        default = getattr(own, "Get" + name)()
-        if name in enumerations:
-            default = enumerations[name][default]
-            for text in enumerations[name]:
-                setattr(proxy, name, text)
-                assert getattr(proxy, name) == text
-            setattr(proxy, name, default)
-        value = proxy.GetProperty(name).GetData()
-        value = tuple(value) if isinstance(default, tuple) else value
-        assert value == default, (name, value, default)
+    names = ["IsoValue", "MaximumGap", "ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin",
+             "PixelSpacing", "ImageSize", "ClipRectangle", "FanOrigin", "FanAngles", "FanRadii",
+             "UseTooFast", "UseGatedOut", "UseImageInvalid"]
+    check_defaults(proxy, own, names, enumerations)
     Delete(proxy)
 
 
@@ -271,7 +262,7 @@ def check_state():
     np.testing.assert_array_equal(depths(fetch(loaded)), before)
 
 
-check_defaults()
+check_panel()
 sweep = PhantomSweep()
 check_truth("ellipsoid", sweep, ellipsoid, [0, 0, 1], 50 / 59, IsoValue=120)
 check_truth("ellipsoid, oblique", sweep, ellipsoid, [0.4, -0.3, -1], 50 / 59 * np.sqrt(1.25), IsoValue=120)

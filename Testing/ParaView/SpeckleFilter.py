@@ -4,6 +4,7 @@ import os
 
 import lacuna.plugin
 import numpy as np
+from lacuna_test import check_defaults
 
 lacuna.plugin.load()
 from paraview.simple import *
@@ -17,22 +18,17 @@ OPERATIONS = ["Median", "Rank", "Minimum", "Maximum", "Opening", "Closing", "Ope
               "Mode", "AdaptiveMedian", "Mean", "Gaussian", "LaplacianOfGaussian"]
 
 
-def check_defaults():
+def check_panels():
     """The panel's defaults are the classes' own."""
     source = PhantomSweep(NumberOfSlices=1, ImageSize=[8, 8])
     proxy = SpeckleFilter(Input=source)
     own = lacuna.vtkLacunaSpeckleFilter()
-    assert proxy.Operation == OPERATIONS[own.GetOperation()]
-    assert proxy.KernelShape == ["Box", "Ellipsoid"][own.GetKernelShape()]
-    assert list(proxy.KernelSize) == list(own.GetKernelSize())
-    for name in ("ScalarArray", "Rank", "StandardDeviation", "AdaptiveStrength"):
-        assert getattr(proxy, name) == getattr(own, "Get" + name)(), name
+    names = ["KernelSize", "ScalarArray", "Rank", "StandardDeviation", "AdaptiveStrength"]
+    check_defaults(proxy, own, names, {"Operation": OPERATIONS, "KernelShape": ["Box", "Ellipsoid"]})
     proxy = ContrastToSpeckle(Input=source)
     own = lacuna.vtkLacunaContrastToSpeckle()
-    for name in ("ScalarArray", "InsideArray", "OutsideArray", "IsoValue"):
-        assert getattr(proxy, name) == getattr(own, "Get" + name)(), name
-    for name in ("InsideBounds", "OutsideBounds"):
-        assert list(getattr(proxy, name)) == list(getattr(own, "Get" + name)()), name
+    names = ["ScalarArray", "InsideArray", "OutsideArray", "IsoValue", "InsideBounds", "OutsideBounds"]
+    check_defaults(proxy, own, names)
 
 
 def check_arrays():
@@ -234,7 +230,7 @@ def check_state():
     assert servermanager.Fetch(contrast).GetColumnByName("CSR").GetValue(0) == before
 
 
-check_defaults()
+check_panels()
 check_arrays()
 check_tracked_slices()
 check_operations()

@@ -6,13 +6,14 @@ import numpy as np
 from paraview.simple import *
 from paraview import servermanager
 
+from lacuna_test import check_defaults
 from tracked_slice_files import array, open_slices
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 from lacuna import vtkLacunaSweptVolume
 
 
-def check_defaults():
+def check_panel():
     """The panel's defaults are the class's own."""
     source = open_slices("SweptVolumeFlat", np.zeros((2, 4, 4), np.uint8), [np.eye(4)] * 2)
     proxy = SweptVolume(Input=source)
@@ -26,21 +27,10 @@ def check_defaults():
         "FanMask": ["Given", "Automatic", "None"],
         "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
     }
-    for name in ("OutputSpacing", "OutputBounds", "OutputFrame", "PixelSampling", "Interpolation",
-                 "Compounding",
-                 "MaximumSliceGap", "ClipRectangle", "FanMask", "FanOrigin", "FanAngles",
-                 "FanRadii", "FootprintScale", "FootprintAcrossSlices", "BadPoses", "UseTooFast", "UseGatedOut",
-                 "UseImageInvalid", "OutputScalarType", "MemoryLimit"):
-        default = getattr(own, "Get" + name)()
-        if name in enumerations:
-            default = enumerations[name][default]
-            for text in enumerations[name]:
-                setattr(proxy, name, text)
-                assert getattr(proxy, name) == text
-            setattr(proxy, name, default)
-        value = proxy.GetProperty(name).GetData()
-        value = tuple(value) if isinstance(default, tuple) else value
-        assert value == default, (name, value, default)
+    names = ["OutputSpacing", "OutputBounds", "MaximumSliceGap", "ClipRectangle", "FanOrigin",
+             "FanAngles", "FanRadii", "FootprintScale", "FootprintAcrossSlices", "UseTooFast",
+             "UseGatedOut", "UseImageInvalid", "MemoryLimit"]
+    check_defaults(proxy, own, names, enumerations)
     Delete(proxy)
 
 
@@ -84,6 +74,6 @@ def check_compounding():
     LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 
-check_defaults()
+check_panel()
 check_compounding()
 print("ok")

@@ -40,6 +40,26 @@ def run_ranks(ranks, script, *arguments):
                     os.path.abspath(script), *arguments], env=environment, check=True, timeout=300)
 
 
+def check_defaults(proxy, own, names, enumerations=None):
+    """The panel's defaults are the class's own, and scripts may set each enumeration by its words.
+
+    own: a new object of the wrapped class. enumerations: for each name the words in the order of
+    the class's values.
+    """
+    for name in names:
+        shown, expected = getattr(proxy, name), getattr(own, "Get" + name)()
+        if isinstance(expected, tuple):
+            shown = tuple(shown)
+        assert shown == expected, (name, shown, expected)
+    for name, words in (enumerations or {}).items():
+        default = words[getattr(own, "Get" + name)()]
+        assert getattr(proxy, name) == default, (name, getattr(proxy, name), default)
+        for value, word in enumerate(words):
+            setattr(proxy, name, word)
+            assert getattr(proxy.GetClientSideObject(), "Get" + name)() == value, (name, word)
+        setattr(proxy, name, default)
+
+
 def compare_with_baseline(picture, name, threshold):
     """Compares a PNG with one of the pictures of the user guide, so that the guide stays true.
 
