@@ -3,6 +3,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaParameterText.h"
+#include "lacunaPlanarLattice.h"
 #include "lacunaPlateMeasures.h"
 
 #include <algorithm>
@@ -16,12 +17,10 @@ namespace lacuna
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double MaximumPoints = 3e7;     // per face
 constexpr double MaximumDrainage = 20000; // holes
 constexpr double LatticeToBoundary = 0.6; // of TriangleSize: boundaries stay Delaunay edges
 constexpr double LeastStretch = 0.02;     // of the offset surface against the surface
-constexpr int RoundSteps = 8;
 
 class Builder
 {
@@ -126,7 +125,7 @@ private:
               ? " lies " + FormatNumber(std::round(-10 * room) / 10) + " mm outside of the plate"
               : " is only " + FormatNumber(std::round(10 * room) / 10) +
                 " mm from the plate's edge") +
-          "; its centre must be at least " + FormatNumber(needed) +
+          "; its centre must be at least " + FormatNumber(std::round(100 * needed) / 100) +
           " mm inside. For screws into the bone give the plate an overlap (EdgeClearance below 0)");
       }
       this->AddHole(foot, this->Options.Hole, name);
@@ -268,35 +267,7 @@ private:
   // The walls around the plate: rings at (inset, level) from the outer face to the inner one.
   void AddEdge()
   {
-    const double b = this->EdgeSize;
-    std::vector<Vec2> profile;
-    const auto add = [&](double inset, double level)
-    {
-      if (profile.empty() || std::abs(profile.back()[0] - inset) > 1e-9 ||
-        std::abs(profile.back()[1] - level) > 1e-9)
-      {
-        profile.push_back({ inset, level });
-      }
-    };
-    const int steps = b == 0 ? 0 : (this->Options.Edge == PlateEdge::Round ? RoundSteps : 1);
-    const auto turn = [&](int i)
-    {
-      const double angle = 0.5 * Pi * i / std::max(steps, 1);
-      return Vec2{ b * (1 - std::sin(angle)), b * (1 - std::cos(angle)) };
-    };
-    for (int i = 0; i <= steps; ++i)
-    {
-      add(steps ? turn(i)[0] : 0, this->Levels.Outer - (steps ? turn(i)[1] : 0));
-    }
-    if (this->Options.BothFaces)
-    {
-      for (int i = steps; i >= 0; --i)
-      {
-        add(steps ? turn(i)[0] : 0, this->Levels.Inner + (steps ? turn(i)[1] : 0));
-      }
-    }
-    add(profile.empty() || !this->Options.BothFaces ? 0 : (steps ? b : 0), this->Levels.Inner);
-
+    const std::vector<Vec2> profile = GetEdgeProfile(this->Options, this->Levels);
     const PlateOutline& outline = this->Plate.Outline;
     std::vector<std::int32_t> last;
     for (const Vec2& ring : profile)
@@ -376,64 +347,6 @@ private:
     }
   }
 
-  // The lattice points inside of the loops and not too near to them.
-  Loop GetLattice(const std::vector<Loop>& loops) const
-  {
-    const double h = this->Options.TriangleSize;
-    std::vector<std::vector<Vec3>> flat;
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (const Loop& loop : loops)
-    {
-      flat.emplace_back();
-      for (const Vec2& p : loop)
-      {
-        flat.back().push_back({ p[0], p[1], 0 });
-        low = std::min(low, p[1]);
-        high = std::max(high, p[1]);
-      }
-    }
-    const CurveIndex index(flat, 2 * h);
-    const double rise = h * std::sqrt(0.75);
-    const auto first = static_cast<std::int64_t>(std::ceil(low / rise));
-    const auto last = static_cast<std::int64_t>(std::floor(high / rise));
-    const std::int64_t rows = std::max<std::int64_t>(last - first + 1, 0);
-    std::vector<Loop> found(static_cast<std::size_t>(rows));
-    this->Run.For(rows, 2,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t row = begin; row < end; ++row)
-        {
-          const double y = static_cast<double>(first + row) * rise;
-          const double shift = (first + row) % 2 ? 0.5 * h : 0;
-          const std::vector<double> crossings = FindCrossings(loops, y);
-          for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
-          {
-            auto i = static_cast<std::int64_t>(std::ceil((crossings[k] - shift) / h));
-            for (;; ++i)
-            {
-              const double x = shift + h * static_cast<double>(i);
-              if (x > crossings[k + 1])
-              {
-                break;
-              }
-              const double limit = LatticeToBoundary * h;
-              if (index.Find({ x, y, 0 }, limit).Distance >= limit)
-              {
-                found[row].push_back({ x, y });
-              }
-            }
-          }
-        }
-      });
-    Loop lattice;
-    for (const Loop& row : found)
-    {
-      lattice.insert(lattice.end(), row.begin(), row.end());
-    }
-    return lattice;
-  }
-
   PlateSheet AddSheet(bool outer)
   {
     const double level = outer ? this->Levels.Outer : this->Levels.Inner;
@@ -453,7 +366,8 @@ private:
       }
     }
     sheet.BorderSize = sheet.Feet.size();
-    const Loop lattice = this->GetLattice(loops);
+    const double h = this->Options.TriangleSize;
+    const Loop lattice = FillWithLattice(this->Run, loops, h, LatticeToBoundary * h);
     sheet.Feet.insert(sheet.Feet.end(), lattice.begin(), lattice.end());
     std::vector<Vec2> rounded = sheet.Feet;
     std::vector<Triangle> triangles;

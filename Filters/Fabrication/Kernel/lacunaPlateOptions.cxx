@@ -3,12 +3,19 @@
 
 #include "lacunaParameterText.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace lacuna
 {
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr int RoundSteps = 8;
+}
+
 //------------------------------------------------------------------------------
 void CheckPlateOptions(const ImplantPlateOptions& o)
 {
@@ -65,5 +72,37 @@ void CheckPlateOptions(const ImplantPlateOptions& o)
         "0 (no drainage) or at least DrainageDiameter + 1 mm, so that the holes stay apart");
     }
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<Vec2> GetEdgeProfile(const ImplantPlateOptions& options, const PlateLevels& levels)
+{
+  std::vector<Vec2> profile;
+  const auto add = [&](double inset, double level)
+  {
+    if (profile.empty() || std::abs(profile.back()[0] - inset) > 1e-9 ||
+      std::abs(profile.back()[1] - level) > 1e-9)
+    {
+      profile.push_back({ inset, level });
+    }
+  };
+  const double size = options.Edge == PlateEdge::Square ? 0 : options.EdgeSize;
+  const int steps = size == 0 ? 0 : (options.Edge == PlateEdge::Round ? RoundSteps : 1);
+  // inset and depth below the face after step i of the turn from face to wall
+  const auto turn = [&](int i)
+  {
+    const double angle = 0.5 * Pi * i / std::max(steps, 1);
+    return Vec2{ size * (1 - std::sin(angle)), size * (1 - std::cos(angle)) };
+  };
+  for (int i = 0; i <= steps; ++i)
+  {
+    add(turn(i)[0], levels.Outer - turn(i)[1]);
+  }
+  for (int i = steps; i >= 0 && options.BothFaces; --i)
+  {
+    add(turn(i)[0], levels.Inner + turn(i)[1]);
+  }
+  add(options.BothFaces ? size : 0, levels.Inner);
+  return profile;
 }
 }

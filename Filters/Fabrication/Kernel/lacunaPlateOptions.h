@@ -48,5 +48,9 @@ constexpr double MinimumWeb = 0.5;
 
 /// Throws std::invalid_argument that names the option, its value and what would be right.
 void CheckPlateOptions(const ImplantPlateOptions& options);
+
+/// The section of the plate's edge from the outer face to the inner one: mm inwards from the outline,
+/// level.
+std::vector<Vec2> GetEdgeProfile(const ImplantPlateOptions& options, const PlateLevels& levels);
 }
 #endif
