@@ -200,6 +200,15 @@ Loop FindDefect(GridSize size, const Vec2& spacing, const std::vector<unsigned c
   return SmoothStaircase(loop, std::sqrt(spacing[0] * spacing[1]));
 }
 
+// mm: notches are not sharper. Two fronts of an overlap that meet would else leave a slit that the
+// faces cannot follow. A plate within the defect must not grow over the bone in a notch.
+double GetNotchRadius(const PlateOutlineOptions& options)
+{
+  return options.Clearance < 0
+    ? std::max(options.Spacing, std::min(options.CornerRadius, -options.Clearance))
+    : std::min(options.Spacing, options.Clearance);
+}
+
 // Signed distances in space to a loop on the surface, positive inside, exact up to limit.
 std::vector<double> GetDistances(Execution& execution, const ReliefSurface& surface,
   const PlanarGrid& grid, const Loop& loop, double limit)
@@ -247,7 +256,8 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
   outline.Defect = FindDefect(size, spacing, mask, outline.Warnings);
 
   const double h = options.Spacing;
-  const double margin = std::max(0.0, -options.Clearance) + 4 * h;
+  const double notch = GetNotchRadius(options);
+  const double margin = std::max(0.0, notch - options.Clearance) + 4 * h;
   PlanarGrid grid;
   grid.Spacing = { h, h };
   double high[2];
@@ -269,27 +279,39 @@ PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface
   grid.Columns = static_cast<std::int64_t>(columns);
   grid.Rows = static_cast<std::int64_t>(rows);
 
+  // A loop moved inwards, and how many others there were.
+  int pieces = 0;
+  int islands = 0;
+  const auto move = [&](const Loop& loop, double inwards)
+  {
+    const std::vector<double> distances =
+      GetDistances(execution, surface, grid, loop, std::abs(inwards) + 8 * h);
+    return TakeLargest(FindContours(grid, distances, inwards), h * h, pieces, islands);
+  };
   const double inset = options.Clearance + radius;
-  std::vector<double> distances =
-    GetDistances(execution, surface, grid, outline.Defect, std::abs(inset) + 8 * h);
-  int pieces;
-  int islands;
-  const double speck = h * h;
-  const Loop core = TakeLargest(FindContours(grid, distances, inset), speck, pieces, islands);
+  Loop core = outline.Defect;
+  if (notch > 0)
+  {
+    core = move(core, options.Clearance - notch);
+  }
+  if (core.size() >= 3)
+  {
+    core = move(core, notch > 0 ? notch + radius : inset);
+  }
   if (core.size() < 3)
   {
     throw std::runtime_error("no plate is left: the defect is nowhere wider than twice " +
-      FormatNumber(inset) +
+      FormatNumber(std::round(100 * inset) / 100) +
       " mm (EdgeClearance plus the radius of corners, which is at least Bevel plus TriangleSize)");
   }
   if (pieces > 1)
   {
-    outline.Warnings.push_back("the outline is narrower than " + FormatNumber(2 * inset) +
+    outline.Warnings.push_back("the outline is narrower than " +
+      FormatNumber(std::round(200 * inset) / 100) +
       " mm at places, where the plate would come apart into " + std::to_string(pieces) +
       " pieces; only the largest is made. Reduce EdgeClearance, Bevel or CornerRadius");
   }
-  distances = GetDistances(execution, surface, grid, core, radius + 8 * h);
-  const Loop outer = TakeLargest(FindContours(grid, distances, -radius), speck, pieces, islands);
+  const Loop outer = move(core, -radius);
   outline.Points = Resample(surface, outer, h, outline.Length);
 
   // exactly at the distance

@@ -46,8 +46,11 @@ struct PlateOutline
 /// Gaussian of one pixel, then smoothed along itself by one of the fourth order with sigma 3 pixels:
 /// straight edges and arcs stay in place, steps of pixels and corners vanish. Of several defects the one of the largest
 /// area is taken, islands in it are covered; both with a warning. All further distances are those in
-/// space between points of the surface: the outline is first moved inwards by Clearance plus
-/// CornerRadius, then outwards by CornerRadius, which rounds the corners and changes nothing else.
+/// space between points of the surface: the outline is moved inwards by Clearance less a notch radius
+/// and back by that, which rounds notches, then on inwards by CornerRadius and back, which rounds
+/// corners; both change nothing else. The notch radius of an overlap is the overlap, at least Spacing
+/// and at most CornerRadius; within the defect it is Spacing, at most Clearance, so that the plate
+/// never comes onto the bone.
 /// Throws std::runtime_error when no plate is left, or when it leaves the surface.
 PlateOutline FindPlateOutline(Execution& execution, const ReliefSurface& surface, GridSize size,
   const Vec2& spacing, const std::vector<unsigned char>& mask, const PlateOutlineOptions& options);
