@@ -9,14 +9,15 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaFittedPart.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -30,110 +31,35 @@
 
 vtkStandardNewMacro(vtkLacunaImplantPlate);
 
+//------------------------------------------------------------------------------
+vtkLacunaImplantPlate::vtkLacunaImplantPlate()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
 namespace
 {
 constexpr const char* BoneThicknessName = "Thickness";
 constexpr double LargestTriangle = 0.5; // mm, when TriangleSize is left to the filter
 constexpr double LargestLack = 0.01;    // of Thickness, between facets
 constexpr int MaximumRefinements = 3;
-
-//------------------------------------------------------------------------------
-// The rectangle of the map on which there is a fit.
-struct FittedPart
-{
-  std::int64_t Column = 0; // of its first pixel, from the first of the map
-  std::int64_t Row = 0;
-  lacuna::GridSize Size;
-  std::vector<double> Depths;
-  std::vector<unsigned char> Mask;
-};
-
-vtkDataArray* GetArray(vtkImageData* map, const char* name)
-{
-  vtkDataArray* array = map->GetPointData()->GetArray(name);
-  if (!array || array->GetNumberOfComponents() != 1)
-  {
-    throw std::runtime_error(std::string("the depth map has no point array '") + name +
-      "' with one component; run RBF Hole Filler on it first");
-  }
-  return array;
-}
-
-FittedPart GetFittedPart(vtkImageData* map)
-{
-  vtkDataArray* fitted = GetArray(map, vtkLacunaDepthMap::FittedName);
-  vtkDataArray* filled = GetArray(map, vtkLacunaDepthMap::FilledMaskName);
-  int dimensions[3];
-  map->GetDimensions(dimensions);
-  const std::int64_t columns = dimensions[0];
-  std::int64_t first[2] = { dimensions[0], dimensions[1] };
-  std::int64_t last[2] = { -1, -1 };
-  bool any = false;
-  for (vtkIdType k = 0; k < fitted->GetNumberOfTuples(); ++k)
-  {
-    const bool number = std::isfinite(fitted->GetComponent(k, 0));
-    if (filled->GetComponent(k, 0) != 0)
-    {
-      any = true;
-      if (!number)
-      {
-        throw std::runtime_error("pixel " + std::to_string(k % columns) + ", " +
-          std::to_string(k / columns) +
-          " is marked in FilledMask, but Fitted is no number there; "
-          "use both as RBF Hole Filler gives them");
-      }
-    }
-    if (number)
-    {
-      const std::int64_t at[2] = { k % columns, k / columns };
-      for (int i = 0; i < 2; ++i)
-      {
-        first[i] = std::min(first[i], at[i]);
-        last[i] = std::max(last[i], at[i]);
-      }
-    }
-  }
-  if (!any)
-  {
-    throw std::runtime_error("no pixel of the depth map is filled (FilledMask is 0 everywhere), so "
-                             "there is no defect to make a plate for; mark it in RBF Hole Filler");
-  }
-  FittedPart part;
-  part.Column = first[0];
-  part.Row = first[1];
-  part.Size = { last[0] - first[0] + 1, last[1] - first[1] + 1 };
-  for (std::int64_t j = first[1]; j <= last[1]; ++j)
-  {
-    for (std::int64_t i = first[0]; i <= last[0]; ++i)
-    {
-      const double depth = fitted->GetComponent(i + columns * j, 0);
-      if (!std::isfinite(depth))
-      {
-        throw std::runtime_error("Fitted has a hole at pixel " + std::to_string(i) + ", " +
-          std::to_string(j) + "; it must be a complete rectangle, as RBF Hole Filler gives it");
-      }
-      part.Depths.push_back(depth);
-      part.Mask.push_back(filled->GetComponent(i + columns * j, 0) != 0);
-    }
-  }
-  return part;
-}
+constexpr vtkIdType MaximumMarks = 20000;
 
 //------------------------------------------------------------------------------
 // The least thickness of bone within radius of p (mm from the part's first pixel), NaN when unknown.
 // The map's thickness is along the rays; the one along the axis is shorter where they are oblique.
-double GetBoneThickness(vtkImageData* map, const FittedPart& part, const lacuna::Vec2& spacing,
-  const lacuna::PlateHole& hole)
+double GetBoneThickness(
+  vtkImageData* map, const vtkLacunaFittedPart& part, const lacuna::PlateHole& hole)
 {
   vtkDataArray* thickness = map->GetPointData()->GetArray(BoneThicknessName);
-  const double radius = std::max(hole.Radius, std::max(spacing[0], spacing[1]));
+  const double radius = std::max(hole.Radius, std::max(part.Spacing[0], part.Spacing[1]));
   double least = std::numeric_limits<double>::infinity();
   for (std::int64_t j = 0; j < part.Size.Rows; ++j)
   {
     for (std::int64_t i = 0; i < part.Size.Columns; ++i)
     {
-      if (std::hypot(static_cast<double>(i) * spacing[0] - hole.Foot[0],
-            static_cast<double>(j) * spacing[1] - hole.Foot[1]) > radius)
+      if (std::hypot(static_cast<double>(i) * part.Spacing[0] - hole.Foot[0],
+            static_cast<double>(j) * part.Spacing[1] - hole.Foot[1]) > radius)
       {
         continue;
       }
@@ -156,6 +82,54 @@ double GetBoneThickness(vtkImageData* map, const FittedPart& part, const lacuna:
 void Append(std::vector<double>& values, const lacuna::Vec3& v)
 {
   values.insert(values.end(), v.data(), v.data() + 3);
+}
+
+//------------------------------------------------------------------------------
+// One place for each cluster of points: clicks on a surface mark points, patches of them when a box
+// was dragged, and corners of cells when cells were selected. Points not farther apart than distance
+// belong together. Clusters are in the order of their first points.
+std::vector<lacuna::Vec3> GetMarkedHoles(vtkPointSet* marks, double distance)
+{
+  const vtkIdType count = marks->GetNumberOfPoints();
+  if (count > MaximumMarks)
+  {
+    throw std::runtime_error("HoleMarks has " + std::to_string(count) +
+      " points, more than twenty thousand; give it the picked points only, for example by "
+      "Extract Selection, not the surface they were picked on");
+  }
+  std::vector<lacuna::Vec3> points(static_cast<std::size_t>(count));
+  for (vtkIdType k = 0; k < count; ++k)
+  {
+    marks->GetPoint(k, points[k].data());
+  }
+  std::vector<lacuna::Vec3> holes;
+  std::vector<char> taken(points.size(), 0);
+  std::vector<std::size_t> cluster;
+  for (std::size_t first = 0; first < points.size(); ++first)
+  {
+    if (taken[first])
+    {
+      continue;
+    }
+    taken[first] = 1;
+    cluster.assign(1, first);
+    lacuna::Vec3 sum{};
+    for (std::size_t i = 0; i < cluster.size(); ++i)
+    {
+      const lacuna::Vec3& p = points[cluster[i]];
+      sum = sum + p;
+      for (std::size_t k = first + 1; k < points.size(); ++k)
+      {
+        if (!taken[k] && lacuna::Norm(points[k] - p) <= distance)
+        {
+          taken[k] = 1;
+          cluster.push_back(k);
+        }
+      }
+    }
+    holes.push_back((1 / static_cast<double>(cluster.size())) * sum);
+  }
+  return holes;
 }
 
 //------------------------------------------------------------------------------
@@ -204,9 +178,13 @@ void vtkLacunaImplantPlate::RemoveAllHolePoints()
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaImplantPlate::FillInputPortInformation(int, vtkInformation* info)
+int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPointSet");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
   return 1;
 }
 
@@ -214,7 +192,13 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaImplantPlate::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  for (int port = 0; port < 2; ++port)
+  {
+    if (vtkInformation* info = inputVector[port]->GetInformationObject(0))
+    {
+      vtkLacunaRequest::Whole(info);
+    }
+  }
   return 1;
 }
 
@@ -223,6 +207,7 @@ int vtkLacunaImplantPlate::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+  vtkPointSet* marks = vtkPointSet::GetData(inputVector[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   const int piece = outputVector->GetInformationObject(0)->Get(
     vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
@@ -232,12 +217,6 @@ int vtkLacunaImplantPlate::RequestData(
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
-    const vtkLacunaDepthMap contract(map);
-    if (contract.IsPerspective())
-    {
-      throw std::runtime_error("this is a perspective depth map; a plate needs a parallel one, "
-                               "filled by RBF Hole Filler");
-    }
     if (this->Side != Inward && this->Side != Outward)
     {
       throw std::runtime_error(
@@ -253,18 +232,9 @@ int vtkLacunaImplantPlate::RequestData(
       throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
         "; it must be a number of g/cm^3 above 0");
     }
-    const FittedPart part = GetFittedPart(map);
-    const lacuna::Vec2 spacing = contract.GetPixelSpacing();
-    const int* extent = map->GetExtent();
-    const lacuna::Matrix4 toWorld = contract.GetImageToWorld() *
-      lacuna::Matrix4::Translation({ static_cast<double>(extent[0] + part.Column),
-        static_cast<double>(extent[2] + part.Row), 0 }) *
-      lacuna::Matrix4::Scaling({ 1 / spacing[0], 1 / spacing[1], 1 });
-    if (toWorld.Determinant3() < 0)
-    {
-      throw std::runtime_error("ImageToWorld of the depth map mirrors; a plate would be the "
-                               "patient's mirror image");
-    }
+    const vtkLacunaFittedPart part(map);
+    const lacuna::Vec2& spacing = part.Spacing;
+    const lacuna::Matrix4& toWorld = part.ToWorld;
 
     lacuna::ImplantPlateOptions options;
     options.Thickness = this->Thickness;
@@ -280,10 +250,21 @@ int vtkLacunaImplantPlate::RequestData(
     options.Hole = { this->HoleDiameter, this->CountersinkDiameter, this->CountersinkAngle };
     options.DrainageSpacing = this->DrainageSpacing;
     options.DrainageDiameter = this->DrainageDiameter;
-    const lacuna::Matrix4 toPart = toWorld.Inverse();
+    std::vector<lacuna::Vec3> holes;
     for (const auto& p : this->HolePoints)
     {
-      options.HolePoints.push_back(toPart.Point({ p[0], p[1], p[2] }));
+      holes.push_back({ p[0], p[1], p[2] });
+    }
+    if (marks)
+    {
+      const double together = std::max(this->HoleDiameter, this->CountersinkDiameter);
+      const std::vector<lacuna::Vec3> marked = GetMarkedHoles(marks, together);
+      holes.insert(holes.end(), marked.begin(), marked.end());
+    }
+    const lacuna::Matrix4 toPart = toWorld.Inverse();
+    for (const lacuna::Vec3& p : holes)
+    {
+      options.HolePoints.push_back(toPart.Point(p));
     }
 
     execution.SetStage(0, 0.1);
@@ -331,7 +312,7 @@ int vtkLacunaImplantPlate::RequestData(
       Append(centers, toWorld.Point(hole.Centre));
       Append(axes, lacuna::Normalized(toWorld.Vector(hole.Axis)));
       land.push_back(hole.Land);
-      bone.push_back(GetBoneThickness(map, part, spacing, hole));
+      bone.push_back(GetBoneThickness(map, part, hole));
       if (bone.back() < this->MinimumBoneThickness)
       {
         const std::string found = bone.back() == 0
@@ -358,9 +339,9 @@ int vtkLacunaImplantPlate::RequestData(
       output, "DrainageHoleCount", { static_cast<double>(plate.DrainageHoles) }, 1);
 
     std::vector<double> picked;
-    for (const auto& p : this->HolePoints)
+    for (const lacuna::Vec3& p : holes)
     {
-      picked.insert(picked.end(), p.begin(), p.end());
+      Append(picked, p);
     }
     lacuna::ParameterText parameters;
     parameters.Add("Thickness", this->Thickness)

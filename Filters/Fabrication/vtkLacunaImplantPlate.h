@@ -4,7 +4,9 @@
  * @brief a plate of given thickness for the defect of a filled depth map, as a closed surface
  *
  * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
- * vtkLacunaRBFHoleFiller. Output: vtkPolyData, a watertight, manifold, outward oriented triangle
+ * vtkLacunaRBFHoleFiller. Second input, optional: vtkPointSet, points marked with the mouse for screw
+ * holes besides HolePoints; those not farther apart than the larger diameter of a hole are one hole
+ * in their middle. Output: vtkPolyData, a watertight, manifold, outward oriented triangle
  * mesh in world (patient) coordinates, double precision, never mirrored.
  *
  * The surface is the bicubic spline through Fitted. Its true normal offset by Thickness, away from
@@ -118,11 +120,16 @@ public:
   ///@}
 
   ///@{
-  /** Points, world mm, on or near the plate, through which screw holes go. Default none. */
+  /**
+   * Points, world mm, on or near the plate, through which screw holes go; the points of the second
+   * input come after them. Default none.
+   */
   void AddHolePoint(double x, double y, double z);
   void RemoveAllHolePoints();
   int GetNumberOfHolePoints() const { return static_cast<int>(this->HolePoints.size()); }
   ///@}
+  /** Takes the second input away (ParaView needs a method of its own for that). */
+  void RemoveHoleMarks() { this->SetInputConnection(1, nullptr); }
   ///@{
   /** mm, > 0. Default 2. */
   vtkSetMacro(HoleDiameter, double);
@@ -161,7 +168,7 @@ public:
   ///@}
 
 protected:
-  vtkLacunaImplantPlate() = default;
+  vtkLacunaImplantPlate();
   ~vtkLacunaImplantPlate() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

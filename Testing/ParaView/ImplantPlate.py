@@ -8,8 +8,10 @@ import numpy as np
 from lacuna.errors import PipelineError, raising
 from lacuna.solids import save_solid
 from lacuna_test import output
+from solid_files import MILLIMETER, judge_3mf, read_3mf
 from paraview import servermanager
-from paraview.simple import (LoadPlugin, OpenDataFile, SaveData)
+from paraview.simple import (CreateView, ExtractSelection, LoadPlugin, OpenDataFile, PolyLineSource,
+                             QuerySelect, Show)
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties
 
@@ -108,8 +110,35 @@ with raising(warnings):
     fetch(plate)
 assert any("screw hole 1 lies over" in text for text in warnings), warnings
 
+# Holes picked with the mouse: a selection on the depth map's surface, and the handles of a line.
+typed = list(plate.HolePoints)
+expected = fields["HoleCenters"]
+surface = DepthMapSurface(Input=filled)
+surface.UpdatePipeline()
+vertices = np.asarray(dsa.WrapDataObject(servermanager.Fetch(surface)).Points)
+pixels = np.asarray(dsa.WrapDataObject(servermanager.Fetch(surface)).PointData["PixelId"])
+Show(surface, CreateView("RenderView"))
+near = pixels[np.argsort(np.linalg.norm(vertices - np.array(typed), axis=1))[:4]]
+QuerySelect(QueryString="in1d(PixelId, [%s])" % ", ".join(map(str, near)), FieldType="POINT",
+            Source=surface)
+picked = ExtractSelection(Input=surface)
+plate.HolePoints = []
+plate.HoleMarks = picked
+with raising():
+    data, fields = fetch(plate)
+check_closed(data)
+assert fields["HoleCenters"].shape == (1, 3)
+assert np.linalg.norm(fields["HoleCenters"] - expected) < 1
+line = PolyLineSource(Points=typed + typed)
+plate.HoleMarks = line
+with raising():
+    data, fields = fetch(plate)
+assert np.linalg.norm(fields["HoleCenters"] - expected) < 1e-4, fields["HoleCenters"] - expected
+plate.HoleMarks = None
+plate.HolePoints = typed
+
 # Files: ParaView's writers, in the same coordinates, and what says where they come from.
-for name in ("plate.stl", "plate.ply"):
+for name in ("plate.stl", "plate.ply", "plate.vtp"):
     path = output(name)
     save_solid(path, plate)
     again = OpenDataFile(path)
@@ -123,6 +152,37 @@ for name in ("plate.stl", "plate.ply"):
     assert "vtkLacunaImplantPlate" in record["steps"][-1] and "Thickness=1 " in record["steps"][-1]
     assert "vtkLacunaSkullPhantom" in record["steps"][0]
     assert abs(record["measures"]["Volume"] - fields["Volume"].item()) < 1e-9
+
+# 3MF: written by Lacuna, read by the consortium's own library (Debian: lib3mf1).
+path = output("plate.3mf")
+record = save_solid(path, plate)
+assert record["file"] == "plate.3mf" and record["unit"] == "mm"
+solid = read_3mf(path)
+assert solid["unit"] == "millimeter" and solid["objects"] == 1 and solid["name"] == "Implant Plate"
+assert solid["points"].shape == (data.GetNumberOfPoints(), 3)
+points = np.asarray(dsa.WrapDataObject(data).Points)
+assert np.abs(solid["points"] - points).max() <= 1e-6
+cells = np.asarray(dsa.WrapDataObject(data).Polygons).reshape(-1, 4)[:, 1:]
+assert np.array_equal(solid["triangles"], cells)  # same corners, same way round: not mirrored
+assert "Lacuna " + lacuna.__version__ in solid["metadata"]["Application"]
+assert "vtkLacunaSkullPhantom" in solid["metadata"]["Description"]
+assert "Thickness=1 " in solid["metadata"]["Description"]
+judged = judge_3mf(path)
+if judged is None:
+    print("lib3mf is not there: 3MF files are not judged by another library (Debian: lib3mf1)")
+else:
+    assert judged["warnings"] == [] and judged["objects"] == 1 and judged["unit"] == MILLIMETER, judged
+    assert judged["manifold"], "lib3mf: not manifold and oriented"
+    assert np.abs(judged["points"] - points).max() < 2e-5  # single precision there
+    assert np.array_equal(judged["triangles"], cells)
+    assert judged["metadata"]["Application"] == solid["metadata"]["Application"]
+    print("lib3mf:", judged["triangles"].shape[0], "triangles, no warning, manifold and oriented")
+try:
+    save_solid(output("map.3mf"), filled)
+    raise AssertionError("an image as 3MF")
+except PipelineError as error:
+    assert "surface" in str(error), error
+assert not os.path.exists(output("map.3mf"))
 
 plate.HolePoints = [0, 0, 0]
 try:

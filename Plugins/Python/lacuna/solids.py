@@ -3,20 +3,26 @@
 
     from lacuna.solids import save_solid
     save_solid("plate.stl", plate)     # writes plate.stl and plate.stl.json
+    save_solid("plate.3mf", plate)     # writes plate.3mf, with unit and history, and plate.3mf.json
 """
 import hashlib
 import json
 import os
+import zipfile
+from xml.sax.saxutils import escape, quoteattr
+
+NOTICE = "Research software, not a medical device."
 
 
 def save_solid(path, proxy, **options):
-    """Writes a surface by ParaView's writer for the file's ending (stl, ply, obj, vtp, ...).
+    """Writes a surface to a file: 3mf, or what ParaView writes by the ending (stl, ply, obj, vtp, ...).
 
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
-    a few numbers) and the SHA-256 of the file: formats such as STL have no room for them. Raises
-    PipelineError when a filter or the writer fails. options go to ParaView's SaveData. Returns the
-    record.
+    a few numbers) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has,
+    and its unit is the millimetre; it holds closed surfaces of triangles. The second output of a
+    filter: save_solid(path, OutputPort(proxy, 1)). Raises PipelineError when a filter or the writer
+    fails. options go to ParaView's SaveData. Returns the record.
     """
     from lacuna import __version__
     from lacuna.errors import PipelineError, raising
@@ -31,9 +37,6 @@ def save_solid(path, proxy, **options):
         data = servermanager.Fetch(proxy)
         if data is None or data.GetNumberOfPoints() == 0:
             raise PipelineError(f"there is nothing to write to {path}")
-        SaveData(path, proxy, **options)
-    if not os.path.exists(path):
-        raise PipelineError(f"{path} was not written")
     steps, measures = [], {}
     fields = data.GetFieldData()
     for k in range(fields.GetNumberOfArrays()):
@@ -43,15 +46,80 @@ def save_solid(path, proxy, **options):
         elif fields.GetArray(k) is not None and array.GetNumberOfValues() > 0:
             values = vtk_to_numpy(fields.GetArray(k)).tolist()
             measures[array.GetName()] = values[0] if len(values) == 1 else values
+    if os.path.splitext(path)[1].lower() == ".3mf":
+        source = proxy if hasattr(proxy, "GetXMLLabel") else proxy.SMProxy
+        _write_3mf(path, data, source.GetXMLLabel(), f"Lacuna {__version__}", steps)
+    else:
+        with raising():
+            SaveData(path, proxy, **options)
+    if not os.path.exists(path):
+        raise PipelineError(f"{path} was not written")
     with open(path, "rb") as file:
         digest = hashlib.sha256(file.read()).hexdigest()
     record = {
         "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
         "version": __version__, "unit": "mm", "coordinates": "patient, DICOM LPS",
         "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
-        "notice": "Research software, not a medical device.",
+        "notice": NOTICE,
     }
     text = json.dumps(record, indent=2, default=str)
     with open(path + ".json", "w", encoding="utf-8") as file:
         file.write(text.replace("NaN", "null") + "\n")
     return record
+
+
+def _write_3mf(path, data, title, application, steps):
+    """One object in the 3MF core format (1.x), in patient coordinates, without a transform.
+
+    Coordinates have six decimals, a nanometre. Metadata: Title, Application, Description (unit,
+    coordinates and the steps, one a line). No date, so that the same plate gives the same file.
+    """
+    from lacuna.errors import PipelineError
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if not data.IsA("vtkPolyData"):
+        raise PipelineError(f"{path}: 3MF holds a surface (polygonal data), this is a {data.GetClassName()}")
+    cells = data.GetPolys()
+    offsets = vtk_to_numpy(cells.GetOffsetsArray())
+    count = cells.GetNumberOfCells()
+    if count == 0 or data.GetNumberOfCells() != count or (offsets[1:] - offsets[:-1] != 3).any():
+        raise PipelineError(f"{path}: 3MF holds triangles only; apply Extract Surface and Triangulate first")
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
+    description = "\n".join(
+        ["Coordinates: patient, DICOM LPS (mm). " + NOTICE] + [f"Made by: {step}" for step in steps])
+    metadata = {"Title": title, "Application": application, "Description": description}
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>',
+             '<model unit="millimeter" xml:lang="en-US" '
+             'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">']
+    lines += [f' <metadata name="{name}">{escape(text)}</metadata>' for name, text in metadata.items()]
+    lines += [" <resources>", f'  <object id="1" type="model" name={quoteattr(title)}>', "   <mesh>",
+              "    <vertices>"]
+    lines += ['     <vertex x="%.6f" y="%.6f" z="%.6f"/>' % tuple(p) for p in points.tolist()]
+    lines += ["    </vertices>", "    <triangles>"]
+    lines += ['     <triangle v1="%d" v2="%d" v3="%d"/>' % tuple(t) for t in triangles.tolist()]
+    lines += ["    </triangles>", "   </mesh>", "  </object>", " </resources>",
+              ' <build><item objectid="1"/></build>', "</model>", ""]
+    parts = {
+        "[Content_Types].xml": '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+        '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        '<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>'
+        "</Types>\n",
+        "_rels/.rels": '<?xml version="1.0" encoding="UTF-8"?>\n'
+        '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+        '<Relationship Id="model" Target="/3D/3dmodel.model" '
+        'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n',
+        "3D/3dmodel.model": "\n".join(lines),
+    }
+    unfinished = path + ".part"
+    try:
+        with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as package:
+            for name, text in parts.items():
+                package.writestr(zipfile.ZipInfo(name), text.encode(), zipfile.ZIP_DEFLATED)
+        os.replace(unfinished, path)
+    except OSError as error:
+        raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
+    finally:
+        if os.path.exists(unfinished):
+            os.remove(unfinished)

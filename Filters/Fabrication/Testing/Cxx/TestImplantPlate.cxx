@@ -254,6 +254,71 @@ void TestHoles()
   LACUNA_CHECK(plate->GetFieldData()->GetArray("HoleCenters")->GetNumberOfTuples() == 0);
 }
 
+// Points marked with the mouse are holes like those typed; patches of them are one hole each.
+void TestMarks()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  const auto disc = [](double x, double y) { return std::hypot(x, y) < 5; };
+  const auto picked = [&](double x, double y)
+  {
+    return geometry.Origin + (x + 24.5) * geometry.Right + (y + 22.5) * geometry.Down +
+      TestSurfaces::Depth(x, y) * geometry.View;
+  };
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const double x : { 7.2, 7.4, 7.6 })
+  {
+    for (const double y : { -0.3, 0.0, 0.3 })
+    {
+      points->InsertNextPoint(picked(x, y).data());
+      points->InsertNextPoint(picked(-x, 0.5 * y).data());
+    }
+  }
+  vtkNew<vtkPolyData> marks; // no cells: what Extract Selection gives has only vertices
+  marks->SetPoints(points);
+  vtkNew<vtkLacunaImplantPlate> filter;
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  messages->Watch(filter->GetExecutive());
+  filter->SetInputData(FilledMap(geometry, disc));
+  filter->SetInputData(1, marks);
+  filter->SetThickness(0.7);
+  filter->SetSide(vtkLacunaImplantPlate::Outward);
+  filter->SetEdgeClearance(-5);
+  filter->SetBevel(0.3);
+  filter->SetHoleDiameter(1.6);
+  const Vec3 typed = picked(0, 7.4);
+  filter->AddHolePoint(typed[0], typed[1], typed[2]);
+  filter->Update();
+  vtkPolyData* plate = filter->GetOutput();
+  LACUNA_CHECK(IsClosed(plate));
+  vtkDataArray* centers = plate->GetFieldData()->GetArray("HoleCenters");
+  LACUNA_CHECK(centers && centers->GetNumberOfTuples() == 3);
+  const Vec3 expected[3] = { typed, picked(7.4, 0), picked(-7.4, 0) };
+  for (int k = 0; centers && k < 3; ++k)
+  {
+    Vec3 center;
+    centers->GetTuple(k, center.data());
+    LACUNA_CHECK_NEAR(lacuna::Norm(center - expected[k]), 0.7, 0.05);
+  }
+  const auto steps = vtkLacunaProvenance::Get(plate);
+  LACUNA_CHECK(!steps.empty() && steps.back().find("HolePoints=") != std::string::npos);
+
+  points->InsertPoint(19, std::nan(""), 0, 0);
+  marks->Modified();
+  filter->Update();
+  LACUNA_CHECK(messages->HasError("screw hole"));
+  points->SetNumberOfPoints(20001);
+  marks->Modified();
+  filter->Update();
+  LACUNA_CHECK(messages->HasError("HoleMarks has 20001 points"));
+  points->SetNumberOfPoints(0);
+  marks->Modified();
+  filter->RemoveAllHolePoints();
+  filter->Update();
+  LACUNA_CHECK(IsClosed(filter->GetOutput()));
+}
+
 void TestErrors()
 {
   const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
@@ -297,6 +362,7 @@ int TestImplantPlate(int, char*[])
 {
   TestPlace();
   TestHoles();
+  TestMarks();
   TestErrors();
   return lacunaCheck::Result();
 }
