@@ -33,8 +33,8 @@ else ()
   set(lacuna_flavor "vtk${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
 endif ()
 
-# GDCM decodes compressed DICOM pixels; without it the CT Series Reader is not built. Not through its
-# CMake package: Debian's can bring the VTK that GDCM's own filters were built with.
+# GDCM decodes compressed DICOM pixels; without it the CT Series Reader reads those that are not
+# compressed, deflated or run-length encoded. Not through its CMake package: Debian's can bring the VTK that GDCM's own filters were built with.
 find_path(LACUNA_GDCM_INCLUDE_DIR gdcmImage.h
   PATH_SUFFIXES gdcm-3.0 gdcm-3.1 gdcm-3.2)
 set(LACUNA_GDCM_LIBRARIES)
@@ -43,6 +43,8 @@ foreach (library IN ITEMS gdcmMSFF gdcmDSED gdcmCommon)
   list(APPEND LACUNA_GDCM_LIBRARIES "${LACUNA_GDCM_${library}}")
 endforeach ()
 set(LACUNA_HAS_GDCM OFF)
-if (LACUNA_GDCM_INCLUDE_DIR AND NOT LACUNA_GDCM_LIBRARIES MATCHES "NOTFOUND")
+if (LACUNA_WITH_GDCM AND LACUNA_GDCM_INCLUDE_DIR AND NOT LACUNA_GDCM_LIBRARIES MATCHES "NOTFOUND")
   set(LACUNA_HAS_GDCM ON)
+else ()
+  message(STATUS "No GDCM: the CT Series Reader will not read JPEG, JPEG-LS and JPEG 2000")
 endif ()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The thin layer over GDCM: it decodes pixels and never sees a file.
+/// Pixels as they are, or decoded.
 #ifndef lacunaDicomDecoder_h
 #define lacunaDicomDecoder_h
 
@@ -8,9 +8,9 @@
 
 namespace lacuna
 {
-/// The pixels of a frame, read from its file and decoded where they are compressed (JPEG, JPEG-LS,
-/// JPEG 2000, RLE). Throws std::runtime_error naming the file and its transfer syntax. May be called
-/// by several threads at a time.
-CTPixels ReadDicomPixels(const CTFrame& frame);
+/// The pixels of a frame, read from its file and decoded where they are compressed: RLE, and with
+/// GDCM JPEG, JPEG-LS and JPEG 2000. Throws std::runtime_error naming the file and its transfer
+/// syntax. May be called by several threads at a time.
+void ReadDicomPixels(const CTFrame& frame, CTPixels& pixels);
 }
 #endif

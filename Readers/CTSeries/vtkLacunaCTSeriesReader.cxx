@@ -31,7 +31,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <iomanip>
 #include <new>
@@ -94,10 +93,11 @@ bool IsSameImage(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
   {
     return false;
   }
-  const lacuna::CTPixels first = lacuna::ReadDicomPixels(a);
-  const lacuna::CTPixels second = lacuna::ReadDicomPixels(b);
-  return a.GetSize() == b.GetSize() && first.Format.Signed == second.Format.Signed &&
-    std::memcmp(first.Bytes.get(), second.Bytes.get(), static_cast<std::size_t>(a.GetSize())) == 0;
+  lacuna::CTPixels first;
+  lacuna::CTPixels second;
+  lacuna::ReadDicomPixels(a, first);
+  lacuna::ReadDicomPixels(b, second);
+  return first.Format.Signed == second.Format.Signed && first.Bytes == second.Bytes;
 }
 }
 

@@ -15,6 +15,8 @@
 
 namespace lacuna
 {
+struct InflatedBytes;
+
 /// How a pixel is stored (DICOM group 0028).
 struct CTPixelFormat
 {
@@ -67,6 +69,9 @@ struct CTFileHeader
   std::optional<double> GantryTilt;         ///< (0018,1120), degrees
   bool Compressed = false;                  ///< the fragments are a stream to decode
   bool BigEndian = false;
+  bool IsBare = false;           ///< a data set without preamble and transfer syntax
+  std::int64_t DeflatedFrom = 0; ///< where the file is a deflate stream; 0: nowhere
+  std::shared_ptr<const InflatedBytes> Inflated;  ///< that of a deflated file with several frames
   std::vector<std::vector<DicomFragment>> Pixels; ///< the pieces of each frame in the file
   std::string PixelError; ///< what is wrong with the pixels ("is cut off ..."); empty if nothing
 };

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace lacuna
@@ -100,19 +102,20 @@ public:
 
   void ReadPlane(std::int64_t k) const
   {
+    const Borrowed pixels(*this);
     const CTPlane& plane = this->Geometry.Planes[static_cast<std::size_t>(k)];
     T* voxels = this->Scalars + (k - this->Extent[4]) * this->Columns * this->Rows;
     const CTSlice& slice = this->Geometry.Slices[plane.First];
     if (plane.Weight == 0 && this->IsInPlace(slice))
     {
-      this->Copy(slice, voxels);
+      this->Copy(slice, *pixels, voxels);
       return;
     }
-    std::vector<float> values = this->Shift(slice);
+    std::vector<float> values = this->Shift(slice, *pixels);
     if (plane.Weight != 0)
     {
       const auto weight = static_cast<float>(plane.Weight);
-      const std::vector<float> second = this->Shift(this->Geometry.Slices[plane.Second]);
+      const std::vector<float> second = this->Shift(this->Geometry.Slices[plane.Second], *pixels);
       for (std::size_t i = 0; i < values.size(); ++i)
       {
         values[i] = (1 - weight) * values[i] + weight * second[i];
@@ -122,6 +125,34 @@ public:
   }
 
 private:
+  // Memory for pixels, no more of it than threads work at a time.
+  class Borrowed
+  {
+  public:
+    explicit Borrowed(const VolumeReader& owner)
+      : Owner(owner)
+    {
+      const std::lock_guard<std::mutex> lock(owner.FreeLock);
+      if (!owner.Free.empty())
+      {
+        this->Pixels = std::move(owner.Free.back());
+        owner.Free.pop_back();
+      }
+    }
+    ~Borrowed()
+    {
+      const std::lock_guard<std::mutex> lock(this->Owner.FreeLock);
+      this->Owner.Free.push_back(std::move(this->Pixels));
+    }
+    Borrowed(const Borrowed&) = delete;
+    Borrowed& operator=(const Borrowed&) = delete;
+    CTPixels& operator*() const { return this->Pixels; }
+
+  private:
+    const VolumeReader& Owner;
+    mutable CTPixels Pixels;
+  };
+
   // Whether the pixels of an image are voxels, and there are no others in its plane.
   bool IsInPlace(const CTSlice& slice) const
   {
@@ -132,41 +163,45 @@ private:
 
   // The part of an image that lies in the extent, as it is.
   template <class U>
-  void Copy(const CTSlice& slice, U* values) const
+  void Copy(const CTSlice& slice, CTPixels& pixels, U* values) const
   {
-    const CTPixels pixels = this->Read(slice.Frame);
-    const HounsfieldScale scale(slice.Frame, pixels.Format, this->Air);
     const std::int64_t width = this->Geometry.FrameColumns;
+    const bool whole = this->Columns == width && this->Rows == this->Geometry.FrameRows;
+    pixels.Room = whole && slice.Frame.Header->Format.BitsAllocated == 8 * sizeof(U)
+      ? reinterpret_cast<unsigned char*>(values)
+      : nullptr;
+    this->Read(slice.Frame, pixels);
+    const HounsfieldScale scale(slice.Frame, pixels.Format, this->Air);
     const std::int64_t bytes = scale.GetBytesPerPixel();
     if (this->Columns == width)
     {
       scale.Convert(
-        pixels.Bytes.get() + this->Extent[2] * width * bytes, this->Columns * this->Rows, values);
+        pixels.Data + this->Extent[2] * width * bytes, this->Columns * this->Rows, values);
       return;
     }
     for (std::int64_t row = 0; row < this->Rows; ++row)
     {
       const std::int64_t first = (this->Extent[2] + row) * width + this->Extent[0];
-      scale.Convert(
-        pixels.Bytes.get() + first * bytes, this->Columns, values + row * this->Columns);
+      scale.Convert(pixels.Data + first * bytes, this->Columns, values + row * this->Columns);
     }
   }
 
   // An image moved to where it lies in the grid.
-  std::vector<float> Shift(const CTSlice& slice) const
+  std::vector<float> Shift(const CTSlice& slice, CTPixels& pixels) const
   {
     std::vector<float> values(static_cast<std::size_t>(this->Columns * this->Rows));
     if (this->IsInPlace(slice))
     {
-      this->Copy(slice, values.data());
+      this->Copy(slice, pixels, values.data());
       return values;
     }
-    const CTPixels pixels = this->Read(slice.Frame);
+    pixels.Room = nullptr;
+    this->Read(slice.Frame, pixels);
     const std::int64_t width = this->Geometry.FrameColumns;
     const std::int64_t height = this->Geometry.FrameRows;
     std::vector<float> image(static_cast<std::size_t>(width * height));
     HounsfieldScale(slice.Frame, pixels.Format, this->Air)
-      .Convert(pixels.Bytes.get(), width * height, image.data());
+      .Convert(pixels.Data, width * height, image.data());
 
     std::vector<std::vector<Tap>> columns(static_cast<std::size_t>(this->Columns));
     for (std::int64_t i = 0; i < this->Columns; ++i)
@@ -208,6 +243,8 @@ private:
   double Air;
   const CTPixelReader& Read;
   T* Scalars;
+  mutable std::mutex FreeLock;
+  mutable std::vector<CTPixels> Free;
 };
 
 template <class T>

@@ -10,20 +10,25 @@
 
 #include <array>
 #include <functional>
-#include <memory>
+#include <vector>
 
 namespace lacuna
 {
-/// The decoded pixels of one frame, row by row, and how they are stored.
+/// The decoded pixels of one frame, row by row, and how they are stored. Its memory serves for one
+/// frame after the other.
 struct CTPixels
 {
-  std::shared_ptr<const unsigned char> Bytes;
+  const unsigned char* Data = nullptr; ///< the pixels, in Bytes or in Room
   CTPixelFormat Format;
+  std::vector<unsigned char> Bytes;
+  std::vector<unsigned char> Stream; ///< from which they were decoded
+  /// Where pixels that need no decoding may go instead of Bytes, which saves a copy; null: nowhere.
+  unsigned char* Room = nullptr;
 };
 
-/// Reads the pixels of a frame; is called by several threads at a time. Throws std::runtime_error
-/// naming the file.
-using CTPixelReader = std::function<CTPixels(const CTFrame&)>;
+/// Reads the pixels of a frame; is called by several threads at a time, each with pixels of its own.
+/// Throws std::runtime_error naming the file.
+using CTPixelReader = std::function<void(const CTFrame&, CTPixels& pixels)>;
 
 /// Fills scalars with the Hounsfield units of the voxels of extent (first and last column, row,
 /// plane). type: of GetHounsfieldType for these frames. Only the images that the extent needs are

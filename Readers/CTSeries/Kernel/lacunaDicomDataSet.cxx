@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaDicomDataSet.h"
 
+#include "lacunaDicomBegin.h"
 #include "lacunaDicomText.h"
 #include "lacunaFileBytes.h"
 
@@ -18,6 +19,7 @@ constexpr std::int64_t PreambleSize = 132;
 constexpr std::uint32_t Undefined = 0xFFFFFFFF;
 constexpr std::int64_t LongestValue = 16384; // kept in memory
 constexpr int DeepestSequence = 16;
+constexpr DicomTag GroupLengthTag = 0x00020000;
 constexpr DicomTag TransferSyntaxTag = 0x00020010;
 constexpr DicomTag PixelTag = 0x7FE00010;
 constexpr DicomTag ItemTag = 0xFFFEE000;
@@ -26,6 +28,7 @@ constexpr DicomTag SequenceEndTag = 0xFFFEE0DD;
 constexpr const char* DeflatedSyntax = "1.2.840.10008.1.2.1.99";
 constexpr const char* BigEndianSyntax = "1.2.840.10008.1.2.2";
 constexpr const char* ImplicitSyntax = "1.2.840.10008.1.2";
+constexpr const char* ExplicitSyntax = "1.2.840.10008.1.2.1";
 
 std::string Name(DicomTag tag)
 {
@@ -40,13 +43,6 @@ bool IsKnownSequence(DicomTag tag)
   static const std::vector<DicomTag> known = { 0x00189329, 0x00209111, 0x00209113, 0x00209116,
     0x00289110, 0x00289145, 0x52009229, 0x52009230 };
   return std::find(known.begin(), known.end(), tag) != known.end();
-}
-
-bool HasLongLength(const std::string& vr)
-{
-  static const std::vector<std::string> all = { "OB", "OD", "OF", "OL", "OV", "OW", "SQ", "SV",
-    "UC", "UN", "UR", "UT", "UV" };
-  return std::find(all.begin(), all.end(), vr) != all.end();
 }
 }
 
@@ -129,7 +125,7 @@ DicomParser::Element DicomParser::ReadElement(std::int64_t offset, bool implicit
   {
     this->Fail("element " + Name(element.Tag) + " has no valid type (VR)");
   }
-  if (HasLongLength(element.Vr))
+  if (HasLongLength(element.Vr.c_str()))
   {
     element.Length = this->Number(this->Get(offset + 8, 4, element.Tag), 4);
     element.Value = offset + 12;
@@ -279,22 +275,32 @@ std::int64_t DicomParser::ReadSequence(const Element& element, std::int64_t end,
 // The file meta information, always explicit and little endian. Returns where the data begin.
 std::int64_t DicomParser::ReadMeta(DicomFile& file)
 {
-  const unsigned char* preamble = this->Bytes.Get(0, PreambleSize);
-  if (!preamble || std::string(preamble + 128, preamble + 132) != "DICM")
+  const DicomBegin begin = FindDicomBegin(this->Bytes);
+  if (begin == DicomBegin::None)
   {
-    this->Fail("is not a DICOM file");
+    throw NotDicomError(this->Path + ": is not a DICOM file");
+  }
+  if (begin == DicomBegin::Implicit || begin == DicomBegin::Explicit)
+  {
+    file.IsBare = true;
+    file.TransferSyntax = begin == DicomBegin::Implicit ? ImplicitSyntax : ExplicitSyntax;
+    return 0;
   }
   DicomDataSet meta;
-  std::int64_t offset = PreambleSize;
-  while (offset < this->Bytes.GetSize())
+  std::int64_t offset = begin == DicomBegin::Preamble ? PreambleSize : 0;
+  std::int64_t end = -1; // as its group length says; what follows need not be elements
+  while (const unsigned char* bytes = this->Bytes.Get(offset, 4))
   {
-    const unsigned char* bytes = this->Get(offset, 4, TransferSyntaxTag);
-    if (this->Number(bytes, 2) != 2)
+    if (this->Number(bytes, 2) != 2 || offset == end)
     {
       break;
     }
     const Element element = this->ReadElement(offset, false, TransferSyntaxTag);
     offset = this->ReadValue(element, meta, this->Bytes.GetSize(), false, 0);
+    if (element.Tag == GroupLengthTag)
+    {
+      end = offset + meta.GetBinary(GroupLengthTag, false).value_or(0);
+    }
   }
   file.TransferSyntax = meta.GetText(TransferSyntaxTag);
   if (file.TransferSyntax.empty())
@@ -344,14 +350,13 @@ void DicomParser::ReadFragments(DicomFile& file)
 DicomFile DicomParser::Parse()
 {
   DicomFile file;
-  file.FileSize = this->Bytes.GetSize();
   const std::int64_t begin = this->ReadMeta(file);
   if (file.TransferSyntax == DeflatedSyntax)
   {
-    this->Fail(
-      "is deflated as a whole (transfer syntax 1.2.840.10008.1.2.1.99), which is not read; "
-      "dcmconv +te makes an ordinary file of it");
+    this->Bytes.Inflate(begin);
+    file.Inflated = this->Bytes.GetInflated();
   }
+  file.FileSize = this->Bytes.GetSize();
   this->BigEndian = file.BigEndian = file.TransferSyntax == BigEndianSyntax;
   Element pixels;
   this->ReadDataSet(
@@ -442,8 +447,7 @@ bool IsDicomFile(const std::string& path)
   try
   {
     FileBytes bytes(path);
-    const unsigned char* preamble = bytes.Get(0, PreambleSize);
-    return preamble && std::string(preamble + 128, preamble + 132) == "DICM";
+    return FindDicomBegin(bytes) != DicomBegin::None;
   }
   catch (const std::exception&)
   {

@@ -9,12 +9,16 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lacuna
 {
+struct InflatedBytes;
+
 /// Group and element as one number: 0x00280010.
 using DicomTag = std::uint32_t;
 
@@ -56,14 +60,24 @@ struct DicomFile
   std::vector<DicomFragment> Fragments;
   std::vector<std::int64_t> FrameOffsets; ///< basic offset table, from the first fragment's item
   bool FragmentsComplete = false;
-  std::int64_t FileSize = 0;
+  std::int64_t FileSize = 0; ///< with the data set inflated
+  bool IsBare = false;       ///< neither preamble nor transfer syntax; that is as its bytes show
+  /// The data set of a file that is deflated; offsets count as if it were in the file.
+  std::shared_ptr<const InflatedBytes> Inflated;
 };
 
-/// Whether a file begins as DICOM files do. False when it cannot be read.
+/// The file is something else.
+class NotDicomError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Whether a file begins as DICOM files do (FindDicomBegin). False when it cannot be read.
 bool IsDicomFile(const std::string& path);
 
-/// Throws std::runtime_error naming the file and the element when it is no DICOM file, cut off
-/// before its pixels or malformed, or in a transfer syntax that is not understood.
+/// Throws NotDicomError naming the file, or std::runtime_error naming it and the element when it is
+/// cut off before its pixels or malformed.
 DicomFile ReadDicomFile(const std::string& path);
 }
 #endif

@@ -145,14 +145,14 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
       {
         Entry& entry = fresh[static_cast<std::size_t>(i)]->second;
         entry.Error.clear();
-        entry.IsDicom = IsDicomFile(fresh[static_cast<std::size_t>(i)]->first);
-        if (!entry.IsDicom)
-        {
-          continue;
-        }
+        entry.IsDicom = true;
         try
         {
           entry.Frames = ReadDicomFrames(fresh[static_cast<std::size_t>(i)]->first);
+        }
+        catch (const NotDicomError&)
+        {
+          entry.IsDicom = false;
         }
         catch (const std::exception& e)
         {
@@ -163,9 +163,11 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
   this->Files = std::move(files);
 
   std::size_t others = 0;
+  std::size_t bare = 0;
   for (const auto& [name, entry] : this->Files)
   {
     others += entry.IsDicom ? 0 : 1;
+    bare += !entry.Frames.empty() && entry.Frames[0].Header->IsBare ? 1 : 0;
     if (!entry.Error.empty())
     {
       this->Warnings.push_back(entry.Error + "; the file is left out");
@@ -178,6 +180,11 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
   if (others > 0)
   {
     this->Notes.push_back(std::to_string(others) + " files are no DICOM files");
+  }
+  if (bare > 0)
+  {
+    this->Notes.push_back(std::to_string(bare) +
+      " files have no DICOM preamble; their transfer syntax was told from their first elements");
   }
   if (single)
   {

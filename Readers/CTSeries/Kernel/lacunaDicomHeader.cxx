@@ -21,7 +21,7 @@ constexpr DicomTag FrameGroups = 0x52009230;
 bool IsNative(const std::string& syntax)
 {
   return syntax == "1.2.840.10008.1.2" || syntax == "1.2.840.10008.1.2.1" ||
-    syntax == "1.2.840.10008.1.2.2";
+    syntax == "1.2.840.10008.1.2.2" || syntax == "1.2.840.10008.1.2.1.99";
 }
 
 // Where the values of a frame are: its own functional group, that of all frames, the file.
@@ -203,6 +203,13 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
     throw std::runtime_error(
       path + ": Number of Frames (0028,0008) is " + data.GetText(0x00280008));
   }
+  header->IsBare = file.IsBare;
+  if (file.Inflated)
+  {
+    header->DeflatedFrom = file.Inflated->First;
+    // else it would be inflated as often as it has frames
+    header->Inflated = header->Frames > 1 ? file.Inflated : nullptr;
+  }
   FindPixels(file, *header);
   return header;
 }
@@ -261,28 +268,46 @@ std::vector<CTFrame> ReadDicomFrames(const std::string& path)
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned char> ReadDicomBytes(const CTFrame& frame)
+std::int64_t GetDicomSize(const CTFrame& frame)
+{
+  std::int64_t size = 0;
+  for (const DicomFragment& fragment :
+    frame.Header->Pixels.at(static_cast<std::size_t>(frame.Number)))
+  {
+    size += fragment.Length;
+  }
+  return size;
+}
+
+//------------------------------------------------------------------------------
+void ReadDicomBytes(const CTFrame& frame, unsigned char* bytes)
 {
   const CTFileHeader& header = *frame.Header;
   FileBytes file(header.File);
-  std::vector<unsigned char> bytes;
+  if (header.Inflated)
+  {
+    file.SetInflated(header.Inflated);
+  }
+  else if (header.DeflatedFrom > 0)
+  {
+    file.Inflate(header.DeflatedFrom);
+  }
+  unsigned char* end = bytes;
   for (const DicomFragment& fragment : header.Pixels.at(static_cast<std::size_t>(frame.Number)))
   {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(fragment.Length));
-    if (!file.Read(fragment.Offset, fragment.Length, bytes.data() + before))
+    if (!file.Read(fragment.Offset, fragment.Length, end))
     {
       throw std::runtime_error(header.File + ": its pixels cannot be read; has the file changed?");
     }
+    end += fragment.Length;
   }
   if (header.BigEndian && header.Format.BitsAllocated > 8)
   {
     const std::ptrdiff_t width = header.Format.BitsAllocated / 8;
-    for (auto p = bytes.begin(); bytes.end() - p >= width; p += width)
+    for (unsigned char* p = bytes; end - p >= width; p += width)
     {
       std::reverse(p, p + width);
     }
   }
-  return bytes;
 }
 }

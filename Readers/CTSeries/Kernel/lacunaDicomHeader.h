@@ -6,6 +6,7 @@
 
 #include "lacunaCTFrame.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,11 @@ namespace lacuna
 /// cannot be understood; pixels that are missing or cut off are noted in PixelError instead.
 std::vector<CTFrame> ReadDicomFrames(const std::string& path);
 
-/// The bytes of a frame: its pixels in the machine's byte order, or a compressed stream. Throws
-/// std::runtime_error naming the file when they cannot be read.
-std::vector<unsigned char> ReadDicomBytes(const CTFrame& frame);
+/// How many bytes a frame has in its file.
+std::int64_t GetDicomSize(const CTFrame& frame);
+
+/// Those bytes: pixels in the machine's byte order, or a compressed stream. Throws std::runtime_error
+/// naming the file when they cannot be read.
+void ReadDicomBytes(const CTFrame& frame, unsigned char* bytes);
 }
 #endif

@@ -6,28 +6,46 @@
 
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace lacuna
 {
+/// The end of a file that is a deflate stream, inflated.
+struct InflatedBytes
+{
+  std::int64_t First = 0; ///< where in the file the stream begins
+  std::vector<unsigned char> Bytes;
+};
+
 class FileBytes
 {
 public:
   /// Throws std::runtime_error naming the file when it cannot be opened.
   explicit FileBytes(const std::string& path);
 
+  /// Bytes at hand, with what was inflated.
   std::int64_t GetSize() const { return this->Size; }
   /// count bytes from offset on, valid until the next call; nullptr when the file has not so many.
   const unsigned char* Get(std::int64_t offset, std::int64_t count);
   /// Copies them; false when the file has not so many or cannot be read.
   bool Read(std::int64_t offset, std::int64_t count, unsigned char* bytes);
 
+  /// The file is a deflate stream (RFC 1951) from first on; inflated bytes take its place. Throws
+  /// std::runtime_error naming the file when it is cut off, damaged or gives more than 1 GiB.
+  void Inflate(std::int64_t first);
+  /// Of Inflate; it may be kept and given to another FileBytes of the same file.
+  std::shared_ptr<const InflatedBytes> GetInflated() const { return this->Inflated; }
+  void SetInflated(std::shared_ptr<const InflatedBytes> inflated);
+
 private:
+  std::string Path;
   std::ifstream File;
   std::int64_t Size = 0;
   std::int64_t First = 0; // of the bytes at hand
   std::vector<unsigned char> Window;
+  std::shared_ptr<const InflatedBytes> Inflated;
 };
 }
 #endif

@@ -30,14 +30,18 @@ public:
   std::int64_t GetBytesPerPixel() const { return this->Format.BitsAllocated / 8; }
 
   /// Writes count values; pixels hold count numbers of BitsAllocated bits in the machine's byte
-  /// order. T is a type of GetHounsfieldType, into which the values fit, or float.
+  /// order. They may be where the values go, when both take as many bytes. T is a type of GetHounsfieldType or float. Throws std::runtime_error naming the file when
+  /// a value does not fit: then its decoded pixels have more bits than its header said.
   template <class T>
   void Convert(const unsigned char* pixels, std::int64_t count, T* values) const;
 
 private:
   template <class Stored, class T>
   void ConvertStored(const unsigned char* pixels, std::int64_t count, T* values) const;
+  template <class Stored, class T>
+  void ConvertWhole(const unsigned char* pixels, std::int64_t count, T* values) const;
 
+  std::string Name; // of the frame
   CTPixelFormat Format;
   double Slope;
   double Intercept;

@@ -20,19 +20,20 @@ std::int16_t Value(double column, double row, double z)
   return static_cast<std::int16_t>(std::lround(40 * column + 200 * row - 30 * z));
 }
 
-CTPixels MakePixels(const CTFrame& frame)
+void MakePixels(const CTFrame& frame, CTPixels& made)
 {
-  const auto pixels = std::make_shared<std::vector<std::int16_t>>();
+  std::vector<std::int16_t> pixels;
   for (int j = 0; j < frame.Header->Rows; ++j)
   {
     for (int i = 0; i < frame.Header->Columns; ++i)
     {
-      pixels->push_back(Value(i, j, (*frame.Position)[2]));
+      pixels.push_back(Value(i, j, (*frame.Position)[2]));
     }
   }
-  return { std::shared_ptr<const unsigned char>(
-             pixels, reinterpret_cast<const unsigned char*>(pixels->data())),
-    frame.Header->Format };
+  made.Format = frame.Header->Format;
+  made.Bytes.resize(pixels.size() * sizeof(pixels[0]));
+  std::memcpy(made.Bytes.data(), pixels.data(), made.Bytes.size());
+  made.Data = made.Bytes.data();
 }
 
 std::vector<std::int16_t> ReadAll(const CTGeometry& geometry, int threads = 1)
@@ -115,11 +116,11 @@ TEST(CTVolume, ReadsOnlyWhatIsAskedFor)
   ThreadExecution execution;
   ReadCTVolume(
     geometry, { 2, 2, 1, 1, 3, 3 }, ScalarType::Int16, 0,
-    [&](const CTFrame& frame)
+    [&](const CTFrame& frame, CTPixels& pixels)
     {
       const std::lock_guard<std::mutex> lock(mutex);
       read.insert(frame.GetName());
-      return MakePixels(frame);
+      MakePixels(frame, pixels);
     },
     &voxel, execution);
   EXPECT_EQ(read, (std::set<std::string>{ "IM2", "IM3" }));
@@ -133,8 +134,8 @@ TEST(CTVolume, PassesErrorsAndStops)
   ThreadExecution execution(2);
   EXPECT_THROW(ReadCTVolume(
                  geometry, { 0, 7, 0, 10, 0, 4 }, ScalarType::Int16, 0,
-                 [](const CTFrame&) -> CTPixels { throw std::runtime_error("gone"); },
-                 voxels.data(), execution),
+                 [](const CTFrame&, CTPixels&) { throw std::runtime_error("gone"); }, voxels.data(),
+                 execution),
     std::runtime_error);
   ThreadExecution stopped(2, [](double) { return false; });
   EXPECT_THROW(ReadCTVolume(geometry, { 0, 7, 0, 10, 0, 4 }, ScalarType::Int16, 0, MakePixels,
