@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -53,17 +54,36 @@ RadialBasis<Dimension>::RadialBasis(Execution& execution, const std::vector<Poin
   const bool fast = options.Accuracy > 0 &&
     (options.Solver == RadialSolver::Fast ||
       (options.Solver == RadialSolver::Auto &&
-        this->System.GetSize() > RadialBasisOptions::AutoDirectNodes));
-  // All values equal: the constant polynomial it is, exactly.
-  RadialSolution solution = fast
-    ? SolveIteratively(execution, this->System, range > 0 ? options.Accuracy * range : 1.0)
-    : SolveDirectly(execution, this->System, options.MaximumBytes);
-  this->Coefficients = std::move(solution.Coefficients);
-  this->Report.Residual = solution.Residual;
-  this->Report.Refined = solution.Refined;
-  this->Report.ConditionEstimate = solution.ConditionEstimate;
-  this->Report.Iterations = solution.Iterations;
+        this->System->GetSize() > RadialBasisOptions::AutoDirectNodes));
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0, fast ? 0.3 : 1);
+  std::shared_ptr<RadialEquations<Dimension>> equations = fast
+    ? PrepareIteratively(execution, *this->System)
+    : PrepareDirectly(execution, *this->System, options.MaximumBytes);
+  RadialSolution found;
+  const auto count = static_cast<double>(this->System->Values.size());
+  for (const std::vector<double>& list : this->System->Values)
+  {
+    const auto done = static_cast<double>(this->Coefficients.size());
+    execution.SetStage(
+      fast ? 0.3 + 0.7 * done / count : 1, fast ? 0.3 + 0.7 * (done + 1) / count : 1);
+    // All values equal: the constant polynomial it is, exactly.
+    this->Coefficients.push_back(
+      equations->Solve(execution, list, range > 0 ? options.Accuracy * range : 1.0, found));
+  }
+  this->Report.Residual = found.Residual;
+  this->Report.Refined = found.Refined;
+  this->Report.ConditionEstimate = found.ConditionEstimate;
+  this->Report.Iterations = found.Iterations;
   this->ComputeEnergy();
+  if (options.Controllable)
+  {
+    this->Control =
+      std::make_shared<RadialControl<Dimension>>(*this->System, *equations, options.Accuracy);
+    this->Equations = std::move(equations);
+    this->BaseCoefficients = this->Coefficients;
+    this->BaseReport = this->Report;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -71,7 +91,9 @@ template <int Dimension>
 void RadialBasis<Dimension>::SetNodes(
   const std::vector<Point>& nodes, const std::vector<std::vector<double>>& values)
 {
-  RadialSystem<Dimension>& system = this->System;
+  this->System = std::make_shared<RadialSystem<Dimension>>();
+  this->Centers = this->System;
+  RadialSystem<Dimension>& system = *this->System;
   system.Kernel = this->Options.Kernel;
   system.Polynomial.Degree = GetRadialDegree(system.Kernel);
   const std::vector<std::size_t> distinct =
@@ -139,7 +161,7 @@ void RadialBasis<Dimension>::SetDiagonal(const std::vector<std::size_t>& distinc
           std::to_string(i) + " has none");
       }
     }
-    this->System.Diagonal.push_back(diagonal * error * error);
+    this->System->Diagonal.push_back(diagonal * error * error);
   }
 }
 
@@ -147,14 +169,16 @@ void RadialBasis<Dimension>::SetDiagonal(const std::vector<std::size_t>& distinc
 template <int Dimension>
 void RadialBasis<Dimension>::ComputeEnergy()
 {
-  // sum_j a_j phi(x_i - x_j) = f_i - diagonal a_i - p(x_i), and p falls out by the side conditions
+  // sum_j a_j phi(x_i - x_j) = s(x_i) - p(x_i), s(x_i) = f_i - diagonal a_i, and p falls out by the
+  // side conditions
+  const RadialSystem<Dimension>& centers = this->GetCenters();
   double energy = 0;
   for (std::size_t k = 0; k < this->Coefficients.size(); ++k)
   {
-    for (std::size_t i = 0; i < this->System.GetSize(); ++i)
+    for (std::size_t i = 0; i < centers.GetSize(); ++i)
     {
       const double a = this->Coefficients[k][i];
-      energy += a * (this->System.Values[k][i] - this->System.Diagonal[i] * a);
+      energy += a * (centers.Values[k][i] - centers.Diagonal[i] * a);
     }
   }
   this->Report.Energy = std::max(0.0,
@@ -164,9 +188,85 @@ void RadialBasis<Dimension>::ComputeEnergy()
 
 //------------------------------------------------------------------------------
 template <int Dimension>
+void RadialBasis<Dimension>::SetControlPoints(Execution& execution,
+  const std::vector<Point>& points, const std::vector<std::vector<double>>& values,
+  double clearance)
+{
+  if (!this->Control)
+  {
+    throw std::logic_error("the function was not made to be controllable");
+  }
+  const std::vector<std::size_t> distinct = FindDistinctNodes<Dimension>(points, values, 0);
+  const RadialSystem<Dimension>& system = *this->System;
+  std::vector<Point> scaled;
+  for (const std::size_t i : distinct)
+  {
+    scaled.push_back(this->Frame.ToScaled(points[i]));
+  }
+  const double limit = std::pow(clearance * this->Frame.Scale, 2);
+  std::vector<std::size_t> released;
+  for (std::size_t i = 0; i < system.GetSize(); ++i)
+  {
+    const auto isNear = [&](const Point& p)
+    {
+      double squared = 0;
+      for (int c = 0; c < Dimension; ++c)
+      {
+        squared += (p[c] - system.Nodes[i][c]) * (p[c] - system.Nodes[i][c]);
+      }
+      return squared < limit;
+    };
+    if (std::any_of(scaled.begin(), scaled.end(), isNear))
+    {
+      released.push_back(i);
+    }
+  }
+  if (scaled.empty())
+  {
+    this->Centers = this->System;
+    this->Coefficients = this->BaseCoefficients;
+    this->Report = this->BaseReport;
+    return;
+  }
+  this->Control->Place(execution, scaled, released);
+
+  auto centers = std::make_shared<RadialSystem<Dimension>>(system);
+  for (const Point& p : scaled)
+  {
+    centers->Nodes.push_back(p);
+    centers->Diagonal.push_back(0);
+    for (int c = 0; c < Dimension; ++c)
+    {
+      centers->Axis[c].push_back(p[c]);
+    }
+  }
+  std::vector<std::vector<double>> coefficients;
+  double residual = 0;
+  for (std::size_t k = 0; k < this->BaseCoefficients.size(); ++k)
+  {
+    std::vector<double> atPoints;
+    for (const std::size_t i : distinct)
+    {
+      atPoints.push_back(values[k][i] - this->Means[k]);
+    }
+    typename RadialControl<Dimension>::Result result =
+      this->Control->Solve(atPoints, this->BaseCoefficients[k]);
+    centers->Values[k].insert(centers->Values[k].end(), atPoints.begin(), atPoints.end());
+    coefficients.push_back(std::move(result.Coefficients));
+    residual = std::max(residual, result.Residual);
+  }
+  this->Centers = std::move(centers);
+  this->Coefficients = std::move(coefficients);
+  this->Report.NodeCount = system.GetSize() - released.size() + scaled.size();
+  this->Report.Residual = this->BaseReport.Residual + residual;
+  this->ComputeEnergy();
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
 std::array<double, Dimension + 1> RadialBasis<Dimension>::GetPolynomial(int component) const
 {
-  const std::size_t n = this->System.GetSize();
+  const std::size_t n = this->GetCenters().GetSize();
   const std::vector<double>& coefficients = this->Coefficients[component];
   std::array<double, Dimension + 1> polynomial;
   polynomial[0] = this->Means[component] + coefficients[n];
@@ -182,7 +282,7 @@ std::array<double, Dimension + 1> RadialBasis<Dimension>::GetPolynomial(int comp
     double moment = 0;
     for (std::size_t i = 0; i < n; ++i)
     {
-      for (const double u : this->System.Nodes[i])
+      for (const double u : this->GetCenters().Nodes[i])
       {
         moment += coefficients[i] * u * u;
       }
@@ -203,7 +303,7 @@ template <int Dimension>
 double RadialBasis<Dimension>::EvaluatePolynomial(
   const double* coefficients, const Point& u, Point* gradient) const
 {
-  const RadialPolynomial<Dimension>& polynomial = this->System.Polynomial;
+  const RadialPolynomial<Dimension>& polynomial = this->GetCenters().Polynomial;
   double monomials[RadialPolynomial<Dimension>::MaximumCount];
   polynomial.Evaluate(u, monomials);
   double value = 0;
@@ -235,7 +335,7 @@ template <int Dimension>
 void RadialBasis<Dimension>::EvaluateBlock(
   int component, const Point* points, std::size_t count, double* values, Point* gradients) const
 {
-  const std::size_t n = this->System.GetSize();
+  const std::size_t n = this->GetCenters().GetSize();
   const double* coefficients = this->Coefficients[component].data();
   alignas(64) double block[Dimension][RadialBlock] = {};
   alignas(64) double sums[RadialBlock];
@@ -256,11 +356,12 @@ void RadialBasis<Dimension>::EvaluateBlock(
   }
   if (gradients)
   {
-    this->Loops.SumAndGradient(this->System.GetCoordinates(), coefficients, n, at, sums, slopes[0]);
+    this->Loops.SumAndGradient(
+      this->GetCenters().GetCoordinates(), coefficients, n, at, sums, slopes[0]);
   }
   else
   {
-    this->Loops.Sum(this->System.GetCoordinates(), coefficients, n, at, sums);
+    this->Loops.Sum(this->GetCenters().GetCoordinates(), coefficients, n, at, sums);
   }
   for (std::size_t p = 0; p < count; ++p)
   {
@@ -359,9 +460,9 @@ void RadialBasis<Dimension>::EvaluateGrid(
   }
   const Execution::NestedStages stages(execution);
   execution.SetStage(0, 0.9);
-  const auto n = static_cast<std::ptrdiff_t>(this->System.GetSize());
+  const auto n = static_cast<std::ptrdiff_t>(this->GetCenters().GetSize());
   const std::vector<double>& coefficients = this->Coefficients[component];
-  FastRadialSum<Dimension> sum(this->Options.Kernel, this->System.Nodes, scaled);
+  FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
   sum.Apply(execution, { coefficients.begin(), coefficients.begin() + n },
     this->Options.Accuracy * this->Ranges[component], values);
   execution.SetStage(0.9, 1);

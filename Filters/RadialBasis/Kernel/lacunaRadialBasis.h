@@ -4,12 +4,14 @@
 #ifndef lacunaRadialBasis_h
 #define lacunaRadialBasis_h
 
+#include "lacunaRadialControl.h"
 #include "lacunaRadialNodes.h"
 #include "lacunaRadialSum.h"
 #include "lacunaRadialTree.h"
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace lacuna
@@ -46,6 +48,8 @@ struct RadialBasisOptions
   /// e_i > 0, how much each value may be wrong, relative to the others; empty: all 1. Counts
   /// with Smoothing only.
   std::vector<double> Errors;
+  /// Keeps what control points need after the fit: the factorized matrix or the preconditioner.
+  bool Controllable = false;
 };
 
 /// What a fit found out about itself.
@@ -90,6 +94,17 @@ public:
   RadialBasis(Execution& execution, const std::vector<Point>& nodes,
     const std::vector<std::vector<double>>& values, const RadialBasisOptions& options);
 
+  /// Makes the function pass through control points, too, exactly whatever the smoothing, instead of
+  /// those of before; values[component][point]. Nodes nearer than clearance to a control point have
+  /// no say any more. The cost is one solution with kept equations, O(n^2) or a fast one, for
+  /// each point and each node without a say that were not there before; the result does not depend
+  /// on what was there before. The function must be Controllable. Throws std::invalid_argument when
+  /// two points are at the same place with different values (equal ones are merged) or a number is
+  /// not finite, std::runtime_error when points contradict each other or nodes nearby; the function
+  /// then is as before.
+  void SetControlPoints(Execution& execution, const std::vector<Point>& points,
+    const std::vector<std::vector<double>>& values, double clearance);
+
   const RadialBasisReport& GetReport() const { return this->Report; }
   int GetNumberOfComponents() const { return static_cast<int>(this->Means.size()); }
   /// Largest less smallest value of a component.
@@ -119,6 +134,7 @@ private:
   void SetNodes(const std::vector<Point>& nodes, const std::vector<std::vector<double>>& values);
   void SetDiagonal(const std::vector<std::size_t>& distinct);
   void ComputeEnergy();
+  const RadialSystem<Dimension>& GetCenters() const { return *this->Centers; }
   double EvaluatePolynomial(const double* coefficients, const Point& u, Point* gradient) const;
   /// One block of up to RadialBlock points.
   void EvaluateBlock(
@@ -130,10 +146,18 @@ private:
   RadialLoops<Dimension> Loops;
   RadialBasisReport Report;
   RadialFrame<Dimension> Frame;
-  RadialSystem<Dimension> System; // scaled, values less their mean
+  // Scaled, values less their mean; equations refer to it.
+  std::shared_ptr<RadialSystem<Dimension>> System;
+  std::shared_ptr<RadialEquations<Dimension>> Equations; // if Controllable
+  std::shared_ptr<RadialControl<Dimension>> Control;     // if Controllable
+  // What is summed: System, or its nodes and the control points
+  std::shared_ptr<const RadialSystem<Dimension>> Centers;
   std::vector<double> Means;
   std::vector<double> Ranges;
-  std::vector<std::vector<double>> Coefficients; // a_i, then those of p, scaled
+  std::vector<std::vector<double>> Coefficients; // of Centers, then those of p, scaled
+  // without control points
+  std::vector<std::vector<double>> BaseCoefficients;
+  RadialBasisReport BaseReport;
 };
 }
 #endif

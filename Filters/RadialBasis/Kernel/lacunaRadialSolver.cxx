@@ -58,13 +58,11 @@ double MaximumNorm(const std::vector<double>& values)
 }
 
 template <int Dimension>
-class Solver
+class IterativeEquations : public RadialEquations<Dimension>
 {
 public:
-  Solver(Execution& execution, const RadialSystem<Dimension>& system, double tolerance)
-    : Run(execution)
-    , System(system)
-    , Tolerance(tolerance)
+  IterativeEquations(Execution& execution, const RadialSystem<Dimension>& system)
+    : System(system)
     , Sum(system.Kernel, system.Nodes, system.Nodes)
     , Projection(system.Polynomial, system.Nodes)
   {
@@ -72,13 +70,15 @@ public:
     RequireMemory("the fast solution of " + std::to_string(system.GetSize()) + " equations",
       SchwarzPreconditioner<Dimension>::EstimateBytes(system.GetSize()) +
         n * sizeof(double) * (2 * MaximumDirections + 20));
-    execution.SetStage(0, 0.3);
     this->Preconditioner = std::make_unique<SchwarzPreconditioner<Dimension>>(execution, system);
   }
 
-  // Coefficients; adds to what solution says of how it was found.
-  std::vector<double> Solve(const std::vector<double>& values, RadialSolution& solution)
+  std::vector<double> Solve(Execution& execution, const std::vector<double>& values,
+    double tolerance, RadialSolution& found) override
   {
+    const Execution::NestedStages stages(execution);
+    this->Run = &execution;
+    this->Tolerance = tolerance;
     const std::size_t n = this->System.GetSize();
     std::vector<double> weights(n, 0.0);
     std::vector<double> residual = values;
@@ -92,7 +92,7 @@ public:
       this->Cycle(residual, weights);
       std::vector<double> product(n);
       const double bound =
-        this->Sum.Apply(this->Run, weights, ResidualAccuracy * this->Tolerance, product.data());
+        this->Sum.Apply(*this->Run, weights, ResidualAccuracy * this->Tolerance, product.data());
       this->AddDiagonal(weights, product);
       for (std::size_t i = 0; i < n; ++i)
       {
@@ -114,8 +114,8 @@ public:
               << (IsRadialShaped(this->System.Kernel) ? ", or make the kernel narrower" : "");
       throw std::runtime_error(message.str());
     }
-    solution.Residual = std::max(solution.Residual, norm);
-    solution.Iterations = std::max(solution.Iterations, this->Iterations);
+    found.Residual = std::max(found.Residual, norm);
+    found.Iterations = std::max(found.Iterations, this->Iterations);
     const std::vector<double> polynomial = this->Projection.GetCoefficients(left);
     weights.insert(weights.end(), polynomial.begin(), polynomial.end());
     return weights;
@@ -149,10 +149,10 @@ private:
     double left = length;
     for (int k = 0; k < MaximumDirections; ++k)
     {
-      z.push_back(this->Preconditioner->Apply(this->Run, v[k]));
+      z.push_back(this->Preconditioner->Apply(*this->Run, v[k]));
       std::vector<double> w(n);
       this->Sum.ApplyUpTo(
-        ProductOrder, this->Run, z[k], ProductAccuracy * this->Tolerance / left, w.data());
+        ProductOrder, *this->Run, z[k], ProductAccuracy * this->Tolerance / left, w.data());
       this->AddDiagonal(z[k], w);
       this->Projection.Remove(w);
       std::vector<double> column(k + 2, 0.0);
@@ -236,36 +236,33 @@ private:
     const double whole = std::log(std::min(0.5, this->Tolerance / start));
     const double done = std::min(1.0, std::max(0.0, std::log(std::max(reduction, 1e-300)) / whole));
     // Each product is a stage between this iteration and about where the next will be.
-    this->Run.SetStage(0.3 + 0.7 * done, 0.3 + 0.7 * std::min(1.0, done + 0.1));
-    this->Run.Report(0);
+    this->Run->SetStage(done, std::min(1.0, done + 0.1));
+    this->Run->Report(0);
   }
 
   static constexpr int ProductOrder = Dimension == 2 ? 12 : 8;
 
-  Execution& Run;
   const RadialSystem<Dimension>& System;
-  double Tolerance;
   FastRadialSum<Dimension> Sum;
   PolynomialProjection Projection;
   std::unique_ptr<SchwarzPreconditioner<Dimension>> Preconditioner;
+  // of the solution at hand
+  Execution* Run = nullptr;
+  double Tolerance = 0;
   int Iterations = 0;
 };
 }
 
+//------------------------------------------------------------------------------
 template <int Dimension>
-RadialSolution SolveIteratively(
-  Execution& execution, const RadialSystem<Dimension>& system, double tolerance)
+std::unique_ptr<RadialEquations<Dimension>> PrepareIteratively(
+  Execution& execution, const RadialSystem<Dimension>& system)
 {
-  const Execution::NestedStages stages(execution);
-  Solver<Dimension> solver(execution, system, tolerance);
-  RadialSolution solution;
-  for (const std::vector<double>& values : system.Values)
-  {
-    solution.Coefficients.push_back(solver.Solve(values, solution));
-  }
-  return solution;
+  return std::make_unique<IterativeEquations<Dimension>>(execution, system);
 }
 
-template RadialSolution SolveIteratively<2>(Execution&, const RadialSystem<2>&, double);
-template RadialSolution SolveIteratively<3>(Execution&, const RadialSystem<3>&, double);
+template std::unique_ptr<RadialEquations<2>> PrepareIteratively<2>(
+  Execution&, const RadialSystem<2>&);
+template std::unique_ptr<RadialEquations<3>> PrepareIteratively<3>(
+  Execution&, const RadialSystem<3>&);
 }

@@ -6,16 +6,15 @@
 
 #include "lacunaRadialSystem.h"
 
+#include <memory>
+
 namespace lacuna
 {
-class Execution;
-
-/// Solves by flexible GMRES on the complement of the polynomials with fast sums and a
-/// SchwarzPreconditioner, until no value is missed by more than tolerance (> 0, in the unit of the
-/// values). The residual of the solution is computed anew, from sums whose error bound is a tenth
-/// of the tolerance and counted in. Throws std::runtime_error when the tolerance is not reached.
+/// By flexible GMRES on the complement of the polynomials with fast sums and a
+/// SchwarzPreconditioner. The residual of a solution is computed anew, from sums whose error bound is
+/// a tenth of the tolerance and counted in.
 template <int Dimension>
-RadialSolution SolveIteratively(
-  Execution& execution, const RadialSystem<Dimension>& system, double tolerance);
+std::unique_ptr<RadialEquations<Dimension>> PrepareIteratively(
+  Execution& execution, const RadialSystem<Dimension>& system);
 }
 #endif

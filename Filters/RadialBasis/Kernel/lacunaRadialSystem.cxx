@@ -56,6 +56,58 @@ SquareMatrix MakeMatrix(Execution& execution, const RadialSystem<Dimension>& sys
   }
   return matrix;
 }
+
+template <int Dimension>
+class DirectEquations : public RadialEquations<Dimension>
+{
+public:
+  DirectEquations(Execution& execution, const RadialSystem<Dimension>& system)
+    : System(system)
+    , Factorization(MakeMatrix(execution, system))
+  {
+    execution.Report(1);
+    if (!(this->Factorization.GetConditionEstimate() < ConditionLimit))
+    {
+      throw std::runtime_error(
+        "its condition number is " + std::to_string(this->Factorization.GetConditionEstimate()));
+    }
+  }
+
+  std::vector<double> Solve(
+    Execution& execution, const std::vector<double>& values, double, RadialSolution& found) override
+  {
+    const std::size_t n = this->System.GetSize();
+    std::vector<double> coefficients(n + this->System.Polynomial.GetCount(), 0.0);
+    std::copy(values.begin(), values.end(), coefficients.begin());
+    this->Factorization.Solve(coefficients);
+    std::vector<double> residual = this->System.GetResidual(execution, values, coefficients);
+    double norm = MaximumNorm(residual.data(), n);
+    if (norm > ResidualWanted * MaximumNorm(values.data(), n))
+    {
+      std::vector<double> better = coefficients;
+      this->Factorization.Solve(residual);
+      for (std::size_t i = 0; i < better.size(); ++i)
+      {
+        better[i] += residual[i];
+      }
+      residual = this->System.GetResidual(execution, values, better);
+      const double refined = MaximumNorm(residual.data(), n);
+      if (refined < norm)
+      {
+        found.Refined = true;
+        coefficients = std::move(better);
+        norm = refined;
+      }
+    }
+    found.Residual = std::max(found.Residual, norm);
+    found.ConditionEstimate = this->Factorization.GetConditionEstimate();
+    return coefficients;
+  }
+
+private:
+  const RadialSystem<Dimension>& System;
+  SymmetricFactorization Factorization;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -122,12 +174,11 @@ std::vector<double> RadialSystem<Dimension>::GetResidual(Execution& execution,
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-RadialSolution SolveDirectly(
+std::unique_ptr<RadialEquations<Dimension>> PrepareDirectly(
   Execution& execution, const RadialSystem<Dimension>& system, std::uint64_t maximumBytes)
 {
   const std::size_t n = system.GetSize();
-  const std::size_t size = n + system.Polynomial.GetCount();
-  const std::uint64_t bytes = SquareMatrix::GetBytes(size);
+  const std::uint64_t bytes = SquareMatrix::GetBytes(n + system.Polynomial.GetCount());
   if (bytes > maximumBytes)
   {
     std::ostringstream message;
@@ -135,44 +186,9 @@ RadialSolution SolveDirectly(
             << maximumBytes << " bytes";
     throw std::length_error(message.str());
   }
-  RadialSolution solution;
   try
   {
-    const SymmetricFactorization factorization(MakeMatrix(execution, system));
-    execution.Report(1);
-    solution.ConditionEstimate = factorization.GetConditionEstimate();
-    if (!(solution.ConditionEstimate < ConditionLimit))
-    {
-      throw std::runtime_error(
-        "its condition number is " + std::to_string(solution.ConditionEstimate));
-    }
-    for (const std::vector<double>& values : system.Values)
-    {
-      std::vector<double> coefficients(size, 0.0);
-      std::copy(values.begin(), values.end(), coefficients.begin());
-      factorization.Solve(coefficients);
-      std::vector<double> residual = system.GetResidual(execution, values, coefficients);
-      double norm = MaximumNorm(residual.data(), n);
-      if (norm > ResidualWanted * MaximumNorm(values.data(), n))
-      {
-        std::vector<double> better = coefficients;
-        factorization.Solve(residual);
-        for (std::size_t i = 0; i < size; ++i)
-        {
-          better[i] += residual[i];
-        }
-        residual = system.GetResidual(execution, values, better);
-        const double refined = MaximumNorm(residual.data(), n);
-        if (refined < norm)
-        {
-          solution.Refined = true;
-          coefficients = std::move(better);
-          norm = refined;
-        }
-      }
-      solution.Residual = std::max(solution.Residual, norm);
-      solution.Coefficients.push_back(std::move(coefficients));
-    }
+    return std::make_unique<DirectEquations<Dimension>>(execution, system);
   }
   catch (const Aborted&)
   {
@@ -183,11 +199,12 @@ RadialSolution SolveDirectly(
     throw std::runtime_error(std::string("the interpolation equations cannot be solved: ") +
       e.what() + "; nodes lie too close together for their extent, use fewer or add smoothing");
   }
-  return solution;
 }
 
 template struct RadialSystem<2>;
 template struct RadialSystem<3>;
-template RadialSolution SolveDirectly<2>(Execution&, const RadialSystem<2>&, std::uint64_t);
-template RadialSolution SolveDirectly<3>(Execution&, const RadialSystem<3>&, std::uint64_t);
+template std::unique_ptr<RadialEquations<2>> PrepareDirectly<2>(
+  Execution&, const RadialSystem<2>&, std::uint64_t);
+template std::unique_ptr<RadialEquations<3>> PrepareDirectly<3>(
+  Execution&, const RadialSystem<3>&, std::uint64_t);
 }

@@ -9,10 +9,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace lacuna
 {
+class Execution;
+
 /// The monomials up to a degree of 1 or 2 of x / Length: 1, then the coordinates, then their
 /// products.
 template <int Dimension>
@@ -60,24 +63,36 @@ struct RadialSystem
   std::size_t GetSize() const { return this->Nodes.size(); }
   Coordinates<Dimension> GetCoordinates(std::size_t first = 0) const;
   /// (A + diagonal) a + P c at the nodes, less the values; by direct sums.
-  std::vector<double> GetResidual(class Execution& execution, const std::vector<double>& values,
+  std::vector<double> GetResidual(Execution& execution, const std::vector<double>& values,
     const std::vector<double>& coefficients) const;
 };
 
-/// What solves a RadialSystem, and how well.
+/// What is found out while right-hand sides are solved: of all of them, the worst.
 struct RadialSolution
 {
-  std::vector<std::vector<double>> Coefficients; ///< a, then c, for each right-hand side
-  double Residual = 0;          ///< largest |(A + diagonal) a + P c - f|, of all right-hand sides
+  double Residual = 0;          ///< largest |(A + diagonal) a + P c - f|
   bool Refined = false;         ///< one step of iterative refinement was needed and helped
   double ConditionEstimate = 0; ///< in the 1-norm; 0 if unknown
-  int Iterations = 0;           ///< 0 for direct solutions; else the largest number of all sides
+  int Iterations = 0;           ///< 0 for direct solutions; else the largest number
 };
 
-/// Solves by LAPACK's diagonal pivoting method. Throws std::length_error when the matrix takes more
-/// than maximumBytes, std::runtime_error when it is numerically singular.
+/// A RadialSystem made ready for right-hand sides that come one by one. The system must outlive it.
 template <int Dimension>
-RadialSolution SolveDirectly(
+class RadialEquations
+{
+public:
+  virtual ~RadialEquations() = default;
+
+  /// a, then c, for the right-hand side (values, 0). Iterative solutions miss no value by more than
+  /// tolerance (> 0, in the unit of the values) or throw std::runtime_error.
+  virtual std::vector<double> Solve(Execution& execution, const std::vector<double>& values,
+    double tolerance, RadialSolution& found) = 0;
+};
+
+/// By LAPACK's diagonal pivoting method. Throws std::length_error when the matrix takes more than
+/// maximumBytes, std::runtime_error when it is numerically singular.
+template <int Dimension>
+std::unique_ptr<RadialEquations<Dimension>> PrepareDirectly(
   Execution& execution, const RadialSystem<Dimension>& system, std::uint64_t maximumBytes);
 }
 #endif

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,8 +14,6 @@
 extern "C"
 {
   void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info, std::size_t);
-  void dgesv_(const int* n, const int* columns, double* a, const int* lda, int* pivots, double* b,
-    const int* ldb, int* info);
 }
 
 namespace lacuna
@@ -83,15 +80,11 @@ typename UpdatableRadialBasis<Dimension>::Node UpdatableRadialBasis<Dimension>::
   std::size_t number, const Point& scaled, double value) const
 {
   const std::size_t count = this->Anchors.size();
-  Node node{ number, scaled, value, std::vector<double>(count, 0.0), std::vector<double>(count) };
-  double monomials[RadialPolynomial<Dimension>::MaximumCount];
-  this->Polynomial.Evaluate(scaled, monomials);
+  Node node{ number, scaled, value, std::vector<double>(RadialPolynomial<Dimension>::MaximumCount),
+    std::vector<double>(count) };
+  this->Basis.GetLagrange(scaled, node.Lagrange.data());
   for (std::size_t k = 0; k < count; ++k)
   {
-    for (std::size_t j = 0; j < count; ++j)
-    {
-      node.Lagrange[k] += this->FromMonomials[k + count * j] * monomials[j];
-    }
     node.ToAnchors[k] = this->GetPhi(scaled, this->Anchors[k].Scaled);
   }
   return node;
@@ -126,73 +119,16 @@ void UpdatableRadialBasis<Dimension>::Build(const std::vector<Node>& nodes)
     places.push_back(node.Scaled);
   }
   CheckSpread<Dimension>(places, this->Polynomial);
-  // Anchors by pivoting: each the node whose monomials are farthest from those of the ones before.
-  std::vector<std::vector<double>> rest;
-  double monomials[RadialPolynomial<Dimension>::MaximumCount];
-  for (const Point& p : places)
-  {
-    this->Polynomial.Evaluate(p, monomials);
-    rest.emplace_back(monomials, monomials + count);
-  }
-  const auto dot = [](const std::vector<double>& a, const std::vector<double>& b)
-  { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+  PolynomialAnchors<Dimension> basis(places, this->Polynomial);
   std::vector<char> isAnchor(nodes.size(), 0);
   std::vector<Node> anchors;
-  std::vector<double> system(count * count); // monomials at anchors, a row for each
-  for (std::size_t k = 0; k < count; ++k)
+  for (const std::size_t i : basis.GetNodes())
   {
-    std::size_t best = None;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-    {
-      if (!isAnchor[i] && (best == None || dot(rest[i], rest[i]) > dot(rest[best], rest[best])))
-      {
-        best = i;
-      }
-    }
-    isAnchor[best] = 1;
-    anchors.push_back(nodes[best]);
-    this->Polynomial.Evaluate(nodes[best].Scaled, monomials);
-    for (std::size_t j = 0; j < count; ++j)
-    {
-      system[k + count * j] = monomials[j];
-    }
-    std::vector<double> axis = rest[best];
-    const double length = std::sqrt(dot(axis, axis));
-    for (double& a : axis)
-    {
-      a /= length;
-    }
-    for (std::vector<double>& r : rest)
-    {
-      const double along = dot(r, axis);
-      for (std::size_t j = 0; j < count; ++j)
-      {
-        r[j] -= along * axis[j];
-      }
-    }
-  }
-  // Lagrange polynomials: system^T m = monomials, for each unit vector
-  std::vector<double> transposed(count * count);
-  std::vector<double> inverse(count * count, 0.0);
-  for (std::size_t k = 0; k < count; ++k)
-  {
-    inverse[k + count * k] = 1;
-    for (std::size_t j = 0; j < count; ++j)
-    {
-      transposed[j + count * k] = system[k + count * j];
-    }
-  }
-  const SingleBlasThread single;
-  std::vector<int> pivots(count);
-  const int size = static_cast<int>(count);
-  int info = 0;
-  dgesv_(&size, &size, transposed.data(), &size, pivots.data(), inverse.data(), &size, &info);
-  if (info != 0)
-  {
-    ThrowSingular();
+    isAnchor[i] = 1;
+    anchors.push_back(nodes[i]);
   }
   this->Anchors = std::move(anchors);
-  this->FromMonomials = std::move(inverse);
+  this->Basis = std::move(basis);
   this->AnchorMatrix.assign(count * count, 0.0);
   for (std::size_t k = 0; k < count; ++k)
   {
@@ -220,7 +156,9 @@ void UpdatableRadialBasis<Dimension>::Build(const std::vector<Node>& nodes)
       matrix[i + n * j] = this->GetElement(this->Others[i], this->Others[j]);
     }
   }
+  const SingleBlasThread single;
   const int order = static_cast<int>(n);
+  int info = 0;
   if (n > 0)
   {
     dpotrf_("L", &order, matrix.data(), &order, &info, 1);
@@ -482,7 +420,7 @@ void UpdatableRadialBasis<Dimension>::Evaluate(
     {
       alignas(64) double block[Dimension][RadialBlock] = {};
       alignas(64) double sums[RadialBlock];
-      double monomials[RadialPolynomial<Dimension>::MaximumCount];
+      double lagrange[RadialPolynomial<Dimension>::MaximumCount];
       for (std::int64_t b = begin; b < end; ++b)
       {
         const std::size_t first = static_cast<std::size_t>(b) * RadialBlock;
@@ -499,16 +437,11 @@ void UpdatableRadialBasis<Dimension>::Evaluate(
         this->Loops.Sum(nodes, this->Weights.data(), this->Weights.size(), at, sums);
         for (std::size_t p = 0; p < size; ++p)
         {
-          this->Polynomial.Evaluate(this->Frame.ToScaled(points[first + p]), monomials);
+          this->Basis.GetLagrange(this->Frame.ToScaled(points[first + p]), lagrange);
           double value = sums[p];
           for (std::size_t k = 0; k < count; ++k)
           {
-            double lagrange = 0;
-            for (std::size_t j = 0; j < count; ++j)
-            {
-              lagrange += this->FromMonomials[k + count * j] * monomials[j];
-            }
-            value += lagrange * this->AnchorValues[k];
+            value += lagrange[k] * this->AnchorValues[k];
           }
           values[first + p] = value;
         }

@@ -4,6 +4,7 @@
 #ifndef lacunaUpdatableRadialBasis_h
 #define lacunaUpdatableRadialBasis_h
 
+#include "lacunaPolynomialAnchors.h"
 #include "lacunaRadialBasis.h"
 
 #include <array>
@@ -79,8 +80,8 @@ private:
   std::size_t NextNumber = 0;
   std::vector<Node> Anchors;
   std::vector<Node> Others;
-  std::vector<double> FromMonomials; // Lagrange polynomial k = sum_j m[k + count j] monomial j
-  std::vector<double> AnchorMatrix;  // phi between anchors, with the diagonal
+  PolynomialAnchors<Dimension> Basis;
+  std::vector<double> AnchorMatrix;        // phi between anchors, with the diagonal
   std::vector<std::vector<double>> Factor; // rows of the lower triangle
   // the solution
   bool Solved = false;
