@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaDropCutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+// mm; bounds are this much too high, so that rounding never hides what is higher
+constexpr double Slack = 1e-9;
+
+double Square(double x)
+{
+  return x * x;
+}
+
+// Squared distance in x and y of a box from a box.
+double BoxDistance2(
+  const double lowA[2], const double highA[2], const double lowB[2], const double highB[2])
+{
+  double sum = 0;
+  for (int c = 0; c < 2; ++c)
+  {
+    sum += Square(std::max({ 0.0, lowA[c] - highB[c], lowB[c] - highA[c] }));
+  }
+  return sum;
+}
+
+// An edge as the mill sees it.
+struct Edge
+{
+  const Vec3& Start;
+  double X, Y; // from start to end
+  double Length2;
+  Edge(const Vec3& p, const Vec3& q)
+    : Start(p)
+    , X(q[0] - p[0])
+    , Y(q[1] - p[1])
+    , Length2(X * X + Y * Y)
+  {
+  }
+};
+
+// Calls for all vertices, edges and facets of a block; shared ones once in the surface.
+template <class Features>
+void Visit(const MillSurface& surface, const MillSurface::Block& block, Features& features)
+{
+  const std::int64_t columns = surface.GetSize().Columns;
+  const std::int64_t rows = surface.GetSize().Rows;
+  const auto end = [](std::int64_t first, std::int64_t size)
+  { return first + MillSurface::BlockSize >= size - 1 ? size : first + MillSurface::BlockSize; };
+  const std::int64_t endColumn = end(block.Column, columns);
+  const std::int64_t endRow = end(block.Row, rows);
+  for (std::int64_t j = block.Row; j < endRow; ++j)
+  {
+    for (std::int64_t i = block.Column; i < endColumn; ++i)
+    {
+      features.Vertex(surface.At(i, j));
+    }
+  }
+  for (std::int64_t j = block.Row; j < endRow; ++j)
+  {
+    for (std::int64_t i = block.Column; i < endColumn; ++i)
+    {
+      const Vec3& p = surface.At(i, j);
+      const bool right = i + 1 < columns;
+      const bool below = j + 1 < rows;
+      if (right)
+      {
+        features.EdgeOf(p, surface.At(i + 1, j));
+      }
+      if (below)
+      {
+        features.EdgeOf(p, surface.At(i, j + 1));
+      }
+      if (right && below)
+      {
+        const Vec3& q = surface.At(i + 1, j + 1);
+        features.EdgeOf(p, q);
+        features.Facet(p, surface.At(i + 1, j), q);
+        features.Facet(p, q, surface.At(i, j + 1));
+      }
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+// One position: the highest reference point over all features.
+struct DropCutter::Dropping
+{
+  const bool Ball;
+  const double R;
+  const double R2;
+  const double X;
+  const double Y;
+  double Best = -Infinity;
+
+  Dropping(const DropCutter& cutter, double x, double y)
+    : Ball(cutter.Ball)
+    , R(cutter.Radius)
+    , R2(R * R)
+    , X(x)
+    , Y(y)
+  {
+  }
+
+  // Squared distance below which something of height top may be higher than Best.
+  double Reach2(double top) const
+  {
+    const double t = this->Best - Slack - top;
+    return t < 0 ? this->R2 : (this->Ball ? this->R2 - t * t : -1);
+  }
+
+  void Vertex(const Vec3& p)
+  {
+    const double d2 = Square(p[0] - this->X) + Square(p[1] - this->Y);
+    if (d2 < this->Reach2(p[2]))
+    {
+      this->Best = std::max(this->Best, this->Ball ? p[2] + std::sqrt(this->R2 - d2) : p[2]);
+    }
+  }
+
+  void EdgeOf(const Vec3& p, const Vec3& q)
+  {
+    const Edge e(p, q);
+    const double x = this->X - p[0];
+    const double y = this->Y - p[1];
+    const double cross = e.X * y - e.Y * x;
+    if (cross * cross >= e.Length2 * this->Reach2(std::max(p[2], q[2])))
+    {
+      return;
+    }
+    const double length = std::sqrt(e.Length2);
+    const double along = (e.X * x + e.Y * y) / length;
+    if (along <= -this->R || along >= length + this->R)
+    {
+      return;
+    }
+    const double slope = (q[2] - p[2]) / length;
+    const double w = std::sqrt(std::max(0.0, this->R2 - cross * cross / e.Length2));
+    if (this->Ball)
+    {
+      const double secant = std::sqrt(1 + slope * slope);
+      const double foot = along + w * slope / secant;
+      if (foot >= 0 && foot <= length)
+      {
+        this->Best = std::max(this->Best, p[2] + slope * along + w * secant);
+      }
+    }
+    else
+    {
+      const double foot = slope < 0 ? along - w : along + w;
+      if (foot >= 0 && foot <= length)
+      {
+        this->Best = std::max(this->Best, p[2] + slope * foot);
+      }
+    }
+  }
+
+  void Facet(const Vec3& p, const Vec3& q, const Vec3& s)
+  {
+    const double low[2] = { std::min({ p[0], q[0], s[0] }), std::min({ p[1], q[1], s[1] }) };
+    const double high[2] = { std::max({ p[0], q[0], s[0] }), std::max({ p[1], q[1], s[1] }) };
+    const double here[2] = { this->X, this->Y };
+    if (BoxDistance2(low, high, here, here) >= this->Reach2(std::max({ p[2], q[2], s[2] })))
+    {
+      return;
+    }
+    const Vec3 a = q - p;
+    const Vec3 b = s - p;
+    const double determinant = a[0] * b[1] - a[1] * b[0];
+    const double gx = (a[2] * b[1] - b[2] * a[1]) / determinant;
+    const double gy = (b[2] * a[0] - a[2] * b[0]) / determinant;
+    const double g2 = gx * gx + gy * gy;
+    double shift = 0; // from the axis to the contact, in gradients
+    double rise = 0;  // from the contact to the reference point
+    if (this->Ball)
+    {
+      rise = this->R / std::sqrt(1 + g2);
+      shift = rise;
+    }
+    else if (g2 > 0)
+    {
+      shift = this->R / std::sqrt(g2);
+    }
+    const double x = this->X + shift * gx - p[0];
+    const double y = this->Y + shift * gy - p[1];
+    const double u = (x * b[1] - y * b[0]) / determinant;
+    const double v = (a[0] * y - a[1] * x) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1)
+    {
+      this->Best = std::max(this->Best, p[2] + gx * x + gy * y + rise);
+    }
+  }
+};
+
+//------------------------------------------------------------------------------
+// One straight motion: the highest reference point over all features, above the motion's own. At
+// the highest place the contact is within a facet, an edge, or at a vertex, and what the tool's
+// height over that one feature exceeds the motion is stationary there. Over a facet it is linear in
+// the way, so that its largest value is found at an edge or an end of the motion as well.
+struct DropCutter::Sweeping
+{
+  const bool Ball;
+  const double R;
+  const double R2;
+  const Vec3 A;  // reference point
+  double Hx, Hy; // unit direction
+  double Length;
+  double Slope;
+  double Low[2], High[2];
+  double LowestZ;
+  double Best; // excess
+  double BestS = 0;
+
+  Sweeping(const DropCutter& cutter, const Vec3& a, const Vec3& b, double tolerance)
+    : Ball(cutter.Ball)
+    , R(cutter.Radius)
+    , R2(R * R)
+    , A{ a[0], a[1], a[2] - cutter.TipOffset }
+    , Length(std::hypot(b[0] - a[0], b[1] - a[1]))
+    , Best(tolerance)
+  {
+    this->Hx = (b[0] - a[0]) / this->Length;
+    this->Hy = (b[1] - a[1]) / this->Length;
+    this->Slope = (b[2] - a[2]) / this->Length;
+    for (int c = 0; c < 2; ++c)
+    {
+      this->Low[c] = std::min(a[c], b[c]);
+      this->High[c] = std::max(a[c], b[c]);
+    }
+    this->LowestZ = std::min(a[2], b[2]) - cutter.TipOffset;
+  }
+
+  double Reach2(double top) const
+  {
+    const double t = this->LowestZ + this->Best - Slack - top;
+    return t < 0 ? this->R2 : (this->Ball ? this->R2 - t * t : -1);
+  }
+
+  void Try(double s, double height)
+  {
+    const double excess = height - (this->A[2] + this->Slope * s);
+    if (excess > this->Best)
+    {
+      this->Best = excess;
+      this->BestS = s;
+    }
+  }
+
+  void Vertex(const Vec3& p)
+  {
+    const double x = p[0] - this->A[0];
+    const double y = p[1] - this->A[1];
+    const double along = this->Hx * x + this->Hy * y;
+    const double d2 = Square(this->Hx * y - this->Hy * x);
+    if (d2 >= this->Reach2(p[2]) || along <= -this->R || along >= this->Length + this->R)
+    {
+      return;
+    }
+    const double w = std::sqrt(this->R2 - d2);
+    if (this->Ball)
+    {
+      const double secant = std::sqrt(1 + this->Slope * this->Slope);
+      const double s = along - w * this->Slope / secant;
+      if (s >= 0 && s <= this->Length)
+      {
+        this->Try(s, p[2] + w / secant);
+      }
+    }
+    else
+    {
+      const double first = std::max(0.0, along - w);
+      const double last = std::min(this->Length, along + w);
+      if (first <= last)
+      {
+        this->Try(this->Slope > 0 ? first : last, p[2]);
+      }
+    }
+  }
+
+  void EdgeOf(const Vec3& p, const Vec3& q)
+  {
+    const double low[2] = { std::min(p[0], q[0]), std::min(p[1], q[1]) };
+    const double high[2] = { std::max(p[0], q[0]), std::max(p[1], q[1]) };
+    if (BoxDistance2(low, high, this->Low, this->High) >= this->Reach2(std::max(p[2], q[2])))
+    {
+      return;
+    }
+    const Edge e(p, q);
+    const double length = std::sqrt(e.Length2);
+    const double x = this->A[0] - p[0];
+    const double y = this->A[1] - p[1];
+    // the axis from the edge's line and along it, both linear in the way s
+    const double across0 = (e.X * y - e.Y * x) / length;
+    const double acrossRate = (e.X * this->Hy - e.Y * this->Hx) / length;
+    const double along0 = (e.X * x + e.Y * y) / length;
+    const double alongRate = (e.X * this->Hx + e.Y * this->Hy) / length;
+    const double slope = (q[2] - p[2]) / length;
+    const double secant = this->Ball ? std::sqrt(1 + slope * slope) : std::abs(slope);
+    const double rise = slope * alongRate - this->Slope;
+    const double turn = secant * acrossRate;
+    const double norm = std::sqrt(rise * rise + turn * turn);
+    if (!(norm > 0) || acrossRate == 0)
+    {
+      return; // as high all along the edge: its vertices or the motion's ends tell
+    }
+    const double across = (acrossRate < 0 ? -1 : 1) * this->R * rise / norm;
+    const double s = (across - across0) / acrossRate;
+    if (!(s >= 0 && s <= this->Length))
+    {
+      return;
+    }
+    const double w = this->R * std::abs(turn) / norm;
+    const double along = along0 + alongRate * s;
+    const double foot = along + (this->Ball ? w * slope / secant : (slope < 0 ? -w : w));
+    if (foot >= 0 && foot <= length)
+    {
+      this->Try(s, p[2] + slope * along + secant * w);
+    }
+  }
+
+  void Facet(const Vec3&, const Vec3&, const Vec3&) {}
+};
+
+//------------------------------------------------------------------------------
+DropCutter::DropCutter(const MillSurface& surface, const MillTool& tool, double allowance)
+  : Surface(surface)
+  , Ball(tool.Shape == ToolShape::Ball)
+  , Radius(tool.Radius + allowance)
+  , TipOffset(tool.Shape == ToolShape::Ball ? -tool.Radius : allowance)
+{
+  if (!(tool.Radius > 0 && tool.Radius <= 1000 && allowance >= 0 && allowance <= 1000))
+  {
+    throw std::invalid_argument(
+      "the tool's radius must be above 0 and at most 1000 mm, the allowance 0 to 1000 mm");
+  }
+}
+
+//------------------------------------------------------------------------------
+double DropCutter::Drop(double x, double y, Scratch& scratch) const
+{
+  Dropping drop(*this, x, y);
+  const double here[2] = { x, y };
+  const double reach = this->Radius;
+  scratch.Candidates.clear();
+  std::size_t first = 0;
+  this->Surface.VisitBlocks({ x - reach, y - reach }, { x + reach, y + reach },
+    [&](const MillSurface::Block& block)
+    {
+      const double low[2] = { block.Low[0], block.Low[1] };
+      const double high[2] = { block.High[0], block.High[1] };
+      const double d2 = BoxDistance2(low, high, here, here);
+      if (d2 < drop.R2)
+      {
+        const double bound = block.Top + (this->Ball ? std::sqrt(drop.R2 - d2) : 0);
+        scratch.Candidates.push_back({ bound + Slack, &block });
+        if (bound + Slack > scratch.Candidates[first].Bound)
+        {
+          first = scratch.Candidates.size() - 1;
+        }
+      }
+    });
+  if (!scratch.Candidates.empty())
+  {
+    std::swap(scratch.Candidates.front(), scratch.Candidates[first]);
+  }
+  for (const Scratch::Candidate& candidate : scratch.Candidates)
+  {
+    if (candidate.Bound > drop.Best)
+    {
+      Visit(this->Surface, *candidate.Block, drop);
+    }
+  }
+  return drop.Best + this->TipOffset;
+}
+
+//------------------------------------------------------------------------------
+DropCutter::Excess DropCutter::FindExcess(const Vec3& a, const Vec3& b, double tolerance) const
+{
+  Sweeping sweep(*this, a, b, tolerance);
+  if (!(sweep.Length > 0))
+  {
+    return { -Infinity, 0 }; // upright
+  }
+  const double reach = this->Radius;
+  this->Surface.VisitBlocks({ sweep.Low[0] - reach, sweep.Low[1] - reach },
+    { sweep.High[0] + reach, sweep.High[1] + reach },
+    [&](const MillSurface::Block& block)
+    {
+      const double low[2] = { block.Low[0], block.Low[1] };
+      const double high[2] = { block.High[0], block.High[1] };
+      if (BoxDistance2(low, high, sweep.Low, sweep.High) < sweep.Reach2(block.Top))
+      {
+        Visit(this->Surface, block, sweep);
+      }
+    });
+  if (!(sweep.Best > tolerance))
+  {
+    return { -Infinity, 0 };
+  }
+  return { sweep.Best, sweep.BestS / sweep.Length };
+}
+}

@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaToolPath.h"
+
+#include "lacunaExecution.h"
+#include "lacunaMemory.h"
+#include "lacunaParameterText.h"
+#include "lacunaRaster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Infinity = std::numeric_limits<double>::infinity();
+constexpr double Pi = 3.14159265358979323846;
+constexpr double LargestLevels = 10000;
+
+void Require(bool condition, const std::string& what)
+{
+  if (!condition)
+  {
+    throw std::invalid_argument(what);
+  }
+}
+
+void CheckOptions(const ToolPathOptions& o)
+{
+  const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
+  Require(o.Tool.Radius > 0 && o.Tool.Radius <= 1000,
+    "ToolRadius is " + FormatNumber(o.Tool.Radius) + " mm; above 0 and at most 1000 is possible");
+  Require(o.Finishing || o.RoughingStep > 0,
+    "there is nothing to do: Finishing is off and RoughingStep is 0");
+  Require(o.ScallopHeight >= 0 && o.ScallopHeight < o.Tool.Radius,
+    "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
+      " mm; 0 (StepOver is used) or above, and less than ToolRadius is possible");
+  Require(o.ScallopHeight == 0 || o.Tool.Shape == ToolShape::Ball,
+    "ScallopHeight is for ball ends; give StepOver for a flat end");
+  Require(within(o.StepOver, 0.01, 2 * o.Tool.Radius),
+    "StepOver is " + FormatNumber(o.StepOver) + " mm; 0.01 mm to the tool's diameter (" +
+      FormatNumber(2 * o.Tool.Radius) + " mm) is possible");
+  Require(std::isfinite(o.Direction), "Direction is not a number");
+  Require(o.PathStep == 0 || within(o.PathStep, 0.01, 1000),
+    "PathStep is " + FormatNumber(o.PathStep) +
+      " mm; 0 (the surface's spacing) or 0.01 to 1000 "
+      "is possible");
+  Require(within(o.Tolerance, 0.0001, 10),
+    "Tolerance is " + FormatNumber(o.Tolerance) + " mm; 0.0001 to 10 is possible");
+  Require(o.RoughingStep == 0 || within(o.RoughingStep, 0.01, 1000),
+    "RoughingStep is " + FormatNumber(o.RoughingStep) +
+      " mm; 0 (no roughing) or 0.01 to 1000 is "
+      "possible");
+  Require(o.RoughingStepOver == 0 || within(o.RoughingStepOver, 0.01, 2 * o.Tool.Radius),
+    "RoughingStepOver is " + FormatNumber(o.RoughingStepOver) +
+      " mm; 0 (the tool's radius) or 0.01 to the tool's diameter is possible");
+  Require(within(o.StockAllowance, 0, 100),
+    "StockAllowance is " + FormatNumber(o.StockAllowance) + " mm; 0 to 100 is possible");
+  Require(within(o.StockTop, -1e5, 1e5), "StockTop is not within 100 m");
+  Require(within(o.SafeHeight, 0.1, 1000),
+    "SafeHeight is " + FormatNumber(o.SafeHeight) + " mm; 0.1 to 1000 is possible");
+  Require(within(o.LeadRadius, 0, 1000),
+    "LeadRadius is " + FormatNumber(o.LeadRadius) + " mm; 0 (none) to 1000 is possible");
+}
+
+//------------------------------------------------------------------------------
+// The tool's places at equal steps along a line.
+using Samples = std::vector<Vec3>;
+
+std::int64_t CountSamples(const Raster::Line& line, double step)
+{
+  return static_cast<std::int64_t>(std::ceil(line.GetLength() / step - 1e-6)) + 1;
+}
+
+std::vector<Samples> DropLines(Execution& execution, const DropCutter& cutter, const Raster& raster,
+  const std::vector<double>& offsets, double step)
+{
+  std::vector<Raster::Line> lines;
+  double count = 0;
+  for (const double offset : offsets)
+  {
+    lines.push_back(raster.GetLine(offset));
+    count += std::ceil(lines.back().GetLength() / step) + 1;
+  }
+  RequireMemory("the tool path", count * 4 * sizeof(Vec3));
+  std::vector<Samples> result(lines.size());
+  execution.For(static_cast<std::int64_t>(lines.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      PathTracer tracer(cutter, 0);
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        const Raster::Line& line = lines[k];
+        if (line.GetLength() < 1e-6)
+        {
+          continue; // only touches a corner
+        }
+        const std::int64_t samples = CountSamples(line, step);
+        result[k].reserve(samples);
+        for (std::int64_t i = 0; i < samples; ++i)
+        {
+          const double t = static_cast<double>(i) / static_cast<double>(samples - 1);
+          result[k].push_back(tracer.GetPosition(line.First[0] + t * (line.Last[0] - line.First[0]),
+            line.First[1] + t * (line.Last[1] - line.First[1])));
+        }
+      }
+    });
+  return result;
+}
+
+//------------------------------------------------------------------------------
+// The cuts along a line, not lower than floor, where something lower than ceiling is to be cut,
+// and one step on either side, so that nothing is left between.
+std::vector<Samples> TraceLine(
+  PathTracer& tracer, const Samples& samples, double floor, double ceiling, bool backwards)
+{
+  std::vector<Samples> spans;
+  const std::size_t count = samples.size();
+  bool open = false;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const auto at = [&](std::size_t k) -> const Vec3&
+    { return samples[backwards ? count - 1 - k : k]; };
+    const auto low = [&](std::size_t k) { return at(k)[2] < ceiling; };
+    const bool wanted =
+      std::isfinite(at(i)[2]) && (low(i) || (i > 0 && low(i - 1)) || (i + 1 < count && low(i + 1)));
+    if (!wanted)
+    {
+      open = false;
+      continue;
+    }
+    Vec3 p = at(i);
+    p[2] = std::max(p[2], floor);
+    if (!open)
+    {
+      spans.push_back({ p });
+      open = true;
+    }
+    else
+    {
+      tracer.Connect(spans.back(), p, true);
+    }
+  }
+  return spans;
+}
+
+//------------------------------------------------------------------------------
+// Puts cuts, and the ways between them, together to a path.
+class Assembler
+{
+public:
+  Assembler(ToolPath& path, const ToolPathOptions& options)
+    : Path(path)
+    , Options(options)
+  {
+  }
+
+  // Cuts along points, which it uses up. The tool stays down from the end of the cut before if
+  // that is at most linkLimit away.
+  void Cut(PathTracer& tracer, Samples& points, std::int32_t pass, double linkLimit, double step,
+    bool leads)
+  {
+    this->Pass = pass;
+    this->Tracer = &tracer;
+    if (!this->Down || !this->Link(tracer, points.front(), linkLimit, step))
+    {
+      this->Retract(leads);
+      Samples lead{ points.front() };
+      if (leads)
+      {
+        lead = this->GetLead(points.front(), this->GetDirection(points, true));
+        std::reverse(lead.begin(), lead.end());
+      }
+      this->Approach(lead.front());
+      this->Follow(lead, Motion::Lead, 1);
+    }
+    this->Follow(points, Motion::Cut, 1);
+    this->Exit = this->GetDirection(points, false);
+    this->Down = true;
+  }
+
+  // Up to where rapid motions are.
+  void Retract(bool leads)
+  {
+    if (!this->Down)
+    {
+      return;
+    }
+    if (leads)
+    {
+      const Samples lead = this->GetLead(this->Path.Points.back(), this->Exit);
+      this->Path.Points.back() = lead.front(); // may have been lifted
+      this->Follow(lead, Motion::Lead, 1);
+    }
+    const Vec3 p = this->Path.Points.back();
+    this->Begin(Motion::Rapid);
+    this->Add({ p[0], p[1], this->Path.SafeZ });
+    this->Down = false;
+  }
+
+private:
+  void Begin(Motion kind)
+  {
+    auto& runs = this->Path.Runs;
+    if (!runs.empty() && runs.back().Kind == kind && runs.back().Pass == this->Pass)
+    {
+      return;
+    }
+    const bool first = this->Path.Points.empty();
+    if (!first)
+    {
+      this->Path.Points.push_back(Vec3(this->Path.Points.back()));
+    }
+    const auto size = static_cast<std::int64_t>(this->Path.Points.size());
+    runs.push_back({ kind, this->Pass, first ? 0 : size - 1, first ? 0 : 1 });
+  }
+
+  void Add(const Vec3& p)
+  {
+    this->Path.Points.push_back(p);
+    ++this->Path.Runs.back().Count;
+  }
+
+  void Follow(const Samples& points, Motion kind, std::size_t first)
+  {
+    if (points.size() > first)
+    {
+      this->Begin(kind);
+      for (std::size_t k = first; k < points.size(); ++k)
+      {
+        this->Add(points[k]);
+      }
+    }
+  }
+
+  // Above a point and down to it.
+  void Approach(const Vec3& p)
+  {
+    this->Begin(Motion::Rapid);
+    this->Add({ p[0], p[1], this->Path.SafeZ });
+    this->Begin(Motion::Plunge);
+    this->Add(p);
+  }
+
+  // On along the surface to the start of the next cut.
+  bool Link(PathTracer& tracer, const Vec3& next, double limit, double step)
+  {
+    const Vec3 start = this->Path.Points.back();
+    const double length = std::hypot(next[0] - start[0], next[1] - start[1]);
+    if (length > limit)
+    {
+      return false;
+    }
+    Samples way{ start };
+    const auto count = static_cast<std::int64_t>(std::max(1.0, std::ceil(length / step - 1e-6)));
+    for (std::int64_t k = 1; k <= count; ++k)
+    {
+      const double t = static_cast<double>(k) / static_cast<double>(count);
+      const Vec3 p = k == count ? next
+                                : tracer.GetPosition(start[0] + t * (next[0] - start[0]),
+                                    start[1] + t * (next[1] - start[1]));
+      if (!std::isfinite(p[2]))
+      {
+        return false;
+      }
+      tracer.Connect(way, p, true);
+    }
+    // both ends may have been lifted
+    this->Path.Points.back() = way.front();
+    this->Follow(way, Motion::Cut, 1);
+    return true;
+  }
+
+  // Unit vector along the first motion, or against the last one of the path.
+  Vec3 GetDirection(const Samples& points, bool front) const
+  {
+    const std::size_t count = points.size();
+    if (count < 2)
+    {
+      const double a = this->Options.Direction * Pi / 180;
+      return { std::cos(a), std::sin(a), 0 };
+    }
+    return front ? Normalized(points[1] - points[0])
+                 : Normalized(points[count - 2] - points[count - 1]);
+  }
+
+  // A quarter circle from p, where it touches direction, backwards and up.
+  Samples GetLead(const Vec3& p, const Vec3& direction)
+  {
+    Samples lead{ p };
+    const double flat = std::hypot(direction[0], direction[1]);
+    const double radius = std::min(this->Options.LeadRadius, this->Path.SafeZ - p[2]);
+    if (!(radius > 0.01) || !(flat > 1e-3))
+    {
+      return lead;
+    }
+    const Vec3 up{ -direction[2] * direction[0] / flat, -direction[2] * direction[1] / flat, flat };
+    const double turn = 2 * std::acos(std::max(0.0, 1 - this->Options.Tolerance / radius));
+    const int count = std::max(2, static_cast<int>(std::ceil(0.5 * Pi / turn)));
+    for (int k = 1; k <= count; ++k)
+    {
+      const double angle = 0.5 * Pi * k / count;
+      const Vec3 q =
+        p + (-radius * std::sin(angle)) * direction + (radius * (1 - std::cos(angle))) * up;
+      Vec3 place = ToMicrometres(q[0], q[1], q[2]);
+      place[2] = std::max(place[2], this->Tracer->GetPosition(q[0], q[1])[2]);
+      if (place[2] > this->Path.SafeZ)
+      {
+        break;
+      }
+      this->Tracer->Connect(lead, place, false);
+    }
+    return lead;
+  }
+
+  ToolPath& Path;
+  const ToolPathOptions& Options;
+  PathTracer* Tracer = nullptr; // of the last cut
+  std::int32_t Pass = 0;
+  Vec3 Exit{ 1, 0, 0 };
+  bool Down = false;
+};
+
+//------------------------------------------------------------------------------
+// One pass over a raster: all lines are traced in parallel, then linked one after the other.
+struct Pass
+{
+  const DropCutter& Cutter;
+  double Floor;
+  double Ceiling;
+  double LinkLimit;
+  double Step;
+  bool Leads;
+};
+
+void AddPass(Execution& execution, Assembler& assembler, const std::vector<Samples>& lines,
+  const Pass& pass, std::int32_t number, const ToolPathOptions& options)
+{
+  std::vector<std::vector<Samples>> spans(lines.size());
+  execution.For(static_cast<std::int64_t>(lines.size()), 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      PathTracer tracer(pass.Cutter, options.Tolerance, pass.Floor);
+      for (std::int64_t k = begin; k < end; ++k)
+      {
+        spans[k] =
+          TraceLine(tracer, lines[k], pass.Floor, pass.Ceiling, !options.OneWay && k % 2 == 1);
+      }
+    });
+  PathTracer tracer(pass.Cutter, options.Tolerance, pass.Floor);
+  for (std::vector<Samples>& line : spans)
+  {
+    for (Samples& span : line)
+    {
+      assembler.Cut(tracer, span, number, pass.LinkLimit, pass.Step, pass.Leads);
+    }
+    line = {};
+  }
+  assembler.Retract(pass.Leads);
+}
+
+void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
+  const MillSurface& surface, const ToolPathOptions& options, const Raster& raster, double along)
+{
+  const DropCutter cutter(surface, options.Tool, options.StockAllowance);
+  const std::vector<double> offsets = raster.GetOffsets(
+    options.RoughingStepOver > 0 ? options.RoughingStepOver : options.Tool.Radius);
+  const double step = offsets[1] - offsets[0];
+  const std::vector<Samples> lines = DropLines(execution, cutter, raster, offsets, along);
+  double deepest = Infinity;
+  for (const Samples& line : lines)
+  {
+    for (const Vec3& p : line)
+    {
+      deepest = std::isfinite(p[2]) ? std::min(deepest, p[2]) : deepest;
+    }
+  }
+  const double levels = std::ceil((path.StockTop - deepest) / options.RoughingStep - 1e-9);
+  Require(levels <= LargestLevels,
+    "RoughingStep gives " + FormatNumber(levels) + " levels; at most 10000 are possible");
+  path.Levels = static_cast<std::int32_t>(std::max(0.0, levels));
+  for (std::int32_t level = 0; level < path.Levels; ++level)
+  {
+    execution.SetStage(0.1 + 0.4 * level / path.Levels, 0.1 + 0.4 * (level + 1) / path.Levels);
+    const double ceiling = path.StockTop - level * options.RoughingStep;
+    const double floor = ToMicrometres(0, 0, std::max(deepest, ceiling - options.RoughingStep))[2];
+    AddPass(execution, assembler, lines,
+      { cutter, floor, ceiling - 0.5 * MotionTolerance, options.OneWay ? 0 : 3 * step, along,
+        false },
+      level, options);
+  }
+  if (path.Levels == 0)
+  {
+    path.Warnings.emplace_back("there is nothing to rough: StockTop is not higher than the surface "
+                               "with StockAllowance");
+  }
+}
+
+void AddFinishing(Execution& execution, ToolPath& path, Assembler& assembler,
+  const MillSurface& surface, const ToolPathOptions& options, const Raster& raster, double along)
+{
+  const DropCutter cutter(surface, options.Tool);
+  execution.SetStage(0.5, 0.6);
+  std::vector<double> offsets;
+  if (options.ScallopHeight > 0)
+  {
+    const Execution::NestedStages nested(execution);
+    offsets = raster.GetOffsets(
+      execution, cutter, GetStepOver(options.Tool.Radius, options.ScallopHeight), along);
+  }
+  else
+  {
+    offsets = raster.GetOffsets(options.StepOver);
+  }
+  path.SmallestStepOver = Infinity;
+  for (std::size_t k = 1; k < offsets.size(); ++k)
+  {
+    path.LargestStepOver = std::max(path.LargestStepOver, offsets[k] - offsets[k - 1]);
+    path.SmallestStepOver = std::min(path.SmallestStepOver, offsets[k] - offsets[k - 1]);
+  }
+  execution.SetStage(0.6, 0.75);
+  const std::vector<Samples> lines = DropLines(execution, cutter, raster, offsets, along);
+  execution.SetStage(0.75, 1);
+  AddPass(execution, assembler, lines,
+    { cutter, -Infinity, Infinity, options.OneWay ? 0 : 3 * path.LargestStepOver, along,
+      options.LeadRadius > 0 },
+    path.Levels, options);
+}
+}
+
+//------------------------------------------------------------------------------
+double GetStepOver(double radius, double height)
+{
+  return 2 * std::sqrt(height * (2 * radius - height));
+}
+
+//------------------------------------------------------------------------------
+ToolPath MakeToolPath(
+  Execution& execution, const MillSurface& surface, const ToolPathOptions& options)
+{
+  CheckOptions(options);
+  const Execution::NestedStages nested(execution);
+  ToolPath path;
+  path.StockTop = ToMicrometres(0, 0, std::max(options.StockTop, surface.GetHighest()[2]))[2];
+  path.SafeZ = ToMicrometres(0, 0, path.StockTop + options.SafeHeight)[2];
+  const Raster raster(surface, options.Direction);
+  const double along =
+    options.PathStep > 0 ? options.PathStep : std::max(0.01, surface.GetSpacing());
+  Assembler assembler(path, options);
+  execution.SetStage(0, 0.1);
+  if (options.RoughingStep > 0)
+  {
+    AddRoughing(execution, path, assembler, surface, options, raster, along);
+  }
+  if (options.Finishing)
+  {
+    AddFinishing(execution, path, assembler, surface, options, raster, along);
+  }
+  return path;
+}
+}
