@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 namespace
 {
@@ -23,53 +22,80 @@ vtkDataArray* GetArray(vtkImageData* map, const char* name)
   }
   return array;
 }
+
+std::string NamePixel(std::int64_t column, std::int64_t row)
+{
+  return std::to_string(column) + ", " + std::to_string(row);
+}
+
+void CheckAxes(const lacuna::Matrix4& toWorld, const std::string& purpose)
+{
+  if (!toWorld.IsFinite() || !toWorld.IsAffine())
+  {
+    throw std::runtime_error("ImageToWorld of the depth map is not an affine transform");
+  }
+  if (toWorld.Determinant3() < 0)
+  {
+    throw std::runtime_error(
+      "ImageToWorld of the depth map mirrors; " + purpose + " would be the patient's mirror image");
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int b = 0; b < 3; ++b)
+    {
+      const double dot = lacuna::Dot(toWorld.Column(a), toWorld.Column(b));
+      if (!(std::abs(dot - (a == b ? 1 : 0)) < 1e-6))
+      {
+        throw std::runtime_error("the axes of the depth map are not perpendicular unit vectors; " +
+          purpose + " would be distorted");
+      }
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaFittedPart::vtkLacunaFittedPart(vtkImageData* map)
+vtkLacunaFittedPart::vtkLacunaFittedPart(vtkImageData* map, const std::string& purpose)
 {
   const vtkLacunaDepthMap contract(map);
   if (contract.IsPerspective())
   {
-    throw std::runtime_error("this is a perspective depth map; a parallel one is needed, "
-                             "filled by RBF Hole Filler");
+    throw std::runtime_error("this is a perspective depth map; " + purpose +
+      " needs a parallel one, filled by RBF Hole Filler");
   }
   vtkDataArray* fitted = GetArray(map, vtkLacunaDepthMap::FittedName);
   vtkDataArray* filled = GetArray(map, vtkLacunaDepthMap::FilledMaskName);
-  int dimensions[3];
-  map->GetDimensions(dimensions);
-  const std::int64_t columns = dimensions[0];
-  std::int64_t first[2] = { dimensions[0], dimensions[1] };
+  const int* extent = map->GetExtent();
+  const std::int64_t columns = std::int64_t{ extent[1] } - extent[0] + 1;
+  const std::int64_t rows = std::int64_t{ extent[3] } - extent[2] + 1;
+  std::int64_t first[2] = { columns, rows };
   std::int64_t last[2] = { -1, -1 };
   bool any = false;
-  for (vtkIdType k = 0; k < fitted->GetNumberOfTuples(); ++k)
+  for (std::int64_t k = 0; k < columns * rows; ++k)
   {
+    const std::int64_t at[2] = { k % columns, k / columns };
     const bool number = std::isfinite(fitted->GetComponent(k, 0));
     if (filled->GetComponent(k, 0) != 0)
     {
       any = true;
       if (!number)
       {
-        throw std::runtime_error("pixel " + std::to_string(k % columns) + ", " +
-          std::to_string(k / columns) +
-          " is marked in FilledMask, but Fitted is no number there; "
-          "use both as RBF Hole Filler gives them");
+        throw std::runtime_error("pixel " + NamePixel(extent[0] + at[0], extent[2] + at[1]) +
+          " is marked in FilledMask, but Fitted is no number there; use both as RBF Hole Filler "
+          "gives them");
       }
     }
-    if (number)
+    for (int i = 0; number && i < 2; ++i)
     {
-      const std::int64_t at[2] = { k % columns, k / columns };
-      for (int i = 0; i < 2; ++i)
-      {
-        first[i] = std::min(first[i], at[i]);
-        last[i] = std::max(last[i], at[i]);
-      }
+      first[i] = std::min(first[i], at[i]);
+      last[i] = std::max(last[i], at[i]);
     }
   }
   if (!any)
   {
     throw std::runtime_error("no pixel of the depth map is filled (FilledMask is 0 everywhere), so "
-                             "there is no defect to make anything for; mark it in RBF Hole Filler");
+                             "there is no defect to make " +
+      purpose + " for; mark it in RBF Hole Filler");
   }
   this->Column = first[0];
   this->Row = first[1];
@@ -81,22 +107,18 @@ vtkLacunaFittedPart::vtkLacunaFittedPart(vtkImageData* map)
       const double depth = fitted->GetComponent(i + columns * j, 0);
       if (!std::isfinite(depth))
       {
-        throw std::runtime_error("Fitted has a hole at pixel " + std::to_string(i) + ", " +
-          std::to_string(j) + "; it must be a complete rectangle, as RBF Hole Filler gives it");
+        throw std::runtime_error("Fitted has a hole at pixel " +
+          NamePixel(extent[0] + i, extent[2] + j) +
+          "; it must be a complete rectangle, as RBF Hole Filler gives it");
       }
       this->Depths.push_back(depth);
       this->Mask.push_back(filled->GetComponent(i + columns * j, 0) != 0);
     }
   }
   this->Spacing = contract.GetPixelSpacing();
-  const int* extent = map->GetExtent();
   this->ToWorld = contract.GetImageToWorld() *
-    lacuna::Matrix4::Translation({ static_cast<double>(extent[0] + this->Column),
-      static_cast<double>(extent[2] + this->Row), 0 }) *
+    lacuna::Matrix4::Translation(
+      { static_cast<double>(extent[0] + first[0]), static_cast<double>(extent[2] + first[1]), 0 }) *
     lacuna::Matrix4::Scaling({ 1 / this->Spacing[0], 1 / this->Spacing[1], 1 });
-  if (this->ToWorld.Determinant3() < 0)
-  {
-    throw std::runtime_error("ImageToWorld of the depth map mirrors; what is made of it would be "
-                             "the patient's mirror image");
-  }
+  CheckAxes(this->ToWorld, purpose);
 }

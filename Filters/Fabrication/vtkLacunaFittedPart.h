@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The defect and the fit of a filled depth map, for what is made of them.
+/// The fitted rectangle of a filled depth map, for the filters of this module.
 #ifndef vtkLacunaFittedPart_h
 #define vtkLacunaFittedPart_h
 
@@ -8,24 +8,27 @@
 #include "lacunaSurfaceFit.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 class vtkImageData;
 
-/// The rectangle of a parallel map on which there is a fit.
+/// The part of a parallel depth map on which Fitted is a number.
 struct vtkLacunaFittedPart
 {
   std::int64_t Column = 0; ///< of its first pixel, from the first of the map
   std::int64_t Row = 0;
   lacuna::GridSize Size;
-  lacuna::Vec2 Spacing{};          ///< mm between columns and rows
-  std::vector<double> Depths;      ///< Fitted, mm, all finite
-  std::vector<unsigned char> Mask; ///< 1 in the defect
-  /// (mm along columns from the first pixel of the part, mm along rows, depth) to world. Proper.
+  lacuna::Vec2 Spacing{};          ///< mm
+  std::vector<double> Depths;      ///< Fitted, column fastest
+  std::vector<unsigned char> Mask; ///< FilledMask: 1 in the defect
+  /// mm from its first pixel along the map's axes (x right, y down, z away from the viewer) to world
+  /// mm: a rotation and a translation.
   lacuna::Matrix4 ToWorld;
 
-  /// Throws std::runtime_error when the map is a perspective one, lacks Fitted or FilledMask, has
-  /// no defect, has a defect without a fit, a hole in the fit, or a geometry that mirrors.
-  explicit vtkLacunaFittedPart(vtkImageData* map);
+  /// Throws std::runtime_error, in words for the user, when map is not a parallel depth map with
+  /// Fitted and FilledMask, Fitted is not a complete rectangle, nothing is filled, or the map's axes
+  /// are not right-handed and perpendicular. purpose: what needs the map, "a mould".
+  vtkLacunaFittedPart(vtkImageData* map, const std::string& purpose);
 };
 #endif

@@ -232,7 +232,7 @@ int vtkLacunaImplantPlate::RequestData(
       throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
         "; it must be a number of g/cm^3 above 0");
     }
-    const vtkLacunaFittedPart part(map);
+    const vtkLacunaFittedPart part(map, "a plate");
     const lacuna::Vec2& spacing = part.Spacing;
     const lacuna::Matrix4& toWorld = part.ToWorld;
 

@@ -2,9 +2,17 @@
 #include "lacunaReliefSurface.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace lacuna
 {
+namespace
+{
+constexpr double LeastStretch = 0.02; // of an offset surface against the surface
+constexpr int MaximumSteps = 50;
+constexpr double Converged = 1e-10; // mm
+}
+
 //------------------------------------------------------------------------------
 ReliefSurface::ReliefSurface(
   Execution& execution, GridSize size, const std::vector<double>& depths, const Vec2& spacing)
@@ -74,5 +82,42 @@ ReliefSurface::Frame ReliefSurface::GetFrame(const Vec2& p) const
   frame.Curvatures[0] = -mean - half;
   frame.Curvatures[1] = -mean + half;
   return frame;
+}
+
+//------------------------------------------------------------------------------
+bool ReliefSurface::FindOffsetDepth(const Vec2& p, double level, double& depth) const
+{
+  Vec2 foot = p;
+  for (int step = 0; step < MaximumSteps; ++step)
+  {
+    foot = { std::clamp(foot[0], 0.0, this->Extent[0]), std::clamp(foot[1], 0.0, this->Extent[1]) };
+    const auto frame = this->GetFrame(foot);
+    for (const double curvature : frame.Curvatures)
+    {
+      if (1 - level * curvature < LeastStretch)
+      {
+        return false;
+      }
+    }
+    const Vec3 at = frame.Offset(level);
+    const Vec3 x = frame.AlongX + level * frame.NormalAlongX;
+    const Vec3 y = frame.AlongY + level * frame.NormalAlongY;
+    const double determinant = x[0] * y[1] - x[1] * y[0];
+    if (determinant <= 0)
+    {
+      return false;
+    }
+    const double missX = p[0] - at[0];
+    const double missY = p[1] - at[1];
+    const double dx = (missX * y[1] - missY * y[0]) / determinant;
+    const double dy = (x[0] * missY - x[1] * missX) / determinant;
+    depth = at[2] + dx * x[2] + dy * y[2];
+    if (std::abs(dx) + std::abs(dy) < Converged)
+    {
+      return true;
+    }
+    foot = { foot[0] + dx, foot[1] + dy };
+  }
+  return false;
 }
 }

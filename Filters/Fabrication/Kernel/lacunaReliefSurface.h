@@ -41,6 +41,10 @@ public:
   };
   Frame GetFrame(const Vec2& p) const;
 
+  /// The depth at p of the offset surface level mm towards the viewer. Returns false where that
+  /// surface folds or does not reach.
+  bool FindOffsetDepth(const Vec2& p, double level, double& depth) const;
+
 private:
   BSplineSurface Surface;
   Vec2 Spacing;

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What another library says of plates: closed, outward, without self-intersection.
+#include "lacunaCGALSolid.h"
 #include "lacunaPlateScene.h"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -18,34 +13,6 @@
 #include <string>
 
 using namespace lacuna;
-namespace PMP = CGAL::Polygon_mesh_processing;
-
-namespace
-{
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
-
-void Check(const ImplantPlate& plate)
-{
-  Mesh mesh;
-  for (const Vec3& p : plate.Points)
-  {
-    mesh.add_vertex({ p[0], p[1], p[2] });
-  }
-  for (const Triangle& t : plate.Triangles)
-  {
-    // a null face would mean that the mesh is not manifold
-    ASSERT_NE(
-      mesh.add_face(Mesh::Vertex_index(t[0]), Mesh::Vertex_index(t[1]), Mesh::Vertex_index(t[2])),
-      Mesh::null_face());
-  }
-  EXPECT_TRUE(mesh.is_valid());
-  EXPECT_TRUE(CGAL::is_closed(mesh));
-  EXPECT_FALSE(PMP::does_self_intersect(mesh));
-  EXPECT_TRUE(PMP::is_outward_oriented(mesh));
-  EXPECT_NEAR(PMP::volume(mesh) / plate.Volume, 1, 1e-9);
-}
-}
 
 TEST(ImplantPlateCGAL, PlatesOfEveryKind)
 {
@@ -67,7 +34,7 @@ TEST(ImplantPlateCGAL, PlatesOfEveryKind)
         options.HolePoints = { { 42, 40, 0 }, { 48, 33, 2 } };
         options.Hole.CountersinkDiameter = 4;
         options.DrainageSpacing = 7;
-        Check(scene->Make(options));
+        CheckSolid(scene->Make(options));
       }
     }
   }
@@ -87,7 +54,7 @@ TEST(ImplantPlateCGAL, SlotsThatAnOverlapCloses)
     options.EdgeClearance = -2;
     options.EdgeSize = 1;
     options.TriangleSize = 0.6;
-    Check(scene.Make(options));
+    CheckSolid(scene.Make(options));
   }
 }
 
@@ -151,7 +118,7 @@ TEST(ImplantPlateCGAL, RandomOutlines)
     try
     {
       const ImplantPlate plate = scene.Make(options);
-      Check(plate);
+      CheckSolid(plate);
       ++made;
     }
     catch (const std::runtime_error& error)
