@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHoleFill.h"
 
-#include "lacunaDepthDiscontinuity.h"
+#include "lacunaBaseSurface.h"
 #include "lacunaExecution.h"
+#include "lacunaMemory.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace lacuna
 {
 namespace
 {
 constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+// Of a pixel: positions are products that round.
+constexpr double Tie = 1e-9;
 
 void CheckOptions(const HoleFillOptions& options)
 {
@@ -32,6 +37,9 @@ void CheckOptions(const HoleFillOptions& options)
   check("NodeSpacing", options.NodeSpacing, true);
   check("OutputMargin", options.OutputMargin, false);
   check("CutoffWavelength", options.CutoffWavelength, false);
+  check("KernelLength", options.KernelLength, false);
+  check("OutputSpacing", options.OutputSpacing[0], false);
+  check("OutputSpacing", options.OutputSpacing[1], false);
   if (!std::isfinite(options.Smoothing) || options.Smoothing < 0)
   {
     throw std::invalid_argument("Smoothing must be a finite number >= 0");
@@ -43,207 +51,219 @@ void CheckOptions(const HoleFillOptions& options)
   }
 }
 
-MapMask SelectSupport(Execution& execution, const HoleFillInput& input,
-  const HoleFillOptions& options, std::vector<std::string>& warnings)
-{
-  const bool painted = !input.Painted.empty();
-  MapMask support(input.Grid.GetSize());
-  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
-  {
-    support[pixel] =
-      input.Valid[pixel] && !input.Defect[pixel] && (!painted || input.Painted[pixel]);
-  }
-  if (!painted)
-  {
-    support = SelectWithin(execution, input.Grid, input.Defect, options.SupportMargin, support);
-  }
-  if (std::find(support.begin(), support.end(), 1) == support.end())
-  {
-    std::ostringstream message;
-    message << "there is no surface to fit: outside of the defect no pixel ";
-    if (painted)
-    {
-      message << "that is marked as support has a depth";
-    }
-    else
-    {
-      message << "within SupportMargin = " << options.SupportMargin
-              << " mm of it has a depth; raise SupportMargin or mark a smaller defect";
-    }
-    throw std::invalid_argument(message.str());
-  }
-  const StepReport steps = RemoveBeyondSteps(input.Grid, input.Depth, MaximumSupportSlope, support);
-  if (steps.RemovedPixels > 0)
-  {
-    std::ostringstream message;
-    message << steps.RemovedPixels << " pixels around the defect lie beyond a depth step of up to "
-            << steps.LargestStep << " mm from the rest and were not used for the fit: a part that "
-            << "is seen through the hole, or the far side of an edge. Mark them as defect if they "
-            << "shall be replaced, or choose a view in which the surface is not so steep";
-    warnings.push_back(message.str());
-  }
-  return support;
-}
-
-// Where the support is so steep that depths are uncertain: a small shift of the surface across the
-// view is a large one along it.
-void WarnOfSteepSupport(
-  const HoleFillInput& input, const MapMask& support, std::vector<std::string>& warnings)
-{
-  const DiscontinuityLimits limits;
-  const SlopeRule rule(limits);
-  const auto width = static_cast<std::size_t>(input.Grid.Width);
-  std::size_t count = 0;
-  std::size_t first = 0;
-  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
-  {
-    const auto isSteep = [&](bool inside, std::size_t neighbour, double spacing)
-    {
-      return inside && support[pixel] && support[neighbour] &&
-        rule.IsSteep({ input.Depth[neighbour] - input.Depth[pixel], spacing });
-    };
-    if (isSteep((pixel + 1) % width != 0, pixel + 1, input.Grid.Spacing[0]) ||
-      isSteep(pixel + width < support.size(), pixel + width, input.Grid.Spacing[1]))
-    {
-      first = count++ == 0 ? pixel : first;
-    }
-  }
-  if (count > 0)
-  {
-    std::ostringstream message;
-    message << "at " << count << " pixels around the defect, first at column "
-            << input.Grid.GetColumn(first) << ", row " << input.Grid.GetRow(first)
-            << ", the surface is steeper than " << limits.MaximumAngle
-            << " degrees against the map: depths are uncertain there. Choose a view that faces the "
-            << "defect, or leave these pixels out with SupportArray";
-    warnings.push_back(message.str());
-  }
-}
-
-bool TouchesBorder(const MapGrid& grid, const MapMask& mask)
-{
-  const auto width = static_cast<std::size_t>(grid.Width);
-  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
-  {
-    const std::size_t i = pixel % width;
-    const std::size_t j = pixel / width;
-    if (mask[pixel] &&
-      (i == 0 || j == 0 || i + 1 == width || j + 1 == static_cast<std::size_t>(grid.Height)))
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-std::array<int, 4> FindRectangle(
-  const MapGrid& grid, const MapMask& defect, const MapMask& support, double margin)
-{
-  std::array<int, 4> box{ grid.Width, -1, grid.Height, -1 };
-  for (std::size_t pixel = 0; pixel < defect.size(); ++pixel)
-  {
-    if (defect[pixel] || support[pixel])
-    {
-      const int i = static_cast<int>(pixel % grid.Width);
-      const int j = static_cast<int>(pixel / grid.Width);
-      box = { std::min(box[0], i), std::max(box[1], i), std::min(box[2], j), std::max(box[3], j) };
-    }
-  }
-  const int size[2] = { grid.Width, grid.Height };
-  for (std::size_t c = 0; c < 2; ++c)
-  {
-    // in double first: the margin may be larger than any map
-    const double grow = std::min<double>(size[c], std::ceil(margin / grid.Spacing[c] - 1e-9));
-    box[2 * c] = std::max(0, box[2 * c] - static_cast<int>(grow));
-    box[2 * c + 1] = std::min(size[c] - 1, box[2 * c + 1] + static_cast<int>(grow));
-  }
-  return box;
-}
-
 std::array<double, 2> GetPosition(const MapGrid& grid, std::size_t pixel)
 {
   return { static_cast<double>(grid.GetColumn(pixel)) * grid.Spacing[0],
     static_cast<double>(grid.GetRow(pixel)) * grid.Spacing[1] };
 }
 
-RadialBasis<2> Fit(Execution& execution, const HoleFillInput& input, const HoleFillOptions& options,
-  const MapMask& support)
+// Bounds of what is filled, used and controlled, grown by margin, in pixels of to.
+std::array<int, 4> FindRectangle(
+  const HoleFillInput& input, const MapMask& support, double margin, const MapGrid& to)
 {
-  std::vector<std::array<double, 2>> nodes;
-  std::vector<double> values;
-  for (const std::size_t pixel : ThinNodes(input.Grid, support, options.NodeSpacing))
+  double low[2] = { HUGE_VAL, HUGE_VAL };
+  double high[2] = { -HUGE_VAL, -HUGE_VAL };
+  const auto add = [&](double x, double y)
   {
-    nodes.push_back(GetPosition(input.Grid, pixel));
-    values.push_back(input.Depth[pixel]);
-  }
-  try
+    low[0] = std::min(low[0], x);
+    high[0] = std::max(high[0], x);
+    low[1] = std::min(low[1], y);
+    high[1] = std::max(high[1], y);
+  };
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
   {
-    RadialBasisOptions fit;
-    fit.Kernel = options.Kernel;
-    fit.Smoothing = options.Smoothing;
-    if (options.CutoffWavelength > 0 && !nodes.empty())
+    if (input.Defect[pixel] || support[pixel])
     {
-      const auto pixels = static_cast<double>(std::count(support.begin(), support.end(), 1));
-      fit.Smoothing = GetCutoffSmoothing(options.Kernel, options.CutoffWavelength,
-        pixels * input.Grid.Spacing[0] * input.Grid.Spacing[1] / static_cast<double>(nodes.size()));
+      const std::array<double, 2> p = GetPosition(input.Grid, pixel);
+      add(p[0], p[1]);
     }
-    fit.MaximumBytes = options.MaximumBytes;
-    return RadialBasis<2>(execution, nodes, values, fit);
   }
-  catch (const std::length_error& e)
+  for (const Vec3& p : input.ControlPoints)
   {
-    throw std::length_error(std::string(e.what()) + "; raise NodeSpacing or lower SupportMargin");
+    add(p[0], p[1]);
   }
-  catch (const std::invalid_argument& e)
+  const int size[2] = { to.Width, to.Height };
+  const int first[2] = { to.FirstColumn, to.FirstRow };
+  std::array<int, 4> box{};
+  for (std::size_t c = 0; c < 2; ++c)
   {
-    throw std::invalid_argument(std::string("the surface around the defect does not determine a "
-                                            "fit: ") +
-      e.what() + "; raise SupportMargin or lower NodeSpacing");
+    // in double first: the margin may be larger than any map
+    const double begin = std::floor((low[c] - margin) / to.Spacing[c] + Tie) - first[c];
+    const double end = std::ceil((high[c] + margin) / to.Spacing[c] - Tie) - first[c];
+    box[2 * c] = static_cast<int>(std::clamp(begin, 0.0, size[c] - 1.0));
+    box[2 * c + 1] = static_cast<int>(std::clamp(end, 0.0, size[c] - 1.0));
   }
+  return box;
 }
 
-void EvaluateRectangle(Execution& execution, const HoleFillInput& input,
-  const RadialBasis<2>& function, HoleFillResult& result)
+// Control points in the map's plane and what the fit is to have there.
+struct Control
+{
+  std::vector<std::array<double, 2>> Places;
+  std::vector<double> Values;
+
+  Control(const HoleFillInput& input, const BaseSurface& base, const MapGrid& grid)
+  {
+    for (std::size_t k = 0; k < input.ControlPoints.size(); ++k)
+    {
+      const Vec3& p = input.ControlPoints[k];
+      const double i = p[0] / grid.Spacing[0] - grid.FirstColumn;
+      const double j = p[1] / grid.Spacing[1] - grid.FirstRow;
+      const auto fail = [k](const std::string& what)
+      { throw std::invalid_argument("control point " + std::to_string(k) + " " + what); };
+      if (!IsFinite(p))
+      {
+        fail("has a coordinate that is not a finite number");
+      }
+      if (!(i >= -0.5 && j >= -0.5 && i <= grid.Width - 0.5 && j <= grid.Height - 0.5))
+      {
+        fail("lies beside the map; points are in patient coordinates, mm");
+      }
+      const double below = base.Evaluate(p[0], p[1]);
+      if (std::isnan(below))
+      {
+        fail("lies where the prior surface or the trend is missing");
+      }
+      this->Places.push_back({ p[0], p[1] });
+      this->Values.push_back(p[2] - below);
+    }
+  }
+};
+
+void EvaluateRectangle(Execution& execution, const RadialBasis<2>& function, HoleFillResult& result)
 {
   const auto& box = result.Rectangle;
-  std::vector<std::size_t> pixels;
-  std::vector<std::array<double, 2>> points;
-  for (int j = box[2]; j <= box[3]; ++j)
+  const MapGrid& grid = result.Grid;
+  RegularGrid<2> part;
+  part.Origin = { (grid.FirstColumn + box[0]) * grid.Spacing[0],
+    (grid.FirstRow + box[2]) * grid.Spacing[1] };
+  part.Spacing = { grid.Spacing[0], grid.Spacing[1] };
+  part.Size = { box[1] - box[0] + 1, box[3] - box[2] + 1 };
+  std::vector<double> values(static_cast<std::size_t>(part.GetNumberOfPoints()));
+  function.EvaluateGrid(execution, part, values.data());
+  for (std::size_t k = 0; k < values.size(); ++k)
   {
-    for (int i = box[0]; i <= box[1]; ++i)
-    {
-      pixels.push_back(static_cast<std::size_t>(j) * input.Grid.Width + i);
-      points.push_back(GetPosition(input.Grid, pixels.back()));
-    }
-  }
-  std::vector<double> values;
-  function.Evaluate(execution, points, values);
-  result.Fitted.assign(input.Grid.GetSize(), NotANumber);
-  for (std::size_t k = 0; k < pixels.size(); ++k)
-  {
-    result.Fitted[pixels[k]] = values[k];
+    const std::size_t column = box[0] + k % static_cast<std::size_t>(part.Size[0]);
+    const std::size_t row = box[2] + k / static_cast<std::size_t>(part.Size[0]);
+    result.Fitted[row * grid.Width + column] = values[k];
   }
 }
 
-void EvaluateDefect(Execution& execution, const HoleFillInput& input,
-  const RadialBasis<2>& function, HoleFillResult& result)
+// Adds base (empty: none) to the fit, and its differences to the gradients in the defect.
+void AddBase(const std::vector<double>& base, HoleFillResult& result)
 {
-  std::vector<std::array<double, 2>> points;
-  for (std::size_t pixel = 0; pixel < input.Defect.size(); ++pixel)
+  if (base.empty())
   {
-    if (input.Defect[pixel])
+    return;
+  }
+  std::size_t missing = 0;
+  std::size_t first = 0;
+  for (const std::size_t pixel : result.Filled)
+  {
+    if (std::isnan(base[pixel]))
     {
-      result.Filled.push_back(pixel);
-      points.push_back(GetPosition(input.Grid, pixel));
+      first = missing++ == 0 ? pixel : first;
     }
   }
-  std::vector<double> values;
-  function.Evaluate(execution, points, values, result.Gradients);
-  const double pixelArea = input.Grid.Spacing[0] * input.Grid.Spacing[1];
-  for (const std::array<double, 2>& g : result.Gradients)
+  if (missing > 0)
   {
+    std::ostringstream message;
+    message << "the prior surface or the trend is missing at " << missing
+            << " pixels of the defect, first at column " << result.Grid.GetColumn(first) << ", row "
+            << result.Grid.GetRow(first)
+            << "; fill the holes of the prior first (with RBF Hole Filler), mark a smaller defect, "
+            << "or do without";
+    throw std::runtime_error(message.str());
+  }
+  const auto width = static_cast<std::size_t>(result.Grid.Width);
+  for (std::size_t k = 0; k < result.Filled.size(); ++k)
+  {
+    const std::size_t pixel = result.Filled[k];
+    for (std::size_t c = 0; c < 2; ++c)
+    {
+      // central if it can be, else to one side
+      const std::size_t step = c == 0 ? 1 : width;
+      const std::size_t index = c == 0 ? pixel % width : pixel / width;
+      const std::size_t count = c == 0 ? width : base.size() / width;
+      const bool before = index > 0 && !std::isnan(base[pixel - step]);
+      const bool after = index + 1 < count && !std::isnan(base[pixel + step]);
+      if (before || after)
+      {
+        result.Gradients[k][c] +=
+          (base[after ? pixel + step : pixel] - base[before ? pixel - step : pixel]) /
+          ((before + after) * result.Grid.Spacing[c]);
+      }
+    }
+  }
+  for (std::size_t pixel = 0; pixel < base.size(); ++pixel)
+  {
+    result.Fitted[pixel] += base[pixel];
+  }
+}
+
+// What the output has before any fit: the map.
+HoleFillResult TransferInput(
+  const HoleFillInput& input, const MapGrid& grid, const std::vector<SupportUse>& use)
+{
+  HoleFillResult result;
+  result.Grid = grid;
+  GridTransfer transfer =
+    TransferMap(input.Grid, input.Depth, input.Valid, MaximumSupportSlope, grid);
+  result.Nearest = std::move(transfer.Nearest);
+  result.Depth = std::move(transfer.Depth);
+  result.Fitted.assign(grid.GetSize(), NotANumber);
+  result.Deviation.assign(grid.GetSize(), NotANumber);
+  result.Use.assign(grid.GetSize(), SupportUse::None);
+  for (std::size_t pixel = 0; pixel < result.Nearest.size(); ++pixel)
+  {
+    const std::int64_t from = result.Nearest[pixel];
+    if (from >= 0)
+    {
+      result.Use[pixel] = use.empty() ? SupportUse::None : use[from];
+      if (input.Defect[from])
+      {
+        result.Filled.push_back(pixel);
+      }
+    }
+  }
+  return result;
+}
+
+// Puts the fit into the defect and compares it with what was measured.
+void FinishDepth(HoleFillResult& result)
+{
+  for (std::size_t pixel = 0; pixel < result.Depth.size(); ++pixel)
+  {
+    if (result.Use[pixel] == SupportUse::Used || result.Use[pixel] == SupportUse::Steep)
+    {
+      result.Deviation[pixel] = result.Fitted[pixel] - result.Depth[pixel];
+    }
+  }
+  const double pixelArea = result.Grid.Spacing[0] * result.Grid.Spacing[1];
+  for (std::size_t k = 0; k < result.Filled.size(); ++k)
+  {
+    const std::size_t pixel = result.Filled[k];
+    const std::array<double, 2>& g = result.Gradients[k];
+    result.Deviation[pixel] = result.Fitted[pixel] - result.Depth[pixel];
+    result.Depth[pixel] = result.Fitted[pixel];
     result.DefectArea += pixelArea * std::sqrt(1 + g[0] * g[0] + g[1] * g[1]);
   }
+}
+
+RadialBasisOptions GetFitOptions(
+  const HoleFillInput& input, const HoleFillOptions& options, double areaPerNode)
+{
+  RadialBasisOptions fit;
+  fit.Kernel = options.Kernel;
+  fit.Shape = options.KernelLength;
+  fit.Smoothing = options.CutoffWavelength > 0
+    ? GetCutoffSmoothing(options.Kernel, options.CutoffWavelength, areaPerNode)
+    : options.Smoothing;
+  fit.Accuracy = options.Accuracy;
+  fit.Solver = options.Solver;
+  fit.MaximumBytes = options.MaximumBytes;
+  fit.Controllable = !input.ControlPoints.empty();
+  return fit;
 }
 }
 
@@ -275,36 +295,160 @@ double GetCutoffSmoothing(RadialKernel kernel, double wavelength, double areaPer
 }
 
 //------------------------------------------------------------------------------
-HoleFillResult FillHole(
-  Execution& execution, const HoleFillInput& input, const HoleFillOptions& options)
+MapGrid GetOutputGrid(const MapGrid& grid, const HoleFillOptions& options)
 {
   CheckOptions(options);
-  HoleFillResult result;
-  execution.SetStage(0.1, 0.2);
-  result.Support = SelectSupport(execution, input, options, result.Warnings);
-  WarnOfSteepSupport(input, result.Support, result.Warnings);
-  if (TouchesBorder(input.Grid, input.Defect))
+  MapGrid to;
+  const int first[2] = { grid.FirstColumn, grid.FirstRow };
+  const int size[2] = { grid.Width, grid.Height };
+  int* const newFirst[2] = { &to.FirstColumn, &to.FirstRow };
+  int* const newSize[2] = { &to.Width, &to.Height };
+  double pixels = 1;
+  for (std::size_t c = 0; c < 2; ++c)
   {
-    result.Warnings.emplace_back("the defect touches the border of the map: there is no surface "
-                                 "on that side, and the fit extrapolates");
-  }
-  result.Rectangle = FindRectangle(input.Grid, input.Defect, result.Support, options.OutputMargin);
-  execution.SetStage(0.2, 0.7);
-  const RadialBasis<2> function = Fit(execution, input, options, result.Support);
-  result.Fit = function.GetReport();
-  result.Plane = function.GetPolynomial();
-  execution.SetStage(0.7, 0.95);
-  EvaluateRectangle(execution, input, function, result);
-  execution.SetStage(0.95, 1);
-  EvaluateDefect(execution, input, function, result);
-
-  result.Deviation.assign(input.Grid.GetSize(), NotANumber);
-  for (std::size_t pixel = 0; pixel < result.Deviation.size(); ++pixel)
-  {
-    if (input.Valid[pixel] && (input.Defect[pixel] || result.Support[pixel]))
+    to.Spacing[c] = options.OutputSpacing[c] > 0 ? options.OutputSpacing[c] : grid.Spacing[c];
+    const double low = first[c] * grid.Spacing[c] - options.OutputMargin;
+    const double high = (first[c] + (size[c] - 1)) * grid.Spacing[c] + options.OutputMargin;
+    const double begin = std::ceil(low / to.Spacing[c] - Tie);
+    const double end = std::floor(high / to.Spacing[c] + Tie);
+    const double limit = std::numeric_limits<int>::max() / 2;
+    if (!(std::abs(begin) < limit) || !(std::abs(end) < limit))
     {
-      result.Deviation[pixel] = result.Fitted[pixel] - input.Depth[pixel];
+      throw std::length_error(
+        "the output would have too many pixels; raise OutputSpacing or lower OutputMargin");
     }
+    *newFirst[c] = static_cast<int>(begin);
+    *newSize[c] = static_cast<int>(std::max(0.0, end - begin + 1));
+    pixels *= end - begin + 1;
+  }
+  if (to.GetSize() == 0)
+  {
+    throw std::invalid_argument("OutputSpacing is larger than the map; lower it");
+  }
+  RequireMemory("the filled map", 100 * pixels);
+  return to;
+}
+
+//------------------------------------------------------------------------------
+bool HoleFiller::Problem::operator==(const Problem& other) const
+{
+  const RadialBasisOptions& a = this->Options;
+  const RadialBasisOptions& b = other.Options;
+  return this->Nodes == other.Nodes && this->Values == other.Values && a.Kernel == b.Kernel &&
+    a.Smoothing == b.Smoothing && a.Shape == b.Shape && a.Accuracy == b.Accuracy &&
+    a.Solver == b.Solver && a.MaximumBytes == b.MaximumBytes && a.Controllable == b.Controllable;
+}
+
+//------------------------------------------------------------------------------
+void HoleFiller::Fit(Execution& execution, Problem problem, HoleFillResult& result)
+{
+  result.Reused = this->Function && this->Last == problem;
+  if (result.Reused)
+  {
+    return;
+  }
+  this->Function.reset();
+  try
+  {
+    this->Function =
+      std::make_unique<RadialBasis<2>>(execution, problem.Nodes, problem.Values, problem.Options);
+  }
+  catch (const std::length_error& e)
+  {
+    throw std::length_error(
+      std::string(e.what()) + "; raise NodeSpacing, lower SupportMargin, or set Solver to Auto");
+  }
+  catch (const std::invalid_argument& e)
+  {
+    throw std::invalid_argument(std::string("the surface around the defect does not determine a "
+                                            "fit: ") +
+      e.what() + "; raise SupportMargin or lower NodeSpacing");
+  }
+  this->Last = std::move(problem);
+}
+
+//------------------------------------------------------------------------------
+HoleFillResult HoleFiller::Fill(
+  Execution& execution, const HoleFillInput& input, const HoleFillOptions& options)
+{
+  const MapGrid grid = GetOutputGrid(input.Grid, options);
+  if (std::find(input.Defect.begin(), input.Defect.end(), 1) == input.Defect.end())
+  {
+    return TransferInput(input, grid, {});
+  }
+  if (!input.Prior.Points.empty() && options.Trend != HoleTrend::None)
+  {
+    throw std::invalid_argument(
+      "a prior surface and Trend exclude each other; set Trend to None or take the prior away");
+  }
+  execution.SetStage(0.1, 0.15);
+  BaseSurface base(execution, input.Prior, input.Grid);
+  execution.SetStage(0.15, 0.2);
+  const SupportSelection selection =
+    SelectSupport(execution, input, options.SupportMargin, base.GetOnMap());
+  if (options.Trend == HoleTrend::Ellipsoid)
+  {
+    base.SetTrend(input.Depth, selection.Support);
+  }
+  HoleFillResult result = TransferInput(input, grid, selection.Use);
+  result.Warnings = selection.Warnings;
+  result.Rectangle = FindRectangle(input, selection.Support, options.OutputMargin, grid);
+
+  Problem problem;
+  for (const std::size_t pixel : ThinNodes(input.Grid, selection.Support, options.NodeSpacing))
+  {
+    const double below = base.Exists() ? base.GetOnMap()[pixel] : 0;
+    if (std::isfinite(below)) // a trend may end before the support
+    {
+      problem.Nodes.push_back(GetPosition(input.Grid, pixel));
+      problem.Values.push_back(input.Depth[pixel] - below);
+    }
+  }
+  const auto pixels =
+    static_cast<double>(std::count(selection.Support.begin(), selection.Support.end(), 1));
+  problem.Options = GetFitOptions(input, options,
+    pixels * input.Grid.Spacing[0] * input.Grid.Spacing[1] /
+      std::max(1.0, static_cast<double>(problem.Nodes.size())));
+  const Control control(input, base, grid);
+
+  const auto start = std::chrono::steady_clock::now();
+  execution.SetStage(0.2, 0.6);
+  this->Fit(execution, std::move(problem), result);
+  execution.SetStage(0.6, 0.7);
+  if (!control.Places.empty())
+  {
+    this->Function->SetControlPoints(
+      execution, control.Places, { control.Values }, options.NodeSpacing);
+  }
+  result.FitSeconds =
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.Fit = this->Function->GetReport();
+
+  execution.SetStage(0.7, 0.9);
+  EvaluateRectangle(execution, *this->Function, result);
+  execution.SetStage(0.9, 0.95);
+  std::vector<std::array<double, 2>> points;
+  for (const std::size_t pixel : result.Filled)
+  {
+    points.push_back(GetPosition(grid, pixel));
+  }
+  std::vector<double> values;
+  this->Function->Evaluate(execution, points, values, result.Gradients);
+  execution.SetStage(0.95, 1);
+  AddBase(base.Evaluate(execution, grid), result);
+  FinishDepth(result);
+
+  MapMask region = input.Defect;
+  std::transform(region.begin(), region.end(), selection.Support.begin(), region.begin(),
+    [](unsigned char a, unsigned char b) { return a | b; });
+  result.Plane = base.FitPlane(region);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    result.Plane[c] += this->Function->GetPolynomial()[c];
+  }
+  if (input.ControlPoints.empty())
+  {
+    this->Function.reset(); // nothing is dragged
   }
   return result;
 }

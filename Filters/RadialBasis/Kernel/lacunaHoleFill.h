@@ -5,10 +5,13 @@
 #ifndef lacunaHoleFill_h
 #define lacunaHoleFill_h
 
-#include "lacunaHoleSupport.h"
+#include "lacunaMapResampling.h"
 #include "lacunaRadialBasis.h"
+#include "lacunaSupportSelection.h"
 
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,49 +19,60 @@ namespace lacuna
 {
 class Execution;
 
-/// A parallel depth map and what is marked on it. All arrays have Grid.GetSize() elements.
-struct HoleFillInput
+/// The map and what else shapes the surface that fills its hole.
+struct HoleFillInput : MarkedMap
 {
-  MapGrid Grid;
-  std::vector<double> Depth; ///< mm
-  MapMask Valid;             ///< where Depth counts; it must be finite there
-  MapMask Defect;            ///< what to replace and fill, valid or not
-  /// Pixels that may carry the fit; empty means those within SupportMargin of the defect.
-  MapMask Painted;
+  SurfaceSheet Prior; ///< the fit is of the difference to it; no points: none
+  /// x, y, depth in the map's axes, mm: the surface passes through them.
+  std::vector<Vec3> ControlPoints;
+};
+
+enum class HoleTrend
+{
+  None = 0,
+  Ellipsoid = 1 ///< the fit is of the difference to the best EllipsoidTrend
 };
 
 struct HoleFillOptions
 {
   RadialKernel Kernel = RadialKernel::ThinPlate;
+  double KernelLength = 0; ///< mm, see RadialBasisOptions::Shape
+  HoleTrend Trend = HoleTrend::None;
   double SupportMargin = 12;   ///< mm, > 0
   double NodeSpacing = 1;      ///< mm, > 0
   double Smoothing = 0;        ///< see RadialBasisOptions
   double CutoffWavelength = 0; ///< mm, >= 0; above 0 it determines Smoothing, which must be 0
   double OutputMargin = 0;     ///< mm, >= 0
+  Vec2 OutputSpacing{ 0, 0 };  ///< mm, >= 0; 0: that of the map
+  double Accuracy = 1e-4;      ///< see RadialBasisOptions
+  RadialSolver Solver = RadialSolver::Auto;
   std::uint64_t MaximumBytes = RadialBasisOptions().MaximumBytes;
 };
-
-/// Two edge neighbours of the support whose depths differ by more than this times their distance
-/// are taken to lie on different surfaces: 79 degrees, where Gordon's weights (Carr 1996,
-/// section 3.3.2.1) also stop trusting a difference.
-constexpr double MaximumSupportSlope = 5;
 
 /// The rim of a hole in CT is rounded over about a voxel by the partial volume effect: what
 /// FindHoles adds to a hole, mm.
 constexpr double HoleRim = 2;
 
+/// Arrays are on Grid, which GetOutputGrid gives.
 struct HoleFillResult
 {
-  std::vector<double> Fitted;    ///< the fit over Rectangle, NaN elsewhere
-  std::vector<double> Deviation; ///< Fitted - Depth where the support or the defect has a depth
-  MapMask Support;               ///< the pixels that carry the fit, before thinning
+  MapGrid Grid;
+  std::vector<std::int64_t> Nearest; ///< the pixel of the input, -1 beside it
+  std::vector<double> Depth;         ///< measured outside of the defect, fitted inside
+  std::vector<double> Fitted;        ///< the fit over Rectangle, NaN elsewhere
+  std::vector<double> Deviation;     ///< Fitted - measured where support or defect has a depth
+  std::vector<SupportUse> Use;
   /// Pixels of the defect, ascending, and the derivatives of the fit along x and y there.
   std::vector<std::size_t> Filled;
   std::vector<std::array<double, 2>> Gradients;
   std::array<int, 4> Rectangle{}; ///< first and last column, first and last row
-  std::array<double, 3> Plane{};  ///< polynomial part c0 + c1 x + c2 y, map axes, mm
-  double DefectArea = 0;          ///< mm^2, on the filled surface
+  /// c0 + c1 x + c2 y, map axes, mm: the polynomial part, with the plane that fits prior or trend
+  /// best over defect and support.
+  std::array<double, 3> Plane{};
+  double DefectArea = 0; ///< mm^2, on the filled surface
   RadialBasisReport Fit;
+  double FitSeconds = 0;             ///< for the equations, less what was known from the last fill
+  bool Reused = false;               ///< only the control points were new
   std::vector<std::string> Warnings; ///< sentences for the user
 };
 
@@ -69,13 +83,39 @@ struct HoleFillResult
 /// F). Throws std::invalid_argument for kernels without a power (Gaussian, multiquadric).
 double GetCutoffSmoothing(RadialKernel kernel, double wavelength, double areaPerNode);
 
-/// Nodes are the support thinned by ThinNodes; support is the painted pixels, or the valid ones
-/// within SupportMargin of the defect, outside of the defect and not beyond a depth step
-/// (RemoveBeyondSteps). Rectangle bounds defect and support, grown by OutputMargin, and ends at the
-/// border of the map. The defect must not be empty. Progress runs from 0.1, so that the caller can
-/// report finding the defect before. Throws std::invalid_argument,
-/// std::length_error or std::runtime_error with a sentence that says what to change.
-HoleFillResult FillHole(
-  Execution& execution, const HoleFillInput& input, const HoleFillOptions& options);
+/// Pixels of the spacing asked for, 0 the map's own, on the lattice through x = y = 0 that
+/// lie in the map grown by OutputMargin on each side. Throws std::invalid_argument or
+/// std::length_error when the options are bad or there are too many pixels.
+MapGrid GetOutputGrid(const MapGrid& grid, const HoleFillOptions& options);
+
+/// Nodes are the support thinned by ThinNodes (see SelectSupport). Rectangle bounds defect, support
+/// and control points, grown by OutputMargin. Control points are met exactly; nodes within
+/// NodeSpacing of one are left out.
+class HoleFiller
+{
+public:
+  /// Of an empty defect the result is the map. What was solved for the last fill is kept while it
+  /// has control points, so that moving one is quick; the result does not depend on it. Progress
+  /// runs from 0.1, so that the caller can report finding the defect before. Throws
+  /// std::invalid_argument, std::length_error or std::runtime_error with a sentence that says what
+  /// to change.
+  HoleFillResult Fill(
+    Execution& execution, const HoleFillInput& input, const HoleFillOptions& options);
+
+private:
+  struct Problem
+  {
+    std::vector<std::array<double, 2>> Nodes;
+    std::vector<double> Values;
+    RadialBasisOptions Options;
+
+    bool operator==(const Problem& other) const;
+  };
+
+  void Fit(Execution& execution, Problem problem, HoleFillResult& result);
+
+  Problem Last;
+  std::unique_ptr<RadialBasis<2>> Function; // of Last
+};
 }
 #endif

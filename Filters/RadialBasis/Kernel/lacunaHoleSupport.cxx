@@ -201,9 +201,15 @@ StepReport RemoveBeyondSteps(
     kept[piece] = !removed[piece];
     report.RemovedPixels += removed[piece] ? sizes[piece] : 0;
   }
+  bool first = true;
   for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
   {
     support[pixel] = labels[pixel] != None && kept[labels[pixel]];
+    if (first && labels[pixel] != None && !support[pixel])
+    {
+      report.FirstPixel = pixel;
+      first = false;
+    }
   }
   return report;
 }

@@ -62,7 +62,8 @@ MapMask FindHoles(Execution& execution, const MapGrid& grid, const std::vector<d
 struct StepReport
 {
   std::size_t RemovedPixels = 0;
-  double LargestStep = 0; ///< mm, between neighbours of kept and removed pixels
+  double LargestStep = 0;     ///< mm, between neighbours of kept and removed pixels
+  std::size_t FirstPixel = 0; ///< the first removed one
 };
 
 /// Removes from support what lies beyond a depth step. A step is between two edge neighbours of

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSupportSelection.h"
+
+#include "lacunaDepthDiscontinuity.h"
+#include "lacunaDistanceTransform.h"
+#include "lacunaExecution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+// Share of the edge of a defect without support from which on a fit is said to extrapolate.
+constexpr double WarnedShare = 0.25;
+
+std::string Locate(const MapGrid& grid, std::size_t pixel)
+{
+  std::ostringstream text;
+  text << "first at column " << grid.GetColumn(pixel) << ", row " << grid.GetRow(pixel);
+  return text.str();
+}
+
+// The pixels that may carry the fit, whatever their depths.
+MapMask FindCandidates(Execution& execution, const MarkedMap& map, double margin)
+{
+  const bool painted = !map.Painted.empty();
+  MapMask support(map.Grid.GetSize());
+  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+  {
+    support[pixel] = map.Valid[pixel] && !map.Defect[pixel] && (!painted || map.Painted[pixel]);
+  }
+  if (!painted)
+  {
+    support = SelectWithin(execution, map.Grid, map.Defect, margin, support);
+  }
+  if (std::find(support.begin(), support.end(), 1) == support.end())
+  {
+    std::ostringstream message;
+    message << "there is no surface to fit: outside of the defect no pixel ";
+    if (painted)
+    {
+      message << "that is marked as support has a depth";
+    }
+    else
+    {
+      message << "within SupportMargin = " << margin
+              << " mm of it has a depth; raise SupportMargin or mark a smaller defect";
+    }
+    throw std::invalid_argument(message.str());
+  }
+  return support;
+}
+
+void LeaveOutWithoutPrior(
+  const MarkedMap& map, const std::vector<double>& prior, SupportSelection& selection)
+{
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < prior.size(); ++pixel)
+  {
+    if (selection.Support[pixel] && std::isnan(prior[pixel]))
+    {
+      selection.Support[pixel] = 0;
+      selection.Use[pixel] = SupportUse::NoPrior;
+      first = count++ == 0 ? pixel : first;
+    }
+  }
+  if (count > 0)
+  {
+    std::ostringstream message;
+    message << "at " << count << " pixels around the defect, " << Locate(map.Grid, first)
+            << ", the prior surface is missing; they are not used for the fit";
+    selection.Warnings.push_back(message.str());
+  }
+  if (std::find(selection.Support.begin(), selection.Support.end(), 1) == selection.Support.end())
+  {
+    throw std::invalid_argument(
+      "the prior surface is nowhere around the defect; it must lie in the "
+      "same patient coordinates and be seen in this view");
+  }
+}
+
+void LeaveOutBeyondSteps(const MarkedMap& map, SupportSelection& selection)
+{
+  const MapMask before = selection.Support;
+  const StepReport steps =
+    RemoveBeyondSteps(map.Grid, map.Depth, MaximumSupportSlope, selection.Support);
+  for (std::size_t pixel = 0; pixel < before.size(); ++pixel)
+  {
+    if (before[pixel] && !selection.Support[pixel])
+    {
+      selection.Use[pixel] = SupportUse::BeyondStep;
+    }
+  }
+  if (steps.RemovedPixels > 0)
+  {
+    std::ostringstream message;
+    message << steps.RemovedPixels << " pixels around the defect, "
+            << Locate(map.Grid, steps.FirstPixel) << ", lie beyond a depth step of up to "
+            << steps.LargestStep << " mm from the rest and were not used for the fit: a part that "
+            << "is seen through the hole, or the far side of an edge. Mark them as defect if they "
+            << "shall be replaced, or choose a view in which the surface is not so steep";
+    selection.Warnings.push_back(message.str());
+  }
+}
+
+// Where depths are uncertain: a small shift of the surface across the view is a large one along it.
+void FindSteep(const MarkedMap& map, SupportSelection& selection)
+{
+  const DiscontinuityLimits limits;
+  const SlopeRule rule(limits);
+  const auto width = static_cast<std::size_t>(map.Grid.Width);
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < selection.Support.size(); ++pixel)
+  {
+    const auto isSteep = [&](bool inside, std::size_t neighbour, double spacing)
+    {
+      return inside && selection.Support[pixel] && selection.Support[neighbour] &&
+        rule.IsSteep({ map.Depth[neighbour] - map.Depth[pixel], spacing });
+    };
+    if (isSteep((pixel + 1) % width != 0, pixel + 1, map.Grid.Spacing[0]) ||
+      isSteep(pixel + width < selection.Support.size(), pixel + width, map.Grid.Spacing[1]))
+    {
+      selection.Use[pixel] = SupportUse::Steep;
+      first = count++ == 0 ? pixel : first;
+    }
+  }
+  if (count > 0)
+  {
+    std::ostringstream message;
+    message << "at " << count << " pixels around the defect, " << Locate(map.Grid, first)
+            << ", the surface is steeper than " << limits.MaximumAngle
+            << " degrees against the map: depths are uncertain there. Choose a view that faces the "
+            << "defect, or leave these pixels out with SupportArray";
+    selection.Warnings.push_back(message.str());
+  }
+}
+
+// What the edge of the defect has beside it: the border of the map, or no support.
+void WarnOfOpenEdges(
+  Execution& execution, const MarkedMap& map, double reach, SupportSelection& selection)
+{
+  const auto width = static_cast<std::size_t>(map.Grid.Width);
+  const auto height = static_cast<std::size_t>(map.Grid.Height);
+  const std::vector<double> squared = SquaredDistanceTransform(
+    execution, map.Grid.Width, map.Grid.Height, map.Grid.Spacing, selection.Support);
+  bool atBorder = false;
+  std::size_t edge = 0;
+  std::size_t open = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < map.Defect.size(); ++pixel)
+  {
+    const std::size_t i = pixel % width;
+    const std::size_t j = pixel / width;
+    const bool outermost = i == 0 || j == 0 || i + 1 == width || j + 1 == height;
+    if (map.Defect[pixel] &&
+      (outermost || !map.Defect[pixel - 1] || !map.Defect[pixel + 1] ||
+        !map.Defect[pixel - width] || !map.Defect[pixel + width]))
+    {
+      atBorder = atBorder || outermost;
+      ++edge;
+      if (!(squared[pixel] <= reach * reach))
+      {
+        first = open++ == 0 ? pixel : first;
+      }
+    }
+  }
+  if (atBorder)
+  {
+    selection.Warnings.emplace_back("the defect touches the border of the map: there is no surface "
+                                    "on that side, and the fit extrapolates");
+  }
+  if (map.Painted.empty() && static_cast<double>(open) >= WarnedShare * static_cast<double>(edge) &&
+    open > 0)
+  {
+    std::ostringstream message;
+    message << "along "
+            << std::lround(100.0 * static_cast<double>(open) / static_cast<double>(edge))
+            << " % of its edge, " << Locate(map.Grid, first)
+            << ", the defect has no surface to fit within " << reach
+            << " mm: the fit extrapolates there. Give control points or a prior surface, or choose "
+            << "a view in which the bone on that side is seen";
+    selection.Warnings.push_back(message.str());
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+SupportSelection SelectSupport(
+  Execution& execution, const MarkedMap& map, double margin, const std::vector<double>& prior)
+{
+  SupportSelection selection;
+  selection.Support = FindCandidates(execution, map, margin);
+  selection.Use.assign(selection.Support.size(), SupportUse::None);
+  LeaveOutWithoutPrior(map, prior, selection);
+  LeaveOutBeyondSteps(map, selection);
+  for (std::size_t pixel = 0; pixel < selection.Use.size(); ++pixel)
+  {
+    if (selection.Support[pixel])
+    {
+      selection.Use[pixel] = SupportUse::Used;
+    }
+  }
+  FindSteep(map, selection);
+  WarnOfOpenEdges(execution, map, 0.5 * margin, selection);
+  return selection;
+}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Which pixels around a defect carry the fit, and what is wrong with them.
+#ifndef lacunaSupportSelection_h
+#define lacunaSupportSelection_h
+
+#include "lacunaHoleSupport.h"
+
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+class Execution;
+
+/// Two edge neighbours of the support whose depths differ by more than this times their distance
+/// are taken to lie on different surfaces: 79 degrees, where Gordon's weights (Carr 1996,
+/// section 3.3.2.1) also stop trusting a difference.
+constexpr double MaximumSupportSlope = 5;
+
+/// What became of a pixel near the defect.
+enum class SupportUse : unsigned char
+{
+  None = 0,       ///< not near the defect, not painted, or without a depth
+  Used = 1,       ///< carries the fit
+  BeyondStep = 2, ///< left out, since a depth step parts it from the larger part
+  Steep = 3,      ///< carries the fit, but is steeper than 65 degrees against the map
+  NoPrior = 4     ///< left out, since the prior surface is not there
+};
+
+/// A parallel depth map and what is marked on it. All arrays have Grid.GetSize() elements.
+struct MarkedMap
+{
+  MapGrid Grid;
+  std::vector<double> Depth; ///< mm
+  MapMask Valid;             ///< where Depth counts; it must be finite there
+  MapMask Defect;            ///< what to replace and fill, valid or not
+  /// Pixels that may carry the fit; empty means those within SupportMargin of the defect.
+  MapMask Painted;
+};
+
+struct SupportSelection
+{
+  std::vector<SupportUse> Use;       ///< of each pixel
+  MapMask Support;                   ///< where Use is Used or Steep
+  std::vector<std::string> Warnings; ///< sentences for the user
+};
+
+/// The painted pixels, or those within margin mm of the defect, that are valid, outside of the
+/// defect, on the prior (NaN where there is none; empty: no prior) and not beyond a depth step
+/// (RemoveBeyondSteps). Warns of what was left out, of steep pixels, of a defect at the border of the
+/// map and of one that has no support along a quarter of its edge or more. Throws
+/// std::invalid_argument when nothing is left.
+SupportSelection SelectSupport(
+  Execution& execution, const MarkedMap& map, double margin, const std::vector<double>& prior);
+}
+#endif
