@@ -3,26 +3,24 @@
 
 #include "lacunaAtomicFile.h"
 #include "lacunaIGESDocument.h"
-#include "lacunaSurfaceFit.h"
-#include "vtkDataArray.h"
+#include "lacunaParameterText.h"
 #include "vtkErrorCode.h"
-#include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkLacunaDepthMap.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaIGESContent.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLogger.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkStructuredGrid.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <cmath>
-#include <locale>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,168 +29,122 @@ vtkStandardNewMacro(vtkLacunaIGESWriter);
 
 namespace
 {
-//------------------------------------------------------------------------------
-// What is written of an input, and how the file describes it.
-struct Result
+// What a program that shows levels one by one finds on them, and in which colour.
+enum Level
 {
-  lacuna::SurfaceFit Fit;
-  std::string Name;
-  std::vector<std::string> Description;
+  SurfaceLevel = 1,
+  CurveLevel = 2,
+  PointLevel = 3
 };
+constexpr const char* Levels = "Levels: 1 surfaces, 2 outlines and curves, 3 points and axes.";
 
-//------------------------------------------------------------------------------
-// The pixels of a map to be written, relative to its extent, and their depths.
-struct Rectangle
+std::int64_t AddColour(lacuna::IGESDocument& document, Level level)
 {
-  std::int64_t Column = 0;
-  std::int64_t Row = 0;
-  lacuna::GridSize Size;
-  std::vector<double> Depths;
-};
-
-Rectangle FindRectangle(vtkDataArray* array, std::int64_t columns, std::int64_t rows)
-{
-  const std::string name = array->GetName() ? array->GetName() : "";
-  if (array->GetNumberOfComponents() != 1 || array->GetNumberOfTuples() != columns * rows)
+  switch (level)
   {
-    throw std::runtime_error("point array '" + name + "' has " +
-      std::to_string(array->GetNumberOfTuples()) + " tuples of " +
-      std::to_string(array->GetNumberOfComponents()) +
-      " components; expected one number for each "
-      "of the " +
-      std::to_string(columns * rows) + " pixels");
+    case SurfaceLevel:
+      return document.AddColour(0.9, 0.85, 0.7, "Bone");
+    case CurveLevel:
+      return document.AddColour(0.8, 0.1, 0.1, "Red");
+    default:
+      return document.AddColour(0.1, 0.2, 0.8, "Blue");
   }
-  std::int64_t first[2] = { columns, rows };
-  std::int64_t last[2] = { -1, -1 };
-  std::int64_t present = 0;
-  for (std::int64_t j = 0; j < rows; ++j)
-  {
-    for (std::int64_t i = 0; i < columns; ++i)
-    {
-      if (std::isfinite(array->GetComponent(i + columns * j, 0)))
-      {
-        ++present;
-        first[0] = std::min(first[0], i);
-        last[0] = std::max(last[0], i);
-        first[1] = std::min(first[1], j);
-        last[1] = std::max(last[1], j);
-      }
-    }
-  }
-  if (present == 0)
-  {
-    throw std::runtime_error("point array '" + name +
-      "' is not a number (or infinite) at every pixel: there is no surface to write");
-  }
-  Rectangle rectangle;
-  rectangle.Column = first[0];
-  rectangle.Row = first[1];
-  rectangle.Size = { last[0] - first[0] + 1, last[1] - first[1] + 1 };
-  const std::int64_t wanted = rectangle.Size.Columns * rectangle.Size.Rows;
-  if (present < wanted)
-  {
-    std::ostringstream message;
-    message << "the surface has holes: " << wanted - present << " of the " << wanted
-            << " pixels of columns " << first[0] << " to " << last[0] << ", rows " << first[1]
-            << " to " << last[1] << " have no " << name
-            << ". Run RBF Hole Filler on the depth map first and write its output";
-    throw std::runtime_error(message.str());
-  }
-  rectangle.Depths.reserve(wanted);
-  for (std::int64_t j = first[1]; j <= last[1]; ++j)
-  {
-    for (std::int64_t i = first[0]; i <= last[0]; ++i)
-    {
-      rectangle.Depths.push_back(array->GetComponent(i + columns * j, 0));
-    }
-  }
-  return rectangle;
 }
 
 //------------------------------------------------------------------------------
-Result FitMap(
-  vtkImageData* image, const lacuna::SurfaceFitOptions& options, lacuna::Execution& execution)
+// Puts things into a document, with level, colour and name.
+class Composer
 {
-  const vtkLacunaDepthMap map(image);
-  vtkDataArray* fitted = image->GetPointData()->GetArray(vtkLacunaDepthMap::FittedName);
-  const int* extent = image->GetExtent();
-  const Rectangle rectangle = FindRectangle(fitted ? fitted : map.GetDepth(),
-    std::int64_t{ extent[1] } - extent[0] + 1, std::int64_t{ extent[3] } - extent[2] + 1);
-  const double column = static_cast<double>(extent[0] + rectangle.Column);
-  const double row = static_cast<double>(extent[2] + rectangle.Row);
-
-  Result result;
-  if (!map.IsPerspective())
+public:
+  explicit Composer(lacuna::IGESDocument& document)
+    : Document(document)
   {
-    result.Fit = lacuna::FitHeights(execution, rectangle.Size, rectangle.Depths,
-      map.GetImageToWorld() * lacuna::Matrix4::Translation({ column, row, 0 }), options);
   }
-  else
+  void Add(const vtkLacunaIGESSurface& surface)
   {
-    std::vector<lacuna::Vec3> points;
-    points.reserve(rectangle.Depths.size());
-    for (std::int64_t j = 0; j < rectangle.Size.Rows; ++j)
+    lacuna::IGESDocument::Attributes attributes = this->Attributes(SurfaceLevel, "SURFACE");
+    const std::vector<std::int64_t> name{ this->Document.AddName(surface.Name) };
+    if (surface.Pieces.empty())
     {
-      for (std::int64_t i = 0; i < rectangle.Size.Columns; ++i)
-      {
-        points.push_back(map.GetPoint(column + static_cast<double>(i), row + static_cast<double>(j),
-          rectangle.Depths[points.size()]));
-      }
+      this->Document.AddSurface(surface.Fit.Surface, attributes, name);
+      return;
     }
-    result.Fit = lacuna::FitPoints(execution, rectangle.Size, points, options);
+    for (const auto& piece : surface.Pieces)
+    {
+      lacuna::IGESDocument::Attributes part = attributes;
+      part.Subordinate = 1;
+      const std::int64_t whole = this->Document.AddSurface(surface.Fit.Surface, part);
+      std::vector<lacuna::IGESDocument::Boundary> boundaries;
+      for (const vtkLacunaIGESSurface::Boundary& boundary : piece)
+      {
+        boundaries.push_back({ &boundary.Parameters, &boundary.Space });
+      }
+      attributes.Label = "TRIMMED";
+      this->Document.AddTrimmedSurface(whole, boundaries, attributes, name);
+    }
   }
-  result.Name = fitted ? "Fitted surface" : "Depth map surface";
-  std::ostringstream where;
-  where.imbue(std::locale::classic());
-  where << "From a depth map, columns " << column << " to "
-        << column + static_cast<double>(rectangle.Size.Columns - 1) << ", rows " << row << " to "
-        << row + static_cast<double>(rectangle.Size.Rows - 1)
-        << ". Patient coordinates (DICOM LPS). u runs along the columns, v along the rows; dS/du x "
-           "dS/dv points away from the viewer.";
-  result.Description.push_back(where.str());
-  return result;
-}
+  void Add(const vtkLacunaIGESContent::Curve& curve)
+  {
+    const lacuna::IGESDocument::Attributes attributes = this->Attributes(CurveLevel, "CURVE");
+    this->Document.AddCurve(curve.Shape, attributes, { this->Document.AddName(curve.Name) });
+  }
+  void Add(const vtkLacunaIGESContent::Polygon& polygon)
+  {
+    const lacuna::IGESDocument::Attributes attributes = this->Attributes(CurveLevel, "POLYGON");
+    this->Document.AddPolygon(
+      polygon.Corners, attributes, { this->Document.AddName(polygon.Name) });
+  }
+  void Add(const vtkLacunaIGESContent::Line& line)
+  {
+    const bool axis = line.IsAxis;
+    const lacuna::IGESDocument::Attributes attributes =
+      this->Attributes(axis ? PointLevel : CurveLevel, axis ? "AXIS" : "LINE");
+    this->Document.AddLine(line.From, line.To, attributes, { this->Document.AddName(line.Name) });
+  }
+  void Add(const vtkLacunaIGESContent::Point& point)
+  {
+    const lacuna::IGESDocument::Attributes attributes = this->Attributes(PointLevel, "POINT");
+    this->Document.AddPoint(point.Position, attributes, { this->Document.AddName(point.Name) });
+  }
+
+private:
+  lacuna::IGESDocument::Attributes Attributes(Level level, const char* label)
+  {
+    if (this->Colours[level] == 0)
+    {
+      this->Colours[level] = AddColour(this->Document, level);
+    }
+    lacuna::IGESDocument::Attributes attributes;
+    attributes.Level = level;
+    attributes.Colour = -static_cast<int>(this->Colours[level]);
+    attributes.Label = label;
+    return attributes;
+  }
+
+  lacuna::IGESDocument& Document;
+  std::int64_t Colours[4] = { 0, 0, 0, 0 };
+};
 
 //------------------------------------------------------------------------------
-Result FitGrid(
-  vtkStructuredGrid* grid, const lacuna::SurfaceFitOptions& options, lacuna::Execution& execution)
+// Lines for people: what there is, where it comes from, and how it was made.
+void Describe(const vtkLacunaIGESContent& content, std::vector<std::string>& text)
 {
-  int dimensions[3];
-  grid->GetDimensions(dimensions);
-  std::vector<std::int64_t> size;
-  for (const int d : dimensions)
+  text.insert(text.end(), content.Description.begin(), content.Description.end());
+  text.emplace_back(Levels);
+  for (const vtkLacunaIGESSurface& surface : content.Surfaces)
   {
-    if (d != 1)
+    const lacuna::BSplineSurface& s = surface.Fit.Surface;
+    text.push_back("Surface '" + surface.Name + "': bicubic B-spline, " +
+      std::to_string(s.U.GetSize()) + " x " + std::to_string(s.V.GetSize()) +
+      " control points, largest deviation from the samples " +
+      lacuna::FormatNumber(surface.Fit.MaximumDeviation) + " mm. " + surface.Description);
+    for (const auto& piece : surface.Pieces)
     {
-      size.push_back(d);
+      text.push_back("Trimmed to the outline of the defect" +
+        (piece.size() > 1 ? ", less " + std::to_string(piece.size() - 1) + " islands."
+                          : std::string(".")));
     }
   }
-  if (size.size() != 2)
-  {
-    std::ostringstream message;
-    message << "the structured grid has " << dimensions[0] << " x " << dimensions[1] << " x "
-            << dimensions[2] << " points; a surface has exactly one dimension of 1";
-    throw std::runtime_error(message.str());
-  }
-  if (grid->HasAnyBlankPoints() || grid->HasAnyBlankCells())
-  {
-    throw std::runtime_error(
-      "the structured grid has blanked points or cells; a surface without holes is needed");
-  }
-  std::vector<lacuna::Vec3> points(grid->GetNumberOfPoints());
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    grid->GetPoint(static_cast<vtkIdType>(i), points[i].data());
-  }
-  Result result;
-  const lacuna::GridSize gridSize{ size[0], size[1] };
-  lacuna::CheckRegular(gridSize, points);
-  result.Fit = lacuna::FitPoints(execution, gridSize, points, options);
-  result.Name = "Structured surface";
-  result.Description.emplace_back(
-    "From a structured grid, in its coordinates. u runs along its first dimension, v along its "
-    "second.");
-  return result;
 }
 }
 
@@ -206,8 +158,26 @@ vtkLacunaIGESWriter::~vtkLacunaIGESWriter()
 int vtkLacunaIGESWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  for (const char* type : { "vtkStructuredGrid", "vtkPolyData", "vtkMultiBlockDataSet",
+         "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection" })
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), type);
+  }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaIGESWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info)
+  {
+    // Also of the pieces that write nothing: filters before this one may need all processes.
+    vtkLacunaRequest::Whole(info);
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------
@@ -215,7 +185,7 @@ int vtkLacunaIGESWriter::Write()
 {
   this->FileSize = 0;
   this->Superclass::Write();
-  if (this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
+  if (this->Piece == 0 && this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
   {
     // VTK does not come to WriteData when a filter upstream fails or has nothing
     this->SetErrorCode(vtkErrorCode::UnknownError);
@@ -227,14 +197,16 @@ int vtkLacunaIGESWriter::Write()
 //------------------------------------------------------------------------------
 void vtkLacunaIGESWriter::WriteData()
 {
-  this->MaximumDeviation = 0;
-  this->NumberOfControlPoints[0] = this->NumberOfControlPoints[1] = 0;
-  this->FileSize = 0;
+  this->ClearResults();
+  if (this->Piece > 0)
+  {
+    return; // another process writes
+  }
   unsigned long code = vtkErrorCode::UnknownError;
   std::string error;
   try
   {
-    this->WriteSurface();
+    this->WriteContent();
     return;
   }
   catch (const lacuna::FileError& e)
@@ -265,26 +237,35 @@ void vtkLacunaIGESWriter::WriteData()
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaIGESWriter::WriteSurface()
+void vtkLacunaIGESWriter::ClearResults()
+{
+  this->MaximumDeviation = 0;
+  this->NumberOfControlPoints[0] = this->NumberOfControlPoints[1] = 0;
+  this->NumberOfSurfaces = this->NumberOfCurves = this->NumberOfPoints = 0;
+  this->FileSize = 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESWriter::WriteContent()
 {
   if (!this->FileName || !*this->FileName)
   {
     throw std::runtime_error("no FileName is given");
   }
+  vtkDataObject* input = this->GetInput();
+  if (!input)
+  {
+    throw std::runtime_error("there is no input");
+  }
   vtkLacunaExecution execution(this);
   execution.SetStage(0, 0.9);
-  lacuna::SurfaceFitOptions options;
-  options.Tolerance = this->Tolerance;
-  vtkDataObject* input = this->GetInput();
-  auto* image = vtkImageData::SafeDownCast(input);
-  auto* grid = vtkStructuredGrid::SafeDownCast(input);
-  if (!image && !grid)
-  {
-    throw std::runtime_error("the input is neither a depth map nor a structured grid");
-  }
-  const Result result =
-    image ? FitMap(image, options, execution) : FitGrid(grid, options, execution);
-  const lacuna::BSplineSurface& surface = result.Fit.Surface;
+  vtkLacunaIGESContent::Options options;
+  options.Fit.Tolerance = this->Tolerance;
+  options.Outline = this->DefectOutline;
+  options.Frame = this->Coordinates;
+  options.AllowMirrored = this->AllowMirrored;
+  options.SkipUnsupported = this->SkipUnsupported;
+  const vtkLacunaIGESContent content(input, options, execution);
 
   lacuna::IGESHeader header;
   const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
@@ -293,36 +274,64 @@ void vtkLacunaIGESWriter::WriteSurface()
   header.Preprocessor = version + " IGES Writer";
   header.Date = vtksys::SystemTools::GetCurrentDateTime("%Y%m%d.%H%M%S");
   header.MinimumResolution = std::clamp(this->Tolerance, 1e-6, 1e-3);
-  header.Start.push_back(version + " IGES Writer. One bicubic B-spline surface, unit mm.");
-  header.Start.insert(header.Start.end(), result.Description.begin(), result.Description.end());
-  std::ostringstream achieved;
-  achieved.imbue(std::locale::classic());
-  achieved << "Largest deviation from the samples " << result.Fit.MaximumDeviation << " mm, "
-           << surface.U.GetSize() << " x " << surface.V.GetSize() << " control points.";
-  header.Start.push_back(achieved.str());
-  for (const std::string& step : vtkLacunaProvenance::Get(input))
+  header.Start.push_back(version + " IGES Writer. Unit mm. No medical device.");
+  Describe(content, header.Start);
+  lacuna::ParameterText parameters;
+  parameters.Add("Tolerance", this->Tolerance)
+    .Add("DefectOutline", this->DefectOutline)
+    .Add("Coordinates", this->Coordinates)
+    .Add("AllowMirrored", this->AllowMirrored)
+    .Add("SkipUnsupported", this->SkipUnsupported);
+  vtkNew<vtkPolyData> record; // takes the steps of all inputs and this one
+  vtkLacunaProvenance::Record(record, this, content.Inputs, parameters.Get());
+  for (const std::string& step : vtkLacunaProvenance::Get(record))
   {
     header.Start.push_back("Made by: " + step);
   }
 
   lacuna::IGESDocument document;
-  lacuna::IGESDocument::Attributes attributes;
-  attributes.Label = "SURFACE";
-  attributes.Colour = -static_cast<int>(document.AddColour(0.9, 0.85, 0.7, "Bone"));
-  document.AddSurface(surface, attributes, { document.AddName(result.Name) });
+  Composer composer(document);
+  const auto addAll = [&](const auto& things)
+  {
+    for (const auto& thing : things)
+    {
+      composer.Add(thing);
+    }
+  };
+  addAll(content.Surfaces);
+  addAll(content.Curves);
+  addAll(content.Polygons);
+  addAll(content.Lines);
+  addAll(content.Points);
   const std::string text = document.GetText(header);
   execution.SetStage(0.9, 1);
   execution.Report(0);
   lacuna::WriteFileAtomically(this->FileName, text);
   execution.Report(1);
 
-  this->MaximumDeviation = result.Fit.MaximumDeviation;
-  this->NumberOfControlPoints[0] = static_cast<int>(surface.U.GetSize());
-  this->NumberOfControlPoints[1] = static_cast<int>(surface.V.GetSize());
+  for (const vtkLacunaIGESSurface& surface : content.Surfaces)
+  {
+    this->MaximumDeviation = std::max(this->MaximumDeviation, surface.Fit.MaximumDeviation);
+  }
+  if (!content.Surfaces.empty())
+  {
+    const lacuna::BSplineSurface& first = content.Surfaces.front().Fit.Surface;
+    this->NumberOfControlPoints[0] = static_cast<int>(first.U.GetSize());
+    this->NumberOfControlPoints[1] = static_cast<int>(first.V.GetSize());
+  }
+  this->NumberOfSurfaces = static_cast<int>(content.Surfaces.size());
+  this->NumberOfCurves =
+    static_cast<int>(content.Curves.size() + content.Polygons.size() + content.Lines.size());
+  this->NumberOfPoints = static_cast<int>(content.Points.size());
   this->FileSize = static_cast<vtkTypeInt64>(text.size());
+  for (const std::string& warning : content.Warnings)
+  {
+    vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
   vtkLog(INFO, << "IGES Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
-               << this->NumberOfControlPoints[0] << " x " << this->NumberOfControlPoints[1]
-               << " control points, largest deviation " << this->MaximumDeviation << " mm");
+               << this->NumberOfSurfaces << " surfaces, " << this->NumberOfCurves << " curves, "
+               << this->NumberOfPoints << " points, largest deviation " << this->MaximumDeviation
+               << " mm");
 }
 
 //------------------------------------------------------------------------------
@@ -331,8 +340,16 @@ void vtkLacunaIGESWriter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "DefectOutline: " << this->DefectOutline << "\n";
+  os << indent << "Coordinates: " << this->Coordinates << "\n";
+  os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
+  os << indent << "SkipUnsupported: " << this->SkipUnsupported << "\n";
+  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "MaximumDeviation: " << this->MaximumDeviation << "\n";
   os << indent << "NumberOfControlPoints: " << this->NumberOfControlPoints[0] << " "
      << this->NumberOfControlPoints[1] << "\n";
+  os << indent << "NumberOfSurfaces: " << this->NumberOfSurfaces << "\n";
+  os << indent << "NumberOfCurves: " << this->NumberOfCurves << "\n";
+  os << indent << "NumberOfPoints: " << this->NumberOfPoints << "\n";
   os << indent << "FileSize: " << this->FileSize << "\n";
 }

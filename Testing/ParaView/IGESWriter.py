@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The IGES Writer in ParaView: Save Data of a depth map and of a structured grid."""
+"""The IGES Writer in ParaView: Save Data of depth maps, structured grids, lines, points and groups of them."""
 import os
 
 import numpy as np
@@ -106,7 +106,9 @@ source = producer(image)
 path = os.path.join(OUTPUT, "IGESWriter.igs")
 writer = CreateWriter(path, source)
 assert writer.GetXMLLabel() == "IGES Writer", writer.GetXMLLabel()
-assert writer.Tolerance == lacuna.vtkLacunaIGESWriter().GetTolerance()
+for name in ("Tolerance", "DefectOutline", "Coordinates", "AllowMirrored", "SkipUnsupported"):
+    default = getattr(lacuna.vtkLacunaIGESWriter(), "Get" + name)()
+    assert writer.SMProxy.GetProperty(name).GetElement(0) == default, name
 
 # File > Save Data, and what was achieved
 writer.UpdatePipeline()
@@ -141,16 +143,53 @@ writer.SetFileName(path)
 assert writer.Write() == 1
 assert deviation(path, expected) <= 0.001 and writer.GetMaximumDeviation() <= 0.001
 
-# A map with a hole: no file. Other data: no such writer.
+# The outline of the defect as the edge of the surface, and an asymmetric group: names, points, lines, screws
+def entities(path):
+    """Types of the entities that do not belong to others, and all the text."""
+    with open(path, encoding="ascii") as file:
+        lines = file.read().splitlines()
+    first = [line for line in lines if line[72] == "D"][::2]
+    return sorted(int(line[:8]) for line in first if line[64:72] == "00000000"), "".join(line[:72] for line in lines)
+
+
+filled = vtkImageData()
+filled.ShallowCopy(image)
+i, j = np.meshgrid(np.arange(80.0), np.arange(60.0))
+mask = numpy_to_vtk((np.hypot(i - 33, 1.5 * (j - 24)) < 15).astype(np.uint8).ravel(), deep=True)
+mask.SetName("FilledMask")
+filled.GetPointData().AddArray(mask)
+implant = producer(filled)
+path = os.path.join(OUTPUT, "IGESWriter-trim.igs")
+SaveData(path, implant, DefectOutline="Trim")
+types, text = entities(path)
+assert types.count(144) == 1 and 128 not in types and 126 not in types, types
+SaveData(path, implant, DefectOutline="None")
+assert entities(path)[0].count(128) == 1 and 126 not in entities(path)[0]
+grouped = GroupDatasets(Input=[implant, Line(Point1=[0, 0, 0], Point2=[1, 2, 3], Resolution=1), Ellipse(),
+                               PointSource(NumberOfPoints=3, Radius=0)])
+SaveData(path, grouped)
+types, text = entities(path)
+assert [types.count(t) for t in (128, 126, 110, 102, 116)] == [1, 1, 1, 1, 3], types
+writer = CreateWriter(path, grouped)
+writer.UpdatePipeline()
+writer.UpdatePropertyInformation()
+assert [writer.GetPropertyValue(f"NumberOf{n}") for n in ("Surfaces", "Curves", "Points")] == [1, 3, 3]
+
+# A map with a hole, triangles, a mirror image: no file.
 vtkObject.GlobalWarningDisplayOff()
-path = os.path.join(OUTPUT, "IGESWriter-hole.igs")
-SaveData(path, producer(depth_map(hole=True)[0]))
-assert not os.path.exists(path)
-sphere = Sphere()
-sphere.UpdatePipeline()
-try:
-    SaveData(os.path.join(OUTPUT, "IGESWriter-sphere.igs"), sphere)
-    assert False, "polydata cannot be written as IGES"
-except (AttributeError, RuntimeError):  # ParaView's way to say that there is no writer
-    pass
+path = os.path.join(OUTPUT, "IGESWriter-refused.igs")
+mirrored = vtkImageData()
+mirrored.ShallowCopy(image)
+mark = numpy_to_vtk(np.array([1]), deep=True)
+mark.SetName("Mirrored")
+mirrored.GetFieldData().AddArray(mark)
+for refused in (producer(depth_map(hole=True)[0]), Sphere(), producer(mirrored)):
+    if os.path.exists(path):
+        os.remove(path)
+    SaveData(path, refused)
+    assert not os.path.exists(path), refused
+SaveData(path, producer(mirrored), AllowMirrored=1)
+assert os.path.exists(path)
+SaveData(path.replace("refused", "group"), GroupDatasets(Input=[implant, Sphere()]), SkipUnsupported=1)
+assert entities(path.replace("refused", "group"))[0].count(128) == 1
 print("ok")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaIGESDocument.h"
 
+#include "lacunaBSplineCurve.h"
 #include "lacunaBSplineSurface.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ std::vector<std::string> Wrapped(const std::vector<std::string>& text)
   return lines;
 }
 
-void AddLine(std::string& text, const std::string& data, char section, std::int64_t number)
+void AppendLine(std::string& text, const std::string& data, char section, std::int64_t number)
 {
   text += data;
   text.append(72 - data.size(), ' ');
@@ -220,11 +221,7 @@ std::int64_t IGESDocument::AddSurface(const BSplineSurface& surface, const Attri
   }
   for (const Vec3& p : surface.ControlPoints)
   {
-    for (const double x : p.Elements)
-    {
-      record.AddReal(x);
-      this->MaximumCoordinate = std::max(this->MaximumCoordinate, std::abs(x));
-    }
+    this->AddCoordinates(record, p);
   }
   for (const double limit :
     { surface.U.GetFirst(), surface.U.GetLast(), surface.V.GetFirst(), surface.V.GetLast() })
@@ -232,6 +229,133 @@ std::int64_t IGESDocument::AddSurface(const BSplineSurface& surface, const Attri
     record.AddReal(limit);
   }
   return this->AddEntity(128, std::move(record), attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+void IGESDocument::AddCoordinates(IGESRecord& record, const Vec3& point)
+{
+  for (const double x : point.Elements)
+  {
+    record.AddReal(x);
+    this->MaximumCoordinate = std::max(this->MaximumCoordinate, std::abs(x));
+  }
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddCurve(const BSplineCurve& curve, bool inParameters,
+  const Attributes& attributes, const std::vector<std::int64_t>& properties)
+{
+  const std::size_t size = curve.ControlPoints.size();
+  IGESRecord record = StartEntity(126);
+  record.AddInteger(static_cast<std::int64_t>(size) - 1);
+  record.AddInteger(3);
+  for (const bool property : { inParameters, curve.IsClosed(), true, false })
+  {
+    record.AddInteger(property); // planar, closed, polynomial, periodic
+  }
+  for (const double knot : curve.Knots)
+  {
+    record.AddReal(knot);
+  }
+  for (std::size_t i = 0; i < size; ++i)
+  {
+    record.AddReal(1); // weights of a polynomial curve
+  }
+  for (const Vec3& p : curve.ControlPoints)
+  {
+    if (inParameters)
+    {
+      record.AddReal(p[0]);
+      record.AddReal(p[1]);
+      record.AddReal(0);
+    }
+    else
+    {
+      this->AddCoordinates(record, p);
+    }
+  }
+  record.AddReal(curve.Knots.front());
+  record.AddReal(curve.Knots.back());
+  for (const int normal : { 0, 0, inParameters ? 1 : 0 })
+  {
+    record.AddReal(normal); // of the plane, where there is one
+  }
+  return this->AddEntity(126, std::move(record), attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddCurve(const BSplineCurve& curve, const Attributes& attributes,
+  const std::vector<std::int64_t>& properties)
+{
+  return this->AddCurve(curve, false, attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddPoint(
+  const Vec3& point, const Attributes& attributes, const std::vector<std::int64_t>& properties)
+{
+  IGESRecord record = StartEntity(116);
+  this->AddCoordinates(record, point);
+  record.AddInteger(0); // no symbol to show it by
+  return this->AddEntity(116, std::move(record), attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddPolygon(const std::vector<Vec3>& points, const Attributes& attributes,
+  const std::vector<std::int64_t>& properties)
+{
+  Attributes side = attributes;
+  side.Subordinate = 1;
+  side.Label = "SIDE";
+  IGESRecord record = StartEntity(102);
+  record.AddInteger(static_cast<std::int64_t>(points.size()) - 1);
+  for (std::size_t k = 1; k < points.size(); ++k)
+  {
+    record.AddInteger(this->AddLine(points[k - 1], points[k], side));
+  }
+  return this->AddEntity(102, std::move(record), attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddLine(const Vec3& from, const Vec3& to, const Attributes& attributes,
+  const std::vector<std::int64_t>& properties)
+{
+  IGESRecord record = StartEntity(110);
+  this->AddCoordinates(record, from);
+  this->AddCoordinates(record, to);
+  return this->AddEntity(110, std::move(record), attributes, properties);
+}
+
+//------------------------------------------------------------------------------
+std::int64_t IGESDocument::AddTrimmedSurface(std::int64_t surface,
+  const std::vector<Boundary>& boundaries, const Attributes& attributes,
+  const std::vector<std::int64_t>& properties)
+{
+  Attributes part = attributes;
+  part.Subordinate = 1;
+  std::vector<std::int64_t> curves;
+  for (const Boundary& boundary : boundaries)
+  {
+    part.Label = "BOUNDARY";
+    Attributes flat = part;
+    flat.UseFlag = 5; // a curve in the parameters of a surface
+    IGESRecord record = StartEntity(142);
+    record.AddInteger(0); // how the curve was made: not said
+    record.AddInteger(surface);
+    record.AddInteger(this->AddCurve(*boundary.Parameters, true, flat, {}));
+    record.AddInteger(this->AddCurve(*boundary.Space, false, part, {}));
+    record.AddInteger(1); // the one in the parameters is exactly on the surface
+    curves.push_back(this->AddEntity(142, std::move(record), part));
+  }
+  IGESRecord record = StartEntity(144);
+  record.AddInteger(surface);
+  record.AddInteger(1); // the outer boundary is not that of the surface
+  record.AddInteger(static_cast<std::int64_t>(curves.size()) - 1);
+  for (const std::int64_t curve : curves)
+  {
+    record.AddInteger(curve);
+  }
+  return this->AddEntity(144, std::move(record), attributes, properties);
 }
 
 //------------------------------------------------------------------------------
@@ -290,13 +414,13 @@ std::string IGESDocument::GetText(const IGESHeader& header) const
   std::int64_t number = 0;
   for (const std::string& line : start)
   {
-    AddLine(text, line, 'S', ++number);
+    AppendLine(text, line, 'S', ++number);
   }
   const std::int64_t startLines = number;
   number = 0;
   for (const std::string& line : global.GetLines())
   {
-    AddLine(text, line, 'G', ++number);
+    AppendLine(text, line, 'G', ++number);
   }
   const std::int64_t globalLines = number;
 
@@ -309,13 +433,14 @@ std::string IGESDocument::GetText(const IGESHeader& header) const
     std::string label = Printable(a.Label).substr(0, 8);
     label.insert(0, 8 - label.size(), ' ');
     // Type, parameters, structure, line font, level, view, matrix, label display, status (visible,
-    // independent, use, hierarchy).
-    AddLine(text,
+    // subordinate, use, hierarchy).
+    AppendLine(text,
       Field(entity.Type, 8) + Field(parameter, 8) + Field(0, 8) + Field(0, 8) + Field(a.Level, 8) +
-        Field(0, 8) + Field(0, 8) + Field(0, 8) + "0000" + Field(a.UseFlag, 2, '0') + "00",
+        Field(0, 8) + Field(0, 8) + Field(0, 8) + "00" + Field(a.Subordinate, 2, '0') +
+        Field(a.UseFlag, 2, '0') + "00",
       'D', ++number);
     // Type, line weight, colour, parameter lines, form, reserved, reserved, label, subscript.
-    AddLine(text,
+    AppendLine(text,
       Field(entity.Type, 8) + Field(0, 8) + Field(a.Colour, 8) + Field(lines, 8) +
         Field(a.Form, 8) + std::string(16, ' ') + label + Field(0, 8),
       'D', ++number);
@@ -329,12 +454,12 @@ std::string IGESDocument::GetText(const IGESHeader& header) const
   {
     for (const std::string& line : entity.Lines)
     {
-      AddLine(
+      AppendLine(
         text, line + std::string(65 - line.size(), ' ') + Field(entry, 7, '0'), 'P', ++number);
     }
     entry += 2;
   }
-  AddLine(text,
+  AppendLine(text,
     'S' + Field(startLines, 7, '0') + 'G' + Field(globalLines, 7, '0') + 'D' +
       Field(directoryLines, 7, '0') + 'P' + Field(parameterLines, 7, '0'),
     'T', 1);

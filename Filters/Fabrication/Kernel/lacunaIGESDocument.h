@@ -5,6 +5,8 @@
 #ifndef lacunaIGESDocument_h
 #define lacunaIGESDocument_h
 
+#include "lacunaVector.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 namespace lacuna
 {
 class BSplineSurface;
+struct BSplineCurve;
 
 /// Free-format data packed into lines: numbers are never split, strings only where a line cannot
 /// hold them. Does not depend on the locale.
@@ -62,7 +65,8 @@ public:
   {
     int Form = 0;
     int Level = 0;
-    int Colour = 0; ///< 0, a number 1..8, or minus the pointer of a 314
+    int Colour = 0;      ///< 0, a number 1..8, or minus the pointer of a 314
+    int Subordinate = 0; ///< 1: a part of another entity, which is not shown for itself
     int UseFlag = 0;
     std::string Label; ///< up to 8 characters
   };
@@ -83,6 +87,32 @@ public:
   std::int64_t AddSurface(const BSplineSurface& surface, const Attributes& attributes,
     const std::vector<std::int64_t>& properties = {});
 
+  /// A cubic polynomial B-spline curve in space (126). Throws std::invalid_argument when a coordinate is
+  /// not finite.
+  std::int64_t AddCurve(const BSplineCurve& curve, const Attributes& attributes,
+    const std::vector<std::int64_t>& properties = {});
+  /// A point (116).
+  std::int64_t AddPoint(const Vec3& point, const Attributes& attributes,
+    const std::vector<std::int64_t>& properties = {});
+  /// A polygon through at least two points (102, its sides as 110). Not 106 or 126 of degree 1, of
+  /// whose corners readers complain.
+  std::int64_t AddPolygon(const std::vector<Vec3>& points, const Attributes& attributes,
+    const std::vector<std::int64_t>& properties = {});
+  /// A straight line (110).
+  std::int64_t AddLine(const Vec3& from, const Vec3& to, const Attributes& attributes,
+    const std::vector<std::int64_t>& properties = {});
+
+  /// A closed curve on a surface: in its parameters (u, v, 0) and in space, over the same interval.
+  struct Boundary
+  {
+    const BSplineCurve* Parameters;
+    const BSplineCurve* Space;
+  };
+  /// A part of a surface (144, its boundaries as 142): surface is the pointer of a 128 that was
+  /// added as subordinate, the first boundary the outer one, the others are holes.
+  std::int64_t AddTrimmedSurface(std::int64_t surface, const std::vector<Boundary>& boundaries,
+    const Attributes& attributes, const std::vector<std::int64_t>& properties = {});
+
   /// The whole file, lines of 80 columns ended by LF. Throws std::runtime_error when it would have
   /// more lines than the seven columns of a sequence number can count.
   std::string GetText(const IGESHeader& header) const;
@@ -95,6 +125,9 @@ private:
     std::vector<std::string> Lines; // of the parameter section
   };
   IGESRecord GetGlobal(const IGESHeader& header) const;
+  void AddCoordinates(IGESRecord& record, const Vec3& point);
+  std::int64_t AddCurve(const BSplineCurve& curve, bool inParameters, const Attributes& attributes,
+    const std::vector<std::int64_t>& properties);
 
   std::vector<Entity> Entities;
   double MaximumCoordinate = 0;

@@ -203,6 +203,8 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
     SurfaceFit fit;
     fit.Surface.U = spaces.U;
     fit.Surface.V = spaces.V;
+    fit.U = problem.U;
+    fit.V = problem.V;
     fit.Decimals = decimals;
     std::vector<double> coefficients;
     if (problem.Components > 0)

@@ -31,6 +31,9 @@ struct SurfaceFit
   /// Digits after the point, in mm, to which the control points were rounded, so that they can be
   /// written short; 17 when they were not. Rounding counts in the deviation.
   int Decimals = 17;
+  /// The parameters of the columns and of the rows of samples.
+  std::vector<double> U;
+  std::vector<double> V;
 };
 
 /// A rectangle of samples: column fastest.

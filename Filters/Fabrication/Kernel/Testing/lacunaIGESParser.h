@@ -17,6 +17,7 @@ struct IGESParser
   {
     long Type = 0;
     long Form = 0;
+    long Level = 0;
     long Colour = 0;
     std::string Status;
     std::string Label;
@@ -169,13 +170,14 @@ private:
       entity.Type = Number(field(0));
       Require(Number(field(10)) == entity.Type, "the same type twice");
       Require(Number(field(1)) == expected, "parameter pointer");
-      for (const std::size_t f : { 2, 3, 4, 5, 6, 7, 11, 18 })
+      for (const std::size_t f : { 2, 3, 5, 6, 7, 11, 18 })
       {
         Require(Number(field(f)) == 0, "zero field");
       }
       Require(field(15) + field(16) == std::string(16, ' '), "reserved fields");
       entity.Status = field(8);
       Require(entity.Status.find_first_not_of("0123456789") == std::string::npos, "status");
+      entity.Level = Number(field(4));
       entity.Colour = Number(field(12));
       entity.Form = Number(field(14));
       entity.Label = field(17);

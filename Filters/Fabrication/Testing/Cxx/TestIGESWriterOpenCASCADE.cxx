@@ -2,13 +2,24 @@
 // OpenCASCADE, a CAD kernel that shares no code with the writer, reads the files back.
 #include "TestSurfaces.h"
 #include "lacunaCheck.h"
+#include "vtkCellArray.h"
 #include "vtkLacunaIGESWriter.h"
 #include "vtkLogger.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPolyData.h"
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepCheck_Analyzer.hxx>
+#include <BRepClass_FaceClassifier.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepGProp.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <GCPnts_AbscissaPoint.hxx>
+#include <GProp_GProps.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <IGESControl_Reader.hxx>
 #include <IGESData_IGESEntity.hxx>
@@ -19,6 +30,7 @@
 #include <Message_PrinterOStream.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
@@ -47,16 +59,38 @@ void CheckClean(const Interface_CheckIterator& checks, const std::string& stage)
   }
 }
 
+std::vector<TopoDS_Shape> Parts(
+  const TopoDS_Shape& shape, TopAbs_ShapeEnum kind, TopAbs_ShapeEnum notIn = TopAbs_SHAPE)
+{
+  std::vector<TopoDS_Shape> parts;
+  for (TopExp_Explorer each(shape, kind, notIn); each.More(); each.Next())
+  {
+    parts.push_back(each.Current());
+  }
+  return parts;
+}
+
+// Reads and transfers all of a file without an error or warning.
+TopoDS_Shape ReadShape(const std::string& path, IGESControl_Reader& reader)
+{
+  LACUNA_CHECK_THAT(
+    reader.ReadFile(path.c_str()) == IFSelect_RetDone, "OpenCASCADE reads the file");
+  CheckClean(reader.WS()->ModelCheckList(), "load");
+  reader.TransferRoots();
+  CheckClean(reader.WS()->TransferReader()->LastCheckList(), "transfer");
+  const TopoDS_Shape shape = reader.OneShape();
+  LACUNA_CHECK_THAT(BRepCheck_Analyzer(shape).IsValid(), "a valid shape");
+  return shape;
+}
+
 // The one face of a file.
 TopoDS_Face ReadFace(const std::string& path, const std::string& name)
 {
   IGESControl_Reader reader;
-  LACUNA_CHECK_THAT(
-    reader.ReadFile(path.c_str()) == IFSelect_RetDone, "OpenCASCADE reads the file");
+  const TopoDS_Shape shape = ReadShape(path, reader);
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
   LACUNA_CHECK_THAT(model->GlobalSection().UnitFlag() == 2, "unit flag");
   LACUNA_CHECK_THAT(model->GlobalSection().UnitName()->String() == "MM", "unit name");
-  CheckClean(reader.WS()->ModelCheckList(), "load");
   for (int i = 1; i <= model->NbEntities(); ++i)
   {
     const Handle(IGESData_IGESEntity) entity = model->Entity(i);
@@ -66,17 +100,9 @@ TopoDS_Face ReadFace(const std::string& path, const std::string& name)
       LACUNA_CHECK_THAT(entity->DefColor() == IGESData_DefReference, "colour");
     }
   }
-  reader.TransferRoots();
-  CheckClean(reader.WS()->TransferReader()->LastCheckList(), "transfer");
-  TopoDS_Face face;
-  int faces = 0;
-  for (TopExp_Explorer each(reader.OneShape(), TopAbs_FACE); each.More(); each.Next())
-  {
-    face = TopoDS::Face(each.Current());
-    ++faces;
-  }
-  LACUNA_CHECK_THAT(faces == 1, "one face");
-  return face;
+  const std::vector<TopoDS_Shape> faces = Parts(shape, TopAbs_FACE);
+  LACUNA_CHECK_THAT(faces.size() == 1, "one face");
+  return TopoDS::Face(faces.at(0));
 }
 
 // points: the samples, columns of them to a row, at whole parameters.
@@ -171,6 +197,138 @@ void TestGrids(const std::string& path)
     CheckFace(face, points, 40, 0.001);
   }
 }
+
+// The area of the surface within the defect's outline, by counting fine squares.
+double CountArea(const BRepAdaptor_Surface& surface, const TopoDS_Face& face)
+{
+  BRepClass_FaceClassifier classifier;
+  double area = 0;
+  constexpr double step = 0.4;
+  for (double v = 0.5 * step; v < surface.LastVParameter(); v += step)
+  {
+    for (double u = 0.5 * step; u < surface.LastUParameter(); u += step)
+    {
+      classifier.Perform(face, gp_Pnt2d(u, v), 1e-7);
+      if (classifier.State() == TopAbs_IN)
+      {
+        gp_Pnt p;
+        gp_Vec du;
+        gp_Vec dv;
+        surface.D1(u, v, p, du, dv);
+        area += step * step * du.Crossed(dv).Magnitude();
+      }
+    }
+  }
+  return area;
+}
+
+// Trimmed faces are valid, of the right area, and their edges lie on the surface.
+void TestTrimmed(const std::string& path)
+{
+  using namespace TestSurfaces;
+  for (const bool perspective : { false, true })
+  {
+    for (const double tolerance : { 0.0, 0.001, 0.05 })
+    {
+      auto map = Map(Geometry({ -0.3, 0.5, 0.9 }, 2.2), true, perspective);
+      Fill(map, Defect);
+      vtkNew<vtkLacunaIGESWriter> writer;
+      writer->SetInputData(map);
+      writer->SetFileName(path.c_str());
+      writer->SetTolerance(tolerance);
+      writer->SetDefectOutline(vtkLacunaIGESWriter::Trim);
+      LACUNA_CHECK_THAT(writer->Write() == 1, "Write()");
+      IGESControl_Reader reader;
+      const TopoDS_Shape shape = ReadShape(path, reader);
+      const std::vector<TopoDS_Shape> faces = Parts(shape, TopAbs_FACE);
+      LACUNA_CHECK_THAT(faces.size() == 1, "one face");
+      const TopoDS_Face face = TopoDS::Face(faces.at(0));
+      LACUNA_CHECK_THAT(Parts(face, TopAbs_WIRE).size() == 2, "an outline and an island");
+      for (const TopoDS_Shape& edge : Parts(face, TopAbs_EDGE))
+      {
+        LACUNA_CHECK_THAT(
+          BRep_Tool::Tolerance(TopoDS::Edge(edge)) <= std::max(1.1 * tolerance, 1e-5),
+          "edges lie on the surface: " + std::to_string(BRep_Tool::Tolerance(TopoDS::Edge(edge))));
+      }
+      GProp_GProps properties;
+      BRepGProp::SurfaceProperties(face, properties, 1e-6);
+      const BRepAdaptor_Surface surface(face, false);
+      const double counted = CountArea(surface, face);
+      LACUNA_CHECK_THAT(std::abs(properties.Mass() / counted - 1) < 0.003,
+        "area " + std::to_string(properties.Mass()) + ", counted " + std::to_string(counted));
+      if (!perspective)
+      {
+        // the surface within the ellipse less the island, and a part of it seen at an angle
+        const double pi = std::acos(-1.0);
+        const double flat = pi * (12 * 9 - 16);
+        LACUNA_CHECK_THAT(
+          properties.Mass() > 0.97 * flat && properties.Mass() < 1.1 * flat, "size of the defect");
+      }
+    }
+  }
+}
+
+// A group of everything: a surface with its outline, a mould, curves, lines and points.
+void TestGroup(const std::string& path)
+{
+  using namespace TestSurfaces;
+  auto map = Map(Geometry({ 0, 1, 0 }, 0.4), true);
+  Fill(map, Defect);
+  std::vector<lacuna::Vec3> points;
+  vtkNew<vtkPolyData> data;
+  vtkNew<vtkPoints> corners;
+  for (const lacuna::Vec3& p :
+    { lacuna::Vec3{ 0, 0, 0 }, { 10, 0, 0 }, { 10, 5, 1 }, { -3, 7, 2 } })
+  {
+    corners->InsertNextPoint(p.data());
+  }
+  data->SetPoints(corners);
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({ 0, 1, 2, 3, 0 });
+  lines->InsertNextCell({ 0, 2 });
+  data->SetLines(lines);
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({ 1, 3 });
+  data->SetVerts(vertices);
+  vtkNew<vtkMultiBlockDataSet> group;
+  group->SetBlock(0, map);
+  group->SetBlock(1, Grid(1, points));
+  group->SetBlock(2, data);
+  vtkNew<vtkLacunaIGESWriter> writer;
+  writer->SetInputData(group);
+  writer->SetFileName(path.c_str());
+  LACUNA_CHECK_THAT(writer->Write() == 1, "Write()");
+  IGESControl_Reader reader;
+  const TopoDS_Shape shape = ReadShape(path, reader);
+  LACUNA_CHECK_THAT(Parts(shape, TopAbs_FACE).size() == 2, "two faces");
+  LACUNA_CHECK_THAT(Parts(shape, TopAbs_VERTEX, TopAbs_EDGE).size() == 2, "two points");
+  double length = 0;
+  double offSurface = 0;
+  const TopoDS_Shape face = Parts(shape, TopAbs_FACE).at(0);
+  for (const TopoDS_Shape& edge : Parts(shape, TopAbs_EDGE, TopAbs_FACE))
+  {
+    const BRepAdaptor_Curve curve(TopoDS::Edge(edge));
+    if (curve.GetType() == GeomAbs_BSplineCurve && curve.Degree() == 3)
+    {
+      LACUNA_CHECK_THAT(curve.Continuity() >= GeomAbs_C2, "outlines are C2");
+      for (int k = 0; k < 12; ++k)
+      {
+        const gp_Pnt p = curve.Value(
+          curve.FirstParameter() + k / 12.0 * (curve.LastParameter() - curve.FirstParameter()));
+        const BRepExtrema_DistShapeShape distance(BRepBuilderAPI_MakeVertex(p).Vertex(), face);
+        offSurface = std::max(offSurface, distance.Value());
+      }
+    }
+    else
+    {
+      length += GCPnts_AbscissaPoint::Length(curve);
+    }
+  }
+  LACUNA_CHECK_THAT(
+    offSurface <= 0.001, "outlines lie on the surface " + std::to_string(offSurface));
+  const double wanted = 10 + std::sqrt(26) + std::sqrt(174) + std::sqrt(62) + std::sqrt(126);
+  LACUNA_CHECK_THAT(std::abs(length - wanted) < 1e-9, "lengths of the lines");
+}
 }
 
 int TestIGESWriterOpenCASCADE(int argc, char* argv[])
@@ -185,5 +343,7 @@ int TestIGESWriterOpenCASCADE(int argc, char* argv[])
   const std::string path = folder + "/TestIGESWriterOpenCASCADE.igs";
   TestMaps(path);
   TestGrids(path);
+  TestTrimmed(path);
+  TestGroup(path);
   return lacunaCheck::Result();
 }

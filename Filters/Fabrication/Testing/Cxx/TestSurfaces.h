@@ -16,6 +16,7 @@
 #include "vtkStructuredGrid.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -75,6 +76,30 @@ inline vtkSmartPointer<vtkImageData> Map(
     vtkLacunaFieldData::Set(map, vtkLacunaDepthMap::ViewAngleName, { 30 }, 1);
   }
   return map;
+}
+
+/// Marks the pixels (i, j) of a Map in FilledMask.
+inline void Fill(vtkImageData* map, const std::function<bool(int i, int j)>& filled)
+{
+  vtkNew<vtkCharArray> mask;
+  mask->SetName(vtkLacunaDepthMap::FilledMaskName);
+  for (int j = -3; j <= 66; ++j)
+  {
+    for (int i = 5; i <= 94; ++i)
+    {
+      mask->InsertNextValue(filled(i, j) ? 1 : 0);
+    }
+  }
+  map->GetPointData()->AddArray(mask);
+}
+
+/// An asymmetric defect about pixel (50, 30): an ellipse of 12 x 9 mm half axes, in it an island of
+/// 4 mm radius off its centre. Fitted covers 30 x 30 mm about (49.5, 29.5).
+inline bool Defect(int i, int j)
+{
+  const double x = 0.5 * (i - 50);
+  const double y = 0.75 * (j - 30);
+  return x * x / 144 + y * y / 81 < 1 && std::hypot(x - 4, y + 2) >= 4;
 }
 
 /// The surface points that are to be written of a Map, column fastest.

@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaIGESContent.h"
+
+#include "lacunaExecution.h"
+#include "lacunaParameterText.h"
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+namespace
+{
+constexpr double AxisLength = 10; // mm of a screw's axis that are drawn
+
+std::string NameOf(vtkInformation* meta, const std::string& otherwise)
+{
+  const char* name =
+    meta && meta->Has(vtkCompositeDataSet::NAME()) ? meta->Get(vtkCompositeDataSet::NAME()) : "";
+  return name && *name ? name : otherwise;
+}
+
+// The matrix of data from the press; throws when it is no rotation and translation.
+std::optional<lacuna::Matrix4> FindPressToPatient(vtkDataObject* data)
+{
+  vtkDataArray* array = vtkLacunaFieldData::Find(data, "PressToPatient", 16, 1);
+  if (!array)
+  {
+    return std::nullopt;
+  }
+  const lacuna::Matrix4 matrix = vtkLacunaFieldData::GetMatrix(array, 0);
+  double error = matrix.IsFinite() && matrix.IsAffine() ? 0 : 1;
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      error = std::max(
+        error, std::abs(lacuna::Dot(matrix.Column(i), matrix.Column(j)) - (i == j ? 1 : 0)));
+    }
+  }
+  if (!(error <= 1e-6 && matrix.Determinant3() > 0))
+  {
+    throw std::runtime_error("field data array 'PressToPatient' is not a rotation and translation "
+                             "(it scales, shears or mirrors), as Press Orientation gives it");
+  }
+  return matrix;
+}
+
+bool IsSame(const lacuna::Matrix4& a, const lacuna::Matrix4& b)
+{
+  return std::equal(a.Data(), a.Data() + 16, b.Data());
+}
+
+bool IsMirrored(vtkDataObject* data)
+{
+  vtkAbstractArray* array = data->GetFieldData()->GetAbstractArray("Mirrored");
+  if (!array)
+  {
+    return false;
+  }
+  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
+  {
+    if (array->GetVariantValue(i).ToString() != "0")
+    {
+      return true;
+    }
+  }
+  return array->GetNumberOfValues() == 0; // marked, but not how
+}
+
+//------------------------------------------------------------------------------
+using Path = std::vector<vtkIdType>;
+
+// The poly lines, and lines of single segments (as contours have them) chained from end to end.
+std::vector<Path> FindPaths(vtkPolyData* data)
+{
+  std::vector<Path> paths;
+  std::vector<std::vector<std::size_t>> at(data->GetNumberOfPoints()); // segments that end there
+  std::vector<Path> segments;
+  auto cells = vtk::TakeSmartPointer(data->GetLines()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(size, ids);
+    if (size == 2 && ids[0] != ids[1])
+    {
+      at[ids[0]].push_back(segments.size());
+      at[ids[1]].push_back(segments.size());
+      segments.emplace_back(ids, ids + 2);
+    }
+    else
+    {
+      paths.emplace_back(ids, ids + size);
+    }
+  }
+  std::vector<bool> used(segments.size(), false);
+  const auto follow = [&](std::size_t segment, vtkIdType from)
+  {
+    Path path{ from };
+    for (;;)
+    {
+      used[segment] = true;
+      const Path& ends = segments[segment];
+      path.push_back(ends[0] == path.back() ? ends[1] : ends[0]);
+      const std::vector<std::size_t>& here = at[path.back()];
+      if (here.size() != 2 || used[here[0] == segment ? here[1] : here[0]])
+      {
+        return path;
+      }
+      segment = here[0] == segment ? here[1] : here[0];
+    }
+  };
+  for (const bool ends : { true, false }) // first from ends and forks, then what is closed
+  {
+    for (std::size_t k = 0; k < segments.size(); ++k)
+    {
+      for (const vtkIdType id : segments[k])
+      {
+        if (!used[k] && (!ends || at[id].size() != 2))
+        {
+          paths.push_back(follow(k, id));
+        }
+      }
+    }
+  }
+  return paths;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaIGESContent::vtkLacunaIGESContent(
+  vtkDataObject* input, const Options& options, lacuna::Execution& execution)
+  : Settings(options)
+{
+  if (options.Outline < NoOutline || options.Outline > TrimToOutline)
+  {
+    throw std::runtime_error("DefectOutline is " + std::to_string(options.Outline) +
+      "; it must be 0 (None), 1 (Curve) or 2 (Trim)");
+  }
+  if (options.Frame < AsGiven || options.Frame > Press)
+  {
+    throw std::runtime_error("Coordinates is " + std::to_string(options.Frame) +
+      "; it must be 0 (AsGiven), 1 (Patient) or 2 (Press)");
+  }
+  this->Collect(input, "", false);
+  this->PlaceItems();
+  const lacuna::Execution::NestedStages nested(execution);
+  const double count = static_cast<double>(this->Items.size());
+  for (std::size_t k = 0; k < this->Items.size(); ++k)
+  {
+    const Item& item = this->Items[k];
+    execution.SetStage(static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
+    execution.Report(0);
+    try
+    {
+      this->AddItem(item, execution);
+      this->Inputs.push_back(item.Data);
+    }
+    catch (const lacuna::Aborted&)
+    {
+      throw;
+    }
+    catch (const std::bad_alloc&)
+    {
+      throw;
+    }
+    catch (const std::exception& e)
+    {
+      throw std::runtime_error(
+        (item.Name.empty() ? std::string() : "block '" + item.Name + "': ") + e.what());
+    }
+  }
+  if (this->Surfaces.empty() && this->CountThings() == 0)
+  {
+    throw std::runtime_error("there is nothing to write: the input has no surface, line or vertex");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESContent::Collect(vtkDataObject* data, const std::string& name, bool nested)
+{
+  const auto inner = [&](unsigned int i)
+  { return (name.empty() ? "" : name + "/") + "Block " + std::to_string(i); };
+  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
+  {
+    for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
+    {
+      vtkInformation* meta = blocks->HasMetaData(i) ? blocks->GetMetaData(i) : nullptr;
+      this->Collect(blocks->GetBlock(i), NameOf(meta, inner(i)), true);
+    }
+  }
+  else if (auto* sets = vtkPartitionedDataSetCollection::SafeDownCast(data))
+  {
+    for (unsigned int i = 0; i < sets->GetNumberOfPartitionedDataSets(); ++i)
+    {
+      vtkInformation* meta = sets->HasMetaData(i) ? sets->GetMetaData(i) : nullptr;
+      this->Collect(sets->GetPartitionedDataSet(i), NameOf(meta, inner(i)), true);
+    }
+  }
+  else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(data))
+  {
+    for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
+    {
+      this->Collect(parts->GetPartition(i), name.empty() ? inner(i) : name, true);
+    }
+  }
+  else if (data && !(nested && data->GetNumberOfElements(vtkDataObject::POINT) == 0))
+  {
+    this->Items.push_back({ data, name, FindPressToPatient(data), {} });
+    if (!this->Settings.AllowMirrored && IsMirrored(data))
+    {
+      throw std::runtime_error((name.empty() ? "the input" : "block '" + name + "'") +
+        " is a mirror image of the patient (field data Mirrored): nothing made from it fits the "
+        "side it was taken from. Turn on AllowMirrored if the mirrored side is what you want");
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Decides on the frame of the file and how each item gets there.
+void vtkLacunaIGESContent::PlaceItems()
+{
+  const Item* press = nullptr;
+  const Item* patient = nullptr;
+  for (const Item& item : this->Items)
+  {
+    if (!item.PressToPatient)
+    {
+      patient = &item;
+      continue;
+    }
+    if (press && this->Settings.Frame != Patient &&
+      !IsSame(*press->PressToPatient, *item.PressToPatient))
+    {
+      throw std::runtime_error("blocks '" + press->Name + "' and '" + item.Name +
+        "' lie in different presses (PressToPatient differs); set Coordinates to Patient, or write "
+        "two files");
+    }
+    press = press ? press : &item;
+  }
+  if (press && patient && this->Settings.Frame == AsGiven)
+  {
+    throw std::runtime_error("block '" + press->Name +
+      "' is in the coordinates of the press (PressToPatient), block '" + patient->Name +
+      "' in those of the patient; set Coordinates to Patient or Press to bring them together");
+  }
+  if (!press && this->Settings.Frame == Press)
+  {
+    throw std::runtime_error("Coordinates is Press, but no input says where the press is (field "
+                             "data PressToPatient, as Press Orientation gives it)");
+  }
+  const bool inPress = press && this->Settings.Frame != Patient;
+  for (Item& item : this->Items)
+  {
+    if (inPress && !item.PressToPatient)
+    {
+      item.ToFile = press->PressToPatient->Inverse();
+    }
+    else if (!inPress && item.PressToPatient)
+    {
+      item.ToFile = *item.PressToPatient;
+    }
+  }
+  if (!inPress)
+  {
+    this->Description.emplace_back("Coordinates of the input, in mm; for data from a scan those of "
+                                   "the patient (DICOM LPS: left, back, up).");
+    return;
+  }
+  this->Description.emplace_back("Coordinates of the press, in mm: z is up, towards the mill. "
+                                 "To patient coordinates (DICOM LPS) by the rows");
+  for (int row = 0; row < 3; ++row)
+  {
+    std::string text = "  ";
+    for (int column = 0; column < 4; ++column)
+    {
+      text += lacuna::FormatNumber((*press->PressToPatient)(row, column)) + "  ";
+    }
+    this->Description.push_back(text);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Other than surfaces.
+std::size_t vtkLacunaIGESContent::CountThings() const
+{
+  return this->Curves.size() + this->Polygons.size() + this->Lines.size() + this->Points.size();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESContent::Unsupported(const std::string& what)
+{
+  if (!this->Settings.SkipUnsupported)
+  {
+    throw std::runtime_error(what);
+  }
+  this->Warnings.push_back("left out: " + what);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESContent::AddItem(const Item& item, lacuna::Execution& execution)
+{
+  if (vtkImageData::SafeDownCast(item.Data))
+  {
+    this->AddMap(item, execution);
+  }
+  else if (auto* grid = vtkStructuredGrid::SafeDownCast(item.Data))
+  {
+    this->Surfaces.push_back(
+      vtkLacunaIGESSurface::FromGrid(grid, item.ToFile, this->Settings.Fit, execution));
+    if (!item.Name.empty())
+    {
+      this->Surfaces.back().Name = item.Name;
+    }
+  }
+  else if (vtkPolyData::SafeDownCast(item.Data))
+  {
+    this->AddPolyData(item);
+  }
+  else
+  {
+    this->Unsupported((item.Name.empty() ? "the input" : "'" + item.Name + "'") + " is a " +
+      item.Data->GetClassName() +
+      "; an IGES file can have depth maps, structured grids of one layer, poly lines and vertices");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESContent::AddMap(const Item& item, lacuna::Execution& execution)
+{
+  auto* map = vtkImageData::SafeDownCast(item.Data);
+  vtkLacunaIGESSurface surface =
+    vtkLacunaIGESSurface::FromMap(map, item.ToFile, this->Settings.Fit, execution);
+  surface.Name = item.Name.empty() ? surface.Name : item.Name;
+  const bool trim = this->Settings.Outline == TrimToOutline;
+  const bool known = map->GetPointData()->GetArray(vtkLacunaDepthMap::FilledMaskName) != nullptr;
+  if (trim || (known && this->Settings.Outline == OutlineCurve))
+  {
+    try
+    {
+      surface.FindOutlines(map, this->Settings.Fit);
+    }
+    catch (const std::runtime_error& e)
+    {
+      if (trim)
+      {
+        throw;
+      }
+      this->Warnings.push_back(std::string("no outline of the defect is written: ") + e.what());
+    }
+    if (trim && surface.Pieces.empty())
+    {
+      throw std::runtime_error("DefectOutline is Trim, but FilledMask marks no defect");
+    }
+  }
+  if (!trim)
+  {
+    for (const auto& piece : surface.Pieces)
+    {
+      for (const vtkLacunaIGESSurface::Boundary& boundary : piece)
+      {
+        this->Curves.push_back({ boundary.Space,
+          item.Name.empty() ? "Defect outline" : "Defect outline of " + item.Name });
+      }
+    }
+    surface.Pieces.clear();
+  }
+  this->Surfaces.push_back(std::move(surface));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaIGESContent::AddPolyData(const Item& item)
+{
+  auto* data = vtkPolyData::SafeDownCast(item.Data);
+  std::vector<lacuna::Vec3> points(data->GetNumberOfPoints());
+  // as fine as the points of a surface are written
+  const double tolerance = this->Settings.Fit.Tolerance;
+  const double steps =
+    tolerance > 0 ? std::pow(10, std::ceil(1 - std::log10(tolerance) - 1e-9)) : 0;
+  const bool round = steps >= 1 && steps <= 1e12;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    data->GetPoint(static_cast<vtkIdType>(i), points[i].data());
+    points[i] = item.ToFile.Point(points[i]);
+    if (!lacuna::IsFinite(points[i]))
+    {
+      throw std::runtime_error("point " + std::to_string(i) + " is not finite");
+    }
+    for (double& x : points[i].Elements)
+    {
+      x = round ? std::round(x * steps) / steps + 0.0 : x;
+    }
+  }
+  const std::size_t before = this->CountThings();
+  for (const Path& path : FindPaths(data))
+  {
+    std::vector<lacuna::Vec3> corners;
+    for (const vtkIdType id : path)
+    {
+      if (corners.empty() || !(points[id] == corners.back()))
+      {
+        corners.push_back(points[id]);
+      }
+    }
+    if (corners.size() == 2)
+    {
+      this->Lines.push_back({ corners[0], corners[1], item.Name.empty() ? "Line" : item.Name });
+    }
+    else if (corners.size() > 2)
+    {
+      this->Polygons.push_back({ std::move(corners), item.Name.empty() ? "Poly line" : item.Name });
+    }
+  }
+  auto cells = vtk::TakeSmartPointer(data->GetVerts()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(size, ids);
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      this->Points.push_back({ points[ids[k]], item.Name.empty() ? "Point" : item.Name });
+    }
+  }
+  this->AddScrews(item);
+  const vtkIdType facets = data->GetNumberOfPolys() + data->GetNumberOfStrips();
+  if (facets > 0)
+  {
+    this->Unsupported((item.Name.empty() ? "the input" : "'" + item.Name + "'") + " has " +
+      std::to_string(facets) +
+      " polygons or strips, and an IGES file has smooth surfaces: write them as STL, PLY or OBJ, "
+      "or write the depth map they come from. SkipUnsupported writes what else there is");
+  }
+  else if (before == this->CountThings())
+  {
+    this->Unsupported((item.Name.empty() ? "the input" : "'" + item.Name + "'") +
+      " has no line of any length and no vertex; bare points are written when they have "
+      "vertices (Mask Points with Generate Vertices)");
+  }
+}
+
+//------------------------------------------------------------------------------
+// The screw holes of an implant plate.
+void vtkLacunaIGESContent::AddScrews(const Item& item)
+{
+  vtkDataArray* centers = vtkLacunaFieldData::Find(item.Data, "HoleCenters", 3, -1);
+  if (!centers || centers->GetNumberOfTuples() == 0)
+  {
+    return;
+  }
+  const vtkIdType count = centers->GetNumberOfTuples();
+  vtkDataArray* axes = vtkLacunaFieldData::Get(item.Data, "HoleAxes", 3, count);
+  for (vtkIdType k = 0; k < count; ++k)
+  {
+    lacuna::Vec3 center;
+    lacuna::Vec3 axis;
+    centers->GetTuple(k, center.data());
+    axes->GetTuple(k, axis.data());
+    if (!lacuna::IsFinite(center) || !(std::abs(lacuna::Norm(axis) - 1) < 1e-6))
+    {
+      throw std::runtime_error("screw hole " + std::to_string(k + 1) +
+        " has no finite centre (HoleCenters) or no unit axis (HoleAxes)");
+    }
+    const std::string number = std::to_string(k + 1);
+    center = item.ToFile.Point(center);
+    this->Points.push_back({ center, "Screw hole " + number });
+    this->Lines.push_back(
+      { center, center + AxisLength * item.ToFile.Vector(axis), "Screw axis " + number, true });
+  }
+}
