@@ -17,8 +17,6 @@ namespace lacuna
 namespace
 {
 constexpr double LeastWall = 0.1;     // mm between the upper side and the base, and of walls
-constexpr double LeastMargin = 2;     // pixels
-constexpr double MaximumPixels = 3e7; // of the rectangle
 constexpr double NodeToOutline = 0.5; // of a pixel: no slivers there
 
 std::string Rounded(double mm)
@@ -33,6 +31,7 @@ public:
     const DefectModelOptions& options, const Matrix4& toWorld)
     : Run(execution)
     , Scene(scene)
+    , Plan(PlanDefectModel(scene, options))
     , Surface(surface)
     , Options(options)
     , ToWorld(toWorld)
@@ -42,26 +41,18 @@ public:
 
   DefectModel Make()
   {
-    const std::vector<Loop> contours =
-      FindDefectContours(this->Scene.Size, this->Scene.Spacing, this->Scene.Mask);
-    const double speck = 2 * this->Scene.Spacing[0] * this->Scene.Spacing[1];
-    for (const Loop& contour : contours)
+    this->Model.Defects = this->Plan.Defects;
+    this->Model.Column = this->Plan.Column;
+    this->Model.Row = this->Plan.Row;
+    this->Model.TopSize = this->Plan.Size;
+    if (this->Plan.Cut)
     {
-      if (std::abs(SignedArea(contour)) > speck)
-      {
-        this->Contours.push_back(contour);
-        this->Model.Defects += SignedArea(contour) > 0;
-      }
+      this->Model.Warnings.emplace_back("the depth map ends within Margin of the defect, and the "
+                                        "model with it; make a larger map or Margin smaller");
     }
-    if (this->Model.Defects == 0)
-    {
-      throw std::runtime_error(
-        "the defect is too small for a model: fewer than a few pixels of FilledMask are marked");
-    }
-    this->ChooseRectangle();
     this->FillTop();
     this->Run.SetStage(0.1, 0.6);
-    for (const Loop& contour : this->Contours)
+    for (const Loop& contour : this->Plan.Contours)
     {
       this->Outlines.push_back(
         SmoothStaircase(contour, std::sqrt(this->Scene.Spacing[0] * this->Scene.Spacing[1])));
@@ -94,60 +85,13 @@ private:
     return this->Model.Top[i + this->Model.TopSize.Columns * j];
   }
 
-  // Whole pixels of the map around the outlines and the margin.
-  void ChooseRectangle()
-  {
-    std::int64_t first[2];
-    std::int64_t last[2];
-    const std::int64_t size[2] = { this->Scene.MapSize.Columns, this->Scene.MapSize.Rows };
-    const std::int64_t from[2] = { this->Scene.Column, this->Scene.Row };
-    bool cut = false;
-    double count = 1;
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      double low = std::numeric_limits<double>::infinity();
-      double high = -low;
-      for (const Loop& loop : this->Contours)
-      {
-        for (const Vec2& p : loop)
-        {
-          low = std::min(low, p[axis]);
-          high = std::max(high, p[axis]);
-        }
-      }
-      const double pixel = this->Scene.Spacing[axis];
-      const double margin = std::max(this->Options.Margin / pixel, LeastMargin);
-      const double a = static_cast<double>(from[axis]) + std::floor(low / pixel - margin);
-      const double b = static_cast<double>(from[axis]) + std::ceil(high / pixel + margin);
-      const auto end = static_cast<double>(size[axis] - 1);
-      cut = cut || a < 0 || b > end;
-      first[axis] = static_cast<std::int64_t>(std::max(a, 0.0));
-      last[axis] = static_cast<std::int64_t>(std::min(b, end));
-      count *= static_cast<double>(last[axis] - first[axis] + 1);
-    }
-    if (count > MaximumPixels)
-    {
-      throw std::runtime_error(
-        "the model would have over thirty million pixels; make Margin smaller");
-    }
-    if (cut)
-    {
-      this->Model.Warnings.emplace_back("the depth map ends within Margin of the defect, and the "
-                                        "model with it; make a larger map or Margin smaller");
-    }
-    this->Model.Column = first[0];
-    this->Model.Row = first[1];
-    this->Model.TopSize = { last[0] - first[0] + 1, last[1] - first[1] + 1 };
-  }
-
   // What was measured, the fit in the defect; where there is nothing, NaN.
   void FillTop()
   {
     const GridSize& size = this->Model.TopSize;
     this->Model.Top.resize(static_cast<std::size_t>(size.Columns * size.Rows));
     this->Model.TopFaces.assign(this->Model.Top.size(), ModelFace::Bone);
-    this->Model.Highest = std::numeric_limits<double>::infinity();
-    this->Deepest = -this->Model.Highest;
+    this->Deepest = -std::numeric_limits<double>::infinity();
     for (std::int64_t j = 0; j < size.Rows; ++j)
     {
       for (std::int64_t i = 0; i < size.Columns; ++i)
@@ -164,7 +108,6 @@ private:
         else if (std::isfinite(z))
         {
           this->Deepest = std::max(this->Deepest, z);
-          this->Model.Highest = std::min(this->Model.Highest, z);
         }
         this->Top(i, j) = z;
       }
@@ -191,6 +134,14 @@ private:
   void ChooseFloor()
   {
     this->FindInside();
+    this->Model.Highest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < this->Model.Top.size(); ++k)
+    {
+      if (this->Model.TopFaces[k] == ModelFace::Bone && std::isfinite(this->Model.Top[k]))
+      {
+        this->Model.Highest = std::min(this->Model.Highest, this->Model.Top[k]);
+      }
+    }
     std::vector<Vec2> places;
     for (const Loop& outline : this->Outlines)
     {
@@ -474,12 +425,12 @@ private:
 
   Execution& Run;
   const DefectScene& Scene;
+  const DefectModelPlan Plan;
   const ReliefSurface& Surface;
   const DefectModelOptions& Options;
   const Matrix4& ToWorld;
   double Pixel;
   double Deepest = 0;
-  std::vector<Loop> Contours;
   std::vector<Loop> Outlines;
   std::vector<Vec2> Inside;
   std::vector<std::int64_t> InsidePixels;
@@ -494,7 +445,6 @@ private:
 DefectModel MakeDefectModel(Execution& execution, const DefectScene& scene,
   const ReliefSurface& surface, const DefectModelOptions& options, const Matrix4& toWorld)
 {
-  CheckDefectModelOptions(options);
   return Builder(execution, scene, surface, options, toWorld).Make();
 }
 }

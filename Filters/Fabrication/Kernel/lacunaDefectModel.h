@@ -4,10 +4,9 @@
 #ifndef lacunaDefectModel_h
 #define lacunaDefectModel_h
 
-#include "lacunaDefectModelOptions.h"
+#include "lacunaDefectModelPlan.h"
 #include "lacunaMatrix4.h"
 #include "lacunaPlanarTriangulation.h"
-#include "lacunaSurfaceFit.h"
 
 #include <string>
 #include <vector>
@@ -27,20 +26,6 @@ enum class ModelFace : unsigned char
   Bottom
 };
 
-/// A depth map and the part of it on which there is a fit. Coordinates: x and y in mm from the first
-/// pixel of the part, z the depth away from the viewer.
-struct DefectScene
-{
-  GridSize MapSize;
-  std::vector<double> MapDepths; ///< measured, NaN where there is no bone
-  std::int64_t Column = 0;       ///< of the part's first pixel in the map
-  std::int64_t Row = 0;
-  GridSize Size; ///< of the part
-  Vec2 Spacing{};
-  std::vector<double> Fitted;      ///< of the part
-  std::vector<unsigned char> Mask; ///< of the part, 1 in the defect
-};
-
 /// A closed, oriented triangle mesh, and its upper side as heights of pixels.
 struct DefectModel
 {
@@ -48,7 +33,7 @@ struct DefectModel
   std::vector<Triangle> Triangles; ///< counterclockwise from outside
   std::vector<ModelFace> Faces;    ///< one per triangle
   double Volume = 0;               ///< mm^3
-  double Highest = 0;              ///< the least depth
+  double Highest = 0;              ///< the least depth of bone
   double Base = 0;                 ///< depth of the upper side of the base
   double Bottom = 0;
   std::int64_t Defects = 0;
@@ -61,7 +46,7 @@ struct DefectModel
   std::vector<std::string> Warnings;
 };
 
-/// The block is the rectangle of whole pixels around all defects and Margin. Its upper side passes
+/// The block is that of PlanDefectModel. Its upper side passes
 /// through the measured pixels as they are; the defects' outlines are those of an ImplantPlate before
 /// clearance, with walls along z, islands in them stand. Pixels without bone lie on the base. The
 /// upper side is single-valued in z and at least 0.1 mm above the base, so the solid cannot cut

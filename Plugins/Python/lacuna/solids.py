@@ -20,9 +20,8 @@ def save_solid(path, proxy, **options):
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
     a few numbers) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has,
-    and its unit is the millimetre; it holds closed surfaces of triangles. The second output of a
-    filter: save_solid(path, OutputPort(proxy, 1)). Raises PipelineError when a filter or the writer
-    fails. options go to ParaView's SaveData. Returns the record.
+    and its unit is the millimetre; it holds closed surfaces of triangles. Raises PipelineError when
+    a filter or the writer fails. options go to ParaView's SaveData. Returns the record.
     """
     from lacuna import __version__
     from lacuna.errors import PipelineError, raising
@@ -47,8 +46,7 @@ def save_solid(path, proxy, **options):
             values = vtk_to_numpy(fields.GetArray(k)).tolist()
             measures[array.GetName()] = values[0] if len(values) == 1 else values
     if os.path.splitext(path)[1].lower() == ".3mf":
-        source = proxy if hasattr(proxy, "GetXMLLabel") else proxy.SMProxy
-        _write_3mf(path, data, source.GetXMLLabel(), f"Lacuna {__version__}", steps)
+        _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", steps)
     else:
         with raising():
             SaveData(path, proxy, **options)

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaDefectModel.h"
+
+#include "lacunaDefectModel.h"
+#include "lacunaParameterText.h"
+#include "lacunaReliefSurface.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaFittedPart.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+vtkStandardNewMacro(vtkLacunaDefectModel);
+
+namespace
+{
+//------------------------------------------------------------------------------
+// What the kernel needs of a map, and the way from there to the world.
+struct Input
+{
+  lacuna::DefectScene Scene;
+  lacuna::DefectModelOptions Options;
+  lacuna::Matrix4 ToWorld;
+
+  Input(vtkImageData* map, vtkLacunaDefectModel* self)
+  {
+    vtkLacunaFittedPart part(map, "a model");
+    const int floor = self->GetFloorShape();
+    if (floor != vtkLacunaDefectModel::Flat && floor != vtkLacunaDefectModel::Parallel)
+    {
+      throw std::runtime_error(
+        "FloorShape is " + std::to_string(floor) + "; it must be 0 (Flat) or 1 (Parallel)");
+    }
+    this->Options.Margin = self->GetMargin();
+    this->Options.Floor = static_cast<lacuna::DefectFloor>(floor);
+    this->Options.DefectDepth = self->GetDefectDepth();
+    this->Options.BaseThickness = self->GetBaseThickness();
+    this->Options.MaximumHeight = self->GetMaximumHeight();
+    int dimensions[3];
+    map->GetDimensions(dimensions);
+    this->Scene.MapSize = { dimensions[0], dimensions[1] };
+    vtkDataArray* depths = vtkLacunaDepthMap(map).GetDepth();
+    for (vtkIdType k = 0; k < depths->GetNumberOfTuples(); ++k)
+    {
+      this->Scene.MapDepths.push_back(depths->GetComponent(k, 0));
+    }
+    this->Scene.Column = part.Column;
+    this->Scene.Row = part.Row;
+    this->Scene.Size = part.Size;
+    this->Scene.Spacing = part.Spacing;
+    this->Scene.Fitted = std::move(part.Depths);
+    this->Scene.Mask = std::move(part.Mask);
+    this->ToWorld = part.ToWorld;
+  }
+};
+
+//------------------------------------------------------------------------------
+void SetMesh(vtkPolyData* output, const lacuna::DefectModel& model, const lacuna::Matrix4& toWorld)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(model.Points.size()));
+  for (std::size_t k = 0; k < model.Points.size(); ++k)
+  {
+    points->SetPoint(static_cast<vtkIdType>(k), toWorld.Point(model.Points[k]).data());
+  }
+  vtkNew<vtkCellArray> triangles;
+  vtkNew<vtkUnsignedCharArray> faces;
+  faces->SetName(vtkLacunaDefectModel::ModelFaceName);
+  for (std::size_t k = 0; k < model.Triangles.size(); ++k)
+  {
+    const auto& t = model.Triangles[k];
+    triangles->InsertNextCell({ t[0], t[1], t[2] });
+    faces->InsertNextValue(static_cast<unsigned char>(model.Faces[k]));
+  }
+  output->SetPoints(points);
+  output->SetPolys(triangles);
+  output->GetCellData()->SetScalars(faces);
+}
+
+//------------------------------------------------------------------------------
+// The pixels of the upper side; rows run towards +y, which is up for the viewer.
+void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
+  const lacuna::DefectScene& scene, const lacuna::Matrix4& toPress)
+{
+  const lacuna::GridSize& size = model.TopSize;
+  output->SetDimensions(static_cast<int>(size.Columns), static_cast<int>(size.Rows), 1);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkUnsignedCharArray> faces;
+  faces->SetName(vtkLacunaDefectModel::ModelFaceName);
+  for (std::int64_t j = size.Rows - 1; j >= 0; --j)
+  {
+    for (std::int64_t i = 0; i < size.Columns; ++i)
+    {
+      const std::int64_t k = i + size.Columns * j;
+      const lacuna::Vec3 p{ scene.Spacing[0] * static_cast<double>(model.Column + i - scene.Column),
+        scene.Spacing[1] * static_cast<double>(model.Row + j - scene.Row), model.Top[k] };
+      points->InsertNextPoint(toPress.Point(p).data());
+      faces->InsertNextValue(static_cast<unsigned char>(model.TopFaces[k]));
+    }
+  }
+  output->SetPoints(points);
+  output->GetPointData()->SetScalars(faces);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaDefectModel::vtkLacunaDefectModel()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkStructuredGrid");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      // The size of the grid depends on the defect, so the input must be executed now. When it is up
+      // to date, as it usually is, this does nothing.
+      this->RequestUpdateExtent(request, inputVector, outputVector);
+      vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
+      connection->GetProducer()->Update(connection->GetIndex());
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+      if (map && map->GetNumberOfPoints() > 0)
+      {
+        const Input input(map, this);
+        const auto plan = lacuna::PlanDefectModel(input.Scene, input.Options);
+        extent[1] = static_cast<int>(plan.Size.Columns) - 1;
+        extent[3] = static_cast<int>(plan.Size.Rows) - 1;
+        extent[5] = 0;
+      }
+      outputVector->GetInformationObject(1)->Set(
+        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+  vtkPolyData* solid = vtkPolyData::GetData(outputVector, 0);
+  vtkStructuredGrid* top = vtkStructuredGrid::GetData(outputVector, 1);
+  // VTK passes the map's, whose ImageToWorld is not of these
+  solid->GetFieldData()->Initialize();
+  top->GetFieldData()->Initialize();
+  int piece = 0;
+  for (int port = 0; port < 2; ++port)
+  {
+    piece = std::max(piece,
+      outputVector->GetInformationObject(port)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()));
+  }
+  if (!map || map->GetNumberOfPoints() == 0 || piece > 0)
+  {
+    return 1; // empty in, empty out; the model is one piece
+  }
+  const auto body = [&](vtkLacunaExecution& execution)
+  {
+    const Input input(map, this);
+    execution.SetStage(0, 0.1);
+    const lacuna::ReliefSurface surface(
+      execution, input.Scene.Size, input.Scene.Fitted, input.Scene.Spacing);
+    execution.SetStage(0.1, 1);
+    lacuna::DefectModel model;
+    {
+      const lacuna::Execution::NestedStages nested(execution);
+      model =
+        lacuna::MakeDefectModel(execution, input.Scene, surface, input.Options, input.ToWorld);
+    }
+    for (const std::string& warning : model.Warnings)
+    {
+      vtkWarningMacro(<< warning);
+    }
+    const lacuna::Vec2& spacing = input.Scene.Spacing;
+    const auto middle = [](std::int64_t first, std::int64_t from, std::int64_t count, double step)
+    { return step * (static_cast<double>(first - from) + 0.5 * static_cast<double>(count - 1)); };
+    // x as the map's, y up, z towards the viewer: half a turn about x
+    const lacuna::Matrix4 fromPress =
+      lacuna::Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 },
+        { middle(model.Column, input.Scene.Column, model.TopSize.Columns, spacing[0]),
+          middle(model.Row, input.Scene.Row, model.TopSize.Rows, spacing[1]), model.Highest });
+    SetMesh(solid, model, input.ToWorld);
+    SetTop(top, model, input.Scene, fromPress.Inverse());
+
+    lacuna::ParameterText parameters;
+    parameters.Add("Margin", this->Margin)
+      .Add("FloorShape", this->FloorShape)
+      .Add("DefectDepth", this->DefectDepth)
+      .Add("BaseThickness", this->BaseThickness)
+      .Add("MaximumHeight", this->MaximumHeight);
+    const lacuna::Matrix4 toPatient = input.ToWorld * fromPress;
+    for (vtkDataObject* output :
+      { static_cast<vtkDataObject*>(solid), static_cast<vtkDataObject*>(top) })
+    {
+      vtkLacunaFieldData::SetMatrices(output, PressToPatientName, { toPatient });
+      vtkLacunaFieldData::Set(output, "BlockSize",
+        { spacing[0] * static_cast<double>(model.TopSize.Columns - 1),
+          spacing[1] * static_cast<double>(model.TopSize.Rows - 1), model.Bottom - model.Highest },
+        3);
+      vtkLacunaFieldData::Set(output, "FloorHeight", { model.Highest - model.Base }, 1);
+      vtkLacunaFieldData::Set(output, "Volume", { model.Volume }, 1);
+      vtkLacunaFieldData::Set(output, "DefectCount", { static_cast<double>(model.Defects) }, 1);
+      vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
+    }
+  };
+  return vtkLacunaExecution::Run(this, outputVector, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaDefectModel::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Margin: " << this->Margin << "\n";
+  os << indent << "FloorShape: " << this->FloorShape << "\n";
+  os << indent << "DefectDepth: " << this->DefectDepth << "\n";
+  os << indent << "BaseThickness: " << this->BaseThickness << "\n";
+  os << indent << "MaximumHeight: " << this->MaximumHeight << "\n";
+}
