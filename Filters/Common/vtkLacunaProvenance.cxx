@@ -4,6 +4,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkFieldData.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
@@ -114,6 +115,10 @@ void Record(vtkDataObject* output, vtkObjectBase* algorithm,
     array->InsertNextValue(s);
   }
   output->GetFieldData()->AddArray(array);
+  if (!inputs.empty() && inputs.front() != output)
+  {
+    vtkLacunaMirrored::Pass(inputs.front(), output);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaMirror.h"
+
+#include "lacunaMapSymmetry.h"
+#include "lacunaMirroredVolume.h"
+#include "lacunaParameterText.h"
+#include "lacunaVolumeSymmetry.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaMirrored.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaMirror);
+
+namespace
+{
+constexpr const char* AsymmetryName = "Asymmetry";
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+template <class Array, class T>
+vtkSmartPointer<Array> MakeArray(
+  const std::string& name, const std::vector<T>& values, int components = 1)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  std::copy(values.begin(), values.end(), array->GetPointer(0));
+  return array;
+}
+
+bool IsDepthMap(vtkImageData* image)
+{
+  return image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName) &&
+    image->GetFieldData()->GetArray(vtkLacunaDepthMap::ImageToWorldName);
+}
+
+// One component per point in plain memory; copies what is not so into keep.
+vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array;
+  }
+  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  keep->DeepCopy(array);
+  return keep;
+}
+
+vtkDataArray* GetMask(vtkImageData* image)
+{
+  vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
+  if (mask && mask->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(
+      std::string("point array '") + vtkLacunaDepthMap::MaskName + "' must have one component");
+  }
+  return mask;
+}
+
+std::string Rounded(double value)
+{
+  return lacuna::FormatNumber(std::round(1000 * value) / 1000);
+}
+}
+
+//------------------------------------------------------------------------------
+class vtkLacunaMirror::Internals
+{
+public:
+  // What is found of the data, and the outcome.
+  struct Result
+  {
+    lacuna::MirrorPlane Plane;
+    bool IsFound = false; ///< and not given
+    double Ambiguity = 0;
+    double Score = 0;
+    double Overlap = 0;
+    double RMS = 0;
+    double Median = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  template <class Data>
+  static void ChoosePlane(
+    vtkLacunaMirror* self, const Data& data, Result& result, vtkLacunaExecution& execution)
+  {
+    execution.SetStage(0, 0.5);
+    if (self->PlaneMethod == BestSymmetry)
+    {
+      const lacuna::SymmetryResult found = FindSymmetryPlane(data, execution);
+      result.Plane = found.Plane;
+      result.Ambiguity = found.Ambiguity;
+      result.IsFound = true;
+    }
+    else
+    {
+      const lacuna::Vec3 normal{ self->Normal[0], self->Normal[1], self->Normal[2] };
+      const lacuna::Vec3 origin{ self->Origin[0], self->Origin[1], self->Origin[2] };
+      if (!IsFinite(normal) || !IsFinite(origin) || !(Norm(normal) > 0))
+      {
+        throw std::runtime_error("Origin and Normal must be numbers, and Normal not 0 0 0");
+      }
+      result.Plane.Normal = Normalized(normal);
+      result.Plane.Offset = Dot(result.Plane.Normal, origin);
+    }
+    // one of both ways to write the same plane
+    const lacuna::Vec3& n = result.Plane.Normal;
+    int largest = 0;
+    for (int a = 1; a < 3; ++a)
+    {
+      largest = std::abs(n[a]) > std::abs(n[largest]) ? a : largest;
+    }
+    if (n[largest] < 0)
+    {
+      result.Plane = { -1 * n, -result.Plane.Offset };
+    }
+    execution.SetStage(0.5, 1);
+  }
+
+  static void MirrorVolume(
+    vtkLacunaMirror* self, vtkImageData* output, Result& result, vtkLacunaExecution& execution)
+  {
+    vtkDataArray* scalars = output->GetPointData()->GetScalars();
+    if (!scalars || scalars->GetNumberOfComponents() != 1)
+    {
+      throw std::runtime_error("the image has no active point scalars with one component; colours "
+                               "and vectors cannot be mirrored");
+    }
+    lacuna::MaskedVolume given;
+    vtkSmartPointer<vtkDataArray> keep;
+    given.Volume.Type = vtkLacunaScalarType::Get(scalars);
+    given.Volume.Voxels = GetPlain(scalars, keep)->GetVoidPointer(0);
+    output->GetDimensions(given.Volume.Size.data());
+    const int* extent = output->GetExtent();
+    given.Volume.IndexToWorld = lacuna::Matrix4(output->GetIndexToPhysicalMatrix()->GetData()) *
+      lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+        static_cast<double>(extent[4]) });
+    if (vtkDataArray* mask = GetMask(output))
+    {
+      given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
+      for (std::size_t i = 0; i < given.Valid.size(); ++i)
+      {
+        given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+      }
+    }
+    ChoosePlane(self, given, result, execution);
+    const lacuna::MirroredVolume mirrored = lacuna::MirrorVolume(given, result.Plane,
+      static_cast<lacuna::MirrorInterpolation>(self->Interpolation), execution);
+    if (mirrored.Overlap == 0)
+    {
+      throw std::runtime_error("no valid voxel has its mirror image within the volume: the plane "
+                               "does not pass through the data");
+    }
+    result.Score = mirrored.Score;
+    result.Overlap = mirrored.Overlap;
+    result.RMS = mirrored.RMS;
+
+    vtkSmartPointer<vtkDataArray> image;
+    image.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+    image->SetName(
+      (std::string("Mirrored") + (scalars->GetName() ? scalars->GetName() : "")).c_str());
+    image->SetNumberOfTuples(static_cast<vtkIdType>(mirrored.Valid.size()));
+    std::memcpy(image->GetVoidPointer(0), mirrored.Voxels.data(), mirrored.Voxels.size());
+    vtkPointData* points = output->GetPointData();
+    points->Initialize();
+    points->SetScalars(image);
+    points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, mirrored.Valid));
+    points->AddArray(MakeArray<vtkFloatArray>(AsymmetryName, mirrored.Asymmetry));
+  }
+
+  static void MirrorMap(
+    vtkLacunaMirror* self, vtkImageData* output, Result& result, vtkLacunaExecution& execution)
+  {
+    const vtkLacunaDepthMap contract(output);
+    if (contract.IsPerspective())
+    {
+      throw std::runtime_error("this is a perspective depth map; only parallel ones are mirrored");
+    }
+    std::vector<double> depth(static_cast<std::size_t>(output->GetNumberOfPoints()));
+    vtkDataArray* mask = GetMask(output);
+    for (std::size_t i = 0; i < depth.size(); ++i)
+    {
+      const auto p = static_cast<vtkIdType>(i);
+      depth[i] = !mask || mask->GetComponent(p, 0) != 0 ? contract.GetDepth()->GetComponent(p, 0)
+                                                        : std::numeric_limits<double>::quiet_NaN();
+    }
+    std::vector<float> normals;
+    if (vtkDataArray* array = output->GetPointData()->GetArray(vtkLacunaDepthMap::NormalsName))
+    {
+      if (array->GetNumberOfComponents() != 3)
+      {
+        throw std::runtime_error(std::string("point array '") + vtkLacunaDepthMap::NormalsName +
+          "' of the depth map must have three components");
+      }
+      for (vtkIdType i = 0; i < 3 * output->GetNumberOfPoints(); ++i)
+      {
+        normals.push_back(static_cast<float>(array->GetComponent(i / 3, static_cast<int>(i % 3))));
+      }
+    }
+    lacuna::DepthGrid grid;
+    grid.Depth = depth.data();
+    std::copy_n(output->GetExtent(), 4, grid.Extent.begin());
+    grid.ImageToWorld = contract.GetImageToWorld();
+    ChoosePlane(self, grid, result, execution);
+    const lacuna::MirroredMap mirrored = lacuna::MirrorMap(
+      grid, normals.empty() ? nullptr : normals.data(), result.Plane, {}, execution);
+    if (mirrored.Overlap == 0)
+    {
+      throw std::runtime_error("nowhere is the mirrored surface seen beside the given one: this "
+                               "view does not show both sides of the plane. Cast the map along "
+                               "the plane, or mirror the volume and cast that");
+    }
+    result.Score = mirrored.Score;
+    result.Overlap = mirrored.Overlap;
+    result.RMS = mirrored.RMS;
+    result.Median = mirrored.Median;
+
+    std::vector<char> valid(depth.size());
+    std::transform(mirrored.Depth.begin(), mirrored.Depth.end(), valid.begin(),
+      [](double d) { return static_cast<char>(!std::isnan(d)); });
+    vtkPointData* points = output->GetPointData();
+    points->Initialize();
+    points->SetScalars(MakeArray<vtkDoubleArray>(vtkLacunaDepthMap::DepthName, mirrored.Depth));
+    points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, valid));
+    if (!mirrored.Normals.empty())
+    {
+      points->SetNormals(
+        MakeArray<vtkFloatArray>(vtkLacunaDepthMap::NormalsName, mirrored.Normals, 3));
+    }
+    points->AddArray(MakeArray<vtkDoubleArray>(AsymmetryName, mirrored.Asymmetry));
+  }
+
+  // Says where the symmetry is not what one would want.
+  static void Warn(vtkLacunaMirror* self, const Result& result)
+  {
+    if (!(result.Score >= PoorScore))
+    {
+      vtkWarningWithObjectMacro(self,
+        << "the symmetry is poor: the score is " << Rounded(result.Score)
+        << " (1 is perfect). Look at Asymmetry before the mirrored data are used for anything");
+    }
+    if (result.IsFound && result.Ambiguity > HighAmbiguity)
+    {
+      vtkWarningWithObjectMacro(
+        self, << "the plane of symmetry is ambiguous: another one is nearly as "
+              << "good (SymmetryAmbiguity is " << Rounded(result.Ambiguity)
+              << "; 1 is equal). Look at the plane, and give it if this is not the one");
+    }
+  }
+
+  // The point of the plane nearest to the middle of the data.
+  static lacuna::Vec3 OriginOf(vtkImageData* image, const lacuna::MirrorPlane& plane)
+  {
+    lacuna::Vec3 center{ 0, 0, 0 };
+    image->GetCenter(center.data());
+    return center - plane.Distance(center) * plane.Normal;
+  }
+
+  static void MakeSquare(vtkImageData* image, const lacuna::MirrorPlane& plane, vtkPolyData* square)
+  {
+    const lacuna::Vec3 origin = OriginOf(image, plane);
+    const lacuna::Vec3& n = plane.Normal;
+    lacuna::Vec3 axis{ 0, 0, 0 };
+    axis[std::abs(n[2]) < 0.9 ? 2 : 1] = 1;
+    const lacuna::Vec3 u = Normalized(Cross(axis, n));
+    const lacuna::Vec3 v = Cross(n, u);
+    const double half = image->GetLength() / 2;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const auto& corner : { lacuna::Vec2{ -1, -1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } })
+    {
+      const lacuna::Vec3 p = origin + (half * corner[0]) * u + (half * corner[1]) * v;
+      points->InsertNextPoint(p.data());
+    }
+    vtkNew<vtkCellArray> cells;
+    cells->InsertNextCell({ 0, 1, 2, 3 });
+    square->SetPoints(points);
+    square->SetPolys(cells);
+  }
+
+  static void AddFieldData(vtkDataObject* data, const Result& result)
+  {
+    vtkLacunaFieldData::Set(data, "SymmetryScore", { result.Score }, 1);
+    vtkLacunaFieldData::Set(data, "SymmetryOverlap", { result.Overlap }, 1);
+    if (result.IsFound)
+    {
+      vtkLacunaFieldData::Set(data, "SymmetryAmbiguity", { result.Ambiguity }, 1);
+    }
+    vtkLacunaFieldData::Set(data, "AsymmetryRMS", { result.RMS }, 1);
+    if (!std::isnan(result.Median))
+    {
+      vtkLacunaFieldData::Set(data, "AsymmetryMedian", { result.Median }, 1);
+    }
+  }
+};
+
+//------------------------------------------------------------------------------
+vtkLacunaMirror::vtkLacunaMirror()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMirror::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  // Any voxel may be the image of any other, and the plane depends on all.
+  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMirror::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+  if (!input || input->GetNumberOfPoints() == 0)
+  {
+    return 1; // empty in, empty out
+  }
+  const auto body = [&](vtkLacunaExecution& execution)
+  {
+    if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+    {
+      throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
+        "; it must be 0 (BestSymmetry) or 1 (Given)");
+    }
+    if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+    {
+      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+        "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+    }
+    if (vtkLacunaMirrored::IsMarked(input))
+    {
+      throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
+                               "the original");
+    }
+    vtkNew<vtkImageData> whole;
+    whole->ShallowCopy(input);
+    whole->GetCellData()->Initialize();
+    Internals::Result result;
+    const bool isMap = IsDepthMap(input);
+    (isMap ? Internals::MirrorMap : Internals::MirrorVolume)(this, whole, result, execution);
+    Internals::Warn(this, result);
+
+    const lacuna::Vec3 origin = Internals::OriginOf(input, result.Plane);
+    lacuna::ParameterText parameters;
+    parameters.Add("PlaneMethod", this->PlaneMethod)
+      .Add("Origin", origin.Elements)
+      .Add("Normal", result.Plane.Normal.Elements);
+    if (!isMap)
+    {
+      parameters.Add("Interpolation", this->Interpolation);
+    }
+    vtkPolyData* plane = vtkPolyData::GetData(outputVector, 1);
+    Internals::MakeSquare(input, result.Plane, plane);
+    for (vtkDataObject* data :
+      { static_cast<vtkDataObject*>(whole), static_cast<vtkDataObject*>(plane) })
+    {
+      Internals::AddFieldData(data, result);
+      vtkLacunaProvenance::Record(data, this, { input }, parameters.Get());
+    }
+    vtkLacunaMirrored::Mark(whole, origin, result.Plane.Normal);
+    vtkImageData* output = vtkImageData::GetData(outputVector, 0);
+    output->ShallowCopy(whole);
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    if (info->Has(SDDP::UPDATE_EXTENT()))
+    {
+      int piece[6];
+      info->Get(SDDP::UPDATE_EXTENT(), piece);
+      output->Crop(piece);
+    }
+  };
+  return vtkLacunaExecution::Run(this, outputVector, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMirror::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "PlaneMethod: " << this->PlaneMethod << "\n";
+  os << indent << "Origin: " << this->Origin[0] << " " << this->Origin[1] << " " << this->Origin[2]
+     << "\n";
+  os << indent << "Normal: " << this->Normal[0] << " " << this->Normal[1] << " " << this->Normal[2]
+     << "\n";
+  os << indent << "Interpolation: " << this->Interpolation << "\n";
+}
