@@ -4,6 +4,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -62,6 +63,14 @@ vtkLacunaFittedPart::vtkLacunaFittedPart(vtkImageData* map, const std::string& p
   {
     throw std::runtime_error("this is a perspective depth map; " + purpose +
       " needs a parallel one, filled by RBF Hole Filler");
+  }
+  if (vtkLacunaMirrored::IsMarked(map))
+  {
+    throw std::runtime_error("the depth map is a mirror image (field data Mirrored), so " +
+      purpose +
+      " made from it would not fit the patient; use Mirror's output as a pattern only, and fill "
+      "the "
+      "patient's own map");
   }
   vtkDataArray* fitted = GetArray(map, vtkLacunaDepthMap::FittedName);
   vtkDataArray* filled = GetArray(map, vtkLacunaDepthMap::FilledMaskName);

@@ -27,8 +27,8 @@ struct vtkLacunaFittedPart
   lacuna::Matrix4 ToWorld;
 
   /// Throws std::runtime_error, in words for the user, when map is not a parallel depth map with
-  /// Fitted and FilledMask, Fitted is not a complete rectangle, nothing is filled, or the map's axes
-  /// are not right-handed and perpendicular. purpose: what needs the map, "a mould".
+  /// Fitted and FilledMask, is marked as a mirror image (vtkLacunaMirrored), Fitted is not a complete
+  /// rectangle, nothing is filled, or the map's axes are not right-handed and perpendicular. purpose: what needs the map, "a mould".
   vtkLacunaFittedPart(vtkImageData* map, const std::string& purpose);
 };
 #endif

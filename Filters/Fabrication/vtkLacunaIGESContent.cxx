@@ -67,23 +67,6 @@ bool IsSame(const lacuna::Matrix4& a, const lacuna::Matrix4& b)
   return std::equal(a.Data(), a.Data() + 16, b.Data());
 }
 
-bool IsMirrored(vtkDataObject* data)
-{
-  vtkAbstractArray* array = data->GetFieldData()->GetAbstractArray("Mirrored");
-  if (!array)
-  {
-    return false;
-  }
-  for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
-  {
-    if (array->GetVariantValue(i).ToString() != "0")
-    {
-      return true;
-    }
-  }
-  return array->GetNumberOfValues() == 0; // marked, but not how
-}
-
 //------------------------------------------------------------------------------
 using Path = std::vector<vtkIdType>;
 
@@ -224,11 +207,18 @@ void vtkLacunaIGESContent::Collect(vtkDataObject* data, const std::string& name,
   else if (data && !(nested && data->GetNumberOfElements(vtkDataObject::POINT) == 0))
   {
     this->Items.push_back({ data, name, FindPressToPatient(data), {} });
-    if (!this->Settings.AllowMirrored && IsMirrored(data))
+    if (vtkLacunaMirrored::IsMarked(data))
     {
-      throw std::runtime_error((name.empty() ? "the input" : "block '" + name + "'") +
-        " is a mirror image of the patient (field data Mirrored): nothing made from it fits the "
-        "side it was taken from. Turn on AllowMirrored if the mirrored side is what you want");
+      const std::string what = (name.empty() ? "the input" : "block '" + name + "'") +
+        " is a mirror image of the patient (field data Mirrored)";
+      if (!this->Settings.AllowMirrored)
+      {
+        throw std::runtime_error(what +
+          ": nothing made from it fits the side it was taken from. "
+          "Turn on AllowMirrored if the mirrored side is what you want");
+      }
+      this->Warnings.push_back(what + "; the file says so, too");
+      this->Description.push_back("MIRROR IMAGE, left is right: " + what + ".");
     }
   }
 }
