@@ -12,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"

@@ -44,6 +44,12 @@ Vec3 ReliefSurface::GetPoint(const Vec2& p) const
 //------------------------------------------------------------------------------
 ReliefSurface::Frame ReliefSurface::GetFrame(const Vec2& p) const
 {
+  return MakeFrame(p, this->GetDerivatives(p));
+}
+
+//------------------------------------------------------------------------------
+ReliefSurface::Derivatives ReliefSurface::GetDerivatives(const Vec2& p) const
+{
   const double u = p[0] / this->Spacing[0];
   const double v = p[1] / this->Spacing[1];
   const auto derivative = [&](int i, int j)
@@ -59,25 +65,27 @@ ReliefSurface::Frame ReliefSurface::GetFrame(const Vec2& p) const
     }
     return value;
   };
-  const double fx = derivative(1, 0);
-  const double fy = derivative(0, 1);
-  const double fxx = derivative(2, 0);
-  const double fxy = derivative(1, 1);
-  const double fyy = derivative(0, 2);
-  const double w2 = 1 + fx * fx + fy * fy;
+  return { derivative(0, 0), derivative(1, 0), derivative(0, 1), derivative(2, 0), derivative(1, 1),
+    derivative(0, 2) };
+}
+
+//------------------------------------------------------------------------------
+ReliefSurface::Frame ReliefSurface::MakeFrame(const Vec2& p, const Derivatives& f)
+{
+  const double w2 = 1 + f.X * f.X + f.Y * f.Y;
   const double w = std::sqrt(w2);
   Frame frame;
-  frame.Point = { p[0], p[1], derivative(0, 0) };
-  frame.AlongX = { 1, 0, fx };
-  frame.AlongY = { 0, 1, fy };
-  frame.Normal = { fx / w, fy / w, -1 / w };
-  const double wx = (fx * fxx + fy * fxy) / w;
-  const double wy = (fx * fxy + fy * fyy) / w;
-  frame.NormalAlongX = (1 / w) * (Vec3{ fxx, fxy, 0 } - wx * frame.Normal);
-  frame.NormalAlongY = (1 / w) * (Vec3{ fxy, fyy, 0 } - wy * frame.Normal);
+  frame.Point = { p[0], p[1], f.F };
+  frame.AlongX = { 1, 0, f.X };
+  frame.AlongY = { 0, 1, f.Y };
+  frame.Normal = { f.X / w, f.Y / w, -1 / w };
+  const double wx = (f.X * f.XX + f.Y * f.XY) / w;
+  const double wy = (f.X * f.XY + f.Y * f.YY) / w;
+  frame.NormalAlongX = (1 / w) * (Vec3{ f.XX, f.XY, 0 } - wx * frame.Normal);
+  frame.NormalAlongY = (1 / w) * (Vec3{ f.XY, f.YY, 0 } - wy * frame.Normal);
   const double mean =
-    ((1 + fy * fy) * fxx - 2 * fx * fy * fxy + (1 + fx * fx) * fyy) / (2 * w2 * w);
-  const double gauss = (fxx * fyy - fxy * fxy) / (w2 * w2);
+    ((1 + f.Y * f.Y) * f.XX - 2 * f.X * f.Y * f.XY + (1 + f.X * f.X) * f.YY) / (2 * w2 * w);
+  const double gauss = (f.XX * f.YY - f.XY * f.XY) / (w2 * w2);
   const double half = std::sqrt(std::max(0.0, mean * mean - gauss));
   frame.Curvatures[0] = -mean - half;
   frame.Curvatures[1] = -mean + half;

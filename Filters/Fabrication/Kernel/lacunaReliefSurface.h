@@ -44,6 +44,19 @@ public:
   /// The depth at p of the offset surface level mm towards the viewer. Returns false where that
   /// surface folds or does not reach.
   bool FindOffsetDepth(const Vec2& p, double level, double& depth) const;
+  /// f and its partial derivatives at a point.
+  struct Derivatives
+  {
+    double F;
+    double X;
+    double Y;
+    double XX;
+    double XY;
+    double YY;
+  };
+  Derivatives GetDerivatives(const Vec2& p) const;
+  /// The geometry of any surface z = f(x, y).
+  static Frame MakeFrame(const Vec2& p, const Derivatives& f);
 
 private:
   BSplineSurface Surface;

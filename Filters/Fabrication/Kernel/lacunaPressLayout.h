@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the mould for pressing a plate lies, from a fitted relief.
+#ifndef lacunaPressLayout_h
+#define lacunaPressLayout_h
+
+#include "lacunaLevelledRelief.h"
+#include "lacunaPlanarCurves.h"
+#include "lacunaPressFrame.h"
+#include "lacunaReliefSurface.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+class Execution;
+
+/// The tool that a plate is pressed with.
+enum class PressMould
+{
+  Female, ///< a cavity: the plate's convex face lies in it
+  Male    ///< a boss: the plate's concave face lies on it
+};
+
+/// How the plate lies in the patient.
+enum class PlateSeating
+{
+  Onlay, ///< on the surface: that is its inner face
+  Inlay  ///< level with the surface: that is its outer face
+};
+
+/// Where the surface bulges to.
+enum class ConvexSide
+{
+  Automatic, ///< measured: the sign of the mean curvature over the defect
+  Outward,   ///< towards the viewer of the relief
+  Inward
+};
+
+struct PressOptions
+{
+  PressMould Mould = PressMould::Female;
+  PlateSeating Seating = PlateSeating::Onlay;
+  ConvexSide Convex = ConvexSide::Automatic;
+  double PlateThickness = 0.7; ///< mm, > 0
+  double PlateMargin = 5;      ///< mm around the defect where the surface is kept, >= 0
+  double FlangeWidth = 15;     ///< mm over which the surface goes over into the press plane, > 0
+  /// mm, of the block along x, y and z; 0: as small as it takes.
+  Vec3 BlockSize{};
+  double Spacing = 0.5; ///< mm between nodes, > 0
+};
+
+/// What is left under a cavity or a boss when the block's height is left open, mm.
+constexpr double BlockFloor = 10;
+
+/// Where the mould lies and how large it is.
+struct PressLayout
+{
+  PressFrame Frame;
+  PressSide Side = PressSide::IntoBody;
+  bool ConvexOutward = true;
+  /// mm from the relief's surface towards its viewer, of the plate's face on the mould.
+  double Offset = 0;
+  /// Whether the mill sees every point of the plate and the flange. Without that there is no mould.
+  bool SingleValued = true;
+  /// Where the surface turns away from the mill most, in the relief's coordinates, and its angle
+  /// from the press plane there, degrees (above 90: an undercut).
+  Vec3 SteepestPoint{};
+  double SteepestAngle = 0;
+  /// Corners of the part of the relief that is kept; beyond, it is levelled.
+  Vec2 CoreLow{};
+  Vec2 CoreHigh{};
+  Vec2 Slopes{}; ///< of the plane
+  /// Points of the levelled relief, and where their offsets come to lie in the press plane.
+  PlanarGrid Samples;
+  std::vector<Vec2> Images;
+  std::vector<Loop> Outlines; ///< of the defects in the press plane (bone islands filled)
+  /// Nodes Origin + Spacing * (i, j), in the axes of the frame about the relief's origin.
+  PlanarGrid Grid;
+  Vec3 BlockSize{}; ///< z only when given
+};
+
+/// Throws std::invalid_argument when an option is out of range, and std::runtime_error that names the
+/// place when the surface bends so much that its offset would fold, the flange leaves the relief, or
+/// the block is too small. mask: one per sample of the relief, not 0 in the defect. toWorld serves to
+/// name places.
+PressLayout PlanPress(Execution& execution, const ReliefSurface& surface, GridSize size,
+  const Vec2& spacing, const std::vector<unsigned char>& mask, const Vec3& normal,
+  const PressOptions& options, const Matrix4& toWorld = {});
+
+/// A place in words, after a transform: "(1.5, -20.0, 33.1)".
+std::string FormatPlace(const Matrix4& toWorld, const Vec3& p);
+
+/// Throws the error of an offset that folds at a point of the relief.
+[[noreturn]] void ThrowFold(const Vec3& point, const PressOptions& options, const Matrix4& toWorld);
+
+/// The offset of a levelled relief seen from the mill.
+class PressView
+{
+public:
+  PressView(const ReliefSurface& surface, const PressLayout& layout)
+    : Surface(surface, layout.Slopes, layout.CoreLow, layout.CoreHigh)
+    , Rotation(layout.Frame.Rotation)
+    , Offset(layout.Offset)
+    , Sign(layout.Side == PressSide::IntoBody ? -1 : 1)
+  {
+  }
+
+  struct Sample
+  {
+    Vec3 Point;  ///< in the axes of the frame about the relief's origin
+    Vec3 AlongX; ///< its derivatives by the relief's x and y
+    Vec3 AlongY;
+    Vec3 Normal; ///< unit, out of the mould
+    /// The least ratio of lengths on the offset and on the relief; 0 or less where it folds.
+    double Stretch;
+  };
+  Sample Get(const Vec2& foot) const;
+  /// The point of the levelled relief.
+  Vec3 GetPoint(const Vec2& foot) const { return this->Surface.GetFrame(foot).Point; }
+
+private:
+  LevelledRelief Surface;
+  Matrix4 Rotation;
+  double Offset;
+  double Sign;
+};
+
+/// Offsets that shrink lengths to less than this are taken to fold.
+constexpr double LeastStretch = 0.02;
+}
+#endif

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TestSurfaces.h"
+#include "lacunaCheck.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkLacunaPressOrientation.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <functional>
+
+namespace
+{
+using lacuna::Matrix4;
+using lacuna::Vec3;
+
+// A thick letter F, upright as the viewer sees it; x, y in mm from the middle of the map.
+bool IsLetter(double x, double y)
+{
+  return (x > -8 && x < -3 && y > -10 && y < 10) || (x >= -3 && x < 8 && y > -10 && y < -5.5) ||
+    (x >= -3 && x < 4 && y > -2 && y < 2.5);
+}
+
+// The map of TestSurfaces with the letter as filled defect.
+vtkSmartPointer<vtkImageData> FilledMap(const vtkLacunaDepthMap::Geometry& geometry,
+  const std::function<bool(double, double)>& inside = IsLetter)
+{
+  auto map = TestSurfaces::Map(geometry, true);
+  vtkNew<vtkCharArray> filled;
+  filled->SetName(vtkLacunaDepthMap::FilledMaskName);
+  for (int j = -3; j <= 66; ++j)
+  {
+    for (int i = 5; i <= 94; ++i)
+    {
+      filled->InsertNextValue(inside(0.5 * (i - 49), 0.75 * (j - 30)));
+    }
+  }
+  map->GetPointData()->AddArray(filled);
+  const Vec3 normal = lacuna::Normalized({ 0.1, -0.2, -1 });
+  vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+  return map;
+}
+
+double GetField(vtkDataObject* data, const char* name, int component = 0)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  return array && array->GetNumberOfTuples() == 1 ? array->GetComponent(0, component)
+                                                  : TestSurfaces::NaN;
+}
+
+Matrix4 GetPressToPatient(vtkDataObject* data)
+{
+  return vtkLacunaFieldData::GetMatrix(
+    vtkLacunaFieldData::Get(data, vtkLacunaPressOrientation::PressToPatientName, 16, 1), 0);
+}
+
+vtkSmartPointer<vtkLacunaPressOrientation> MakeFilter(vtkImageData* map)
+{
+  auto filter = vtkSmartPointer<vtkLacunaPressOrientation>::New();
+  filter->SetInputData(map);
+  filter->SetPlateMargin(0.5);
+  filter->SetFlangeWidth(8);
+  return filter;
+}
+
+// The mould goes back to where the surface is in the patient, and the letter with it, wherever the
+// viewer stands.
+void TestPlace()
+{
+  const Vec3 views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, -2, 0.5 } };
+  int turn = 0;
+  for (const Vec3& view : views)
+  {
+    const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
+    const auto filter = MakeFilter(FilledMap(geometry));
+    filter->SetOutputSpacing(0.5);
+    for (const int mould : { 0, 1 })
+    {
+      // the fitted surface itself is the plate's outer (female) and inner face (male)
+      filter->SetMould(mould);
+      filter->SetSeating(mould == 0 ? 1 : 0);
+      filter->Update();
+      vtkStructuredGrid* grid = filter->GetOutput();
+      const Matrix4 back = GetPressToPatient(grid);
+      LACUNA_CHECK_NEAR(back.Determinant3(), 1, 1e-14);
+      LACUNA_CHECK_NEAR(GetField(grid, "SingleValued"), 1, 0);
+      LACUNA_CHECK_NEAR(GetField(grid, "SurfaceOffset"), 0, 0);
+      LACUNA_CHECK_NEAR(GetField(grid, "Outward"), 1, 0);
+      // the plane that the map reports lies flat, and the mill is on the plate's side of the mould
+      const Vec3 normal =
+        lacuna::Normalized(0.1 * geometry.Right + -0.2 * geometry.Down + -1.0 * geometry.View);
+      LACUNA_CHECK_NEAR(lacuna::Dot(back.Column(2), normal), mould == 0 ? -1 : 1, 1e-14);
+      auto* regions = vtkUnsignedCharArray::SafeDownCast(
+        grid->GetPointData()->GetArray(vtkLacunaPressOrientation::PressRegionName));
+      auto* defect = grid->GetPointData()->GetArray(vtkLacunaPressOrientation::DefectMaskName);
+      LACUNA_CHECK(regions && defect);
+      double off = 0;
+      int wrong = 0;
+      int count = 0;
+      for (vtkIdType k = 0; k < grid->GetNumberOfPoints(); ++k)
+      {
+        Vec3 p;
+        grid->GetPoint(k, p.data());
+        LACUNA_CHECK(mould == 0 ? p[2] <= 0 : p[2] >= 0);
+        const Vec3 q = back.Point(p) - geometry.Origin;
+        const double x = lacuna::Dot(q, geometry.Right) - 24.5;
+        const double y = lacuna::Dot(q, geometry.Down) - 22.5;
+        if (regions->GetValue(k) == 2)
+        {
+          off = std::max(off, std::abs(lacuna::Dot(q, geometry.View) - TestSurfaces::Depth(x, y)));
+        }
+        int corners = 0;
+        for (const double dx : { -0.3, 0.3 })
+        {
+          for (const double dy : { -0.45, 0.45 })
+          {
+            corners += IsLetter(x + dx, y + dy);
+          }
+        }
+        if (corners == 0 || corners == 4)
+        {
+          wrong += (defect->GetComponent(k, 0) != 0) != (corners == 4);
+          count += corners == 4;
+        }
+      }
+      LACUNA_CHECK_THAT(off < 2e-4, "off by " + std::to_string(1000 * off) + " um");
+      LACUNA_CHECK(wrong == 0 && count > 500);
+    }
+  }
+}
+
+// Where the surface is linear the mould is exact: on the plate's other face, parallel to it.
+void TestExactPlane()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  auto map = FilledMap(geometry);
+  vtkDataArray* fitted = map->GetPointData()->GetArray("Fitted");
+  for (vtkIdType k = 0; k < fitted->GetNumberOfTuples(); ++k)
+  {
+    if (std::isfinite(fitted->GetComponent(k, 0)))
+    {
+      fitted->SetComponent(k, 0, 30 + 0.1 * 0.5 * (5 + k % 90) - 0.2 * 0.75 * (k / 90 - 3));
+    }
+  }
+  const auto filter = MakeFilter(map);
+  filter->Update(); // Female, Onlay
+  vtkStructuredGrid* grid = filter->GetOutput();
+  const double rise = std::sqrt(1 + 0.01 + 0.04);
+  LACUNA_CHECK_NEAR(GetField(grid, "SurfaceOffset"), 0.7, 0);
+  LACUNA_CHECK_NEAR(GetField(grid, "Depth"), 1, 1e-12); // of the fillet, an eighth of the flange
+  const double degrees = 180 / 3.14159265358979323846;
+  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 0), degrees * std::atan(0.2 / std::sqrt(1.01)), 1e-12);
+  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 1), degrees * std::atan(0.1), 1e-12);
+  const Matrix4 back = GetPressToPatient(grid);
+  vtkDataArray* regions = grid->GetPointData()->GetArray("PressRegion");
+  double off = 0;
+  for (vtkIdType k = 0; k < grid->GetNumberOfPoints(); ++k)
+  {
+    if (regions->GetComponent(k, 0) != 2)
+    {
+      continue;
+    }
+    Vec3 p;
+    grid->GetPoint(k, p.data());
+    const Vec3 q = back.Point(p) - geometry.Origin;
+    const double height = 30 + 0.1 * lacuna::Dot(q, geometry.Right) -
+      0.2 * lacuna::Dot(q, geometry.Down) - lacuna::Dot(q, geometry.View);
+    off = std::max(off, std::abs(height / rise - 0.7));
+  }
+  LACUNA_CHECK_THAT(off < 1e-12, "off by " + std::to_string(1e6 * off) + " nm");
+  int dimensions[3];
+  grid->GetDimensions(dimensions);
+  LACUNA_CHECK_NEAR(GetField(grid, "BlockSize", 0), 0.5 * (dimensions[0] - 1), 1e-12);
+  LACUNA_CHECK_NEAR(GetField(grid, "BlockSize", 2), 11, 1e-9);
+}
+
+// What the pipeline is told, and what goes on with the grid.
+void TestPipeline()
+{
+  const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
+  auto map = FilledMap(geometry);
+  const auto filter = MakeFilter(map);
+  filter->Update();
+  int extent[6];
+  filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  int own[6];
+  filter->GetOutput()->GetExtent(own);
+  LACUNA_CHECK(std::equal(extent, extent + 6, own) && own[1] > 0 && own[4] == 0 && own[5] == 0);
+  const auto steps = vtkLacunaProvenance::Get(filter->GetOutput());
+  LACUNA_CHECK(!steps.empty() && steps.back().find("PlateMargin=0.5") != std::string::npos);
+  LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("ImageToWorld"));
+  // x runs fastest and both spacings are the same everywhere
+  for (vtkIdType k = 1; k < filter->GetOutput()->GetNumberOfPoints(); ++k)
+  {
+    double a[3];
+    double b[3];
+    filter->GetOutput()->GetPoint(k - 1, a);
+    filter->GetOutput()->GetPoint(k, b);
+    if (k % (own[1] + 1) != 0)
+    {
+      LACUNA_CHECK_NEAR(b[0] - a[0], 0.5, 1e-12);
+      LACUNA_CHECK_NEAR(b[1] - a[1], 0, 0);
+    }
+  }
+  // the size follows the properties
+  filter->SetBlockSize(60, 50, 30);
+  filter->SetOutputSpacing(1);
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 61 * 51);
+  // without the hole filler's plane
+  map->GetFieldData()->RemoveArray("PlaneNormal");
+  map->Modified();
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("least squares plane"));
+  auto* source = vtkStringArray::SafeDownCast(
+    filter->GetOutput()->GetFieldData()->GetAbstractArray("PlaneSource"));
+  LACUNA_CHECK(source && source->GetValue(0).find("least squares") != std::string::npos);
+  filter->SetInputData(vtkSmartPointer<vtkImageData>::New());
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0 && messages->Errors.empty());
+}
+
+// A plane that makes the surface overhang: no mould, and the view that mends it.
+void TestUndercut()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  auto map = FilledMap(geometry);
+  const Vec3 normal = lacuna::Normalized({ 4, 0, -1 });
+  vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+  const auto filter = MakeFilter(map);
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  vtkStructuredGrid* grid = filter->GetOutput();
+  LACUNA_CHECK(messages->Errors.empty());
+  LACUNA_CHECK(messages->HasWarning("ViewDirection"));
+  LACUNA_CHECK(grid->GetNumberOfPoints() == 0);
+  LACUNA_CHECK_NEAR(GetField(grid, "SingleValued"), 0, 0);
+  const Vec3 expected = lacuna::Normalized(-4.0 * geometry.Right + 1.0 * geometry.View);
+  for (int i = 0; i < 3; ++i)
+  {
+    LACUNA_CHECK_NEAR(GetField(grid, "SuggestedViewDirection", i), expected[i], 1e-12);
+  }
+  LACUNA_CHECK(lacuna::Dot(expected, geometry.View) > 0);
+  // and on again
+  vtkLacunaFieldData::Set(map, "PlaneNormal", { 0, 0, -1 }, 3);
+  map->Modified();
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+  LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SingleValued"), 1, 0);
+}
+
+void TestErrors()
+{
+  const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
+  const auto refuses = [](vtkImageData* map, const char* words,
+                         const std::function<void(vtkLacunaPressOrientation*)>& change)
+  {
+    const auto filter = MakeFilter(map);
+    const auto messages = lacunaCheck::Watch(filter);
+    change(filter);
+    filter->Update();
+    LACUNA_CHECK_CONTAINS(messages->Errors, words);
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+  };
+  const auto nothing = [](vtkLacunaPressOrientation*) {};
+  refuses(TestSurfaces::Map(geometry, false), "run RBF Hole Filler", nothing);
+  refuses(TestSurfaces::Map(geometry, true), "FilledMask", nothing);
+  refuses(FilledMap(geometry, [](double, double) { return false; }), "no defect", nothing);
+  refuses(
+    FilledMap(geometry, [](double x, double) { return x < 0; }), "Fitted is no number", nothing);
+  auto holed = FilledMap(geometry);
+  holed->GetPointData()->GetArray("Fitted")->SetComponent(90 * 15 + 20, 0, TestSurfaces::NaN);
+  refuses(holed, "Fitted has a hole at pixel 25, 12", nothing);
+  auto endless = FilledMap(geometry);
+  endless->GetPointData()->GetArray("Fitted")->SetComponent(
+    90 * 15 + 20, 0, std::numeric_limits<double>::infinity());
+  refuses(endless, "Fitted has a hole", nothing);
+  auto perspective = FilledMap(geometry);
+  vtkLacunaFieldData::Set(perspective, "EyePosition", { 0, 0, -500 }, 3);
+  vtkLacunaFieldData::Set(perspective, "ViewAngle", { 20 }, 1);
+  refuses(perspective, "perspective", nothing);
+  auto edge = FilledMap(geometry);
+  vtkLacunaFieldData::Set(edge, "PlaneNormal", { 1, 0, 0 }, 3);
+  refuses(edge, "stands on edge", nothing);
+  vtkLacunaFieldData::Set(edge, "PlaneNormal", { TestSurfaces::NaN, 0, -1 }, 3);
+  refuses(edge, "not a number", nothing);
+  vtkLacunaFieldData::Set(edge, "PlaneNormal", { 0, -1 }, 2);
+  refuses(edge, "PlaneNormal", nothing);
+  auto mirrored = FilledMap(
+    { geometry.Origin, -1.0 * geometry.Right, geometry.Down, geometry.View, { 0.5, 0.75 } });
+  refuses(mirrored, "mirror", nothing);
+  const auto map = FilledMap(geometry);
+  using Filter = vtkLacunaPressOrientation;
+  refuses(map, "Mould is 2", [](Filter* f) { f->SetMould(2); });
+  refuses(map, "Seating is -1", [](Filter* f) { f->SetSeating(-1); });
+  refuses(map, "ConvexSide is 3", [](Filter* f) { f->SetConvexSide(3); });
+  refuses(map, "PlateThickness is 0", [](Filter* f) { f->SetPlateThickness(0); });
+  refuses(map, "OutputSpacing is -1", [](Filter* f) { f->SetOutputSpacing(-1); });
+  refuses(map, "raise OutputMargin", [](Filter* f) { f->SetPlateMargin(5); });
+  refuses(map, "BlockSize is 10", [](Filter* f) { f->SetBlockSize(10, 0, 0); });
+  refuses(map, "BlockSize is nan", [](Filter* f) { f->SetBlockSize(0, TestSurfaces::NaN, 0); });
+  refuses(map, "BlockSize is 0.5", [](Filter* f) { f->SetBlockSize(0, 0, 0.5); });
+  refuses(map, "FlangeWidth is inf",
+    [](Filter* f) { f->SetFlangeWidth(std::numeric_limits<double>::infinity()); });
+  // the bump is rounder than that
+  refuses(FilledMap(geometry, [](double x, double y) { return std::hypot(x, y) < 4; }),
+    "radius below PlateThickness",
+    [](Filter* f)
+    {
+      f->SetMould(Filter::Male);
+      f->SetSeating(Filter::Inlay);
+      f->SetPlateThickness(20);
+    });
+}
+}
+
+int TestPressOrientation(int, char*[])
+{
+  TestPlace();
+  TestExactPlane();
+  TestPipeline();
+  TestUndercut();
+  TestErrors();
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaPressOrientation.h"
+
+#include "lacunaParameterText.h"
+#include "lacunaPressSurface.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkCharArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaFittedPart.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaPressOrientation);
+
+namespace
+{
+constexpr const char* PlaneNormalName = "PlaneNormal";
+constexpr double Degrees = 180 / 3.14159265358979323846;
+constexpr double CoarsestSpacing = 1; // mm, when OutputSpacing is left to the filter
+
+void CheckChoice(const char* name, int value, int count, const char* choices)
+{
+  if (value < 0 || value >= count)
+  {
+    throw std::runtime_error(
+      std::string(name) + " is " + std::to_string(value) + "; it must be " + choices);
+  }
+}
+
+std::vector<double> ToVector(const lacuna::Vec3& v)
+{
+  return { v[0], v[1], v[2] };
+}
+}
+
+//------------------------------------------------------------------------------
+// What is decided before the nodes are found.
+class vtkLacunaPressOrientation::Plan
+{
+public:
+  Plan(lacuna::Execution& execution, vtkLacunaPressOrientation* self, vtkImageData* map)
+    : Options(GetOptions(self))
+    , Part(map, "a mould")
+    , Surface(execution, this->Part.Size, this->Part.Depths, this->Part.Spacing)
+  {
+    if (this->Options.Spacing == 0)
+    {
+      this->Options.Spacing =
+        std::min({ this->Part.Spacing[0], this->Part.Spacing[1], CoarsestSpacing });
+    }
+    lacuna::Vec3 normal;
+    if (vtkDataArray* given = vtkLacunaFieldData::Find(map, PlaneNormalName, 3, 1))
+    {
+      given->GetTuple(0, normal.data());
+    }
+    else
+    {
+      this->HasPlane = false;
+      normal = lacuna::FitPlaneNormal(this->Part.Size, this->Part.Depths, this->Part.Spacing);
+    }
+    this->Layout = lacuna::PlanPress(execution, this->Surface, this->Part.Size, this->Part.Spacing,
+      this->Part.Mask, normal, this->Options, this->Part.ToWorld);
+  }
+
+  lacuna::PressSurface Make(lacuna::Execution& execution) const
+  {
+    return lacuna::MakePressSurface(execution, this->Surface, this->Part.Size, this->Part.Spacing,
+      this->Part.Mask, this->Layout, this->Options, this->Part.ToWorld);
+  }
+
+  // Columns and rows of the output, 0 without a mould.
+  int GetColumns() const { return static_cast<int>(this->Layout.Grid.Columns); }
+  int GetRows() const { return static_cast<int>(this->Layout.Grid.Rows); }
+
+  lacuna::PressOptions Options;
+  vtkLacunaFittedPart Part;
+  lacuna::ReliefSurface Surface;
+  bool HasPlane = true; // from the hole filler
+  lacuna::PressLayout Layout;
+
+private:
+  static lacuna::PressOptions GetOptions(vtkLacunaPressOrientation* self)
+  {
+    CheckChoice("Mould", self->Mould, 2, "0 (Female) or 1 (Male)");
+    CheckChoice("Seating", self->Seating, 2, "0 (Onlay) or 1 (Inlay)");
+    CheckChoice("ConvexSide", self->ConvexSide, 3, "0 (Automatic), 1 (Outward) or 2 (Inward)");
+    lacuna::PressOptions options;
+    options.Mould = static_cast<lacuna::PressMould>(self->Mould);
+    options.Seating = static_cast<lacuna::PlateSeating>(self->Seating);
+    options.Convex = static_cast<lacuna::ConvexSide>(self->ConvexSide);
+    options.PlateThickness = self->PlateThickness;
+    options.PlateMargin = self->PlateMargin;
+    options.FlangeWidth = self->FlangeWidth;
+    options.BlockSize = { self->BlockSize[0], self->BlockSize[1], self->BlockSize[2] };
+    options.Spacing = self->OutputSpacing;
+    return options;
+  }
+};
+
+namespace
+{
+//------------------------------------------------------------------------------
+void SetNodes(vtkStructuredGrid* output, const lacuna::PressSurface& surface, int columns, int rows)
+{
+  const auto count = static_cast<vtkIdType>(surface.Points.size());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(count);
+  vtkNew<vtkUnsignedCharArray> regions;
+  regions->SetName(vtkLacunaPressOrientation::PressRegionName);
+  regions->SetNumberOfTuples(count);
+  vtkNew<vtkCharArray> defect;
+  defect->SetName(vtkLacunaPressOrientation::DefectMaskName);
+  defect->SetNumberOfTuples(count);
+  vtkNew<vtkDoubleArray> angles;
+  angles->SetName(vtkLacunaPressOrientation::WallAngleName);
+  angles->SetNumberOfTuples(count);
+  for (vtkIdType k = 0; k < count; ++k)
+  {
+    points->SetPoint(k, surface.Points[k].data());
+    regions->SetValue(k, static_cast<unsigned char>(surface.Regions[k]));
+    defect->SetValue(k, static_cast<char>(surface.Defect[k]));
+    angles->SetValue(k, surface.WallAngles[k]);
+  }
+  output->SetDimensions(columns, rows, 1);
+  output->SetPoints(points);
+  output->GetPointData()->SetScalars(regions);
+  output->GetPointData()->AddArray(defect);
+  output->GetPointData()->AddArray(angles);
+}
+
+void SetText(vtkDataObject* output, const char* name, const char* text)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  array->InsertNextValue(text);
+  output->GetFieldData()->AddArray(array);
+}
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPressOrientation::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPressOrientation::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      // The size of the grid depends on the defect, so the input must be executed now. When it is up
+      // to date, as it usually is, this does nothing.
+      this->RequestUpdateExtent(request, inputVector, outputVector);
+      vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
+      connection->GetProducer()->Update(connection->GetIndex());
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+      if (map && map->GetNumberOfPoints() > 0)
+      {
+        vtkLacunaExecution execution(this);
+        const Plan plan(execution, this, map);
+        if (plan.Layout.SingleValued)
+        {
+          extent[1] = plan.GetColumns() - 1;
+          extent[3] = plan.GetRows() - 1;
+          extent[5] = 0;
+        }
+      }
+      outputVector->GetInformationObject(0)->Set(
+        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPressOrientation::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+  vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
+  output->GetFieldData()
+    ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
+  if (!map || map->GetNumberOfPoints() == 0)
+  {
+    return 1; // empty in, empty out
+  }
+  const auto body = [&](vtkLacunaExecution& execution)
+  {
+    execution.SetStage(0, 0.3);
+    const Plan plan(execution, this, map);
+    const lacuna::PressLayout& layout = plan.Layout;
+    int whole[6];
+    outputVector->GetInformationObject(0)->Get(
+      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    if (whole[1] + 1 != plan.GetColumns() || whole[3] + 1 != plan.GetRows())
+    {
+      throw std::runtime_error("the depth map has changed since the grid was announced (a source "
+                               "that changes with time?); update again");
+    }
+    const lacuna::Matrix4& toWorld = plan.Part.ToWorld;
+    if (!plan.HasPlane)
+    {
+      vtkWarningMacro(
+        << "the depth map has no field data array '" << PlaneNormalName
+        << "' (RBF Hole Filler reports it), so the least squares plane through Fitted "
+           "is laid flat instead");
+    }
+    if (layout.SingleValued)
+    {
+      execution.SetStage(0.3, 1);
+      const lacuna::PressSurface surface = plan.Make(execution);
+      SetNodes(output, surface, plan.GetColumns(), plan.GetRows());
+      vtkLacunaFieldData::SetMatrices(
+        output, PressToPatientName, { toWorld * surface.PressToRelief });
+      vtkLacunaFieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
+      vtkLacunaFieldData::Set(output, "Depth", { surface.Depth }, 1);
+      vtkLacunaFieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
+    }
+    else
+    {
+      const lacuna::Vec3 view = lacuna::Normalized(toWorld.Vector(layout.Frame.Inwards));
+      vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(view), 3);
+      vtkWarningMacro(
+        << "the mill does not see all of the surface when its plane lies flat: at "
+        << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
+        << lacuna::FormatNumber(std::round(layout.SteepestAngle))
+        << " degrees from the press plane. There is no mould; make the depth map again "
+           "with ViewDirection "
+        << lacuna::FormatNumber(view[0]) << " " << lacuna::FormatNumber(view[1]) << " "
+        << lacuna::FormatNumber(view[2])
+        << " (field data SuggestedViewDirection), or take a smaller PlateMargin");
+    }
+    vtkLacunaFieldData::Set(
+      output, "Angles", { Degrees * layout.Frame.Theta, Degrees * layout.Frame.Psi }, 2);
+    vtkLacunaFieldData::Set(output, SingleValuedName, { layout.SingleValued ? 1.0 : 0.0 }, 1);
+    vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
+    vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
+    SetText(output, "PlaneSource",
+      plan.HasPlane ? "PlaneNormal of the hole filler" : "least squares plane through Fitted");
+
+    lacuna::ParameterText parameters;
+    parameters.Add("Mould", this->Mould)
+      .Add("Seating", this->Seating)
+      .Add("PlateThickness", this->PlateThickness)
+      .Add("PlateMargin", this->PlateMargin)
+      .Add("FlangeWidth", this->FlangeWidth)
+      .Add("BlockSize", this->BlockSize)
+      .Add("OutputSpacing", this->OutputSpacing)
+      .Add("ConvexSide", this->ConvexSide);
+    vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
+  };
+  return vtkLacunaExecution::Run(this, outputVector, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPressOrientation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Mould: " << this->Mould << "\n";
+  os << indent << "Seating: " << this->Seating << "\n";
+  os << indent << "PlateThickness: " << this->PlateThickness << "\n";
+  os << indent << "PlateMargin: " << this->PlateMargin << "\n";
+  os << indent << "FlangeWidth: " << this->FlangeWidth << "\n";
+  os << indent << "BlockSize: " << this->BlockSize[0] << " " << this->BlockSize[1] << " "
+     << this->BlockSize[2] << "\n";
+  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
+  os << indent << "ConvexSide: " << this->ConvexSide << "\n";
+}

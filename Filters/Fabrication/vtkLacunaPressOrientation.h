@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaPressOrientation
+ * @brief the surface of a mould for pressing a plate, lying flat, from a filled depth map
+ *
+ * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
+ * vtkLacunaRBFHoleFiller. Output: vtkStructuredGrid of n x m x 1 points in press coordinates (mm,
+ * double, right-handed): x (fastest) and y in the press plane, regular, 0 in the middle of the block;
+ * z towards the mill, which looks along -z; the press plane is z = 0. A female mould is a cavity, z <=
+ * 0, a male one a boss, z >= 0. The way from there to the patient is a rotation and a translation,
+ * never a mirror.
+ *
+ * The plane of the fit (field data PlaneNormal of the hole filler; without it the least squares plane
+ * through Fitted, with a warning) comes to lie parallel to the press plane. Carr 1996, eq. 6.14: with
+ * c1, c2 its slopes along the map's columns and rows, a rotation by Psi = atan(c1) about the map's y
+ * axis, then one by Theta = atan(-c2 / sqrt(1 + c1^2)) about its x axis. Where the mill looks from the
+ * viewer's side (a male mould of a surface that bulges to the viewer, or a female one of a surface
+ * that bulges away), half a turn about x follows.
+ *
+ * The surface is the bicubic spline through Fitted, offset along its true normals by PlateThickness
+ * where the plate's face on the mould is not the fitted surface: a female mould of a surface that
+ * bulges to the viewer touches the plate's outer face, a male one the inner; the plate's inner face
+ * (Onlay) or outer face (Inlay) is the fitted surface. Every node is solved for its foot point. Within
+ * PlateMargin of the defect the mould is this surface; beyond, it is levelled out (its
+ * slopes go over to those of the plane, from the border of Fitted on), and over FlangeWidth mm it goes
+ * over into the press plane, all with continuous second derivatives. The press plane lies
+ * FlangeWidth / 8 above (male: below) plate and margin.
+ *
+ * Point data:
+ * | array       | type          | meaning                                                          |
+ * |-------------|---------------|------------------------------------------------------------------|
+ * | PressRegion | unsigned char | 0 press plane, 1 flange, 2 plate (the true surface)              |
+ * | DefectMask  | char          | 1 where the filled defect is                                     |
+ * | WallAngle   | double        | degrees between the mould's surface and the press plane          |
+ *
+ * Field data (doubles unless stated):
+ * | array                  | components | meaning                                               |
+ * |------------------------|------------|-------------------------------------------------------|
+ * | PressToPatient         | 16         | row-major; press mm to world (patient) mm, det +1     |
+ * | Angles                 | 2          | Theta, Psi, degrees, see above                        |
+ * | DraftAngle             | 1          | largest WallAngle, degrees; 0 flat, 90 upright        |
+ * | Depth                  | 1          | mm, from the press plane to the deepest/highest node  |
+ * | SingleValued           | 1          | 1, or 0 when the mill does not see all of the surface |
+ * | SuggestedViewDirection | 3          | when not: view for the ray caster, world, unit        |
+ * | BlockSize              | 3          | mm along x, y, z                                      |
+ * | SurfaceOffset          | 1          | mm, of the mould's surface from Fitted, positive      |
+ * |                        |            | towards the viewer                                    |
+ * | Outward                | 1          | 1 when the surface bulges to the viewer, else 0       |
+ * | PlaneSource            | string     | where the plane comes from                            |
+ *
+ * When the surface is not single valued there are no points but the field data, and a warning that
+ * names the place: cast rays again along SuggestedViewDirection, which is the press's axis.
+ *
+ * Errors: a perspective map, no Fitted or FilledMask, holes in them, properties out of range, a
+ * surface that bends with a radius below PlateThickness on the side of the offset, Fitted that
+ * hardly reaches beyond PlateMargin, a block that is too small.
+ *
+ * Source: Carr 1996, section 6.4.1; offset, flange and male moulds are beyond it.
+ * @sa lacuna::PlanPress lacuna::MakePressSurface vtkLacunaRBFHoleFiller vtkLacunaIGESWriter
+ */
+#ifndef vtkLacunaPressOrientation_h
+#define vtkLacunaPressOrientation_h
+
+#include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkStructuredGridAlgorithm.h"
+
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaPressOrientation
+  : public vtkStructuredGridAlgorithm
+{
+public:
+  static vtkLacunaPressOrientation* New();
+  vtkTypeMacro(vtkLacunaPressOrientation, vtkStructuredGridAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  static constexpr const char* PressRegionName = "PressRegion";
+  static constexpr const char* DefectMaskName = "DefectMask";
+  static constexpr const char* WallAngleName = "WallAngle";
+  static constexpr const char* PressToPatientName = "PressToPatient";
+  static constexpr const char* SingleValuedName = "SingleValued";
+  static constexpr const char* SuggestedViewDirectionName = "SuggestedViewDirection";
+
+  enum MouldType
+  {
+    Female = 0, ///< a cavity for the plate's convex face
+    Male = 1    ///< a boss for the plate's concave face
+  };
+  enum SeatingType
+  {
+    Onlay = 0, ///< the plate lies on the fitted surface
+    Inlay = 1  ///< the plate's outer face is the fitted surface
+  };
+  enum ConvexSideType
+  {
+    Automatic = 0, ///< measured: the mean curvature over the defect
+    Outward = 1,   ///< the surface bulges to the viewer
+    Inward = 2
+  };
+
+  ///@{
+  /** Default Female. */
+  vtkSetMacro(Mould, int);
+  vtkGetMacro(Mould, int);
+  ///@}
+  ///@{
+  /** Default Onlay. */
+  vtkSetMacro(Seating, int);
+  vtkGetMacro(Seating, int);
+  ///@}
+  ///@{
+  /** mm, > 0. Default 0.7. */
+  vtkSetMacro(PlateThickness, double);
+  vtkGetMacro(PlateThickness, double);
+  ///@}
+  ///@{
+  /** mm around the defect within which the mould is the true surface, >= 0. Default 5. */
+  vtkSetMacro(PlateMargin, double);
+  vtkGetMacro(PlateMargin, double);
+  ///@}
+  ///@{
+  /**
+   * mm around plate and margin over which the surface goes over into the press plane, > 0. The
+   * narrower, the steeper. Default 15.
+   */
+  vtkSetMacro(FlangeWidth, double);
+  vtkGetMacro(FlangeWidth, double);
+  ///@}
+  ///@{
+  /**
+   * mm of the block along x, y and z. 0: as small as it takes (with 5 mm of press plane around the
+   * flange, 10 mm of material below the mould). Default 0 0 0.
+   */
+  vtkSetVector3Macro(BlockSize, double);
+  vtkGetVector3Macro(BlockSize, double);
+  ///@}
+  ///@{
+  /**
+   * mm between points along x and y, >= 0; a little less where a given BlockSize is no multiple. 0:
+   * that of the depth map, at most 1. Default 0.
+   */
+  vtkSetMacro(OutputSpacing, double);
+  vtkGetMacro(OutputSpacing, double);
+  ///@}
+  ///@{
+  /** Which face is convex; decides from which side the mill looks. Default Automatic. */
+  vtkSetMacro(ConvexSide, int);
+  vtkGetMacro(ConvexSide, int);
+  ///@}
+
+protected:
+  vtkLacunaPressOrientation() = default;
+  ~vtkLacunaPressOrientation() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkLacunaPressOrientation(const vtkLacunaPressOrientation&) = delete;
+  void operator=(const vtkLacunaPressOrientation&) = delete;
+
+  class Plan;
+
+  int Mould = Female;
+  int Seating = Onlay;
+  double PlateThickness = 0.7;
+  double PlateMargin = 5;
+  double FlangeWidth = 15;
+  double BlockSize[3] = { 0, 0, 0 };
+  double OutputSpacing = 0;
+  int ConvexSide = Automatic;
+};
+#endif

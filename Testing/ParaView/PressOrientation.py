@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From the phantom of a skull to moulds, as a script does it; IGES and STL lead back to the patient."""
+import os
+
+import lacuna
+import numpy as np
+from lacuna.errors import raising
+from lacuna.solids import save_solid
+from lacuna_test import output
+from paraview import servermanager
+from paraview.simple import ExtractSurface, LoadPlugin, OpenDataFile, SaveData
+from vtkmodules.numpy_interface import dataset_adapter as dsa
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+
+
+def fetch(proxy):
+    with raising():
+        proxy.UpdatePipeline()
+    data = servermanager.Fetch(proxy)
+    wrapped = dsa.WrapDataObject(data)
+    fields = {n: np.asarray(wrapped.FieldData[n]) for n in wrapped.FieldData.keys()
+              if n not in ("Provenance", "PlaneSource")}
+    return data, wrapped, fields
+
+
+phantom = SkullPhantom()
+depth = BSplineIsoRayCaster(Input=phantom, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+filled = RBFHoleFiller(Input=depth, Smoothing=5)
+filled.DefectRegion = "None"
+press = PressOrientation(Input=filled)
+
+direct = lacuna.vtkLacunaPressOrientation()
+for name in ("PlateThickness", "PlateMargin", "FlangeWidth", "OutputSpacing"):
+    assert press.GetPropertyValue(name) == getattr(direct, "Get" + name)(), name
+assert list(press.BlockSize) == list(direct.GetBlockSize())
+assert press.Mould == "Female" and direct.GetMould() == direct.Female
+assert press.Seating == "Onlay" and direct.GetSeating() == direct.Onlay
+assert press.ConvexSide == "Automatic" and direct.GetConvexSide() == direct.Automatic
+
+# The true surface, to compare with: Fitted in patient coordinates.
+image, wrapped, fields = fetch(filled)
+columns, rows, _ = image.GetDimensions()
+to_world = fields["ImageToWorld"].reshape(4, 4)
+fitted = np.asarray(wrapped.PointData["Fitted"]).reshape(rows, columns)
+mask = np.asarray(wrapped.PointData["FilledMask"]).reshape(rows, columns)
+down, right = np.gradient(fitted, np.linalg.norm(to_world[:3, 1]), np.linalg.norm(to_world[:3, 0]))
+
+
+def at(array, points):
+    """Values of an array of the map, linear between the pixels, at points of the patient."""
+    local = (points - to_world[:3, 3]) @ np.linalg.inv(to_world[:3, :3]).T
+    i, j = np.floor(local[:, 0]).astype(int), np.floor(local[:, 1]).astype(int)
+    x, y = local[:, 0] - i, local[:, 1] - j
+    return ((1 - x) * (1 - y) * array[j, i] + x * (1 - y) * array[j, i + 1]
+            + (1 - x) * y * array[j + 1, i] + x * y * array[j + 1, i + 1]), local[:, 2]
+
+
+moulds = {}
+for mould, seating in (("Female", "Onlay"), ("Female", "Inlay"), ("Male", "Onlay"), ("Male", "Inlay")):
+    press.Mould, press.Seating, press.OutputSpacing = mould, seating, 0.5
+    data, wrapped, fields = fetch(press)
+    points = np.asarray(wrapped.Points)
+    assert points.dtype == np.float64 and data.GetDimensions()[2] == 1
+    assert fields["SingleValued"].item() == 1
+    back = fields["PressToPatient"].reshape(4, 4)
+    assert abs(np.linalg.det(back[:3, :3]) - 1) < 1e-14
+    assert np.abs(back[:3, :3] @ back[:3, :3].T - np.eye(3)).max() < 1e-14
+    z = points[:, 2]
+    assert z.max() == 0 if mould == "Female" else z.min() == 0
+    assert abs(np.abs(z).max() - fields["Depth"].item()) < 1e-12
+    assert np.asarray(wrapped.PointData["WallAngle"]).max() == fields["DraftAngle"].item() < 80
+    region = np.asarray(wrapped.PointData["PressRegion"])
+    defect = np.asarray(wrapped.PointData["DefectMask"])
+    assert set(region) == {0, 1, 2} and (region[defect == 1] == 2).all()
+    assert (z[region == 0] == 0).all()
+    plate = points[region == 2] @ back[:3, :3].T + back[:3, 3]
+    expected, found = at(fitted, plate)
+    cosine = 1 / np.sqrt(1 + at(down, plate)[0] ** 2 + at(right, plate)[0] ** 2)
+    # the viewer is on the side of lesser depth
+    offset = (expected - found) * cosine
+    wanted = {"Onlay": 0.7, "Inlay": 0.0}[seating] - (0.7 if mould == "Male" else 0)
+    assert abs(fields["SurfaceOffset"].item() - wanted) < 1e-15
+    print(f"{mould} {seating}: offset {offset.min():.4f} to {offset.max():.4f} mm, {fields['Depth'].item():.2f} mm "
+          f"deep, walls {fields['DraftAngle'].item():.1f} degrees", flush=True)
+    assert np.abs(offset - wanted).max() < 0.02 + (0.03 if wanted else 0)
+    assert (at(mask.astype(float), points[defect == 1] @ back[:3, :3].T + back[:3, 3])[0] > 0).mean() > 0.98
+    moulds[mould, seating] = back
+turn = np.linalg.inv(moulds["Female", "Onlay"]) @ moulds["Male", "Onlay"]
+assert np.abs(turn[:3, :3] - np.diag([1, -1, -1])).max() < 1e-12
+
+# The angles of Carr 1996 lay the plane flat.
+plane = fetch(filled)[2]["PlaneNormal"].ravel()
+axes = to_world[:3, :3] / np.linalg.norm(to_world[:3, :3], axis=0)
+assert np.abs(moulds["Male", "Onlay"][:3, 2] - axes @ plane).max() < 1e-14
+theta, psi = np.radians(fields["Angles"].ravel())
+c1, c2 = -plane[:2] / plane[2]
+assert abs(theta - np.arctan(-c2 / np.sqrt(1 + c1 ** 2))) < 1e-14 and abs(psi - np.arctan(c1)) < 1e-14
+
+# Files: what ParaView and the IGES Writer make of the grid.
+surface = ExtractSurface(Input=press)
+for name in ("mould.stl", "mould.ply"):
+    path = output(name)
+    save_solid(path, surface)
+    again = OpenDataFile(path)
+    again.UpdatePipeline()
+    bounds = np.array(again.GetDataInformation().GetBounds())
+    assert np.abs(bounds - data.GetBounds()).max() < 5e-6, name
+with raising():
+    SaveData(output("mould.vts"), press, DataMode="Binary")
+    SaveData(output("mould.igs"), press)
+again = OpenDataFile(output("mould.vts"))
+kept, wrapped, fields = fetch(again)
+assert np.abs(np.asarray(wrapped.Points) - points).max() == 0
+assert np.abs(fields["PressToPatient"].reshape(4, 4) - moulds["Male", "Inlay"]).max() < 1e-12
+
+# A plane that stands against the view: no mould, but the way out, which works.
+steep = BSplineIsoRayCaster(Input=phantom, IsoValues=[500], ViewDirection=[0.5, -0.6, -0.62])
+filled.Input = steep
+press.FlangeWidth = 25
+warnings = []
+with raising(warnings):
+    press.UpdatePipeline()
+data = servermanager.Fetch(press)
+assert data.GetNumberOfPoints() == 0 and any("SuggestedViewDirection" in text for text in warnings), warnings
+fields = dsa.WrapDataObject(data).FieldData
+assert np.asarray(fields["SingleValued"]).item() == 0
+view = np.asarray(fields["SuggestedViewDirection"]).ravel()
+assert abs(np.linalg.norm(view) - 1) < 1e-14 and view @ [0.5, -0.6, -0.62] > 0
+steep.ViewDirection = list(view)
+fields = fetch(press)[2]
+print("from", view, "walls of", fields["DraftAngle"].item(), "degrees", flush=True)
+assert fields["SingleValued"].item() == 1 and "SuggestedViewDirection" not in fields
