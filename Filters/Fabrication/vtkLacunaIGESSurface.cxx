@@ -20,7 +20,7 @@ namespace
 // mm to which an outline follows the pixels, which tell no more than about a tenth of themselves
 constexpr double OutlinePrecision = 0.01;
 // mm between the outline and the surface when that one is exact
-constexpr double FinestTolerance = 1e-5;
+constexpr double FinestTolerance = 1e-4;
 
 //------------------------------------------------------------------------------
 // The pixels of a map to be written, relative to its extent, and their depths.
@@ -129,10 +129,7 @@ vtkLacunaIGESSurface::Boundary MakeBoundary(const lacuna::SurfaceFit& fit, const
   boundary.Space = lacuna::FitClosedCurve(
     onSurface, last, 0.8 * wanted, static_cast<std::int64_t>(last),
     [](std::int64_t count) { return 2 * count; }, false);
-  if (fit.Decimals < 17)
-  {
-    boundary.Space.Round(fit.Decimals);
-  }
+  boundary.Space.Round(std::min(fit.Decimals, 7));
   return boundary;
 }
 
