@@ -7,6 +7,8 @@
 #include "vtkLacunaMirrored.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -38,13 +40,19 @@ std::uint64_t Hash(const void* bytes, std::size_t size)
   return hash;
 }
 
-// Of the active point scalars of a data set, of the numbers of a table.
+// Of the active point scalars of a data set, of the points of a mesh without, of the numbers of a
+// table.
 std::string HashOfNumbers(vtkDataObject* data)
 {
   std::vector<vtkDataArray*> arrays;
   if (auto* set = vtkDataSet::SafeDownCast(data))
   {
     arrays.push_back(set->GetPointData()->GetScalars());
+    auto* mesh = vtkPointSet::SafeDownCast(data);
+    if (!arrays.back() && mesh && mesh->GetPoints())
+    {
+      arrays.back() = mesh->GetPoints()->GetData();
+    }
   }
   else if (auto* table = vtkTable::SafeDownCast(data))
   {

@@ -6,6 +6,8 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 
 int TestProvenance(int, char*[])
 {
@@ -34,5 +36,21 @@ int TestProvenance(int, char*[])
   const std::vector<std::string> chain = vtkLacunaProvenance::Get(c);
   LACUNA_CHECK(chain.size() == 3);
   LACUNA_CHECK(chain[0] == first[0]);
+
+  // a mesh without scalars is known by its points
+  vtkNew<vtkPolyData> mesh;
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(1, 2, 3);
+  mesh->SetPoints(points);
+  std::vector<std::string> steps[2];
+  for (std::vector<std::string>& s : steps)
+  {
+    vtkNew<vtkPolyData> output;
+    vtkLacunaProvenance::Record(output, step, { mesh }, "");
+    s = vtkLacunaProvenance::Get(output);
+    LACUNA_CHECK(s[0].find("input:-") == std::string::npos);
+    points->SetPoint(0, 1, 2, 4);
+  }
+  LACUNA_CHECK(steps[0] != steps[1]);
   return lacunaCheck::Result();
 }
