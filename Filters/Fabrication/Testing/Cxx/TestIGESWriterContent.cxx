@@ -28,6 +28,7 @@
 #include <sstream>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace
 {
@@ -504,8 +505,9 @@ void TestPrivacy()
   const IGESParser file(text); // sees that all is ASCII
 }
 
-// A disk that fills up in the middle leaves what was there, and no rest of the new file.
-void TestFullDisk(const std::string& folder)
+// A disk that fills up in the middle and a read-only folder leave what was there, and no rest of the
+// new file.
+void TestBadPlaces(const std::string& folder)
 {
   const std::string place = folder + "/TestIGESWriterContent";
   vtksys::SystemTools::RemoveADirectory(place);
@@ -527,6 +529,13 @@ void TestFullDisk(const std::string& folder)
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   LACUNA_CHECK_THAT(written == 0 && observer->GetError(), "an error");
+  observer->Clear();
+  vtksys::SystemTools::SetPermissions(place, 0555);
+  const bool changed = geteuid() == 0 && seteuid(65534) == 0; // root may write everywhere
+  LACUNA_CHECK_THAT(writer->Write() == 0 && observer->GetError(), "a read-only folder");
+  LACUNA_CHECK_THAT(writer->GetErrorCode() == vtkErrorCode::CannotOpenFileError, "error code");
+  LACUNA_CHECK_THAT(!changed || seteuid(0) == 0, "root again");
+  vtksys::SystemTools::SetPermissions(place, 0755);
   LACUNA_CHECK_THAT(vtksys::SystemTools::FileLength(path) == 3, "the old file stays");
   LACUNA_CHECK_THAT(
     vtksys::Directory::GetNumberOfFilesInDirectory(place) == 3, "nothing else (., .., a.igs)");
@@ -553,7 +562,7 @@ int TestIGESWriterContent(int argc, char* argv[])
     TestFrames();
     TestMirrored();
     TestPrivacy();
-    TestFullDisk(folder);
+    TestBadPlaces(folder);
   }
   catch (const std::exception& e)
   {
