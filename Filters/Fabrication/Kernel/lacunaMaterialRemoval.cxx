@@ -104,7 +104,7 @@ void MaterialRemoval::AddToBins()
   const double area = (high[0] - this->Low[0]) * (high[1] - this->Low[1]);
   const double longest = std::max(high[0] - this->Low[0], high[1] - this->Low[1]);
   this->BinSize = std::max(
-    { this->Radius / 4, std::sqrt(area / LargestBinCount), longest / LargestBinCount, 1e-3 });
+    { this->Radius / 2, std::sqrt(area / LargestBinCount), longest / LargestBinCount, 1e-3 });
   for (int c = 0; c < 2; ++c)
   {
     this->Bins[c] = static_cast<std::int64_t>((high[c] - this->Low[c]) / this->BinSize) + 1;
@@ -161,17 +161,15 @@ double MaterialRemoval::GetHeight(const Segment& s, const Vec3& p, double best) 
   const double y = p[1] - s.Start[1];
   const double along = s.Hx * x + s.Hy * y;
   const double w2 = Square(this->Radius) - Square(s.Hx * y - s.Hy * x);
-  if (w2 < 0)
+  const double beside = std::max({ 0.0, -along, along - s.Length });
+  const double above = std::max(0.0, std::min(s.Start[2], s.EndZ) - best);
+  if (w2 < beside * beside || (this->Ball && w2 - beside * beside <= above * above))
   {
-    return best;
+    return best; // out of reach, or not lower even where the tool is lowest
   }
   const double w = std::sqrt(w2);
   const double first = std::max(0.0, along - w);
   const double last = std::min(s.Length, along + w);
-  if (first > last)
-  {
-    return best;
-  }
   if (!(s.Length > 0))
   {
     const double z = std::min(s.Start[2], s.EndZ);
@@ -202,7 +200,8 @@ double MaterialRemoval::GetDistance(const Segment& s, const Vec3& p, double best
   if (this->Ball)
   {
     const double d2 = across * across + StripDistance2(along, p[2], s.Length, s.Start[2], s.EndZ);
-    return std::min(best, std::sqrt(d2) - this->Radius);
+    const double reach = this->Radius + best;
+    return d2 < reach * reach || best < 0 ? std::min(best, std::sqrt(d2) - this->Radius) : best;
   }
   // convex in the way: golden section
   const auto distance = [&](double t)
@@ -243,9 +242,15 @@ double MaterialRemoval::GetDistance(const Segment& s, const Vec3& p, double best
 }
 
 //------------------------------------------------------------------------------
-MaterialRemoval::Result MaterialRemoval::At(const Vec3& p) const
+MaterialRemoval::Result MaterialRemoval::At(const Vec3& p, std::int64_t& nearest) const
 {
   Result result{ this->StockTop, this->StockTop - p[2] };
+  if (nearest >= 0)
+  {
+    // what is near a neighbour is near here, so that little else has to be looked at
+    result.LeftOver = this->GetDistance(this->Segments[nearest], p, result.LeftOver);
+    result.Height = this->GetHeight(this->Segments[nearest], p, result.Height);
+  }
   std::int64_t centre[2];
   for (int c = 0; c < 2; ++c)
   {
@@ -287,7 +292,12 @@ MaterialRemoval::Result MaterialRemoval::At(const Vec3& p) const
       }
       if (nearer || inside)
       {
-        result.LeftOver = this->GetDistance(s, p, result.LeftOver);
+        const double distance = this->GetDistance(s, p, result.LeftOver);
+        if (distance < result.LeftOver)
+        {
+          result.LeftOver = distance;
+          nearest = this->BinSegments[k];
+        }
       }
     }
   };
@@ -376,7 +386,8 @@ std::vector<double> FindUnreachable(
       {
         if (result[k] >= Touching)
         {
-          result[k] = std::min(result[k], std::max(0.0, removal.At(points[k]).LeftOver));
+          std::int64_t nearest = -1;
+          result[k] = std::min(result[k], std::max(0.0, removal.At(points[k], nearest).LeftOver));
         }
       }
     });
@@ -411,6 +422,7 @@ LeftOverMap MapLeftOver(Execution& execution, const MillSurface& surface, const 
     {
       for (std::int64_t row = begin; row < end; ++row)
       {
+        std::int64_t nearest = -1;
         const std::int64_t j = std::min(row / n, cells.Rows - 1);
         const double v = static_cast<double>(row - j * n) / static_cast<double>(n);
         for (std::int64_t column = 0; column < map.Size.Columns; ++column)
@@ -428,7 +440,7 @@ LeftOverMap MapLeftOver(Execution& execution, const MillSurface& surface, const 
             weights[0] * points[first] + weights[1] * points[opposite] + weights[2] * points[third];
           map.Unreachable[k] = weights[0] * unreachable[first] +
             weights[1] * unreachable[opposite] + weights[2] * unreachable[third];
-          const MaterialRemoval::Result left = removal.At(map.Points[k]);
+          const MaterialRemoval::Result left = removal.At(map.Points[k], nearest);
           map.Height[k] = left.Height;
           map.LeftOver[k] = std::max(0.0, left.LeftOver);
           map.Unreachable[k] = std::min(map.Unreachable[k], map.LeftOver[k]);

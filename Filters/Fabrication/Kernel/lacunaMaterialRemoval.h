@@ -28,7 +28,9 @@ public:
     double LeftOver; ///< mm from the point to where material was taken away; below 0: the depth of
                      ///< the point within the tool, a gouge
   };
-  Result At(const Vec3& p) const;
+  /// nearest: the motion that is nearest to a point close by, -1 if none is known, to be faster;
+  /// gets that of p. It does not change the result.
+  Result At(const Vec3& p, std::int64_t& nearest) const;
 
 private:
   struct Segment

@@ -208,13 +208,12 @@ private:
     {
       return;
     }
-    const bool first = this->Path.Points.empty();
-    if (!first)
-    {
-      this->Path.Points.push_back(Vec3(this->Path.Points.back()));
-    }
     const auto size = static_cast<std::int64_t>(this->Path.Points.size());
-    runs.push_back({ kind, this->Pass, first ? 0 : size - 1, first ? 0 : 1 });
+    runs.push_back({ kind, this->Pass, size, 0 });
+    if (size > 0)
+    {
+      this->Add(Vec3(this->Path.Points.back()));
+    }
   }
 
   void Add(const Vec3& p)
@@ -238,7 +237,8 @@ private:
   // Above a point and down to it.
   void Approach(const Vec3& p)
   {
-    this->Begin(Motion::Rapid);
+    const bool start = this->Path.Points.empty();
+    this->Begin(start ? Motion::Plunge : Motion::Rapid);
     this->Add({ p[0], p[1], this->Path.SafeZ });
     this->Begin(Motion::Plunge);
     this->Add(p);

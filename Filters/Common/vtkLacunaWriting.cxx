@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaWriting.h"
+
+#include "lacunaExecution.h"
+#include "lacunaOutputFile.h"
+#include "vtkAlgorithm.h"
+#include "vtkErrorCode.h"
+
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+//------------------------------------------------------------------------------
+unsigned long vtkLacunaWriting::Run(
+  vtkAlgorithm* writer, const char* fileName, const std::function<void()>& body)
+{
+  unsigned long code = vtkErrorCode::UnknownError;
+  std::string error;
+  try
+  {
+    if (!fileName || !*fileName)
+    {
+      code = vtkErrorCode::NoFileNameError;
+      throw std::runtime_error("no FileName is given");
+    }
+    body();
+    return vtkErrorCode::NoError;
+  }
+  catch (const lacuna::FileError& e)
+  {
+    code = e.GetKind() == lacuna::FileError::Kind::NoSpace ? vtkErrorCode::OutOfDiskSpaceError
+                                                           : vtkErrorCode::CannotOpenFileError;
+    error = e.what();
+  }
+  catch (const lacuna::Aborted&)
+  {
+    return vtkErrorCode::UserError; // no file, but no error message either
+  }
+  catch (const std::bad_alloc&)
+  {
+    error = "out of memory";
+  }
+  catch (const std::exception& e)
+  {
+    error = e.what();
+  }
+  vtkErrorWithObjectMacro(writer, << error);
+  return code;
+}
+
+//------------------------------------------------------------------------------
+unsigned long vtkLacunaWriting::Check(vtkAlgorithm* writer, bool written)
+{
+  if (written || writer->GetErrorCode() != vtkErrorCode::NoError)
+  {
+    return writer->GetErrorCode();
+  }
+  vtkErrorWithObjectMacro(
+    writer, "nothing was written: there is no input, or a filter before this one failed");
+  return vtkErrorCode::UnknownError;
+}

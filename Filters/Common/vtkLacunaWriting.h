@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How writers report what went wrong.
+#ifndef vtkLacunaWriting_h
+#define vtkLacunaWriting_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+#include <functional>
+
+class vtkAlgorithm;
+
+namespace vtkLacunaWriting
+{
+/// Runs the body of writer's WriteData and returns its error code (vtkErrorCode::NoError when all
+/// went well). An exception becomes writer's error message and the code for no file name, disk full,
+/// file cannot be opened, or unknown; a stop by the user only a code.
+VTKLACUNAFILTERSCOMMON_EXPORT unsigned long Run(
+  vtkAlgorithm* writer, const char* fileName, const std::function<void()>& body);
+
+/// The error code after Write of a superclass. Not written without an error is an error, too, and
+/// said: VTK does not come to WriteData when a filter upstream fails or has nothing.
+VTKLACUNAFILTERSCOMMON_EXPORT unsigned long Check(vtkAlgorithm* writer, bool written);
+}
+#endif

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaGCode.h"
+
+#include "lacunaGCodeParser.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+
+using namespace lacuna;
+
+namespace
+{
+const Vec3 Start{ 1.5, -2.25, 10 };
+
+std::vector<GCodeMove> Path()
+{
+  return { { true, { 3, 4, 10 }, 0 }, { false, { 3, 4, -1.0004 }, 200 },
+    { false, { 3.0004, 4.0006, -1.0004 }, 800 }, { false, { -0.0004, -12.5, 0 }, 800 },
+    { true, { -0.0004, -12.5, 10 }, 0 } };
+}
+
+std::string Message(
+  const std::vector<GCodeMove>& moves, const GCodeOptions& options, const Vec3& start = Start)
+{
+  try
+  {
+    MakeGCode(start, moves, options);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    return error.what();
+  }
+  return "no error";
+}
+
+void ExpectError(const std::function<void(std::vector<GCodeMove>&, GCodeOptions&)>& change,
+  const std::string& words)
+{
+  std::vector<GCodeMove> moves = Path();
+  GCodeOptions options;
+  change(moves, options);
+  EXPECT_NE(Message(moves, options).find(words), std::string::npos) << Message(moves, options);
+}
+}
+
+TEST(GCode, WholeProgram)
+{
+  GCodeOptions options;
+  options.ProgramNumber = 12;
+  options.Comments = { "Lacuna 0.1 (a_b)" };
+  const GCodeProgram program = MakeGCode(Start, Path(), options);
+  EXPECT_EQ(program.Text,
+    "%\nO0012\n(LACUNA 0.1 [A-B])\nG21 G17 G40 G49 G80 G90\nG54\nT01 M06\nS6000 M03\n"
+    "G00 X1.5 Y-2.25\nG43 H01 Z10.\nG00 X1.5 Y-2.25\nZ10.\nX3. Y4.\nG01 Z-1. F200.\n"
+    "Y4.001 F800.\nX0. Y-12.5 Z0.\nG00 Z10.\nM05\nM30\n%\n");
+  EXPECT_EQ(program.Blocks, 15);
+}
+
+TEST(GCode, ReadsBackWithinAMicrometre)
+{
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> xy(-300, 300);
+  std::uniform_real_distribution<double> z(-40, 10);
+  std::vector<GCodeMove> moves{ { true, { 0.1234567, 5, 20 }, 0 } };
+  for (int k = 0; k < 20000; ++k)
+  {
+    moves.push_back({ false, { xy(random), xy(random), z(random) }, 100.0 + k % 3 });
+  }
+  Vec3 last = moves.back().To;
+  last[2] = 20;
+  moves.push_back({ true, last, 0 });
+  GCodeOptions options;
+  options.LineNumbers = true;
+  const GCodeProgram program = MakeGCode({ 0, 0, 20 }, moves, options);
+  const GCodeParser parser(program.Text);
+  EXPECT_EQ(parser.Blocks, program.Blocks);
+  EXPECT_EQ(parser.Numbers.size(), static_cast<std::size_t>(program.Blocks));
+  EXPECT_EQ(parser.Numbers.front(), 10);
+  // the header's and the writer's own way to the start come first
+  ASSERT_GE(parser.Steps.size(), moves.size());
+  const std::size_t skipped = parser.Steps.size() - moves.size();
+  for (std::size_t k = 0; k < moves.size(); ++k)
+  {
+    const GCodeParser::Step& step = parser.Steps[skipped + k];
+    ASSERT_EQ(step.Rapid, moves[k].Rapid);
+    ASSERT_TRUE(step.Rapid || step.Feed == moves[k].Feed);
+    ASSERT_NEAR(step.To[0], moves[k].To[0], 0.00050001);
+    ASSERT_NEAR(step.To[1], moves[k].To[1], 0.00050001);
+    ASSERT_GE(step.To[2], moves[k].To[2] - 1e-8) << "never deeper";
+    ASSERT_LE(step.To[2], moves[k].To[2] + 0.001);
+  }
+}
+
+TEST(GCode, IsTheSameInAnyLocale)
+{
+  const std::string expected = MakeGCode(Start, Path(), {}).Text;
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  for (const char* name : { "de_DE.UTF-8", "tr_TR.UTF-8", "C" })
+  {
+    if (std::setlocale(LC_ALL, name))
+    {
+      EXPECT_EQ(MakeGCode(Start, Path(), {}).Text, expected);
+    }
+  }
+  std::setlocale(LC_ALL, before.c_str());
+}
+
+TEST(GCode, CommentsInTheControlsCharacters)
+{
+  GCodeOptions options;
+  options.Comments = { "Gr\xc3\xb6\xc3\x9f"
+                       "e 1% ;\n\t'x'",
+    std::string(150, 'a'), "" };
+  const GCodeParser parser(MakeGCode(Start, Path(), options).Text);
+  ASSERT_EQ(parser.Comments.size(), 4u);
+  EXPECT_EQ(parser.Comments[0], "GR**E 1* * **X*");
+  EXPECT_EQ(parser.Comments[1], std::string(64, 'A'));
+  EXPECT_EQ(parser.Comments[3], std::string(22, 'A'));
+}
+
+TEST(GCode, Templates)
+{
+  GCodeOptions options;
+  options.Header = "(my mill)\r\nG21 G90\n\nT{TOOL} M06\nS{SPEED} M03\n";
+  options.Footer = "G00 Z50.\nM30";
+  const std::string text = MakeGCode(Start, Path(), options).Text;
+  EXPECT_EQ(text.find("%\nO0001\n(MY MILL)\nG21 G90\nT01 M06\nS6000 M03\nG00 X1.5 Y-2.25\n"), 0u);
+  EXPECT_NE(text.find("G00 Z50.\nM30\n%\n"), std::string::npos);
+  const auto header = [](const std::string& h, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Header = h; }, words); };
+  header("G21 {SPINDLE}", "'{SPINDLE}'");
+  header("G21 {SPEED", "placeholder");
+  header("G00 Z100", "without a decimal point");
+  header("G00 Z100 X5.", "'Z100.'");
+  header("G21 %", "'%'");
+  header("(a (b))", "'('");
+  header("(a", "without its end");
+  header("G21 \xc3\xa4", "not ASCII");
+}
+
+TEST(GCode, Refuses)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  ExpectError([](auto& m, auto&) { m.clear(); }, "no motions");
+  ExpectError([&](auto& m, auto&) { m[2].To[1] = nan; }, "motion 3 has a coordinate that is not");
+  ExpectError([&](auto& m, auto&) { m[2].To[2] = -infinity; }, "not a number");
+  ExpectError([](auto& m, auto&) { m[2].To[0] = 1e5; }, "99999.999");
+  ExpectError([](auto& m, auto&) { m[2].To[0] = -1e300; }, "99999.999");
+  ExpectError([](auto& m, auto&) { m[2].Feed = 0; }, "feed of 0");
+  ExpectError([&](auto& m, auto&) { m[2].Feed = nan; }, "feed");
+  ExpectError([](auto& m, auto&) { m[4].To[0] = 3; }, "neither upright nor level");
+  ExpectError([](auto& m, auto&) { m.pop_back(); }, "end with a rapid motion");
+  ExpectError([](auto& m, auto&) { m.erase(m.begin()); }, "must start with a rapid");
+  ExpectError([](auto&, auto& o) { o.ProgramNumber = 0; }, "ProgramNumber");
+  ExpectError([](auto&, auto& o) { o.ToolNumber = 100; }, "ToolNumber");
+  ExpectError([](auto&, auto& o) { o.WorkOffset = 60; }, "WorkOffset");
+  ExpectError([&](auto&, auto& o) { o.SpindleSpeed = nan; }, "SpindleSpeed");
+  const auto envelope = [](double zLow, double zHigh)
+  {
+    return [=](auto&, GCodeOptions& o)
+    {
+      o.HasEnvelope = true;
+      const double values[6] = { -20, 20, -12.5, 20, zLow, zHigh };
+      std::copy_n(values, 6, o.Envelope);
+    };
+  };
+  ExpectError(envelope(-1, 10), "no error");
+  ExpectError(envelope(-0.9, 10), "motion 2 leaves the envelope (Z -0.9 to 10 mm)");
+  ExpectError(envelope(-1, 9), "the path's start leaves the envelope");
+  ExpectError(envelope(1, -1), "empty in Z");
+  ExpectError(envelope(nan, 1), "empty in Z");
+}

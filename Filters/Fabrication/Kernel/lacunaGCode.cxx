@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaGCode.h"
+
+#include "lacunaParameterText.h"
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::size_t CommentLength = 64;
+constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
+constexpr const char* AxisNames = "XYZ";
+
+using Units = std::array<std::int64_t, 3>; // micrometres
+
+[[noreturn]] void Throw(const std::string& what)
+{
+  throw std::invalid_argument(what);
+}
+
+std::string Place(const Vec3& p)
+{
+  return "x " + FormatNumber(p[0]) + ", y " + FormatNumber(p[1]) + ", z " + FormatNumber(p[2]);
+}
+
+//------------------------------------------------------------------------------
+// Thousandths as a number with a decimal point: 12., -0.5
+std::string FormatUnits(std::int64_t units)
+{
+  const std::int64_t size = std::abs(units);
+  std::string text = (units < 0 ? "-" : "") + std::to_string(size / 1000) + ".";
+  std::string decimals = std::to_string(1000 + size % 1000).substr(1);
+  decimals.erase(decimals.find_last_not_of('0') + 1);
+  return text + decimals;
+}
+
+std::string Digits(int value, std::size_t count)
+{
+  std::string text = std::to_string(value);
+  return text.size() < count ? std::string(count - text.size(), '0') + text : text;
+}
+
+//------------------------------------------------------------------------------
+// In the characters that controls know, in lines that they show whole.
+void AddComment(std::string& program, const std::string& comment)
+{
+  std::string line;
+  const auto add = [&program](const std::string& text) { program += "(" + text + ")\n"; };
+  constexpr std::string_view known = " .,+-*/=:#[]";
+  for (std::size_t k = 0; k < comment.size(); ++k)
+  {
+    const auto c = static_cast<unsigned char>(comment[k]);
+    if (c >= 0x80 && c < 0xC0)
+    {
+      continue; // the rest of a character in UTF-8
+    }
+    const char upper = static_cast<char>(std::toupper(c));
+    const bool plain = (upper >= 'A' && upper <= 'Z') || (upper >= '0' && upper <= '9') ||
+      known.find(upper) != std::string_view::npos;
+    line += c == '(' ? '['
+      : c == ')'     ? ']'
+      : c == '_'     ? '-'
+      : c == '\n'    ? ' '
+      : plain        ? upper
+                     : '*';
+    if (line.size() > CommentLength)
+    {
+      // at a blank if there is one
+      const std::size_t blank = line.rfind(' ');
+      const bool words = blank != std::string::npos && blank > 0;
+      add(line.substr(0, words ? blank : CommentLength));
+      line.erase(0, words ? blank + 1 : CommentLength);
+    }
+  }
+  if (!line.empty())
+  {
+    add(line);
+  }
+}
+
+//------------------------------------------------------------------------------
+// A template's lines, filled in and judged.
+std::vector<std::string> FillIn(const char* which, const std::string& text,
+  const std::vector<std::pair<std::string, std::string>>& values)
+{
+  std::string filled;
+  for (std::size_t k = 0; k < text.size();)
+  {
+    if (text[k] != '{')
+    {
+      filled += static_cast<char>(std::toupper(static_cast<unsigned char>(text[k++])));
+      continue;
+    }
+    const std::size_t end = text.find('}', k);
+    const std::string name =
+      text.substr(k + 1, end == std::string::npos ? std::string::npos : end - k - 1);
+    bool found = false;
+    for (const auto& value : values)
+    {
+      if (value.first == name)
+      {
+        filled += value.second;
+        found = true;
+      }
+    }
+    if (!found || end == std::string::npos)
+    {
+      Throw(std::string(which) + " has the placeholder '{" + name +
+        "}'; {PROGRAM}, {TOOL}, {OFFSET}, {SPEED}, {X}, {Y} and {Z} are known");
+    }
+    k = end + 1;
+  }
+  std::vector<std::string> lines;
+  std::string line;
+  bool comment = false;
+  for (std::size_t k = 0; k <= filled.size(); ++k)
+  {
+    const char c = k < filled.size() ? filled[k] : '\n';
+    if (c == '\r')
+    {
+      continue;
+    }
+    if (c == '\n')
+    {
+      if (comment)
+      {
+        Throw(std::string(which) + " has a comment without its end: '" + line + "'");
+      }
+      if (!line.empty())
+      {
+        lines.push_back(line);
+      }
+      line.clear();
+      continue;
+    }
+    if (c < ' ' || c > '~' || c == '%' || (c == '(' && comment) || (c == ')' && !comment))
+    {
+      Throw(std::string(which) + " has a character that has no place there: '" +
+        (c >= ' ' && c <= '~' ? std::string(1, c) : std::string("not ASCII")) + "'");
+    }
+    comment = c == '(' || (comment && c != ')');
+    line += c;
+    if (!comment && std::string_view("XYZIJKR").find(c) != std::string_view::npos)
+    {
+      const std::size_t end = filled.find_first_not_of("+-.0123456789 ", k + 1);
+      const std::string number =
+        filled.substr(k + 1, end == std::string::npos ? std::string::npos : end - k - 1);
+      if (number.find_first_of("0123456789") != std::string::npos &&
+        number.find('.') == std::string::npos)
+      {
+        Throw(std::string(which) + " has '" + c + number +
+          "' without a decimal point, which the control would read as micrometres; write '" + c +
+          number.substr(0, number.find_last_not_of(' ') + 1) + ".'");
+      }
+    }
+  }
+  return lines;
+}
+
+//------------------------------------------------------------------------------
+void CheckOptions(const GCodeOptions& o)
+{
+  const auto check = [](const char* name, double value, double least, double largest)
+  {
+    if (!(value >= least && value <= largest))
+    {
+      Throw(std::string(name) + " is " + FormatNumber(value) + "; it must be " +
+        FormatNumber(least) + " to " + FormatNumber(largest));
+    }
+  };
+  check("ProgramNumber", o.ProgramNumber, 1, 9999);
+  check("ToolNumber", o.ToolNumber, 1, 99);
+  check("WorkOffset", o.WorkOffset, 54, 59);
+  check("SpindleSpeed", o.SpindleSpeed, 1, 99999);
+  for (int c = 0; o.HasEnvelope && c < 3; ++c)
+  {
+    if (!(o.Envelope[2 * c] <= o.Envelope[2 * c + 1]))
+    {
+      Throw(std::string("Envelope is empty in ") + AxisNames[c]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Motion number as users count them: 0 is the start.
+Units Round(const Vec3& p, std::size_t number, const GCodeOptions& options)
+{
+  const std::string name = number == 0 ? "the path's start" : "motion " + std::to_string(number);
+  Units units{};
+  for (int c = 0; c < 3; ++c)
+  {
+    if (!std::isfinite(p[c]))
+    {
+      Throw(name + " has a coordinate that is not a number: " + Place(p));
+    }
+    const double scaled = 1000 * p[c];
+    // z up, but for rounding of the product
+    const double rounded = c == 2 ? std::ceil(scaled - 1e-6) : std::round(scaled);
+    if (!(std::abs(rounded) <= static_cast<double>(LargestUnits)))
+    {
+      Throw(name + " goes beyond what the control can count (99999.999 mm): " + Place(p));
+    }
+    units[c] = static_cast<std::int64_t>(rounded);
+    const double value = static_cast<double>(units[c]) / 1000;
+    const double* range = options.Envelope + 2 * c;
+    if (options.HasEnvelope && !(value >= range[0] && value <= range[1]))
+    {
+      Throw(name + " leaves the envelope (" + AxisNames[c] + " " + FormatNumber(range[0]) + " to " +
+        FormatNumber(range[1]) + " mm): " + Place(p));
+    }
+  }
+  return units;
+}
+
+//------------------------------------------------------------------------------
+// Writes blocks and remembers what the control knows already.
+class BlockWriter
+{
+public:
+  BlockWriter(GCodeProgram& program, bool numbers)
+    : Program(program)
+    , Numbers(numbers)
+  {
+  }
+
+  void Add(const std::string& block)
+  {
+    const bool comment = block.front() == '(';
+    if (!comment)
+    {
+      ++this->Program.Blocks;
+      if (this->Numbers)
+      {
+        this->Number = this->Number % 9990 + 10;
+        this->Program.Text += "N" + std::to_string(this->Number) + " ";
+      }
+    }
+    this->Program.Text += block;
+    this->Program.Text += '\n';
+  }
+
+  // axes: how many, from x, are spoken of; all of them when the control does not know where it is.
+  void Move(bool rapid, const Units& to, std::int64_t feed, int first, int last)
+  {
+    std::string block;
+    const auto word = [&block](const std::string& text)
+    { block += (block.empty() ? "" : " ") + text; };
+    const int mode = rapid ? 0 : 1;
+    if (mode != this->Mode)
+    {
+      word(rapid ? "G00" : "G01");
+    }
+    bool moves = false;
+    for (int c = first; c < last; ++c)
+    {
+      if (to[c] != this->At[c])
+      {
+        word(AxisNames[c] + FormatUnits(to[c]));
+        this->At[c] = to[c];
+        moves = true;
+      }
+    }
+    if (!moves)
+    {
+      return;
+    }
+    this->Mode = mode;
+    if (!rapid && feed != this->Feed)
+    {
+      word("F" + FormatUnits(feed));
+      this->Feed = feed;
+    }
+    this->Add(block);
+  }
+
+private:
+  static constexpr std::int64_t Unknown = std::numeric_limits<std::int64_t>::min();
+  GCodeProgram& Program;
+  bool Numbers;
+  int Number = 0;
+  int Mode = -1;
+  Units At{ Unknown, Unknown, Unknown };
+  std::int64_t Feed = Unknown;
+};
+}
+
+//------------------------------------------------------------------------------
+GCodeOptions::GCodeOptions()
+  : Header(DefaultHeader())
+  , Footer(DefaultFooter())
+{
+}
+
+const char* GCodeOptions::DefaultHeader()
+{
+  return "G21 G17 G40 G49 G80 G90\n{OFFSET}\nT{TOOL} M06\nS{SPEED} M03\nG00 X{X} Y{Y}\n"
+         "G43 H{TOOL} Z{Z}\n";
+}
+
+const char* GCodeOptions::DefaultFooter()
+{
+  return "M05\nM30\n";
+}
+
+//------------------------------------------------------------------------------
+GCodeProgram MakeGCode(
+  const Vec3& start, const std::vector<GCodeMove>& moves, const GCodeOptions& options)
+{
+  CheckOptions(options);
+  if (moves.empty())
+  {
+    Throw("the path has no motions");
+  }
+  const Vec3& next = moves.front().To;
+  const bool down = next[0] == start[0] && next[1] == start[1] && next[2] < start[2];
+  if ((!moves.front().Rapid && !down) || !moves.back().Rapid)
+  {
+    Throw("the path must start with a rapid motion or straight down, and end with a rapid motion: "
+          "the machine goes to its start and from its end through the air");
+  }
+  const Units first = Round(start, 0, options);
+  const std::vector<std::pair<std::string, std::string>> values = {
+    { "PROGRAM", Digits(options.ProgramNumber, 4) }, { "TOOL", Digits(options.ToolNumber, 2) },
+    { "OFFSET", "G" + std::to_string(options.WorkOffset) },
+    { "SPEED", std::to_string(std::llround(options.SpindleSpeed)) }, { "X", FormatUnits(first[0]) },
+    { "Y", FormatUnits(first[1]) }, { "Z", FormatUnits(first[2]) }
+  };
+  const std::vector<std::string> header = FillIn("Header", options.Header, values);
+  const std::vector<std::string> footer = FillIn("Footer", options.Footer, values);
+
+  GCodeProgram program;
+  program.Text = "%\nO" + values[0].second + "\n";
+  for (const std::string& comment : options.Comments)
+  {
+    AddComment(program.Text, comment);
+  }
+  BlockWriter writer(program, options.LineNumbers);
+  for (const std::string& line : header)
+  {
+    writer.Add(line);
+  }
+  writer.Move(true, first, 0, 0, 2);
+  writer.Move(true, first, 0, 2, 3);
+  Units at = first;
+  for (std::size_t k = 0; k < moves.size(); ++k)
+  {
+    const GCodeMove& move = moves[k];
+    const Units to = Round(move.To, k + 1, options);
+    if (move.Rapid && to[2] != at[2] && (to[0] != at[0] || to[1] != at[1]))
+    {
+      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) +
+        ", is rapid and neither upright nor level: a control does not run such a motion along a "
+        "line. Go up first, then level, then down");
+    }
+    if (!move.Rapid && !(move.Feed >= 0.001 && move.Feed <= 99999))
+    {
+      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) + ", has a feed of " +
+        FormatNumber(move.Feed) + " mm/min; it must be above 0 and at most 99999");
+    }
+    writer.Move(move.Rapid, to, move.Rapid ? 0 : std::llround(1000 * move.Feed), 0, 3);
+    at = to;
+  }
+  for (const std::string& line : footer)
+  {
+    writer.Add(line);
+  }
+  program.Text += "%\n";
+  return program;
+}
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Programs for milling machines with a Fanuc 0-M control.
+#ifndef lacunaGCode_h
+#define lacunaGCode_h
+
+#include "lacunaVector.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// A straight motion.
+struct GCodeMove
+{
+  bool Rapid;
+  Vec3 To;     ///< mm
+  double Feed; ///< mm/min, of motions that are not rapid
+};
+
+struct GCodeOptions
+{
+  int ProgramNumber = 1;      ///< 1..9999
+  int ToolNumber = 1;         ///< 1..99, also of its length offset
+  int WorkOffset = 54;        ///< 54..59
+  double SpindleSpeed = 6000; ///< turns per minute, rounded
+  bool LineNumbers = false;   ///< N10, N20, .., N9990, N10, ..
+  /// Lines before and after the motions, see DefaultHeader. {PROGRAM}, {TOOL} (two digits),
+  /// {OFFSET} (G54), {SPEED} and {X}, {Y}, {Z} (where the path starts) are filled in.
+  std::string Header;
+  std::string Footer;
+  bool HasEnvelope = false;
+  double Envelope[6] = { 0, 0, 0, 0, 0, 0 }; ///< least and largest x, y, z that may be reached
+  std::vector<std::string> Comments;         ///< at the top, in any characters
+
+  GCodeOptions();
+  static const char* DefaultHeader();
+  static const char* DefaultFooter();
+};
+
+struct GCodeProgram
+{
+  std::string Text;
+  std::int64_t Blocks = 0; ///< lines but %, program number and comments
+};
+
+/// A program that starts at start and runs the motions. Metric, absolute, G00 and G01 only. Every
+/// coordinate has a decimal point and at most three decimals: x and y are rounded to the nearest
+/// micrometre, z up, so that rounding takes the tool no deeper into a surface than 0.71 um. Words
+/// that do not change are left out; so are motions to where the tool is. The first blocks after
+/// the header go to start, first in x and y, then in z.
+///
+/// Throws std::invalid_argument, naming the motion, when a number is not finite, beyond 99 999.999
+/// mm or outside of the envelope, a feed is not above 0, a rapid motion is neither upright nor
+/// level (controls run the axes at speeds of their own there, not along the line), the path does not
+/// start with a rapid motion or straight down and end with a rapid one; for options out of range; for templates with an unknown
+/// placeholder, characters that controls do not know, or a coordinate without a decimal point, which
+/// the control would read as micrometres.
+GCodeProgram MakeGCode(
+  const Vec3& start, const std::vector<GCodeMove>& moves, const GCodeOptions& options);
+}
+#endif

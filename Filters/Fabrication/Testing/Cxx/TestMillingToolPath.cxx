@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCheck.h"
+#include "lacunaGCodeParser.h"
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkErrorCode.h"
+#include "vtkFieldData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaGCodeWriter.h"
+#include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLogger.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStructuredGrid.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+namespace
+{
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+double Height(double x, double y)
+{
+  return 0.01 * (x - 12) * (x - 12) - 0.02 * (y - 7) * (y - 7) + 0.05 * x * std::sin(0.2 * y) - 6;
+}
+
+// 31 x 21 points of 1 mm; the plane is across the axis of size 1.
+vtkSmartPointer<vtkStructuredGrid> Mould(
+  const std::function<double(double, double)>& height = Height, int flatAxis = 2)
+{
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  const int sizes[3][3] = { { 1, 31, 21 }, { 31, 1, 21 }, { 31, 21, 1 } };
+  grid->SetDimensions(sizes[flatAxis]);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int j = 0; j < 21; ++j)
+  {
+    for (int i = 0; i < 31; ++i)
+    {
+      points->InsertNextPoint(i, j, height(i, j));
+    }
+  }
+  grid->SetPoints(points);
+  lacuna::Matrix4 press = lacuna::Matrix4::Rotation({ 1, 2, 3 }, 0.7);
+  vtkLacunaFieldData::SetMatrices(grid, "PressToPatient", { press });
+  return grid;
+}
+
+double Field(vtkDataObject* data, const char* name, int component = 0)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  return array ? array->GetComponent(0, component) : NaN;
+}
+
+vtkPolyData* Map(vtkLacunaMillingToolPath* filter)
+{
+  return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+}
+
+std::string Read(const std::string& path)
+{
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+void TestPath()
+{
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  filter->SetInputData(Mould());
+  filter->SetRoughingStep(2);
+  filter->SetStockTop(1);
+  auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->Errors.empty());
+  vtkPolyData* path = filter->GetOutput();
+  vtkPointData* data = path->GetPointData();
+  vtkDataArray* motions = data->GetArray("Motion");
+  vtkDataArray* times = data->GetArray("Time");
+  vtkDataArray* feeds = data->GetArray("FeedRate");
+  LACUNA_CHECK(motions && times && feeds && data->GetArray("Pass"));
+  // one way through all lines, and the time it takes
+  double time = 0;
+  double cut = 0;
+  vtkIdType next = 0;
+  vtkIdType points = 0;
+  auto cells = vtk::TakeSmartPointer(path->GetLines()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType count;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(count, ids);
+    points += count;
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      LACUNA_CHECK(k == 0 || ids[k] == ids[k - 1] + 1);
+      LACUNA_CHECK(motions->GetComponent(ids[k], 0) == motions->GetComponent(ids[0], 0));
+      if (k > 0)
+      {
+        lacuna::Vec3 a{};
+        lacuna::Vec3 b{};
+        path->GetPoint(ids[k - 1], a.data());
+        path->GetPoint(ids[k], b.data());
+        time += 60 * lacuna::Norm(b - a) / feeds->GetComponent(ids[k], 0);
+        cut += motions->GetComponent(ids[k], 0) > 0 ? lacuna::Norm(b - a) : 0;
+      }
+      LACUNA_CHECK_NEAR(times->GetComponent(ids[k], 0), time, 1e-6);
+    }
+    LACUNA_CHECK(ids[0] >= next);
+    next = ids[count - 1];
+  }
+  LACUNA_CHECK(path->GetNumberOfPoints() == points);
+  LACUNA_CHECK_NEAR(Field(path, "MachiningTime"), time, 1e-6);
+  LACUNA_CHECK_NEAR(Field(path, "PathLength"), cut, 1e-6);
+  LACUNA_CHECK(Field(path, "PathLength", 1) > cut);
+  LACUNA_CHECK(Field(path, "StockTop") == 1 && Field(path, "SafeZ") == 6);
+  LACUNA_CHECK(Field(path, "StepOver") == 1 && Field(path, "StepOver", 1) == 1);
+  LACUNA_CHECK(Field(path, "Levels") > 2 && Field(path, "LargestGouge") <= 0.001);
+  LACUNA_CHECK(Field(path, "ToolRadius") == 4 && Field(path, "SpindleSpeed") == 6000);
+  // the map
+  vtkPolyData* map = Map(filter);
+  LACUNA_CHECK(map->GetNumberOfPoints() == 121 * 81 && map->GetNumberOfCells() == 2 * 120 * 80);
+  vtkDataArray* left = map->GetPointData()->GetArray("LeftOver");
+  vtkDataArray* height = map->GetPointData()->GetArray("MachinedHeight");
+  vtkDataArray* unreachable = map->GetPointData()->GetArray("Unreachable");
+  LACUNA_CHECK(left && height && unreachable);
+  for (vtkIdType k = 0; k < map->GetNumberOfPoints(); ++k)
+  {
+    double p[3];
+    map->GetPoint(k, p);
+    LACUNA_CHECK(height->GetComponent(k, 0) >= p[2] - 0.002);
+    LACUNA_CHECK(
+      left->GetComponent(k, 0) <= std::max(0.0, height->GetComponent(k, 0) - p[2]) + 1e-9);
+    LACUNA_CHECK(unreachable->GetComponent(k, 0) <= left->GetComponent(k, 0));
+  }
+  LACUNA_CHECK_NEAR(left->GetRange()[1], Field(map, "LargestLeftOver"), 1e-12);
+  // passed on
+  for (vtkPolyData* output : { path, map })
+  {
+    vtkDataArray* matrix = output->GetFieldData()->GetArray("PressToPatient");
+    LACUNA_CHECK(matrix && matrix->GetNumberOfComponents() == 16);
+    const auto steps = vtkLacunaProvenance::Get(output);
+    LACUNA_CHECK(steps.size() == 1 && steps[0].find("RoughingStep=2") != std::string::npos);
+  }
+  std::ostringstream text;
+  filter->Print(text);
+  LACUNA_CHECK_CONTAINS(text.str(), "LeftOverLimit: 0.1");
+}
+
+//------------------------------------------------------------------------------
+// The same surface however its axes run through the grid, and from the other end.
+void TestAxes()
+{
+  const auto lengths = [](vtkStructuredGrid* grid)
+  {
+    vtkNew<vtkLacunaMillingToolPath> filter;
+    filter->SetInputData(grid);
+    filter->Update();
+    return Field(filter->GetOutput(), "PathLength");
+  };
+  const double expected = lengths(Mould());
+  LACUNA_CHECK(expected > 600);
+  LACUNA_CHECK(lengths(Mould(Height, 0)) == expected);
+  LACUNA_CHECK(lengths(Mould(Height, 1)) == expected);
+}
+
+//------------------------------------------------------------------------------
+void TestWarnsAndRefuses()
+{
+  const auto refuses = [](vtkStructuredGrid* grid, const std::string& words,
+                         const std::function<void(vtkLacunaMillingToolPath*)>& change = {})
+  {
+    vtkNew<vtkLacunaMillingToolPath> filter;
+    filter->SetInputData(grid);
+    if (change)
+    {
+      change(filter);
+    }
+    auto messages = lacunaCheck::Watch(filter);
+    filter->Update();
+    LACUNA_CHECK_CONTAINS(messages->Errors, words);
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+    LACUNA_CHECK(Map(filter)->GetNumberOfPoints() == 0);
+  };
+  refuses(Mould([](double x, double y) { return x == 4 && y == 3 ? NaN : 0; }),
+    "hole: the point is not finite, at column 4, row 3");
+  auto blanked = Mould();
+  blanked->BlankPoint(40);
+  refuses(blanked, "blanked");
+  auto folded = Mould();
+  folded->GetPoints()->SetPoint(40, 20, 1, 0);
+  refuses(folded, "folds back");
+  vtkNew<vtkStructuredGrid> volume;
+  volume->SetDimensions(2, 2, 2);
+  vtkNew<vtkPoints> points;
+  points->SetNumberOfPoints(8);
+  volume->SetPoints(points);
+  refuses(volume, "exactly one dimension of 1");
+  auto wrong = Mould();
+  vtkLacunaFieldData::Set(wrong, "PressToPatient", { 1, 2, 3 }, 3);
+  refuses(wrong, "PressToPatient");
+  using Filter = vtkLacunaMillingToolPath;
+  refuses(Mould(), "ToolShape", [](Filter* f) { f->SetToolShape(2); });
+  refuses(Mould(), "Pattern", [](Filter* f) { f->SetPattern(-1); });
+  refuses(Mould(), "FeedRate", [](Filter* f) { f->SetFeedRate(0); });
+  refuses(Mould(), "PlungeFeedRate", [](Filter* f) { f->SetPlungeFeedRate(NaN); });
+  refuses(Mould(), "SpindleSpeed", [](Filter* f) { f->SetSpindleSpeed(-1); });
+  refuses(Mould(), "MapSpacing", [](Filter* f) { f->SetMapSpacing(-1); });
+  refuses(Mould(), "ToolRadius", [](Filter* f) { f->SetToolRadius(-1); });
+  refuses(Mould(), "ball ends",
+    [](Filter* f)
+    {
+      f->SetToolShape(Filter::Flat);
+      f->SetScallopHeight(0.01);
+    });
+
+  // empty in, empty out
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  vtkNew<vtkStructuredGrid> empty;
+  filter->SetInputData(empty);
+  auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->Errors.empty() && filter->GetOutput()->GetNumberOfPoints() == 0);
+
+  // a slot that is too narrow is told with its place
+  filter->SetInputData(Mould([](double x, double) { return std::abs(x - 18) < 0.5 ? -3 : 0; }));
+  filter->Update();
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "too large for");
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "most at x 18");
+  LACUNA_CHECK(Map(filter)->GetPointData()->GetArray("Unreachable")->GetRange()[1] > 2);
+}
+
+//------------------------------------------------------------------------------
+void TestProgram(const std::string& file)
+{
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  filter->SetInputData(Mould());
+  filter->SetRoughingStep(2);
+  vtkNew<vtkLacunaGCodeWriter> writer;
+  writer->SetInputConnection(filter->GetOutputPort());
+  writer->SetFileName(file.c_str());
+  writer->SetToolNumber(7);
+  LACUNA_CHECK(writer->Write() == 1);
+  const std::string text = Read(file);
+  LACUNA_CHECK(writer->GetFileSize() == static_cast<vtkTypeInt64>(text.size()));
+  const GCodeParser parser(text);
+  LACUNA_CHECK(parser.Blocks == writer->GetNumberOfBlocks());
+  LACUNA_CHECK(parser.Tool == 7 && parser.Speed == 6000);
+  LACUNA_CHECK_CONTAINS(text, "BALL END, DIAMETER 8 MM");
+  LACUNA_CHECK_CONTAINS(text, "VTKLACUNAMILLINGTOOLPATH");
+  // the path, point for point, but for repeated ones
+  vtkPolyData* path = filter->GetOutput();
+  std::vector<std::array<double, 4>> expected;
+  for (vtkIdType k = 0; k < path->GetNumberOfPoints(); ++k)
+  {
+    std::array<double, 4> p{};
+    path->GetPoint(k, p.data());
+    p[3] = path->GetPointData()->GetArray("Motion")->GetComponent(k, 0) == 0;
+    if (expected.empty() || !std::equal(p.begin(), p.begin() + 3, expected.back().begin()))
+    {
+      expected.push_back(p);
+    }
+  }
+  expected.front()[3] = 1; // to where the path starts
+  std::vector<std::array<double, 4>> found;
+  for (const GCodeParser::Step& step : parser.Steps)
+  {
+    const std::array<double, 4> p{ step.To[0], step.To[1], step.To[2], step.Rapid ? 1.0 : 0.0 };
+    if (found.empty() || !std::equal(p.begin(), p.begin() + 3, found.back().begin()))
+    {
+      found.push_back(p);
+    }
+  }
+  LACUNA_CHECK(found.size() == expected.size());
+  for (std::size_t k = 0; k < std::min(found.size(), expected.size()); ++k)
+  {
+    for (int c = 0; c < 4; ++c)
+    {
+      // coordinates of the path are whole micrometres already
+      LACUNA_CHECK_NEAR(found[k][c], expected[k][c], 1e-9);
+    }
+  }
+
+  // refused: what was there stays
+  const auto refuses = [&](
+                         const std::string& words, unsigned long code = vtkErrorCode::UnknownError)
+  {
+    auto messages = lacunaCheck::Watch(writer);
+    LACUNA_CHECK(writer->Write() == 0);
+    LACUNA_CHECK_CONTAINS(messages->Errors, words);
+    LACUNA_CHECK(writer->GetErrorCode() == code);
+    LACUNA_CHECK(writer->GetFileSize() == 0 && writer->GetNumberOfBlocks() == 0);
+    LACUNA_CHECK(Read(file) == text);
+  };
+  writer->SetEnvelope(-10, 40, -10, 30, -5, 40);
+  refuses("leaves the envelope (Z -5 to 40 mm)");
+  writer->SetEnvelope(1, -1, 1, -1, 1, -1);
+  writer->SetHeader("G00 X5");
+  refuses("decimal point");
+  writer->SetHeader("");
+  writer->SetSpindleSpeed(-1);
+  refuses("SpindleSpeed");
+  writer->SetSpindleSpeed(0);
+  vtkNew<vtkPolyData> changed;
+  changed->DeepCopy(path);
+  writer->SetInputData(changed);
+  changed->GetPoints()->SetPoint(50, 0, NaN, 0);
+  refuses("not a number");
+  changed->DeepCopy(path);
+  changed->GetPointData()->RemoveArray("Motion");
+  changed->Modified();
+  refuses("no point array 'Motion'");
+  vtkNew<vtkPolyData> none;
+  writer->SetInputData(none);
+  refuses("no poly lines");
+  writer->SetInputData(path);
+  writer->SetFileName(nullptr);
+  refuses("FileName", vtkErrorCode::NoFileNameError);
+  writer->SetFileName((file + ".missing/a.nc").c_str());
+  refuses(".missing", vtkErrorCode::CannotOpenFileError);
+  if (vtksys::SystemTools::FileExists("/dev/full"))
+  {
+    writer->SetFileName("/dev/full");
+    refuses("No space", vtkErrorCode::OutOfDiskSpaceError);
+  }
+  writer->SetFileName(file.c_str());
+  LACUNA_CHECK(writer->Write() == 1);
+  std::ostringstream print;
+  writer->Print(print);
+  LACUNA_CHECK_CONTAINS(print.str(), "WorkOffset: 54");
+
+  // a filter that fails before the writer
+  filter->SetToolRadius(-1);
+  writer->SetInputConnection(filter->GetOutputPort());
+  auto quiet = lacunaCheck::Watch(filter);
+  auto messages = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 0);
+  LACUNA_CHECK(writer->GetErrorCode() != vtkErrorCode::NoError && !quiet->Errors.empty());
+}
+}
+
+int TestMillingToolPath(int argc, char* argv[])
+{
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_WARNING);
+  std::string folder = ".";
+  for (int k = 1; k + 1 < argc; ++k)
+  {
+    folder = std::string(argv[k]) == "-T" ? argv[k + 1] : folder;
+  }
+  TestPath();
+  TestAxes();
+  TestWarnsAndRefuses();
+  TestProgram(folder + "/TestMillingToolPath.nc");
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaGCodeWriter.h"
+
+#include "lacunaAtomicFile.h"
+#include "lacunaGCode.h"
+#include "lacunaParameterText.h"
+#include "lacunaToolPath.h"
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDataArray.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaWriting.h"
+#include "vtkLogger.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaGCodeWriter);
+
+namespace
+{
+constexpr double NoEnvelope[6] = { 1, -1, 1, -1, 1, -1 };
+
+//------------------------------------------------------------------------------
+vtkDataArray* GetArray(vtkPolyData* path, const char* name)
+{
+  vtkDataArray* array = path->GetPointData()->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != 1 ||
+    array->GetNumberOfTuples() != path->GetNumberOfPoints())
+  {
+    throw std::runtime_error(std::string("the path has no point array '") + name +
+      "' with one number for each point; write the output of Milling Tool Path");
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+// The motions of all poly lines, one after the other; each starts where the one before ended.
+std::vector<lacuna::GCodeMove> GetMoves(vtkPolyData* path, lacuna::Vec3& start)
+{
+  vtkDataArray* motions = GetArray(path, vtkLacunaMillingToolPath::MotionName);
+  vtkDataArray* feeds = GetArray(path, vtkLacunaMillingToolPath::FeedRateName);
+  std::vector<lacuna::GCodeMove> moves;
+  moves.reserve(path->GetNumberOfPoints());
+  lacuna::Vec3 end{ 0, 0, 0 };
+  vtkIdType line = 0;
+  auto cells = vtk::TakeSmartPointer(path->GetLines()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell(), ++line)
+  {
+    vtkIdType count;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(count, ids);
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      lacuna::Vec3 p{ 0, 0, 0 };
+      path->GetPoint(ids[k], p.data());
+      if (k > 0)
+      {
+        const double kind = motions->GetComponent(ids[k], 0);
+        moves.push_back({ kind == static_cast<double>(lacuna::Motion::Rapid), p,
+          feeds->GetComponent(ids[k], 0) });
+      }
+      else if (line == 0)
+      {
+        start = p;
+      }
+      else if (!(lacuna::Norm(p - end) <= 1e-4)) // single precision may have come between
+      {
+        throw std::runtime_error("poly line " + std::to_string(line) +
+          " of the path does not start where the one before ends; the tool's way between them is "
+          "not known");
+      }
+      end = p;
+    }
+  }
+  return moves;
+}
+
+//------------------------------------------------------------------------------
+double GetNumber(vtkPolyData* path, const char* name)
+{
+  vtkDataArray* array = vtkLacunaFieldData::Find(path, name, 1, 1);
+  return array ? array->GetComponent(0, 0) : 0;
+}
+
+std::string DescribeTool(vtkPolyData* path, int number)
+{
+  const double radius = GetNumber(path, "ToolRadius");
+  return "T" + std::to_string(number) +
+    (radius > 0 ? std::string(GetNumber(path, "ToolShape") == 0 ? " ball" : " flat") +
+          " end, diameter " + lacuna::FormatNumber(2 * radius) + " mm"
+                : std::string());
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaGCodeWriter::~vtkLacunaGCodeWriter()
+{
+  this->SetFileName(nullptr);
+  this->SetHeader(nullptr);
+  this->SetFooter(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaGCodeWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaGCodeWriter::Write()
+{
+  this->FileSize = 0;
+  this->Superclass::Write();
+  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0));
+  return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::WriteData()
+{
+  this->FileSize = 0;
+  this->NumberOfBlocks = 0;
+  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
+    [this]
+    {
+      auto* path = vtkPolyData::SafeDownCast(this->GetInput());
+      if (!path || path->GetNumberOfLines() == 0)
+      {
+        throw std::runtime_error("the input has no poly lines");
+      }
+      this->WriteProgram(path);
+    }));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
+{
+  lacuna::Vec3 start{ 0, 0, 0 };
+  const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
+
+  lacuna::GCodeOptions options;
+  options.ProgramNumber = this->ProgramNumber;
+  options.ToolNumber = this->ToolNumber;
+  options.WorkOffset = this->WorkOffset;
+  options.SpindleSpeed =
+    this->SpindleSpeed != 0 ? this->SpindleSpeed : GetNumber(path, "SpindleSpeed");
+  if (options.SpindleSpeed == 0)
+  {
+    throw std::runtime_error("the path has no SpindleSpeed; set SpindleSpeed");
+  }
+  options.LineNumbers = this->LineNumbers;
+  options.HasEnvelope = !std::equal(NoEnvelope, NoEnvelope + 6, this->Envelope);
+  std::copy_n(this->Envelope, 6, options.Envelope);
+  if (this->Header && *this->Header)
+  {
+    options.Header = this->Header;
+  }
+  if (this->Footer && *this->Footer)
+  {
+    options.Footer = this->Footer;
+  }
+  const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+  options.Comments = { version + " G-Code Writer",
+    vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), "mm, press coordinates, tool tip",
+    DescribeTool(path, this->ToolNumber) };
+  if (const double time = GetNumber(path, "MachiningTime"); time > 0)
+  {
+    options.Comments.push_back(
+      "Time about " + std::to_string(std::llround(std::ceil(time / 60))) + " min");
+  }
+  for (const std::string& step : vtkLacunaProvenance::Get(path))
+  {
+    options.Comments.push_back("Made by: " + step);
+  }
+
+  const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options);
+  lacuna::WriteFileAtomically(this->FileName, program.Text);
+  this->FileSize = static_cast<vtkTypeInt64>(program.Text.size());
+  this->NumberOfBlocks = program.Blocks;
+  vtkLog(INFO, << "G-Code Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
+               << this->NumberOfBlocks << " blocks");
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  const auto text = [](const char* value) { return value ? value : "(none)"; };
+  os << indent << "FileName: " << text(this->FileName) << "\n";
+  os << indent << "ProgramNumber: " << this->ProgramNumber << "\n";
+  os << indent << "ToolNumber: " << this->ToolNumber << "\n";
+  os << indent << "WorkOffset: " << this->WorkOffset << "\n";
+  os << indent << "SpindleSpeed: " << this->SpindleSpeed << "\n";
+  os << indent << "LineNumbers: " << this->LineNumbers << "\n";
+  os << indent << "Envelope: " << this->Envelope[0] << " " << this->Envelope[1] << " "
+     << this->Envelope[2] << " " << this->Envelope[3] << " " << this->Envelope[4] << " "
+     << this->Envelope[5] << "\n";
+  os << indent << "Header: " << text(this->Header) << "\n";
+  os << indent << "Footer: " << text(this->Footer) << "\n";
+  os << indent << "FileSize: " << this->FileSize << "\n";
+  os << indent << "NumberOfBlocks: " << this->NumberOfBlocks << "\n";
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaGCodeWriter
+ * @brief a tool path as a program for a milling machine
+ *
+ * Writes poly lines with the point arrays Motion and FeedRate, the output of
+ * vtkLacunaMillingToolPath, as G-code for a Fanuc 0-M control: G21 G90, straight motions only,
+ * coordinates with a decimal point and at most three decimals (x and y to the nearest, z up), modal
+ * words left out when they do not change. See lacuna::MakeGCode for what it refuses.
+ *
+ * Comments at the top name Lacuna's version, the tool, the steps of the provenance and the day.
+ * There is never a number in the file that is not finite.
+ *
+ * The file is written beside its final name and renamed when it is complete. On failure Write()
+ * returns 0, GetErrorCode() says why (vtkErrorCode), and what was at FileName stays.
+ *
+ * Source: Fanuc Series 0-M, Operator's Manual; RS-274-D.
+ */
+#ifndef vtkLacunaGCodeWriter_h
+#define vtkLacunaGCodeWriter_h
+
+#include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkWriter.h"
+
+class vtkPolyData;
+
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaGCodeWriter : public vtkWriter
+{
+public:
+  static vtkLacunaGCodeWriter* New();
+  vtkTypeMacro(vtkLacunaGCodeWriter, vtkWriter);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /** Updates the input and writes. Returns 1, or 0 when there is no new file, also because a filter
+   * before this one failed. */
+  int Write() override;
+
+  ///@{
+  /** The file to write, usually *.nc or *.gcode. */
+  vtkSetFilePathMacro(FileName);
+  vtkGetFilePathMacro(FileName);
+  ///@}
+  ///@{
+  /** O number, 1..9999. Default 1. */
+  vtkSetMacro(ProgramNumber, int);
+  vtkGetMacro(ProgramNumber, int);
+  ///@}
+  ///@{
+  /** T and H number, 1..99. Default 1. */
+  vtkSetMacro(ToolNumber, int);
+  vtkGetMacro(ToolNumber, int);
+  ///@}
+  ///@{
+  /** 54..59 for G54..G59. Default 54. */
+  vtkSetMacro(WorkOffset, int);
+  vtkGetMacro(WorkOffset, int);
+  ///@}
+  ///@{
+  /** Turns per minute; 0: the path's. Default 0. */
+  vtkSetMacro(SpindleSpeed, double);
+  vtkGetMacro(SpindleSpeed, double);
+  ///@}
+  ///@{
+  /** N10, N20, .. before each block. Default off. */
+  vtkSetMacro(LineNumbers, bool);
+  vtkGetMacro(LineNumbers, bool);
+  vtkBooleanMacro(LineNumbers, bool);
+  ///@}
+  ///@{
+  /** Least and largest x, y and z, mm, that the tool's tip may reach; a path that leaves them is
+   * refused. Default 1 -1 1 -1 1 -1: no limits. */
+  vtkSetVector6Macro(Envelope, double);
+  vtkGetVector6Macro(Envelope, double);
+  ///@}
+  ///@{
+  /** Lines before and after the motions; empty: the default ones, see lacuna::GCodeOptions. */
+  vtkSetStringMacro(Header);
+  vtkGetStringMacro(Header);
+  vtkSetStringMacro(Footer);
+  vtkGetStringMacro(Footer);
+  ///@}
+
+  ///@{
+  /** Of the last Write(): bytes and blocks; 0 when it failed. */
+  vtkGetMacro(FileSize, vtkTypeInt64);
+  vtkGetMacro(NumberOfBlocks, vtkTypeInt64);
+  ///@}
+
+protected:
+  vtkLacunaGCodeWriter() = default;
+  ~vtkLacunaGCodeWriter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  void WriteData() override;
+
+private:
+  vtkLacunaGCodeWriter(const vtkLacunaGCodeWriter&) = delete;
+  void operator=(const vtkLacunaGCodeWriter&) = delete;
+
+  void WriteProgram(vtkPolyData* path);
+
+  char* FileName = nullptr;
+  int ProgramNumber = 1;
+  int ToolNumber = 1;
+  int WorkOffset = 54;
+  double SpindleSpeed = 0;
+  bool LineNumbers = false;
+  double Envelope[6] = { 1, -1, 1, -1, 1, -1 };
+  char* Header = nullptr;
+  char* Footer = nullptr;
+  vtkTypeInt64 FileSize = 0;
+  vtkTypeInt64 NumberOfBlocks = 0;
+};
+#endif

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaMillingToolPath.h"
+
+#include "lacunaMaterialRemoval.h"
+#include "lacunaParameterText.h"
+#include "lacunaToolPath.h"
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaMillingToolPath);
+
+namespace
+{
+constexpr const char* PressToPatientName = "PressToPatient";
+
+//------------------------------------------------------------------------------
+lacuna::MillSurface MakeSurface(vtkStructuredGrid* grid)
+{
+  int dimensions[3];
+  grid->GetDimensions(dimensions);
+  std::vector<std::int64_t> size;
+  for (const int d : dimensions)
+  {
+    if (d != 1)
+    {
+      size.push_back(d);
+    }
+  }
+  if (size.size() != 2)
+  {
+    throw std::runtime_error("the structured grid has " + std::to_string(dimensions[0]) + " x " +
+      std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
+      " points; a surface has exactly one dimension of 1");
+  }
+  if (grid->HasAnyBlankPoints() || grid->HasAnyBlankCells())
+  {
+    throw std::runtime_error(
+      "the structured grid has blanked points or cells; a surface without holes is needed");
+  }
+  std::vector<lacuna::Vec3> points(grid->GetNumberOfPoints());
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    grid->GetPoint(static_cast<vtkIdType>(k), points[k].data());
+  }
+  return lacuna::MillSurface({ size[0], size[1] }, std::move(points));
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& source)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(static_cast<vtkIdType>(source.size()));
+  double* to = vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0);
+  for (const lacuna::Vec3& p : source)
+  {
+    to = std::copy_n(p.data(), 3, to);
+  }
+  return points;
+}
+
+template <class Array>
+Array* AddArray(vtkPolyData* output, const char* name)
+{
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfTuples(output->GetNumberOfPoints());
+  output->GetPointData()->AddArray(array);
+  return array;
+}
+
+//------------------------------------------------------------------------------
+// Feed rates in mm/min by kind of motion.
+using FeedRates = double[4];
+
+struct Totals
+{
+  double Cutting = 0; // mm
+  double All = 0;
+  double Time = 0; // s
+  double Positions = 0;
+};
+
+Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRates& feeds)
+{
+  output->SetPoints(MakePoints(path.Points));
+  auto* motions = AddArray<vtkUnsignedCharArray>(output, vtkLacunaMillingToolPath::MotionName);
+  auto* passes = AddArray<vtkIntArray>(output, vtkLacunaMillingToolPath::PassName);
+  auto* rates = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::FeedRateName);
+  auto* times = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::TimeName);
+  vtkNew<vtkCellArray> lines;
+  Totals totals;
+  for (const lacuna::ToolPath::Run& run : path.Runs)
+  {
+    if (run.Count > 1)
+    {
+      lines->InsertNextCell(run.Count);
+    }
+    const double feed = feeds[static_cast<int>(run.Kind)];
+    for (std::int64_t k = run.First; k < run.First + run.Count; ++k)
+    {
+      if (k > run.First)
+      {
+        const double length = lacuna::Norm(path.Points[k] - path.Points[k - 1]);
+        totals.Time += 60 * length / feed;
+        totals.All += length;
+        if (run.Kind != lacuna::Motion::Rapid)
+        {
+          totals.Cutting += length;
+          ++totals.Positions;
+        }
+      }
+      if (run.Count > 1)
+      {
+        lines->InsertCellPoint(k);
+      }
+      motions->SetValue(k, static_cast<unsigned char>(run.Kind));
+      passes->SetValue(k, run.Pass);
+      rates->SetValue(k, feed);
+      times->SetValue(k, totals.Time);
+    }
+  }
+  output->SetLines(lines);
+  output->GetPointData()->SetActiveScalars(vtkLacunaMillingToolPath::MotionName);
+  return totals;
+}
+
+//------------------------------------------------------------------------------
+void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
+{
+  output->SetPoints(MakePoints(map.Points));
+  const auto copy = [&](const std::vector<double>& values, const char* name)
+  {
+    auto* array = AddArray<vtkDoubleArray>(output, name);
+    std::copy(values.begin(), values.end(), array->GetPointer(0));
+  };
+  copy(map.LeftOver, "LeftOver");
+  copy(map.Height, "MachinedHeight");
+  copy(map.Unreachable, "Unreachable");
+  output->GetPointData()->SetActiveScalars("LeftOver");
+  const vtkIdType columns = map.Size.Columns;
+  const vtkIdType cells = 2 * (columns - 1) * (map.Size.Rows - 1);
+  vtkNew<vtkIdTypeArray> connectivity;
+  connectivity->SetNumberOfValues(3 * cells);
+  vtkIdType* to = connectivity->GetPointer(0);
+  // seen from the mill's side they turn to the left
+  const lacuna::Vec3 a = map.Points[1] - map.Points[0];
+  const lacuna::Vec3 b = map.Points[columns] - map.Points[0];
+  const bool left = lacuna::Cross(a, b)[2] > 0;
+  for (vtkIdType j = 0; j + 1 < map.Size.Rows; ++j)
+  {
+    for (vtkIdType i = 0; i + 1 < columns; ++i)
+    {
+      const vtkIdType p = i + columns * j;
+      const vtkIdType q = p + columns + 1;
+      const vtkIdType sides[2] = { p + 1, p + columns };
+      for (int k = 0; k < 2; ++k)
+      {
+        *to++ = p;
+        *to++ = (k == 0) == left ? sides[k] : q;
+        *to++ = (k == 0) == left ? q : sides[k];
+      }
+    }
+  }
+  vtkNew<vtkIdTypeArray> offsets;
+  offsets->SetNumberOfValues(cells + 1);
+  for (vtkIdType k = 0; k <= cells; ++k)
+  {
+    offsets->SetValue(k, 3 * k);
+  }
+  vtkNew<vtkCellArray> triangles;
+  triangles->SetData(offsets, connectivity);
+  output->SetPolys(triangles);
+}
+
+//------------------------------------------------------------------------------
+// What to say of places where the tool does not fit; empty when it does.
+std::string DescribeUnreachable(const lacuna::LeftOverMap& map, double radius, double limit)
+{
+  const auto worst = std::max_element(map.Unreachable.begin(), map.Unreachable.end());
+  if (!(*worst > limit))
+  {
+    return {};
+  }
+  const auto count = std::count_if(
+    map.Unreachable.begin(), map.Unreachable.end(), [limit](double left) { return left > limit; });
+  const auto rounded = [](double x) { return lacuna::FormatNumber(std::round(100 * x) / 100); };
+  const lacuna::Vec3& p = map.Points[worst - map.Unreachable.begin()];
+  return "the tool (radius " + lacuna::FormatNumber(radius) + " mm) is too large for " +
+    rounded(100 * static_cast<double>(count) / static_cast<double>(map.Unreachable.size())) +
+    " % of the surface: it leaves up to " + rounded(*worst) + " mm there, most at x " +
+    rounded(p[0]) + ", y " + rounded(p[1]) + ", z " + rounded(p[2]) +
+    " (array Unreachable of the left-over map). A smaller tool reaches further";
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaMillingToolPath::vtkLacunaMillingToolPath()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMillingToolPath::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkStructuredGrid");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMillingToolPath::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMillingToolPath::CheckProperties() const
+{
+  const auto oneOf = [](const char* name, int value, const char* first, const char* second)
+  {
+    if (value != 0 && value != 1)
+    {
+      throw std::runtime_error(std::string(name) + " is " + std::to_string(value) +
+        "; it must be 0 (" + first + ") or 1 (" + second + ")");
+    }
+  };
+  oneOf("ToolShape", this->ToolShape, "Ball", "Flat");
+  oneOf("Pattern", this->Pattern, "ZigZag", "OneWay");
+  const auto positive = [](const char* name, double value, double largest, const char* unit)
+  {
+    if (!(value > 0 && value <= largest))
+    {
+      throw std::runtime_error(std::string(name) + " is " + lacuna::FormatNumber(value) +
+        "; it must be above 0 and at most " + lacuna::FormatNumber(largest) + unit);
+    }
+  };
+  positive("FeedRate", this->FeedRate, 1e5, " mm/min");
+  positive("PlungeFeedRate", this->PlungeFeedRate, 1e5, " mm/min");
+  positive("RapidFeedRate", this->RapidFeedRate, 1e6, " mm/min");
+  positive("SpindleSpeed", this->SpindleSpeed, 1e6, " turns per minute");
+  positive("LeftOverLimit", this->LeftOverLimit, 1e3, " mm");
+  if (!(this->MapSpacing >= 0 && this->MapSpacing <= 1e3))
+  {
+    throw std::runtime_error("MapSpacing is " + lacuna::FormatNumber(this->MapSpacing) +
+      " mm; 0 (a quarter of the step-over) to 1000 is possible");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaMillingToolPath::GetParameters() const
+{
+  lacuna::ParameterText parameters;
+  parameters.Add("ToolShape", this->ToolShape)
+    .Add("ToolRadius", this->ToolRadius)
+    .Add("StepOver", this->StepOver)
+    .Add("ScallopHeight", this->ScallopHeight)
+    .Add("Direction", this->Direction)
+    .Add("Pattern", this->Pattern)
+    .Add("Finishing", this->Finishing)
+    .Add("RoughingStep", this->RoughingStep)
+    .Add("RoughingStepOver", this->RoughingStepOver)
+    .Add("StockAllowance", this->StockAllowance)
+    .Add("StockTop", this->StockTop)
+    .Add("SafeHeight", this->SafeHeight)
+    .Add("LeadRadius", this->LeadRadius)
+    .Add("PathStep", this->PathStep)
+    .Add("Tolerance", this->Tolerance)
+    .Add("FeedRate", this->FeedRate)
+    .Add("PlungeFeedRate", this->PlungeFeedRate)
+    .Add("RapidFeedRate", this->RapidFeedRate)
+    .Add("SpindleSpeed", this->SpindleSpeed)
+    .Add("MapSpacing", this->MapSpacing)
+    .Add("LeftOverLimit", this->LeftOverLimit);
+  return parameters.Get();
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaMillingToolPath::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
+  const int piece = outputVector->GetInformationObject(0)->Get(
+    vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
+  if (!grid || grid->GetNumberOfPoints() == 0 || piece > 0)
+  {
+    return 1; // empty in, empty out; a path is one piece
+  }
+  const auto body = [&](vtkLacunaExecution& execution)
+  {
+    this->CheckProperties();
+    vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
+    const lacuna::MillSurface surface = MakeSurface(grid);
+    lacuna::ToolPathOptions options;
+    options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
+    options.StepOver = this->StepOver;
+    options.ScallopHeight = this->ScallopHeight;
+    options.Direction = this->Direction;
+    options.OneWay = this->Pattern == OneWay;
+    options.PathStep = this->PathStep;
+    options.Tolerance = this->Tolerance;
+    options.Finishing = this->Finishing;
+    options.RoughingStep = this->RoughingStep;
+    options.RoughingStepOver = this->RoughingStepOver;
+    options.StockAllowance = this->StockAllowance;
+    options.StockTop = this->StockTop;
+    options.SafeHeight = this->SafeHeight;
+    options.LeadRadius = this->LeadRadius;
+    execution.SetStage(0, 0.5);
+    const lacuna::ToolPath path = lacuna::MakeToolPath(execution, surface, options);
+    for (const std::string& warning : path.Warnings)
+    {
+      vtkWarningMacro(<< warning);
+    }
+    execution.SetStage(0.5, 0.95);
+    const double step = path.SmallestStepOver > 0 ? path.SmallestStepOver : this->ToolRadius;
+    const lacuna::LeftOverMap map = lacuna::MapLeftOver(
+      execution, surface, options.Tool, path, this->MapSpacing > 0 ? this->MapSpacing : step / 4);
+    const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
+    if (!unreachable.empty())
+    {
+      vtkWarningMacro(<< unreachable);
+    }
+
+    vtkPolyData* lines = vtkPolyData::GetData(outputVector, 0);
+    vtkPolyData* left = vtkPolyData::GetData(outputVector, 1);
+    const Totals totals = SetPath(
+      lines, path, { this->RapidFeedRate, this->PlungeFeedRate, this->FeedRate, this->FeedRate });
+    SetMap(left, map);
+    const std::string parameters = this->GetParameters();
+    for (vtkPolyData* output : { lines, left })
+    {
+      output->GetFieldData()->ShallowCopy(grid->GetFieldData());
+      const auto set = [output](const char* name, const std::vector<double>& values)
+      { vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size())); };
+      set("ToolShape", { static_cast<double>(this->ToolShape) });
+      set("ToolRadius", { this->ToolRadius });
+      set("SpindleSpeed", { this->SpindleSpeed });
+      set("StepOver", { path.SmallestStepOver, path.LargestStepOver });
+      set("StockTop", { path.StockTop });
+      set("SafeZ", { path.SafeZ });
+      set("Levels", { static_cast<double>(path.Levels) });
+      set("Positions", { totals.Positions });
+      set("PathLength", { totals.Cutting, totals.All });
+      set("MachiningTime", { totals.Time });
+      set("LargestLeftOver", { map.LargestLeftOver });
+      set("LargestGouge", { map.LargestGouge });
+      vtkLacunaProvenance::Record(output, this, { grid }, parameters);
+    }
+  };
+  return vtkLacunaExecution::Run(this, outputVector, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMillingToolPath::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "ToolShape: " << this->ToolShape << "\n";
+  os << indent << "ToolRadius: " << this->ToolRadius << "\n";
+  os << indent << "StepOver: " << this->StepOver << "\n";
+  os << indent << "ScallopHeight: " << this->ScallopHeight << "\n";
+  os << indent << "Direction: " << this->Direction << "\n";
+  os << indent << "Pattern: " << this->Pattern << "\n";
+  os << indent << "Finishing: " << this->Finishing << "\n";
+  os << indent << "RoughingStep: " << this->RoughingStep << "\n";
+  os << indent << "RoughingStepOver: " << this->RoughingStepOver << "\n";
+  os << indent << "StockAllowance: " << this->StockAllowance << "\n";
+  os << indent << "StockTop: " << this->StockTop << "\n";
+  os << indent << "SafeHeight: " << this->SafeHeight << "\n";
+  os << indent << "LeadRadius: " << this->LeadRadius << "\n";
+  os << indent << "PathStep: " << this->PathStep << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "FeedRate: " << this->FeedRate << "\n";
+  os << indent << "PlungeFeedRate: " << this->PlungeFeedRate << "\n";
+  os << indent << "RapidFeedRate: " << this->RapidFeedRate << "\n";
+  os << indent << "SpindleSpeed: " << this->SpindleSpeed << "\n";
+  os << indent << "MapSpacing: " << this->MapSpacing << "\n";
+  os << indent << "LeftOverLimit: " << this->LeftOverLimit << "\n";
+}

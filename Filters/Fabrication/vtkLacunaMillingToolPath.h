@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaMillingToolPath
+ * @brief three-axis roughing and finishing paths over a mould, and what they leave
+ *
+ * Input: a vtkStructuredGrid with one dimension of 1 in press coordinates, mm, that the mill, which
+ * looks along -z, sees in one layer; the output of vtkLacunaPressOrientation. Its cells are cut
+ * into triangles along the diagonal from point (i, j) to (i + 1, j + 1), and these are the part.
+ *
+ * Output 0: vtkPolyData, poly lines of the tool's tip in the order in which they are run, each of
+ * one kind of motion; the first point of a line is the last one of the line before. Coordinates are
+ * whole micrometres. Point data: Motion (unsigned char: 0 rapid, 1 plunge, 2 cut, 3 lead), Pass
+ * (int: levels of roughing from 0, then the finishing), FeedRate (mm/min), Time (s from the start).
+ *
+ * Output 1: vtkPolyData, the surface, its cells divided evenly. Point data: LeftOver (mm from the
+ * surface to what was taken away), MachinedHeight (z of what is left of the stock), Unreachable (mm,
+ * what a tool of this shape leaves however dense the path, as it does not fit). Exact for the
+ * motions as they are, but for Unreachable, see lacuna::FindUnreachable.
+ *
+ * Both carry the input's field data (PressToPatient) and
+ * | array           | meaning                                                                    |
+ * |-----------------|----------------------------------------------------------------------------|
+ * | ToolShape       | 0 ball, 1 flat                                                             |
+ * | ToolRadius      | mm                                                                         |
+ * | SpindleSpeed    | 1/min                                                                      |
+ * | StepOver        | least and largest distance of finishing lines, mm                          |
+ * | StockTop, SafeZ | z, mm, as used                                                             |
+ * | Levels          | of roughing                                                                |
+ * | Positions       | number of points that are not rapid                                        |
+ * | PathLength      | mm, without and with rapid motions                                         |
+ * | MachiningTime   | s, without acceleration                                                    |
+ * | LargestLeftOver | mm, on the map                                                             |
+ * | LargestGouge    | mm, depth of the deepest point of the map within the swept tool            |
+ *
+ * Warns where the tool does not fit. Errors: holes, folded surfaces, options out of range.
+ *
+ * Source: Carr 1996, ch. 6, ends at the surface for CAM; paths are beyond it.
+ * @sa lacuna::MakeToolPath lacuna::MapLeftOver vtkLacunaGCodeWriter
+ */
+#ifndef vtkLacunaMillingToolPath_h
+#define vtkLacunaMillingToolPath_h
+
+#include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // for parameters
+
+class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaMillingToolPath : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaMillingToolPath* New();
+  vtkTypeMacro(vtkLacunaMillingToolPath, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  static constexpr const char* MotionName = "Motion";
+  static constexpr const char* PassName = "Pass";
+  static constexpr const char* FeedRateName = "FeedRate";
+  static constexpr const char* TimeName = "Time";
+
+  enum ToolShapeType
+  {
+    Ball = 0,
+    Flat = 1
+  };
+  enum PatternType
+  {
+    ZigZag = 0,
+    OneWay = 1
+  };
+
+  ///@{
+  /** End of the tool. Default Ball. */
+  vtkSetMacro(ToolShape, int);
+  vtkGetMacro(ToolShape, int);
+  ///@}
+  ///@{
+  /** mm, > 0. Default 4. */
+  vtkSetMacro(ToolRadius, double);
+  vtkGetMacro(ToolRadius, double);
+  ///@}
+  ///@{
+  /** mm, largest distance of finishing lines; they divide the surface evenly. Default 1. */
+  vtkSetMacro(StepOver, double);
+  vtkGetMacro(StepOver, double);
+  ///@}
+  ///@{
+  /** mm: when > 0 the lines are as far apart as keeps scallops below it, closer on slopes across
+   * them (down to a quarter of the distance on level ground). Ball only. Default 0. */
+  vtkSetMacro(ScallopHeight, double);
+  vtkGetMacro(ScallopHeight, double);
+  ///@}
+  ///@{
+  /** Of the lines, degrees from x towards y. Default 0. */
+  vtkSetMacro(Direction, double);
+  vtkGetMacro(Direction, double);
+  ///@}
+  ///@{
+  /** To and fro, or all lines the same way. Default ZigZag. */
+  vtkSetMacro(Pattern, int);
+  vtkGetMacro(Pattern, int);
+  ///@}
+  ///@{
+  /** Whether the surface is finished. Default on. */
+  vtkSetMacro(Finishing, bool);
+  vtkGetMacro(Finishing, bool);
+  vtkBooleanMacro(Finishing, bool);
+  ///@}
+  ///@{
+  /** mm between the levels of roughing; 0: none. Default 0. */
+  vtkSetMacro(RoughingStep, double);
+  vtkGetMacro(RoughingStep, double);
+  ///@}
+  ///@{
+  /** mm; 0: the tool's radius. Default 0. */
+  vtkSetMacro(RoughingStepOver, double);
+  vtkGetMacro(RoughingStepOver, double);
+  ///@}
+  ///@{
+  /** mm that roughing leaves on the surface. Default 0.5. */
+  vtkSetMacro(StockAllowance, double);
+  vtkGetMacro(StockAllowance, double);
+  ///@}
+  ///@{
+  /** z of the stock's top, mm; the surface's highest point if that is higher. Default 0. */
+  vtkSetMacro(StockTop, double);
+  vtkGetMacro(StockTop, double);
+  ///@}
+  ///@{
+  /** mm above the stock at which rapid motions are. Default 5. */
+  vtkSetMacro(SafeHeight, double);
+  vtkGetMacro(SafeHeight, double);
+  ///@}
+  ///@{
+  /** mm, of the quarter circles that lead into and out of finishing cuts; 0: none. Default 2. */
+  vtkSetMacro(LeadRadius, double);
+  vtkGetMacro(LeadRadius, double);
+  ///@}
+  ///@{
+  /** mm, largest distance of positions on a line; 0: the spacing of the surface. Default 0. */
+  vtkSetMacro(PathStep, double);
+  vtkGetMacro(PathStep, double);
+  ///@}
+  ///@{
+  /** mm, what a straight motion may leave above a hollow; positions are added. Default 0.005. */
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+  ///@{
+  /** mm/min of cuts and leads. Default 800. */
+  vtkSetMacro(FeedRate, double);
+  vtkGetMacro(FeedRate, double);
+  ///@}
+  ///@{
+  /** mm/min. Default 200. */
+  vtkSetMacro(PlungeFeedRate, double);
+  vtkGetMacro(PlungeFeedRate, double);
+  ///@}
+  ///@{
+  /** mm/min, of the machine; for the time only. Default 5000. */
+  vtkSetMacro(RapidFeedRate, double);
+  vtkGetMacro(RapidFeedRate, double);
+  ///@}
+  ///@{
+  /** Turns per minute, for the G-code. Default 6000. */
+  vtkSetMacro(SpindleSpeed, double);
+  vtkGetMacro(SpindleSpeed, double);
+  ///@}
+  ///@{
+  /** mm between points of the left-over map; 0: a quarter of the step-over. Default 0. */
+  vtkSetMacro(MapSpacing, double);
+  vtkGetMacro(MapSpacing, double);
+  ///@}
+  ///@{
+  /** mm: where the tool leaves more because it does not fit that is warned of. Default 0.1. */
+  vtkSetMacro(LeftOverLimit, double);
+  vtkGetMacro(LeftOverLimit, double);
+  ///@}
+
+protected:
+  vtkLacunaMillingToolPath();
+  ~vtkLacunaMillingToolPath() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkLacunaMillingToolPath(const vtkLacunaMillingToolPath&) = delete;
+  void operator=(const vtkLacunaMillingToolPath&) = delete;
+
+  void CheckProperties() const;
+  std::string GetParameters() const;
+
+  int ToolShape = Ball;
+  double ToolRadius = 4;
+  double StepOver = 1;
+  double ScallopHeight = 0;
+  double Direction = 0;
+  int Pattern = ZigZag;
+  bool Finishing = true;
+  double RoughingStep = 0;
+  double RoughingStepOver = 0;
+  double StockAllowance = 0.5;
+  double StockTop = 0;
+  double SafeHeight = 5;
+  double LeadRadius = 2;
+  double PathStep = 0;
+  double Tolerance = 0.005;
+  double FeedRate = 800;
+  double PlungeFeedRate = 200;
+  double RapidFeedRate = 5000;
+  double SpindleSpeed = 6000;
+  double MapSpacing = 0;
+  double LeftOverLimit = 0.1;
+};
+#endif
