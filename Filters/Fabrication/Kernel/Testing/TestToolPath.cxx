@@ -301,7 +301,7 @@ TEST(ToolPath, NoGougeOnWallsSpikesAndPits)
         const ToolPath path = Path(surface, options);
         CheckForm(path);
         Judge judge(surface, tool);
-        EXPECT_LE(judge.LargestDepth(path, 400000), 0.001)
+        EXPECT_LE(judge.LargestDepth(path, 150000), 0.001)
           << tool.Radius << " " << direction << " " << oneWay;
         ThreadExecution execution(2);
         const LeftOverMap map = MapLeftOver(execution, surface, tool, path, 0.2);
