@@ -8,7 +8,8 @@
 ///
 /// Point data: Depth (double, mm, NaN where there is none), vtkValidPointMask (char, 1 where Depth
 /// is a number), Normals (float x 3, unit, world, towards the viewer), for further iso-values
-/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char) and Deviation (double). Shaded maps
+/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char), Deviation (double) and SupportMask
+/// (char). Shaded maps
 /// add Color (unsigned char x 3, the active scalars), the normals used (Normals for Depth, Normals_1
 /// for Depth_1, ..., FittedNormals for Fitted) and NormalDifference (float, degrees).
 /// Field data: ImageToWorld (16, (column, row, mm along z, 1) to world mm), IsoValues, and for
@@ -36,6 +37,8 @@ public:
   static constexpr const char* FittedName = "Fitted";
   static constexpr const char* FilledMaskName = "FilledMask";
   static constexpr const char* DeviationName = "Deviation";
+  static constexpr const char* SupportMaskName = "SupportMask";
+  static constexpr const char* PixelIdName = "PixelId"; ///< of surfaces made of a map
   static constexpr const char* ColorName = "Color";
   static constexpr const char* NormalDifferenceName = "NormalDifference";
   static constexpr const char* ImageToWorldName = "ImageToWorld";

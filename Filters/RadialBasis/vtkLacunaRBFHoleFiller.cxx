@@ -3,83 +3,62 @@
 
 #include "lacunaHoleFill.h"
 #include "lacunaParameterText.h"
-#include "vtkCharArray.h"
 #include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
-#include "vtkFloatArray.h"
+#include "vtkDataSet.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaDefectMarks.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaFieldData.h"
+#include "vtkLacunaFilledMap.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkSelection.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaRBFHoleFiller);
 
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
 namespace
 {
 using lacuna::MapMask;
 
-lacuna::MapGrid GetGrid(vtkImageData* map, const vtkLacunaDepthMap& contract)
+// The object at the first connection of an optional port, or nullptr.
+template <class Type>
+Type* GetOptional(vtkInformationVector* port)
 {
-  const int* extent = map->GetExtent();
+  return port->GetNumberOfInformationObjects() > 0
+    ? Type::SafeDownCast(port->GetInformationObject(0)->Get(vtkDataObject::DATA_OBJECT()))
+    : nullptr;
+}
+
+lacuna::MapGrid GetGrid(const int* extent, const double* spacing)
+{
   lacuna::MapGrid grid;
   grid.Width = extent[1] - extent[0] + 1;
   grid.Height = extent[3] - extent[2] + 1;
   grid.FirstColumn = extent[0];
   grid.FirstRow = extent[2];
-  grid.Spacing = contract.GetPixelSpacing();
+  grid.Spacing = { spacing[0], spacing[1] };
   return grid;
-}
-
-// Where a point array is not 0.
-MapMask GetMarked(vtkImageData* map, const std::string& name, const char* property)
-{
-  vtkPointData* points = map->GetPointData();
-  vtkDataArray* array = points->GetArray(name.c_str());
-  if (!array || array->GetNumberOfComponents() != 1)
-  {
-    std::ostringstream message;
-    message << property << ": the map has no point array '" << name
-            << "' with one component; it has";
-    for (int i = 0; i < points->GetNumberOfArrays(); ++i)
-    {
-      message << (i ? ", '" : " '") << points->GetArrayName(i) << "'";
-    }
-    throw std::runtime_error(message.str());
-  }
-  MapMask mask(static_cast<std::size_t>(array->GetNumberOfTuples()));
-  for (std::size_t i = 0; i < mask.size(); ++i)
-  {
-    mask[i] = array->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
-  }
-  return mask;
-}
-
-void Merge(MapMask& mask, const MapMask& other)
-{
-  std::transform(mask.begin(), mask.end(), other.begin(), mask.begin(),
-    [](unsigned char a, unsigned char b) { return a || b; });
 }
 
 // Depth and Valid of the input. Returns how many pixels are flagged valid without a finite depth.
 vtkIdType ReadDepth(
-  vtkImageData* map, const vtkLacunaDepthMap& contract, lacuna::HoleFillInput& input)
+  vtkImageData* map, const vtkLacunaDepthMap& contract, lacuna::MarkedMap& input, const char* what)
 {
   const auto n = static_cast<vtkIdType>(input.Grid.GetSize());
   input.Depth.resize(input.Grid.GetSize());
@@ -88,7 +67,7 @@ vtkIdType ReadDepth(
     input.Depth[i] = contract.GetDepth()->GetComponent(i, 0);
   }
   input.Valid = map->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName)
-    ? GetMarked(map, vtkLacunaDepthMap::MaskName, "depth map")
+    ? vtkLacunaDefectMarks::FromArray(map, vtkLacunaDepthMap::MaskName, what)
     : MapMask(input.Grid.GetSize(), 1);
   const bool flagged = map->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
   vtkIdType wrong = 0;
@@ -102,94 +81,14 @@ vtkIdType ReadDepth(
   }
   if (std::find(input.Valid.begin(), input.Valid.end(), 1) == input.Valid.end())
   {
-    throw std::runtime_error("no pixel of the depth map has a depth; check the iso-value and the "
-                             "view direction of the ray caster");
+    throw std::runtime_error(std::string("no pixel of ") + what +
+      " has a depth; check the iso-value and the view direction of the ray caster");
   }
   return wrong;
 }
 
-// Pixels whose surface point is in region, or is hidden by it from the viewer.
-class RegionMarker
-{
-public:
-  RegionMarker(const vtkLacunaDepthMap& contract, const lacuna::HoleFillInput& input,
-    vtkImplicitFunction* region)
-    : Contract(contract)
-    , Input(input)
-    , Region(region)
-    , Marked(input.Grid.GetSize(), 0)
-  {
-  }
-
-  MapMask Run(lacuna::Execution& execution)
-  {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -low;
-    for (std::size_t i = 0; i < this->Marked.size(); ++i)
-    {
-      if (this->Input.Valid[i])
-      {
-        low = std::min(low, this->Input.Depth[i]);
-        high = std::max(high, this->Input.Depth[i]);
-      }
-    }
-    this->Try([&](std::size_t i) { return this->Input.Valid[i] != 0; },
-      [&](std::size_t i) { return this->Input.Depth[i]; });
-    constexpr int samples = vtkLacunaRBFHoleFiller::RegionSamples;
-    for (int k = 0; k < samples; ++k)
-    {
-      const double depth = low + (high - low) * k / (samples - 1);
-      this->Try([&](std::size_t i)
-        { return !this->Input.Valid[i] || depth < this->Input.Depth[i]; },
-        [&](std::size_t) { return depth; });
-      execution.Report(static_cast<double>(k + 1) / samples);
-    }
-    return this->Marked;
-  }
-
-private:
-  // Marks the pixels chosen whose points at the given depths are in the region.
-  template <class Chosen, class Depth>
-  void Try(const Chosen& chosen, const Depth& depth)
-  {
-    this->Pixels.clear();
-    for (std::size_t i = 0; i < this->Marked.size(); ++i)
-    {
-      if (!this->Marked[i] && chosen(i))
-      {
-        this->Pixels.push_back(i);
-      }
-    }
-    const auto count = static_cast<vtkIdType>(this->Pixels.size());
-    const lacuna::MapGrid& grid = this->Input.Grid;
-    this->Points->SetNumberOfComponents(3);
-    this->Points->SetNumberOfTuples(count);
-    this->Values->SetNumberOfTuples(count);
-    for (vtkIdType k = 0; k < count; ++k)
-    {
-      const std::size_t i = this->Pixels[k];
-      const lacuna::Vec3 point = this->Contract.GetPoint(
-        static_cast<double>(grid.GetColumn(i)), static_cast<double>(grid.GetRow(i)), depth(i));
-      this->Points->SetTypedTuple(k, point.data());
-    }
-    this->Region->FunctionValue(this->Points, this->Values);
-    for (vtkIdType k = 0; k < count; ++k)
-    {
-      this->Marked[this->Pixels[k]] = this->Values->GetValue(k) <= 0;
-    }
-  }
-
-  const vtkLacunaDepthMap& Contract;
-  const lacuna::HoleFillInput& Input;
-  vtkImplicitFunction* Region;
-  MapMask Marked;
-  std::vector<std::size_t> Pixels;
-  vtkNew<vtkDoubleArray> Points;
-  vtkNew<vtkDoubleArray> Values;
-};
-
 // The defect when none is marked.
-MapMask FindDefect(lacuna::Execution& execution, const lacuna::HoleFillInput& input)
+MapMask FindDefect(lacuna::Execution& execution, const lacuna::MarkedMap& input)
 {
   if (input.Painted.empty())
   {
@@ -204,102 +103,93 @@ MapMask FindDefect(lacuna::Execution& execution, const lacuna::HoleFillInput& in
   return lacuna::FindInteriorHoles(input.Grid, sound);
 }
 
-void AddArray(vtkImageData* map, const char* name, const std::vector<double>& values)
+// World to the map's x, y and depth, mm.
+lacuna::Matrix4 GetWorldToMap(const vtkLacunaDepthMap& contract, const lacuna::MapGrid& grid)
 {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  map->GetPointData()->AddArray(array);
+  const lacuna::Matrix4& m = contract.GetImageToWorld();
+  return lacuna::Matrix4::FromColumns((1 / grid.Spacing[0]) * m.Column(0),
+    (1 / grid.Spacing[1]) * m.Column(1), m.Column(2), m.Column(3))
+    .Inverse();
 }
 
-void AddMask(vtkImageData* map, const char* name, const MapMask& mask)
+std::vector<lacuna::Vec3> GetControlPoints(
+  vtkDataSet* points, const std::string& depthArray, const lacuna::Matrix4& toMap)
 {
-  vtkNew<vtkCharArray> array;
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(mask.size()));
-  std::copy(mask.begin(), mask.end(), array->GetPointer(0));
-  map->GetPointData()->AddArray(array);
-}
-
-// The measured normals, with those of the fit in the defect.
-void AddNormals(
-  vtkImageData* map, const vtkLacunaDepthMap& contract, const lacuna::HoleFillResult& result)
-{
-  vtkDataArray* measured = map->GetPointData()->GetArray(vtkLacunaDepthMap::NormalsName);
-  if (!measured)
+  std::vector<lacuna::Vec3> control;
+  vtkDataArray* depths = nullptr;
+  if (points && !depthArray.empty())
   {
-    return;
-  }
-  if (measured->GetNumberOfComponents() != 3)
-  {
-    throw std::runtime_error(std::string("point array '") + vtkLacunaDepthMap::NormalsName +
-      "' of the depth map must have three components");
-  }
-  vtkNew<vtkFloatArray> normals;
-  normals->DeepCopy(measured);
-  const lacuna::Matrix4& toWorld = contract.GetImageToWorld();
-  const lacuna::Vec3 right = lacuna::Normalized(toWorld.Column(0));
-  const lacuna::Vec3 down = lacuna::Normalized(toWorld.Column(1));
-  const lacuna::Vec3 view = lacuna::Normalized(toWorld.Column(2));
-  for (std::size_t k = 0; k < result.Filled.size(); ++k)
-  {
-    const auto& g = result.Gradients[k];
-    const lacuna::Vec3 n = lacuna::Normalized(g[0] * right + g[1] * down - view);
-    normals->SetTuple(static_cast<vtkIdType>(result.Filled[k]), n.data());
-  }
-  map->GetPointData()->AddArray(normals);
-}
-
-void AddFieldData(vtkImageData* map, int kernel, const lacuna::HoleFillResult& result)
-{
-  const auto& c = result.Plane;
-  const lacuna::Vec3 normal = lacuna::Normalized({ c[1], c[2], -1 });
-  const auto& fit = result.Fit;
-  vtkLacunaFieldData::Set(map, "RBFPlane", { c[0], c[1], c[2] }, 3);
-  vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
-  vtkLacunaFieldData::Set(map, "NodeCount", { static_cast<double>(fit.NodeCount) }, 1);
-  vtkLacunaFieldData::Set(map, "Residual", { fit.Residual }, 1);
-  vtkLacunaFieldData::Set(map, "ConditionEstimate", { fit.ConditionEstimate }, 1);
-  if (kernel == vtkLacunaRBFHoleFiller::ThinPlate)
-  {
-    vtkLacunaFieldData::Set(map, "BendingEnergy", { fit.Energy }, 1);
-  }
-  vtkLacunaFieldData::Set(map, "DefectArea", { result.DefectArea }, 1);
-}
-
-void AddPointData(vtkImageData* map, const vtkLacunaDepthMap& contract,
-  const lacuna::HoleFillInput& input, const lacuna::HoleFillResult& result)
-{
-  std::vector<double> depth = input.Depth;
-  MapMask valid = input.Valid;
-  MapMask filled(valid.size(), 0);
-  for (std::size_t i = 0; i < depth.size(); ++i)
-  {
-    if (!valid[i])
+    depths = points->GetPointData()->GetArray(depthArray.c_str());
+    if (!depths || depths->GetNumberOfComponents() != 1)
     {
-      depth[i] = std::numeric_limits<double>::quiet_NaN();
+      throw std::runtime_error("ControlDepthArray: the control points have no point array '" +
+        depthArray + "' with one component");
     }
   }
-  for (const std::size_t i : result.Filled)
+  for (vtkIdType i = 0; points && i < points->GetNumberOfPoints(); ++i)
   {
-    depth[i] = result.Fitted[i];
-    valid[i] = 1;
-    filled[i] = 1;
+    lacuna::Vec3 p;
+    points->GetPoint(i, p.data());
+    p = toMap.Point(p);
+    p[2] = depths ? depths->GetComponent(i, 0) : p[2];
+    control.push_back(p);
   }
-  AddArray(map, vtkLacunaDepthMap::DepthName, depth);
-  AddMask(map, vtkLacunaDepthMap::MaskName, valid);
-  AddNormals(map, contract, result);
-  AddArray(map, vtkLacunaDepthMap::FittedName, result.Fitted);
-  AddMask(map, vtkLacunaDepthMap::FilledMaskName, filled);
-  AddArray(map, vtkLacunaDepthMap::DeviationName, result.Deviation);
-  map->GetPointData()->SetActiveScalars(vtkLacunaDepthMap::DepthName);
+  return control;
+}
+
+// The surface of another depth map, parallel or perspective, in the axes of this one.
+lacuna::SurfaceSheet GetSheet(vtkImageData* prior, const lacuna::Matrix4& toMap)
+{
+  lacuna::SurfaceSheet sheet;
+  if (!prior || prior->GetNumberOfPoints() == 0)
+  {
+    return sheet;
+  }
+  const vtkLacunaDepthMap contract(prior);
+  lacuna::MarkedMap read;
+  read.Grid = GetGrid(prior->GetExtent(), prior->GetSpacing());
+  ReadDepth(prior, contract, read, "the prior surface");
+  sheet.Width = read.Grid.Width;
+  sheet.Height = read.Grid.Height;
+  for (std::size_t i = 0; i < read.Depth.size(); ++i)
+  {
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    sheet.Points.push_back(read.Valid[i]
+        ? toMap.Point(contract.GetPoint(static_cast<double>(read.Grid.GetColumn(i)),
+            static_cast<double>(read.Grid.GetRow(i)), read.Depth[i]))
+        : lacuna::Vec3{ nothing, nothing, nothing });
+  }
+  return sheet;
+}
+
+void CheckChoice(const char* property, int value, int last, const char* choices)
+{
+  if (value < 0 || value > last)
+  {
+    throw std::runtime_error(
+      std::string(property) + " is " + std::to_string(value) + "; it must be " + choices);
+  }
 }
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaRBFHoleFiller::vtkLacunaRBFHoleFiller() = default;
+vtkLacunaRBFHoleFiller::vtkLacunaRBFHoleFiller()
+  : Filler(std::make_unique<lacuna::HoleFiller>())
+{
+  this->SetNumberOfInputPorts(5);
+}
+
 vtkLacunaRBFHoleFiller::~vtkLacunaRBFHoleFiller() = default;
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFHoleFiller::FillInputPortInformation(int port, vtkInformation* info)
+{
+  static const char* const types[] = { "vtkImageData", "vtkDataSet", "vtkSelection", "vtkDataSet",
+    "vtkImageData" };
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port > 0 ? 1 : 0);
+  return 1;
+}
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::SetDefectRegion(vtkImplicitFunction* region)
@@ -330,6 +220,12 @@ void vtkLacunaRBFHoleFiller::SetSupportArray(const char* name)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaRBFHoleFiller::SetControlDepthArray(const char* name)
+{
+  this->SetArrayName(this->ControlDepthArray, name);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::SetArrayName(std::string& member, const char* name)
 {
   const std::string value = !name || !std::strcmp(name, "None") ? "" : name;
@@ -348,19 +244,113 @@ vtkMTimeType vtkLacunaRBFHoleFiller::GetMTime()
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaRBFHoleFiller::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      vtkInformation* in = inputs[0]->GetInformationObject(0);
+      vtkInformation* out = outputs->GetInformationObject(0);
+      out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      int whole[6];
+      double spacing[3] = { 1, 1, 1 };
+      in->Get(SDDP::WHOLE_EXTENT(), whole);
+      if (in->Has(vtkDataObject::SPACING()))
+      {
+        in->Get(vtkDataObject::SPACING(), spacing);
+      }
+      if (whole[1] >= whole[0] && whole[3] >= whole[2])
+      {
+        const lacuna::MapGrid grid =
+          lacuna::GetOutputGrid(GetGrid(whole, spacing), this->GetOptions());
+        whole[0] = grid.FirstColumn;
+        whole[1] = grid.FirstColumn + grid.Width - 1;
+        whole[2] = grid.FirstRow;
+        whole[3] = grid.FirstRow + grid.Height - 1;
+        std::copy(grid.Spacing.begin(), grid.Spacing.end(), spacing);
+      }
+      out->Set(SDDP::WHOLE_EXTENT(), whole, 6);
+      out->Set(vtkDataObject::SPACING(), spacing, 3);
+      vtkDataObject::SetPointDataActiveScalarInfo(out, VTK_DOUBLE, 1);
+    });
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaRBFHoleFiller::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // The fit depends on the whole surroundings of the defect, whatever piece is asked for.
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      vtkLacunaRequest::Whole(inputs[port]->GetInformationObject(i));
+    }
+  }
   return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFHoleFiller::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
 {
-  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+  CheckChoice("Kernel", this->Kernel, Multiquadric,
+    "0 (ThinPlate), 1 (Linear), 2 (Triharmonic), 3 (Cubic), 4 (Gaussian) or 5 (Multiquadric)");
+  CheckChoice("Solver", this->Solver, Fast, "0 (Auto), 1 (Direct) or 2 (Fast)");
+  CheckChoice("Trend", this->Trend, Ellipsoid, "0 (NoTrend) or 1 (Ellipsoid)");
+  lacuna::HoleFillOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+  options.KernelLength = this->KernelLength;
+  options.Trend = static_cast<lacuna::HoleTrend>(this->Trend);
+  options.SupportMargin = this->SupportMargin;
+  options.NodeSpacing = this->NodeSpacing;
+  options.Smoothing = this->Smoothing;
+  options.CutoffWavelength = this->CutoffWavelength;
+  options.OutputMargin = this->OutputMargin;
+  options.OutputSpacing = { this->OutputSpacing[0], this->OutputSpacing[1] };
+  options.Accuracy = this->Accuracy;
+  options.Solver = static_cast<lacuna::RadialSolver>(this->Solver);
+  return options;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageData* map,
+  vtkInformationVector** inputs, lacuna::MarkedMap& marked)
+{
+  auto* surface = GetOptional<vtkDataSet>(inputs[SurfacePort]);
+  auto* selection = GetOptional<vtkSelection>(inputs[SelectionPort]);
+  marked.Defect.assign(marked.Grid.GetSize(), 0);
+  if (!this->SupportArray.empty())
+  {
+    marked.Painted = vtkLacunaDefectMarks::FromArray(map, this->SupportArray, "SupportArray");
+  }
+  if (this->DefectRegion)
+  {
+    vtkLacunaDefectMarks::Merge(marked.Defect,
+      vtkLacunaDefectMarks::FromRegion(
+        execution, vtkLacunaDepthMap(map), marked, this->DefectRegion));
+  }
+  if (!this->DefectArray.empty())
+  {
+    vtkLacunaDefectMarks::Merge(
+      marked.Defect, vtkLacunaDefectMarks::FromArray(map, this->DefectArray, "DefectArray"));
+  }
+  if (surface || selection)
+  {
+    vtkLacunaDefectMarks::Merge(
+      marked.Defect, vtkLacunaDefectMarks::FromSelection(map, marked.Grid, surface, selection));
+  }
+  else if (!this->DefectRegion && this->DefectArray.empty())
+  {
+    marked.Defect = FindDefect(execution, marked);
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFHoleFiller::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputVector)
+{
+  vtkImageData* map = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputVector);
   if (!map || map->GetNumberOfPoints() == 0)
   {
@@ -370,8 +360,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
   {
     const vtkLacunaDepthMap contract(map);
     int whole[6];
-    inputVector[0]->GetInformationObject(0)->Get(
-      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    inputs[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);
     if (!std::equal(whole, whole + 6, map->GetExtent()))
     {
       throw std::runtime_error("only a part of the depth map has arrived, and the fit needs the "
@@ -382,84 +371,74 @@ int vtkLacunaRBFHoleFiller::RequestData(
       throw std::runtime_error("this is a perspective depth map; holes are filled in parallel maps "
                                "only, such as those of B-Spline Iso Ray Caster");
     }
-    if (this->Kernel != ThinPlate && this->Kernel != Linear && this->Kernel != Cubic)
-    {
-      throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-        "; it must be 0 (ThinPlate), 1 (Linear) or 3 (Cubic)");
-    }
+    const lacuna::HoleFillOptions options = this->GetOptions();
     lacuna::HoleFillInput input;
-    input.Grid = GetGrid(map, contract);
-    const vtkIdType wrong = ReadDepth(map, contract, input);
+    input.Grid = GetGrid(map->GetExtent(), map->GetSpacing());
+    const vtkIdType wrong = ReadDepth(map, contract, input, "the depth map");
     if (wrong > 0)
     {
       vtkWarningMacro(<< wrong << " pixels of the depth map are flagged valid but have no finite "
                       << "depth; they are taken as pixels without depth");
     }
-
     execution.SetStage(0, 0.1);
-    input.Defect.assign(input.Grid.GetSize(), 0);
-    if (!this->SupportArray.empty())
-    {
-      input.Painted = GetMarked(map, this->SupportArray, "SupportArray");
-    }
-    if (this->DefectRegion)
-    {
-      Merge(input.Defect, RegionMarker(contract, input, this->DefectRegion).Run(execution));
-    }
-    if (!this->DefectArray.empty())
-    {
-      Merge(input.Defect, GetMarked(map, this->DefectArray, "DefectArray"));
-    }
-    if (!this->DefectRegion && this->DefectArray.empty())
-    {
-      input.Defect = FindDefect(execution, input);
-    }
+    this->MarkDefect(execution, map, inputs, input);
+    auto* control = GetOptional<vtkDataSet>(inputs[ControlPointsPort]);
+    auto* prior = GetOptional<vtkImageData>(inputs[PriorSurfacePort]);
+    const lacuna::Matrix4 toMap = GetWorldToMap(contract, input.Grid);
+    input.ControlPoints = GetControlPoints(control, this->ControlDepthArray, toMap);
+    input.Prior = GetSheet(prior, toMap);
 
-    lacuna::HoleFillOptions options;
-    options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
-    options.SupportMargin = this->SupportMargin;
-    options.NodeSpacing = this->NodeSpacing;
-    options.Smoothing = this->Smoothing;
-    options.CutoffWavelength = this->CutoffWavelength;
-    options.OutputMargin = this->OutputMargin;
-
-    lacuna::HoleFillResult result;
-    vtkNew<vtkImageData> filled;
-    filled->ShallowCopy(map);
-    if (std::find(input.Defect.begin(), input.Defect.end(), 1) == input.Defect.end())
+    const auto marked = std::count(input.Defect.begin(), input.Defect.end(), 1);
+    if (marked == 0)
     {
       vtkWarningMacro(
-        "the defect is empty, so the map is passed on as it is: no pixel is marked by DefectRegion "
-        "or DefectArray, or (without them) the main surface of the map encloses no hole");
-      result.Fitted.assign(input.Grid.GetSize(), std::numeric_limits<double>::quiet_NaN());
-      result.Deviation = result.Fitted;
+        "the defect is empty, so the map is passed on as it is: no pixel is marked by "
+        "DefectRegion, DefectArray or the selection, or (without them) the main "
+        "surface of the map encloses no hole");
     }
-    else
-    {
-      result = lacuna::FillHole(execution, input, options);
-      AddFieldData(filled, this->Kernel, result);
-    }
+    const lacuna::HoleFillResult result = this->Filler->Fill(execution, input, options);
     for (const std::string& warning : result.Warnings)
     {
       vtkWarningMacro(<< warning);
     }
-    AddPointData(filled, contract, input, result);
+    vtkNew<vtkImageData> filled;
+    vtkLacunaFilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
 
     lacuna::ParameterText parameters;
     parameters.Add("Kernel", this->Kernel)
+      .Add("KernelLength", this->KernelLength)
+      .Add("Trend", this->Trend)
       .Add("DefectRegion", this->DefectRegion ? this->DefectRegion->GetClassName() : "None")
       .Add("DefectArray", this->DefectArray)
+      .Add("DefectPixels", marked)
       .Add("SupportArray", this->SupportArray)
       .Add("SupportMargin", this->SupportMargin)
       .Add("NodeSpacing", this->NodeSpacing)
       .Add("Smoothing", this->Smoothing)
       .Add("CutoffWavelength", this->CutoffWavelength)
-      .Add("OutputMargin", this->OutputMargin);
-    vtkLacunaProvenance::Record(filled, this, { map }, parameters.Get());
+      .Add("ControlDepthArray", this->ControlDepthArray)
+      .Add("OutputMargin", this->OutputMargin)
+      .Add("OutputSpacing", this->OutputSpacing)
+      .Add("Accuracy", this->Accuracy)
+      .Add("Solver", this->Solver);
+    std::vector<double> coordinates;
+    for (const lacuna::Vec3& p : input.ControlPoints)
+    {
+      coordinates.insert(coordinates.end(), { p[0], p[1], p[2] });
+    }
+    if (!coordinates.empty())
+    {
+      parameters.Add("ControlPointsInMap", coordinates);
+    }
+    std::vector<vtkDataObject*> sources{ map };
+    if (prior)
+    {
+      sources.push_back(prior);
+    }
+    vtkLacunaProvenance::Record(filled, this, sources, parameters.Get());
     output->ShallowCopy(filled);
     int piece[6];
-    outputVector->GetInformationObject(0)->Get(
-      vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
+    outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), piece);
     output->Crop(piece);
   };
   return vtkLacunaExecution::Run(this, outputVector, body);
@@ -470,6 +449,8 @@ void vtkLacunaRBFHoleFiller::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Kernel: " << this->Kernel << "\n";
+  os << indent << "KernelLength: " << this->KernelLength << "\n";
+  os << indent << "Trend: " << this->Trend << "\n";
   os << indent << "DefectRegion: " << this->DefectRegion.Get() << "\n";
   os << indent << "DefectArray: " << this->DefectArray << "\n";
   os << indent << "SupportArray: " << this->SupportArray << "\n";
@@ -477,5 +458,10 @@ void vtkLacunaRBFHoleFiller::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NodeSpacing: " << this->NodeSpacing << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "CutoffWavelength: " << this->CutoffWavelength << "\n";
+  os << indent << "ControlDepthArray: " << this->ControlDepthArray << "\n";
   os << indent << "OutputMargin: " << this->OutputMargin << "\n";
+  os << indent << "OutputSpacing: " << this->OutputSpacing[0] << " " << this->OutputSpacing[1]
+     << " " << this->OutputSpacing[2] << "\n";
+  os << indent << "Accuracy: " << this->Accuracy << "\n";
+  os << indent << "Solver: " << this->Solver << "\n";
 }

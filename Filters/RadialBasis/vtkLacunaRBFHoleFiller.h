@@ -3,48 +3,59 @@
  * @class vtkLacunaRBFHoleFiller
  * @brief fills a hole in a depth map with a radial basis function fitted to the surface around it
  *
- * Input: a parallel depth map (vtkLacunaDepthMap). Perspective maps are refused: their rays are not
- * parallel, so depth is not a height over the map. The hole is found in one of these ways:
- *  - DefectRegion and/or DefectArray mark it (a pixel that either marks is defect). A pixel is in
- *    the region when its surface point is, or when the region lies in front of that point: when one
- *    of RegionSamples points of its ray, evenly spaced over the range of depths of the map, is in
- *    the region and not behind the surface. So a sphere put over a hole also takes what is seen
- *    through the hole; pixels without depth are in the region when any of these points is. Inside
- *    is where the implicit function is <= 0;
- *  - SupportArray alone: the painted pixels are the sound bone, and pixels that they enclose are
- *    the defect;
- *  - nothing: the holes of the map, that is what its main surface encloses, grown by 2 mm because
- *    the rim of a hole in CT is rounded by the partial volume effect. The main surface is the
- *    largest piece of the map without depth steps (of more than 79 degrees between neighbours), so
- * a hole may show nothing or the far side. Eye sockets are holes, too: mark the defect when the map
- *    has other openings.
+ * Inputs: a parallel depth map (vtkLacunaDepthMap; the rays of perspective maps are not parallel, so
+ * depth is not a height over the map, and they are refused), and what InputPort names.
+ *
+ * The defect is the union of what these mark:
+ *  - DefectRegion: a pixel is in it when its surface point is, or when the region lies in front of
+ *    that point: when one of 64 points of its ray, evenly spaced over the range of depths of the
+ *    map, is in the region and not behind the surface. So a sphere put over a hole also takes what
+ *    is seen through it; pixels without depth are in the region when any of these points is;
+ *  - DefectArray;
+ *  - the selection: the pixels of the selected points of the surface (or all its points when
+ *    there is no selection), and those that they enclose, over edges between pixels: a patch, or a
+ *    ring around the hole;
+ *  - if there is nothing of these: with SupportArray what the painted pixels enclose; else the
+ *    holes of the map, that is what its main surface encloses, grown by 2 mm because the rim of a
+ *    hole in CT is rounded by the partial volume effect. The main surface is the largest piece of
+ *    the map without depth steps (of more than 79 degrees between neighbours), so a hole may show
+ *    nothing or the far side. Eye sockets are holes, too.
  *
  * Nodes are valid pixels within SupportMargin of the defect (map plane, centre to centre) or, with
- * a SupportArray, its painted ones, thinned to NodeSpacing; the rules are in lacunaHoleSupport.h.
- * What lies beyond a depth step steeper than 79 degrees from the larger part is not used, with a
- * warning. A defect at the border of the map is filled by extrapolation, with a warning.
+ * a SupportArray, its painted ones, thinned to NodeSpacing (lacunaHoleSupport.h). What lies
+ * beyond a depth step steeper than 79 degrees from the larger part is not used, with a warning.
+ *
+ * Control points (world) are met exactly whatever the smoothing; nodes within NodeSpacing of one are
+ * left out. While only they change, the equations stay solved: each point that moved costs O(n^2), or
+ * a fast solution; results do not depend on what was kept. With a prior surface the fit is of
+ * the difference to it, as it is seen in this map (its own grid and view may be others): its shape
+ * stays, its height and inclination do not count.
  *
  * Output: the map with Depth = measured outside of the defect, fitted inside (double);
  * vtkValidPointMask (char) and Normals (float x 3, when the input has them; from the gradient of
  * the fit inside) likewise; Fitted (double, mm: the fit over the rectangle, in map axes, around
- * defect and support, grown by OutputMargin, up to the border of the map; NaN elsewhere);
- * FilledMask (char, 1 in the defect); Deviation (double, mm, Fitted - measured: positive where the
- * fit is farther from the viewer; on the support, and in the defect where a measured depth was
- * replaced; NaN elsewhere). Other arrays are passed on. Field data: that of the map, and
+ * defect, support and control points, grown by OutputMargin; NaN elsewhere); FilledMask (char, 1 in
+ * the defect); Deviation (double, mm, Fitted - measured: positive where the fit is farther from the
+ * viewer; on the support, and in the defect where a measured depth was replaced; NaN elsewhere);
+ * SupportMask (char, lacuna::SupportUse). Other arrays are passed on. Field data: that of the map, and
  * | array             | components | meaning                                                     |
  * |-------------------|------------|-------------------------------------------------------------|
  * | RBFPlane          | 3          | c0 c1 c2 of the polynomial part c0 + c1 x + c2 y, mm; x, y  |
- * |                   |            | are mm along the map's axes from index (0,0)                |
+ * |                   |            | are mm along the map's axes from index (0,0); with a prior  |
+ * |                   |            | or trend, its best plane over defect and support is added   |
  * | PlaneNormal       | 3          | (c1, c2, -1)/length, map axes, towards the viewer           |
  * | NodeCount         | 1          |                                                             |
  * | Residual          | 1          | mm, largest at a node, of the solved equations              |
- * | ConditionEstimate | 1          | of the scaled equations, 1-norm                             |
- * | BendingEnergy     | 1          | thin plate only: integral of s_xx^2 + 2 s_xy^2 + s_yy^2     |
+ * | ConditionEstimate | 1          | of the scaled equations, 1-norm; 0: fast solution           |
+ * | Iterations        | 1          | of a fast solution, else 0                                  |
+ * | BendingEnergy     | 1          | thin plate only: integral of s_xx^2 + 2 s_xy^2 + s_yy^2 of  |
+ * |                   |            | what was fitted                                             |
  * | DefectArea        | 1          | mm^2 on the filled surface                                  |
+ * | FitTime           | 1          | s, for the equations; not the same twice                    |
  *
  * An empty defect is no error: the output is the input with empty arrays, with a warning.
  *
- * Source: Carr 1996, sections 6.3 and 6.4. @sa lacuna::FillHole
+ * Source: Carr 1996, sections 6.3 and 6.4. @sa lacuna::HoleFiller
  */
 #ifndef vtkLacunaRBFHoleFiller_h
 #define vtkLacunaRBFHoleFiller_h
@@ -53,9 +64,17 @@
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
 #include "vtkSmartPointer.h"                   // for ivar
 
+#include <memory> // for ivar
 #include <string> // for ivars
 
 class vtkImplicitFunction;
+class vtkLacunaExecution;
+namespace lacuna
+{
+class HoleFiller;
+struct HoleFillOptions;
+struct MarkedMap;
+}
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFHoleFiller : public vtkImageAlgorithm
 {
@@ -64,20 +83,65 @@ public:
   vtkTypeMacro(vtkLacunaRBFHoleFiller, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  enum KernelType
+  /// Input ports; all but the first are optional.
+  enum InputPort
   {
-    ThinPlate = 0, ///< r^2 log r: the smoothest surface through the nodes
-    Linear = 1,    ///< r: tent-like, may crease at nodes
-    Cubic = 3      ///< r^3: smoother than the thin plate at the nodes, swings more between them
+    MapPort = 0,
+    SurfacePort = 1,       ///< Depth Map Surface of the map, or points extracted from it
+    SelectionPort = 2,     ///< vtkSelection on the surface, or on the map when there is none
+    ControlPointsPort = 3, ///< any data set: its points
+    PriorSurfacePort = 4   ///< a depth map
   };
 
-  /// Points of a ray that are tried against DefectRegion.
-  static constexpr int RegionSamples = 64;
+  ///@{
+  /** Take the input of an optional port away. */
+  void RemoveSurface() { this->RemoveAllInputConnections(SurfacePort); }
+  void RemoveSelection() { this->RemoveAllInputConnections(SelectionPort); }
+  void RemoveControlPoints() { this->RemoveAllInputConnections(ControlPointsPort); }
+  void RemovePriorSurface() { this->RemoveAllInputConnections(PriorSurfacePort); }
+  ///@}
+
+  enum KernelType
+  {
+    ThinPlate = 0,   ///< r^2 log r: the surface through the nodes that bends least
+    Linear = 1,      ///< r: tent-like, may crease at nodes
+    Triharmonic = 2, ///< r^4 log r with a quadratic: smoothest, swings most
+    Cubic = 3,       ///< r^3: also carries the curvature of the rim into the hole
+    Gaussian = 4,    ///< exp(-(r/KernelLength)^2): falls back to a plane away from nodes
+    Multiquadric = 5 ///< sqrt(1 + (r/KernelLength)^2)
+  };
+  enum SolverType
+  {
+    Auto = 0,
+    Direct = 1,
+    Fast = 2
+  };
+  enum TrendType
+  {
+    NoTrend = 0,
+    Ellipsoid = 1
+  };
 
   ///@{
   /** Radial function. Default ThinPlate. */
   vtkSetMacro(Kernel, int);
   vtkGetMacro(Kernel, int);
+  ///@}
+
+  ///@{
+  /** Of Gaussian and multiquadric, mm, >= 0; 0: 1.25 times the distance of nodes. Default 0. */
+  vtkSetMacro(KernelLength, double);
+  vtkGetMacro(KernelLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Ellipsoid: the fit is of the difference to the ellipsoid (one axis along the view) that fits the
+   * bone around the defect best, see lacuna::EllipsoidTrend; not with a prior surface. Default
+   * NoTrend.
+   */
+  vtkSetMacro(Trend, int);
+  vtkGetMacro(Trend, int);
   ///@}
 
   ///@{
@@ -110,9 +174,7 @@ public:
   ///@{
   /**
    * Nodes are the pixels nearest to a lattice of this spacing, mm, > 0. Smooth bone needs about 1
-   * (Carr 1996, section 6.1.5). Time grows with the third power of the number of nodes, memory (8
-   * bytes) with the second; above 4 GiB, about 23 000 nodes, the filter stops with an error.
-   * Default 1.
+   * (Carr 1996, section 6.1.5). Default 1.
    */
   vtkSetMacro(NodeSpacing, double);
   vtkGetMacro(NodeSpacing, double);
@@ -140,9 +202,52 @@ public:
   ///@}
 
   ///@{
-  /** Fitted goes so far beyond defect and support, mm, >= 0, up to the map's border. Default 0. */
+  /**
+   * Point array of the control points with their depths, mm along the view from the map's plane;
+   * positions then only say where in the map they are. Default "" (or "None"): the surface passes
+   * through the positions.
+   */
+  void SetControlDepthArray(const char* name);
+  const char* GetControlDepthArray() const { return this->ControlDepthArray.c_str(); }
+  ///@}
+
+  ///@{
+  /**
+   * Fitted goes so far beyond defect and support, mm, >= 0. The output is larger than the map by as
+   * much on each side, so that a defect near its border has its margin, too. Default 0.
+   */
   vtkSetMacro(OutputMargin, double);
   vtkGetMacro(OutputMargin, double);
+  ///@}
+
+  ///@{
+  /**
+   * Pixels of the output along the map's right and down, mm; 0 (each): those of the map. The fit
+   * is evaluated there; measured depths are interpolated linearly, but not across steps, other arrays
+   * come from the nearest pixel. The third number is for the one layer of the map and has no effect.
+   * Default 0 0 0.
+   */
+  vtkSetVector3Macro(OutputSpacing, double);
+  vtkGetVector3Macro(OutputSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * Relative to the range of depths at the nodes: so much may the fit be wrong; 0 <= Accuracy < 1.
+   * 0: exact up to round-off. Default 1e-4.
+   */
+  vtkSetMacro(Accuracy, double);
+  vtkGetMacro(Accuracy, double);
+  ///@}
+
+  ///@{
+  /**
+   * Direct: LAPACK; time grows with the third power of the number of nodes, memory (8 bytes) with
+   * the second; above 4 GiB, about 23 000 nodes, the filter stops with an error. Fast: iteration in
+   * linear memory, within Accuracy. Auto: Direct up to 1500 nodes. Default Auto.
+   */
+  vtkSetMacro(Solver, int);
+  vtkGetMacro(Solver, int);
   ///@}
 
   vtkMTimeType GetMTime() override;
@@ -150,6 +255,8 @@ public:
 protected:
   vtkLacunaRBFHoleFiller();
   ~vtkLacunaRBFHoleFiller() override;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -158,8 +265,14 @@ private:
   void operator=(const vtkLacunaRBFHoleFiller&) = delete;
 
   void SetArrayName(std::string& member, const char* name);
+  /// Throws std::runtime_error when a choice is none of those there are.
+  lacuna::HoleFillOptions GetOptions() const;
+  void MarkDefect(vtkLacunaExecution& execution, vtkImageData* map, vtkInformationVector** inputs,
+    lacuna::MarkedMap& marked);
 
   int Kernel = ThinPlate;
+  double KernelLength = 0;
+  int Trend = NoTrend;
   vtkSmartPointer<vtkImplicitFunction> DefectRegion;
   std::string DefectArray;
   std::string SupportArray;
@@ -167,6 +280,11 @@ private:
   double NodeSpacing = 1;
   double Smoothing = 0;
   double CutoffWavelength = 0;
+  std::string ControlDepthArray;
   double OutputMargin = 0;
+  double OutputSpacing[3] = { 0, 0, 0 };
+  double Accuracy = 1e-4;
+  int Solver = Auto;
+  std::unique_ptr<lacuna::HoleFiller> Filler; // keeps equations while control points move
 };
 #endif

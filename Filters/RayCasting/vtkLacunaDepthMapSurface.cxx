@@ -186,7 +186,7 @@ int vtkLacunaDepthMapSurface::RequestData(
       vtkNew<vtkIdList> ids;
       ids->SetNumberOfIds(numberOfPoints);
       vtkNew<vtkIdTypeArray> pixelIds;
-      pixelIds->SetName(PixelIdName);
+      pixelIds->SetName(vtkLacunaDepthMap::PixelIdName);
       pixelIds->SetNumberOfValues(numberOfPoints);
       const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
       const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;

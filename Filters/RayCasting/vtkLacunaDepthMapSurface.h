@@ -44,9 +44,6 @@ public:
   vtkTypeMacro(vtkLacunaDepthMapSurface, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Name of the pedigree ids.
-  static constexpr const char* PixelIdName = "PixelId";
-
   ///@{
   /** The point array with the depths in mm. Default Depth; Fitted shows the fit of a filled map. */
   vtkSetMacro(DepthArray, std::string);

@@ -5,8 +5,8 @@
 # COMPONENTS: that asks for every third party of every VTK module (Qt5, HDF5, ...).
 set(lacuna_vtk_components
   CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
-  CommonTransforms FiltersCore FiltersGeneral FiltersGeometry FiltersSources
-  ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML)
+  CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry
+  FiltersSources ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML)
 if (LACUNA_WITH_PARAVIEW)
   # With COMPONENTS, Debian 12 needs few -dev packages next to paraview-dev; without, about
   # 15 more. RemotingViews brings the X11 and GLEW targets of the C++ rendering tests.

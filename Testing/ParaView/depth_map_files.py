@@ -11,17 +11,21 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 
 def write_map(name, depth, spacing, origin, right, down):
-    """A depth map (rows x columns, NaN where there is none) as a file; returns a reader of it."""
+    """A depth map (rows x columns, NaN where there is none) as a file; returns a reader of it.
+
+    spacing: mm, one number or those along right and down.
+    """
     view = np.cross(right, down)
+    spacing = np.broadcast_to(spacing, 2)
     image = vtkImageData()
     image.SetDimensions(depth.shape[1], depth.shape[0], 1)
     image.SetOrigin(*origin)
-    image.SetSpacing(spacing, spacing, 1)
+    image.SetSpacing(*spacing, 1)
     direction = np.column_stack([right, down, view])
     image.SetDirectionMatrix(*direction.ravel())
     to_world = np.eye(4)
-    to_world[:3, 0] = spacing * np.asarray(right)
-    to_world[:3, 1] = spacing * np.asarray(down)
+    to_world[:3, 0] = spacing[0] * np.asarray(right)
+    to_world[:3, 1] = spacing[1] * np.asarray(down)
     to_world[:3, 2] = view
     to_world[:3, 3] = origin
     arrays = [("Depth", depth.ravel().astype(float)),

@@ -325,7 +325,7 @@ MapGrid GetOutputGrid(const MapGrid& grid, const HoleFillOptions& options)
   {
     throw std::invalid_argument("OutputSpacing is larger than the map; lower it");
   }
-  RequireMemory("the filled map", 100 * pixels);
+  RequireMemory("the filled map (raise OutputSpacing or lower OutputMargin)", 100 * pixels);
   return to;
 }
 

@@ -3,12 +3,17 @@
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
 #include "vtkCallbackCommand.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaRBFHoleFiller.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSphere.h"
 
 #include <functional>
 #include <iostream>
+#include <vector>
 
 namespace
 {
@@ -28,6 +33,17 @@ void InvalidateAll(TestMap& map, const std::function<bool(vtkIdType)>& keep)
       map.Invalidate(i);
     }
   }
+}
+
+vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& list)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataTypeToDouble();
+  for (const lacuna::Vec3& p : list)
+  {
+    points->InsertNextPoint(p.data());
+  }
+  return points;
 }
 
 const Case Errors[] = {
@@ -53,8 +69,113 @@ const Case Errors[] = {
   { "array of vectors",
     [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetSupportArray("Normals"); },
     "SupportArray" },
-  { "kernel", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetKernel(2); },
-    "Kernel is 2" },
+  { "kernel", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetKernel(6); },
+    "Kernel is 6" },
+  { "solver", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetSolver(-1); },
+    "Solver is -1" },
+  { "trend", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetTrend(2); }, "Trend is 2" },
+  { "trend of a plane",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    { filler->SetTrend(vtkLacunaRBFHoleFiller::Ellipsoid); },
+    "does not determine an ellipsoid" },
+  { "fast without accuracy",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      filler->SetSolver(vtkLacunaRBFHoleFiller::Fast);
+      filler->SetAccuracy(0);
+    },
+    "accuracy above 0" },
+  { "output spacing",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetOutputSpacing(1, -1, 0); },
+    "OutputSpacing is -1" },
+  { "output too fine",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetOutputSpacing(1e-5, 1e-5, 0); },
+    "OutputSpacing" },
+  { "cut-off of a kernel that has none",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      filler->SetKernel(vtkLacunaRBFHoleFiller::Gaussian);
+      filler->SetCutoffWavelength(10);
+    },
+    "power of distance" },
+  { "surface without pixel numbers",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkPolyData> surface;
+      surface->SetPoints(MakePoints({ { 0, 0, 0 } }));
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::SurfacePort, surface);
+    },
+    "'PixelId'" },
+  { "surface of another map",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkPolyData> surface;
+      surface->SetPoints(MakePoints({ { 0, 0, 0 } }));
+      vtkNew<vtkIdTypeArray> ids;
+      ids->SetName("PixelId");
+      ids->InsertNextValue(80 * 60);
+      surface->GetPointData()->AddArray(ids);
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::SurfacePort, surface);
+    },
+    "another map" },
+  { "control point beside the map",
+    [](TestMap& map, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkPolyData> control;
+      control->SetPoints(MakePoints({ map.GetSurfacePoint(45, 42), map.GetSurfacePoint(450, 42) }));
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::ControlPointsPort, control);
+    },
+    "control point 1 lies beside the map" },
+  { "control points that contradict each other",
+    [](TestMap& map, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkPolyData> control;
+      const lacuna::Vec3 point = map.GetSurfacePoint(45, 42);
+      control->SetPoints(MakePoints({ point, point }));
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::ControlPointsPort, control);
+      vtkNew<vtkDoubleArray> depths;
+      depths->SetName("depths");
+      depths->InsertNextValue(10);
+      depths->InsertNextValue(11);
+      control->GetPointData()->AddArray(depths);
+      filler->SetControlDepthArray("depths");
+    },
+    "lie at the same place" },
+  { "no depths of control points",
+    [](TestMap& map, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkPolyData> control;
+      control->SetPoints(MakePoints({ map.GetSurfacePoint(45, 42) }));
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::ControlPointsPort, control);
+      filler->SetControlDepthArray("depths");
+    },
+    "no point array 'depths'" },
+  { "prior that is no depth map",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      vtkNew<vtkImageData> image;
+      image->SetDimensions(3, 3, 1);
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::PriorSurfacePort, image);
+    },
+    "'Depth'" },
+  { "prior without a depth",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      TestMap prior;
+      InvalidateAll(prior, [](vtkIdType) { return false; });
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::PriorSurfacePort, prior.Image);
+    },
+    "no pixel of the prior surface has a depth" },
+  { "prior elsewhere",
+    [](TestMap&, vtkLacunaRBFHoleFiller* filler)
+    {
+      TestMap prior;
+      const lacuna::Vec3 away = prior.Origin + 500.0 * prior.Right;
+      vtkLacunaDepthMap::SetGeometry(
+        prior.Image, { away, prior.Right, prior.Down, prior.View, { 1, 0.8 } });
+      filler->SetInputDataObject(vtkLacunaRBFHoleFiller::PriorSurfacePort, prior.Image);
+    },
+    "nowhere around the defect" },
   { "margin", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetSupportMargin(-12); },
     "SupportMargin is -12" },
   { "spacing", [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetNodeSpacing(0); },
@@ -113,12 +234,14 @@ int TestRBFHoleFillerErrors(int, char*[])
     vtkNew<vtkLacunaRBFHoleFiller> filler;
     filler->SetInputData(large);
     filler->SetSupportMargin(1000);
+    filler->SetSolver(vtkLacunaRBFHoleFiller::Direct);
     const auto messages = lacunaCheck::Watch(filler);
     filler->Update();
     LACUNA_CHECK(messages->HasError("39587 nodes need a matrix of 12538944800 bytes") &&
       messages->HasError("raise NodeSpacing"));
-    filler->SetNodeSpacing(10);
+    filler->SetSolver(vtkLacunaRBFHoleFiller::Auto); // fast
     filler->Update();
+    LACUNA_CHECK(filler->GetOutput()->GetFieldData()->GetArray("NodeCount")->GetTuple1(0) == 39587);
     LACUNA_CHECK(
       filler->GetOutput()->GetPointData()->GetArray("Depth")->GetTuple1(90 * 220 + 110) > 9.999);
   }

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Optional inputs: selections, control points, prior surfaces; output on another grid.
+#include "RBFTestMaps.h"
+#include "lacunaCheck.h"
+#include "vtkCylinder.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRBFHoleFiller.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace
+{
+using Filler = vtkLacunaRBFHoleFiller;
+
+double Get(vtkImageData* image, const char* name, vtkIdType i)
+{
+  return image->GetPointData()->GetArray(name)->GetComponent(i, 0);
+}
+
+// A surface with a point for each pixel that has a depth, in reverse order.
+vtkSmartPointer<vtkPolyData> MakeSurface(const TestMap& map)
+{
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("PixelId");
+  for (vtkIdType i = map.Image->GetNumberOfPoints() - 1; i >= 0; --i)
+  {
+    if (Get(map.Image, "vtkValidPointMask", i) != 0)
+    {
+      const lacuna::Vec2 p = map.GetPosition(i);
+      points->InsertNextPoint(map.GetSurfacePoint(p[0], p[1]).data());
+      ids->InsertNextValue(i);
+    }
+  }
+  surface->SetPoints(points);
+  surface->GetPointData()->SetPedigreeIds(ids);
+  return surface;
+}
+
+vtkSmartPointer<vtkSelection> MakeSelection(int content, const std::vector<vtkIdType>& ids)
+{
+  vtkNew<vtkIdTypeArray> list;
+  list->SetName("PixelId");
+  for (const vtkIdType id : ids)
+  {
+    list->InsertNextValue(id);
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetContentType(content);
+  node->SetSelectionList(list);
+  auto selection = vtkSmartPointer<vtkSelection>::New();
+  selection->AddNode(node);
+  return selection;
+}
+
+void CheckFilled(
+  const TestMap& map, vtkImageData* output, const std::function<bool(vtkIdType)>& expected)
+{
+  int wrong = 0;
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    wrong += (Get(output, "FilledMask", i) != 0) != expected(i);
+  }
+  LACUNA_CHECK(output->GetNumberOfPoints() == map.Image->GetNumberOfPoints() && wrong == 0);
+}
+
+void TestSelections()
+{
+  TestMap map;
+  std::vector<vtkIdType> patch;
+  std::vector<vtkIdType> ring;
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    if (map.IsInDisc(i, 4))
+    {
+      map.Invalidate(i); // points of it cannot be selected on the surface
+    }
+    else if (map.IsInDisc(i, 7.5))
+    {
+      ring.push_back(i);
+    }
+    if (map.IsInDisc(i, 3))
+    {
+      patch.push_back(i);
+    }
+  }
+  const auto disc = [&](vtkIdType i) { return map.IsInDisc(i, 7.5); };
+  const auto surface = MakeSurface(map);
+
+  // the ring around the hole, by pedigree ids: the hole is taken with it
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  filler->SetInputDataObject(Filler::SurfacePort, surface);
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::PEDIGREEIDS, ring));
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), disc);
+
+  // the same by point numbers of the surface, as the mouse makes them
+  std::vector<vtkIdType> numbers;
+  vtkDataArray* ids = surface->GetPointData()->GetArray("PixelId");
+  for (vtkIdType k = 0; k < surface->GetNumberOfPoints(); ++k)
+  {
+    if (disc(static_cast<vtkIdType>(ids->GetTuple1(k))))
+    {
+      numbers.push_back(k);
+    }
+  }
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, numbers));
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), disc);
+
+  // extracted points, without a selection; together with an array
+  vtkNew<vtkPolyData> extracted;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkIdTypeArray> extractedIds;
+  extractedIds->SetName("PixelId");
+  for (const vtkIdType id : ring)
+  {
+    points->InsertNextPoint(0, 0, 0);
+    extractedIds->InsertNextValue(id);
+  }
+  extracted->SetPoints(points);
+  extracted->GetPointData()->AddArray(extractedIds);
+  vtkNew<vtkDoubleArray> corner;
+  corner->SetName("corner");
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    corner->InsertNextValue(i == 30 * 80 + 70);
+  }
+  map.Image->GetPointData()->AddArray(corner);
+  filler->SetInputDataObject(Filler::SelectionPort, nullptr);
+  filler->SetInputDataObject(Filler::SurfacePort, extracted);
+  filler->SetDefectArray("corner");
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return disc(i) || i == 30 * 80 + 70; });
+
+  // a selection of the map's own points: a patch, nothing more
+  filler->SetDefectArray("");
+  filler->SetInputDataObject(Filler::SurfacePort, nullptr);
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, patch));
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 3); });
+
+  // nothing selected: nothing filled, and the automatic search does not step in
+  filler->SetInputDataObject(Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, {}));
+  const auto messages = lacunaCheck::Watch(filler);
+  filler->Update();
+  LACUNA_CHECK(messages->HasWarning("the defect is empty"));
+}
+
+void MarkDisc(Filler* filler, const TestMap& map, double radius)
+{
+  vtkNew<vtkCylinder> cylinder;
+  cylinder->SetCenter(map.GetSurfacePoint(45, 42).data());
+  cylinder->SetAxis(map.View[0], map.View[1], map.View[2]);
+  cylinder->SetRadius(radius);
+  filler->SetDefectRegion(cylinder);
+}
+
+void TestControlPoints()
+{
+  TestMap map;
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  filler->SetAccuracy(0);
+  MarkDisc(filler, map, 9);
+  vtkNew<vtkPolyData> control;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  control->SetPoints(points);
+  // on pixel (column 45, row 52), 41.6 mm down, pressed in by 3 mm along the view
+  points->InsertNextPoint(0, 0, 0);
+  points->InsertNextPoint(map.GetSurfacePoint(50, 42).data());
+  const vtkIdType pixel = 32 * 80 + 35;
+  filler->SetInputDataObject(Filler::ControlPointsPort, control);
+  for (const double push : { 1.0, 2.0, 3.0 })
+  {
+    const lacuna::Vec3 p = map.GetSurfacePoint(45, 41.6) + push * map.View;
+    points->SetPoint(0, p.data());
+    points->Modified();
+    control->Modified();
+    filler->Update();
+    LACUNA_CHECK(std::abs(Get(filler->GetOutput(), "Depth", pixel) -
+                   (TestMap::Depth(45, 41.6) + push)) < 1e-8);
+  }
+  vtkNew<vtkImageData> dragged;
+  dragged->DeepCopy(filler->GetOutput());
+  LACUNA_CHECK(std::abs(Get(dragged, "Depth", 32 * 80 + 40) - TestMap::Depth(50, 41.6)) < 0.2);
+  LACUNA_CHECK(
+    vtkLacunaProvenance::Get(dragged)[0].find("ControlPointsInMap=") != std::string::npos);
+
+  // a new filter gives the same bits, and one with depths instead of positions the same surface
+  vtkNew<Filler> fresh;
+  fresh->SetInputData(map.Image);
+  fresh->SetAccuracy(0);
+  fresh->SetDefectRegion(filler->GetDefectRegion());
+  fresh->SetInputDataObject(Filler::ControlPointsPort, control);
+  fresh->Update();
+  vtkDataArray* a = dragged->GetPointData()->GetArray("Fitted");
+  LACUNA_CHECK(!std::memcmp(a->GetVoidPointer(0),
+    fresh->GetOutput()->GetPointData()->GetArray("Fitted")->GetVoidPointer(0),
+    a->GetNumberOfValues() * sizeof(double)));
+  vtkNew<vtkDoubleArray> depths;
+  depths->SetName("depths");
+  depths->InsertNextValue(TestMap::Depth(45, 41.6) + 3);
+  depths->InsertNextValue(TestMap::Depth(50, 42));
+  control->GetPointData()->AddArray(depths);
+  points->SetPoint(0, map.GetSurfacePoint(45, 41.6).data());
+  fresh->SetControlDepthArray("depths");
+  fresh->Update();
+  for (vtkIdType i = 0; i < a->GetNumberOfTuples(); ++i)
+  {
+    LACUNA_CHECK(std::isnan(a->GetTuple1(i)) ||
+      std::abs(Get(fresh->GetOutput(), "Fitted", i) - a->GetTuple1(i)) < 1e-8);
+  }
+}
+
+void TestPriorOfAnotherView()
+{
+  // A dome in world coordinates, the prior a map of it that is turned, shifted, finer and perspective.
+  const auto dome = [](TestMap& map, const std::function<double(vtkIdType)>& depth)
+  {
+    for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+    {
+      map.Image->GetPointData()->GetArray("Depth")->SetTuple1(i, depth(i));
+    }
+  };
+  TestMap map;
+  const lacuna::Vec3 center = map.Origin + 40.0 * map.Right + 45.0 * map.Down + 100.0 * map.View;
+  const double radius = 70;
+  const auto hit = [&](const lacuna::Vec3& from, const lacuna::Vec3& ray)
+  {
+    const lacuna::Vec3 d = center - from;
+    const double along = lacuna::Dot(d, ray);
+    return along - std::sqrt(radius * radius - lacuna::Dot(d, d) + along * along);
+  };
+  const auto fill = [&](TestMap& m)
+  {
+    const vtkLacunaDepthMap contract(m.Image);
+    dome(m,
+      [&](vtkIdType i)
+      {
+        const auto column = static_cast<double>(TestMap::FirstColumn + i % TestMap::Width);
+        const auto row = static_cast<double>(TestMap::FirstRow + i / TestMap::Width);
+        return hit(contract.GetPoint(column, row, 0), contract.GetRay(column, row));
+      });
+  };
+  fill(map);
+  TestMap prior;
+  prior.View = lacuna::Normalized(map.View + 0.15 * map.Right - 0.1 * map.Down);
+  prior.Right = lacuna::Normalized(lacuna::Cross(map.Down, prior.View));
+  prior.Down = lacuna::Cross(prior.View, prior.Right);
+  const lacuna::Vec3 origin = center - 120.0 * prior.View - 42.0 * prior.Right - 36.0 * prior.Down;
+  vtkLacunaDepthMap::SetGeometry(
+    prior.Image, { origin, prior.Right, prior.Down, prior.View, { 0.8, 0.72 } });
+  fill(prior);
+
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  filler->SetSupportMargin(6);
+  MarkDisc(filler, map, 12);
+  vtkNew<vtkCylinder> cylinder; // on this dome
+  cylinder->SetCenter(center.data());
+  cylinder->SetAxis(map.View[0], map.View[1], map.View[2]);
+  cylinder->SetRadius(14);
+  filler->SetDefectRegion(cylinder);
+  const auto getWorst = [&]
+  {
+    filler->Update();
+    double worst = 0;
+    for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+    {
+      if (Get(filler->GetOutput(), "FilledMask", i) != 0)
+      {
+        worst = std::max(worst, std::abs(Get(filler->GetOutput(), "Deviation", i)));
+      }
+    }
+    return worst;
+  };
+  const double plain = getWorst();
+  std::cout << "thin plate alone: " << plain << std::endl;
+  filler->SetInputDataObject(Filler::PriorSurfacePort, prior.Image);
+  const double with = getWorst();
+  std::cout << "with the prior: " << with << std::endl;
+  LACUNA_CHECK(with < 0.005 && with < plain / 5); // of flat triangles of 0.8 mm
+  LACUNA_CHECK(with > 0);
+  filler->SetTrend(Filler::Ellipsoid);
+  filler->SetInputDataObject(Filler::PriorSurfacePort, nullptr);
+  LACUNA_CHECK(getWorst() < 1e-3); // 1e-4 of the range
+}
+
+void TestOutputGrid()
+{
+  TestMap map;
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    if (map.IsInDisc(i, 7))
+    {
+      map.Invalidate(i);
+    }
+  }
+  vtkNew<vtkDoubleArray> column;
+  column->SetName("column");
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    column->InsertNextValue(static_cast<double>(TestMap::FirstColumn + i % TestMap::Width));
+  }
+  map.Image->GetPointData()->AddArray(column);
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  filler->SetOutputSpacing(0.5, 0.5, 0);
+  filler->SetOutputMargin(8);
+  filler->Update();
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(filler->GetOutput());
+  const vtkLacunaDepthMap contract(whole); // geometry and matrix agree
+  const int* extent = whole->GetExtent();
+  // 10..89 mm and 16..63.2 mm, and 8 mm around
+  const int expected[6] = { 4, 194, 16, 142, 0, 0 };
+  LACUNA_CHECK(!std::memcmp(extent, expected, sizeof(expected)));
+  int fitted = 0;
+  for (int j = extent[2]; j <= extent[3]; ++j)
+  {
+    for (int i = extent[0]; i <= extent[1]; ++i)
+    {
+      int at[3] = { i, j, 0 };
+      const vtkIdType pixel = whole->ComputePointId(at);
+      const double depth = TestMap::Depth(0.5 * i, 0.5 * j);
+      const bool inside = i >= 20 && i <= 178 && j >= 32 && j <= 126;
+      LACUNA_CHECK(std::isnan(Get(whole, "Depth", pixel)) == !inside);
+      LACUNA_CHECK(!inside || std::abs(Get(whole, "Depth", pixel) - depth) < 1e-9);
+      LACUNA_CHECK(!inside || std::abs(Get(whole, "column", pixel) - 0.5 * i) <= 0.5);
+      if (!std::isnan(Get(whole, "Fitted", pixel)))
+      {
+        ++fitted;
+        LACUNA_CHECK(std::abs(Get(whole, "Fitted", pixel) - depth) < 1e-8);
+      }
+    }
+  }
+  LACUNA_CHECK(fitted > 4 * 50 * 50);
+  // the same surface in the same place
+  const lacuna::Vec3 p = contract.GetPoint(90, 84, Get(whole, "Fitted", (84 - 16) * 191 + 90 - 4));
+  LACUNA_CHECK(lacuna::Norm(p - map.GetSurfacePoint(45, 42)) < 1e-8);
+
+  const int piece[6] = { 20, 120, 30, 77, 0, 0 };
+  filler->Modified();
+  filler->UpdateExtent(piece);
+  LACUNA_CHECK(!std::memcmp(filler->GetOutput()->GetExtent(), piece, sizeof(piece)));
+  int at[3] = { 90, 70, 0 };
+  LACUNA_CHECK(Get(filler->GetOutput(), "Fitted", filler->GetOutput()->ComputePointId(at)) ==
+    Get(whole, "Fitted", whole->ComputePointId(at)));
+}
+
+void TestFieldData()
+{
+  TestMap map;
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  MarkDisc(filler, map, 9);
+  const auto get = [&](const char* name)
+  {
+    filler->Update();
+    vtkDataArray* array = filler->GetOutput()->GetFieldData()->GetArray(name);
+    return array ? array->GetTuple1(0) : -1;
+  };
+  LACUNA_CHECK(get("FitTime") > 0 && get("FitTime") < 100);
+  LACUNA_CHECK(get("ConditionEstimate") > 1);
+  LACUNA_CHECK(get("Iterations") == 0);
+  const std::string step = vtkLacunaProvenance::Get(filler->GetOutput()).back();
+  filler->Modified();
+  filler->Update();
+  LACUNA_CHECK(step == vtkLacunaProvenance::Get(filler->GetOutput()).back()); // no time in it
+  filler->SetSolver(Filler::Fast);
+  LACUNA_CHECK(get("ConditionEstimate") == 0);
+}
+}
+
+int TestRBFHoleFillerInputs(int, char*[])
+{
+  TestSelections();
+  TestControlPoints();
+  TestPriorOfAnotherView();
+  TestOutputGrid();
+  TestFieldData();
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaDefectMarks.h"
+
+#include "lacunaExecution.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkExtractSelection.h"
+#include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkSelection.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace
+{
+using lacuna::MapMask;
+
+// Pixels whose surface point is in region, or is hidden by it from the viewer.
+class RegionMarker
+{
+public:
+  RegionMarker(
+    const vtkLacunaDepthMap& contract, const lacuna::MarkedMap& input, vtkImplicitFunction* region)
+    : Contract(contract)
+    , Input(input)
+    , Region(region)
+    , Marked(input.Grid.GetSize(), 0)
+  {
+  }
+
+  MapMask Run(lacuna::Execution& execution)
+  {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < this->Marked.size(); ++i)
+    {
+      if (this->Input.Valid[i])
+      {
+        low = std::min(low, this->Input.Depth[i]);
+        high = std::max(high, this->Input.Depth[i]);
+      }
+    }
+    this->Try([&](std::size_t i) { return this->Input.Valid[i] != 0; },
+      [&](std::size_t i) { return this->Input.Depth[i]; });
+    constexpr int samples = vtkLacunaDefectMarks::RegionSamples;
+    for (int k = 0; k < samples; ++k)
+    {
+      const double depth = low + (high - low) * k / (samples - 1);
+      this->Try([&](std::size_t i)
+        { return !this->Input.Valid[i] || depth < this->Input.Depth[i]; },
+        [&](std::size_t) { return depth; });
+      execution.Report(static_cast<double>(k + 1) / samples);
+    }
+    return this->Marked;
+  }
+
+private:
+  // Marks the pixels chosen whose points at the given depths are in the region.
+  template <class Chosen, class Depth>
+  void Try(const Chosen& chosen, const Depth& depth)
+  {
+    this->Pixels.clear();
+    for (std::size_t i = 0; i < this->Marked.size(); ++i)
+    {
+      if (!this->Marked[i] && chosen(i))
+      {
+        this->Pixels.push_back(i);
+      }
+    }
+    const auto count = static_cast<vtkIdType>(this->Pixels.size());
+    const lacuna::MapGrid& grid = this->Input.Grid;
+    this->Points->SetNumberOfComponents(3);
+    this->Points->SetNumberOfTuples(count);
+    this->Values->SetNumberOfTuples(count);
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      const std::size_t i = this->Pixels[k];
+      const lacuna::Vec3 point = this->Contract.GetPoint(
+        static_cast<double>(grid.GetColumn(i)), static_cast<double>(grid.GetRow(i)), depth(i));
+      this->Points->SetTypedTuple(k, point.data());
+    }
+    this->Region->FunctionValue(this->Points, this->Values);
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      this->Marked[this->Pixels[k]] = this->Values->GetValue(k) <= 0;
+    }
+  }
+
+  const vtkLacunaDepthMap& Contract;
+  const lacuna::MarkedMap& Input;
+  vtkImplicitFunction* Region;
+  MapMask Marked;
+  std::vector<std::size_t> Pixels;
+  vtkNew<vtkDoubleArray> Points;
+  vtkNew<vtkDoubleArray> Values;
+};
+
+// What a selection selects, as a data set of the selected points.
+vtkSmartPointer<vtkDataSet> Extract(vtkDataSet* data, vtkSelection* selection)
+{
+  vtkNew<vtkExtractSelection> extract;
+  extract->SetInputData(0, data);
+  extract->SetInputData(1, selection);
+  extract->Update();
+  return vtkDataSet::SafeDownCast(extract->GetOutputDataObject(0));
+}
+}
+
+namespace vtkLacunaDefectMarks
+{
+//------------------------------------------------------------------------------
+MapMask FromArray(vtkImageData* map, const std::string& name, const char* property)
+{
+  vtkPointData* points = map->GetPointData();
+  vtkDataArray* array = points->GetArray(name.c_str());
+  if (!array || array->GetNumberOfComponents() != 1)
+  {
+    std::ostringstream message;
+    message << property << ": the map has no point array '" << name
+            << "' with one component; it has";
+    for (int i = 0; i < points->GetNumberOfArrays(); ++i)
+    {
+      message << (i ? ", '" : " '") << points->GetArrayName(i) << "'";
+    }
+    throw std::runtime_error(message.str());
+  }
+  MapMask mask(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  for (std::size_t i = 0; i < mask.size(); ++i)
+  {
+    mask[i] = array->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+  }
+  return mask;
+}
+
+//------------------------------------------------------------------------------
+MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
+  const lacuna::MarkedMap& map, vtkImplicitFunction* region)
+{
+  return RegionMarker(contract, map, region).Run(execution);
+}
+
+//------------------------------------------------------------------------------
+MapMask FromSelection(
+  vtkImageData* map, const lacuna::MapGrid& grid, vtkDataSet* surface, vtkSelection* selection)
+{
+  vtkSmartPointer<vtkDataSet> selected = surface;
+  if (selection)
+  {
+    selected = Extract(surface ? surface : map, selection);
+  }
+  MapMask mask(grid.GetSize(), 0);
+  if (!selected || selected->GetNumberOfPoints() == 0)
+  {
+    return mask;
+  }
+  vtkPointData* points = selected->GetPointData();
+  vtkDataArray* ids = nullptr;
+  if (surface)
+  {
+    ids = vtkDataArray::SafeDownCast(points->GetPedigreeIds());
+    ids = ids ? ids : points->GetArray(vtkLacunaDepthMap::PixelIdName);
+  }
+  else
+  {
+    ids = points->GetArray("vtkOriginalPointIds");
+  }
+  if (!ids)
+  {
+    throw std::runtime_error(std::string("Surface has no point array '") +
+      vtkLacunaDepthMap::PixelIdName +
+      "' that says which pixels its points are; give the Depth Map Surface on which the selection "
+      "was made, or points extracted from it");
+  }
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  {
+    const double id = ids->GetTuple1(i);
+    if (!(id >= 0 && id < static_cast<double>(mask.size())))
+    {
+      std::ostringstream message;
+      message << "the selection has pixel " << id << ", and the depth map has only " << mask.size()
+              << ": Surface was made of another map";
+      throw std::runtime_error(message.str());
+    }
+    mask[static_cast<std::size_t>(id)] = 1;
+  }
+  Merge(mask, lacuna::FindInteriorHoles(grid, mask));
+  return mask;
+}
+
+//------------------------------------------------------------------------------
+void Merge(MapMask& mask, const MapMask& other)
+{
+  std::transform(mask.begin(), mask.end(), other.begin(), mask.begin(),
+    [](unsigned char a, unsigned char b) { return a || b; });
+}
+}

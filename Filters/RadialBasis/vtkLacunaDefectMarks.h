@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The ways to mark pixels of a depth map, for vtkLacunaRBFHoleFiller. Errors are std::runtime_error
+/// with a sentence that says what would be right.
+#ifndef vtkLacunaDefectMarks_h
+#define vtkLacunaDefectMarks_h
+
+#include "lacunaSupportSelection.h"
+
+#include <string>
+
+class vtkDataSet;
+class vtkImageData;
+class vtkImplicitFunction;
+class vtkLacunaDepthMap;
+class vtkSelection;
+
+namespace lacuna
+{
+class Execution;
+}
+
+namespace vtkLacunaDefectMarks
+{
+/// Points of a ray that are tried against a region.
+constexpr int RegionSamples = 64;
+
+/// Where a point array of one component is not 0. property names it in messages.
+lacuna::MapMask FromArray(vtkImageData* map, const std::string& name, const char* property);
+
+/// Pixels whose surface point is in region (where it is <= 0), or is hidden by it from the viewer.
+lacuna::MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
+  const lacuna::MarkedMap& map, vtkImplicitFunction* region);
+
+/// Selected pixels, and those that they enclose. surface is a Depth Map Surface of the map, or part
+/// of one, whose pedigree ids (or array PixelId) say which pixels its points are; with nullptr the
+/// selection is one of the map's own points. Without selection all points of surface are selected.
+lacuna::MapMask FromSelection(
+  vtkImageData* map, const lacuna::MapGrid& grid, vtkDataSet* surface, vtkSelection* selection);
+
+void Merge(lacuna::MapMask& mask, const lacuna::MapMask& other);
+}
+#endif
