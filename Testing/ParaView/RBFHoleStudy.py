@@ -28,12 +28,16 @@ PLACES = {
     "left frontal": ((0.4, 0.35, 0.85), (95.7, 140.3, 126.2)),
 }
 RADII = (15, 30, 45)
-# kernel, SupportMargin, NodeSpacing, CutoffWavelength
-DEFAULT = ("ThinPlate", 12, 1, 0)
-CHOICE = ("Cubic", 20, 2, 10)
-OTHERS = [("ThinPlate", 20, 2, 10), ("Cubic", 20, 2, 0), ("Cubic", 20, 2, 8), ("Cubic", 20, 2, 15),
-          ("Cubic", 20, 2, 20), ("Cubic", 8, 2, 10), ("Cubic", 12, 2, 10), ("Cubic", 12, 1, 0),
-          ("Linear", 12, 1, 0)]
+# kernel, SupportMargin, NodeSpacing, CutoffWavelength, Trend
+DEFAULT = ("ThinPlate", 12, 1, 0, "NoTrend")
+CHOICE = ("Cubic", 20, 2, 10, "NoTrend")
+ELLIPSOID = ("ThinPlate", 20, 2, 10, "Ellipsoid")
+OTHERS = [ELLIPSOID] + [setting + ("NoTrend",) for setting in (
+    ("ThinPlate", 20, 2, 10), ("Cubic", 20, 2, 0), ("Cubic", 20, 2, 8), ("Cubic", 20, 2, 15),
+    ("Cubic", 20, 2, 20), ("Cubic", 8, 2, 10), ("Cubic", 12, 2, 10), ("Cubic", 12, 1, 0),
+    ("Linear", 12, 1, 0), ("Linear", 20, 2, 10), ("Triharmonic", 20, 2, 0),
+    ("Triharmonic", 20, 2, 10), ("Triharmonic", 20, 2, 20), ("Gaussian", 20, 2, 0),
+    ("Multiquadric", 20, 2, 0))]
 # interpolation of the ray caster, columns and rows by which the places are moved
 ELSEWHERE = [("Trilinear", (7, 4)), ("BSpline", (-6, 7)), ("InterpolatingBSpline", (-5, -8))]
 
@@ -81,7 +85,7 @@ class Place:
         depth = vtk_to_numpy(self.map.GetPointData().GetArray("Depth")).reshape(rows, columns)
         self.sound = ~find_unsound(depth, self.spacing)
 
-    def fill(self, radius, kernel, margin, spacing, cutoff):
+    def fill(self, radius, kernel, margin, spacing, cutoff, trend):
         """Largest error and RMS in the disc, against the sound bone that was there."""
         defect = self.distance <= radius
         support = self.sound & ~defect & (self.distance <= radius + margin)
@@ -96,6 +100,7 @@ class Place:
         filler.SetKernel(getattr(filler, kernel))
         filler.SetNodeSpacing(spacing)
         filler.SetCutoffWavelength(cutoff)
+        filler.SetTrend(getattr(filler, trend))
         filler.Update()
         error = vtk_to_numpy(filler.GetOutput().GetPointData().GetArray("Deviation"))
         error = error.reshape(defect.shape)[defect & self.sound]
@@ -109,7 +114,7 @@ def study(places, choice):
     figures = np.array([[place.fill(radius, *choice) for place in places]
                         for radius in RADII])
     means = figures.mean(axis=1)
-    print("| %s | %g | %g | %g |" % choice,
+    print("| %s | %g | %g | %g | %s |" % choice,
           " | ".join("%.2f / %.3f" % tuple(mean) for mean in [*means, means.mean(axis=0)]), "|",
           flush=True)
     return means.mean(axis=0)
@@ -125,17 +130,17 @@ def compare(*caster, others=()):
     assert (gain >= 15).all()
 
 
-print("| kernel | margin | node spacing | cut-off | 15 mm | 30 mm | 45 mm | all |")
-print("|---|---|---|---|---|---|---|---|")
+print("| kernel | margin | node spacing | cut-off | trend | 15 mm | 30 mm | 45 mm | all |")
+print("|---|---|---|---|---|---|---|---|---|")
 compare(others=OTHERS if "full" in sys.argv else ())
 for maps in ELSEWHERE if "elsewhere" in sys.argv else ():
     print(*maps)
-    compare(*maps)
+    compare(*maps, others=[ELLIPSOID])
 
-if "settings" in sys.argv:  # each: largest error and RMS, default and choice
+if "settings" in sys.argv:  # each: largest error and RMS, default, choice and ellipsoid
     figures = np.array([
         [Place(head, (0, 0, 1), (90.2, 97.5, 130), name, (0, 0), up, pixel).fill(30, *choice)
-         for choice in (DEFAULT, CHOICE)]
+         for choice in (DEFAULT, CHOICE, ELLIPSOID)]
         for name in ("BSpline", "InterpolatingBSpline", "Trilinear")
         for up in ([0, -1, 0], [0, 1, 0]) for pixel in (0, 0.5, 1)])
     for statistic in (np.mean, np.std, np.min, np.max):
