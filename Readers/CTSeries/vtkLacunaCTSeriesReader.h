@@ -20,7 +20,8 @@
  *   lost; what lies outside of the images is PaddingValue.
  * - Values are slope * stored + intercept of each image; pixels with the file's padding value
  *   become PaddingValue. MONOCHROME1 does not change values.
- * - Enhanced (multi-frame) CT and compressed pixels (JPEG, JPEG-LS, JPEG 2000, RLE) are read.
+ * - Enhanced (multi-frame) CT, deflated files, files without preamble and compressed pixels (RLE;
+ *   JPEG, JPEG-LS, JPEG 2000 when built with GDCM) are read.
  *
  * Field data: `PatientPosition` (HFS, ...), `ConvolutionKernel`, `GantryTilt` (degrees, where one
  * was corrected), `InterpolatedSlices` (indices along the third axis, where there are any),

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <sys/stat.h>
+#include <utility>
 
 namespace lacuna
 {
@@ -110,19 +112,17 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
   ForEachFile(folder, !single,
     [&](const fs::directory_entry& file)
     {
-      std::error_code ignored;
       Entry entry;
-      entry.Size = static_cast<std::int64_t>(file.file_size(ignored));
-      entry.Time = file.last_write_time(ignored).time_since_epoch().count();
-      const std::string name = file.path().string();
+      std::string name = file.path().string();
+      struct stat state = {};
+      ::stat(name.c_str(), &state); // one question for what std::filesystem asks twice
+      entry.Size = state.st_size;
+      entry.Time = std::int64_t{ state.st_mtim.tv_sec } * 1000000000 + state.st_mtim.tv_nsec;
+      entry.Error = "new";
       const auto known = this->Files.find(name);
       const bool same = known != this->Files.end() && known->second.Size == entry.Size &&
         known->second.Time == entry.Time;
-      files[name] = same ? known->second : std::move(entry);
-      if (!same)
-      {
-        files[name].Error = "new";
-      }
+      files.emplace(std::move(name), same ? known->second : std::move(entry));
       if (files.size() > MostFiles)
       {
         throw std::runtime_error(

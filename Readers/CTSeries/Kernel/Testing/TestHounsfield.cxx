@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <vector>
 
 using namespace lacuna;
 
@@ -74,6 +75,61 @@ TEST(Hounsfield, RescaleAndPadding)
   EXPECT_EQ(values[1], -1024);
   EXPECT_EQ(values[2], -1024);
   EXPECT_EQ(values[3], -1003.5F);
+}
+
+// Whole numbers: every stored value of 16 bits, with padding, slope and values put where the pixels
+// were; and pixels that are decoded as more than the header said.
+TEST(Hounsfield, WholeNumbers)
+{
+  for (const int stored : { 11, 16 })
+  {
+    for (const bool isSigned : { false, true })
+    {
+      for (const int slope : { 1, -1, 3 })
+      {
+        CTFrame frame = MakeFrame(16, stored, stored - 1, isSigned);
+        auto header = std::make_shared<CTFileHeader>(*frame.Header);
+        header->Padding = isSigned ? -7 : 5;
+        header->PaddingLimit = 70000; // beyond what can be stored
+        frame.Header = slope == 3 ? header : frame.Header;
+        frame.RescaleSlope = slope;
+        frame.RescaleIntercept = -1024;
+        const HounsfieldScale scale(frame, -5000);
+        std::vector<std::int32_t> wide(1 << 16);
+        std::vector<std::uint16_t> pixels(wide.size());
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+        {
+          pixels[i] = static_cast<std::uint16_t>(i);
+        }
+        const auto* bytes = reinterpret_cast<const unsigned char*>(pixels.data());
+        scale.Convert(bytes, static_cast<std::int64_t>(pixels.size()), wide.data());
+        const int span = 1 << stored;
+        for (int i = 0; i < 1 << 16; ++i)
+        {
+          const int low = i % span;
+          const int value = isSigned && low >= span / 2 ? low - span : low;
+          const bool padded = slope == 3 && value >= *header->Padding;
+          ASSERT_EQ(wide[i], padded ? -5000 : slope * value - 1024) << i;
+        }
+        if (stored == 11)
+        {
+          scale.Convert(bytes, static_cast<std::int64_t>(pixels.size()),
+            reinterpret_cast<std::int16_t*>(pixels.data()));
+          for (std::size_t i = 0; i < pixels.size(); ++i)
+          {
+            ASSERT_EQ(static_cast<std::int16_t>(pixels[i]), wide[i]);
+          }
+        }
+      }
+    }
+  }
+  const HounsfieldScale beyond(MakeFrame(16, 16, 15, false), 0);
+  const std::uint16_t pixels[2] = { 7, 40000 };
+  std::int16_t values[2];
+  beyond.Convert(reinterpret_cast<const unsigned char*>(pixels), 1, values);
+  EXPECT_EQ(values[0], 7);
+  EXPECT_THROW(
+    beyond.Convert(reinterpret_cast<const unsigned char*>(pixels), 2, values), std::runtime_error);
 }
 
 TEST(Hounsfield, Types)

@@ -88,6 +88,7 @@ std::map<std::string, CTTestSeries> MakeExactCases()
   multiFrame.MultiFrame = true;
 
   cases["implicit"] = Compressed("1.2.840.10008.1.2");
+  cases["deflated"] = Compressed("1.2.840.10008.1.2.1.99");
   cases["big endian"] = Compressed("1.2.840.10008.1.2.2");
   cases["JPEG lossless"] = Compressed("1.2.840.10008.1.2.4.70");
   cases["JPEG-LS"] = Compressed("1.2.840.10008.1.2.4.80");
@@ -97,6 +98,9 @@ std::map<std::string, CTTestSeries> MakeExactCases()
   CTTestSeries& compressedFrames = cases["multi-frame JPEG 2000"];
   compressedFrames = Compressed("1.2.840.10008.1.2.4.90");
   compressedFrames.MultiFrame = true;
+  CTTestSeries& deflatedFrames = cases["multi-frame deflated"];
+  deflatedFrames = Compressed("1.2.840.10008.1.2.1.99");
+  deflatedFrames.MultiFrame = true;
   CTTestSeries& runFrames = cases["multi-frame RLE"];
   runFrames = Compressed("1.2.840.10008.1.2.5");
   runFrames.MultiFrame = true;
