@@ -15,7 +15,8 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import BONE, new_view, shaded_pixels, show_surface, side_by_side, write_pixels
+from lacuna.pictures import BONE, mark_pixels, new_view, shaded_pixels, show_surface, side_by_side, write_pixels
+from lacuna.views import in_patient_coordinates, map_letters, show_orientation
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -24,8 +25,14 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def write(name, panels):
-    """One PNG of pictures (row, column, color) by their titles, side by side; row 0 on top."""
+def write(name, panels, depth_map=None):
+    """One PNG of pictures (row, column, color) by their titles, side by side; row 0 on top.
+
+    Framed by the patient's sides where the depth map that they show is known to be in patient coordinates.
+    """
+    image = depth_map and servermanager.Fetch(depth_map)
+    if image and in_patient_coordinates(image):
+        panels = {title: mark_pixels(pixels, map_letters(image)) for title, pixels in panels.items()}
     write_pixels(name, side_by_side(list(panels.items())))
 
 
@@ -82,10 +89,12 @@ def main(folder, head=None):
         print(f"{method}: {np.median(degrees):.2f} {degrees.mean():.2f} {100 * (degrees > 30).mean():.2f} %")
     write(os.path.join(folder, "shadings.png"),
           {"Depth only": depth, "Stored normals": diffuse["Stored"],
-           "Central differences": diffuse["CentralDifference"], "Nine cases (Predicate)": diffuse["Predicate"]})
+           "Central differences": diffuse["CentralDifference"], "Nine cases (Predicate)": diffuse["Predicate"]},
+          depth_map)
     titles = {"Stored": "Stored normals", "CentralDifference": "Central differences", "Gordon": "Gordon's weights",
               "Predicate": "Nine cases (Predicate)"}
-    write(os.path.join(folder, "edge.png"), {titles[method]: enlarged(rgb) for method, rgb in diffuse.items()})
+    write(os.path.join(folder, "edge.png"), {titles[method]: enlarged(rgb) for method, rgb in diffuse.items()},
+          depth_map)
 
     right = np.cross(view, UP)
     right /= np.linalg.norm(right)
@@ -96,7 +105,7 @@ def main(folder, head=None):
               picture(DepthCue=0, Lights=[*upper_left, 0, 1]),
               picture(Lights=[*upper_left, 0, 0.8, *lower_right, 0, 0.3])]
     write(os.path.join(folder, "lights.png"),
-          dict(zip(("Phong, depth cue", "One light, shadows", "Two lights, shadows"), lights)))
+          dict(zip(("Phong, depth cue", "One light, shadows", "Two lights, shadows"), lights)), depth_map)
 
     # the calotte cut away; without its cut-away the shader does not know
     bounds = volume.GetDataInformation().GetBounds()
@@ -110,7 +119,7 @@ def main(folder, head=None):
     shader.CutAway.Origin, shader.CutAway.Normal = top, [0, 0, -1]
     opened += [picture(), picture(Lights=[*middle, 1, 1, *towards_viewer, 0, 0.3])]
     write(os.path.join(folder, "opened.png"),
-          dict(zip(("Shadow of what is cut away", "Cut away for the light too", "Lamp inside"), opened)))
+          dict(zip(("Shadow of what is cut away", "Cut away for the light too", "Lamp inside"), opened)), depth_map)
     assert opened[1].mean() > opened[0].mean() + 5, "less is in shadow"
     depth_map.CutAway = shader.CutAway = "None"
     depth_map.ViewDirection = view
@@ -129,6 +138,8 @@ def main(folder, head=None):
         scene.CameraPosition = middle - 400 * aside
         scene.CameraViewUp = UP
         scene.CameraParallelScale = 0.37 * np.linalg.norm(np.subtract(bounds[1::2], bounds[::2]))
+        if in_patient_coordinates(servermanager.Fetch(depth_map)):
+            show_orientation(scene)
         Render(scene)
         name = os.path.join(folder, "tears.png")
         SaveScreenshot(name, scene, ImageResolution=scene.ViewSize)

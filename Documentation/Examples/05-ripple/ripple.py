@@ -18,7 +18,8 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import color_bar, side_by_side, write_pixels
+from lacuna.pictures import color_bar, mark_pixels, side_by_side, write_pixels
+from lacuna.views import in_patient_coordinates, map_letters
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -68,6 +69,7 @@ class Comparison:
                 normals = vtk_to_numpy(data.GetPointData().GetNormals()).reshape(height, width, 3)
                 maps[volume is fine, name] = depth, -(normals @ direction)
                 height_of_rows = np.array([data.GetPoint(row * width)[2] for row in range(height)])
+                self.letters = map_letters(data) if in_patient_coordinates(data) else None
                 Delete(caster)
         truth, cosine = maps[True, "InterpolatingBSpline"]
         self.same = np.ones(truth.shape, dtype=bool)
@@ -116,6 +118,8 @@ def make_row(comparison, cut, title, measure, limit):
     """Pixels of one measure of the differences by the three interpolations, with a scale."""
     panels = [(title.format(name), colors(measure(difference), comparison.same, limit)[cut])
               for name, difference in comparison.differences.items()]
+    if comparison.letters:
+        panels = [(title, mark_pixels(pixels, comparison.letters)) for title, pixels in panels]
     height = panels[0][1].shape[0]
     bar = color_bar(lambda values: colors(values, np.ones(values.shape, dtype=bool), limit), -limit, limit, "mm", height)
     return side_by_side([*panels, ("", bar)])

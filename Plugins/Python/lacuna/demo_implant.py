@@ -9,7 +9,7 @@ from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import lacuna
-from lacuna import pictures
+from lacuna import pictures, views
 
 ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
 
@@ -160,5 +160,8 @@ def picture(image, view, name):
         limit = math.ceil(10 * np.nanmax(np.abs(error))) / 10
         pictures.color_by(display, render, ERROR, "error of the implant, mm", (-limit, limit))
     pictures.look(render, view, view_up(view), 1.1)
-    pictures.add_scale_bar(render, 50)
+    marked = views.in_patient_coordinates(image)
+    pictures.add_scale_bar(render, 50, aside=marked)
+    if marked:
+        views.show_orientation(render)
     pictures.save(render, name)

@@ -9,6 +9,8 @@ from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
 
+from lacuna.views import map_letters
+
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
 TISSUE = (0.80, 0.45, 0.38)
@@ -103,8 +105,11 @@ def look(view, direction, up, zoom=1.0):
     camera.Zoom(zoom)
 
 
-def add_scale_bar(view, millimetres):
-    """A bar of that length with its label at the lower edge. After look(): it holds for that view."""
+def add_scale_bar(view, millimetres, aside=False):
+    """A bar of that length with its label at the lower edge. After look(): it holds for that view.
+
+    aside: left of the middle, where a letter of views.show_orientation is.
+    """
     camera = view.GetActiveCamera()
     direction, up = np.array(camera.GetDirectionOfProjection()), np.array(camera.GetViewUp())
     right = np.cross(direction, up)
@@ -112,13 +117,20 @@ def add_scale_bar(view, millimetres):
     up = np.cross(right, direction)
     # parallel projection: the window is twice ParallelScale high; in front of all that is shown
     near = 0.9 * camera.GetClippingRange()[0] + 0.1 * camera.GetClippingRange()[1]
-    middle = np.array(camera.GetPosition()) + near * direction - 0.84 * camera.GetParallelScale() * up
+    scale, (width, height) = camera.GetParallelScale(), view.ViewSize
+    middle = np.array(camera.GetPosition()) + near * direction - 0.84 * scale * up
+    if aside:
+        middle -= 0.4 * scale * width / height * right
     line = pv.Line(Point1=list(middle - millimetres / 2 * right), Point2=list(middle + millimetres / 2 * right))
     show_surface(line, view, (0.1, 0.1, 0.1)).LineWidth = 5
-    display = pv.Show(pv.Text(Text=f"{millimetres:g} mm"), view)
+    text = f"{millimetres:g} mm"
+    display = pv.Show(pv.Text(Text=text), view)
     display.Color = [0.1, 0.1, 0.1]
     display.FontSize = 18
     display.WindowLocation = "Lower Center"
+    if aside:
+        display.WindowLocation = "Any Location"
+        display.Position = [0.3 - 0.3 * 18 * len(text) / width, 0.015]
 
 
 def add_title(view, text):
@@ -192,6 +204,26 @@ def put_pixels(pixels, part, row, column):
         pixels[row:row + height, column:column + width] = part[:height, :width]
 
 
+def mark_pixels(pixels, letters, size=15, background=(255, 255, 255)):
+    """A copy of a picture (rows, columns, red green blue; row 0 on top) in a frame with letters at its edges.
+
+    letters: as of views.map_letters, by edge.
+    """
+    labels = {edge: text_pixels(text, size) for edge, text in letters.items()}
+    margin = max(max(labels[edge].shape[0] for edge in ("top", "bottom")),
+                 max(labels[edge].shape[1] for edge in ("left", "right"))) + 8
+    height, width, _ = pixels.shape
+    framed = np.empty((height + 2 * margin, width + 2 * margin, 3), dtype=np.uint8)
+    framed[:] = background
+    framed[margin:-margin, margin:-margin] = pixels
+    centers = {"top": (margin / 2, framed.shape[1] / 2), "bottom": (framed.shape[0] - margin / 2, framed.shape[1] / 2),
+               "left": (framed.shape[0] / 2, margin / 2), "right": (framed.shape[0] / 2, framed.shape[1] - margin / 2)}
+    for edge, label in labels.items():
+        row, column = centers[edge]
+        put_pixels(framed, label, round(row - label.shape[0] / 2), round(column - label.shape[1] / 2))
+    return framed
+
+
 def side_by_side(panels, gap=6):
     """One picture of (title, pixels) side by side, each with its title above; row 0 on top."""
     margin = 22
@@ -222,6 +254,7 @@ def color_bar(to_colors, low, high, unit, height, ticks=5):
     return bar
 
 
-def save_shaded(proxy, name):
-    """Saves the picture of a Depth Map Shader as PNG, pixel by pixel."""
-    write_pixels(name, shaded_pixels(proxy))
+def save_shaded(proxy, name, marks=False):
+    """Saves the picture of a Depth Map Shader as PNG, pixel by pixel; marks: framed by the patient's sides."""
+    pixels = shaded_pixels(proxy)
+    write_pixels(name, mark_pixels(pixels, map_letters(servermanager.Fetch(proxy))) if marks else pixels)

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ray casters that look as a render view does.
+"""Ray casters that look as a render view does, and the patient's sides in pictures.
 
     from lacuna import views
     views.copy_camera(caster)          # the active view's camera, once
     surface = DepthMapSurface(Input=caster)
+    views.show_orientation()           # L, R, A, P, H, F at the edges of the active view
 
-For B-Spline Iso Ray Caster and Slice Ray Caster. The latter looks along parallel rays whatever the camera does.
+B-Spline Iso Ray Caster and Slice Ray Caster. The latter looks along parallel rays whatever the camera does.
 """
 import math
 
@@ -66,3 +67,128 @@ def copy_camera(caster, view=None, rows=None):
             properties["ViewAngle"] = math.degrees(2 * math.atan(shown / 2 / distance))
     for name, value in properties.items():
         setattr(caster, name, value)
+
+
+# Names of the positive and the negative axes of patient coordinates (LPS).
+SIDES = (("L", "R"), ("P", "A"), ("H", "F"))
+_marked = {}  # views with marks: their marks by global ID
+
+
+def direction_letters(direction):
+    """Where a direction in patient coordinates (LPS) leads: one to three of L, R, A, P, H, F.
+
+    As DICOM has it (PS3.3, C.7.6.1.1.1): the axis it is nearest to first, others after it, as far as the direction
+    leaves the plane across them by 14.5 degrees or more. Raises ValueError when it has no length.
+    """
+    direction = np.asarray(direction, dtype=float)
+    length = np.linalg.norm(direction)
+    if direction.shape != (3,) or not np.isfinite(length) or length == 0:
+        raise ValueError(f"{direction} is no direction")
+    unit = direction / length
+    order = sorted(range(3), key=lambda axis: -abs(unit[axis]))
+    return "".join(SIDES[axis][int(unit[axis] < 0)] for axis in order if abs(unit[axis]) >= 0.25)
+
+
+def edge_letters(right, up):
+    """The letters at the four edges of a picture of which right and upwards are these directions, by edge."""
+    right, up = np.asarray(right, dtype=float), np.asarray(up, dtype=float)
+    return {"right": direction_letters(right), "left": direction_letters(-right),
+            "top": direction_letters(up), "bottom": direction_letters(-up)}
+
+
+def camera_letters(camera):
+    """edge_letters of what a vtkCamera shows, rolled or mirrored as it may be."""
+    forwards, up = np.array(camera.GetDirectionOfProjection()), np.array(camera.GetViewUp())
+    right = np.cross(forwards, up)
+    # not the camera's own matrix, which is not yet up to date when it says that it was modified
+    axes = np.array([right, np.cross(right, forwards), -forwards * (np.linalg.norm(right) or 1)])
+    user = camera.GetUserViewTransform()
+    if user is not None:
+        axes = np.array([[user.GetMatrix().GetElement(i, k) for k in range(3)] for i in range(3)]) @ axes
+    return edge_letters(axes[0], axes[1])
+
+
+def map_letters(image):
+    """edge_letters of a depth map or its shaded picture (vtkImageData), whose row 0 is on top."""
+    to_world = image.GetFieldData().GetArray("ImageToWorld")
+    if to_world is None:
+        raise ValueError("the image is no depth map: it lacks the field data array ImageToWorld")
+    to_world = np.array(to_world.GetTuple(0)).reshape(4, 4)
+    return edge_letters(to_world[:3, 0], -to_world[:3, 1])
+
+
+def in_patient_coordinates(data):
+    """Whether data (vtkDataObject) is known to be in patient coordinates (LPS): the CT Series Reader or the Skull
+    Phantom is among the steps of its Provenance. Files of other formats may be turned or mirrored without telling.
+    """
+    steps = data.GetFieldData().GetAbstractArray("Provenance")
+    return steps is not None and any(
+        name in steps.GetValue(k) for k in range(steps.GetNumberOfValues())
+        for name in ("vtkLacunaCTSeriesReader", "vtkLacunaSkullPhantom"))
+
+
+def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):
+    """Marks the edges of a render view with L, R, A, P, H, F: where the patient's left is, and so on.
+
+    For data in patient coordinates only (in_patient_coordinates), not for tracked ultrasound, whose reference frame
+    knows no patient. The letters follow the camera. Call it again to change color or size, hide_orientation to
+    take them away. Returns the letters by edge.
+    """
+    import paraview.simple as pv
+    view = view or pv.GetActiveView()
+    if view is None or not hasattr(view, "GetActiveCamera"):
+        raise ValueError("there is no active render view that could be marked; give one")
+    hide_orientation(view)
+    active = pv.GetActiveSource()
+    camera = view.GetActiveCamera()
+    width, height = view.ViewSize
+    marks = {}
+    for edge, letters in camera_letters(camera).items():
+        source = pv.Text(Text=letters)
+        display = pv.Show(source, view)
+        display.Color, display.FontSize, display.Bold = list(color), font_size, 1
+        display.WindowLocation = "Any Location"
+        marks[edge] = (source, display)
+
+    def place(*_):
+        try:
+            found = camera_letters(camera)
+        except ValueError:  # halfway to another view
+            return
+        for edge, letters in found.items():
+            source, display = marks[edge]
+            # room for the letters, in parts of the window
+            across, along = 0.75 * font_size * len(letters) / width, 1.2 * font_size / height
+            position = {"left": [0.01, 0.5 - along / 2], "right": [0.99 - across, 0.5 - along / 2],
+                        "top": [0.5 - across / 2, 0.985 - along], "bottom": [0.5 - across / 2, 0.015]}[edge]
+            if source.Text != letters or list(display.Position) != position:
+                source.Text = letters
+                display.Position = position
+
+    place()
+    tag = camera.AddObserver("ModifiedEvent", place)
+    _marked[view.GetGlobalIDAsString()] = (marks, camera, tag)
+    pv.SetActiveSource(active)
+    return {edge: source.Text for edge, (source, _) in marks.items()}
+
+
+def hide_orientation(view):
+    """Takes the marks of show_orientation away."""
+    import paraview.simple as pv
+    marks, camera, tag = _marked.pop(view.GetGlobalIDAsString(), ({}, None, None))
+    if camera is not None:
+        camera.RemoveObserver(tag)
+    for source, _ in marks.values():
+        pv.Delete(source)
+
+
+def show_patient_axes(view=None):
+    """Shows ParaView's axes grid with titles that say which way the patient's axes run. Kept in state files."""
+    import paraview.simple as pv
+    view = view or pv.GetActiveView()
+    if view is None or not hasattr(view, "AxesGrid"):
+        raise ValueError("there is no active render view that could have axes; give one")
+    grid = view.AxesGrid
+    for title, (positive, negative) in zip(("XTitle", "YTitle", "ZTitle"), SIDES):
+        setattr(grid, title, f"{negative} to {positive}, mm")
+    grid.Visibility = 1

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The letters at the edges of pictures: known cameras give known letters, and what is drawn lies where they say."""
+import os
+import tempfile
+
+import lacuna.plugin
+import numpy as np
+
+lacuna.plugin.load()
+from lacuna import pictures, views
+from paraview import servermanager
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkRenderingCore import vtkCamera
+
+EDGES = ("left", "right", "top", "bottom")
+
+
+def check(holds, message):
+    assert holds, message
+
+
+def camera_towards(direction, up):
+    camera = vtkCamera()
+    camera.SetPosition(0, 0, 0)
+    camera.SetFocalPoint(*direction)
+    camera.SetViewUp(*up)
+    return camera
+
+
+def letters(direction, up, roll=0):
+    camera = camera_towards(direction, up)
+    camera.Roll(roll)
+    return " ".join(views.camera_letters(camera)[edge] for edge in EDGES)
+
+
+# direction, up: left, right, top, bottom. From the front, the patient's left is on the right.
+KNOWN = {
+    ((0, 1, 0), (0, 0, 1)): "R L H F",    # from the front
+    ((0, -1, 0), (0, 0, 1)): "L R H F",   # from the back
+    ((-1, 0, 0), (0, 0, 1)): "A P H F",   # from the patient's left
+    ((1, 0, 0), (0, 0, 1)): "P A H F",    # from the patient's right
+    ((0, 0, -1), (0, -1, 0)): "L R A P",  # from above
+    ((0, 0, 1), (0, -1, 0)): "R L A P",   # from below: an axial slice as radiologists see it
+}
+for (direction, up), expected in KNOWN.items():
+    check(letters(direction, up) == expected, f"{direction}: {letters(direction, up)}, not {expected}")
+
+# roll turns the camera, so the picture the other way round
+check(letters((0, 1, 0), (0, 0, 1), 90) in ("H F L R", "F H R L"), "a roll of 90 degrees")
+check(letters((0, 1, 0), (0, 0, 1), 180) == "L R F H", "upside down")
+check(letters((0, 1, 0), (0, 0, 1), 10) == "R L H F", "ten degrees are an axis still")
+check(sorted(letters((0, 1, 0), (0, 0, 1), 40).split()[1]) == sorted("LH")
+      or sorted(letters((0, 1, 0), (0, 0, 1), 40).split()[1]) == sorted("LF"), "40 degrees are between")
+
+# oblique: right = (1, -1, 0) / sqrt 2 of a look along (1, 1, 0)
+check(letters((1, 1, 0), (0, 0, 1)).split()[:2] in (["RP", "LA"], ["PR", "AL"]), letters((1, 1, 0), (0, 0, 1)))
+check(letters((1, 2, 0), (0, 0, 1)).split()[:2] == ["RP", "LA"], letters((1, 2, 0), (0, 0, 1)))
+check(letters((2, 1, 0), (0, 0, 1)).split()[:2] == ["PR", "AL"], letters((2, 1, 0), (0, 0, 1)))
+check(letters((1, 6, 0), (0, 0, 1)) == "R L H F", "9.5 degrees")
+check(views.direction_letters((3, 2, -2.5)) == "LFP", "three letters, nearest first")
+for bad in ((0, 0, 0), (np.nan, 0, 1), (1, 0)):
+    try:
+        views.direction_letters(bad)
+        check(False, f"{bad} is taken for a direction")
+    except ValueError:
+        pass
+
+# a camera that mirrors tells so
+camera = camera_towards((0, 1, 0), (0, 0, 1))
+mirror = vtkTransform()
+mirror.Scale(-1, 1, 1)
+camera.SetUserViewTransform(mirror)
+check([views.camera_letters(camera)[edge] for edge in EDGES] == ["L", "R", "H", "F"], "a mirrored camera")
+
+# what is drawn: balls on the three axes, seen from five sides and obliquely, lie where the letters say
+BALLS = {"L": ((40, 0, 0), (1, 0, 0)), "A": ((0, -40, 0), (0, 1, 0)), "H": ((0, 0, 40), (0, 0, 1))}
+OPPOSITE = dict(zip("LRAPHF", "RLPAFH"))
+view = pictures.new_view((400, 400))
+view.OrientationAxesVisibility = 0
+for center, color in BALLS.values():
+    display = pictures.show_surface(Sphere(Center=center, Radius=8), view, color)
+    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+
+
+def look(direction, up):
+    pictures.look(view, direction, up)
+    camera = view.GetActiveCamera()
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetPosition(*(-200 * np.array(direction) / np.linalg.norm(direction)))
+    camera.SetParallelScale(60)
+
+
+def render():
+    name = os.path.join(tempfile.gettempdir(), f"lacuna-marks-{os.getpid()}.png")
+    pictures.save(view, name)
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    os.remove(name)
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[..., :3].astype(float) / 255
+
+
+def shown():
+    """Texts in the window by the edge that they stand at."""
+    found = {}
+    for source in GetSources().values():
+        if source.GetXMLName() == "TextSource" and GetDisplayProperties(source, view).Visibility:
+            x, y = GetDisplayProperties(source, view).Position
+            edge = ("left" if x < 0.2 else "right" if x > 0.8 else "") or ("bottom" if y < 0.5 else "top")
+            found[edge] = source.Text
+    return found
+
+
+def check_balls(what):
+    pixels = render()
+    marks = shown()
+    check(sorted(marks) == sorted(EDGES), f"{what}: marks at {sorted(marks)}")
+    for letter, (_, color) in BALLS.items():
+        mask = (np.abs(pixels - np.array(color)) < 0.2).all(axis=2)
+        if mask.sum() < 20:
+            continue  # behind another
+        y, x = np.argwhere(mask).mean(axis=0) - 199.5
+        for edge, offset in (("right", x), ("left", -x), ("top", y), ("bottom", -y)):
+            if letter in marks[edge]:
+                check(offset > 20, f"{what}: {letter} is marked {edge}, but its ball lies {offset:.0f} pixels there")
+            elif OPPOSITE[letter] in marks[edge]:
+                check(offset < -20, f"{what}: {letter} is not where {marks[edge]} is marked")
+
+
+look((0, 1, 0), (0, 0, 1))
+check(views.show_orientation(view) == {"left": "R", "right": "L", "top": "H", "bottom": "F"}, "marks from the front")
+for direction, up in KNOWN:
+    look(direction, up)
+    check_balls(f"{direction}")
+for direction, up, roll in (((1, 1, 0), (0, 0, 1), 0), ((-1, 2, -1), (0, 0, 1), 35), ((0.3, -1, 0.4), (1, 0, 1), -70)):
+    look(direction, up)
+    view.GetActiveCamera().Roll(roll)  # the marks follow
+    check_balls(f"{direction} rolled by {roll}")
+view.GetActiveCamera().SetUserViewTransform(mirror)
+check_balls("mirrored")
+view.GetActiveCamera().SetUserViewTransform(None)
+
+# again replaces, hide takes away
+views.show_orientation(view, font_size=24)
+check(len(shown()) == 4 and sum(s.GetXMLName() == "TextSource" for s in GetSources().values()) == 4, "no marks twice")
+views.hide_orientation(view)
+check(not shown(), "hidden")
+views.show_patient_axes(view)
+check(view.AxesGrid.Visibility and view.AxesGrid.XTitle == "R to L, mm", "titles of the axes")
+check(view.AxesGrid.YTitle == "A to P, mm" and view.AxesGrid.ZTitle == "F to H, mm", "titles of the axes")
+
+# a depth map has the letters of a camera that looks as it does, and its pixels lie there
+skull = SkullPhantom(Spacing=[4, 4, 4])
+for direction, up in ((0, 1, 0), (0, 0, 1)), ((-1, 0.2, -0.1), (0, 0.1, 1)), ((1, 1, -1), (1, 0, 1)):
+    depth = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=direction, ViewUp=up)
+    image = servermanager.Fetch(depth)
+    found = views.map_letters(image)
+    check(" ".join(found[edge] for edge in EDGES) == letters(direction, up), f"depth map along {direction}: {found}")
+    width, height, _ = image.GetDimensions()
+    corner, right, down = (np.array(image.GetPoint(k)) for k in (0, width - 1, (height - 1) * width))
+    check(found["right"] == views.direction_letters(right - corner), "the last column is on the right")
+    check(found["bottom"] == views.direction_letters(down - corner), "the last row is at the bottom")
+try:
+    views.map_letters(servermanager.Fetch(skull))
+    check(False, "a volume is no depth map")
+except ValueError:
+    pass
+
+# the letters get onto the picture, and the picture is not moved
+picture = np.full((60, 90, 3), 200, dtype=np.uint8)
+picture[5, 80] = (255, 0, 0)
+framed = pictures.mark_pixels(picture, {"left": "R", "right": "LA", "top": "H", "bottom": "F"})
+margin = (framed.shape[0] - 60) // 2
+check(framed.shape == (60 + 2 * margin, 90 + 2 * margin, 3), "the frame")
+check((framed[margin:-margin, margin:-margin] == picture).all(), "the picture in its frame")
+middle = framed.shape[0] // 2
+ink = {"left": framed[middle - 10:middle + 10, :margin], "right": framed[middle - 10:middle + 10, -margin:],
+       "top": framed[:margin, framed.shape[1] // 2 - 10:framed.shape[1] // 2 + 10],
+       "bottom": framed[-margin:, framed.shape[1] // 2 - 10:framed.shape[1] // 2 + 10]}
+dark = {edge: int((part < 128).all(axis=2).sum()) for edge, part in ink.items()}
+check(min(dark.values()) > 10 and dark["right"] > dark["left"], f"letters in the frame: {dark}")
+print("passed")
