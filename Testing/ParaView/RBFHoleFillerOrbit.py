@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The awkward defect: a disc of 8 mm radius between a saw cut and the rim of an orbit, from the front.
+
+Behind the rim lies the roof of the orbit: what is beyond a depth step or too steep must be left out or named,
+and the bone that was there be restored as well as a narrow margin lets it.
+"""
+import os
+
+import lacuna
+import numpy as np
+from lacuna_test import data
+from paraview import servermanager
+from paraview.simple import LoadPlugin, OpenDataFile
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+
+caster = BSplineIsoRayCaster(
+    Input=OpenDataFile(data("ct_head/head.mha")), IsoValues=[500], Interpolation="InterpolatingBSpline",
+    ViewDirection=[0, -0.9, -0.45], ViewUp=[0, 0, 1])
+caster.UpdatePipeline()
+depth_map = servermanager.Fetch(caster)
+columns, rows, _ = depth_map.GetDimensions()
+x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+defect = np.hypot(x - 120, y - 180) * depth_map.GetSpacing()[0] <= 8
+array = numpy_to_vtk(defect.ravel().astype(np.int8), deep=1)
+array.SetName("Defect")
+depth_map.GetPointData().AddArray(array)
+warnings = []
+filler = lacuna.vtkLacunaRBFHoleFiller()
+
+
+def keep(_, __, text):
+    warnings.append(text)
+
+
+keep.CallDataType = "string0"
+filler.AddObserver("WarningEvent", keep)
+filler.SetInputData(depth_map)
+filler.SetDefectArray("Defect")
+filler.SetSupportMargin(8)
+filler.Update()
+points = filler.GetOutput().GetPointData()
+use, deviation = (vtk_to_numpy(points.GetArray(name)).reshape(rows, columns)
+                  for name in ("SupportMask", "Deviation"))
+counts = [int((use == value).sum()) for value in range(5)]
+error = deviation[defect]
+print("used %d, beyond a step %d, steep %d pixels; largest error %.2f, RMS %.2f mm" % (
+    counts[1], counts[2], counts[3], np.abs(error).max(), np.sqrt((error ** 2).mean())))
+assert counts[2] > 0 and any("beyond a depth step" in w and "first at column" in w for w in warnings)
+assert counts[3] > 0 and any("steeper than 65 degrees" in w for w in warnings)
+assert np.abs(error).max() < 1.5 and np.sqrt((error ** 2).mean()) < 0.7
