@@ -45,14 +45,7 @@ RadialControl<Dimension>::RadialControl(
 template <int Dimension>
 double RadialControl<Dimension>::GetPhi(const Point& a, const Point& b) const
 {
-  Coordinates<Dimension> at;
-  for (int c = 0; c < Dimension; ++c)
-  {
-    at.Axis[c] = &a[c];
-  }
-  double phi = 0;
-  this->Loops.Column(at, 1, b.data(), &phi);
-  return phi;
+  return GetRadialValue<Dimension>(this->Loops, a, b);
 }
 
 template <int Dimension>

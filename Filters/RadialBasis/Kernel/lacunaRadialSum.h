@@ -7,6 +7,7 @@
 #ifndef lacunaRadialSum_h
 #define lacunaRadialSum_h
 
+#include <array>
 #include <cstddef>
 
 namespace lacuna
@@ -60,6 +61,21 @@ struct RadialLoops
 /// Loops for an instruction set that the machine has. Dimension is 2 or 3.
 template <int Dimension>
 RadialLoops<Dimension> GetRadialLoops(RadialKernel kernel, InstructionSet set);
+
+/// phi(|a - b|).
+template <int Dimension>
+double GetRadialValue(const RadialLoops<Dimension>& loops, const std::array<double, Dimension>& a,
+  const std::array<double, Dimension>& b)
+{
+  Coordinates<Dimension> at;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    at.Axis[c] = &a[c];
+  }
+  double phi = 0;
+  loops.Column(at, 1, b.data(), &phi);
+  return phi;
+}
 
 /// k of phi(r/L) = phi(r)/L^k and the factor of the energy, see lacunaRadialKernels.h.
 int GetRadialPower(RadialKernel kernel);
