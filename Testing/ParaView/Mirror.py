@@ -12,6 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.util.vtkConstants import VTK_STRING
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+from lacuna.errors import PipelineError, raising
 
 
 def fetch(proxy, port=0):
@@ -93,7 +94,13 @@ seen = np.lib.stride_tricks.sliding_window_view(np.isfinite(turned), (8, 8)).all
 row, column = np.argwhere(seen)[len(np.argwhere(seen)) // 2]
 clip = ExtractSubset(Input=other, VOI=[column, column + 7, row, row + 7, 0, 0])
 file = output("Mirror.igs")
-SaveData(file, proxy=clip)
+try:
+    with raising():
+        SaveData(file, proxy=clip)
+    raise AssertionError("a mirror image was written without being asked for")
+except PipelineError as error:
+    assert "is a mirror image" in str(error) and not os.path.exists(file), error
+SaveData(file, proxy=clip, AllowMirrored=1)
 with open(file, encoding="ascii") as stream:
     assert "MIRROR IMAGE" in stream.read()
 for interpolation in ("Linear", "Nearest"):
