@@ -36,6 +36,7 @@ vtkStandardNewMacro(vtkLacunaPressOrientation);
 namespace
 {
 constexpr const char* PlaneNormalName = "PlaneNormal";
+constexpr double LargestInclination = 10; // degrees, of the fit's plane without a warning
 constexpr double Degrees = 180 / 3.14159265358979323846;
 constexpr double CoarsestSpacing = 1; // mm, when OutputSpacing is left to the filter
 
@@ -69,15 +70,17 @@ public:
       this->Options.Spacing =
         std::min({ this->Part.Spacing[0], this->Part.Spacing[1], CoarsestSpacing });
     }
-    lacuna::Vec3 normal;
-    if (vtkDataArray* given = vtkLacunaFieldData::Find(map, PlaneNormalName, 3, 1))
+    lacuna::Vec3 normal = lacuna::FitPlaneNormal(
+      this->Part.Size, this->Part.Depths, this->Part.Spacing, this->Part.Mask);
+    vtkDataArray* given = vtkLacunaFieldData::Find(map, PlaneNormalName, 3, 1);
+    this->HasPlane = given != nullptr;
+    if (self->PlaneMethod == Fit && given)
     {
-      given->GetTuple(0, normal.data());
-    }
-    else
-    {
-      this->HasPlane = false;
-      normal = lacuna::FitPlaneNormal(this->Part.Size, this->Part.Depths, this->Part.Spacing);
+      lacuna::Vec3 ofFit;
+      given->GetTuple(0, ofFit.data());
+      this->Inclination = Degrees *
+        std::acos(std::min(1.0, std::abs(lacuna::Dot(lacuna::Normalized(ofFit), normal))));
+      normal = ofFit;
     }
     this->Layout = lacuna::PlanPress(execution, this->Surface, this->Part.Size, this->Part.Spacing,
       this->Part.Mask, normal, this->Options, this->Part.ToWorld);
@@ -96,12 +99,14 @@ public:
   lacuna::PressOptions Options;
   vtkLacunaFittedPart Part;
   lacuna::ReliefSurface Surface;
-  bool HasPlane = true; // from the hole filler
+  bool HasPlane = true;   // from the hole filler
+  double Inclination = 0; // degrees, of the hole filler's plane to the least squares plane
   lacuna::PressLayout Layout;
 
 private:
   static lacuna::PressOptions GetOptions(vtkLacunaPressOrientation* self)
   {
+    CheckChoice("PlaneMethod", self->PlaneMethod, 2, "0 (Fit) or 1 (LeastSquares)");
     CheckChoice("Mould", self->Mould, 2, "0 (Female) or 1 (Male)");
     CheckChoice("Seating", self->Seating, 2, "0 (Onlay) or 1 (Inlay)");
     CheckChoice("ConvexSide", self->ConvexSide, 3, "0 (Automatic), 1 (Outward) or 2 (Inward)");
@@ -230,12 +235,18 @@ int vtkLacunaPressOrientation::RequestData(
                                "that changes with time?); update again");
     }
     const lacuna::Matrix4& toWorld = plan.Part.ToWorld;
-    if (!plan.HasPlane)
+    if (this->PlaneMethod == Fit && !plan.HasPlane)
     {
-      vtkWarningMacro(
-        << "the depth map has no field data array '" << PlaneNormalName
-        << "' (RBF Hole Filler reports it), so the least squares plane through Fitted "
-           "is laid flat instead");
+      vtkWarningMacro(<< "the depth map has no field data array '" << PlaneNormalName
+                      << "' (RBF Hole Filler reports it), so the least squares plane through "
+                         "Fitted is laid flat instead");
+    }
+    if (plan.Inclination > LargestInclination)
+    {
+      vtkWarningMacro(<< "the plane of the fit is inclined by "
+                      << lacuna::FormatNumber(std::round(plan.Inclination))
+                      << " degrees to the surface over the defect, so the mould is deeper on one "
+                         "side; PlaneMethod LeastSquares lays it flatter");
     }
     if (layout.SingleValued)
     {
@@ -268,10 +279,13 @@ int vtkLacunaPressOrientation::RequestData(
     vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
     vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
     SetText(output, "PlaneSource",
-      plan.HasPlane ? "PlaneNormal of the hole filler" : "least squares plane through Fitted");
+      plan.HasPlane && this->PlaneMethod == Fit
+        ? "PlaneNormal of the hole filler"
+        : "least squares plane through Fitted over the defect");
 
     lacuna::ParameterText parameters;
-    parameters.Add("Mould", this->Mould)
+    parameters.Add("PlaneMethod", this->PlaneMethod)
+      .Add("Mould", this->Mould)
       .Add("Seating", this->Seating)
       .Add("PlateThickness", this->PlateThickness)
       .Add("PlateMargin", this->PlateMargin)
@@ -288,6 +302,7 @@ int vtkLacunaPressOrientation::RequestData(
 void vtkLacunaPressOrientation::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PlaneMethod: " << this->PlaneMethod << "\n";
   os << indent << "Mould: " << this->Mould << "\n";
   os << indent << "Seating: " << this->Seating << "\n";
   os << indent << "PlateThickness: " << this->PlateThickness << "\n";

@@ -10,8 +10,9 @@
  * 0, a male one a boss, z >= 0. The way from there to the patient is a rotation and a translation,
  * never a mirror.
  *
- * The plane of the fit (field data PlaneNormal of the hole filler; without it the least squares plane
- * through Fitted, with a warning) comes to lie parallel to the press plane. Carr 1996, eq. 6.14: with
+ * The plane of the fit (field data PlaneNormal of the hole filler; without it or with PlaneMethod
+ * LeastSquares the plane nearest to Fitted over the defect) comes to lie parallel to the press plane;
+ * a warning says when the two differ by more than 10 degrees. Carr 1996, eq. 6.14: with
  * c1, c2 its slopes along the map's columns and rows, a rotation by Psi = atan(c1) about the map's y
  * axis, then one by Theta = atan(-c2 / sqrt(1 + c1^2)) about its x axis. Where the mill looks from the
  * viewer's side (a male mould of a surface that bulges to the viewer, or a female one of a surface
@@ -89,6 +90,11 @@ public:
     Onlay = 0, ///< the plate lies on the fitted surface
     Inlay = 1  ///< the plate's outer face is the fitted surface
   };
+  enum PlaneMethodType
+  {
+    Fit = 0,         ///< the plane that the hole filler reports of its fit
+    LeastSquares = 1 ///< the plane nearest to Fitted over the defect, along the viewing direction
+  };
   enum ConvexSideType
   {
     Automatic = 0, ///< measured: the mean curvature over the defect
@@ -96,6 +102,11 @@ public:
     Inward = 2
   };
 
+  ///@{
+  /** What lies flat in the press. Default Fit. */
+  vtkSetMacro(PlaneMethod, int);
+  vtkGetMacro(PlaneMethod, int);
+  ///@}
   ///@{
   /** Default Female. */
   vtkSetMacro(Mould, int);
@@ -160,6 +171,7 @@ private:
 
   class Plan;
 
+  int PlaneMethod = Fit;
   int Mould = Female;
   int Seating = Onlay;
   double PlateThickness = 0.7;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPressFrame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -31,27 +32,54 @@ PressFrame MakePressFrame(const Vec3& normal, PressSide side)
 }
 
 //------------------------------------------------------------------------------
-Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing)
+Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing,
+  const std::vector<unsigned char>& mask)
 {
-  // on a regular grid the two slopes do not depend on each other
-  const double middle[2] = { 0.5 * static_cast<double>(size.Columns - 1),
-    0.5 * static_cast<double>(size.Rows - 1) };
-  double moments[2] = { 0, 0 };
-  double squares[2] = { 0, 0 };
-  for (std::int64_t j = 0; j < size.Rows; ++j)
+  const auto forEach = [&](auto&& body)
   {
-    for (std::int64_t i = 0; i < size.Columns; ++i)
+    for (std::int64_t j = 0; j < size.Rows; ++j)
     {
-      const double at[2] = { static_cast<double>(i) - middle[0],
-        static_cast<double>(j) - middle[1] };
-      for (int k = 0; k < 2; ++k)
+      for (std::int64_t i = 0; i < size.Columns; ++i)
       {
-        moments[k] += at[k] * depths[i + size.Columns * j];
-        squares[k] += at[k] * at[k];
+        const std::int64_t k = i + size.Columns * j;
+        if (mask.empty() || mask[k])
+        {
+          body(Vec3{
+            static_cast<double>(i) * spacing[0], static_cast<double>(j) * spacing[1], depths[k] });
+        }
       }
     }
+  };
+  Vec3 mean{};
+  double count = 0;
+  forEach(
+    [&](const Vec3& p)
+    {
+      mean = mean + p;
+      ++count;
+    });
+  mean = 1 / std::max(count, 1.0) * mean;
+  double xx = 0;
+  double xy = 0;
+  double yy = 0;
+  double xz = 0;
+  double yz = 0;
+  forEach(
+    [&](const Vec3& p)
+    {
+      const Vec3 d = p - mean;
+      xx += d[0] * d[0];
+      xy += d[0] * d[1];
+      yy += d[1] * d[1];
+      xz += d[0] * d[2];
+      yz += d[1] * d[2];
+    });
+  const double determinant = xx * yy - xy * xy;
+  if (!(determinant > 1e-12 * xx * yy))
+  {
+    throw std::invalid_argument("the pixels of the defect lie on a line; there is no plane through "
+                                "them");
   }
-  return Normalized(
-    { moments[0] / squares[0] / spacing[0], moments[1] / squares[1] / spacing[1], -1 });
+  return Normalized({ (yy * xz - xy * yz) / determinant, (xx * yz - xy * xz) / determinant, -1 });
 }
 }

@@ -36,7 +36,9 @@ struct PressFrame
 PressFrame MakePressFrame(const Vec3& normal, PressSide side);
 
 /// The normal (c1, c2, -1)/length, towards the viewer, of the plane c0 + c1 x + c2 y that is nearest
-/// to the depths in the sense of least squares. At least 2 x 2 depths, all finite.
-Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing);
+/// to the depths where mask is not 0 (everywhere if mask is empty), in the sense of least squares.
+/// The depths are finite there. Throws std::invalid_argument when those pixels lie on a line.
+Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2& spacing,
+  const std::vector<unsigned char>& mask = {});
 }
 #endif

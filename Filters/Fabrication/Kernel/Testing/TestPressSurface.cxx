@@ -103,6 +103,26 @@ TEST(PressFrame, LeastSquaresPlane)
   EXPECT_NEAR(normal[0] / -normal[2], 0.3, 1e-13);
   EXPECT_NEAR(normal[1] / -normal[2], -0.6, 1e-13);
   EXPECT_LT(normal[2], 0);
+
+  // of a part that is no rectangle; what lies beside it does not count
+  std::vector<unsigned char> mask(depths.size(), 0);
+  for (int j = 3; j < 25; ++j)
+  {
+    for (int i = 2; i < 3 + j / 3; ++i)
+    {
+      mask[i + 20 * j] = 1;
+    }
+  }
+  for (std::size_t k = 0; k < depths.size(); ++k)
+  {
+    depths[k] = mask[k] ? depths[k] : std::nan("");
+  }
+  const Vec3 ofPart = FitPlaneNormal({ 20, 31 }, depths, spacing, mask);
+  EXPECT_NEAR(ofPart[0] / -ofPart[2], 0.3, 1e-12);
+  EXPECT_NEAR(ofPart[1] / -ofPart[2], -0.6, 1e-12);
+  std::fill(mask.begin(), mask.end(), 0);
+  mask[2] = mask[23] = mask[44] = 1;
+  EXPECT_THROW(FitPlaneNormal({ 20, 31 }, depths, spacing, mask), std::invalid_argument);
 }
 
 //------------------------------------------------------------------------------

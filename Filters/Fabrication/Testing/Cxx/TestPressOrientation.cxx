@@ -209,10 +209,25 @@ void TestPipeline()
   filter->SetOutputSpacing(1);
   filter->Update();
   LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 61 * 51);
+  // a plane of the fit that does not lie as the plate does
+  const auto messages = lacunaCheck::Watch(filter);
+  const auto wall = [&]()
+  {
+    filter->Update();
+    return vtkLacunaFieldData::Find(filter->GetOutput(), "DraftAngle", 1, 1)->GetTuple1(0);
+  };
+  filter->SetBlockSize(0, 0, 0);
+  vtkLacunaFieldData::Set(map, "PlaneNormal", { std::sin(0.3), 0, -std::cos(0.3) }, 3);
+  map->Modified();
+  const double askew = wall();
+  LACUNA_CHECK(messages->HasWarning("is inclined by"));
+  messages->Warnings.clear();
+  filter->SetPlaneMethod(vtkLacunaPressOrientation::LeastSquares);
+  LACUNA_CHECK(wall() < askew - 5 && messages->Warnings.empty());
+  filter->SetPlaneMethod(vtkLacunaPressOrientation::Fit);
   // without the hole filler's plane
   map->GetFieldData()->RemoveArray("PlaneNormal");
   map->Modified();
-  const auto messages = lacunaCheck::Watch(filter);
   filter->Update();
   LACUNA_CHECK(messages->HasWarning("least squares plane"));
   auto* source = vtkStringArray::SafeDownCast(
