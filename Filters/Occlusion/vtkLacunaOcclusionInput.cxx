@@ -80,24 +80,6 @@ void FillWith(lacuna::AttenuationField& field, vtkDataArray* scalars, lacuna::Ex
     copy(scalars);
   }
 }
-
-bool SamePlace(vtkImageData* a, vtkImageData* b)
-{
-  bool same = std::equal(a->GetExtent(), a->GetExtent() + 6, b->GetExtent());
-  for (int i = 0; i < 3; ++i)
-  {
-    const double tolerance = 1e-6 * a->GetSpacing()[i];
-    same = same && std::abs(a->GetOrigin()[i] - b->GetOrigin()[i]) <= tolerance &&
-      std::abs(a->GetSpacing()[i] - b->GetSpacing()[i]) <= tolerance;
-    for (int j = 0; j < 3; ++j)
-    {
-      same = same &&
-        std::abs(a->GetDirectionMatrix()->GetElement(i, j) -
-          b->GetDirectionMatrix()->GetElement(i, j)) <= 1e-9;
-    }
-  }
-  return same;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -220,6 +202,25 @@ void Fill(lacuna::AttenuationField& field, vtkImageData* image, vtkDataArray* sc
         return finish((value - range[0]) * scale);
       });
   }
+}
+
+//------------------------------------------------------------------------------
+bool SamePlace(vtkImageData* a, vtkImageData* b)
+{
+  bool same = std::equal(a->GetExtent(), a->GetExtent() + 6, b->GetExtent());
+  for (int i = 0; i < 3; ++i)
+  {
+    const double tolerance = 1e-6 * a->GetSpacing()[i];
+    same = same && std::abs(a->GetOrigin()[i] - b->GetOrigin()[i]) <= tolerance &&
+      std::abs(a->GetSpacing()[i] - b->GetSpacing()[i]) <= tolerance;
+    for (int j = 0; j < 3; ++j)
+    {
+      same = same &&
+        std::abs(a->GetDirectionMatrix()->GetElement(i, j) -
+          b->GetDirectionMatrix()->GetElement(i, j)) <= 1e-9;
+    }
+  }
+  return same;
 }
 
 //------------------------------------------------------------------------------

@@ -49,6 +49,9 @@ struct Conversion
 void Fill(lacuna::AttenuationField& field, vtkImageData* image, vtkDataArray* scalars,
   const Conversion& conversion, lacuna::Execution& execution);
 
+/// Whether two images have the same voxels at the same places.
+bool SamePlace(vtkImageData* a, vtkImageData* b);
+
 /// Marks the voxels outside the reconstruction space: where the scalars of mask (may be null) are 0
 /// or function (may be null) is not negative. Throws std::runtime_error when mask has another
 /// geometry than image or no data is left.
