@@ -12,8 +12,8 @@
 /// Input 1: the image that it was made from; voxels whose scalars (ScalarArray) are at least half
 /// opaque by the scale from the lowest to the highest level are the data.
 ///
-/// Output: vtkPolyData, triangles of about the size of voxels; each point on the surface to
-/// a thousandth of a voxel, point array `Normals` (float x 3, unit, outwards: the function's
+/// Output: vtkPolyData, triangles of about the size of voxels, their points moved onto the surface
+/// by three Newton steps; point array `Normals` (float x 3, unit, outwards: the function's
 /// gradient). The largest closed surface only. Field data, one tuple each: `SurfaceVolume` (ml),
 /// `SurfaceArea` (mm^2), `DataVoxels` and `Outliers` (voxels that were used and not), `Residual`
 /// (root mean square distance of the data used, mm). No compensation of half a voxel is needed: the
