@@ -11,6 +11,7 @@
 #include "vtkLacunaIGESContent.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -20,7 +21,6 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -185,12 +185,7 @@ int vtkLacunaIGESWriter::Write()
 {
   this->FileSize = 0;
   this->Superclass::Write();
-  if (this->Piece == 0 && this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
-  {
-    // VTK does not come to WriteData when a filter upstream fails or has nothing
-    this->SetErrorCode(vtkErrorCode::UnknownError);
-    vtkErrorMacro("nothing was written: there is no input, or a filter before this one failed");
-  }
+  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
   return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
 }
 
@@ -202,38 +197,7 @@ void vtkLacunaIGESWriter::WriteData()
   {
     return; // another process writes
   }
-  unsigned long code = vtkErrorCode::UnknownError;
-  std::string error;
-  try
-  {
-    this->WriteContent();
-    return;
-  }
-  catch (const lacuna::FileError& e)
-  {
-    code = e.GetKind() == lacuna::FileError::Kind::NoSpace ? vtkErrorCode::OutOfDiskSpaceError
-                                                           : vtkErrorCode::CannotOpenFileError;
-    error = e.what();
-  }
-  catch (const lacuna::Aborted&)
-  {
-    this->SetErrorCode(vtkErrorCode::UserError); // no file, but no error message either
-    return;
-  }
-  catch (const std::bad_alloc&)
-  {
-    error = "out of memory";
-  }
-  catch (const std::exception& e)
-  {
-    error = e.what();
-  }
-  if (!this->FileName || !*this->FileName)
-  {
-    code = vtkErrorCode::NoFileNameError;
-  }
-  this->SetErrorCode(code);
-  vtkErrorMacro(<< error);
+  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName, [this] { this->WriteContent(); }));
 }
 
 //------------------------------------------------------------------------------
@@ -248,10 +212,6 @@ void vtkLacunaIGESWriter::ClearResults()
 //------------------------------------------------------------------------------
 void vtkLacunaIGESWriter::WriteContent()
 {
-  if (!this->FileName || !*this->FileName)
-  {
-    throw std::runtime_error("no FileName is given");
-  }
   vtkDataObject* input = this->GetInput();
   if (!input)
   {

@@ -9,12 +9,12 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSequenceContent.h"
+#include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <filesystem>
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -53,12 +53,7 @@ int vtkLacunaTrackedSliceWriter::Write()
 {
   this->FileSize = 0;
   this->Superclass::Write();
-  if (this->Piece == 0 && this->FileSize == 0 && this->GetErrorCode() == vtkErrorCode::NoError)
-  {
-    // VTK does not come to WriteData when a filter upstream fails or has nothing
-    this->SetErrorCode(vtkErrorCode::UnknownError);
-    vtkErrorMacro("nothing was written: there is no input, or a filter before this one failed");
-  }
+  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
   return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
 }
 
@@ -70,44 +65,16 @@ void vtkLacunaTrackedSliceWriter::WriteData()
   {
     return; // another process writes
   }
-  unsigned long code = vtkErrorCode::UnknownError;
-  std::string error;
-  try
-  {
-    auto* stack = vtkImageData::SafeDownCast(this->GetInput());
-    if (!this->FileName || !*this->FileName)
+  this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
+    [this]
     {
-      code = vtkErrorCode::NoFileNameError;
-      throw std::runtime_error("no FileName is given");
-    }
-    if (!stack || stack->GetNumberOfPoints() == 0)
-    {
-      throw std::runtime_error("the input has no slices");
-    }
-    this->WriteStack(stack);
-    return;
-  }
-  catch (const lacuna::FileError& e)
-  {
-    code = e.GetKind() == lacuna::FileError::Kind::NoSpace ? vtkErrorCode::OutOfDiskSpaceError
-                                                           : vtkErrorCode::CannotOpenFileError;
-    error = e.what();
-  }
-  catch (const lacuna::Aborted&)
-  {
-    this->SetErrorCode(vtkErrorCode::UserError); // no file, but no error message either
-    return;
-  }
-  catch (const std::bad_alloc&)
-  {
-    error = "out of memory";
-  }
-  catch (const std::exception& e)
-  {
-    error = e.what();
-  }
-  this->SetErrorCode(code);
-  vtkErrorMacro(<< error);
+      auto* stack = vtkImageData::SafeDownCast(this->GetInput());
+      if (!stack || stack->GetNumberOfPoints() == 0)
+      {
+        throw std::runtime_error("the input has no slices");
+      }
+      this->WriteStack(stack);
+    }));
 }
 
 //------------------------------------------------------------------------------
