@@ -6,8 +6,8 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaGridLayer.h"
 #include "vtkPointData.h"
-#include "vtkStructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -194,38 +194,14 @@ vtkLacunaIGESSurface vtkLacunaIGESSurface::FromGrid(vtkStructuredGrid* grid,
   const lacuna::Matrix4& toFile, const lacuna::SurfaceFitOptions& options,
   lacuna::Execution& execution)
 {
-  int dimensions[3];
-  grid->GetDimensions(dimensions);
-  std::vector<std::int64_t> size;
-  for (const int d : dimensions)
+  vtkLacunaGridLayer layer(grid);
+  for (lacuna::Vec3& p : layer.Points)
   {
-    if (d != 1)
-    {
-      size.push_back(d);
-    }
-  }
-  if (size.size() != 2)
-  {
-    std::ostringstream message;
-    message << "the structured grid has " << dimensions[0] << " x " << dimensions[1] << " x "
-            << dimensions[2] << " points; a surface has exactly one dimension of 1";
-    throw std::runtime_error(message.str());
-  }
-  if (grid->HasAnyBlankPoints() || grid->HasAnyBlankCells())
-  {
-    throw std::runtime_error(
-      "the structured grid has blanked points or cells; a surface without holes is needed");
-  }
-  std::vector<lacuna::Vec3> points(grid->GetNumberOfPoints());
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    grid->GetPoint(static_cast<vtkIdType>(i), points[i].data());
-    points[i] = toFile.Point(points[i]);
+    p = toFile.Point(p);
   }
   vtkLacunaIGESSurface result;
-  const lacuna::GridSize gridSize{ size[0], size[1] };
-  lacuna::CheckRegular(gridSize, points);
-  result.Fit = lacuna::FitPoints(execution, gridSize, points, options);
+  lacuna::CheckRegular(layer.Size, layer.Points);
+  result.Fit = lacuna::FitPoints(execution, layer.Size, layer.Points, options);
   result.Name = "Structured surface";
   result.Description =
     "From a structured grid. u runs along its first dimension, v along its second.";

@@ -13,6 +13,7 @@
 #include "vtkIntArray.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaGridLayer.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -28,6 +29,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaMillingToolPath);
@@ -35,38 +37,6 @@ vtkStandardNewMacro(vtkLacunaMillingToolPath);
 namespace
 {
 constexpr const char* PressToPatientName = "PressToPatient";
-
-//------------------------------------------------------------------------------
-lacuna::MillSurface MakeSurface(vtkStructuredGrid* grid)
-{
-  int dimensions[3];
-  grid->GetDimensions(dimensions);
-  std::vector<std::int64_t> size;
-  for (const int d : dimensions)
-  {
-    if (d != 1)
-    {
-      size.push_back(d);
-    }
-  }
-  if (size.size() != 2)
-  {
-    throw std::runtime_error("the structured grid has " + std::to_string(dimensions[0]) + " x " +
-      std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
-      " points; a surface has exactly one dimension of 1");
-  }
-  if (grid->HasAnyBlankPoints() || grid->HasAnyBlankCells())
-  {
-    throw std::runtime_error(
-      "the structured grid has blanked points or cells; a surface without holes is needed");
-  }
-  std::vector<lacuna::Vec3> points(grid->GetNumberOfPoints());
-  for (std::size_t k = 0; k < points.size(); ++k)
-  {
-    grid->GetPoint(static_cast<vtkIdType>(k), points[k].data());
-  }
-  return lacuna::MillSurface({ size[0], size[1] }, std::move(points));
-}
 
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& source)
@@ -314,7 +284,8 @@ int vtkLacunaMillingToolPath::RequestData(
   {
     this->CheckProperties();
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
-    const lacuna::MillSurface surface = MakeSurface(grid);
+    vtkLacunaGridLayer layer(grid);
+    const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
     lacuna::ToolPathOptions options;
     options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
     options.StepOver = this->StepOver;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The points of a structured grid that is a surface, for the filters of this module.
+#ifndef vtkLacunaGridLayer_h
+#define vtkLacunaGridLayer_h
+
+#include "lacunaSurfaceFit.h"
+
+#include <vector>
+
+class vtkStructuredGrid;
+
+/// A structured grid with exactly one dimension of 1.
+struct vtkLacunaGridLayer
+{
+  lacuna::GridSize Size;            ///< the other two dimensions in their order
+  std::vector<lacuna::Vec3> Points; ///< column fastest
+
+  /// Throws std::runtime_error, in words for the user, when grid has more or fewer dimensions of 1,
+  /// or blanked points or cells.
+  explicit vtkLacunaGridLayer(vtkStructuredGrid* grid);
+};
+#endif
