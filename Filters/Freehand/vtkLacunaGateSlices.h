@@ -125,6 +125,9 @@ public:
   vtkGetMacro(SpeedLimit, double);
   ///@}
 
+  /// Takes the table of input port 1 away.
+  void RemoveGateTable() { this->SetInputConnection(1, nullptr); }
+
 protected:
   vtkLacunaGateSlices();
   ~vtkLacunaGateSlices() override = default;

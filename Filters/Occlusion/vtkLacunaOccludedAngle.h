@@ -155,8 +155,11 @@ public:
   vtkBooleanMacro(KeepIterations, bool);
   ///@}
 
+  ///@{
   /// Input 1.
   void SetReconstructionSpaceConnection(vtkAlgorithmOutput* output);
+  void RemoveReconstructionSpaceConnection() { this->SetReconstructionSpaceConnection(nullptr); }
+  ///@}
 
   vtkMTimeType GetMTime() override;
 

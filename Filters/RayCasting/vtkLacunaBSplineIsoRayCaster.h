@@ -155,11 +155,14 @@ public:
   vtkBooleanMacro(ComputeThickness, bool);
   ///@}
 
+  ///@{
   /** A depth map of the same view (input port 1, optional): rays go on behind its Depth. */
   void SetStartDepthMapConnection(vtkAlgorithmOutput* output)
   {
     this->SetInputConnection(1, output);
   }
+  void RemoveStartDepthMap() { this->SetStartDepthMapConnection(nullptr); }
+  ///@}
 
   vtkMTimeType GetMTime() override;
 

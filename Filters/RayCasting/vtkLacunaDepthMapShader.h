@@ -89,8 +89,11 @@ public:
     Below
   };
 
-  /** The volume that throws shadows. */
+  ///@{
+  /** The volume that throws shadows (input port 1, optional). */
   void SetVolumeConnection(vtkAlgorithmOutput* volume) { this->SetInputConnection(1, volume); }
+  void RemoveVolume() { this->SetVolumeConnection(nullptr); }
+  ///@}
 
   ///@{
   /** The point array with the depths in mm. Default Depth; Fitted shows the fit of a filled map. */
