@@ -249,6 +249,7 @@ std::string vtkLacunaMillingToolPath::GetParameters() const
     .Add("ToolRadius", this->ToolRadius)
     .Add("StepOver", this->StepOver)
     .Add("ScallopHeight", this->ScallopHeight)
+    .Add("Overrun", this->Overrun)
     .Add("Direction", this->Direction)
     .Add("Pattern", this->Pattern)
     .Add("Finishing", this->Finishing)
@@ -290,6 +291,7 @@ int vtkLacunaMillingToolPath::RequestData(
     options.Tool = { static_cast<lacuna::ToolShape>(this->ToolShape), this->ToolRadius };
     options.StepOver = this->StepOver;
     options.ScallopHeight = this->ScallopHeight;
+    options.Overrun = this->Overrun;
     options.Direction = this->Direction;
     options.OneWay = this->Pattern == OneWay;
     options.PathStep = this->PathStep;
@@ -354,6 +356,7 @@ void vtkLacunaMillingToolPath::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ToolRadius: " << this->ToolRadius << "\n";
   os << indent << "StepOver: " << this->StepOver << "\n";
   os << indent << "ScallopHeight: " << this->ScallopHeight << "\n";
+  os << indent << "Overrun: " << this->Overrun << "\n";
   os << indent << "Direction: " << this->Direction << "\n";
   os << indent << "Pattern: " << this->Pattern << "\n";
   os << indent << "Finishing: " << this->Finishing << "\n";

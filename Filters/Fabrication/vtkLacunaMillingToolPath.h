@@ -90,6 +90,12 @@ public:
   vtkGetMacro(ScallopHeight, double);
   ///@}
   ///@{
+  /** mm of the lines beyond the rectangle around the surface, on each side; there the tool is as high
+   * as on its border, so that it cuts a flat border's extension. Default 0. */
+  vtkSetMacro(Overrun, double);
+  vtkGetMacro(Overrun, double);
+  ///@}
+  ///@{
   /** Of the lines, degrees from x towards y. Default 0. */
   vtkSetMacro(Direction, double);
   vtkGetMacro(Direction, double);
@@ -197,6 +203,7 @@ private:
   double ToolRadius = 4;
   double StepOver = 1;
   double ScallopHeight = 0;
+  double Overrun = 0;
   double Direction = 0;
   int Pattern = ZigZag;
   bool Finishing = true;

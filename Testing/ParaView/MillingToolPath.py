@@ -80,7 +80,7 @@ def distinct(steps):
 skull = mould(lambda x, y: -0.004 * (x - 25) ** 2 - 0.003 * (y - 15) ** 2 + 0.3 * np.sin(x / 5 + y / 9) - 4)
 path = MillingToolPath(Input=skull)
 reference = lacuna.vtkLacunaMillingToolPath()
-for name in ("ToolRadius", "StepOver", "ScallopHeight", "Direction", "RoughingStep", "RoughingStepOver", "StockAllowance",
+for name in ("ToolRadius", "StepOver", "ScallopHeight", "Overrun", "Direction", "RoughingStep", "RoughingStepOver", "StockAllowance",
              "StockTop", "SafeHeight", "LeadRadius", "PathStep", "Tolerance", "FeedRate", "PlungeFeedRate",
              "RapidFeedRate", "SpindleSpeed", "MapSpacing", "LeftOverLimit", "Finishing"):
     assert getattr(path, name) == getattr(reference, "Get" + name)(), name

@@ -382,6 +382,14 @@ double DropCutter::Drop(double x, double y, Scratch& scratch) const
 }
 
 //------------------------------------------------------------------------------
+double DropCutter::DropBeyond(double x, double y, Scratch& scratch) const
+{
+  const Vec3& low = this->Surface.GetLowest();
+  const Vec3& high = this->Surface.GetHighest();
+  return this->Drop(std::clamp(x, low[0], high[0]), std::clamp(y, low[1], high[1]), scratch);
+}
+
+//------------------------------------------------------------------------------
 DropCutter::Excess DropCutter::FindExcess(const Vec3& a, const Vec3& b, double tolerance) const
 {
   Sweeping sweep(*this, a, b, tolerance);

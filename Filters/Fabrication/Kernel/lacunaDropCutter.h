@@ -50,6 +50,11 @@ public:
   /// surface is not below it. Within 1e-9 mm.
   double Drop(double x, double y, Scratch& scratch) const;
 
+  /// As Drop, but outside of the rectangle around the surface the tool stays as high as it is at the
+  /// nearest point of the rectangle's border: there it cuts a flat border's extension, and does not
+  /// cut the surface either, which is then on one side of it, further away.
+  double DropBeyond(double x, double y, Scratch& scratch) const;
+
   struct Excess
   {
     double Height;   ///< mm, by which the motion is too low where it is lowest; -infinity: nowhere

@@ -24,11 +24,12 @@ double Raster::Line::GetLength() const
 }
 
 //------------------------------------------------------------------------------
-Raster::Raster(const MillSurface& surface, double degrees)
+Raster::Raster(const MillSurface& surface, double degrees, double overrun)
   : Along{ std::cos(degrees * Pi / 180), std::sin(degrees * Pi / 180) }
   , Across{ -Along[1], Along[0] }
-  , Low{ surface.GetLowest()[0], surface.GetLowest()[1] }
-  , High{ surface.GetHighest()[0], surface.GetHighest()[1] }
+  , Low{ surface.GetLowest()[0] - overrun, surface.GetLowest()[1] - overrun }
+  , High{ surface.GetHighest()[0] + overrun, surface.GetHighest()[1] + overrun }
+  , Overrun(overrun)
   , Range{ std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity() }
 {
   for (const double x : { this->Low[0], this->High[0] })
@@ -112,8 +113,10 @@ std::vector<double> Raster::GetOffsets(
         for (std::int64_t k = begin; k < end; ++k)
         {
           const double t = range[0] + along * static_cast<double>(k);
-          heights[k] = cutter.Drop(offset * this->Across[0] + t * this->Along[0],
-            offset * this->Across[1] + t * this->Along[1], scratch);
+          const double x = offset * this->Across[0] + t * this->Along[0];
+          const double y = offset * this->Across[1] + t * this->Along[1];
+          heights[k] =
+            this->Overrun > 0 ? cutter.DropBeyond(x, y, scratch) : cutter.Drop(x, y, scratch);
         }
       });
   };
@@ -162,7 +165,8 @@ Vec3 ToMicrometres(double x, double y, double z)
 Vec3 PathTracer::GetPosition(double x, double y)
 {
   Vec3 p = ToMicrometres(x, y, this->Floor);
-  const double z = this->Cutter.Drop(p[0], p[1], this->Scratch);
+  const double z = this->Beyond ? this->Cutter.DropBeyond(p[0], p[1], this->Scratch)
+                                : this->Cutter.Drop(p[0], p[1], this->Scratch);
   p[2] = std::isfinite(z) ? std::max(p[2], std::ceil(1000 * z - 1e-6) / 1000) : z;
   return p;
 }

@@ -18,7 +18,8 @@ class Execution;
 class Raster
 {
 public:
-  Raster(const MillSurface& surface, double degrees);
+  /// overrun: mm by which the rectangle is larger on each side.
+  Raster(const MillSurface& surface, double degrees, double overrun = 0);
 
   /// A line from its first to its last point; both sit on the rectangle's border.
   struct Line
@@ -45,6 +46,7 @@ private:
   Vec2 Across;
   Vec2 Low;
   Vec2 High;
+  double Overrun;
   double Range[2];
 };
 
@@ -55,11 +57,13 @@ Vec3 ToMicrometres(double x, double y, double z);
 class PathTracer
 {
 public:
-  /// floor: the tool's tip goes no lower.
-  PathTracer(const DropCutter& cutter, double tolerance,
+  /// beyond: positions outside of the surface are those of DropCutter::DropBeyond. floor: the tool's
+  /// tip goes no lower.
+  PathTracer(const DropCutter& cutter, double tolerance, bool beyond,
     double floor = -std::numeric_limits<double>::infinity())
     : Cutter(cutter)
     , Tolerance(tolerance)
+    , Beyond(beyond)
     , Floor(floor)
   {
   }
@@ -75,6 +79,7 @@ public:
 private:
   const DropCutter& Cutter;
   double Tolerance;
+  bool Beyond;
   double Floor;
   DropCutter::Scratch Scratch;
 };

@@ -42,6 +42,8 @@ void CheckOptions(const ToolPathOptions& o)
   Require(within(o.StepOver, 0.01, 2 * o.Tool.Radius),
     "StepOver is " + FormatNumber(o.StepOver) + " mm; 0.01 mm to the tool's diameter (" +
       FormatNumber(2 * o.Tool.Radius) + " mm) is possible");
+  Require(within(o.Overrun, 0, 1000),
+    "Overrun is " + FormatNumber(o.Overrun) + " mm; 0 to 1000 is possible");
   Require(std::isfinite(o.Direction), "Direction is not a number");
   Require(o.PathStep == 0 || within(o.PathStep, 0.01, 1000),
     "PathStep is " + FormatNumber(o.PathStep) +
@@ -75,7 +77,7 @@ std::int64_t CountSamples(const Raster::Line& line, double step)
 }
 
 std::vector<Samples> DropLines(Execution& execution, const DropCutter& cutter, const Raster& raster,
-  const std::vector<double>& offsets, double step)
+  const std::vector<double>& offsets, double step, bool beyond)
 {
   std::vector<Raster::Line> lines;
   double count = 0;
@@ -89,7 +91,7 @@ std::vector<Samples> DropLines(Execution& execution, const DropCutter& cutter, c
   execution.For(static_cast<std::int64_t>(lines.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      PathTracer tracer(cutter, 0);
+      PathTracer tracer(cutter, 0, beyond);
       for (std::int64_t k = begin; k < end; ++k)
       {
         const Raster::Line& line = lines[k];
@@ -342,14 +344,14 @@ void AddPass(Execution& execution, Assembler& assembler, const std::vector<Sampl
   execution.For(static_cast<std::int64_t>(lines.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      PathTracer tracer(pass.Cutter, options.Tolerance, pass.Floor);
+      PathTracer tracer(pass.Cutter, options.Tolerance, options.Overrun > 0, pass.Floor);
       for (std::int64_t k = begin; k < end; ++k)
       {
         spans[k] =
           TraceLine(tracer, lines[k], pass.Floor, pass.Ceiling, !options.OneWay && k % 2 == 1);
       }
     });
-  PathTracer tracer(pass.Cutter, options.Tolerance, pass.Floor);
+  PathTracer tracer(pass.Cutter, options.Tolerance, options.Overrun > 0, pass.Floor);
   for (std::vector<Samples>& line : spans)
   {
     for (Samples& span : line)
@@ -368,7 +370,8 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   const std::vector<double> offsets = raster.GetOffsets(
     options.RoughingStepOver > 0 ? options.RoughingStepOver : options.Tool.Radius);
   const double step = offsets[1] - offsets[0];
-  const std::vector<Samples> lines = DropLines(execution, cutter, raster, offsets, along);
+  const std::vector<Samples> lines =
+    DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
   double deepest = Infinity;
   for (const Samples& line : lines)
   {
@@ -421,7 +424,8 @@ void AddFinishing(Execution& execution, ToolPath& path, Assembler& assembler,
     path.SmallestStepOver = std::min(path.SmallestStepOver, offsets[k] - offsets[k - 1]);
   }
   execution.SetStage(0.6, 0.75);
-  const std::vector<Samples> lines = DropLines(execution, cutter, raster, offsets, along);
+  const std::vector<Samples> lines =
+    DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
   execution.SetStage(0.75, 1);
   AddPass(execution, assembler, lines,
     { cutter, -Infinity, Infinity, options.OneWay ? 0 : 3 * path.LargestStepOver, along,
@@ -445,7 +449,7 @@ ToolPath MakeToolPath(
   ToolPath path;
   path.StockTop = ToMicrometres(0, 0, std::max(options.StockTop, surface.GetHighest()[2]))[2];
   path.SafeZ = ToMicrometres(0, 0, path.StockTop + options.SafeHeight)[2];
-  const Raster raster(surface, options.Direction);
+  const Raster raster(surface, options.Direction, options.Overrun);
   const double along =
     options.PathStep > 0 ? options.PathStep : std::max(0.01, surface.GetSpacing());
   Assembler assembler(path, options);

@@ -20,6 +20,7 @@ struct ToolPathOptions
   MillTool Tool;
   double StepOver = 1;      ///< largest distance of finishing lines, as the mill sees it
   double ScallopHeight = 0; ///< > 0: the lines' distances follow from it instead; ball ends only
+  double Overrun = 0;       ///< of the lines beyond the rectangle around the surface, on each side
   double Direction = 0;     ///< of the lines, degrees from x towards y
   bool OneWay = false;      ///< all lines in the same sense; otherwise to and fro
   double PathStep = 0;      ///< largest distance of positions on a line; 0: the surface's spacing
@@ -69,8 +70,9 @@ double GetStepOver(double radius, double height);
 
 /// Makes the path. No position and no straight motion between two of them cuts deeper into the
 /// surface than MotionTolerance: positions are added where one would, or the motion lifted.
-/// Finishing lines lie within the rectangle around the surface and reach its borders; rapid motions
-/// go straight up, level at SafeZ; the lead-ins start up to LeadRadius outside of the surface.
+/// Lines lie within the rectangle around the surface, made larger by Overrun, and reach its borders;
+/// outside of the surface's rectangle they are as high as on its border (DropCutter::DropBeyond).
+/// Rapid motions go straight up, level at SafeZ; the lead-ins start up to LeadRadius outside of that.
 /// Throws std::invalid_argument for options out of range, std::runtime_error when the path would
 /// not fit into memory.
 ToolPath MakeToolPath(

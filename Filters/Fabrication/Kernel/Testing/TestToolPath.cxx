@@ -349,6 +349,74 @@ TEST(ToolPath, LevelsLeaveTheAllowance)
   }
 }
 
+// A mould with a flat border: the tool goes on at the border's height outside of it, on all sides and
+// in all passes, and the block's rim is cut as if it were in the middle.
+TEST(ToolPath, OverrunClearsTheBlocksEdge)
+{
+  const auto height = [](double x, double y)
+  {
+    const double r2 = std::min(1.0, (x - 16) * (x - 16) / 144 + (y - 13) * (y - 13) / 100);
+    return -5 * (1 - r2) * (1 - r2);
+  };
+  const MillSurface surface = Surface(61, 41, 0.75, height, -3, -2);
+  for (const MillTool& tool : { Ball, Flat })
+  {
+    for (const double direction : { 0.0, 90.0, 27.0 })
+    {
+      for (const double scallop : { 0.0, 0.02 })
+      {
+        ToolPathOptions options;
+        options.Tool = tool;
+        options.Direction = direction;
+        options.ScallopHeight = tool.Shape == ToolShape::Ball ? scallop : 0;
+        options.RoughingStep = 2;
+        options.StockTop = 1;
+        options.Overrun = 5;
+        const ToolPath path = Path(surface, options);
+        CheckForm(path);
+        Judge judge(surface, tool);
+        EXPECT_LE(judge.LargestDepth(path, 100000), 0.001);
+        const MaterialRemoval removal(path, tool);
+        std::int64_t nearest = -1;
+        double highest = -1;
+        double lowest = 1;
+        // a frame of 4 mm within the border and 4 mm outside of it; where lines end aslant, the last
+        // step is uneven
+        for (double x = -7; x <= 46; x += 0.31)
+        {
+          for (double y = -6; y <= 32; y += 0.23)
+          {
+            if (x < 1 || x > 38 || y < 2 || y > 24)
+            {
+              const double z = removal.At({ x, y, 0 }, nearest).Height;
+              highest = std::max(highest, z);
+              lowest = std::min(lowest, z);
+            }
+          }
+        }
+        EXPECT_GE(lowest, -1e-9);
+        EXPECT_LE(highest, tool.Shape == ToolShape::Ball ? (scallop > 0 ? 0.021 : 0.033) : 1e-9)
+          << direction;
+      }
+    }
+  }
+  // slopes and cliffs at the border, whatever way they go
+  for (const bool bent : { false, true })
+  {
+    const MillSurface rough = bent ? Bent(Noise) : Surface(36, 26, 0.75, Rough);
+    for (const MillTool& tool : { Ball, Flat })
+    {
+      ToolPathOptions options;
+      options.Tool = tool;
+      options.Overrun = 3;
+      options.Direction = 20;
+      const ToolPath path = Path(rough, options);
+      CheckForm(path);
+      EXPECT_LE(Judge(rough, tool).LargestDepth(path, 150000), 0.001);
+    }
+  }
+}
+
 TEST(ToolPath, ScallopsOnAPlane)
 {
   const MillSurface plane = Surface(31, 31, 1, [](double, double) { return -2.0; });
@@ -471,6 +539,8 @@ TEST(ToolPath, RefusesBadInput)
   EXPECT_NE(refuses([](auto& o) { o.StepOver = 9; }).find("StepOver"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.ScallopHeight = 4; }).find("ScallopHeight"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.Finishing = false; }).find("nothing to do"), std::string::npos);
+  EXPECT_NE(refuses([](auto& o) { o.Overrun = -1; }).find("Overrun"), std::string::npos);
+  EXPECT_NE(refuses([&](auto& o) { o.Overrun = nan; }).find("Overrun"), std::string::npos);
   EXPECT_NE(refuses([&](auto& o) { o.Direction = nan; }).find("Direction"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.PathStep = -1; }).find("PathStep"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.RoughingStep = -1; }).find("RoughingStep"), std::string::npos);
