@@ -12,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
@@ -152,6 +153,14 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
 {
   lacuna::Vec3 start{ 0, 0, 0 };
   const std::vector<lacuna::GCodeMove> moves = GetMoves(path, start);
+  const bool mirrored = vtkLacunaMirrored::IsMarked(path);
+  if (mirrored && !this->AllowMirrored)
+  {
+    throw std::runtime_error(
+      "the path is over a mirror image of the patient (field data Mirrored): nothing made from it "
+      "fits the side it was taken from. Turn on AllowMirrored if the mirrored side is what you "
+      "want");
+  }
 
   lacuna::GCodeOptions options;
   options.ProgramNumber = this->ProgramNumber;
@@ -178,6 +187,10 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   options.Comments = { version + " G-Code Writer",
     vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), "mm, press coordinates, tool tip",
     DescribeTool(path, this->ToolNumber) };
+  if (mirrored)
+  {
+    options.Comments.emplace_back("MIRROR IMAGE, left is right");
+  }
   if (const double time = GetNumber(path, "MachiningTime"); time > 0)
   {
     options.Comments.push_back(
@@ -192,6 +205,11 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   lacuna::WriteFileAtomically(this->FileName, program.Text);
   this->FileSize = static_cast<vtkTypeInt64>(program.Text.size());
   this->NumberOfBlocks = program.Blocks;
+  if (mirrored)
+  {
+    vtkWarningMacro(<< this->FileName
+                    << ": the path is over a mirror image of the patient; the file says so, too");
+  }
   vtkLog(INFO, << "G-Code Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << this->NumberOfBlocks << " blocks");
 }
@@ -210,6 +228,7 @@ void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Envelope: " << this->Envelope[0] << " " << this->Envelope[1] << " "
      << this->Envelope[2] << " " << this->Envelope[3] << " " << this->Envelope[4] << " "
      << this->Envelope[5] << "\n";
+  os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
   os << indent << "Header: " << text(this->Header) << "\n";
   os << indent << "Footer: " << text(this->Footer) << "\n";
   os << indent << "FileSize: " << this->FileSize << "\n";

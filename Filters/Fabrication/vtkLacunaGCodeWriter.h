@@ -73,6 +73,13 @@ public:
   vtkGetVector6Macro(Envelope, double);
   ///@}
   ///@{
+  /** Whether a path over a mirror image of the patient (vtkLacunaMirrored) is written, with a comment
+   * and a warning, instead of refused. Default off. */
+  vtkSetMacro(AllowMirrored, bool);
+  vtkGetMacro(AllowMirrored, bool);
+  vtkBooleanMacro(AllowMirrored, bool);
+  ///@}
+  ///@{
   /** Lines before and after the motions; empty: the default ones, see lacuna::GCodeOptions. */
   vtkSetStringMacro(Header);
   vtkGetStringMacro(Header);
@@ -106,6 +113,7 @@ private:
   double SpindleSpeed = 0;
   bool LineNumbers = false;
   double Envelope[6] = { 1, -1, 1, -1, 1, -1 };
+  bool AllowMirrored = false;
   char* Header = nullptr;
   char* Footer = nullptr;
   vtkTypeInt64 FileSize = 0;

@@ -14,6 +14,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGridLayer.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -285,6 +286,12 @@ int vtkLacunaMillingToolPath::RequestData(
   {
     this->CheckProperties();
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
+    if (vtkLacunaMirrored::IsMarked(grid))
+    {
+      vtkWarningMacro(
+        "the surface is a mirror image of the patient (field data Mirrored), and so is "
+        "what is milled with this path");
+    }
     vtkLacunaGridLayer layer(grid);
     const lacuna::MillSurface surface(layer.Size, std::move(layer.Points));
     lacuna::ToolPathOptions options;

@@ -32,6 +32,9 @@
  * | LargestLeftOver | mm, on the map                                                             |
  * | LargestGouge    | mm, depth of the deepest point of the map within the swept tool            |
  *
+ * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
+ * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
+ *
  * Warns where the tool does not fit. Errors: holes, folded surfaces, options out of range.
  *
  * Source: Carr 1996, ch. 6, ends at the surface for CAM; paths are beyond it.

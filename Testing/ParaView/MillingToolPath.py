@@ -139,7 +139,7 @@ assert "T03 M06" in text and "(T3 BALL END, DIAMETER 8 MM)" in text and "S6000 M
 writer = CreateWriter(output("Options.nc"), path)
 assert writer.GetXMLLabel() == "G-Code Writer", writer.GetXMLLabel()
 plain = lacuna.vtkLacunaGCodeWriter()
-for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers"):
+for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers", "AllowMirrored"):
     assert getattr(writer, name) == getattr(plain, "Get" + name)(), name
 assert list(writer.Envelope) == list(plain.GetEnvelope()) and not writer.Header and not writer.Footer
 writer.LineNumbers = 1

@@ -9,6 +9,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGCodeWriter.h"
 #include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
@@ -245,6 +246,33 @@ void TestWarnsAndRefuses()
 }
 
 //------------------------------------------------------------------------------
+// The mark of mirrored data goes through the path, and stops at the file.
+void TestMirrored(const std::string& file)
+{
+  const auto mould = Mould();
+  vtkLacunaMirrored::Mark(mould, { 1, 2, 3 }, { 1, 0, 0 });
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  filter->SetInputData(mould);
+  auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "mirror image");
+  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(filter->GetOutput()));
+  LACUNA_CHECK(vtkLacunaMirrored::IsMarked(filter->GetOutputDataObject(1)));
+  vtkNew<vtkLacunaGCodeWriter> writer;
+  writer->SetInputConnection(filter->GetOutputPort());
+  writer->SetFileName(file.c_str());
+  vtksys::SystemTools::RemoveFile(file);
+  auto refused = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 0 && !vtksys::SystemTools::FileExists(file));
+  LACUNA_CHECK_CONTAINS(refused->Errors, "mirror image");
+  writer->AllowMirroredOn();
+  auto allowed = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 1);
+  LACUNA_CHECK_CONTAINS(allowed->Warnings, "mirror image");
+  LACUNA_CHECK_CONTAINS(Read(file), "(MIRROR IMAGE, LEFT IS RIGHT)");
+}
+
+//------------------------------------------------------------------------------
 void TestProgram(const std::string& file)
 {
   vtkNew<vtkLacunaMillingToolPath> filter;
@@ -365,5 +393,6 @@ int TestMillingToolPath(int argc, char* argv[])
   TestAxes();
   TestWarnsAndRefuses();
   TestProgram(folder + "/TestMillingToolPath.nc");
+  TestMirrored(folder + "/TestMillingToolPathMirrored.nc");
   return lacunaCheck::Result();
 }
