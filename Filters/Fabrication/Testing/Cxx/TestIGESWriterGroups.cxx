@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The IGES Writer and groups of data, the frames they are in, mirrored and private ones, and disks that
+// take no file.
+#include "TestIGESContent.h"
+#include "lacunaMatrix4.h"
+#include "vtkErrorCode.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkStringArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <vtksys/Directory.hxx>
+
+#include <csignal>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+using namespace TestIGESContent;
+
+namespace
+{
+void TestGroups()
+{
+  std::vector<lacuna::Vec3> points;
+  auto grid = TestSurfaces::Grid(1, points);
+  auto map = DefectMap();
+  vtkNew<vtkLacunaIGESWriter> maker; // any algorithm's name will do for the provenance
+  vtkLacunaProvenance::Record(map, maker, {}, "Of=map");
+  vtkLacunaProvenance::Record(grid, maker, {}, "Of=grid");
+  vtkNew<vtkPolyData> nothing;
+  auto inner = Group({ { "Bar", grid }, { "", nothing }, { "", Lines(Corners, { { 0, 1, 2 } }) } });
+  const Outcome outcome =
+    Write(Group({ { "Implant", map }, { "Rest", inner }, { "Empty", nullptr } }));
+  LACUNA_CHECK_THAT(
+    outcome.Surfaces == 2 && outcome.Curves == 3 && outcome.Points == 0, "all blocks");
+  const IGESParser file(outcome.Text);
+  std::vector<std::string> names;
+  for (const Entity* entity : OfType(file, 128))
+  {
+    names.push_back(NameOf(file, IGESSurface(*entity).Properties));
+  }
+  LACUNA_CHECK_THAT((names == std::vector<std::string>{ "Implant", "Bar" }), "names of blocks");
+  LACUNA_CHECK_THAT(NameOf(file, *OfType(file, 102).back()) == "Rest/Block 2", "without name");
+  for (const char* words : { "Of=map", "Of=grid", "DefectOutline=1", "Levels: 1 surfaces" })
+  {
+    LACUNA_CHECK_THAT(outcome.Text.find(words) != std::string::npos, words);
+  }
+
+  vtkNew<vtkPartitionedDataSetCollection> sets;
+  sets->SetPartition(0, 0, grid);
+  sets->SetPartition(1, 0, Lines(Corners, { { 0, 1 } }));
+  sets->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "Mould");
+  const Outcome collection = Write(sets);
+  LACUNA_CHECK_THAT(collection.Surfaces == 1 && collection.Curves == 1, "a collection");
+  const IGESParser read(collection.Text);
+  LACUNA_CHECK_THAT(NameOf(read, IGESSurface(*OfType(read, 128).at(0)).Properties) == "Mould",
+    "name of a partitioned data set");
+
+  vtkNew<vtkUnstructuredGrid> mesh;
+  mesh->SetPoints(grid->GetPoints());
+  auto group = Group({ { "Implant", map }, { "Mesh", mesh } });
+  Refuses(group, "'Mesh' is a vtkUnstructuredGrid");
+  const Outcome skipped = Write(group, [](vtkLacunaIGESWriter* w) { w->SkipUnsupportedOn(); });
+  LACUNA_CHECK_THAT(skipped.Surfaces == 1 &&
+      skipped.Warning.find("'Mesh' is a vtkUnstructuredGrid") != std::string::npos,
+    "left out");
+  Refuses(Group({ { "Mesh", mesh } }), "nothing to write",
+    [](vtkLacunaIGESWriter* w) { w->SkipUnsupportedOn(); });
+  Refuses(Group({}), "nothing to write");
+  map->GetPointData()->GetArray("Fitted")->SetComponent(3000, 0, TestSurfaces::NaN);
+  Refuses(group, "block 'Implant': the surface has holes");
+}
+
+//------------------------------------------------------------------------------
+void SetPress(vtkDataObject* data, const lacuna::Matrix4& matrix)
+{
+  vtkLacunaFieldData::SetMatrices(data, "PressToPatient", { matrix });
+}
+
+void TestFrames()
+{
+  const lacuna::Matrix4 matrix =
+    lacuna::Matrix4::Translation({ 10, -20, 30 }) * lacuna::Matrix4::Rotation({ 1, 2, 3 }, 0.7);
+  std::vector<lacuna::Vec3> points;
+  auto mould = TestSurfaces::Grid(2, points);
+  SetPress(mould, matrix);
+  auto outline = Lines(Corners, { { 0, 1, 2, 3 } });
+  auto group = Group({ { "Mould", mould }, { "Outline", outline } });
+  Refuses(group, "block 'Mould' is in the coordinates of the press");
+  const auto frame = [](int which)
+  { return [which](vtkLacunaIGESWriter* w) { w->SetCoordinates(which); }; };
+  for (const int which : { 1, 2 })
+  {
+    const Outcome outcome = Write(group, frame(which));
+    const IGESParser file(outcome.Text);
+    const IGESSurface surface(*OfType(file, 128).at(0));
+    const lacuna::Vec3 first{ surface.Points[0], surface.Points[1], surface.Points[2] };
+    const IGESPolygon curve(file, *OfType(file, 102).at(0));
+    const bool press = which == 2;
+    const lacuna::Vec3 corner = press ? points[0] : matrix.Point(points[0]);
+    LACUNA_CHECK_THAT(lacuna::Norm(first - corner) < 0.001, "the mould's corner");
+    const lacuna::Vec3 end = press ? matrix.Inverse().Point(Corners[3]) : Corners[3];
+    LACUNA_CHECK_THAT(lacuna::Norm(Vec(curve.Corners.at(3)) - end) < 0.0002, "the curve's end");
+    LACUNA_CHECK_THAT(
+      (outcome.Text.find("Coordinates of the press") != std::string::npos) == press, "says so");
+  }
+  const Outcome alone = Write(mould);
+  LACUNA_CHECK_THAT(
+    alone.Text.find("Coordinates of the press") != std::string::npos, "the mould alone");
+  Refuses(outline, "no input says where the press is", frame(2));
+
+  auto other = TestSurfaces::Grid(2, points);
+  SetPress(other, lacuna::Matrix4());
+  auto two = Group({ { "Mould", mould }, { "Other", other } });
+  Refuses(two, "different presses");
+  LACUNA_CHECK_THAT(Write(two, frame(1)).Surfaces == 2, "both to the patient");
+  SetPress(other, lacuna::Matrix4::Scaling({ 1, 1, -1 }));
+  Refuses(other, "mirrors");
+  SetPress(other, lacuna::Matrix4::Scaling({ 1, TestSurfaces::NaN, 1 }));
+  Refuses(other, "PressToPatient");
+}
+
+void TestMirrored()
+{
+  auto map = DefectMap();
+  vtkLacunaFieldData::Set(map, "Mirrored", { 1 }, 1);
+  auto group = Group({ { "Other side", map } });
+  Refuses(map, "mirror image");
+  Refuses(group, "block 'Other side' is a mirror image");
+  LACUNA_CHECK_THAT(
+    Write(group, [](vtkLacunaIGESWriter* w) { w->AllowMirroredOn(); }).Surfaces == 1, "allowed");
+  vtkLacunaFieldData::Set(map, "Mirrored", { 0 }, 1);
+  LACUNA_CHECK_THAT(Write(map).Surfaces == 1, "not mirrored");
+}
+
+// Nothing about a patient, nothing but ASCII.
+void TestPrivacy()
+{
+  auto map = DefectMap();
+  for (const char* name : { "PatientName", "PatientID" })
+  {
+    vtkNew<vtkStringArray> array;
+    array->SetName(name);
+    array->InsertNextValue("M\xc3\xbcller^Eva");
+    map->GetFieldData()->AddArray(array);
+  }
+  const std::string text = Write(
+    Group({ { "Sch\xc3\xa4"
+              "del",
+      map } })).Text;
+  LACUNA_CHECK_THAT(text.find("ller") == std::string::npos, "no patient");
+  LACUNA_CHECK_THAT(text.find("Sch__del") != std::string::npos, "ASCII names");
+  const IGESParser file(text); // sees that all is ASCII
+}
+
+// A disk that fills up in the middle and a read-only folder leave what was there, and no rest of the
+// new file.
+void TestBadPlaces(const std::string& folder)
+{
+  const std::string place = folder + "/TestIGESWriterGroups";
+  vtksys::SystemTools::RemoveADirectory(place);
+  vtksys::SystemTools::MakeDirectory(place);
+  const std::string path = place + "/a.igs";
+  std::ofstream(path) << "old";
+  struct rlimit before;
+  getrlimit(RLIMIT_FSIZE, &before);
+  struct rlimit small = before;
+  small.rlim_cur = 5000;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  vtkNew<vtkLacunaIGESWriter> writer;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  writer->AddObserver(vtkCommand::ErrorEvent, observer);
+  writer->SetInputData(DefectMap());
+  writer->SetFileName(path.c_str());
+  setrlimit(RLIMIT_FSIZE, &small);
+  const int written = writer->Write();
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  LACUNA_CHECK_THAT(written == 0 && observer->GetError(), "an error");
+  observer->Clear();
+  vtksys::SystemTools::SetPermissions(place, 0555);
+  const bool changed = geteuid() == 0 && seteuid(65534) == 0; // root may write everywhere
+  LACUNA_CHECK_THAT(writer->Write() == 0 && observer->GetError(), "a read-only folder");
+  LACUNA_CHECK_THAT(writer->GetErrorCode() == vtkErrorCode::CannotOpenFileError, "error code");
+  LACUNA_CHECK_THAT(!changed || seteuid(0) == 0, "root again");
+  vtksys::SystemTools::SetPermissions(place, 0755);
+  LACUNA_CHECK_THAT(vtksys::SystemTools::FileLength(path) == 3, "the old file stays");
+  LACUNA_CHECK_THAT(
+    vtksys::Directory::GetNumberOfFilesInDirectory(place) == 3, "nothing else (., .., a.igs)");
+}
+}
+
+int TestIGESWriterGroups(int argc, char* argv[])
+{
+  return Run(argc, argv, "TestIGESWriterGroups.igs",
+    [](const std::string& folder)
+    {
+      TestGroups();
+      TestFrames();
+      TestMirrored();
+      TestPrivacy();
+      TestBadPlaces(folder);
+    });
+}
