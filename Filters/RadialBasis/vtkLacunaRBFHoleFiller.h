@@ -223,8 +223,8 @@ public:
   ///@{
   /**
    * Pixels of the output along the map's right and down, mm; 0 (each): those of the map. The fit
-   * is evaluated there; measured depths are interpolated linearly, but not across steps, other arrays
-   * come from the nearest pixel. The third number is for the one layer of the map and has no effect.
+   * is evaluated there; outside of the defect depths of the filled map are interpolated linearly, but
+   * not across steps, other arrays come from the nearest pixel. The third number is for the one layer of the map and has no effect.
    * Default 0 0 0.
    */
   vtkSetVector3Macro(OutputSpacing, double);

@@ -229,8 +229,43 @@ HoleFillResult TransferInput(
   return result;
 }
 
-// Puts the fit into the defect and compares it with what was measured.
-void FinishDepth(HoleFillResult& result)
+// On another lattice pixels beside the defect lie between pixels of the map that are in it: there
+// Depth is interpolated in the filled map, and nothing was measured to compare with.
+void InterpolateFilled(Execution& execution, const HoleFillInput& input,
+  const RadialBasis<2>& function, const std::vector<double>& base, HoleFillResult& result)
+{
+  MarkedMap filled{ input.Grid, input.Depth, input.Valid, {}, {} };
+  std::vector<std::size_t> pixels;
+  std::vector<std::array<double, 2>> points;
+  for (std::size_t pixel = 0; pixel < input.Defect.size(); ++pixel)
+  {
+    if (input.Defect[pixel])
+    {
+      pixels.push_back(pixel);
+      points.push_back(GetPosition(input.Grid, pixel));
+      filled.Valid[pixel] = 0;
+    }
+  }
+  const std::vector<double> measured =
+    TransferMap(input.Grid, input.Depth, filled.Valid, MaximumSupportSlope, result.Grid).Depth;
+  std::vector<double> values;
+  function.Evaluate(execution, points, values);
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+  {
+    filled.Depth[pixels[k]] = values[k] + (base.empty() ? 0 : base[pixels[k]]);
+    filled.Valid[pixels[k]] = std::isfinite(filled.Depth[pixels[k]]);
+  }
+  result.Depth =
+    TransferMap(input.Grid, filled.Depth, filled.Valid, MaximumSupportSlope, result.Grid).Depth;
+  for (std::size_t pixel = 0; pixel < measured.size(); ++pixel)
+  {
+    result.Deviation[pixel] = std::isnan(measured[pixel]) ? NotANumber : result.Deviation[pixel];
+  }
+}
+
+// Compares the fit with what was measured, and puts it into the defect.
+void FinishDepth(Execution& execution, const HoleFillInput& input, const RadialBasis<2>& function,
+  const std::vector<double>& base, HoleFillResult& result)
 {
   for (std::size_t pixel = 0; pixel < result.Depth.size(); ++pixel)
   {
@@ -239,12 +274,17 @@ void FinishDepth(HoleFillResult& result)
       result.Deviation[pixel] = result.Fitted[pixel] - result.Depth[pixel];
     }
   }
+  const std::vector<double> measured = result.Depth;
+  if (result.Grid.Spacing != input.Grid.Spacing)
+  {
+    InterpolateFilled(execution, input, function, base, result);
+  }
   const double pixelArea = result.Grid.Spacing[0] * result.Grid.Spacing[1];
   for (std::size_t k = 0; k < result.Filled.size(); ++k)
   {
     const std::size_t pixel = result.Filled[k];
     const std::array<double, 2>& g = result.Gradients[k];
-    result.Deviation[pixel] = result.Fitted[pixel] - result.Depth[pixel];
+    result.Deviation[pixel] = result.Fitted[pixel] - measured[pixel];
     result.Depth[pixel] = result.Fitted[pixel];
     result.DefectArea += pixelArea * std::sqrt(1 + g[0] * g[0] + g[1] * g[1]);
   }
@@ -436,7 +476,7 @@ HoleFillResult HoleFiller::Fill(
   this->Function->Evaluate(execution, points, values, result.Gradients);
   execution.SetStage(0.95, 1);
   AddBase(base.Evaluate(execution, grid), result);
-  FinishDepth(result);
+  FinishDepth(execution, input, *this->Function, base.GetOnMap(), result);
 
   MapMask region = input.Defect;
   std::transform(region.begin(), region.end(), selection.Support.begin(), region.begin(),

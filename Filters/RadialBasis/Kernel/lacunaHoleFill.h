@@ -58,9 +58,13 @@ struct HoleFillResult
 {
   MapGrid Grid;
   std::vector<std::int64_t> Nearest; ///< the pixel of the input, -1 beside it
-  std::vector<double> Depth;         ///< measured outside of the defect, fitted inside
-  std::vector<double> Fitted;        ///< the fit over Rectangle, NaN elsewhere
-  std::vector<double> Deviation;     ///< Fitted - measured where support or defect has a depth
+  /// Measured outside of the defect, fitted inside; on another lattice than the map's interpolated
+  /// in the filled map.
+  std::vector<double> Depth;
+  std::vector<double> Fitted; ///< the fit over Rectangle, NaN elsewhere
+  /// Fitted - measured where support or defect has a depth; NaN beside the defect on another
+  /// lattice, where interpolation needs a pixel of the defect.
+  std::vector<double> Deviation;
   std::vector<SupportUse> Use;
   /// Pixels of the defect, ascending, and the derivatives of the fit along x and y there.
   std::vector<std::size_t> Filled;

@@ -224,6 +224,37 @@ TEST(HoleFill, OutputOfAnotherSpacing)
   ExpectContains(ErrorOf(input, options), "OutputSpacing is -1");
 }
 
+TEST(HoleFill, OldDepthsOfTheDefectDoNotLeakOut)
+{
+  // Beside the defect a finer lattice lies between sound pixels and replaced ones.
+  for (const double old : { -3.0, std::numeric_limits<double>::quiet_NaN() })
+  {
+    HoleFillInput input = MakeMap(Plane);
+    for (std::size_t i = 0; i < input.Depth.size(); ++i)
+    {
+      input.Depth[i] += input.Defect[i] ? old : 0;
+      input.Valid[i] = std::isfinite(input.Depth[i]);
+    }
+    HoleFillOptions options;
+    options.OutputSpacing = { 0.4, 0.7 };
+    const HoleFillResult fine = Fill(input, options);
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < fine.Depth.size(); ++i)
+    {
+      const double x = 0.4 * static_cast<double>(i % 263);
+      const double y = 0.7 * static_cast<double>(i / 263);
+      EXPECT_NEAR(fine.Depth[i], Plane(x, y), 1e-9) << x << " " << y << " " << old;
+      if (fine.Use[i] == lacuna::SupportUse::Used)
+      {
+        open += std::isnan(fine.Deviation[i]);
+        EXPECT_FALSE(std::abs(fine.Deviation[i]) > 1e-9) << x << " " << y << " " << old;
+      }
+    }
+    EXPECT_GT(open, 0U);
+    EXPECT_LT(open, fine.Filled.size() / 5);
+  }
+}
+
 TEST(HoleFill, MeasuredDepthIsNotInterpolatedOverSteps)
 {
   HoleFillInput input = MakeMap([](double x, double) { return x < 80 ? 10 : 50; });
