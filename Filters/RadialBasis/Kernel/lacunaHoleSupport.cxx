@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <map>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 namespace lacuna
@@ -87,6 +91,122 @@ std::vector<std::size_t> LabelSmooth(const MapGrid& grid, const std::vector<doub
   return Label(grid, mask, isSmooth, labels);
 }
 
+// Of each pixel the one of mask from which it is reached on the shortest way over edges and corners:
+// almost always the nearest one. None if mask is empty.
+std::vector<std::int64_t> FindNearest(const MapGrid& grid, const MapMask& mask)
+{
+  std::vector<std::int64_t> nearest(mask.size(), None);
+  using Entry = std::tuple<double, std::size_t, std::size_t>; // squared distance, pixel, of mask
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  const auto width = static_cast<std::int64_t>(grid.Width);
+  const auto visit = [&](std::int64_t i, std::int64_t j, std::size_t of)
+  {
+    if (i >= 0 && j >= 0 && i < width && j < grid.Height && nearest[j * width + i] == None)
+    {
+      const double x =
+        grid.Spacing[0] * static_cast<double>(i - static_cast<std::int64_t>(of) % width);
+      const double y =
+        grid.Spacing[1] * static_cast<double>(j - static_cast<std::int64_t>(of) / width);
+      open.emplace(x * x + y * y, j * width + i, of);
+    }
+  };
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    if (mask[pixel])
+    {
+      open.emplace(0, pixel, pixel);
+    }
+  }
+  while (!open.empty())
+  {
+    const std::size_t pixel = std::get<1>(open.top());
+    const std::size_t of = std::get<2>(open.top());
+    open.pop();
+    if (nearest[pixel] != None)
+    {
+      continue;
+    }
+    nearest[pixel] = static_cast<std::int64_t>(of);
+    const auto i = static_cast<std::int64_t>(pixel) % width;
+    const auto j = static_cast<std::int64_t>(pixel) / width;
+    for (std::int64_t k = 0; k < 9; ++k)
+    {
+      visit(i + k % 3 - 1, j + k / 3 - 1, of);
+    }
+  }
+  return nearest;
+}
+
+using PiecePairs = std::map<std::pair<std::int64_t, std::int64_t>, double>;
+
+// Pairs of different pieces that touch, so that a step divides them, with the largest step, mm.
+PiecePairs FindSteps(
+  const MapGrid& grid, const std::vector<double>& depth, const std::vector<std::int64_t>& labels)
+{
+  PiecePairs steps;
+  for (std::size_t pixel = 0; pixel < labels.size(); ++pixel)
+  {
+    ForNeighbours(grid, pixel,
+      [&](std::size_t neighbour, double)
+      {
+        if (labels[pixel] != None && labels[neighbour] != None &&
+          labels[pixel] != labels[neighbour])
+        {
+          double& step = steps[{ labels[pixel], labels[neighbour] }];
+          step = std::max(step, std::abs(depth[pixel] - depth[neighbour]));
+        }
+      });
+  }
+  return steps;
+}
+
+// Pairs of pieces of mask that face each other over pixels that are not in it, with the step, mm,
+// where they are nearest to each other, if it is one there.
+PiecePairs FindStepsOverGaps(const MapGrid& grid, const std::vector<double>& depth,
+  double maximumSlope, const std::vector<std::int64_t>& labels, const MapMask& mask)
+{
+  struct Gap
+  {
+    double Distance = std::numeric_limits<double>::infinity();
+    double Step = 0;
+  };
+  std::map<std::pair<std::int64_t, std::int64_t>, Gap> gaps;
+  const std::vector<std::int64_t> nearest = FindNearest(grid, mask);
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    ForNeighbours(grid, pixel,
+      [&](std::size_t neighbour, double)
+      {
+        const std::int64_t a = nearest[pixel];
+        const std::int64_t b = nearest[neighbour];
+        if (a == None || b == None || labels[a] == labels[b])
+        {
+          return;
+        }
+        const double distance =
+          std::hypot(grid.Spacing[0] * static_cast<double>(grid.GetColumn(a) - grid.GetColumn(b)),
+            grid.Spacing[1] * static_cast<double>(grid.GetRow(a) - grid.GetRow(b)));
+        const double step = std::abs(depth[a] - depth[b]);
+        Gap& gap = gaps[{ labels[a], labels[b] }];
+        // of equally near ones the smaller step: one way without a step is enough
+        const double tie = 1e-9 * distance;
+        if (distance < gap.Distance - tie || (distance <= gap.Distance + tie && step < gap.Step))
+        {
+          gap = { distance, step };
+        }
+      });
+  }
+  PiecePairs steps;
+  for (const auto& [pieces, gap] : gaps)
+  {
+    if (gap.Step > maximumSlope * gap.Distance)
+    {
+      steps[pieces] = gap.Step;
+    }
+  }
+  return steps;
+}
+
 // Number of the lattice point to whose square x = index * pixel belongs.
 std::int64_t GetLatticePoint(std::int64_t index, double pixel, double spacing)
 {
@@ -161,22 +281,6 @@ StepReport RemoveBeyondSteps(
   std::vector<std::int64_t> labels;
   const std::vector<std::size_t> sizes = LabelSmooth(grid, depth, maximumSlope, support, labels);
 
-  // Pairs of different pieces that a step divides, with the largest step.
-  std::map<std::pair<std::int64_t, std::int64_t>, double> steps;
-  for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
-  {
-    ForNeighbours(grid, pixel,
-      [&](std::size_t neighbour, double)
-      {
-        if (labels[pixel] != None && labels[neighbour] != None &&
-          labels[pixel] != labels[neighbour])
-        {
-          double& step = steps[{ labels[pixel], labels[neighbour] }];
-          step = std::max(step, std::abs(depth[pixel] - depth[neighbour]));
-        }
-      });
-  }
-
   std::vector<std::int64_t> order(sizes.size());
   for (std::size_t i = 0; i < order.size(); ++i)
   {
@@ -187,19 +291,41 @@ StepReport RemoveBeyondSteps(
   StepReport report;
   std::vector<char> removed(sizes.size(), 0);
   std::vector<char> kept(sizes.size(), 0);
-  for (const std::int64_t piece : order)
+  // Of those that are not removed yet; returns whether one was.
+  const auto remove = [&](const PiecePairs& steps)
   {
-    for (auto it = steps.lower_bound({ piece, 0 }); it != steps.end() && it->first.first == piece;
-         ++it)
+    bool any = false;
+    std::fill(kept.begin(), kept.end(), 0);
+    for (const std::int64_t piece : order)
     {
-      if (kept[it->first.second])
+      if (removed[piece])
       {
-        removed[piece] = 1;
-        report.LargestStep = std::max(report.LargestStep, it->second);
+        continue;
       }
+      for (auto it = steps.lower_bound({ piece, 0 }); it != steps.end() && it->first.first == piece;
+           ++it)
+      {
+        if (kept[it->first.second])
+        {
+          removed[piece] = 1;
+          report.LargestStep = std::max(report.LargestStep, it->second);
+        }
+      }
+      kept[piece] = !removed[piece];
+      report.RemovedPixels += removed[piece] ? sizes[piece] : 0;
+      any = any || removed[piece];
     }
-    kept[piece] = !removed[piece];
-    report.RemovedPixels += removed[piece] ? sizes[piece] : 0;
+    return any;
+  };
+  remove(FindSteps(grid, depth, labels));
+  bool changed = std::count(kept.begin(), kept.end(), 1) > 1;
+  while (changed) // what lay between is gone, and others face each other
+  {
+    for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
+    {
+      support[pixel] = labels[pixel] != None && kept[labels[pixel]];
+    }
+    changed = remove(FindStepsOverGaps(grid, depth, maximumSlope, labels, support));
   }
   bool first = true;
   for (std::size_t pixel = 0; pixel < support.size(); ++pixel)

@@ -62,7 +62,7 @@ MapMask FindHoles(Execution& execution, const MapGrid& grid, const std::vector<d
 struct StepReport
 {
   std::size_t RemovedPixels = 0;
-  double LargestStep = 0;     ///< mm, between neighbours of kept and removed pixels
+  double LargestStep = 0;     ///< mm, between pixels of kept and removed pieces
   std::size_t FirstPixel = 0; ///< the first removed one
 };
 
@@ -70,7 +70,8 @@ struct StepReport
 /// support whose depths differ by more than maximumSlope times their distance. Steps divide the
 /// support into connected pieces (over edges without a step). Taken from the largest piece to the
 /// smallest (of equal ones the one with the first pixel), a piece is removed when a step divides it
-/// from one that was kept. Pieces that touch none, like those around another hole, stay.
+/// from one that was kept. Then the same with pieces that do not touch but face each other over
+/// pixels that are not support: the step is between the two pixels where they are nearest.
 StepReport RemoveBeyondSteps(
   const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support);
 

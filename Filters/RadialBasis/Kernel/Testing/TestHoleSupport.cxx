@@ -73,7 +73,8 @@ TEST(HoleSupport, SelectsByDistanceInMillimetres)
 
 TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
 {
-  // 'a' at depth 10, 'b' at 40 beside it, 'c' at 70 touches neither
+  // 'a' at depth 10, 'b' at 40 beside it, 'c' at 30 touches neither and is no step from 'a', 5 mm
+  // away
   const std::vector<std::string> map = {
     "aaaab...c",
     "aaaabb.cc",
@@ -85,7 +86,7 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
   {
     const char c = map[i / 9][i % 9];
     support[i] = c != '.';
-    depth.push_back(c == 'a' ? 10 : c == 'b' ? 40 : 70);
+    depth.push_back(c == 'a' ? 10 : c == 'b' ? 40 : 30);
   }
   lacuna::MapMask expected = support;
   for (std::size_t i = 0; i < support.size(); ++i)
@@ -96,6 +97,47 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
   EXPECT_EQ(support, expected);
   EXPECT_EQ(report.RemovedPixels, 4u);
   EXPECT_EQ(report.LargestStep, 30);
+}
+
+TEST(HoleSupport, RemovesWhatLiesBeyondAStepWithAGap)
+{
+  // 'f' 90 mm deeper behind a ring without depth; 'g' behind 'f', nearest to it, on the level of
+  // 'f'; 's' across a saw cut, a little deeper than 'a'
+  const std::vector<std::string> map = {
+    "aaaaaaaaaaaaaa.sss",
+    "aaa.....aaaaaa.sss",
+    "aaa.fff....aaa.sss",
+    "aaa.fff.gg.aaa.sss",
+    "aaa.fff....aaa.sss",
+    "aaa.....aaaaaa.sss",
+    "aaaaaaaaaaaaaa.sss",
+  };
+  lacuna::MapMask support;
+  lacuna::MapMask expected;
+  std::vector<double> depth;
+  for (const std::string& row : map)
+  {
+    for (std::size_t i = 0; i < row.size(); ++i)
+    {
+      support.push_back(row[i] != '.');
+      expected.push_back(row[i] == 'a' || row[i] == 's');
+      depth.push_back(static_cast<double>(i) +
+        (row[i] == 'a'      ? 10.0
+            : row[i] == 's' ? 15.0
+                            : 100.0));
+    }
+  }
+  lacuna::MapGrid grid = Grid(map);
+  lacuna::MapMask once = support;
+  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(grid, depth, 5, once);
+  EXPECT_EQ(once, expected);
+  EXPECT_EQ(report.RemovedPixels, 11U);
+  EXPECT_EQ(report.FirstPixel, 2U * 18 + 4);
+  EXPECT_NEAR(report.LargestStep, 92, 2.1);
+  // Nothing is a step where the same depths lie far apart.
+  grid.Spacing = { 60, 60 };
+  once = support;
+  EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, 5, once).RemovedPixels, 0U);
 }
 
 TEST(HoleSupport, FindsHolesThatShowTheFarSide)
