@@ -15,6 +15,7 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -137,7 +138,8 @@ MapMask FromArray(vtkImageData* map, const std::string& name, const char* proper
   MapMask mask(static_cast<std::size_t>(array->GetNumberOfTuples()));
   for (std::size_t i = 0; i < mask.size(); ++i)
   {
-    mask[i] = array->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+    const double value = array->GetComponent(static_cast<vtkIdType>(i), 0);
+    mask[i] = value != 0 && !std::isnan(value);
   }
   return mask;
 }

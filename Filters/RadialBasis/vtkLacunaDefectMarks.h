@@ -25,7 +25,7 @@ namespace vtkLacunaDefectMarks
 /// Points of a ray that are tried against a region.
 constexpr int RegionSamples = 64;
 
-/// Where a point array of one component is not 0. property names it in messages.
+/// Where a point array of one component is neither 0 nor NaN. property names it in messages.
 lacuna::MapMask FromArray(vtkImageData* map, const std::string& name, const char* property);
 
 /// Pixels whose surface point is in region (where it is <= 0), or is hidden by it from the viewer.

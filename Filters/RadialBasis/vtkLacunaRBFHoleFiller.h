@@ -151,15 +151,15 @@ public:
   ///@}
 
   ///@{
-  /** Point array of the map with one component: not 0 is defect. Default "" (or "None"): none. */
+  /** Point array of the map with one component: neither 0 nor NaN is defect. Default "" (or "None"): none. */
   void SetDefectArray(const char* name);
   const char* GetDefectArray() const { return this->DefectArray.c_str(); }
   ///@}
 
   ///@{
   /**
-   * Point array of the map with one component: not 0 is sound surface that the fit may use; all
-   * else is not. SupportMargin does not count then. Default "" (or "None"): none.
+   * Point array of the map with one component: neither 0 nor NaN is sound surface that the fit
+   * may use; all else is not. SupportMargin does not count then. Default "" (or "None"): none.
    */
   void SetSupportArray(const char* name);
   const char* GetSupportArray() const { return this->SupportArray.c_str(); }

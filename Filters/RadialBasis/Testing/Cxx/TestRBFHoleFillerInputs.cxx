@@ -165,6 +165,44 @@ void TestSelections()
   LACUNA_CHECK(messages->HasWarning("the defect is empty"));
 }
 
+// NaN, as a calculator makes it, marks neither a defect nor painted bone.
+void TestMarksThatAreNoNumbers()
+{
+  TestMap map;
+  vtkNew<vtkDoubleArray> defect;
+  defect->SetName("defect");
+  vtkNew<vtkDoubleArray> sound;
+  sound->SetName("sound");
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    const bool bad = map.IsInDisc(i, 12);
+    defect->InsertNextValue(map.IsInDisc(i, 8) ? 1 : bad ? std::nan("") : 0);
+    sound->InsertNextValue(bad ? std::nan("") : map.IsInDisc(i, 20));
+    if (bad)
+    {
+      map.Image->GetPointData()->GetArray("Depth")->SetTuple1(i, 20);
+    }
+  }
+  map.Image->GetPointData()->AddArray(defect);
+  map.Image->GetPointData()->AddArray(sound);
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  filler->SetDefectArray("defect");
+  filler->SetSupportArray("sound");
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 8); });
+  int wrong = 0;
+  for (vtkIdType i = 0; i < map.Image->GetNumberOfPoints(); ++i)
+  {
+    const bool expected = map.IsInDisc(i, 20) && !map.IsInDisc(i, 12);
+    wrong += (Get(filler->GetOutput(), "SupportMask", i) != 0) != expected;
+  }
+  LACUNA_CHECK(wrong == 0);
+  filler->SetDefectArray(""); // what the painted bone encloses
+  filler->Update();
+  CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 12); });
+}
+
 void MarkDisc(Filler* filler, const TestMap& map, double radius)
 {
   vtkNew<vtkCylinder> cylinder;
@@ -395,6 +433,7 @@ void TestFieldData()
 int TestRBFHoleFillerInputs(int, char*[])
 {
   TestSelections();
+  TestMarksThatAreNoNumbers();
   TestControlPoints();
   TestPriorOfAnotherView();
   TestOutputGrid();
