@@ -335,6 +335,11 @@ void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageD
     vtkLacunaDefectMarks::Merge(
       marked.Defect, vtkLacunaDefectMarks::FromArray(map, this->DefectArray, "DefectArray"));
   }
+  if (selection && !surface)
+  {
+    vtkWarningMacro("Selection is read as points of the depth map; if it was made on a Depth Map "
+                    "Surface, whose points have other numbers, set Surface to that");
+  }
   if (surface || selection)
   {
     vtkLacunaDefectMarks::Merge(

@@ -122,7 +122,9 @@ void TestSelections()
   }
   filler->SetInputDataObject(
     Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, numbers));
+  const auto messages = lacunaCheck::Watch(filler);
   filler->Update();
+  LACUNA_CHECK(messages->Warnings.empty());
   CheckFilled(map, filler->GetOutput(), disc);
 
   // extracted points, without a selection; together with an array
@@ -157,10 +159,10 @@ void TestSelections()
     Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, patch));
   filler->Update();
   CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 3); });
+  LACUNA_CHECK(messages->HasWarning("read as points of the depth map"));
 
   // nothing selected: nothing filled, and the automatic search does not step in
   filler->SetInputDataObject(Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, {}));
-  const auto messages = lacunaCheck::Watch(filler);
   filler->Update();
   LACUNA_CHECK(messages->HasWarning("the defect is empty"));
 }
