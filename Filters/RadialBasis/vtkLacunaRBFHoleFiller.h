@@ -193,8 +193,8 @@ public:
 
   ///@{
   /**
-   * Cut-off wavelength of the fit, mm, >= 0. Above 0 it determines the smoothing, for any kernel and
-   * NodeSpacing: of waves of this length the fit follows half the amplitude, of shorter ones less
+   * Cut-off wavelength of the fit, mm, >= 0. Above 0 it determines the smoothing, for any NodeSpacing
+   * and every kernel but Gaussian and Multiquadric: of waves of this length the fit follows half the amplitude, of shorter ones less
    * (the spline filter of ISO 16610-22). Smoothing must be 0 then. Default 0.
    */
   vtkSetMacro(CutoffWavelength, double);

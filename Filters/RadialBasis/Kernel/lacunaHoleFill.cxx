@@ -49,6 +49,24 @@ void CheckOptions(const HoleFillOptions& options)
     throw std::invalid_argument("Smoothing and CutoffWavelength are both above 0, and each "
                                 "determines the other; set one of them to 0");
   }
+  if (options.CutoffWavelength > 0 &&
+    (options.Kernel == RadialKernel::Gaussian || options.Kernel == RadialKernel::Multiquadric))
+  {
+    throw std::invalid_argument("CutoffWavelength needs a kernel that is a power of distance: "
+                                "ThinPlate, Linear, Cubic or Triharmonic; with Gaussian and "
+                                "Multiquadric set it to 0 and use Smoothing");
+  }
+  if (!(options.Accuracy >= 0) || !(options.Accuracy < 1))
+  {
+    std::ostringstream message;
+    message << "Accuracy is " << options.Accuracy << "; it must be a number from 0 to less than 1";
+    throw std::invalid_argument(message.str());
+  }
+  if (options.Solver == RadialSolver::Fast && options.Accuracy == 0)
+  {
+    throw std::invalid_argument("Solver Fast iterates and needs an Accuracy above 0, such as 1e-6; "
+                                "for a fit exact up to round-off set Solver to Direct");
+  }
 }
 
 std::array<double, 2> GetPosition(const MapGrid& grid, std::size_t pixel)

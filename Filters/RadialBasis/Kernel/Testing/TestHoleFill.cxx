@@ -622,8 +622,18 @@ TEST(HoleFill, RefusesBadInput)
   options.Solver = lacuna::RadialSolver::Direct;
   ExpectContains(ErrorOf(good, options), "raise NodeSpacing");
   options = {};
-  options.Accuracy = -1;
-  ExpectContains(ErrorOf(good, options), "accuracy");
+  for (const double accuracy : { -1.0, 1.0, std::numeric_limits<double>::quiet_NaN() })
+  {
+    options.Accuracy = accuracy;
+    EXPECT_EQ(ErrorOf(good, options).find("Accuracy is "), 0U);
+  }
+  options.Accuracy = 0;
+  options.Solver = lacuna::RadialSolver::Fast;
+  EXPECT_EQ(ErrorOf(good, options).find("Solver Fast"), 0U);
+  options = {};
+  options.Kernel = lacuna::RadialKernel::Multiquadric;
+  options.CutoffWavelength = 10;
+  EXPECT_EQ(ErrorOf(good, options).find("CutoffWavelength needs a kernel"), 0U);
   options = {};
   options.NodeSpacing = 500;
   ExpectContains(ErrorOf(good, options), "lower NodeSpacing");

@@ -84,7 +84,7 @@ const Case Errors[] = {
       filler->SetSolver(vtkLacunaRBFHoleFiller::Fast);
       filler->SetAccuracy(0);
     },
-    "accuracy above 0" },
+    "Accuracy above 0" },
   { "output spacing",
     [](TestMap&, vtkLacunaRBFHoleFiller* filler) { filler->SetOutputSpacing(1, -1, 0); },
     "OutputSpacing is -1" },
