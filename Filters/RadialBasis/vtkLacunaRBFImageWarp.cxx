@@ -85,6 +85,46 @@ std::vector<std::array<double, 3>> GetPoints(vtkDataSet* points, const Geometry&
   return own;
 }
 
+[[noreturn]] void ThrowMirrored()
+{
+  throw std::runtime_error(
+    "the landmarks mirror the image: left would be right in it. Look for pairs in the wrong order, "
+    "on the wrong side or in a coordinate system of the other handedness; landmarks nearly in one "
+    "plane need some off it");
+}
+
+// Whether the affine map that fits best turns the landmarks' space over (or flattens it): its
+// determinant has the sign of that of the covariance of targets and landmarks.
+bool IsMirrored(const std::vector<int>& axes, const std::vector<std::array<double, 3>>& landmarks,
+  const std::vector<std::array<double, 3>>& targets)
+{
+  const double weight = 1.0 / static_cast<double>(targets.size());
+  std::array<double, 3> from{};
+  std::array<double, 3> to{};
+  for (std::size_t i = 0; i < targets.size(); ++i)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      from[c] += weight * landmarks[i][c];
+      to[c] += weight * targets[i][c];
+    }
+  }
+  double covariance[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+  for (std::size_t r = 0; r < axes.size(); ++r)
+  {
+    for (std::size_t c = 0; c < axes.size(); ++c)
+    {
+      covariance[r][c] = 0;
+      for (std::size_t i = 0; i < targets.size(); ++i)
+      {
+        covariance[r][c] +=
+          weight * (landmarks[i][axes[r]] - from[axes[r]]) * (targets[i][axes[c]] - to[axes[c]]);
+      }
+    }
+  }
+  return vtkMatrix3x3::Determinant(&covariance[0][0]) <= 0;
+}
+
 template <int Dimension>
 class Warp
 {
@@ -117,6 +157,10 @@ public:
     execution.SetStage(0, 0.3);
     const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
     this->Report = function.GetReport();
+    if (IsMirrored(geometry.Axes, landmarks, targets))
+    {
+      ThrowMirrored();
+    }
 
     lacuna::RegularGrid<Dimension> grid;
     for (int c = 0; c < Dimension; ++c)
@@ -358,6 +402,10 @@ int vtkLacunaRBFImageWarp::RequestData(
         default:
           throw std::runtime_error("the image is but a row of voxels; warps are two- or "
                                    "three-dimensional");
+      }
+      if (folded > 0.5)
+      {
+        ThrowMirrored();
       }
       if (folded > 0)
       {

@@ -268,6 +268,72 @@ void CheckFolds()
   LACUNA_CHECK(
     warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction")->GetComponent(0, 0) > 0);
 }
+
+// Landmarks, and targets where linear (3 x 3, row by row) takes their places about the middle of
+// the image. Returns the errors; warnings are none.
+std::string Turn(int layers, const double* linear, bool frame)
+{
+  const vtkSmartPointer<vtkImageData> image = MakeImage(layers);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  double middle[3];
+  image->GetCenter(middle);
+  for (vtkIdType i = 0; i < 25; ++i)
+  {
+    double x[3];
+    landmarks->GetPoint(i, x);
+    vtkMath::Subtract(x, middle, x);
+    double y[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      y[c] = middle[c] + vtkMath::Dot(linear + 3 * c, x);
+    }
+    targets->GetPoints()->SetPoint(i, y);
+  }
+  for (int corner = 0; frame && corner < 8; ++corner)
+  {
+    const double x[3] = { corner & 1 ? 900. : -900., corner & 2 ? 800. : -800.,
+      corner & 4 ? 700. : -700. };
+    landmarks->GetPoints()->InsertNextPoint(x);
+    targets->GetPoints()->InsertNextPoint(x);
+  }
+  vtkNew<vtkLacunaRBFImageWarp> warp;
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(warp);
+  messages->Watch(warp->GetExecutive());
+  warp->SetKernel(vtkLacunaRBFImageWarp::Linear);
+  warp->SetInputData(0, image);
+  warp->SetInputData(1, landmarks);
+  warp->SetInputData(2, targets);
+  warp->Update();
+  LACUNA_CHECK(messages->Warnings.empty());
+  LACUNA_CHECK((warp->GetOutput()->GetNumberOfPoints() == 0) == !messages->Errors.empty());
+  return messages->Errors;
+}
+
+// An image may be turned in any way but never be mirrored: a patient's left stays left.
+void CheckHandedness()
+{
+  const double turnX[9] = { 1, 0, 0, 0, -1, 0, 0, 0, -1 };
+  const double turnZ[9] = { -1, 0, 0, 0, -1, 0, 0, 0, 1 };
+  const double exchange[9] = { 0, 1, 0, 0, 0, 1, 1, 0, 0 };
+  const double flipX[9] = { -1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  const double flipZ[9] = { 1, 0, 0, 0, 1, 0, 0, 0, -1 };
+  const double point[9] = { -1, 0, 0, 0, -1, 0, 0, 0, -1 };
+  for (const double* linear : { turnX, turnZ, exchange })
+  {
+    LACUNA_CHECK(Turn(12, linear, false).empty());
+  }
+  LACUNA_CHECK(Turn(1, turnZ, false).empty());
+  for (const double* linear : { flipX, flipZ, point })
+  {
+    LACUNA_CHECK(Turn(12, linear, false).find("mirror the image") != std::string::npos);
+  }
+  LACUNA_CHECK(Turn(1, flipX, false).find("mirror the image") != std::string::npos);
+  // far landmarks stay where they are, so that the affine map that fits best is no reflection
+  LACUNA_CHECK(Turn(12, flipX, true).find("mirror the image") != std::string::npos);
+}
 }
 
 int TestRBFImageWarp(int, char*[])
@@ -276,6 +342,7 @@ int TestRBFImageWarp(int, char*[])
   CompareWithVTK(12, vtkLacunaRBFImageWarp::ThinPlate);
   CheckShift();
   CheckFolds();
+  CheckHandedness();
   CheckErrors();
   return lacunaCheck::Result();
 }
