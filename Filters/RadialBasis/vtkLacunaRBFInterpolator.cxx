@@ -95,8 +95,18 @@ struct OutputGrid
       this->Grid.Size[c] = static_cast<std::int64_t>(steps) + 1;
       count *= steps + 1;
     }
-    lacuna::RequireMemory("the interpolated image", 16 * count);
+    this->Count = count;
+    this->RequireMemory(1);
   }
+
+  // A double for each component, and one more for that which is being computed.
+  void RequireMemory(int components) const
+  {
+    lacuna::RequireMemory("the interpolated image", 8 * this->Count * (components + 1.0));
+  }
+
+private:
+  double Count = 0; // of the grid's points, which integers may not hold
 };
 
 vtkDataArray* FindArray(vtkDataSet* points, const std::string& name, const char* property)
@@ -269,6 +279,7 @@ int vtkLacunaRBFInterpolator::RequestData(
       }
       const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
       vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
+      to.RequireMemory(array->GetNumberOfComponents());
       lacuna::RadialBasisOptions options;
       options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
       options.Shape = this->KernelLength;
@@ -311,7 +322,9 @@ int vtkLacunaRBFInterpolator::RequestData(
         .Add("Smoothing", this->Smoothing)
         .Add("ErrorArray", this->ErrorArray)
         .Add("Accuracy", this->Accuracy)
-        .Add("Solver", this->Solver);
+        .Add("Solver", this->Solver)
+        .Add("OutputSpacing", this->OutputSpacing)
+        .Add("OutputBounds", this->OutputBounds);
       vtkLacunaProvenance::Record(whole, this, { points }, parameters.Get());
       output->ShallowCopy(whole);
       int piece[6];

@@ -4,6 +4,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -14,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -90,6 +92,9 @@ void CheckPlanes(bool flat, int count)
   }
   LACUNA_CHECK(worst < 1e-4 * 100);
   LACUNA_CHECK(image->GetFieldData()->GetArray("NodeCount")->GetComponent(0, 0) == count);
+  const std::vector<std::string> steps = vtkLacunaProvenance::Get(image);
+  LACUNA_CHECK(steps.size() == 1 &&
+    steps[0].find("OutputSpacing=4,5,6 OutputBounds=-30,90,1,-1,0,50") != std::string::npos);
 }
 
 void CheckDefaultsAndPieces()
@@ -221,6 +226,19 @@ const Case Errors[] = {
     "OutputSpacing" },
   { "memory",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetOutputSpacing(1e-4, 1e-4, 1e-4); },
+    "the interpolated image" },
+  { "components", // one of which would fit
+    [](vtkPolyData* p, vtkLacunaRBFInterpolator* f)
+    {
+      vtkNew<vtkDoubleArray> many;
+      many->SetName("Many");
+      many->SetNumberOfComponents(100000);
+      many->SetNumberOfTuples(p->GetNumberOfPoints());
+      many->Fill(0);
+      p->GetPointData()->AddArray(many);
+      f->SetScalarArray("Many");
+      f->SetOutputSpacing(0.3, 0.3, 0.3);
+    },
     "the interpolated image" },
   { "bounds",
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
