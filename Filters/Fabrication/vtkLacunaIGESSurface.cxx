@@ -3,6 +3,7 @@
 
 #include "lacunaDefectContours.h"
 #include "lacunaExecution.h"
+#include "lacunaGridChecks.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"

@@ -59,9 +59,5 @@ SurfaceFit FitHeights(Execution& execution, GridSize size, const std::vector<dou
 /// Does not see whether the surface folds back: see CheckRegular.
 SurfaceFit FitPoints(Execution& execution, GridSize size, const std::vector<Vec3>& points,
   const SurfaceFitOptions& options = {});
-
-/// Throws std::invalid_argument, naming the place, when neighbouring points coincide or the facets
-/// at a point turn by more than 120 degrees: no surface a tool could follow goes through them.
-void CheckRegular(GridSize size, const std::vector<Vec3>& points);
 }
 #endif

@@ -2,6 +2,7 @@
 #include "lacunaSurfaceFit.h"
 
 #include "lacunaExecution.h"
+#include "lacunaGridChecks.h"
 
 #include <gtest/gtest.h>
 
