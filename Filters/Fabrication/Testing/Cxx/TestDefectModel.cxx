@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "TestRefusals.h"
 #include "TestSolids.h"
 #include "lacunaCheck.h"
 #include "vtkFieldData.h"
@@ -135,19 +136,7 @@ void TestRecord()
 void TestErrors()
 {
   const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
-  const auto refuses = [](vtkImageData* map, const char* words,
-                         const std::function<void(vtkLacunaDefectModel*)>& change)
-  {
-    vtkNew<vtkLacunaDefectModel> filter;
-    vtkNew<lacunaCheck::Messages> messages;
-    messages->Watch(filter);
-    messages->Watch(filter->GetExecutive());
-    filter->SetInputData(map);
-    change(filter);
-    filter->Update();
-    LACUNA_CHECK_THAT(messages->HasError(words), std::string("an error with '") + words + "'");
-    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
-  };
+  const auto refuses = CheckRefusal<vtkLacunaDefectModel>;
   const auto nothing = [](vtkLacunaDefectModel*) {};
   refuses(TestSurfaces::Map(geometry, false), "run RBF Hole Filler", nothing);
   refuses(TestSurfaces::Map(geometry, true), "FilledMask", nothing);

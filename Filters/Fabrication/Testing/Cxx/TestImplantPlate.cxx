@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "TestRefusals.h"
 #include "TestSolids.h"
 #include "lacunaCheck.h"
 #include "vtkCellData.h"
@@ -230,19 +231,7 @@ void TestMarks()
 void TestErrors()
 {
   const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
-  const auto refuses = [](vtkImageData* map, const char* words,
-                         const std::function<void(vtkLacunaImplantPlate*)>& change)
-  {
-    vtkNew<vtkLacunaImplantPlate> filter;
-    vtkNew<lacunaCheck::Messages> messages;
-    messages->Watch(filter);
-    messages->Watch(filter->GetExecutive());
-    filter->SetInputData(map);
-    change(filter);
-    filter->Update();
-    LACUNA_CHECK_THAT(messages->HasError(words), std::string("an error with '") + words + "'");
-    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
-  };
+  const auto refuses = CheckRefusal<vtkLacunaImplantPlate>;
   const auto nothing = [](vtkLacunaImplantPlate*) {};
   refuses(TestSurfaces::Map(geometry, false), "run RBF Hole Filler", nothing);
   refuses(TestSurfaces::Map(geometry, true), "FilledMask", nothing);
