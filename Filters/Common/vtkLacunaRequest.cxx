@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRequest.h"
 
+#include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -29,4 +31,12 @@ void vtkLacunaRequest::Whole(vtkInformation* input)
     input->Set(SDDP::UPDATE_EXTENT(), input->Get(SDDP::WHOLE_EXTENT()), 6);
   }
   OnePiece(input);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
+{
+  Whole(filter->GetInputInformation(port, 0));
+  vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
+  connection->GetProducer()->Update(connection->GetIndex());
 }

@@ -6,6 +6,7 @@
 
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
+class vtkAlgorithm;
 class vtkInformation;
 
 /// For RequestUpdateExtent. An extent alone does not do: a producer of sub-extents divides it once
@@ -20,5 +21,10 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int exten
 
 /// Data of any kind as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
+
+/// For RequestInformation of filters whose output's size depends on their data: executes now, as a
+/// whole, what is connected to an input port. When it is up to date, as it usually is, this does
+/// nothing.
+VTKLACUNAFILTERSCOMMON_EXPORT void UpdateNow(vtkAlgorithm* filter, int port = 0);
 }
 #endif

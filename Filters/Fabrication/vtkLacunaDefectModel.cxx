@@ -4,7 +4,6 @@
 #include "lacunaDefectModel.h"
 #include "lacunaParameterText.h"
 #include "lacunaReliefSurface.h"
-#include "vtkAlgorithmOutput.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -148,16 +147,12 @@ int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* in
 
 //------------------------------------------------------------------------------
 int vtkLacunaDefectModel::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
     {
-      // The size of the grid depends on the defect, so the input must be executed now. When it is up
-      // to date, as it usually is, this does nothing.
-      this->RequestUpdateExtent(request, inputVector, outputVector);
-      vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
-      connection->GetProducer()->Update(connection->GetIndex());
+      vtkLacunaRequest::UpdateNow(this); // the size of the grid depends on the defect
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       vtkImageData* map = vtkImageData::GetData(inputVector[0]);
       if (map && map->GetNumberOfPoints() > 0)

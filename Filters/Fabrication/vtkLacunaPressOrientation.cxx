@@ -3,7 +3,6 @@
 
 #include "lacunaParameterText.h"
 #include "lacunaPressSurface.h"
-#include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -181,16 +180,12 @@ int vtkLacunaPressOrientation::RequestUpdateExtent(
 
 //------------------------------------------------------------------------------
 int vtkLacunaPressOrientation::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
     {
-      // The size of the grid depends on the defect, so the input must be executed now. When it is up
-      // to date, as it usually is, this does nothing.
-      this->RequestUpdateExtent(request, inputVector, outputVector);
-      vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
-      connection->GetProducer()->Update(connection->GetIndex());
+      vtkLacunaRequest::UpdateNow(this); // the size of the grid depends on the defect
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       vtkImageData* map = vtkImageData::GetData(inputVector[0]);
       if (map && map->GetNumberOfPoints() > 0)
