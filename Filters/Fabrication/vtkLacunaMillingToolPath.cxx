@@ -186,6 +186,38 @@ std::string DescribeUnreachable(const lacuna::LeftOverMap& map, double radius, d
     rounded(p[0]) + ", y " + rounded(p[1]) + ", z " + rounded(p[2]) +
     " (array Unreachable of the left-over map). A smaller tool reaches further";
 }
+
+//------------------------------------------------------------------------------
+// What to say of a border that slopes down, whose lowest part a tool touches only from outside; empty
+// when no more than limit is left there. beyond: whether the lines go on outside by its radius.
+std::string DescribeBorder(const lacuna::LeftOverMap& map, double limit, bool beyond)
+{
+  const std::int64_t columns = map.Size.Columns;
+  const std::int64_t rows = map.Size.Rows;
+  double worst = 0;
+  std::int64_t place = 0;
+  for (std::int64_t k = 0; k < columns * rows; ++k)
+  {
+    const std::int64_t i = k % columns;
+    const std::int64_t j = k / columns;
+    const double left = map.LeftOver[k] - map.Unreachable[k];
+    if ((i == 0 || j == 0 || i == columns - 1 || j == rows - 1) && left > worst)
+    {
+      worst = left;
+      place = k;
+    }
+  }
+  if (!(worst > limit))
+  {
+    return {};
+  }
+  const auto rounded = [](double x) { return lacuna::FormatNumber(std::round(100 * x) / 100); };
+  return "up to " + rounded(worst) + " mm stay at the surface's border, most at x " +
+    rounded(map.Points[place][0]) + ", y " + rounded(map.Points[place][1]) +
+    ": it slopes down there, and the tool touches its edge only from outside. " +
+    (beyond ? "Use a smaller tool, or make the surface larger"
+            : "Set Overrun to the tool's radius");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -324,6 +356,19 @@ int vtkLacunaMillingToolPath::RequestData(
     if (!unreachable.empty())
     {
       vtkWarningMacro(<< unreachable);
+    }
+    if (this->Finishing)
+    {
+      const double s = path.LargestStepOver;
+      const double r = this->ToolRadius;
+      // what a dense path leaves on steep slopes, and so at borders, too
+      const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(r * r - 0.25 * s * s)) : s;
+      const std::string border =
+        DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
+      if (!border.empty())
+      {
+        vtkWarningMacro(<< border);
+      }
     }
 
     vtkPolyData* lines = vtkPolyData::GetData(outputVector, 0);

@@ -35,7 +35,8 @@
  * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
  * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
  *
- * Warns where the tool does not fit. Errors: holes, folded surfaces, options out of range.
+ * Warns where the tool does not fit, and where a border that slopes down needs Overrun. Errors:
+ * holes, folded surfaces, options out of range.
  *
  * Source: Carr 1996, ch. 6, ends at the surface for CAM; paths are beyond it.
  * @sa lacuna::MakeToolPath lacuna::MapLeftOver vtkLacunaGCodeWriter
@@ -93,8 +94,10 @@ public:
   vtkGetMacro(ScallopHeight, double);
   ///@}
   ///@{
-  /** mm of the lines beyond the rectangle around the surface, on each side; there the tool is as high
-   * as on its border, so that it cuts a flat border's extension. Default 0. */
+  /** mm of the lines beyond the rectangle around the surface, on each side, where the tool goes on
+   * level or down as it reaches the border: on the extension of a flat border, and over a sloping one
+   * as far as a ball has to go to touch it, at most a radius below the surface's lowest point.
+   * Default 0. */
   vtkSetMacro(Overrun, double);
   vtkGetMacro(Overrun, double);
   ///@}

@@ -13,6 +13,10 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 // mm; bounds are this much too high, so that rounding never hides what is higher
 constexpr double Slack = 1e-9;
+// of the radius, along which the slope at the border is taken
+constexpr double SlopeBase = 0.1;
+// than that slope, since a border that slopes down mostly bends down, too
+constexpr double Steeper = 2;
 
 double Square(double x)
 {
@@ -386,7 +390,29 @@ double DropCutter::DropBeyond(double x, double y, Scratch& scratch) const
 {
   const Vec3& low = this->Surface.GetLowest();
   const Vec3& high = this->Surface.GetHighest();
-  return this->Drop(std::clamp(x, low[0], high[0]), std::clamp(y, low[1], high[1]), scratch);
+  const double edge[2] = { std::clamp(x, low[0], high[0]), std::clamp(y, low[1], high[1]) };
+  const double dx = x - edge[0];
+  const double dy = y - edge[1];
+  const double distance = std::hypot(dx, dy);
+  const double here = this->Drop(x, y, scratch);
+  if (!(distance > 0))
+  {
+    return here;
+  }
+  const double there = this->Drop(edge[0], edge[1], scratch);
+  const double base = SlopeBase * this->Radius;
+  const double before =
+    this->Drop(edge[0] - base * dx / distance, edge[1] - base * dy / distance, scratch);
+  if (!std::isfinite(there) || !std::isfinite(before))
+  {
+    return std::max(here, there);
+  }
+  const double slope = Steeper * std::max(0.0, before - there) / base;
+  // A tool a radius away is beside the surface. A ball that touches an edge, leaning with the slope,
+  // has its tip so much below it; deeper there is nothing to cut but what holds the block.
+  const double below = this->Ball ? this->Radius * (1 - 1 / std::sqrt(1 + slope * slope)) : 0;
+  const double lowest = std::min(there, low[2] - below);
+  return std::max({ here, lowest, there - slope * std::min(distance, this->Radius) });
 }
 
 //------------------------------------------------------------------------------

@@ -50,9 +50,11 @@ public:
   /// surface is not below it. Within 1e-9 mm.
   double Drop(double x, double y, Scratch& scratch) const;
 
-  /// As Drop, but outside of the rectangle around the surface the tool stays as high as it is at the
-  /// nearest point of the rectangle's border: there it cuts a flat border's extension, and does not
-  /// cut the surface either, which is then on one side of it, further away.
+  /// As Drop, but outside of the rectangle around the surface the tool does not go lower than the
+  /// extension of its own way: level where it is level or rises at the nearest point of the
+  /// rectangle's border, and where it goes down there, twice as steep, so that a ball reaches the
+  /// lowest part of a border that slopes down. Never lower than Drop, and never lower than the tip
+  /// has to be to touch an edge as high as the surface's lowest point: at most a radius below it.
   double DropBeyond(double x, double y, Scratch& scratch) const;
 
   struct Excess

@@ -71,7 +71,7 @@ double GetStepOver(double radius, double height);
 /// Makes the path. No position and no straight motion between two of them cuts deeper into the
 /// surface than MotionTolerance: positions are added where one would, or the motion lifted.
 /// Lines lie within the rectangle around the surface, made larger by Overrun, and reach its borders;
-/// outside of the surface's rectangle they are as high as on its border (DropCutter::DropBeyond).
+/// outside of the surface's rectangle they go on as they reach its border (DropCutter::DropBeyond).
 /// Rapid motions go straight up, level at SafeZ; the lead-ins start up to LeadRadius outside of that.
 /// Throws std::invalid_argument for options out of range, std::runtime_error when the path would
 /// not fit into memory.

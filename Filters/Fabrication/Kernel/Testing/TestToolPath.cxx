@@ -417,6 +417,62 @@ TEST(ToolPath, OverrunClearsTheBlocksEdge)
   }
 }
 
+// A border that slopes down, straight or bent, on all sides: a ball goes on outside of it until it has
+// touched the edge, and no deeper than that takes, however far the lines go on.
+TEST(ToolPath, OverrunReachesABorderThatSlopesDown)
+{
+  const auto left = [](const MillSurface& surface, double overrun)
+  {
+    ToolPathOptions options;
+    options.StepOver = 0.5;
+    options.Overrun = overrun;
+    const ToolPath path = Path(surface, options);
+    CheckForm(path);
+    EXPECT_LE(Judge(surface, Ball).LargestDepth(path, 100000), 0.001);
+    for (const Vec3& p : path.Points)
+    {
+      EXPECT_GE(p[2], surface.GetLowest()[2] - Ball.Radius);
+    }
+    ThreadExecution execution(2);
+    const LeftOverMap map = MapLeftOver(execution, surface, Ball, path, 0.25);
+    EXPECT_LT(map.LargestGouge, 0.001);
+    double largest = 0;
+    for (std::size_t k = 0; k < map.Points.size(); ++k)
+    {
+      largest = std::max(largest, map.LeftOver[k] - map.Unreachable[k]);
+    }
+    return largest;
+  };
+  const MillSurface roof = Surface(57, 45, 0.5,
+    [](double x, double y) { return -0.8 * std::abs(x - 14) - 0.5 * std::abs(y - 11); });
+  const MillSurface cap = Surface(57, 45, 0.5,
+    [](double x, double y)
+    { return std::sqrt(24.0 * 24.0 - (x - 14) * (x - 14) - (y - 11) * (y - 11)); });
+  for (const MillSurface* surface : { &roof, &cap })
+  {
+    EXPECT_GT(left(*surface, 0), 0.3);
+    EXPECT_LT(left(*surface, 4), 0.03);
+    EXPECT_LT(left(*surface, 30), 0.03);
+  }
+  // a step down just inside of the border: no more than without
+  const MillSurface step = Surface(57, 45, 0.5,
+    [](double x, double y) { return x < 1 || x > 27 || y < 1 || y > 21 ? -6.0 : 0.0; });
+  EXPECT_LE(left(step, 4), left(step, 0));
+  for (const MillTool& tool : { Ball, Flat })
+  {
+    const DropCutter cutter(roof, tool);
+    DropCutter::Scratch scratch;
+    // a flat end touches the edge with its face: no deeper than that
+    const double deepest = roof.GetLowest()[2] - (tool.Shape == ToolShape::Ball ? 4 : 0);
+    for (double out = 0; out < 60; out += 0.7)
+    {
+      const double z = cutter.DropBeyond(-out, 3, scratch);
+      EXPECT_GE(z, deepest) << out;
+      EXPECT_GE(z, cutter.Drop(-out, 3, scratch)) << out;
+    }
+  }
+}
+
 TEST(ToolPath, ScallopsOnAPlane)
 {
   const MillSurface plane = Surface(31, 31, 1, [](double, double) { return -2.0; });

@@ -243,6 +243,29 @@ void TestWarnsAndRefuses()
   LACUNA_CHECK_CONTAINS(messages->Warnings, "too large for");
   LACUNA_CHECK_CONTAINS(messages->Warnings, "most at x 18");
   LACUNA_CHECK(Map(filter)->GetPointData()->GetArray("Unreachable")->GetRange()[1] > 2);
+
+  // a border that slopes down is told, and Overrun mends it
+  const auto slope = [](double x, double) { return -1.5 * x; };
+  const auto rim = [&](const std::function<double(double, double)>& height, int shape,
+                     double overrun, const std::string& advice)
+  {
+    filter->SetInputData(Mould(height));
+    filter->SetToolShape(shape);
+    filter->SetOverrun(overrun);
+    messages = lacunaCheck::Watch(filter);
+    filter->Update();
+    LACUNA_CHECK(messages->Errors.empty());
+    LACUNA_CHECK(advice.empty() == (messages->Warnings.find("border") == std::string::npos));
+    LACUNA_CHECK_CONTAINS(messages->Warnings, advice);
+    return Map(filter)->GetPointData()->GetArray("LeftOver")->GetRange()[1];
+  };
+  LACUNA_CHECK(rim(slope, Filter::Ball, 0, "Set Overrun to the tool's radius") > 1);
+  LACUNA_CHECK(rim(slope, Filter::Ball, 4, "") < 0.05);
+  LACUNA_CHECK(rim(slope, Filter::Flat, 0, "Set Overrun") > 3);
+  LACUNA_CHECK(rim(slope, Filter::Flat, 4, "") < 1);
+  const auto step = [](double x, double) { return x > 29 ? -6.0 : 0.0; };
+  LACUNA_CHECK(rim(step, Filter::Ball, 4, "smaller tool, or make the surface larger") > 1);
+  LACUNA_CHECK(rim([](double x, double) { return 0.5 * x; }, Filter::Ball, 0, "most at x 0") > 0.1);
 }
 
 //------------------------------------------------------------------------------
