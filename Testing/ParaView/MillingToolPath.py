@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Milling Tool Path and G-Code Writer in ParaView: defaults, a mould, its map, Save Data, refusals."""
 import os
-import re
 
 import numpy as np
+from gcode_files import read_gcode
+from lacuna_test import output
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkStructuredGrid
-
-from lacuna_test import output
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 import lacuna
@@ -43,30 +42,6 @@ def array(data, name):
 
 def field(data, name):
     return vtk_to_numpy(data.GetFieldData().GetArray(name))[0]
-
-
-def read(path):
-    """x, y, z, feed (0: rapid) of each block of a program that moves."""
-    mode, feed, at, steps = None, 0.0, [None] * 3, []
-    with open(path, encoding="ascii") as file:
-        lines = file.read().splitlines()
-    assert lines[0] == lines[-1] == "%" and lines[-2] == "M30" and re.fullmatch(r"O\d{4}", lines[1])
-    for line in lines[2:-1]:
-        if line.startswith("("):
-            continue
-        words = re.findall(r"([A-Z])([-+.0-9]+)", line)
-        assert "".join(letter + number for letter, number in words) == line.replace(" ", ""), line
-        for letter, number in words:
-            if letter == "G" and number in ("00", "01"):
-                mode = int(number)
-            elif letter == "F":
-                feed = float(number)
-            elif letter in "XYZ":
-                assert re.fullmatch(r"-?\d+\.\d{0,3}", number), line
-                at["XYZ".index(letter)] = float(number)
-        if None not in at and any(letter in "XYZ" for letter, _ in words):
-            steps.append([*at, feed if mode else 0])
-    return np.array(steps)
 
 
 def distinct(steps):
@@ -126,7 +101,7 @@ assert 0 < threshold.GetDataInformation().GetNumberOfPoints() < lines.GetNumberO
 for name in ("MillingToolPath.nc", "MillingToolPath.gcode"):
     file = output(name)
     SaveData(file, path, ToolNumber=3)
-    steps = distinct(read(file))
+    steps = distinct(read_gcode(file))
     expected = np.column_stack([vtk_to_numpy(lines.GetPoints().GetData()),
                                 np.where(array(lines, "Motion") == 0, 0, array(lines, "FeedRate"))])
     expected[0, 3] = 0
