@@ -255,6 +255,40 @@ TEST(RadialSolver, GridsAreAsAccurateAsAsked)
   }
 }
 
+TEST(RadialSolver, GridsAboutAHoleKeepTheBound)
+{
+  // The cases of Carr 1996, section 6.4: nodes around a hole, evaluated in it and around it.
+  lacuna::ThreadExecution execution(2);
+  for (const int count : { 697, 578 })
+  {
+    Points<2> nodes;
+    for (int i = 0; i < count; ++i)
+    {
+      const double r = std::sqrt(900 + 864 * (i + 0.5) / count);
+      nodes.push_back({ r * std::cos(2.399963229728653 * i), r * std::sin(2.399963229728653 * i) });
+    }
+    const RadialBasis<2> s(execution, nodes, Values<2>(nodes),
+      Options(RadialKernel::ThinPlate, RadialSolver::Auto, 1e-4));
+    for (const int size : { 205, 512 })
+    {
+      const double step = 84.0 / (size - 1);
+      const lacuna::RegularGrid<2> grid{ { -42, -42 }, { step, step }, { size, size } };
+      Points<2> points;
+      for (int i = 0; i < size * size; ++i)
+      {
+        points.push_back({ -42 + step * (i % size), -42 + step * (i / size) });
+      }
+      std::vector<double> direct;
+      s.Evaluate(execution, points, direct);
+      std::vector<double> fast(points.size());
+      s.EvaluateGrid(execution, grid, fast.data());
+      const double error = Largest(fast, direct);
+      EXPECT_LE(error, 1e-4 * s.GetRange());
+      EXPECT_GT(error, 0) << "that was no fast sum";
+    }
+  }
+}
+
 TEST(RadialSolver, IsTheSameForAnyNumberOfThreads)
 {
   const Points<2> nodes = Scatter<2>(3000);
