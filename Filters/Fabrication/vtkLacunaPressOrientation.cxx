@@ -212,9 +212,11 @@ int vtkLacunaPressOrientation::RequestData(
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  if (!map || map->GetNumberOfPoints() == 0)
+  const int piece = outputVector->GetInformationObject(0)->Get(
+    vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
+  if (!map || map->GetNumberOfPoints() == 0 || piece > 0)
   {
-    return 1; // empty in, empty out
+    return 1; // empty in, empty out; the mould is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
