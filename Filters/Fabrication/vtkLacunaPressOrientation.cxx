@@ -36,6 +36,10 @@ namespace
 {
 constexpr const char* PlaneNormalName = "PlaneNormal";
 constexpr double LargestInclination = 10; // degrees, of the fit's plane without a warning
+// Degrees from the view to the one that faces the defect: below, there is no better one; above, what
+// is measured along the rim tells too little.
+constexpr double SquareView = 5;
+constexpr double ObliqueView = 60;
 constexpr double Degrees = 180 / 3.14159265358979323846;
 constexpr double CoarsestSpacing = 1; // mm, when OutputSpacing is left to the filter
 
@@ -69,20 +73,25 @@ public:
       this->Options.Spacing =
         std::min({ this->Part.Spacing[0], this->Part.Spacing[1], CoarsestSpacing });
     }
-    lacuna::Vec3 normal = lacuna::FitPlaneNormal(
+    const lacuna::Vec3 flat = lacuna::FitPlaneNormal(
       this->Part.Size, this->Part.Depths, this->Part.Spacing, this->Part.Mask);
+    lacuna::Vec3 normal = flat;
     vtkDataArray* given = vtkLacunaFieldData::Find(map, PlaneNormalName, 3, 1);
     this->HasPlane = given != nullptr;
-    if (self->PlaneMethod == Fit && given)
+    this->OwnPlane = self->PlaneMethod == Fit && given;
+    if (this->OwnPlane)
     {
       lacuna::Vec3 ofFit;
       given->GetTuple(0, ofFit.data());
-      this->Inclination = Degrees *
-        std::acos(std::min(1.0, std::abs(lacuna::Dot(lacuna::Normalized(ofFit), normal))));
+      this->Inclination =
+        Degrees * std::acos(std::min(1.0, std::abs(lacuna::Dot(lacuna::Normalized(ofFit), flat))));
       normal = ofFit;
     }
-    this->Layout = lacuna::PlanPress(execution, this->Surface, this->Part.Size, this->Part.Spacing,
-      this->Part.Mask, normal, this->Options, this->Part.ToWorld);
+    this->Layout = this->Lay(execution, normal);
+    if (!this->Layout.SingleValued)
+    {
+      this->FindWayOut(execution, flat);
+    }
   }
 
   lacuna::PressSurface Make(lacuna::Execution& execution) const
@@ -99,10 +108,76 @@ public:
   vtkLacunaFittedPart Part;
   lacuna::ReliefSurface Surface;
   bool HasPlane = true;   // from the hole filler
+  bool OwnPlane = false;  // and it is what lies flat
   double Inclination = 0; // degrees, of the hole filler's plane to the least squares plane
   lacuna::PressLayout Layout;
+  // When the mill does not see all: what gives a mould, in words, and the view, if it is another.
+  std::string WayOut;
+  bool HasView = false;
+  lacuna::Vec3 View{}; // unit, world
 
 private:
+  lacuna::PressLayout Lay(lacuna::Execution& execution, const lacuna::Vec3& normal) const
+  {
+    return lacuna::PlanPress(execution, this->Surface, this->Part.Size, this->Part.Spacing,
+      this->Part.Mask, normal, this->Options, this->Part.ToWorld);
+  }
+
+  bool IsSeen(lacuna::Execution& execution, const lacuna::Vec3& normal) const
+  {
+    try
+    {
+      return this->Lay(execution, normal).SingleValued;
+    }
+    catch (const lacuna::Aborted&)
+    {
+      throw;
+    }
+    catch (const std::runtime_error&)
+    {
+      return false; // the offset folds, or the flange leaves the map
+    }
+  }
+
+  void FindWayOut(lacuna::Execution& execution, const lacuna::Vec3& flat)
+  {
+    if (this->OwnPlane && this->IsSeen(execution, flat))
+    {
+      this->WayOut = "Set PlaneMethod to LeastSquares, which gives a mould from this view (the "
+                     "plane of the fit is inclined by " +
+        lacuna::FormatNumber(std::round(this->Inclination)) +
+        " degrees to the surface over the defect)";
+      return;
+    }
+    const std::string smaller =
+      "take a smaller PlateMargin, another Kernel or more Smoothing of RBF Hole Filler, or make "
+      "the plate in parts";
+    const lacuna::Vec3 view = lacuna::FindFacingView(this->Surface, this->Part.Size,
+      this->Part.Spacing, this->Part.Mask, this->Options.PlateMargin);
+    const double turn = Degrees * std::acos(std::min(1.0, view[2])); // the map looks along z
+    if (turn < SquareView)
+    {
+      this->WayOut = "Another view would not help, this one faces the defect squarely: " + smaller;
+      return;
+    }
+    if (turn > ObliqueView)
+    {
+      this->WayOut = "This view looks along the bone so much that it does not tell which would be "
+                     "right: make the depth map again from where the defect is faced squarely";
+      return;
+    }
+    this->HasView = true;
+    this->View = lacuna::Normalized(this->Part.ToWorld.Vector(view));
+    this->WayOut = "Make the depth map again with ViewDirection";
+    for (const double x : this->View.Elements)
+    {
+      this->WayOut += " " + lacuna::FormatNumber(x);
+    }
+    this->WayOut += std::string(" (field data SuggestedViewDirection), which faces the defect") +
+      (this->OwnPlane ? ", and set PlaneMethod to LeastSquares" : "") + "; if that does not do, " +
+      smaller;
+  }
+
   static lacuna::PressOptions GetOptions(vtkLacunaPressOrientation* self)
   {
     CheckChoice("PlaneMethod", self->PlaneMethod, 2, "0 (Fit) or 1 (LeastSquares)");
@@ -238,7 +313,7 @@ int vtkLacunaPressOrientation::RequestData(
                       << "' (RBF Hole Filler reports it), so the least squares plane through "
                          "Fitted is laid flat instead");
     }
-    if (plan.Inclination > LargestInclination)
+    if (layout.SingleValued && plan.Inclination > LargestInclination)
     {
       vtkWarningMacro(<< "the plane of the fit is inclined by "
                       << lacuna::FormatNumber(std::round(plan.Inclination))
@@ -258,17 +333,14 @@ int vtkLacunaPressOrientation::RequestData(
     }
     else
     {
-      const lacuna::Vec3 view = lacuna::Normalized(toWorld.Vector(layout.Frame.Inwards));
-      vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(view), 3);
-      vtkWarningMacro(
-        << "the mill does not see all of the surface when its plane lies flat: at "
-        << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
-        << lacuna::FormatNumber(std::round(layout.SteepestAngle))
-        << " degrees from the press plane. There is no mould; make the depth map again "
-           "with ViewDirection "
-        << lacuna::FormatNumber(view[0]) << " " << lacuna::FormatNumber(view[1]) << " "
-        << lacuna::FormatNumber(view[2])
-        << " (field data SuggestedViewDirection), or take a smaller PlateMargin");
+      if (plan.HasView)
+      {
+        vtkLacunaFieldData::Set(output, SuggestedViewDirectionName, ToVector(plan.View), 3);
+      }
+      vtkWarningMacro(<< "the mill does not see all of the surface when its plane lies flat: at "
+                      << lacuna::FormatPlace(toWorld, layout.SteepestPoint) << " it is "
+                      << lacuna::FormatNumber(std::round(layout.SteepestAngle))
+                      << " degrees from the press plane. There is no mould. " << plan.WayOut);
     }
     vtkLacunaFieldData::Set(
       output, "Angles", { Degrees * layout.Frame.Theta, Degrees * layout.Frame.Psi }, 2);
@@ -276,9 +348,8 @@ int vtkLacunaPressOrientation::RequestData(
     vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
     vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
     SetText(output, "PlaneSource",
-      plan.HasPlane && this->PlaneMethod == Fit
-        ? "PlaneNormal of the hole filler"
-        : "least squares plane through Fitted over the defect");
+      plan.OwnPlane ? "PlaneNormal of the hole filler"
+                    : "least squares plane through Fitted over the defect");
 
     lacuna::ParameterText parameters;
     parameters.Add("PlaneMethod", this->PlaneMethod)

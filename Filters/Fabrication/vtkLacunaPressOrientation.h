@@ -42,7 +42,8 @@
  * | DraftAngle             | 1          | largest WallAngle, degrees; 0 flat, 90 upright        |
  * | Depth                  | 1          | mm, from the press plane to the deepest/highest node  |
  * | SingleValued           | 1          | 1, or 0 when the mill does not see all of the surface |
- * | SuggestedViewDirection | 3          | when not: view for the ray caster, world, unit        |
+ * | SuggestedViewDirection | 3          | when not, and another view helps: view for the ray    |
+ * |                        |            | caster, world, unit                                   |
  * | BlockSize              | 3          | mm along x, y, z                                      |
  * | SurfaceOffset          | 1          | mm, of the mould's surface from Fitted, positive      |
  * |                        |            | towards the viewer                                    |
@@ -50,7 +51,9 @@
  * | PlaneSource            | string     | where the plane comes from                            |
  *
  * When the surface is not single valued there are no points but the field data, and a warning that
- * names the place: cast rays again along SuggestedViewDirection, which is the press's axis.
+ * names the place and what to do: PlaneMethod LeastSquares if that gives a mould; otherwise, if the
+ * view is between 5 and 60 degrees off the one that faces defect and margin squarely, to cast rays
+ * again along that (SuggestedViewDirection; lacuna::FindFacingView) with PlaneMethod LeastSquares.
  *
  * Errors: a perspective map, no Fitted or FilledMask, holes in them, properties out of range, a
  * surface that bends with a radius below PlateThickness on the side of the offset, Fitted that

@@ -114,20 +114,44 @@ kept, wrapped, fields = fetch(again)
 assert np.abs(np.asarray(wrapped.Points) - points).max() == 0
 assert np.abs(fields["PressToPatient"].reshape(4, 4) - moulds["Male", "Inlay"]).max() < 1e-12
 
-# A plane that stands against the view: no mould, but the way out, which works.
-steep = BSplineIsoRayCaster(Input=phantom, IsoValues=[500], ViewDirection=[0.5, -0.6, -0.62])
-filled.Input = steep
-press.FlangeWidth = 25
-warnings = []
-with raising(warnings):
-    press.UpdatePipeline()
-data = servermanager.Fetch(press)
-assert data.GetNumberOfPoints() == 0 and any("SuggestedViewDirection" in text for text in warnings), warnings
-fields = dsa.WrapDataObject(data).FieldData
-assert np.asarray(fields["SingleValued"]).item() == 0
-view = np.asarray(fields["SuggestedViewDirection"]).ravel()
-assert abs(np.linalg.norm(view) - 1) < 1e-14 and view @ [0.5, -0.6, -0.62] > 0
-steep.ViewDirection = list(view)
-fields = fetch(press)[2]
-print("from", view, "walls of", fields["DraftAngle"].item(), "degrees", flush=True)
-assert fields["SingleValued"].item() == 1 and "SuggestedViewDirection" not in fields
+# No mould, but the way out, which works.
+hurt = SkullPhantom(DefectRadius=40)
+view = [-0.1, 0.2, -0.9]
+wide = BSplineIsoRayCaster(Input=hurt, IsoValues=[500], ViewDirection=view)
+filled = RBFHoleFiller(Input=wide, Smoothing=5)
+press = PressOrientation(Input=filled, FlangeWidth=20)
+
+
+def undercut():
+    """The fields and the warning when there is no mould."""
+    warnings = []
+    with raising(warnings):
+        press.UpdatePipeline()
+    data = servermanager.Fetch(press)
+    assert data.GetNumberOfPoints() == 0
+    fields = dsa.WrapDataObject(data).FieldData
+    assert np.asarray(fields["SingleValued"]).item() == 0
+    [text] = [text for text in warnings if "the mill does not see" in text]
+    return fields, text
+
+
+for kernel, method in (("Cubic", "Fit"), ("Triharmonic", "LeastSquares"), ("Triharmonic", "Fit")):
+    filled.Kernel, press.PlaneMethod, wide.ViewDirection = kernel, method, view
+    fields, text = undercut()
+    if kernel == "Cubic":  # this plane is 50 degrees off; the plate's own will do
+        assert "Set PlaneMethod to LeastSquares" in text and "SuggestedViewDirection" not in fields.keys(), text
+    else:
+        suggested = np.asarray(fields["SuggestedViewDirection"]).ravel()
+        assert abs(np.linalg.norm(suggested) - 1) < 1e-14 and suggested @ view > 0
+        assert "SuggestedViewDirection" in text and ("PlaneMethod" in text) == (method == "Fit"), text
+        wide.ViewDirection = list(suggested)
+    press.PlaneMethod = "LeastSquares"
+    fields = fetch(press)[2]
+    print(kernel, method, "from", list(wide.ViewDirection), "walls of", fields["DraftAngle"].item(), flush=True)
+    assert fields["SingleValued"].item() == 1 and "SuggestedViewDirection" not in fields
+
+# From the side there is nothing to tell a better view from.
+filled.Input = BSplineIsoRayCaster(Input=phantom, IsoValues=[500], ViewDirection=[0.5, -0.6, -0.62])
+filled.Kernel, press.FlangeWidth = "ThinPlate", 25
+fields, text = undercut()
+assert "looks along the bone" in text and "SuggestedViewDirection" not in fields.keys(), text

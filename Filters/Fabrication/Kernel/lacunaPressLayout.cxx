@@ -344,6 +344,25 @@ private:
 }
 
 //------------------------------------------------------------------------------
+Vec3 FindFacingView(const ReliefSurface& surface, GridSize size, const Vec2& spacing,
+  const std::vector<unsigned char>& mask, double margin)
+{
+  const LoopDistance curves(FindOutlines(size, spacing, mask, surface));
+  Vec3 area{};
+  for (std::int64_t k = 0; k < static_cast<std::int64_t>(mask.size()); ++k)
+  {
+    const Vec2 p{ static_cast<double>(k % size.Columns) * spacing[0],
+      static_cast<double>(k / size.Columns) * spacing[1] };
+    if (mask[k] || curves.Find(p, margin) < margin)
+    {
+      const Vec3 normal = surface.GetFrame(p).Normal; // towards the viewer, at lesser z
+      area = area + 1 / normal[2] * normal;           // of a pixel's part of the surface
+    }
+  }
+  return Normalized(area);
+}
+
+//------------------------------------------------------------------------------
 std::string FormatPlace(const Matrix4& toWorld, const Vec3& p)
 {
   const Vec3 world = toWorld.Point(p);

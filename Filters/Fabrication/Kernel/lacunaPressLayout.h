@@ -90,6 +90,12 @@ PressLayout PlanPress(Execution& execution, const ReliefSurface& surface, GridSi
   const Vec2& spacing, const std::vector<unsigned char>& mask, const Vec3& normal,
   const PressOptions& options, const Matrix4& toWorld = {});
 
+/// The unit direction, away from the relief's viewer, in which defect and margin are faced most
+/// squarely: that of their area as a vector. By Stokes' theorem it depends on the rim of that part
+/// alone, so a fit that swings over the defect does not change it.
+Vec3 FindFacingView(const ReliefSurface& surface, GridSize size, const Vec2& spacing,
+  const std::vector<unsigned char>& mask, double margin);
+
 /// A place in words, after a transform: "(1.5, -20.0, 33.1)".
 std::string FormatPlace(const Matrix4& toWorld, const Vec3& p);
 

@@ -463,6 +463,38 @@ TEST(PressSurface, UndercutsAreSeen)
 }
 
 //------------------------------------------------------------------------------
+// The view that faces a part squarely is told by its rim, whatever the surface does inside.
+TEST(PressSurface, TheFacingViewDependsOnTheRim)
+{
+  const auto plane = [](double x, double y) { return 60 + 0.9 * x - 0.4 * y; };
+  const auto swinging = [&](double x, double y)
+  {
+    const double r = std::hypot(x - 3, y + 2);
+    return plane(x, y) + (r < 15 ? 9 * std::pow(std::cos(r * Pi / 30), 4) * (1 + 0.1 * x) : 0);
+  };
+  const Vec3 expected = Normalized({ -0.9, 0.4, 1 });
+  for (const double margin : { 0.0, 5.0 })
+  {
+    PressScene flat(plane, Disc20);
+    const Vec3 view = FindFacingView(flat.Surface, flat.Size, flat.Spacing, flat.Mask, margin);
+    EXPECT_LT(Norm(view - expected), 1e-9);
+    PressScene scene(swinging, Disc20);
+    const Vec3 same = FindFacingView(scene.Surface, scene.Size, scene.Spacing, scene.Mask, margin);
+    EXPECT_LT(Norm(same - expected), 0.002); // a tenth of a degree
+    const Vec3 ofPlane =
+      FitPlaneNormal(scene.Size, scene.Depths, scene.Spacing, scene.Mask); // is another
+    EXPECT_GT(Norm(ofPlane + expected), 0.02);
+  }
+  // the margin counts: a rim that turns away on one side
+  const auto bent = [](double x, double) { return 60 + (x > 20 ? (x - 20) * (x - 20) : 0); };
+  PressScene scene(bent, Disc20);
+  const auto view = [&](double margin)
+  { return FindFacingView(scene.Surface, scene.Size, scene.Spacing, scene.Mask, margin); };
+  EXPECT_LT(std::abs(view(0)[0]), 0.01);
+  EXPECT_LT(view(5)[0], -0.05);
+}
+
+//------------------------------------------------------------------------------
 TEST(PressSurface, FoldsAreRefusedWithTheirPlace)
 {
   // a ridge of 1.25 mm radius at x = 5

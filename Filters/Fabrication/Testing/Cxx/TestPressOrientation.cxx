@@ -238,33 +238,80 @@ void TestPipeline()
   LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0 && messages->Errors.empty());
 }
 
-// A plane that makes the surface overhang: no mould, and the view that mends it.
+// A plane that makes the surface overhang: no mould, but what gives one.
 void TestUndercut()
 {
   const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
   auto map = FilledMap(geometry);
-  const Vec3 normal = lacuna::Normalized({ 4, 0, -1 });
-  vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+  const auto setPlane = [&map](const Vec3& n)
+  {
+    const Vec3 normal = lacuna::Normalized(n);
+    vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
+    map->Modified();
+  };
   const auto filter = MakeFilter(map);
   const auto messages = lacunaCheck::Watch(filter);
-  filter->Update();
-  vtkStructuredGrid* grid = filter->GetOutput();
-  LACUNA_CHECK(messages->Errors.empty());
-  LACUNA_CHECK(messages->HasWarning("ViewDirection"));
-  LACUNA_CHECK(grid->GetNumberOfPoints() == 0);
-  LACUNA_CHECK_NEAR(GetField(grid, "SingleValued"), 0, 0);
-  const Vec3 expected = lacuna::Normalized(-4.0 * geometry.Right + 1.0 * geometry.View);
-  for (int i = 0; i < 3; ++i)
+  const auto expectNone = [&](const char* words, bool view)
   {
-    LACUNA_CHECK_NEAR(GetField(grid, "SuggestedViewDirection", i), expected[i], 1e-12);
+    messages->Warnings.clear();
+    filter->Update();
+    LACUNA_CHECK(messages->Errors.empty());
+    LACUNA_CHECK(messages->HasWarning(words));
+    LACUNA_CHECK(messages->HasWarning("SuggestedViewDirection") == view);
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+    LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SingleValued"), 0, 0);
+    LACUNA_CHECK(std::isnan(GetField(filter->GetOutput(), "SuggestedViewDirection")) != view);
+  };
+  const auto expectMould = [&]()
+  {
+    filter->Update();
+    LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+    LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SingleValued"), 1, 0);
+  };
+  // the plane of the fit is askew: the surface's own gives the mould
+  setPlane({ 4, 0, -1 });
+  expectNone("Set PlaneMethod to LeastSquares, which gives a mould from this view", false);
+  filter->SetPlaneMethod(vtkLacunaPressOrientation::LeastSquares);
+  expectMould();
+  setPlane({ 0, 0, -1 });
+  filter->SetPlaneMethod(vtkLacunaPressOrientation::Fit);
+  expectMould();
+
+  // a fit that swings over the defect, on ground that is inclined by a turn about the map's y
+  map = FilledMap(geometry, [](double x, double y) { return std::hypot(x, y) < 8; });
+  setPlane({ 4, 0, -1 });
+  filter->SetInputData(map);
+  vtkDataArray* fitted = map->GetPointData()->GetArray("Fitted");
+  const auto swing = [&](double slope)
+  {
+    for (int k = 0; k < 90 * 70; ++k)
+    {
+      const double x = 0.5 * (5 + k % 90 - 49);
+      const double y = 0.75 * (k / 90 - 33);
+      const double r = std::hypot(x, y) / 8;
+      const double z = 30 + slope * x + (r < 1 ? 5 * x * std::pow(1 - r * r, 3) : 0);
+      fitted->SetComponent(k, 0, z);
+    }
+    map->Modified();
+  };
+  filter->SetPlateThickness(0.001); // so thin that no offset folds
+  for (const double slope : { 0.5, -1.4 })
+  {
+    swing(slope);
+    expectNone("faces the defect, and set PlaneMethod to LeastSquares; if", true);
+    const Vec3 expected = lacuna::Normalized(-slope * geometry.Right + 1.0 * geometry.View);
+    for (int i = 0; i < 3; ++i)
+    {
+      LACUNA_CHECK_NEAR(
+        GetField(filter->GetOutput(), "SuggestedViewDirection", i), expected[i], 0.02);
+    }
   }
-  LACUNA_CHECK(lacuna::Dot(expected, geometry.View) > 0);
-  // and on again
-  vtkLacunaFieldData::Set(map, "PlaneNormal", { 0, 0, -1 }, 3);
-  map->Modified();
-  filter->Update();
-  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
-  LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SingleValued"), 1, 0);
+  filter->SetPlaneMethod(vtkLacunaPressOrientation::LeastSquares);
+  expectNone("faces the defect; if", true);
+  swing(0);
+  expectNone("Another view would not help", false);
+  swing(2.2);
+  expectNone("This view looks along the bone", false);
 }
 
 void TestErrors()
