@@ -4,6 +4,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkFieldData.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -126,6 +127,7 @@ void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   if (!inputs.empty() && inputs.front() != output)
   {
     vtkLacunaMirrored::Pass(inputs.front(), output);
+    vtkLacunaCoordinates::Pass(inputs.front(), output);
   }
 }
 

@@ -23,7 +23,8 @@ VTKLACUNAFILTERSCOMMON_EXPORT const char* GetVersion();
 /// Copies the steps of the inputs to output and adds one for this step: version, class, a hash of
 /// each input's active point scalars (of a mesh without: its points; of a table: its numbers),
 /// parameters ("Name=value Name=value"). Never a patient's name. Of the first input, the one that
-/// output is made of, it also passes on the mark that it is mirrored (vtkLacunaMirrored).
+/// output is made of, it also passes on the marks that it is mirrored (vtkLacunaMirrored) and in
+/// which coordinates it is (vtkLacunaCoordinates).
 VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   const std::vector<vtkDataObject*>& inputs, const std::string& parameters);
 

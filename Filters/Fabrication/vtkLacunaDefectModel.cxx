@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -225,6 +226,7 @@ int vtkLacunaDefectModel::RequestData(
     SetMesh(solid, model, input.ToWorld);
     SetTop(top, model, input.Scene, fromPress.Inverse());
 
+    vtkLacunaCoordinates::Mark(top, vtkLacunaCoordinates::Press);
     lacuna::ParameterText parameters;
     parameters.Add("Margin", this->Margin)
       .Add("FloorShape", this->FloorShape)

@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
@@ -351,6 +352,7 @@ int vtkLacunaPressOrientation::RequestData(
       plan.OwnPlane ? "PlaneNormal of the hole filler"
                     : "least squares plane through Fitted over the defect");
 
+    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Press);
     lacuna::ParameterText parameters;
     parameters.Add("PlaneMethod", this->PlaneMethod)
       .Add("Mould", this->Mould)

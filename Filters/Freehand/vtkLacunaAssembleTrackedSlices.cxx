@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseRecords.h"
@@ -338,6 +339,7 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   source->GetPointData()->SetScalars(output->GetPointData()->GetScalars());
   source->SetFieldData(stack->GetFieldData());
   vtkLacunaProvenance::Record(output, this, { source, table }, this->DescribeParameters());
+  vtkLacunaCoordinates::Clear(output); // columns, rows and slices, whatever the pictures' are
 }
 
 //------------------------------------------------------------------------------

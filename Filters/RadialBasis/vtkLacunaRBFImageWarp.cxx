@@ -11,6 +11,7 @@
 #include "vtkImageInterpolator.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -423,6 +424,7 @@ int vtkLacunaRBFImageWarp::RequestData(
         .Add("OutsideValue", this->OutsideValue)
         .Add("Accuracy", this->Accuracy);
       vtkLacunaProvenance::Record(whole, this, { image, landmarks, targets }, parameters.Get());
+      vtkLacunaCoordinates::Clear(whole); // the targets may be anyone's
       output->ShallowCopy(whole);
       int piece[6];
       outputs->GetInformationObject(0)->Get(

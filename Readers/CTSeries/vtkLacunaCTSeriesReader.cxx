@@ -19,6 +19,7 @@
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -290,6 +291,7 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
     AddString(output, "StudyInstanceUID", header.StudyUid);
     AddString(output, "SeriesInstanceUID", header.SeriesUid);
   }
+  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
   vtkLacunaProvenance::Record(
     output, const_cast<vtkLacunaCTSeriesReader*>(this), {}, this->DescribeParameters());
 }

@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -273,6 +274,7 @@ int vtkLacunaPhantomSweep::RequestData(
       vtkLacunaProvenance::Record(output, this,
         volume ? std::vector<vtkDataObject*>{ volume } : std::vector<vtkDataObject*>{},
         this->DescribeParameters());
+      vtkLacunaCoordinates::Clear(output); // columns, rows and slices, whatever the volume's are
     });
 }
 

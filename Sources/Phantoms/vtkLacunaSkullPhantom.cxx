@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkObjectFactory.h"
@@ -93,6 +94,7 @@ int vtkLacunaSkullPhantom::RequestData(
       vtkDataArray* scalars = output->GetPointData()->GetScalars();
       scalars->SetName("HounsfieldUnits");
       skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
+      vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
       vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters());
     });
 }

@@ -14,16 +14,18 @@ from xml.sax.saxutils import escape, quoteattr
 NOTICE = "Research software, not a medical device."
 
 
-def save_solid(path, proxy, **options):
+def save_solid(path, proxy, allow_mirrored=False, **options):
     """Writes a surface to a file: 3mf, or what ParaView writes by the ending (stl, ply, obj, vtp, ...).
 
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
     a few numbers) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has,
-    and its unit is the millimetre; it holds closed surfaces of triangles. Raises PipelineError when
-    a filter or the writer fails. options go to ParaView's SaveData. Returns the record.
+    and its unit is the millimetre; it holds closed surfaces of triangles. In which coordinates the
+    surface is stands there, too, as lacuna.coordinates.find knows it: "unknown" if it does not.
+    Raises PipelineError when a filter or the writer fails, and for a mirror image of the patient
+    unless allow_mirrored. options go to ParaView's SaveData. Returns the record.
     """
-    from lacuna import __version__
+    from lacuna import __version__, coordinates
     from lacuna.errors import PipelineError, raising
     from paraview import servermanager
     from paraview.simple import SaveData
@@ -36,6 +38,10 @@ def save_solid(path, proxy, **options):
         data = servermanager.Fetch(proxy)
         if data is None or data.GetNumberOfPoints() == 0:
             raise PipelineError(f"there is nothing to write to {path}")
+    if coordinates.is_mirrored(data) and not allow_mirrored:
+        raise PipelineError(f"{path}: this is a mirror image of the patient (field data Mirrored); check the side, "
+                            "and give allow_mirrored=True if the mirrored one is wanted")
+    place = coordinates.find(proxy)
     steps, measures = [], {}
     fields = data.GetFieldData()
     for k in range(fields.GetNumberOfArrays()):
@@ -46,7 +52,7 @@ def save_solid(path, proxy, **options):
             values = vtk_to_numpy(fields.GetArray(k)).tolist()
             measures[array.GetName()] = values[0] if len(values) == 1 else values
     if os.path.splitext(path)[1].lower() == ".3mf":
-        _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", steps)
+        _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
     else:
         with raising():
             SaveData(path, proxy, **options)
@@ -56,7 +62,7 @@ def save_solid(path, proxy, **options):
         digest = hashlib.sha256(file.read()).hexdigest()
     record = {
         "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
-        "version": __version__, "unit": "mm", "coordinates": "patient, DICOM LPS",
+        "version": __version__, "unit": "mm", "coordinates": place,
         "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
         "notice": NOTICE,
     }
@@ -66,8 +72,8 @@ def save_solid(path, proxy, **options):
     return record
 
 
-def _write_3mf(path, data, title, application, steps):
-    """One object in the 3MF core format (1.x), in patient coordinates, without a transform.
+def _write_3mf(path, data, title, application, place, steps):
+    """One object in the 3MF core format (1.x), with the points as they are, without a transform.
 
     Coordinates have six decimals, a nanometre. Metadata: Title, Application, Description (unit,
     coordinates and the steps, one a line). No date, so that the same plate gives the same file.
@@ -85,7 +91,7 @@ def _write_3mf(path, data, title, application, steps):
     points = vtk_to_numpy(data.GetPoints().GetData())
     triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
     description = "\n".join(
-        ["Coordinates: patient, DICOM LPS (mm). " + NOTICE] + [f"Made by: {step}" for step in steps])
+        [f"Coordinates: {place} (mm). {NOTICE}"] + [f"Made by: {step}" for step in steps])
     metadata = {"Title": title, "Application": application, "Description": description}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>',
              '<model unit="millimeter" xml:lang="en-US" '

@@ -12,6 +12,8 @@ import math
 
 import numpy as np
 
+from lacuna import coordinates
+
 
 def camera_view(camera, size, rows=None):
     """The view properties of a ray caster whose map shows what a camera shows in a window.
@@ -117,14 +119,12 @@ def map_letters(image):
     return edge_letters(to_world[:3, 0], -to_world[:3, 1])
 
 
-def in_patient_coordinates(data):
-    """Whether data (vtkDataObject) is known to be in patient coordinates (LPS): the CT Series Reader or the Skull
-    Phantom is among the steps of its Provenance. Files of other formats may be turned or mirrored without telling.
+def in_patient_coordinates(source):
+    """Whether a proxy or data (vtkDataObject) are known to be in patient coordinates (LPS) and not mirrored: marked by
+    the CT Series Reader or the Skull Phantom (coordinates.find). Files of other formats may be turned or mirrored
+    without telling.
     """
-    steps = data.GetFieldData().GetAbstractArray("Provenance")
-    return steps is not None and any(
-        name in steps.GetValue(k) for k in range(steps.GetNumberOfValues())
-        for name in ("vtkLacunaCTSeriesReader", "vtkLacunaSkullPhantom"))
+    return coordinates.find(source) == coordinates.PATIENT
 
 
 def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):

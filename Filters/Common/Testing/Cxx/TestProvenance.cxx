@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkImageShrink3D.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 
 int TestProvenance(int, char*[])
 {
@@ -52,5 +55,26 @@ int TestProvenance(int, char*[])
     points->SetPoint(0, 1, 2, 4);
   }
   LACUNA_CHECK(steps[0] != steps[1]);
+
+  // the mark of coordinates is that of the first input, unless the output has its own
+  const auto coordinates = [](vtkDataObject* data) -> std::string
+  {
+    auto* mark = vtkStringArray::SafeDownCast(
+      data->GetFieldData()->GetAbstractArray(vtkLacunaCoordinates::ArrayName));
+    return mark && mark->GetNumberOfValues() == 1 ? mark->GetValue(0) : std::string("-");
+  };
+  vtkLacunaCoordinates::Mark(a, vtkLacunaCoordinates::Patient);
+  vtkLacunaCoordinates::Mark(b, vtkLacunaCoordinates::Press);
+  vtkNew<vtkImageData> d;
+  vtkLacunaProvenance::Record(d, step, { mesh, a }, "");
+  LACUNA_CHECK(coordinates(d) == "-");
+  vtkLacunaProvenance::Record(d, step, { a, b }, "");
+  LACUNA_CHECK(coordinates(d) == "Patient");
+  vtkLacunaProvenance::Record(d, step, { b }, "");
+  LACUNA_CHECK(coordinates(d) == "Patient");
+  vtkLacunaCoordinates::Mark(d, vtkLacunaCoordinates::Press);
+  LACUNA_CHECK(coordinates(d) == "Press" && coordinates(a) == "Patient");
+  vtkLacunaCoordinates::Clear(d);
+  LACUNA_CHECK(coordinates(d) == "-");
   return lacunaCheck::Result();
 }

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""In which coordinates data are, as far as it is known.
+
+    from lacuna import coordinates
+    coordinates.find(proxy)            # "patient, DICOM LPS", "press" or "unknown", with ", mirrored" behind it
+"""
+PATIENT, PRESS, UNKNOWN, MIRRORED = "patient, DICOM LPS", "press", "unknown", ", mirrored"
+NAMES = {"Patient": PATIENT, "Press": PRESS}  # by the field data array Coordinates
+
+# ParaView's filters that leave points where they are, by their labels.
+KEEPING = frozenset((
+    "Append Attributes", "Append Datasets", "Append Geometry", "Cell Data to Point Data", "Clean", "Clean to Grid",
+    "Clip", "Connectivity", "Contour", "Decimate", "Extract Block", "Extract Cells By Region", "Extract Selection",
+    "Extract Subset", "Extract Surface", "Feature Edges", "Generate Surface Normals", "Group Datasets",
+    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Surface Normals", "Tetrahedralize",
+    "Threshold", "Triangulate"))
+
+
+def find(source):
+    """The coordinates of a proxy or of data (vtkDataObject), from the field data that Lacuna's filters pass on.
+
+    ParaView's filters pass field data on, too, even those that move points (Transform, Reflect). Of a proxy these are
+    seen in its pipeline, and the answer is "unknown"; data alone do not tell, nor do files.
+    """
+    from paraview import servermanager
+    data = source
+    if hasattr(source, "GetXMLLabel"):
+        if not _keeps_points(source):
+            return UNKNOWN
+        data = servermanager.Fetch(source)
+    if data is None:
+        return UNKNOWN
+    mark = data.GetFieldData().GetAbstractArray("Coordinates")
+    name = UNKNOWN
+    if mark is not None and mark.IsA("vtkStringArray") and mark.GetNumberOfValues() == 1:
+        name = NAMES.get(mark.GetValue(0), UNKNOWN)
+    return name + MIRRORED if is_mirrored(data) else name
+
+
+def is_mirrored(data):
+    """Whether data (vtkDataObject) are marked as a mirror image of the patient, or of what they show."""
+    mark = data.GetFieldData().GetArray("Mirrored")
+    return mark is not None and mark.GetNumberOfTuples() > 0 and mark.GetComponent(0, 0) != 0
+
+
+def _keeps_points(proxy):
+    """Whether points come to a proxy from their source without having been moved by a filter of ParaView.
+
+    Images are not asked: their points are where origin, spacing and direction say. Where several come together, all
+    have to be in the same coordinates.
+    """
+    inputs = proxy.GetProperty("Input")
+    inputs = [inputs[k] for k in range(len(inputs))] if inputs is not None else []
+    if inputs and not proxy.GetXMLName().startswith("Lacuna"):
+        if proxy.GetXMLLabel() not in KEEPING and \
+                proxy.GetDataInformation().DataInformation.GetDataSetTypeAsString() != "vtkImageData":
+            return False
+        if len(inputs) > 1 and len({find(each) for each in inputs}) > 1:
+            return False
+    return all(_keeps_points(each) for each in inputs)

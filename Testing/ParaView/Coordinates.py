@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files and pictures say "patient" only of what is there: not in the press, not mirrored, not moved, not unknown."""
+import json
+import os
+import zipfile
+
+from lacuna import coordinates, views
+from lacuna.errors import PipelineError
+from lacuna.solids import save_solid
+from lacuna_test import output
+from paraview import servermanager
+from paraview.simple import *
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+
+
+def check(proxy, expected):
+    proxy.UpdatePipeline()
+    assert coordinates.find(proxy) == expected, (proxy.GetXMLLabel(), coordinates.find(proxy), expected)
+    assert views.in_patient_coordinates(proxy) == (expected == coordinates.PATIENT), proxy.GetXMLLabel()
+
+
+def check_files(proxy, expected, **options):
+    for name in ("Coordinates.stl", "Coordinates.3mf"):
+        assert save_solid(output(name), proxy, **options)["coordinates"] == expected, (name, expected)
+        with open(output(name) + ".json", encoding="utf-8") as file:
+            assert json.load(file)["coordinates"] == expected
+    with zipfile.ZipFile(output("Coordinates.3mf")) as package:
+        assert f"Coordinates: {expected} (mm)" in package.read("3D/3dmodel.model").decode()
+
+
+skull = SkullPhantom(Spacing=[2, 2, 2])
+depth = BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+filled = RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+plate, model, press = ImplantPlate(Input=filled), DefectModel(Input=filled), PressOrientation(Input=filled)
+for proxy in (skull, depth, filled, plate, model, DepthMapSurface(Input=filled), DepthMapShader(Input=depth),
+              SpeckleFilter(Input=skull), Clip(Input=plate), Triangulate(Input=ExtractSurface(Input=model)),
+              Gradient(Input=depth), GroupDatasets(Input=plate), AppendGeometry(Input=[plate, model])):
+    check(proxy, coordinates.PATIENT)
+check_files(plate, coordinates.PATIENT)
+check_files(model, coordinates.PATIENT)
+
+# the press, the grid for the mill, and what is made of them
+top = ExtractSurface(Input=OutputPort(model, 1))
+mould = ExtractSurface(Input=press)
+for proxy in (press, mould, top, MillingToolPath(Input=press)):
+    check(proxy, coordinates.PRESS)
+assert not views.in_patient_coordinates(servermanager.Fetch(press))
+assert save_solid(output("Coordinates.stl"), Triangulate(Input=mould))["coordinates"] == coordinates.PRESS
+assert save_solid(output("Coordinates.stl"), Triangulate(Input=top))["coordinates"] == coordinates.PRESS
+
+# moved by a filter of ParaView, which passes the field data on
+turned = Transform(Input=plate)
+turned.Transform.Rotate = [0, 0, 1]
+for proxy in (turned, Triangulate(Input=turned), Reflect(Input=plate), GroupDatasets(Input=[plate, turned]),
+              AppendGeometry(Input=[plate, Triangulate(Input=mould)]), AppendGeometry(Input=[plate, Sphere()])):
+    check(proxy, coordinates.UNKNOWN)
+check_files(turned, coordinates.UNKNOWN)
+
+# mirrored: refused, or named
+mirror = Mirror(Input=skull, PlaneMethod="Given", Normal=[1, 0, 0])
+surface = DepthMapSurface(Input=BSplineIsoRayCaster(Input=mirror, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9]))
+for proxy in (mirror, surface):
+    check(proxy, coordinates.PATIENT + coordinates.MIRRORED)
+    assert not views.in_patient_coordinates(servermanager.Fetch(proxy))
+try:
+    save_solid(output("Coordinates.stl"), surface)
+    raise AssertionError("a mirrored surface")
+except PipelineError as error:
+    assert "mirror image" in str(error) and "allow_mirrored" in str(error), error
+assert not os.path.exists(output("Coordinates.stl"))
+record = save_solid(output("Coordinates.stl"), surface, allow_mirrored=True)
+assert record["coordinates"] == "patient, DICOM LPS, mirrored"
+
+# landmarks warp an image to where their targets are; what comes from elsewhere is unknown
+points = PointSource(NumberOfPoints=20, Radius=40)
+check(RBFImageWarp(Input=skull, Landmarks=points, Targets=points), coordinates.UNKNOWN)
+# tracked slices have columns, rows and slice numbers, also of a patient's volume
+for proxy in (Wavelet(), Sphere(), PhantomSweep(Input=skull, NumberOfSlices=3)):
+    check(proxy, coordinates.UNKNOWN)
+assert save_solid(output("Coordinates.stl"), Sphere())["coordinates"] == coordinates.UNKNOWN
+
+# the mark is in files of ParaView's own formats
+for name, proxy, expected in (("Coordinates.vti", skull, coordinates.PATIENT), ("Coordinates.vts", press, coordinates.PRESS),
+                              ("Coordinates.vtp", plate, coordinates.PATIENT)):
+    SaveData(output(name), proxy=proxy, DataMode="Binary")
+    check(OpenDataFile(output(name)), expected)
+print("ok")
