@@ -306,6 +306,7 @@ int vtkLacunaImplantPlate::RequestData(
     std::vector<double> axes;
     std::vector<double> bone;
     std::vector<double> land;
+    std::string unmeasured;
     for (std::size_t k = 0; k < plate.Holes.size(); ++k)
     {
       const lacuna::PlateHole& hole = plate.Holes[k];
@@ -322,6 +323,17 @@ int vtkLacunaImplantPlate::RequestData(
             lacuna::FormatNumber(this->MinimumBoneThickness) + " mm)";
         vtkWarningMacro(<< "screw hole " << k + 1 << " " << found);
       }
+      if (std::isnan(bone.back()))
+      {
+        unmeasured += (unmeasured.empty() ? "" : ", ") + std::to_string(k + 1);
+      }
+    }
+    if (!unmeasured.empty() && this->MinimumBoneThickness > 0)
+    {
+      vtkWarningMacro(<< "the thickness of the bone under screw hole " << unmeasured
+                      << " was not measured, so it is not known whether it holds a screw; set "
+                         "ComputeThickness of B-Spline Iso Ray Caster, or MinimumBoneThickness 0 "
+                         "not to be told");
     }
     const lacuna::Vec3 tightest = toWorld.Point(plate.MinimumRadiusPoint);
     vtkLacunaFieldData::Set(output, "Volume", { plate.Volume }, 1);

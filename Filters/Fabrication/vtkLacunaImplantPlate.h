@@ -36,7 +36,8 @@
  * | DrainageHoleCount      | 1          |                                                        |
  *
  * Warnings: several defects, islands, a screw hole over the defect or over bone thinner than
- * MinimumBoneThickness (needs ComputeThickness of vtkLacunaBSplineIsoRayCaster), an overlap inwards.
+ * MinimumBoneThickness or not measured (by ComputeThickness of vtkLacunaBSplineIsoRayCaster), an
+ * overlap inwards.
  * Errors: no filled defect, a perspective map, a surface that bends with a radius below Thickness on
  * the side of the offset, holes that do not fit, properties out of range.
  *
@@ -146,7 +147,7 @@ public:
   vtkGetMacro(CountersinkAngle, double);
   ///@}
   ///@{
-  /** mm: screw holes over thinner bone are warned of. Default 3. */
+  /** mm: screw holes over thinner bone, or over bone not measured, are warned of. Default 3. */
   vtkSetMacro(MinimumBoneThickness, double);
   vtkGetMacro(MinimumBoneThickness, double);
   ///@}

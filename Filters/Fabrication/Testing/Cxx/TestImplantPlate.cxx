@@ -155,6 +155,20 @@ void TestHoles()
   const auto steps = vtkLacunaProvenance::Get(plate);
   LACUNA_CHECK(!steps.empty() && steps.back().find("HoleDiameter=1.6") != std::string::npos);
 
+  // bone that was not measured is not passed over
+  LACUNA_CHECK(!messages->HasWarning("was not measured"));
+  auto unmeasured = FilledMap(geometry, disc);
+  unmeasured->GetPointData()->RemoveArray("Thickness");
+  filter->SetInputData(unmeasured);
+  filter->SetMinimumBoneThickness(0);
+  filter->Update();
+  LACUNA_CHECK(std::isnan(GetField(plate, "HoleBoneThickness", 1)));
+  LACUNA_CHECK(!messages->HasWarning("was not measured"));
+  filter->SetMinimumBoneThickness(3);
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("screw hole 1, 2 was not measured"));
+  LACUNA_CHECK(messages->HasWarning("ComputeThickness"));
+
   filter->SetSide(vtkLacunaImplantPlate::Inward);
   filter->Update();
   LACUNA_CHECK(messages->HasWarning("overlaps the bone"));
