@@ -68,12 +68,12 @@ public:
   vtkGetMacro(FloorShape, int);
   ///@}
   ///@{
-  /** mm from the fit to the floor of the defect, > 0. Default 10. */
+  /** mm from the fit to the floor of the defect, above 0 to 1000. Default 10. */
   vtkSetMacro(DefectDepth, double);
   vtkGetMacro(DefectDepth, double);
   ///@}
   ///@{
-  /** mm of base below floor and bone, > 0. Default 5. */
+  /** mm of base below floor and bone, above 0 to 1000. Default 5. */
   vtkSetMacro(BaseThickness, double);
   vtkGetMacro(BaseThickness, double);
   ///@}

@@ -12,17 +12,19 @@ namespace lacuna
 //------------------------------------------------------------------------------
 void CheckDefectModelOptions(const DefectModelOptions& o)
 {
-  const auto check = [](const char* name, double value, bool zero)
+  const auto check = [](const char* name, double value, bool right, const std::string& range)
   {
-    if (!std::isfinite(value) || value < 0 || (value == 0 && !zero))
+    if (!std::isfinite(value) || !right)
     {
-      throw std::invalid_argument(std::string(name) + " is " + FormatNumber(value) +
-        "; it must be a number of mm " + (zero ? "from 0" : "above 0"));
+      throw std::invalid_argument(
+        std::string(name) + " is " + FormatNumber(value) + "; it must be a number of mm " + range);
     }
   };
-  check("Margin", o.Margin, true);
-  check("DefectDepth", o.DefectDepth, false);
-  check("BaseThickness", o.BaseThickness, false);
-  check("MaximumHeight", o.MaximumHeight, true);
+  const std::string block = "above 0 and at most " + FormatNumber(LargestBlock);
+  check("Margin", o.Margin, o.Margin >= 0, "from 0");
+  check("DefectDepth", o.DefectDepth, o.DefectDepth > 0 && o.DefectDepth <= LargestBlock, block);
+  check("BaseThickness", o.BaseThickness, o.BaseThickness > 0 && o.BaseThickness <= LargestBlock,
+    block);
+  check("MaximumHeight", o.MaximumHeight, o.MaximumHeight >= 0, "from 0");
 }
 }

@@ -22,6 +22,9 @@ struct DefectModelOptions
   double MaximumHeight = 0; ///< mm from the highest point to the base; 0: as the bone needs
 };
 
+/// mm, of DefectDepth and of BaseThickness; the other two are limited by the map and by the bone.
+constexpr double LargestBlock = 1000;
+
 /// Throws std::invalid_argument that names the option, its value and what would be right.
 void CheckDefectModelOptions(const DefectModelOptions& options);
 }
