@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaDicomText.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -95,8 +96,12 @@ std::optional<std::vector<double>> ParseDicomNumbers(std::string_view text, std:
 //------------------------------------------------------------------------------
 std::string DicomTextToUtf8(std::string_view text, std::string_view characterSet)
 {
-  const std::string set = TrimDicomText(characterSet);
   const std::string trimmed = TrimDicomText(text);
+  if (std::all_of(trimmed.begin(), trimmed.end(), [](char c) { return c >= 0x20 && c < 0x7F; }))
+  {
+    return trimmed; // most values of many files
+  }
+  const std::string set = TrimDicomText(characterSet);
   std::string result;
   for (std::size_t i = 0; i < trimmed.size();)
   {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHounsfield.h"
 
+#include "lacunaWide.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,9 +47,15 @@ struct WholeScale
   Stored PaddingLast;
 };
 
+// The pixels of block, or those that lie where their values go when these are as wide.
 template <bool HasSlope, bool HasPadding, class Stored, class T>
-void ConvertBlock(const Stored* block, std::int64_t size, WholeScale<Stored> scale, T* values)
+LACUNA_WIDE void ConvertBlock(
+  const Stored* block, std::int64_t size, WholeScale<Stored> scale, T* values)
 {
+  if constexpr (sizeof(Stored) == sizeof(T))
+  {
+    block = reinterpret_cast<const Stored*>(values); // seen here, it hinders no vectors
+  }
   using Bits = std::make_unsigned_t<T>;
   using Unsigned = std::make_unsigned_t<Stored>;
   const auto intercept = static_cast<Bits>(scale.Intercept);
@@ -192,14 +200,20 @@ void HounsfieldScale::ConvertWhole(const unsigned char* pixels, std::int64_t cou
     const auto convert = this->Slope == 1
       ? (padding ? ConvertBlock<false, true, Stored, T> : ConvertBlock<false, false, Stored, T>)
       : (padding ? ConvertBlock<true, true, Stored, T> : ConvertBlock<true, false, Stored, T>);
-    // by way of a block, since values may lie where the pixels are
+    // in blocks that stay in the cache; pixels may lie where the values go
     constexpr std::int64_t BlockSize = 4096;
-    std::array<Stored, BlockSize> block;
+    constexpr auto Width = static_cast<std::int64_t>(sizeof(Stored));
+    constexpr bool InPlace = sizeof(Stored) == sizeof(T);
+    std::array<Stored, InPlace ? 1 : BlockSize> block;
     for (std::int64_t begin = 0; begin < count; begin += BlockSize)
     {
       const std::int64_t size = std::min(BlockSize, count - begin);
-      const auto width = static_cast<std::int64_t>(sizeof(Stored));
-      std::memcpy(block.data(), pixels + begin * width, static_cast<std::size_t>(size * width));
+      const unsigned char* source = pixels + begin * Width;
+      void* target = InPlace ? static_cast<void*>(values + begin) : block.data();
+      if (source != target)
+      {
+        std::memcpy(target, source, static_cast<std::size_t>(size * Width));
+      }
       convert(block.data(), size, scale, values + begin);
     }
   }
