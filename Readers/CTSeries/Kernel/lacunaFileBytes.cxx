@@ -4,15 +4,18 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
 #include <new>
 #include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace lacuna
 {
 namespace
 {
-constexpr std::int64_t WindowSize = 8192;                  // most headers fit
-constexpr std::size_t MostInflated = std::size_t(1) << 30; // two bytes can stand for 2 KiB
+constexpr std::int64_t WindowSize = 8192; // most headers fit
 constexpr std::size_t InflateStep = std::size_t(1) << 20;
 
 // Frees zlib's state whatever happens.
@@ -34,18 +37,27 @@ struct Inflater
 }
 
 //------------------------------------------------------------------------------
+// No stream of the library: of hundreds of files, each is opened twice.
 FileBytes::FileBytes(const std::string& path)
   : Path(path)
+  , File(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) // nor waits for a pipe
 {
-  this->File.rdbuf()->pubsetbuf(nullptr, 0); // the window is the buffer
-  this->File.open(path, std::ios::binary);
-  this->File.seekg(0, std::ios::end);
-  const std::streamoff size = this->File.tellg();
-  if (!this->File || size < 0)
+  struct stat state = {};
+  if (this->File < 0 || ::fstat(this->File, &state) != 0 || !S_ISREG(state.st_mode))
   {
+    if (this->File >= 0)
+    {
+      ::close(this->File);
+    }
     throw std::runtime_error(path + ": cannot be read");
   }
-  this->Size = size;
+  this->Size = state.st_size;
+}
+
+//------------------------------------------------------------------------------
+FileBytes::~FileBytes()
+{
+  ::close(this->File);
 }
 
 //------------------------------------------------------------------------------
@@ -89,18 +101,23 @@ bool FileBytes::Read(std::int64_t offset, std::int64_t count, unsigned char* byt
     std::copy_n(inflated.Bytes.data() + (offset + fromFile - inflated.First), count - fromFile,
       bytes + fromFile);
   }
-  if (fromFile == 0)
+  while (fromFile > 0)
   {
-    return true;
+    const ssize_t got = ::pread(this->File, bytes, static_cast<std::size_t>(fromFile), offset);
+    if (got == 0 || (got < 0 && errno != EINTR))
+    {
+      return false;
+    }
+    const std::int64_t step = std::max<std::int64_t>(0, got);
+    bytes += step;
+    offset += step;
+    fromFile -= step;
   }
-  this->File.clear();
-  this->File.seekg(offset);
-  this->File.read(reinterpret_cast<char*>(bytes), fromFile);
-  return this->File.gcount() == fromFile;
+  return true;
 }
 
 //------------------------------------------------------------------------------
-void FileBytes::Inflate(std::int64_t first)
+void FileBytes::Inflate(std::int64_t first, std::size_t most)
 {
   const auto inflated = std::make_shared<InflatedBytes>();
   inflated->First = first;
@@ -124,11 +141,12 @@ void FileBytes::Inflate(std::int64_t first)
     }
     if (done == bytes.size())
     {
-      if (done >= MostInflated)
+      if (done >= most)
       {
-        throw std::runtime_error(this->Path + ": is deflated and holds more than 1 GiB");
+        throw std::runtime_error(
+          this->Path + ": is deflated and holds more than " + std::to_string(most >> 20) + " MiB");
       }
-      bytes.resize(done + std::min(std::max(InflateStep, done / 2), MostInflated - done));
+      bytes.resize(done + std::min(std::max(InflateStep, done / 2), most - done));
     }
     zlib.next_out = bytes.data() + done;
     zlib.avail_out = static_cast<uInt>(bytes.size() - done);

@@ -4,8 +4,8 @@
 #ifndef lacunaFileBytes_h
 #define lacunaFileBytes_h
 
+#include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,8 +22,13 @@ struct InflatedBytes
 class FileBytes
 {
 public:
-  /// Throws std::runtime_error naming the file when it cannot be opened.
+  static constexpr std::size_t MostInflated = std::size_t(1) << 30; ///< bytes
+
+  /// Throws std::runtime_error naming the file when it cannot be opened or is no regular file.
   explicit FileBytes(const std::string& path);
+  ~FileBytes();
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
 
   /// Bytes at hand, with what was inflated.
   std::int64_t GetSize() const { return this->Size; }
@@ -33,15 +38,16 @@ public:
   bool Read(std::int64_t offset, std::int64_t count, unsigned char* bytes);
 
   /// The file is a deflate stream (RFC 1951) from first on; inflated bytes take its place. Throws
-  /// std::runtime_error naming the file when it is cut off, damaged or gives more than 1 GiB.
-  void Inflate(std::int64_t first);
+  /// std::runtime_error naming the file when it is cut off, damaged or gives more than most bytes, of
+  /// which no more are ever held: two bytes of a stream can stand for 2 KiB.
+  void Inflate(std::int64_t first, std::size_t most = MostInflated);
   /// Of Inflate; it may be kept and given to another FileBytes of the same file.
   std::shared_ptr<const InflatedBytes> GetInflated() const { return this->Inflated; }
   void SetInflated(std::shared_ptr<const InflatedBytes> inflated);
 
 private:
   std::string Path;
-  std::ifstream File;
+  int File = -1; // descriptor
   std::int64_t Size = 0;
   std::int64_t First = 0; // of the bytes at hand
   std::vector<unsigned char> Window;

@@ -25,6 +25,7 @@ public:
   std::string Write(const std::string& bytes, const std::string& name = "file") const
   {
     const std::string path = (this->Path / name).string();
+    std::filesystem::remove(path); // ext4 writes out at once what is cut and filled again
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }

@@ -8,6 +8,7 @@
 
 #include <random>
 #include <stdexcept>
+#include <sys/stat.h>
 
 using namespace lacuna;
 
@@ -99,6 +100,20 @@ TEST(DicomDataSet, RefusesDepth)
   }
   EXPECT_THROW(
     ReadDicomFrames(folder.Write(Head("1.2.840.10008.1.2.1") + deep)), std::runtime_error);
+}
+
+// A pipe is refused at once, not waited for; nor is a folder a file.
+TEST(DicomDataSet, RefusesWhatIsNoFile)
+{
+  const Temporary folder;
+  const std::string pipe = (folder.Path / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : { pipe, folder.Path.string(), pipe + "-none" })
+  {
+    EXPECT_THROW(ReadDicomFrames(path), std::runtime_error);
+    EXPECT_FALSE(IsDicomFile(path));
+  }
+  EXPECT_FALSE(IsCTFileOrFolder(pipe));
 }
 
 TEST(DicomFolder, RemembersAndNotices)
