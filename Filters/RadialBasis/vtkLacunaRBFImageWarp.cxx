@@ -4,6 +4,7 @@
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
+#include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -12,6 +13,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaCoordinates.h"
+#include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -27,6 +29,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -35,6 +38,9 @@ vtkStandardNewMacro(vtkLacunaRBFImageWarp);
 
 namespace
 {
+// Of a voxel: so near to one a place is on it, and its neighbours have no say.
+constexpr double RoundOff = 1e-9;
+
 // Positions in mm along the image's own axes, from its first voxel: there its grid is regular
 // whatever its direction matrix.
 class Geometry
@@ -228,6 +234,67 @@ private:
   std::array<std::vector<double>, Dimension> Way;
 };
 
+// Which places of the image have grey levels that count, by its vtkValidPointMask.
+class ValidPlaces
+{
+public:
+  ValidPlaces(vtkImageData* image, int interpolation)
+    : Interpolation(interpolation)
+  {
+    image->GetDimensions(this->Size);
+    image->GetExtent(this->Extent);
+    vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
+    for (vtkIdType i = 0; mask && i < mask->GetNumberOfTuples(); ++i)
+    {
+      this->Mask.push_back(mask->GetComponent(i, 0) != 0 ? 1 : 0);
+    }
+  }
+
+  // Whether all voxels that interpolation at a place needs are valid: those whose weight is not 0.
+  bool Has(const double* index) const
+  {
+    if (this->Mask.empty())
+    {
+      return true;
+    }
+    int first[3];
+    int last[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      const double place = index[c] - this->Extent[2 * c];
+      const bool nearest = this->Interpolation == vtkLacunaRBFImageWarp::Nearest;
+      const double below = std::floor(nearest ? place + 0.5 : place);
+      const int wide = this->Interpolation == vtkLacunaRBFImageWarp::CubicInterpolation ? 1 : 0;
+      const bool between = !nearest && place > below;
+      first[c] = this->Clamp(static_cast<int>(below) - (between ? wide : 0), c);
+      last[c] = this->Clamp(static_cast<int>(below) + (between ? 1 + wide : 0), c);
+    }
+    for (std::int64_t k = first[2]; k <= last[2]; ++k)
+    {
+      for (std::int64_t j = first[1]; j <= last[1]; ++j)
+      {
+        const std::int64_t row = (k * this->Size[1] + j) * this->Size[0];
+        for (std::int64_t i = first[0]; i <= last[0]; ++i)
+        {
+          if (this->Mask[row + i] == 0)
+          {
+            return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  int Clamp(int i, int axis) const { return std::min(std::max(i, 0), this->Size[axis] - 1); }
+
+  int Interpolation;
+  int Size[3];
+  int Extent[6];
+  std::vector<char> Mask; // empty: all are valid
+};
+
 struct Sampling
 {
   int Interpolation;
@@ -246,7 +313,7 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
   warped->SetNumberOfComponents(components);
   warped->SetNumberOfTuples(count);
   vtkNew<vtkCharArray> valid;
-  valid->SetName("vtkValidPointMask");
+  valid->SetName(vtkLacunaDepthMap::MaskName);
   valid->SetNumberOfTuples(count);
 
   vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
@@ -257,6 +324,7 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
   interpolator->SetOutValue(sampling.OutsideValue);
   interpolator->Initialize(input);
   interpolator->Update();
+  const ValidPlaces places(image, sampling.Interpolation);
   const bool integral = scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE;
   const double low = scalars->GetDataTypeMin();
   const double high = scalars->GetDataTypeMax();
@@ -274,10 +342,17 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
         {
           double index[3];
           mapping.GetIndex(i, index);
-          const bool inside = interpolator->CheckBoundsIJK(index);
-          if (inside)
+          for (double& place : index)
+          {
+            const double voxel = std::floor(place + 0.5);
+            place = std::abs(place - voxel) <= RoundOff ? voxel : place;
+          }
+          bool known = interpolator->CheckBoundsIJK(index) && places.Has(index);
+          if (known)
           {
             interpolator->InterpolateIJK(index, tuple.data());
+            known =
+              std::none_of(tuple.begin(), tuple.end(), [](double v) { return std::isnan(v); });
           }
           else
           {
@@ -289,12 +364,13 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
               integral ? std::floor(std::min(std::max(tuple[k], low), high) + 0.5) : tuple[k];
             warped->SetComponent(i, k, value);
           }
-          valid->SetValue(i, inside ? 1 : 0);
+          valid->SetValue(i, known ? 1 : 0);
           folded[block] += mapping.IsFolded(i) ? 1 : 0;
         }
       }
     });
-  output->GetPointData()->Initialize();
+  output->GetPointData()->Initialize(); // other arrays are not warped
+  output->GetCellData()->Initialize();
   output->GetPointData()->SetScalars(warped);
   output->GetPointData()->AddArray(valid);
   std::int64_t sum = 0;
@@ -350,6 +426,11 @@ int vtkLacunaRBFImageWarp::RequestData(
       if (!scalars)
       {
         throw std::runtime_error("the image has no active point scalars");
+      }
+      if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
+      {
+        throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
+                                 "array that shall be warped as the active one");
       }
       if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
       {

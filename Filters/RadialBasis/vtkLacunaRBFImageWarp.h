@@ -14,7 +14,9 @@
  * is reproduced exactly; with Smoothing above 0 landmarks are met approximately only.
  *
  * Output: the warped active scalars under their name; vtkValidPointMask (char, 1 where the voxel
- * shows a place in the input). Field data:
+ * shows a valid place of the input: all voxels that its grey level is interpolated from are 1 in the
+ * input's own vtkValidPointMask, if it has one, and none is NaN). Other arrays of the input are left
+ * out, since they are not warped. Field data:
  * | array          | components | meaning                                                        |
  * |----------------|------------|----------------------------------------------------------------|
  * | NodeCount      | 1          | landmark pairs at different places                             |
@@ -85,7 +87,7 @@ public:
   ///@}
 
   ///@{
-  /** Grey level of voxels that show no place of the input. Default 0. */
+  /** Grey level of voxels that show no (valid) place of the input. Default 0. */
   vtkSetMacro(OutsideValue, double);
   vtkGetMacro(OutsideValue, double);
   ///@}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warps by landmarks against VTK's thin plate spline, and errors.
 #include "lacunaCheck.h"
+#include "vtkCellData.h"
+#include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
@@ -178,6 +180,89 @@ void CheckShift()
   }
 }
 
+// A mask with an invalid block and single voxels, seen from every kind of place between voxels.
+vtkSmartPointer<vtkCharArray> MakeMask(vtkImageData* image)
+{
+  auto mask = vtkSmartPointer<vtkCharArray>::New();
+  mask->SetName("vtkValidPointMask");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    const vtkIdType column = i % 40;
+    const vtkIdType row = i / 40 % 30;
+    mask->InsertNextValue((column > 24 && row < 9) || i % 131 == 0 ? 0 : 1);
+  }
+  return mask;
+}
+
+// What is interpolated from an invalid voxel is invalid: just there where NaN in place of the
+// invalid grey levels would have spread to.
+void CheckMask(int layers, int interpolation, bool still)
+{
+  const vtkSmartPointer<vtkImageData> image = MakeImage(layers);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  const auto warp = [&](vtkImageData* input)
+  {
+    vtkNew<vtkLacunaRBFImageWarp> filter;
+    filter->SetInputData(0, input);
+    filter->SetInputData(1, landmarks);
+    filter->SetInputData(2, still ? landmarks : targets);
+    filter->SetInterpolation(interpolation);
+    filter->SetOutsideValue(-1000);
+    filter->Update();
+    auto output = vtkSmartPointer<vtkImageData>::New();
+    output->ShallowCopy(filter->GetOutput());
+    return output;
+  };
+  const vtkSmartPointer<vtkCharArray> mask = MakeMask(image);
+  const vtkSmartPointer<vtkImageData> unmasked = warp(image);
+  vtkNew<vtkImageData> withNaN;
+  withNaN->DeepCopy(image);
+  vtkDataArray* spoilt = withNaN->GetPointData()->GetScalars();
+  for (vtkIdType i = 0; i < mask->GetNumberOfTuples(); ++i)
+  {
+    if (mask->GetValue(i) == 0)
+    {
+      spoilt->SetComponent(i, 1, std::nan(""));
+    }
+  }
+  const vtkSmartPointer<vtkImageData> spread = warp(withNaN);
+  image->GetPointData()->AddArray(mask);
+  vtkNew<vtkDoubleArray> other;
+  other->SetName("Other");
+  other->SetNumberOfTuples(image->GetNumberOfPoints());
+  image->GetPointData()->AddArray(other);
+  vtkNew<vtkDoubleArray> cells;
+  cells->SetName("Cells");
+  cells->SetNumberOfTuples(image->GetNumberOfCells());
+  image->GetCellData()->AddArray(cells);
+  const vtkSmartPointer<vtkImageData> masked = warp(image);
+
+  LACUNA_CHECK(masked->GetPointData()->GetNumberOfArrays() == 2);
+  LACUNA_CHECK(masked->GetCellData()->GetNumberOfArrays() == 0);
+  vtkDataArray* valid = masked->GetPointData()->GetArray("vtkValidPointMask");
+  vtkDataArray* place = masked->GetPointData()->GetArray("Place");
+  vtkIdType lost = 0;
+  for (vtkIdType i = 0; i < masked->GetNumberOfPoints(); ++i)
+  {
+    // VTK's cubic interpolation multiplies NaN by 0 on a voxel: there the mask itself is expected.
+    const bool within =
+      unmasked->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(i, 0) != 0;
+    const bool known = still
+      ? mask->GetValue(i) != 0
+      : within && !std::isnan(spread->GetPointData()->GetArray("Place")->GetComponent(i, 1));
+    lost += within && !known ? 1 : 0;
+    LACUNA_CHECK((valid->GetComponent(i, 0) != 0) == known);
+    LACUNA_CHECK(place->GetComponent(i, 0) ==
+      (known ? unmasked->GetPointData()->GetArray("Place")->GetComponent(i, 0) : -1000));
+    LACUNA_CHECK(still ||
+      known == (spread->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(i, 0) != 0));
+  }
+  LACUNA_CHECK(lost > masked->GetNumberOfPoints() / 20);
+  LACUNA_CHECK(lost < masked->GetNumberOfPoints() * 3 / 4);
+}
+
 struct Case
 {
   const char* Name;
@@ -246,6 +331,25 @@ void CheckErrors()
     }
     LACUNA_CHECK(warp->GetOutput()->GetNumberOfPoints() == 0);
   }
+}
+
+// The mask is no picture.
+void CheckMaskAlone()
+{
+  const vtkSmartPointer<vtkImageData> image = MakeImage(12);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  image->GetPointData()->SetScalars(MakeMask(image));
+  vtkNew<vtkLacunaRBFImageWarp> warp;
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(warp);
+  messages->Watch(warp->GetExecutive());
+  warp->SetInputData(0, image);
+  warp->SetInputData(1, landmarks);
+  warp->SetInputData(2, targets);
+  warp->Update();
+  LACUNA_CHECK(messages->HasError("active scalars are its vtkValidPointMask"));
 }
 
 // Two landmarks that change places fold the image.
@@ -341,6 +445,13 @@ int TestRBFImageWarp(int, char*[])
   CompareWithVTK(12, vtkLacunaRBFImageWarp::Linear);
   CompareWithVTK(12, vtkLacunaRBFImageWarp::ThinPlate);
   CheckShift();
+  for (int interpolation = 0; interpolation < 3; ++interpolation)
+  {
+    CheckMask(12, interpolation, false);
+    CheckMask(1, interpolation, false);
+    CheckMask(12, interpolation, true);
+  }
+  CheckMaskAlone();
   CheckFolds();
   CheckHandedness();
   CheckErrors();
