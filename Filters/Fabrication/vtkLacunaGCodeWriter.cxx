@@ -91,10 +91,17 @@ std::vector<lacuna::GCodeMove> GetMoves(vtkPolyData* path, lacuna::Vec3& start)
 }
 
 //------------------------------------------------------------------------------
+// Of the field data, 0 when there is none. It goes into the file.
 double GetNumber(vtkPolyData* path, const char* name)
 {
   vtkDataArray* array = vtkLacunaFieldData::Find(path, name, 1, 1);
-  return array ? array->GetComponent(0, 0) : 0;
+  const double value = array ? array->GetComponent(0, 0) : 0;
+  if (!(std::abs(value) <= 1e9))
+  {
+    throw std::runtime_error(std::string("field data ") + name + " of the path is " +
+      lacuna::FormatNumber(value) + "; write the output of Milling Tool Path");
+  }
+  return value;
 }
 
 std::string DescribeTool(vtkPolyData* path, int number)
@@ -173,6 +180,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
     throw std::runtime_error("the path has no SpindleSpeed; set SpindleSpeed");
   }
   options.LineNumbers = this->LineNumbers;
+  options.ArcTolerance = this->ArcTolerance;
   options.HasEnvelope = !std::equal(NoEnvelope, NoEnvelope + 6, this->Envelope);
   std::copy_n(this->Envelope, 6, options.Envelope);
   if (this->Header && *this->Header)
@@ -187,6 +195,11 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   options.Comments = { version + " G-Code Writer",
     vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), "mm, press coordinates, tool tip",
     DescribeTool(path, this->ToolNumber) };
+  if (this->ArcTolerance > 0)
+  {
+    options.Comments.push_back("Motions joined to arcs, at most " +
+      lacuna::FormatNumber(this->ArcTolerance) + " mm above the path");
+  }
   if (mirrored)
   {
     options.Comments.emplace_back("MIRROR IMAGE, left is right");
@@ -225,6 +238,7 @@ void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "WorkOffset: " << this->WorkOffset << "\n";
   os << indent << "SpindleSpeed: " << this->SpindleSpeed << "\n";
   os << indent << "LineNumbers: " << this->LineNumbers << "\n";
+  os << indent << "ArcTolerance: " << this->ArcTolerance << "\n";
   os << indent << "Envelope: " << this->Envelope[0] << " " << this->Envelope[1] << " "
      << this->Envelope[2] << " " << this->Envelope[3] << " " << this->Envelope[4] << " "
      << this->Envelope[5] << "\n";

@@ -4,8 +4,8 @@
  * @brief a tool path as a program for a milling machine
  *
  * Writes poly lines with the point arrays Motion and FeedRate, the output of
- * vtkLacunaMillingToolPath, as G-code for a Fanuc 0-M control: G21 G90, straight motions only,
- * coordinates with a decimal point and at most three decimals (x and y to the nearest, z up), modal
+ * vtkLacunaMillingToolPath, as G-code for a Fanuc 0-M control: G21 G90, straight motions (and arcs
+ * if ArcTolerance asks for them), coordinates with a decimal point and at most three decimals (x and y to the nearest, z up), modal
  * words left out when they do not change. See lacuna::MakeGCode for what it refuses.
  *
  * Comments at the top name Lacuna's version, the tool, the steps of the provenance and the day.
@@ -67,6 +67,13 @@ public:
   vtkBooleanMacro(LineNumbers, bool);
   ///@}
   ///@{
+  /** mm. Above 0, 0.001 to 1: cuts in upright planes along x or y are joined to arcs (G02, G03) and
+   * longer straight motions, which lie on them or at most this much above, so that they cut no deeper
+   * (0.25 um, from rounding the arcs' centres). Default 0: off. */
+  vtkSetMacro(ArcTolerance, double);
+  vtkGetMacro(ArcTolerance, double);
+  ///@}
+  ///@{
   /** Least and largest x, y and z, mm, that the tool's tip may reach; a path that leaves them is
    * refused. Default 1 -1 1 -1 1 -1: no limits. */
   vtkSetVector6Macro(Envelope, double);
@@ -112,6 +119,7 @@ private:
   int WorkOffset = 54;
   double SpindleSpeed = 0;
   bool LineNumbers = false;
+  double ArcTolerance = 0;
   double Envelope[6] = { 1, -1, 1, -1, 1, -1 };
   bool AllowMirrored = false;
   char* Header = nullptr;

@@ -114,7 +114,8 @@ assert "T03 M06" in text and "(T3 BALL END, DIAMETER 8 MM)" in text and "S6000 M
 writer = CreateWriter(output("Options.nc"), path)
 assert writer.GetXMLLabel() == "G-Code Writer", writer.GetXMLLabel()
 plain = lacuna.vtkLacunaGCodeWriter()
-for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers", "AllowMirrored"):
+for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers", "AllowMirrored",
+             "ArcTolerance"):
     assert getattr(writer, name) == getattr(plain, "Get" + name)(), name
 assert list(writer.Envelope) == list(plain.GetEnvelope()) and not writer.Header and not writer.Footer
 writer.LineNumbers = 1
@@ -124,6 +125,13 @@ writer.UpdatePropertyInformation()
 assert writer.GetPropertyValue("FileSize") == os.path.getsize(output("Options.nc"))
 with open(output("Options.nc"), encoding="ascii") as file:
     assert "\nN10 G21 G90 (MINE)\nN20 T01 M06\n" in file.read()
+
+# Motions joined to arcs: a shorter program
+file = output("Arcs.nc")
+SaveData(file, path, ArcTolerance=0.005)
+with open(file, encoding="ascii") as program:
+    arcs = program.read()
+assert len(arcs.splitlines()) < 0.7 * len(text.splitlines()) and "\nG18\nG0" in arcs and "G18" not in text
 
 # Refused: outside of the envelope, no path. No file is left.
 vtkObject.GlobalWarningDisplayOff()

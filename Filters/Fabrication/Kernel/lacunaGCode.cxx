@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaGCode.h"
 
+#include "lacunaArcFit.h"
 #include "lacunaParameterText.h"
 
-#include <array>
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -18,7 +20,7 @@ constexpr std::size_t CommentLength = 64;
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
 constexpr const char* AxisNames = "XYZ";
 
-using Units = std::array<std::int64_t, 3>; // micrometres
+using Units = Micrometres;
 
 [[noreturn]] void Throw(const std::string& what)
 {
@@ -179,6 +181,10 @@ void CheckOptions(const GCodeOptions& o)
   check("ToolNumber", o.ToolNumber, 1, 99);
   check("WorkOffset", o.WorkOffset, 54, 59);
   check("SpindleSpeed", o.SpindleSpeed, 1, 99999);
+  if (o.ArcTolerance != 0)
+  {
+    check("ArcTolerance", o.ArcTolerance, 0.001, 1);
+  }
   for (int c = 0; o.HasEnvelope && c < 3; ++c)
   {
     if (!(o.Envelope[2 * c] <= o.Envelope[2 * c + 1]))
@@ -250,45 +256,139 @@ public:
   void Move(bool rapid, const Units& to, std::int64_t feed, int first, int last)
   {
     std::string block;
-    const auto word = [&block](const std::string& text)
-    { block += (block.empty() ? "" : " ") + text; };
-    const int mode = rapid ? 0 : 1;
-    if (mode != this->Mode)
-    {
-      word(rapid ? "G00" : "G01");
-    }
-    bool moves = false;
     for (int c = first; c < last; ++c)
     {
       if (to[c] != this->At[c])
       {
-        word(AxisNames[c] + FormatUnits(to[c]));
+        AddWord(block, AxisNames[c] + FormatUnits(to[c]));
         this->At[c] = to[c];
-        moves = true;
       }
     }
-    if (!moves)
+    if (!block.empty())
     {
-      return;
+      this->AddMotion(rapid ? 0 : 1, block, rapid ? this->Feed : feed);
     }
-    this->Mode = mode;
-    if (!rapid && feed != this->Feed)
+  }
+
+  // To a point from where it is.
+  void MoveOnArc(const ArcFit::Motion& arc, const Units& to, std::int64_t feed)
+  {
+    const int along = 1 - arc.Normal;
+    this->SetPlane(arc.Normal == 1 ? 18 : 19);
+    // counter-clockwise (G03) seen from the end of the normal: from z to x, from y to z
+    const bool forwards = to[along] > this->At[along];
+    const bool counter = (arc.Normal == 1) == (forwards == arc.Upper);
+    std::string block;
+    for (const int c : { along, 2 })
     {
-      word("F" + FormatUnits(feed));
+      AddWord(block, AxisNames[c] + FormatUnits(to[c]));
+    }
+    for (const int c : { along, 2 })
+    {
+      AddWord(block, "IJK"[c] + FormatUnits(arc.Centre[c] - this->At[c]));
+    }
+    this->At = to;
+    this->AddMotion(counter ? 3 : 2, block, feed);
+  }
+
+  void SetPlane(int plane)
+  {
+    if (plane != this->Plane)
+    {
+      this->Add("G" + std::to_string(plane));
+      this->Plane = plane;
+    }
+  }
+
+private:
+  static void AddWord(std::string& block, const std::string& word)
+  {
+    block += (block.empty() ? "" : " ") + word;
+  }
+
+  void AddMotion(int mode, std::string block, std::int64_t feed)
+  {
+    if (mode != this->Mode)
+    {
+      block.insert(0, "G0" + std::to_string(mode) + " ");
+      this->Mode = mode;
+    }
+    if (feed != this->Feed)
+    {
+      AddWord(block, "F" + FormatUnits(feed));
       this->Feed = feed;
     }
     this->Add(block);
   }
 
-private:
   static constexpr std::int64_t Unknown = std::numeric_limits<std::int64_t>::min();
   GCodeProgram& Program;
   bool Numbers;
   int Number = 0;
   int Mode = -1;
+  int Plane = 17; // what controls are in unless told otherwise
   Units At{ Unknown, Unknown, Unknown };
   std::int64_t Feed = Unknown;
 };
+//------------------------------------------------------------------------------
+// Where the path is before, between and after the motions, which it judges.
+std::vector<Units> GetPoints(
+  const Units& first, const std::vector<GCodeMove>& moves, const GCodeOptions& options)
+{
+  std::vector<Units> points{ first };
+  points.reserve(moves.size() + 1);
+  for (std::size_t k = 0; k < moves.size(); ++k)
+  {
+    const GCodeMove& move = moves[k];
+    const Units& at = points.back();
+    const Units to = Round(move.To, k + 1, options);
+    if (move.Rapid && to[2] != at[2] && (to[0] != at[0] || to[1] != at[1]))
+    {
+      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) +
+        ", is rapid and neither upright nor level: a control does not run such a motion along a "
+        "line. Go up first, then level, then down");
+    }
+    if (!move.Rapid && !(move.Feed >= 0.001 && move.Feed <= 99999))
+    {
+      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) + ", has a feed of " +
+        FormatNumber(move.Feed) + " mm/min; it must be above 0 and at most 99999");
+    }
+    points.push_back(to);
+  }
+  return points;
+}
+
+//------------------------------------------------------------------------------
+void AddMoves(BlockWriter& writer, const std::vector<Units>& points,
+  const std::vector<GCodeMove>& moves, const GCodeOptions& options)
+{
+  const ArcFit fit(points, 1000 * options.ArcTolerance);
+  const double ceiling =
+    options.HasEnvelope ? 1000 * options.Envelope[5] : std::numeric_limits<double>::infinity();
+  std::size_t same = 0; // the end of the motions that are as fast as this one
+  for (std::size_t k = 0; k < moves.size();)
+  {
+    const GCodeMove& move = moves[k];
+    const std::int64_t feed = move.Rapid ? 0 : std::llround(1000 * move.Feed);
+    if (!move.Rapid && options.ArcTolerance > 0)
+    {
+      for (same = std::max(same, k);
+           same < moves.size() && !moves[same].Rapid && moves[same].Feed == move.Feed;)
+      {
+        ++same;
+      }
+      const std::optional<ArcFit::Motion> joined = fit.Find(k, same);
+      if (joined && joined->Highest <= ceiling)
+      {
+        const Units& to = points[joined->Last];
+        joined->Straight ? writer.Move(false, to, feed, 0, 3) : writer.MoveOnArc(*joined, to, feed);
+        k = joined->Last;
+        continue;
+      }
+    }
+    writer.Move(move.Rapid, points[++k], feed, 0, 3);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -348,25 +448,8 @@ GCodeProgram MakeGCode(
   }
   writer.Move(true, first, 0, 0, 2);
   writer.Move(true, first, 0, 2, 3);
-  Units at = first;
-  for (std::size_t k = 0; k < moves.size(); ++k)
-  {
-    const GCodeMove& move = moves[k];
-    const Units to = Round(move.To, k + 1, options);
-    if (move.Rapid && to[2] != at[2] && (to[0] != at[0] || to[1] != at[1]))
-    {
-      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) +
-        ", is rapid and neither upright nor level: a control does not run such a motion along a "
-        "line. Go up first, then level, then down");
-    }
-    if (!move.Rapid && !(move.Feed >= 0.001 && move.Feed <= 99999))
-    {
-      Throw("motion " + std::to_string(k + 1) + ", to " + Place(move.To) + ", has a feed of " +
-        FormatNumber(move.Feed) + " mm/min; it must be above 0 and at most 99999");
-    }
-    writer.Move(move.Rapid, to, move.Rapid ? 0 : std::llround(1000 * move.Feed), 0, 3);
-    at = to;
-  }
+  AddMoves(writer, GetPoints(first, moves, options), moves, options);
+  writer.SetPlane(17);
   for (const std::string& line : footer)
   {
     writer.Add(line);

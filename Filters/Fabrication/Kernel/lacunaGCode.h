@@ -33,7 +33,10 @@ struct GCodeOptions
   std::string Footer;
   bool HasEnvelope = false;
   double Envelope[6] = { 0, 0, 0, 0, 0, 0 }; ///< least and largest x, y, z that may be reached
-  std::vector<std::string> Comments;         ///< at the top, in any characters
+  /// mm; > 0: cuts in upright planes along x or y are joined to arcs and longer straight motions,
+  /// which lie on them or at most this much above (see ArcFit).
+  double ArcTolerance = 0;
+  std::vector<std::string> Comments; ///< at the top, in any characters
 
   GCodeOptions();
   static const char* DefaultHeader();
@@ -46,7 +49,8 @@ struct GCodeProgram
   std::int64_t Blocks = 0; ///< lines but %, program number and comments
 };
 
-/// A program that starts at start and runs the motions. Metric, absolute, G00 and G01 only. Every
+/// A program that starts at start and runs the motions. Metric, absolute, G00 and G01, and with
+/// ArcTolerance G02 and G03 with I, J, K in the planes G18 and G19, back to G17 at the end. Every
 /// coordinate has a decimal point and at most three decimals: x and y are rounded to the nearest
 /// micrometre, z up, so that rounding takes the tool no deeper into a surface than 0.71 um. Words
 /// that do not change are left out; so are motions to where the tool is. The first blocks after

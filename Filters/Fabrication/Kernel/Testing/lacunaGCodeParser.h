@@ -22,6 +22,7 @@ public:
     bool Rapid;
     std::array<double, 3> To;
     double Feed;
+    bool Arc = false; ///< one of the short steps that an arc is divided into
   };
   std::vector<Step> Steps; ///< where it goes once x, y and z are known
   std::vector<std::string> Comments;
@@ -29,6 +30,8 @@ public:
   int Program = 0;
   int Tool = 0;
   int Blocks = 0;
+  int Arcs = 0;
+  int Plane = 0; ///< at the end
   double Speed = 0;
   bool Ended = false;
 
@@ -121,7 +124,14 @@ private:
       {
         case 0:
         case 1:
+        case 2:
+        case 3:
           this->Mode = code;
+          break;
+        case 17:
+        case 18:
+        case 19:
+          this->Plane = code;
           break;
         case 21:
           this->Metric = true;
@@ -132,7 +142,6 @@ private:
         case 43:
           length = true;
           break;
-        case 17:
         case 40:
         case 49:
         case 80:
@@ -162,6 +171,7 @@ private:
       this->Feed = GetReal(words['F'], line);
       Require(this->Feed > 0, "feed", line);
     }
+    const std::array<double, 3> start = this->At;
     bool moved = false;
     for (int c = 0; c < 3; ++c)
     {
@@ -174,13 +184,58 @@ private:
     }
     if (moved)
     {
-      Require(this->Metric && this->Absolute && this->Mode >= 0, "G21, G90 and G00 or G01", line);
+      Require(this->Metric && this->Absolute && this->Mode >= 0, "G21, G90 and G00 to G03", line);
       Require(this->Mode == 0 || (this->Spindle && this->Feed > 0), "cuts turn and feed", line);
-      if (std::isfinite(this->At[0] + this->At[1] + this->At[2]))
+      if (this->Mode > 1)
+      {
+        this->RunArc(start, words, line);
+      }
+      else if (std::isfinite(this->At[0] + this->At[1] + this->At[2]))
       {
         this->Steps.push_back({ this->Mode == 0, this->At, this->Feed });
       }
     }
+  }
+
+  // From the start about the centre, which is given from the start, to where it is now. Turns are
+  // about the axis that the plane is upright on, by the right hand: G03 forwards, G02 backwards.
+  void RunArc(const std::array<double, 3>& start, const std::map<char, std::string>& words,
+    const std::string& line)
+  {
+    Require(this->Plane >= 17, "G17, G18 or G19 before an arc", line);
+    const int planes[3][3] = { { 0, 1, 2 }, { 2, 0, 1 }, { 1, 2, 0 } }; // first, second, normal
+    const int* axes = planes[this->Plane - 17];
+    Require(this->At[axes[2]] == start[axes[2]], "an arc in its plane", line);
+    double centre[2];
+    for (int k = 0; k < 2; ++k)
+    {
+      const auto word = words.find("IJK"[axes[k]]);
+      Require(word != words.end(), "both coordinates of the centre", line);
+      centre[k] = start[axes[k]] + GetReal(word->second, line);
+    }
+    Require(words.count("IJK"[axes[2]]) == 0, "no centre off the plane", line);
+    const auto radius = [&](const std::array<double, 3>& p)
+    { return std::hypot(p[axes[0]] - centre[0], p[axes[1]] - centre[1]); };
+    const auto angle = [&](const std::array<double, 3>& p)
+    { return std::atan2(p[axes[1]] - centre[1], p[axes[0]] - centre[0]); };
+    Require(std::abs(radius(this->At) - radius(start)) < 0.0005, "equal radii", line);
+    const double pi = std::acos(-1.0);
+    double turn = std::remainder(angle(this->At) - angle(start), 2 * pi);
+    turn += this->Mode == 3 && turn <= 0 ? 2 * pi : this->Mode == 2 && turn >= 0 ? -2 * pi : 0;
+    const int steps = 2 + static_cast<int>(std::abs(turn) / std::sqrt(8e-5 / radius(start)));
+    for (int k = 1; k <= steps; ++k)
+    {
+      std::array<double, 3> p = this->At;
+      if (k < steps)
+      {
+        const double t = static_cast<double>(k) / steps;
+        const double r = (1 - t) * radius(start) + t * radius(this->At);
+        p[axes[0]] = centre[0] + r * std::cos(angle(start) + t * turn);
+        p[axes[1]] = centre[1] + r * std::sin(angle(start) + t * turn);
+      }
+      this->Steps.push_back({ false, p, this->Feed, true });
+    }
+    ++this->Arcs;
   }
 
   static double GetReal(const std::string& text, const std::string& line)

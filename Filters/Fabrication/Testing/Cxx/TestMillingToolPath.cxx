@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "TestBadPlaces.h"
 #include "lacunaCheck.h"
 #include "lacunaGCodeParser.h"
 #include "vtkCellArray.h"
@@ -199,6 +200,7 @@ void TestWarnsAndRefuses()
   };
   refuses(Mould([](double x, double y) { return x == 4 && y == 3 ? NaN : 0; }),
     "hole: the point is not finite, at column 4, row 3");
+  refuses(Mould([](double x, double y) { return x == 4 && y == 3 ? -1 / 0.0 : 0; }), "not finite");
   auto blanked = Mould();
   blanked->BlankPoint(40);
   refuses(blanked, "blanked");
@@ -388,7 +390,27 @@ void TestProgram(const std::string& file)
     writer->SetFileName("/dev/full");
     refuses("No space", vtkErrorCode::OutOfDiskSpaceError);
   }
+  for (const char* name : { "ToolRadius", "MachiningTime" })
+  {
+    changed->DeepCopy(path);
+    vtkLacunaFieldData::Set(changed, name, { std::numeric_limits<double>::infinity() }, 1);
+    writer->SetInputData(changed);
+    writer->SetFileName(file.c_str());
+    refuses(std::string(name) + " of the path is inf");
+  }
+  writer->SetInputData(path);
+  TestBadPlaces(writer.Get(), file + ".places");
   writer->SetFileName(file.c_str());
+  LACUNA_CHECK(writer->Write() == 1);
+  // arcs only if asked for
+  LACUNA_CHECK(GCodeParser(Read(file)).Arcs == 0);
+  writer->SetArcTolerance(0.01);
+  LACUNA_CHECK(writer->Write() == 1);
+  const GCodeParser arcs(Read(file));
+  LACUNA_CHECK(arcs.Arcs > 20 && arcs.Blocks < parser.Blocks);
+  LACUNA_CHECK(arcs.Blocks == writer->GetNumberOfBlocks());
+  LACUNA_CHECK_CONTAINS(Read(file), "(MOTIONS JOINED TO ARCS, AT MOST 0.01 MM ABOVE THE PATH)");
+  writer->SetArcTolerance(0);
   LACUNA_CHECK(writer->Write() == 1);
   std::ostringstream print;
   writer->Print(print);
