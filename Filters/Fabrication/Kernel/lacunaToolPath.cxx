@@ -384,6 +384,17 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   Require(levels <= LargestLevels,
     "RoughingStep gives " + FormatNumber(levels) + " levels; at most 10000 are possible");
   path.Levels = static_cast<std::int32_t>(std::max(0.0, levels));
+  double cuts = 0; // positions that are cut, each on all levels above it
+  for (const Samples& line : lines)
+  {
+    for (const Vec3& p : line)
+    {
+      cuts += std::isfinite(p[2]) && p[2] < path.StockTop
+        ? std::ceil((path.StockTop - p[2]) / options.RoughingStep)
+        : 0;
+    }
+  }
+  RequireMemory("the roughing path", cuts * 2 * sizeof(Vec3));
   for (std::int32_t level = 0; level < path.Levels; ++level)
   {
     execution.SetStage(0.1 + 0.4 * level / path.Levels, 0.1 + 0.4 * (level + 1) / path.Levels);

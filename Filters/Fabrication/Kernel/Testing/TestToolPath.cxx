@@ -604,6 +604,26 @@ TEST(ToolPath, RefusesBadInput)
   EXPECT_NE(refuses([](auto& o) { o.SafeHeight = 0; }).find("SafeHeight"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.LeadRadius = -1; }).find("LeadRadius"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.Tolerance = 0; }).find("Tolerance"), std::string::npos);
+  // 20 000 lines on 10 000 levels
+  const MillSurface wide = Surface(2, 2, 20000, plane);
+  ToolPathOptions endless;
+  endless.RoughingStepOver = 1;
+  endless.RoughingStep = 9.9;
+  endless.PathStep = 100;
+  endless.StockTop = 99000;
+  EXPECT_NE(Message([&] { Path(wide, endless); }).find("the roughing path"), std::string::npos);
+  // no width at all
+  const auto squeezed = [](int axis)
+  {
+    std::vector<Vec3> points = Surface(6, 5, 1, [](double, double) { return 0.0; }).GetPoints();
+    for (Vec3& p : points)
+    {
+      p[axis] = 0;
+    }
+    return Message([&] { MillSurface({ 6, 5 }, points); });
+  };
+  EXPECT_NE(squeezed(0).find("no area"), std::string::npos);
+  EXPECT_NE(squeezed(1).find("no area"), std::string::npos);
   // a single tool position covers all of a small part
   ToolPathOptions large;
   large.Tool.Radius = 500;

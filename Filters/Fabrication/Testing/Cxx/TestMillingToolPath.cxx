@@ -246,6 +246,17 @@ void TestWarnsAndRefuses()
   LACUNA_CHECK_CONTAINS(messages->Warnings, "most at x 18");
   LACUNA_CHECK(Map(filter)->GetPointData()->GetArray("Unreachable")->GetRange()[1] > 2);
 
+  // so is a tool that is larger than all there is
+  filter->SetInputData(
+    Mould([](double x, double y) { return 0.02 * ((x - 13) * (x - 13) + (y - 8) * (y - 8)); }));
+  filter->SetToolRadius(40);
+  messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->Errors.empty());
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "the tool (radius 40 mm) is too large for 9");
+  LACUNA_CHECK(Field(filter->GetOutput(), "LargestGouge") <= 0.001);
+  filter->SetToolRadius(4);
+
   // a border that slopes down is told, and Overrun mends it
   const auto slope = [](double x, double) { return -1.5 * x; };
   const auto rim = [&](const std::function<double(double, double)>& height, int shape,
