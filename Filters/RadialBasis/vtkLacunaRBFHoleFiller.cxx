@@ -303,6 +303,7 @@ lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
   options.KernelLength = this->KernelLength;
   options.Trend = static_cast<lacuna::HoleTrend>(this->Trend);
   options.SupportMargin = this->SupportMargin;
+  options.SupportStepMargin = this->SupportStepMargin;
   options.NodeSpacing = this->NodeSpacing;
   options.Smoothing = this->Smoothing;
   options.CutoffWavelength = this->CutoffWavelength;
@@ -418,6 +419,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
       .Add("DefectPixels", marked)
       .Add("SupportArray", this->SupportArray)
       .Add("SupportMargin", this->SupportMargin)
+      .Add("SupportStepMargin", this->SupportStepMargin)
       .Add("NodeSpacing", this->NodeSpacing)
       .Add("Smoothing", this->Smoothing)
       .Add("CutoffWavelength", this->CutoffWavelength)
@@ -460,6 +462,7 @@ void vtkLacunaRBFHoleFiller::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DefectArray: " << this->DefectArray << "\n";
   os << indent << "SupportArray: " << this->SupportArray << "\n";
   os << indent << "SupportMargin: " << this->SupportMargin << "\n";
+  os << indent << "SupportStepMargin: " << this->SupportStepMargin << "\n";
   os << indent << "NodeSpacing: " << this->NodeSpacing << "\n";
   os << indent << "Smoothing: " << this->Smoothing << "\n";
   os << indent << "CutoffWavelength: " << this->CutoffWavelength << "\n";

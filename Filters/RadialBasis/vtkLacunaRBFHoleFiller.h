@@ -173,6 +173,17 @@ public:
 
   ///@{
   /**
+   * Surface within this distance of a depth step (above 65 degrees between neighbours) or of a pixel
+   * without depth is not used, in mm in the map's plane, >= 0: beside burr holes, saw cuts and the
+   * rim of the hole the partial volume effect rounds the bone, and kernels that carry its
+   * curvature into the hole (Cubic) carry that, too. Default 0: off.
+   */
+  vtkSetMacro(SupportStepMargin, double);
+  vtkGetMacro(SupportStepMargin, double);
+  ///@}
+
+  ///@{
+  /**
    * Nodes are the pixels nearest to a lattice of this spacing, mm, > 0. Smooth bone needs about 1
    * (Carr 1996, section 6.1.5). Default 1.
    */
@@ -277,6 +288,7 @@ private:
   std::string DefectArray;
   std::string SupportArray;
   double SupportMargin = 12;
+  double SupportStepMargin = 0;
   double NodeSpacing = 1;
   double Smoothing = 0;
   double CutoffWavelength = 0;

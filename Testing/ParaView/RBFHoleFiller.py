@@ -21,7 +21,7 @@ source = write_map("RBFHoleFiller", depth, 1.0, (3, 4, 5), (1, 0, 0), (0, -1, 0)
 filler = RBFHoleFiller(Input=source)
 
 direct = lacuna.vtkLacunaRBFHoleFiller()
-for name in ("SupportMargin", "NodeSpacing", "Smoothing", "CutoffWavelength", "OutputMargin"):
+for name in ("SupportMargin", "SupportStepMargin", "NodeSpacing", "Smoothing", "CutoffWavelength", "OutputMargin"):
     assert filler.GetPropertyValue(name) == getattr(direct, "Get" + name)(), name
 assert filler.Kernel == "ThinPlate" and direct.GetKernel() == direct.ThinPlate
 assert direct.GetDefectRegion() is None

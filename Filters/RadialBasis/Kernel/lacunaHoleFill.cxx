@@ -34,6 +34,7 @@ void CheckOptions(const HoleFillOptions& options)
     }
   };
   check("SupportMargin", options.SupportMargin, true);
+  check("SupportStepMargin", options.SupportStepMargin, false);
   check("NodeSpacing", options.NodeSpacing, true);
   check("OutputMargin", options.OutputMargin, false);
   check("CutoffWavelength", options.CutoffWavelength, false);
@@ -442,8 +443,8 @@ HoleFillResult HoleFiller::Fill(
   execution.SetStage(0.1, 0.15);
   BaseSurface base(execution, input.Prior, input.Grid);
   execution.SetStage(0.15, 0.2);
-  const SupportSelection selection =
-    SelectSupport(execution, input, options.SupportMargin, base.GetOnMap());
+  const SupportSelection selection = SelectSupport(
+    execution, input, { options.SupportMargin, options.SupportStepMargin }, base.GetOnMap());
   if (options.Trend == HoleTrend::Ellipsoid)
   {
     base.SetTrend(input.Depth, selection.Support);

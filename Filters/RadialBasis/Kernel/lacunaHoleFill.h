@@ -38,13 +38,14 @@ struct HoleFillOptions
   RadialKernel Kernel = RadialKernel::ThinPlate;
   double KernelLength = 0; ///< mm, see RadialBasisOptions::Shape
   HoleTrend Trend = HoleTrend::None;
-  double SupportMargin = 12;   ///< mm, > 0
-  double NodeSpacing = 1;      ///< mm, > 0
-  double Smoothing = 0;        ///< see RadialBasisOptions
-  double CutoffWavelength = 0; ///< mm, >= 0; above 0 it determines Smoothing, which must be 0
-  double OutputMargin = 0;     ///< mm, >= 0
-  Vec2 OutputSpacing{ 0, 0 };  ///< mm, >= 0; 0: that of the map
-  double Accuracy = 1e-4;      ///< see RadialBasisOptions
+  double SupportMargin = 12;    ///< mm, > 0
+  double SupportStepMargin = 0; ///< mm, >= 0, see SupportMargins::Step
+  double NodeSpacing = 1;       ///< mm, > 0
+  double Smoothing = 0;         ///< see RadialBasisOptions
+  double CutoffWavelength = 0;  ///< mm, >= 0; above 0 it determines Smoothing, which must be 0
+  double OutputMargin = 0;      ///< mm, >= 0
+  Vec2 OutputSpacing{ 0, 0 };   ///< mm, >= 0; 0: that of the map
+  double Accuracy = 1e-4;       ///< see RadialBasisOptions
   RadialSolver Solver = RadialSolver::Auto;
   std::uint64_t MaximumBytes = RadialBasisOptions().MaximumBytes;
 };

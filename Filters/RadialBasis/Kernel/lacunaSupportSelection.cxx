@@ -84,6 +84,75 @@ void LeaveOutWithoutPrior(
   }
 }
 
+// Whether the edge to the next pixel of the row, or of the column, is steep: depths are uncertain
+// there, since a small shift of the surface across the view is a large one along it.
+class SteepEdges
+{
+public:
+  explicit SteepEdges(const MarkedMap& map)
+    : Map(map)
+    , Width(map.Grid.Width)
+    , Rule(DiscontinuityLimits())
+  {
+  }
+
+  // Calls visit(pixel, next) of each steep edge between pixels of mask.
+  template <class Visitor>
+  void ForEach(const MapMask& mask, const Visitor& visit) const
+  {
+    for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+    {
+      const auto test = [&](bool inside, std::size_t next, double spacing)
+      {
+        if (inside && mask[pixel] && mask[next] &&
+          this->Rule.IsSteep({ this->Map.Depth[next] - this->Map.Depth[pixel], spacing }))
+        {
+          visit(pixel, next);
+        }
+      };
+      test((pixel + 1) % this->Width != 0, pixel + 1, this->Map.Grid.Spacing[0]);
+      test(pixel + this->Width < mask.size(), pixel + this->Width, this->Map.Grid.Spacing[1]);
+    }
+  }
+
+private:
+  const MarkedMap& Map;
+  std::size_t Width;
+  SlopeRule Rule;
+};
+
+void LeaveOutNearSteps(
+  Execution& execution, const MarkedMap& map, double margin, SupportSelection& selection)
+{
+  MapMask steps(map.Valid.size());
+  std::transform(
+    map.Valid.begin(), map.Valid.end(), steps.begin(), [](unsigned char v) { return v ? 0 : 1; });
+  SteepEdges(map).ForEach(map.Valid,
+    [&](std::size_t pixel, std::size_t next)
+    {
+      steps[pixel] = 1;
+      steps[next] = 1;
+    });
+  const MapMask near = SelectWithin(execution, map.Grid, steps, margin, selection.Support);
+  for (std::size_t pixel = 0; pixel < near.size(); ++pixel)
+  {
+    if (near[pixel])
+    {
+      selection.Support[pixel] = 0;
+      selection.Use[pixel] = SupportUse::NearStep;
+    }
+  }
+  if (std::find(selection.Support.begin(), selection.Support.end(), 1) == selection.Support.end())
+  {
+    std::ostringstream message;
+    message << "there is no surface to fit: all of it around the defect lies within "
+            << "SupportStepMargin = " << margin
+            << " mm of a depth step or of pixels without a depth; lower SupportStepMargin, or "
+            << "raise SupportMargin";
+    throw std::invalid_argument(message.str());
+  }
+}
+
 void LeaveOutBeyondSteps(const MarkedMap& map, SupportSelection& selection)
 {
   const MapMask before = selection.Support;
@@ -108,35 +177,20 @@ void LeaveOutBeyondSteps(const MarkedMap& map, SupportSelection& selection)
   }
 }
 
-// Where depths are uncertain: a small shift of the surface across the view is a large one along it.
 void FindSteep(const MarkedMap& map, SupportSelection& selection)
 {
-  const DiscontinuityLimits limits;
-  const SlopeRule rule(limits);
-  const auto width = static_cast<std::size_t>(map.Grid.Width);
-  std::size_t count = 0;
-  std::size_t first = 0;
-  for (std::size_t pixel = 0; pixel < selection.Support.size(); ++pixel)
-  {
-    const auto isSteep = [&](bool inside, std::size_t neighbour, double spacing)
-    {
-      return inside && selection.Support[pixel] && selection.Support[neighbour] &&
-        rule.IsSteep({ map.Depth[neighbour] - map.Depth[pixel], spacing });
-    };
-    if (isSteep((pixel + 1) % width != 0, pixel + 1, map.Grid.Spacing[0]) ||
-      isSteep(pixel + width < selection.Support.size(), pixel + width, map.Grid.Spacing[1]))
-    {
-      selection.Use[pixel] = SupportUse::Steep;
-      first = count++ == 0 ? pixel : first;
-    }
-  }
+  SteepEdges(map).ForEach(selection.Support,
+    [&](std::size_t pixel, std::size_t) { selection.Use[pixel] = SupportUse::Steep; });
+  const auto steep = std::find(selection.Use.begin(), selection.Use.end(), SupportUse::Steep);
+  const auto count = std::count(steep, selection.Use.end(), SupportUse::Steep);
+  const std::size_t first = steep - selection.Use.begin();
   if (count > 0)
   {
     std::ostringstream message;
     message << "at " << count << " pixels around the defect, " << Locate(map.Grid, first)
-            << ", the surface is steeper than " << limits.MaximumAngle
+            << ", the surface is steeper than " << DiscontinuityLimits().MaximumAngle
             << " degrees against the map: depths are uncertain there. Choose a view that faces the "
-            << "defect, or leave these pixels out with SupportArray";
+            << "defect, or leave these pixels out with SupportStepMargin";
     selection.Warnings.push_back(message.str());
   }
 }
@@ -191,13 +245,17 @@ void WarnOfOpenEdges(
 }
 
 //------------------------------------------------------------------------------
-SupportSelection SelectSupport(
-  Execution& execution, const MarkedMap& map, double margin, const std::vector<double>& prior)
+SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
+  const SupportMargins& margins, const std::vector<double>& prior)
 {
   SupportSelection selection;
-  selection.Support = FindCandidates(execution, map, margin);
+  selection.Support = FindCandidates(execution, map, margins.Defect);
   selection.Use.assign(selection.Support.size(), SupportUse::None);
   LeaveOutWithoutPrior(map, prior, selection);
+  if (margins.Step > 0)
+  {
+    LeaveOutNearSteps(execution, map, margins.Step, selection);
+  }
   LeaveOutBeyondSteps(map, selection);
   for (std::size_t pixel = 0; pixel < selection.Use.size(); ++pixel)
   {
@@ -207,7 +265,7 @@ SupportSelection SelectSupport(
     }
   }
   FindSteep(map, selection);
-  WarnOfOpenEdges(execution, map, 0.5 * margin, selection);
+  WarnOfOpenEdges(execution, map, 0.5 * margins.Defect, selection);
   return selection;
 }
 }

@@ -25,7 +25,8 @@ enum class SupportUse : unsigned char
   Used = 1,       ///< carries the fit
   BeyondStep = 2, ///< left out, since a depth step parts it from the larger part
   Steep = 3,      ///< carries the fit, but is steeper than 65 degrees against the map
-  NoPrior = 4     ///< left out, since the prior surface is not there
+  NoPrior = 4,    ///< left out, since the prior surface is not there
+  NearStep = 5    ///< left out, since a depth step or a pixel without a depth is near
 };
 
 /// A parallel depth map and what is marked on it. All arrays have Grid.GetSize() elements.
@@ -39,6 +40,14 @@ struct MarkedMap
   MapMask Painted;
 };
 
+struct SupportMargins
+{
+  double Defect = 12; ///< how far from the defect the surface is used, mm, > 0
+  /// Not used is what lies within this distance of a pixel without a depth or of one that differs
+  /// from an edge neighbour by more than 65 degrees of slope, mm, >= 0; 0: this is not looked at.
+  double Step = 0;
+};
+
 struct SupportSelection
 {
   std::vector<SupportUse> Use;       ///< of each pixel
@@ -46,12 +55,14 @@ struct SupportSelection
   std::vector<std::string> Warnings; ///< sentences for the user
 };
 
-/// The painted pixels, or those within margin mm of the defect, that are valid, outside of the
-/// defect, on the prior (NaN where there is none; empty: no prior) and not beyond a depth step
-/// (RemoveBeyondSteps). Warns of what was left out, of steep pixels, of a defect at the border of the
-/// map and of one that has no support along a quarter of its edge or more. Throws
+/// The painted pixels, or those within margins.Defect of the defect, that are valid, outside of the
+/// defect, on the prior (NaN where there is none; empty: no prior), farther than margins.Step from
+/// steps and holes, and not beyond a depth step (RemoveBeyondSteps). Steps and holes count in the
+/// defect, too: its rim is rounded by the partial volume effect wherever it was marked. Warns of what
+/// was left out unless margins.Step asked for it, of steep pixels, of a defect at the border of
+/// the map and of one that has no support along a quarter of its edge or more. Throws
 /// std::invalid_argument when nothing is left.
-SupportSelection SelectSupport(
-  Execution& execution, const MarkedMap& map, double margin, const std::vector<double>& prior);
+SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
+  const SupportMargins& margins, const std::vector<double>& prior);
 }
 #endif

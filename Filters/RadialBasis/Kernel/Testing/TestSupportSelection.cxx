@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSupportSelection.h"
+
+#include "lacunaExecution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+using lacuna::MarkedMap;
+using lacuna::SupportUse;
+
+// A plane of 60 x 70 pixels of 1.5 x 1 mm with a hole as defect, a burr hole, and a plateau 3 mm
+// nearer, whose edges are steeper than 65 degrees along y (71.6) and not along x (63.4).
+MarkedMap MakeMap()
+{
+  MarkedMap map;
+  map.Grid.Width = 60;
+  map.Grid.Height = 70;
+  map.Grid.Spacing = { 1.5, 1 };
+  map.Grid.FirstColumn = -7;
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    const double x = 1.5 * static_cast<double>(pixel % 60);
+    const std::size_t row = pixel / 60;
+    const auto y = static_cast<double>(row);
+    const bool burr = std::hypot(x - 66, y - 40) <= 2;
+    const bool plateau = x > 30 && x < 55 && y > 53.5;
+    map.Valid.push_back(!burr);
+    map.Depth.push_back(burr ? NAN : plateau ? 17 : 20);
+    map.Defect.push_back(std::hypot(x - 45, y - 30) <= 15);
+  }
+  return map;
+}
+
+lacuna::SupportSelection Select(const MarkedMap& map, double stepMargin)
+{
+  lacuna::ThreadExecution execution(2);
+  return lacuna::SelectSupport(execution, map, { 12, stepMargin }, {});
+}
+
+// Of two pixels, mm.
+double GetDistance(std::size_t a, std::size_t b)
+{
+  const auto difference = [](std::size_t m, std::size_t n)
+  { return static_cast<double>(m) - static_cast<double>(n); };
+  return std::hypot(1.5 * difference(a % 60, b % 60), difference(a / 60, b / 60));
+}
+}
+
+TEST(SupportSelection, LeavesOutWhatIsNearStepsAndHoles)
+{
+  const MarkedMap map = MakeMap();
+  std::vector<std::size_t> unsound;
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    const std::size_t row = pixel / 60;
+    const bool edge = (row == 53 || row == 54) &&
+      std::abs(map.Depth[row == 53 ? pixel + 60 : pixel - 60] - map.Depth[pixel]) > 1;
+    if (!map.Valid[pixel] || edge)
+    {
+      unsound.push_back(pixel);
+    }
+  }
+  ASSERT_GT(unsound.size(), 30U);
+  const lacuna::SupportSelection all = Select(map, 0);
+  for (const double margin : { 0.5, 3.0, 4.5 })
+  {
+    const lacuna::SupportSelection selection = Select(map, margin);
+    int left = 0;
+    for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+    {
+      bool near = false;
+      for (const std::size_t other : unsound)
+      {
+        near = near || GetDistance(pixel, other) <= margin;
+      }
+      left += near && all.Support[pixel];
+      EXPECT_EQ(selection.Use[pixel],
+        !all.Support[pixel] ? SupportUse::None
+          : near            ? SupportUse::NearStep
+                            : SupportUse::Used)
+        << margin << ": " << pixel % 60 << " " << pixel / 60;
+      EXPECT_EQ(selection.Support[pixel], all.Support[pixel] && !near);
+    }
+    EXPECT_GT(left, 10);
+    EXPECT_TRUE(selection.Warnings.empty()) << "it was asked for";
+  }
+  EXPECT_EQ(all.Warnings.size(), 1U) << "of the steep edge of the plateau";
+}
+
+TEST(SupportSelection, StepsInTheDefectCountForItsRim)
+{
+  // The hole itself, marked exactly: its rim is left out.
+  MarkedMap map = MakeMap();
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    map.Valid[pixel] = map.Valid[pixel] && !map.Defect[pixel];
+  }
+  const lacuna::SupportSelection selection = Select(map, 3);
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    const double x = 1.5 * static_cast<double>(pixel % 60);
+    const std::size_t row = pixel / 60;
+    const double radius = std::hypot(x - 45, static_cast<double>(row) - 30);
+    if (radius < 16.5)
+    {
+      EXPECT_FALSE(selection.Support[pixel]);
+    }
+    else if (radius > 18 && radius < 20 && x < 45)
+    {
+      EXPECT_TRUE(selection.Support[pixel]) << pixel;
+    }
+  }
+}
+
+TEST(SupportSelection, HoldsForPaintedBone)
+{
+  MarkedMap map = MakeMap();
+  map.Painted.assign(map.Grid.GetSize(), 1);
+  const std::size_t beside = 40 * 60 + 46; // 3 mm from the centre of the burr hole
+  EXPECT_EQ(Select(map, 0).Use[beside], SupportUse::Used);
+  EXPECT_EQ(Select(map, 3).Use[beside], SupportUse::NearStep);
+}
+
+TEST(SupportSelection, RefusesAMarginThatLeavesNothing)
+{
+  try
+  {
+    Select(MakeMap(), 60);
+    FAIL() << "nothing is left";
+  }
+  catch (const std::invalid_argument& e)
+  {
+    EXPECT_NE(std::string(e.what()).find("SupportStepMargin = 60 mm"), std::string::npos)
+      << e.what();
+  }
+}
