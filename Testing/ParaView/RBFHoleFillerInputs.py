@@ -7,7 +7,7 @@ import numpy as np
 from depth_map_files import fetch, write_map
 from paraview import servermanager
 from paraview.selection import SelectIDs, SelectPedigreeIDs
-from paraview.simple import (CreateRenderView, ExtractSelection, LoadPlugin, PolyLineSource,
+from paraview.simple import (Calculator, CreateRenderView, ExtractSelection, LoadPlugin, PolyLineSource,
                              SetActiveView, Show)
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
@@ -72,6 +72,19 @@ SelectIDs([value for pixel in patch for value in (-1, int(pixel))], Source=sourc
 filler.Selection = active_selection(source)
 assert ((fetch(filler)[0]["FilledMask"] == 1) == (radius <= 8)).all()
 filler.Selection = None
+
+# Sound bone painted as the user guide says: selected points of the map, or a formula
+sound = (radius > 9.5) & (radius <= 20)
+SelectIDs([value for pixel in np.flatnonzero(sound.ravel()) for value in (-1, int(pixel))], Source=source)
+painted = ExtractSelection(Input=source, Selection=active_selection(source), PreserveTopology=1)
+by_hand = RBFHoleFiller(Input=painted, SupportArray="vtkInsidedness")
+formula = Calculator(Input=source, ResultArrayName="Sound",
+                     Function="((coordsX-44)^2+(coordsY+18)^2 > 90.25)*((coordsX-44)^2+(coordsY+18)^2 <= 400)")
+by_formula = RBFHoleFiller(Input=formula, SupportArray="Sound")
+for support in (by_hand, by_formula):
+    points = fetch(support)[0]
+    assert ((points["SupportMask"] == 1) == sound).all()
+    assert ((points["FilledMask"] == 1) == (radius <= 9.5)).all()
 
 # The points of a poly line are handles in the 3-D view; here they are moved by a script.
 handles = PolyLineSource()
