@@ -7,6 +7,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
@@ -114,6 +115,7 @@ void vtkLacunaDepthMap::SetGeometry(vtkImageData* map, const Geometry& g)
   vtkLacunaFieldData::SetMatrices(map, ImageToWorldName,
     { lacuna::Matrix4::FromColumns(
       g.PixelSpacing[0] * g.Right, g.PixelSpacing[1] * g.Down, g.View, g.Origin) });
+  vtkLacunaVolumeDirection::Remove(map);
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
@@ -116,4 +117,5 @@ void vtkLacunaTrackedSlices::Write(vtkImageData* stack, const std::vector<lacuna
     frameArray->InsertNextValue(f);
   }
   stack->GetFieldData()->AddArray(frameArray);
+  vtkLacunaVolumeDirection::Remove(stack);
 }

@@ -5,6 +5,7 @@
 #include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
@@ -15,6 +16,7 @@
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
@@ -133,6 +135,10 @@ private:
     image->CopyStructure(this->Input);
     image->GetPointData()->SetScalars(angle);
     image->GetPointData()->AddArray(object);
+    if (this->Input->GetFieldData()->HasArray(vtkLacunaVolumeDirection::ArrayName))
+    {
+      vtkLacunaVolumeDirection::Record(image);
+    }
     const double voxel = this->Grid.GetVoxelContent();
     std::vector<double> columns[6];
     for (std::size_t i = 0; i < all.size(); ++i)

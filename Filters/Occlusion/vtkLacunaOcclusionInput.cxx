@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkLacunaOccludedAngle.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
@@ -85,6 +86,7 @@ void FillWith(lacuna::AttenuationField& field, vtkDataArray* scalars, lacuna::Ex
 //------------------------------------------------------------------------------
 Grid::Grid(vtkImageData* image)
 {
+  vtkLacunaVolumeDirection::Check(image);
   int dimensions[3];
   image->GetDimensions(dimensions);
   for (int axis : { 0, 1, 2 })

@@ -18,6 +18,7 @@
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -261,6 +262,7 @@ int vtkLacunaOcclusionSurface::RequestData(
         ReverseTriangles(output);
         measures.Volume = -measures.Volume;
       }
+      vtkLacunaVolumeDirection::Remove(output);
       const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };

@@ -22,6 +22,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -150,6 +151,7 @@ public:
   static void MirrorVolume(
     vtkLacunaMirror* self, vtkImageData* output, Result& result, vtkLacunaExecution& execution)
   {
+    vtkLacunaVolumeDirection::Check(output);
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
     if (!scalars || scalars->GetNumberOfComponents() != 1)
     {
@@ -391,6 +393,7 @@ int vtkLacunaMirror::RequestData(
     }
     vtkPolyData* plane = vtkPolyData::GetData(outputVector, 1);
     Internals::MakeSquare(input, result.Plane, plane);
+    vtkLacunaVolumeDirection::Remove(plane);
     for (vtkDataObject* data :
       { static_cast<vtkDataObject*>(whole), static_cast<vtkDataObject*>(plane) })
     {

@@ -18,6 +18,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -420,6 +421,7 @@ int vtkLacunaRBFImageWarp::RequestData(
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
+      vtkLacunaVolumeDirection::Check(image);
       vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
       vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
       vtkDataArray* scalars = image->GetPointData()->GetScalars();

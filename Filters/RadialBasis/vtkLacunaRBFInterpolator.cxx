@@ -16,6 +16,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -266,6 +267,7 @@ int vtkLacunaRBFInterpolator::RequestData(
         output->Initialize(); // empty in, empty out
         return;
       }
+      vtkLacunaVolumeDirection::Check(points);
       if (this->Kernel < ThinPlate || this->Kernel > Multiquadric)
       {
         throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +

@@ -342,8 +342,8 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       }
       if (!inInfo->Has(vtkDataObject::DIRECTION()))
       {
-        // ParaView's filter between any two proxies drops the direction from the information: then
-        // only the data know it. When they are up to date, as they usually are, this does nothing.
+        // ParaView's filter between any two proxies drops the direction from the information, so that
+        // only the data know where the volume is. When they are up to date, as they usually are, this does nothing.
         this->RequestUpdateExtent(request, inputVector, outputVector);
         vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
         connection->GetProducer()->Update(connection->GetIndex());
@@ -388,8 +388,9 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
         throw std::runtime_error("no iso-value is given: add one to IsoValues");
       }
 
-      const lacuna::ImagePlane plane =
-        Internals::MakePlane(this, inputVector[0]->GetInformationObject(0));
+      vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+      View::RequireSamePlace(input, inInfo);
+      const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
       execution.SetStage(0, 0.1);
       const lacuna::IsoRayCaster& caster = this->Internal->Caster.Prepare(
         input, scalars, this->Interpolation, this->SolidSide, execution);

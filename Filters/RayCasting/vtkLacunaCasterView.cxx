@@ -2,10 +2,12 @@
 #include "vtkLacunaCasterView.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaVoxelVolume.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -64,6 +66,7 @@ bool vtkLacunaCasterView::IsEmpty(const int extent[6])
 //------------------------------------------------------------------------------
 vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkImageData* volume)
 {
+  vtkLacunaVolumeDirection::Check(volume);
   return { SizeOf(volume->GetExtent()),
     IndexToWorld(volume->GetOrigin(), volume->GetSpacing(), volume->GetDirectionMatrix()->GetData(),
       volume->GetExtent()) };
@@ -77,6 +80,14 @@ vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkInformation* volume)
   double spacing[3] = { 1, 1, 1 };
   double direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
   volume->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  vtkImageData* data = vtkImageData::GetData(volume);
+  if (!volume->Has(vtkDataObject::DIRECTION()) && data && !IsEmpty(data->GetExtent()))
+  {
+    // ParaView's Resample To Image leaves the origin and spacing of its input in the information
+    return { SizeOf(extent),
+      IndexToWorld(
+        data->GetOrigin(), data->GetSpacing(), data->GetDirectionMatrix()->GetData(), extent) };
+  }
   if (volume->Has(vtkDataObject::ORIGIN()))
   {
     volume->Get(vtkDataObject::ORIGIN(), origin);
@@ -85,16 +96,30 @@ vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkInformation* volume)
   {
     volume->Get(vtkDataObject::SPACING(), spacing);
   }
-  vtkImageData* data = vtkImageData::GetData(volume);
   if (volume->Has(vtkDataObject::DIRECTION()))
   {
     volume->Get(vtkDataObject::DIRECTION(), direction);
   }
-  else if (data && !IsEmpty(data->GetExtent()))
-  {
-    std::copy_n(data->GetDirectionMatrix()->GetData(), 9, direction);
-  }
   return { SizeOf(extent), IndexToWorld(origin, spacing, direction, extent) };
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCasterView::RequireSamePlace(vtkImageData* volume, vtkInformation* information)
+{
+  const Frame there = FrameOf(volume);
+  const Frame said = FrameOf(information);
+  const double tolerance = 1e-3 * lacuna::SmallestEdgeOf(there.IndexToWorld);
+  const auto corners = lacuna::CornersOf(there.IndexToWorld, there.Size);
+  const auto others = lacuna::CornersOf(said.IndexToWorld, said.Size);
+  for (std::size_t i = 0; i < corners.size(); ++i)
+  {
+    if (!(lacuna::Norm(corners[i] - others[i]) <= tolerance))
+    {
+      throw std::runtime_error("the volume has another size, origin, spacing or direction than the "
+                               "filter that made it has announced; update that filter and give its "
+                               "output as data (SetInputData)");
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -33,6 +33,9 @@ public:
   static Frame FrameOf(vtkImageData* volume);
   /// The same of a volume that is yet to come. Throws std::runtime_error for voxels without size.
   static Frame FrameOf(vtkInformation* volume);
+  /// Throws std::runtime_error when the volume lies elsewhere than its pipeline information says, from
+  /// which the place of the depth map follows: its pixels would look past the volume.
+  static void RequireSamePlace(vtkImageData* volume, vtkInformation* information);
 
   /// The depths of the start map in extent. Throws std::runtime_error unless it shows the same view
   /// as plane; eye: null for a parallel projection.

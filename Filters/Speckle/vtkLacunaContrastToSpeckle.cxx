@@ -14,6 +14,7 @@
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -70,6 +71,7 @@ void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
     values.push_back(vtkLacunaSpeckleInput::MakeContiguous(mask));
     rule.Masks.push_back({ vtkLacunaScalarType::Get(mask), values.back()->GetVoidPointer(0) });
   }
+  vtkLacunaVolumeDirection::Check(image);
   const lacuna::Matrix4 indexToWorld(image->GetIndexToPhysicalMatrix()->GetData());
   lacuna::MarkRegion(vtkLacunaSpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
     region, regions.data(), execution);

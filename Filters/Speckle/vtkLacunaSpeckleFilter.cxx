@@ -16,6 +16,7 @@
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -219,6 +220,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       {
         return;
       }
+      vtkLacunaVolumeDirection::Check(input);
       const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
       RequirePart(lacuna::Intersect(lacuna::GetSpeckleInput(parameters, box),
                     GetWhole(inputs[0]->GetInformationObject(0))),

@@ -24,6 +24,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -265,6 +266,7 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
   const lacuna::CTFileHeader& header = *geometry.Slices[0].Frame.Header;
+  vtkLacunaVolumeDirection::Record(output);
   AddString(output, "PatientPosition", header.PatientPosition);
   AddString(output, "ConvolutionKernel", header.ConvolutionKernel);
   if (geometry.TiltDegrees != 0)

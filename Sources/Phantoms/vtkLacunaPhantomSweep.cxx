@@ -19,6 +19,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -55,6 +56,7 @@ std::unique_ptr<lacuna::PhantomScene> MakeVolumeScene(
 
 std::unique_ptr<lacuna::PhantomScene> MakeScene(vtkImageData* volume)
 {
+  vtkLacunaVolumeDirection::Check(volume);
   vtkDataArray* scalars = volume->GetPointData()->GetScalars();
   if (!scalars || volume->GetNumberOfPoints() == 0)
   {

@@ -11,6 +11,7 @@
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -95,6 +96,7 @@ int vtkLacunaSkullPhantom::RequestData(
       scalars->SetName("HounsfieldUnits");
       skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
       vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+      vtkLacunaVolumeDirection::Record(output);
       vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters());
     });
 }

@@ -8,10 +8,14 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCylinder.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkImageAlgorithm.h"
 #include "vtkImageData.h"
 #include "vtkImplicitBoolean.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
@@ -300,6 +304,56 @@ void CheckError(Caster* caster, const std::string& text)
   LACUNA_CHECK_THAT(messages->HasError(text), text);
 }
 
+// Moves an image and does not announce it, as vtkResampleToImage does in ParaView.
+class SilentMover : public vtkImageAlgorithm
+{
+public:
+  static SilentMover* New() { VTK_STANDARD_NEW_BODY(SilentMover); }
+  vtkTypeMacro(SilentMover, vtkImageAlgorithm);
+  bool AnnouncesDirection = true; ///< few filters of VTK do
+
+protected:
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* information = outputs->GetInformationObject(0);
+    information->Remove(vtkDataObject::DIRECTION());
+    if (this->AnnouncesDirection)
+    {
+      const double direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+      information->Set(vtkDataObject::DIRECTION(), direction, 9);
+    }
+    return 1;
+  }
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override
+  {
+    vtkImageData* output = vtkImageData::GetData(outputs);
+    output->ShallowCopy(vtkImageData::GetData(inputs[0]));
+    output->SetOrigin(50, 0, 0);
+    return 1;
+  }
+};
+
+void TestSilentMover()
+{
+  const auto ball = MakeBall();
+  vtkNew<SilentMover> mover;
+  mover->SetInputData(ball);
+  auto caster = MakeCaster(ball);
+  caster->SetPlaneOrigin(VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
+  caster->SetImageSize(0, 0);
+  caster->SetInputConnection(mover->GetOutputPort());
+  CheckError(caster, "than the filter that made it has announced");
+  mover->AnnouncesDirection = false;
+  mover->Modified();
+  caster->Update();
+  const double* bounds = caster->GetOutput()->GetBounds();
+  LACUNA_CHECK_THAT(IsNear(bounds[0], mover->GetOutput()->GetBounds()[0], 1) &&
+      IsNear(bounds[2], mover->GetOutput()->GetBounds()[2], 1),
+    "where the voxels are");
+}
+
 void TestErrors()
 {
   const auto ball = MakeBall();
@@ -444,6 +498,7 @@ int TestIsoRayCasterRequests(int, char*[])
   TestCutAwayProvenance();
   TestPerspective();
   TestStartDepthMap();
+  TestSilentMover();
   TestErrors();
   TestBeyondTheVoxels();
   TestPadding();

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A second record of a volume's direction matrix. Some filters of VTK (Median, Gradient Magnitude,
+/// Image Shrink) reset the direction of an image but keep its field data: the volume would then lie
+/// turned in the patient, left in the place of right. Sources that know the patient's axes write the
+/// record, and filters that take volumes compare. A volume without it is taken as it is.
+#ifndef vtkLacunaVolumeDirection_h
+#define vtkLacunaVolumeDirection_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+class vtkDataObject;
+class vtkImageData;
+
+namespace vtkLacunaVolumeDirection
+{
+/// Field data: the direction matrix row by row, one tuple of 9.
+constexpr const char* ArrayName = "DirectionMatrix";
+
+/// Records the direction matrix that volume has.
+VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkImageData* volume);
+/// Throws std::runtime_error when data is a volume with voxels and a record that disagrees with its
+/// direction matrix.
+VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data);
+/// Removes the record, which VTK passes from an input, from what has a geometry of its own.
+VTKLACUNAFILTERSCOMMON_EXPORT void Remove(vtkDataObject* data);
+}
+#endif

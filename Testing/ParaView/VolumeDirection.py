@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Volumes say twice how they are turned. Behind a filter of ParaView that resets the directions Lacuna
+stops; behind all others, and behind its own, a letter F comes out where it was in the patient."""
+import os
+import shutil
+import subprocess
+import sys
+
+import lacuna_test
+import numpy as np
+from paraview import servermanager
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+from lacuna.errors import PipelineError, raising
+folder = lacuna_test.output("Volume direction")
+shutil.rmtree(folder, ignore_errors=True)
+subprocess.run([sys.argv[1], folder], check=True)
+ARRAY = "DirectionMatrix"
+SERIES = ("body axial", "body feet first", "body oblique")  # the first has no turn to lose
+
+
+def directions(proxy):
+    """The direction matrix of an image and its record (None without), row by row."""
+    image = servermanager.Fetch(proxy)
+    record = image.GetFieldData().GetArray(ARRAY)
+    return (np.array(image.GetDirectionMatrix().GetData()),
+            None if record is None else vtk_to_numpy(record)[0])
+
+
+def centroid(volume):
+    """Of the surface of the letter as seen from the front."""
+    depth = BSplineIsoRayCaster(Input=volume, ScalarArray="HounsfieldUnits", IsoValues=[300], ViewDirection=[0, 1, 0],
+                                ViewUp=[0, 0, 1])
+    surface = DepthMapSurface(Input=depth)
+    surface.UpdatePipeline()
+    return vtk_to_numpy(servermanager.Fetch(surface).GetPoints().GetData()).mean(axis=0)
+
+
+def refusal(proxy):
+    """The error with which a filter stops, or an empty text."""
+    try:
+        with raising():
+            proxy.UpdatePipeline()
+    except PipelineError as error:
+        return str(error)
+    return ""
+
+
+def warp(volume):
+    pairs = Sphere(Radius=20, ThetaResolution=4, PhiResolution=4)
+    return RBFImageWarp(Input=volume, Landmarks=pairs, Targets=pairs)
+
+
+def shadows(volume):
+    depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[5, 5, 5]), IsoValues=[300])
+    return DepthMapShader(Input=depth, Volume=volume)
+
+
+TAKERS = {
+    "ray caster": lambda volume: BSplineIsoRayCaster(Input=volume, IsoValues=[300]),
+    "shadows": shadows,
+    "Mirror": lambda volume: Mirror(Input=volume, PlaneMethod="Given", Normal=[1, 0, 0], Origin=[1, 0, 0]),
+    "Speckle Filter": lambda volume: SpeckleFilter(Input=volume, KernelSize=[3, 3, 1]),
+    "Contrast To Speckle": lambda volume: ContrastToSpeckle(
+        Input=volume, InsideBounds=[-12, -5, -12, 12, -3, 12], OutsideBounds=[5, 20, -12, 12, -3, 12]),
+    "Occluded Angle": lambda volume: OccludedAngle(Input=volume, NumberOfDirections=8),
+    "Phantom Sweep": lambda volume: PhantomSweep(Input=volume, NumberOfSlices=4, ImageSize=[16, 16]),
+    "RBF Image Warp": warp,
+    "RBF Interpolator": lambda volume: RBFInterpolator(
+        Input=ExtractSubset(Input=volume, VOI=[8, 12, 8, 12, 8, 12]), OutputSpacing=[2, 2, 2]),
+}
+RESETTING = {
+    "Median": lambda volume: Median(Input=volume, SelectInputScalars=["POINTS", "HounsfieldUnits"],
+                                    KernelSize=[1, 1, 1]),
+    "Gradient Magnitude": lambda volume: GradientMagnitude(Input=volume),
+    "Image Shrink": lambda volume: ImageShrink(Input=volume, ShrinkFactors=[2, 2, 2]),
+    "Median of a part": lambda volume: Median(
+        Input=ExtractSubset(Input=volume, VOI=[3, 50, 0, 40, 2, 30]),
+        SelectInputScalars=["POINTS", "HounsfieldUnits"], KernelSize=[1, 1, 1]),
+}
+KEEPING = {
+    "Extract Subset": lambda volume: ExtractSubset(Input=volume, VOI=[1, 56, 1, 50, 0, 39]),
+    "Calculator": lambda volume: Calculator(Input=volume, Function="HounsfieldUnits", ResultArrayName="HounsfieldUnits"),
+    "Python Calculator": lambda volume: PythonCalculator(Input=volume, Expression="HounsfieldUnits + 0.0",
+                                                         ArrayName="HounsfieldUnits"),
+    "Pass Arrays": lambda volume: PassArrays(Input=volume, PointDataArrays=["HounsfieldUnits"],
+                                             FieldDataArrays=[ARRAY]),
+    "Random Attributes": lambda volume: RandomAttributes(Input=volume),
+    "Point Data To Cell Data": lambda volume: PointDatatoCellData(
+        Input=volume, ProcessAllArrays=0, PointDataArraytoprocess=["HounsfieldUnits"], PassPointData=1),
+    "Gaussian": lambda volume: SpeckleFilter(Input=volume, Operation="Gaussian", StandardDeviation=0.3),
+    "Median of Lacuna": lambda volume: SpeckleFilter(Input=volume, KernelSize=[1, 1, 1]),
+    "RBF Image Warp": warp,
+}
+
+
+straight = CTSeriesReader(FileName=os.path.join(folder, SERIES[0]))
+truth = centroid(straight)
+for name in SERIES:
+    scan = CTSeriesReader(FileName=os.path.join(folder, name))
+    direction, record = directions(scan)
+    assert np.array_equal(direction, record)
+    turned = not np.allclose(direction, np.eye(3).ravel())
+    assert turned == (name != SERIES[0])
+    place = centroid(scan)
+    assert np.abs(place - truth).max() < 1, name
+
+    for what, make in RESETTING.items():
+        volume = make(scan)
+        found, kept = directions(volume)
+        assert np.array_equal(found, np.eye(3).ravel()) and np.array_equal(kept, record), what
+        for taker, take in TAKERS.items() if what.startswith("Median") else [("ray caster", TAKERS["ray caster"])]:
+            error = refusal(take(volume))
+            assert ("its source recorded" in error) == turned, (name, what, taker, error)
+            assert turned or not error or what != "Median", (name, what, taker, error)
+    # the difference also goes through files
+    median = RESETTING["Median"](scan)
+    file = os.path.join(folder, name + ".vti")
+    SaveData(file, proxy=median, DataMode="Binary")
+    error = refusal(TAKERS["ray caster"](XMLImageDataReader(FileName=[file])))
+    assert ("its source recorded" in error) == turned, (name, error)
+
+    # no false alarm
+    for mode in ("Binary", "Ascii"):
+        SaveData(file, proxy=scan, DataMode=mode)
+        assert np.abs(centroid(XMLImageDataReader(FileName=[file])) - place).max() < 1e-3, (name, mode)
+    for what, make in KEEPING.items():
+        volume = make(scan)
+        shown = centroid(volume)
+        assert np.abs(shown - place).max() < 0.3, (name, what, shown, place)
+        assert np.allclose(directions(volume)[0], direction), (name, what)
+    for what, take in TAKERS.items():
+        assert not refusal(take(scan)), (name, what)
+    # what is no volume has no directions to compare, whatever field data came along
+    contour = Contour(Input=scan, ContourBy=["POINTS", "HounsfieldUnits"], Isosurfaces=[300], ComputeScalars=1)
+    threshold = Threshold(Input=scan, Scalars=["POINTS", "HounsfieldUnits"], LowerThreshold=500, UpperThreshold=4000)
+    for what in (contour, Clip(Input=contour, ClipType="Plane"), threshold):
+        interpolator = RBFInterpolator(Input=MaskPoints(Input=what, MaximumNumberofPoints=50), OutputSpacing=[9, 9, 9])
+        assert not refusal(interpolator), (name, what)
+        assert directions(interpolator)[1] is None
+
+    # resampled along the patient's axes: refused, and as the error advises all is right
+    for resampled in (ResampleToImage(Input=scan, SamplingDimensions=[80, 80, 80]),
+                      ResampleToImage(Input=Transform(Input=scan), SamplingDimensions=[80, 80, 80])):
+        error = refusal(TAKERS["ray caster"](resampled))
+        assert ("Pass Arrays with all field data arrays but this one" in error) == turned, (name, error)
+        resampled.UpdatePipeline()
+        others = [each for each in resampled.FieldData.keys() if each != ARRAY]
+        passed = PassArrays(Input=resampled, PointDataArrays=["HounsfieldUnits"], FieldDataArrays=others)
+        assert np.abs(centroid(passed) - truth).max() < 1.5, (name, centroid(passed), truth)
+        assert "Provenance" in passed.FieldData.keys()
+
+    # what Lacuna makes of a volume: turned alike with the record, or placed anew without
+    for what, alike in (("Speckle Filter", True), ("Mirror", True), ("Occluded Angle", True), ("RBF Image Warp", True),
+                        ("ray caster", False), ("Phantom Sweep", False), ("RBF Interpolator", False)):
+        made = TAKERS[what](scan)
+        made.UpdatePipeline()
+        found, kept = directions(made)
+        if alike:
+            assert np.array_equal(found, direction) and np.array_equal(kept, record), (name, what)
+        else:
+            assert kept is None, (name, what)
+    mirror = TAKERS["Mirror"](scan)
+    mirror.UpdatePipeline()
+    assert "Provenance" in mirror[1].FieldData.keys() and ARRAY not in mirror[1].FieldData.keys()
+
+skull = SkullPhantom(Spacing=[5, 5, 5])
+assert np.array_equal(*directions(skull))
