@@ -7,11 +7,15 @@
 """
 import hashlib
 import json
+import math
 import os
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
 NOTICE = "Research software, not a medical device."
+TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
+# What ParaView writes into one file. It knows its writers by endings in lower case only.
+SINGLE_FILES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
 
 
 def save_solid(path, proxy, allow_mirrored=False, **options):
@@ -19,20 +23,21 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
 
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
-    a few numbers) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has,
-    and its unit is the millimetre; it holds closed surfaces of triangles. In which coordinates the
-    surface is stands there, too, as lacuna.coordinates.find knows it: "unknown" if it does not.
-    Raises PipelineError when a filter or the writer fails, and for a mirror image of the patient
-    unless allow_mirrored. options go to ParaView's SaveData. Returns the record.
+    a few numbers; null where there is none) and the SHA-256 of the file: formats such as STL have no
+    room for them. 3MF has, and its unit is the millimetre; it holds closed surfaces of triangles that
+    face outwards. In which coordinates the surface is stands there, too, as lacuna.coordinates.find
+    knows it: "unknown" if it does not. Raises PipelineError when a filter or the writer fails, and
+    for a mirror image of the patient unless allow_mirrored; neither of the two files is there then.
+    options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
     from lacuna import __version__, coordinates
     from lacuna.errors import PipelineError, raising
     from paraview import servermanager
-    from paraview.simple import SaveData
-    from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    if os.path.exists(path):
-        os.remove(path)  # what is there after a failure would be taken for the new one
+    beside = path + ".json"
+    for old in (path, beside):
+        if os.path.exists(old):
+            os.remove(old)  # what is there after a failure would be taken for the new one
     with raising():
         proxy.UpdatePipeline()
         data = servermanager.Fetch(proxy)
@@ -42,34 +47,100 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         raise PipelineError(f"{path}: this is a mirror image of the patient (field data Mirrored); check the side, "
                             "and give allow_mirrored=True if the mirrored one is wanted")
     place = coordinates.find(proxy)
-    steps, measures = [], {}
-    fields = data.GetFieldData()
-    for k in range(fields.GetNumberOfArrays()):
-        array = fields.GetAbstractArray(k)
-        if array.GetName() == "Provenance":
-            steps = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-        elif fields.GetArray(k) is not None and array.GetNumberOfValues() > 0:
-            values = vtk_to_numpy(fields.GetArray(k)).tolist()
-            measures[array.GetName()] = values[0] if len(values) == 1 else values
+    steps, measures = _steps_and_measures(data)
     if os.path.splitext(path)[1].lower() == ".3mf":
         _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
     else:
-        with raising():
-            SaveData(path, proxy, **options)
-    if not os.path.exists(path):
-        raise PipelineError(f"{path} was not written")
+        _write_by_paraview(path, proxy, options)
     with open(path, "rb") as file:
         digest = hashlib.sha256(file.read()).hexdigest()
-    record = {
+    record = _without_nan({
         "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
         "version": __version__, "unit": "mm", "coordinates": place,
         "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
         "notice": NOTICE,
-    }
-    text = json.dumps(record, indent=2, default=str)
-    with open(path + ".json", "w", encoding="utf-8") as file:
-        file.write(text.replace("NaN", "null") + "\n")
+    })
+    with open(beside, "w", encoding="utf-8") as file:
+        file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
     return record
+
+
+def _steps_and_measures(data):
+    """The provenance of data (vtkDataObject) as a list, and its other field data of numbers as a dict."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    steps, measures = [], {}
+    fields = data.GetFieldData()
+    for k in range(fields.GetNumberOfArrays()):
+        array = fields.GetAbstractArray(k)
+        name = array.GetName()
+        if name == "Provenance":
+            steps = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+        elif fields.GetArray(k) is not None and array.GetNumberOfValues() > 0 and name not in TIMINGS:
+            values = vtk_to_numpy(fields.GetArray(k)).tolist()
+            measures[name] = values[0] if len(values) == 1 else values
+    return steps, measures
+
+
+def _without_nan(value):
+    """The same with None for each number that is not finite, for which JSON has no word."""
+    if isinstance(value, dict):
+        return {name: _without_nan(each) for name, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_without_nan(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _write_by_paraview(path, proxy, options):
+    from lacuna.errors import PipelineError, raising
+    from paraview.simple import SaveData
+
+    root, ending = os.path.splitext(path)
+    lower = ending.lower()
+    name = f"{root}.part{lower}" if lower != ending and lower in SINGLE_FILES else path
+    try:
+        with raising():
+            SaveData(name, proxy, **options)
+        if not os.path.exists(name):
+            raise PipelineError(f"{path} was not written")
+        if name != path:
+            os.replace(name, path)
+    except Exception:
+        if os.path.exists(name):
+            os.remove(name)
+        raise
+
+
+def _check_closed(path, points, triangles):
+    """Raises PipelineError unless triangles bound a solid: each edge of two, once each way, facing outwards."""
+    import numpy as np
+    from lacuna.errors import PipelineError
+
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if bad.size:
+        raise PipelineError(f"{path}: point {bad[0]} of the surface is not finite")
+    count = len(points)
+    starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    flat = np.flatnonzero(starts == ends)
+    if flat.size:
+        raise PipelineError(f"{path}: triangle {flat[0] // 3} has a corner twice; apply Clean first")
+    there, again = np.unique(starts * count + ends, return_counts=True)
+    twice = there[again > 1]
+    if twice.size:
+        x, y, z = points[twice[0] // count]
+        raise PipelineError(f"{path}: the surface branches or is turned over: {twice.size} edges have more than one "
+                            f"triangle on the same side, such as one at {x:g} {y:g} {z:g} mm")
+    alone = np.setdiff1d(ends * count + starts, there)
+    if alone.size:
+        x, y, z = points[alone[0] // count]
+        raise PipelineError(
+            f"{path}: 3MF holds closed surfaces, and this one is open: {alone.size} edges have a triangle on one side "
+            f"only, such as one at {x:g} {y:g} {z:g} mm. Write another format, or if points are there twice (Generate "
+            "Surface Normals splits them) apply Clean first")
+    a, b, c = (points[triangles[:, k]] - points[0] for k in range(3))
+    if np.einsum("ij,ij->", a, np.cross(b, c)) < 0:
+        raise PipelineError(f"{path}: the surface is inside out; turn its triangles (Generate Surface Normals, "
+                            "Flip Normals)")
 
 
 def _write_3mf(path, data, title, application, place, steps):
@@ -89,7 +160,8 @@ def _write_3mf(path, data, title, application, place, steps):
     if count == 0 or data.GetNumberOfCells() != count or (offsets[1:] - offsets[:-1] != 3).any():
         raise PipelineError(f"{path}: 3MF holds triangles only; apply Extract Surface and Triangulate first")
     points = vtk_to_numpy(data.GetPoints().GetData())
-    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3)
+    triangles = vtk_to_numpy(cells.GetConnectivityArray()).reshape(-1, 3).astype("int64")
+    _check_closed(path, points.astype(float), triangles)
     description = "\n".join(
         [f"Coordinates: {place} (mm). {NOTICE}"] + [f"Made by: {step}" for step in steps])
     metadata = {"Title": title, "Application": application, "Description": description}

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""save_solid: strict records, the same for the same solid, nothing old beside a failure, 3MF of solids only."""
+import json
+import math
+import os
+
+import numpy as np
+from lacuna.errors import PipelineError
+from lacuna.solids import save_solid
+from lacuna_test import output
+from paraview import servermanager
+from paraview.simple import *
+from solid_files import read_3mf
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+
+
+def read_strictly(path):
+    def refuse(word):
+        raise ValueError(f"{word} is not JSON")
+    with open(path, encoding="utf-8") as file:
+        return json.load(file, parse_constant=refuse)
+
+
+def refused(path, proxy, *words, **options):
+    try:
+        save_solid(path, proxy, **options)
+    except PipelineError as error:
+        for word in words:
+            assert word in str(error), (word, str(error))
+    else:
+        raise AssertionError((path, words))
+    assert not os.path.exists(path) and not os.path.exists(path + ".json"), path
+    parts = [name for name in os.listdir(os.path.dirname(path)) if ".part" in name]
+    assert not parts, parts
+
+
+def surface(points, triangles, fields=None):
+    data = vtkPolyData()
+    data.SetPoints(vtkPoints())
+    data.GetPoints().SetDataTypeToDouble()
+    for point in points:
+        data.GetPoints().InsertNextPoint(point)
+    data.SetPolys(vtkCellArray())
+    for triangle in triangles:
+        data.GetPolys().InsertNextCell(3, triangle)
+    for name, values in (fields or {}).items():
+        if isinstance(values, str):
+            array = vtkStringArray()
+            array.InsertNextValue(values)
+        else:
+            array = numpy_to_vtk(np.asarray(values, dtype=float), deep=True)
+        array.SetName(name)
+        data.GetFieldData().AddArray(array)
+    source = TrivialProducer()
+    source.GetClientSideObject().SetOutput(data)
+    source.UpdatePipeline()
+    return source
+
+
+corners = [(0, 0, 0), (3, 0, 0), (0, 2, 0), (0, 0, 1)]
+faces = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]  # outwards
+solid = surface(corners, faces)
+
+# Numbers that JSON has no word for are null; words in texts stay.
+step = 'Step one Name="NaN and Infinity, -Infinity" of NaNcy'
+strange = surface(corners, faces, {"Provenance": step, "Radius": [math.inf], "Thin": [math.nan, 1.5, -math.inf], "Volume": [1]})
+for name in ("SaveSolid.stl", "SaveSolid.3mf", "SaveSolid.vtp"):
+    record = save_solid(output(name), strange)
+    assert record == read_strictly(output(name) + ".json")
+    assert record["steps"] == [step], record["steps"]
+    assert record["measures"] == {"Radius": None, "Thin": [None, 1.5, None], "Volume": 1}, record["measures"]
+assert step in read_3mf(output("SaveSolid.3mf"))["metadata"]["Description"]
+
+# The same solid has the same record, though the time it took is not the same.
+depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[4, 4, 4]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+filled = RBFHoleFiller(Input=depth, Smoothing=5)
+fit = DepthMapSurface(Input=filled)
+first = save_solid(output("SaveSolid.vtp"), fit)
+assert servermanager.Fetch(fit).GetFieldData().HasArray("FitTime") and "FitTime" not in first["measures"]
+assert "PlaneNormal" in first["measures"]
+filled.Smoothing = 6
+filled.UpdatePipeline()
+filled.Smoothing = 5
+again = save_solid(output("SaveSolid.vtp"), fit)
+for record in (first, again):
+    del record["sha256"]  # the file itself holds all field data
+assert again == first
+
+# After a failure neither the old solid nor its record is there.
+for name in ("SaveSolid.stl", "SaveSolid.3mf"):
+    plate = ImplantPlate(Input=filled)
+    save_solid(output(name), plate)
+    assert os.path.exists(output(name)) and os.path.exists(output(name) + ".json")
+    plate.Thickness = -1
+    refused(output(name), plate, "Thickness")
+    save_solid(output(name), solid)
+    refused(output(name), surface([], []), "nothing to write")
+folder = output("SaveSolidNoFolder")
+for name in ("x.stl", "x.STL", "x.3mf"):
+    try:
+        save_solid(os.path.join(folder, name), solid)
+        raise AssertionError(name)
+    except PipelineError:
+        assert not os.path.exists(folder)
+refused(output("SaveSolid.xyz"), solid, "xyz")
+refused(output("SaveSolid"), solid, "xtension")
+
+# Endings in capitals are the same formats.
+for ending in ("stl", "ply", "obj", "vtp", "vtk"):
+    capital, small = output("SaveSolidCapitals." + ending.upper()), output("SaveSolidCapitals." + ending)
+    save_solid(small, solid)
+    with open(small, "rb") as file:
+        expected = file.read()
+    os.remove(small)
+    record = save_solid(capital, solid)
+    assert record["file"] == os.path.basename(capital) and record == read_strictly(capital + ".json")
+    with open(capital, "rb") as file:
+        assert file.read() == expected, ending
+    assert not os.path.exists(small) and not [n for n in os.listdir(os.path.dirname(small)) if ".part" in n]
+save_solid(output("SaveSolidCapitals.3MF"), solid)
+
+# 3MF holds solids.
+name = output("SaveSolid.3mf")
+save_solid(name, solid)
+assert np.array_equal(read_3mf(name)["triangles"], faces)
+save_solid(name, Sphere())
+refused(name, fit, "open", "triangle on one side only", "mm")
+refused(name, surface(corners, faces[1:]), "open", "3 edges")
+inside_out = [tuple(reversed(face)) for face in faces]
+refused(name, surface(corners, inside_out), "inside out")
+refused(name, surface(corners, faces[:3] + inside_out[3:]), "turned over", "3 edges")
+refused(name, surface(corners, faces + faces), "branches")
+refused(name, surface(corners, faces + [(0, 0, 1)]), "triangle 4 has a corner twice")
+refused(name, surface(corners[:3] + [(0, math.nan, 1)], faces), "point 3", "not finite")
+split = [corners[k] for face in faces for k in face]  # as Generate Surface Normals leaves edges
+refused(name, surface(split, np.arange(12).reshape(4, 3).tolist()), "Clean")
+save_solid(name, Clean(Input=surface(split, np.arange(12).reshape(4, 3).tolist())))
+print("ok")
