@@ -71,8 +71,8 @@ public:
   {
     if (this->Options.Spacing == 0)
     {
-      this->Options.Spacing =
-        std::min({ this->Part.Spacing[0], this->Part.Spacing[1], CoarsestSpacing });
+      this->Options.Spacing = std::min({ this->Part.Spacing[0], this->Part.Spacing[1],
+        CoarsestSpacing, this->Options.FlangeWidth / lacuna::NodesPerFlange });
     }
     const lacuna::Vec3 flat = lacuna::FitPlaneNormal(
       this->Part.Size, this->Part.Depths, this->Part.Spacing, this->Part.Mask);

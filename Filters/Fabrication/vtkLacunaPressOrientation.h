@@ -39,7 +39,8 @@
  * |------------------------|------------|-------------------------------------------------------|
  * | PressToPatient         | 16         | row-major; press mm to world (patient) mm, det +1     |
  * | Angles                 | 2          | Theta, Psi, degrees, see above                        |
- * | DraftAngle             | 1          | largest WallAngle, degrees; 0 flat, 90 upright        |
+ * | DraftAngle             | 1          | largest WallAngle of the nodes, degrees; 0 flat, 90   |
+ * |                        |            | upright                                               |
  * | Depth                  | 1          | mm, from the press plane to the deepest/highest node  |
  * | SingleValued           | 1          | 1, or 0 when the mill does not see all of the surface |
  * | SuggestedViewDirection | 3          | when not, and another view helps: view for the ray    |
@@ -148,8 +149,8 @@ public:
   ///@}
   ///@{
   /**
-   * mm between points along x and y, >= 0; a little less where a given BlockSize is no multiple. 0:
-   * that of the depth map, at most 1. Default 0.
+   * mm between points along x and y, 0 to FlangeWidth / 8; a little less where a given BlockSize is
+   * no multiple. 0: that of the depth map, at most 1 and FlangeWidth / 8. Default 0.
    */
   vtkSetMacro(OutputSpacing, double);
   vtkGetMacro(OutputSpacing, double);

@@ -22,6 +22,7 @@ constexpr double PlainRim = 5;       // mm of press plane around the flange, whe
 constexpr double MaximumNodes = 1e8; // of the mould
 constexpr double BytesPerNode = 160;
 constexpr double Flat = 1e-9;  // 1/mm
+constexpr int SubSamples = 8;  // along each side of a pixel, where plate and margin may be highest
 constexpr double LeastRim = 2; // mm of relief in which levelling begins
 
 std::string Tenths(double value)
@@ -43,6 +44,13 @@ void CheckOptions(const PressOptions& o)
   check("OutputSpacing", o.Spacing, true);
   check("PlateMargin", o.PlateMargin, false);
   check("FlangeWidth", o.FlangeWidth, true);
+  if (o.Spacing > (1 + 1e-9) * o.FlangeWidth / NodesPerFlange)
+  {
+    throw std::invalid_argument("OutputSpacing is " + FormatNumber(o.Spacing) +
+      " mm, too coarse for a flange of " + FormatNumber(o.FlangeWidth) +
+      " mm (FlangeWidth); it must be at most an eighth of that, " +
+      FormatNumber(o.FlangeWidth / NodesPerFlange) + " mm");
+  }
   for (const double size : o.BlockSize.Elements)
   {
     check("BlockSize", size, false);
@@ -150,6 +158,7 @@ public:
     {
       this->CheckFolds(used, levelled);
       this->PlaceBlock(curves);
+      this->FindTop(execution, curves, levelled);
     }
   }
 
@@ -159,6 +168,7 @@ private:
     const PlanarGrid& samples = this->Layout.Samples;
     const auto count = static_cast<std::size_t>(samples.Columns * samples.Rows);
     this->Layout.Images.resize(count);
+    this->Heights.resize(count);
     this->Facing.resize(count);
     this->Stretch.resize(count);
     execution.For(samples.Rows, 8,
@@ -168,6 +178,7 @@ private:
         {
           const auto sample = view.Get(this->GetFoot(static_cast<std::size_t>(k)));
           this->Layout.Images[k] = { sample.Point[0], sample.Point[1] };
+          this->Heights[k] = sample.Point[2];
           this->Facing[k] = sample.Normal[2];
           this->Stretch[k] = sample.Stretch;
         }
@@ -334,11 +345,53 @@ private:
     grid.Rows = static_cast<std::int64_t>(count[1]) + 1;
   }
 
+  // Between the samples that may be next to the highest point lie more, and what they may miss at
+  // the border of the margin is within their distance.
+  void FindTop(Execution& execution, const LoopDistance& curves, const PressView& view)
+  {
+    const PlanarGrid& samples = this->Layout.Samples;
+    const double pixel = std::hypot(samples.Spacing[0], samples.Spacing[1]);
+    const double limit = this->Options.PlateMargin + pixel / SubSamples;
+    const double sign = this->Options.Mould == PressMould::Female ? 1 : -1;
+    double top = -std::numeric_limits<double>::infinity();
+    const std::vector<unsigned char> inside = this->FindUsed(execution, curves, limit);
+    for (std::size_t k = 0; k < inside.size(); ++k)
+    {
+      top = inside[k] ? std::max(top, sign * this->Heights[k]) : top;
+    }
+    const double coarse = top;
+    const std::vector<unsigned char> near = this->FindUsed(execution, curves, limit + 2 * pixel);
+    for (std::size_t k = 0; k < near.size(); ++k)
+    {
+      const double cosine = std::max(this->Facing[k], 1e-3);
+      const double rise = pixel * (0.1 + std::sqrt(1 - std::min(1.0, cosine * cosine)) / cosine);
+      if (!near[k] || sign * this->Heights[k] + rise < coarse)
+      {
+        continue;
+      }
+      const Vec2 middle = this->GetFoot(k);
+      for (int a = 0; a <= SubSamples * SubSamples + 2 * SubSamples; ++a)
+      {
+        const Vec2 foot{ middle[0] +
+            (static_cast<double>(a % (SubSamples + 1)) / SubSamples - 0.5) * samples.Spacing[0],
+          middle[1] +
+            (static_cast<double>(a / (SubSamples + 1)) / SubSamples - 0.5) * samples.Spacing[1] };
+        const Vec3 point = view.Get(foot).Point;
+        if (sign * point[2] > top && curves.Find({ point[0], point[1] }, limit) < limit)
+        {
+          top = sign * point[2];
+        }
+      }
+    }
+    this->Layout.Top = sign * top;
+  }
+
   const ReliefSurface& Surface;
   const PressOptions& Options;
   const Matrix4& ToWorld;
   PressLayout& Layout;
-  std::vector<double> Facing; // of the samples
+  std::vector<double> Heights; // of the samples
+  std::vector<double> Facing;
   std::vector<double> Stretch;
 };
 }

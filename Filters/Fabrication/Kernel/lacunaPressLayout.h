@@ -49,8 +49,11 @@ struct PressOptions
   double FlangeWidth = 15;     ///< mm over which the surface goes over into the press plane, > 0
   /// mm, of the block along x, y and z; 0: as small as it takes.
   Vec3 BlockSize{};
-  double Spacing = 0.5; ///< mm between nodes, > 0
+  double Spacing = 0.5; ///< mm between nodes, > 0, at most FlangeWidth / NodesPerFlange
 };
+
+/// Fewer would not show the flange's slopes.
+constexpr double NodesPerFlange = 8;
 
 /// What is left under a cavity or a boss when the block's height is left open, mm.
 constexpr double BlockFloor = 10;
@@ -80,6 +83,9 @@ struct PressLayout
   /// Nodes Origin + Spacing * (i, j), in the axes of the frame about the relief's origin.
   PlanarGrid Grid;
   Vec3 BlockSize{}; ///< z only when given
+  /// mm along the axis of the frame, of the point of plate and margin that is nearest to the press
+  /// plane (a cavity's highest, a boss's lowest). It does not depend on the grid.
+  double Top = 0;
 };
 
 /// Throws std::invalid_argument when an option is out of range, and std::runtime_error that names the

@@ -17,6 +17,7 @@ namespace
 constexpr double Degrees = 180 / 3.14159265358979323846;
 constexpr int MaximumSteps = 100;
 constexpr double Converged = 1e-10; // mm, across the axis of the mill
+constexpr double Unfilled = 1e-9;   // mm, of the true surface
 
 // The lesser of h and 0 with a C2 fillet where |h| < radius, and its derivative: 0 or less.
 struct SoftMinimum
@@ -225,19 +226,7 @@ private:
     // heights as of a cavity: below the plane
     const double sign = female ? 1 : -1;
     const double fillet = FilletPerWidth * this->Options.FlangeWidth;
-    double plane = -std::numeric_limits<double>::infinity();
-    for (const Node& node : this->Nodes)
-    {
-      if (node.Blend.Weight == 1)
-      {
-        plane = std::max(plane, sign * node.Height + fillet);
-      }
-    }
-    if (!std::isfinite(plane))
-    {
-      throw std::runtime_error(
-        "no node of the mould lies on the plate; make OutputSpacing smaller");
-    }
+    const double plane = sign * this->Layout.Top + fillet;
     PressSurface result;
     const Vec3 middle{ grid.Origin[0] + 0.5 * this->Layout.BlockSize[0],
       grid.Origin[1] + 0.5 * this->Layout.BlockSize[1], sign * plane };
@@ -258,9 +247,11 @@ private:
         const double y = (static_cast<double>(j) - 0.5 * static_cast<double>(grid.Rows - 1));
         result.Points.push_back(
           { x * grid.Spacing[0], y * grid.Spacing[1], w > 0 ? sign * w * below.Value : 0 });
-        result.Regions.push_back(w == 0
-            ? PressRegion::Plane
-            : (w == 1 && this->IsInCore(node.Foot) ? PressRegion::Plate : PressRegion::Flange));
+        const double filled = sign * node.Height - plane - below.Value; // by the fillet
+        const bool plate = w == 1 && std::abs(filled) < Unfilled && this->IsInCore(node.Foot);
+        result.Regions.push_back(w == 0 ? PressRegion::Plane
+            : plate                     ? PressRegion::Plate
+                                        : PressRegion::Flange);
         const double column = std::round(node.Foot[0] / this->Spacing[0]);
         const double row = std::round(node.Foot[1] / this->Spacing[1]);
         const bool inside = w > 0 && column >= 0 && row >= 0 &&

@@ -38,9 +38,9 @@ struct PressSurface
 /// z = w m(s - s0): s is the true normal offset of the relief (levelled beyond plate and margin), found
 /// for every node by its foot point, w the weight of a FlangeBlend around the outlines. m(h) is the
 /// lesser of h and 0 (male: the greater) with a C2 fillet for |h| below FilletPerWidth FlangeWidth,
-/// and s0, the press plane, that much above (male: below) the plate and its margin. So the plate is
-/// the true surface, all is C2, a cavity has z <= 0 and a boss z >= 0. Throws std::runtime_error when
-/// the offset folds, or the block is not high enough.
+/// and s0, the press plane, that much above (male: below) layout.Top. So the plate is the true surface,
+/// all is C2, a cavity has z <= 0 and a boss z >= 0. Throws std::runtime_error when the offset folds,
+/// or the block is not high enough.
 PressSurface MakePressSurface(Execution& execution, const ReliefSurface& surface, GridSize size,
   const Vec2& spacing, const std::vector<unsigned char>& mask, const PressLayout& layout,
   const PressOptions& options, const Matrix4& toWorld = {});

@@ -349,6 +349,60 @@ TEST(PressSurface, CurvatureIsContinuousAcrossTheSeams)
 }
 
 //------------------------------------------------------------------------------
+// Coarser nodes are fewer points of the same mould.
+TEST(PressSurface, TheGridDoesNotMoveTheMould)
+{
+  PressScene skull(PlateScene::Skull, PlateScene::Kidney);
+  PressScene ball(PlateScene::Ball, Disc20);
+  for (const PressMould mould : { PressMould::Female, PressMould::Male })
+  {
+    PressOptions options;
+    options.Mould = mould;
+    options.Seating = mould == PressMould::Female ? PlateSeating::Inlay : PlateSeating::Onlay;
+    options.FlangeWidth = 12;
+    options.Spacing = 0.5;
+    // one point of the middle in all grids, and even numbers of equal steps to it
+    options.BlockSize = { 96, 96, 0 };
+    const PressSurface fine = skull.Press(options, { 0.1, 0.05, -1 });
+    const std::int64_t columns = skull.Layout.Grid.Columns;
+    for (const int step : { 2, 3 })
+    {
+      options.Spacing = 0.5 * step;
+      const PressSurface coarse = skull.Press(options, { 0.1, 0.05, -1 });
+      for (int a = 0; a < 4; ++a)
+      {
+        EXPECT_EQ(coarse.PressToRelief.Column(a), fine.PressToRelief.Column(a));
+      }
+      EXPECT_NEAR(coarse.Depth, fine.Depth, 0.01);
+      EXPECT_NEAR(coarse.DraftAngle, fine.DraftAngle, 0.5);
+      double off = 0;
+      for (std::int64_t k = 0; k < static_cast<std::int64_t>(coarse.Points.size()); ++k)
+      {
+        const std::int64_t width = skull.Layout.Grid.Columns;
+        const std::int64_t at = (k % width) * step + (k / width) * step * columns;
+        off = std::max(off, std::abs(coarse.Points[k][2] - fine.Points[at][2]));
+        if (fine.Regions[at] == PressRegion::Plate)
+        {
+          EXPECT_EQ(coarse.Regions[k], PressRegion::Plate);
+        }
+      }
+      EXPECT_LT(off, 1e-9);
+    }
+    // the press plane is an eighth of the flange beyond the highest point of plate and margin
+    options.BlockSize = { 0, 0, 0 };
+    options.Spacing = 1.5;
+    const double depth = ball.Press(options).Depth;
+    const auto fall = [](double r) { return 60 - std::sqrt(3600 - r * r); };
+    const double outline = PlateScene::Pixel / 2; // of pixels
+    if (mould == PressMould::Female)
+    {
+      EXPECT_GT(depth, fall(25 - outline) + 1.5);
+      EXPECT_LT(depth, fall(25 + outline + 0.18 * PlateScene::Pixel) + 1.5);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 TEST(PressSurface, WallAnglesAreThoseOfTheNodes)
 {
   PressScene scene(PlateScene::Skull, Disc20);
@@ -547,7 +601,11 @@ TEST(PressSurface, OptionsOutOfRangeAreRefused)
   expect([](PressOptions& o) { o.FlangeWidth = -1; }, "FlangeWidth is -1");
   expect([](PressOptions& o) { o.Spacing = 0; }, "OutputSpacing is 0");
   expect([](PressOptions& o) { o.Spacing = 1e-4; }, "make it larger");
-  expect([](PressOptions& o) { o.FlangeWidth = 0.01; }, "too narrow");
+  const LoopDistance curves({ Loop{ { 0, 0 }, { 40, 0 }, { 40, 40 } } });
+  EXPECT_NE(ErrorOf([&] { FlangeBlend(scene.Execution, curves, 5, 0.01); }).find("too narrow"),
+    std::string::npos);
+  expect([](PressOptions& o) { o.Spacing = 1.9; }, "at most an eighth of that, 1.875 mm");
+  expect([](PressOptions& o) { o.FlangeWidth = 3; }, "coarse for a flange of 3 mm");
   expect([](PressOptions& o) { o.BlockSize[0] = -1; }, "BlockSize is -1");
   expect([&](PressOptions& o) { o.BlockSize[2] = nan; }, "BlockSize is nan");
   expect([](PressOptions& o) { o.BlockSize = { 1e9, 1e9, 0 }; }, "make it larger");

@@ -204,6 +204,12 @@ void TestPipeline()
       LACUNA_CHECK_NEAR(b[1] - a[1], 0, 0);
     }
   }
+  // a narrow flange takes closer points
+  filter->SetFlangeWidth(2);
+  filter->Update();
+  LACUNA_CHECK_NEAR(
+    filter->GetOutput()->GetPoint(1)[0] - filter->GetOutput()->GetPoint(0)[0], 0.25, 1e-12);
+  filter->SetFlangeWidth(8);
   // the size follows the properties
   filter->SetBlockSize(60, 50, 30);
   filter->SetOutputSpacing(1);
@@ -361,6 +367,7 @@ void TestErrors()
   refuses(map, "ConvexSide is 3", [](Filter* f) { f->SetConvexSide(3); });
   refuses(map, "PlateThickness is 0", [](Filter* f) { f->SetPlateThickness(0); });
   refuses(map, "OutputSpacing is -1", [](Filter* f) { f->SetOutputSpacing(-1); });
+  refuses(map, "at most an eighth of that, 1 mm", [](Filter* f) { f->SetOutputSpacing(1.1); });
   refuses(map, "raise OutputMargin", [](Filter* f) { f->SetPlateMargin(5); });
   refuses(map, "BlockSize is 10", [](Filter* f) { f->SetBlockSize(10, 0, 0); });
   refuses(map, "BlockSize is nan", [](Filter* f) { f->SetBlockSize(0, TestSurfaces::NaN, 0); });
