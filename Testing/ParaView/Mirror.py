@@ -94,7 +94,7 @@ seen = np.lib.stride_tricks.sliding_window_view(np.isfinite(turned), (8, 8)).all
 row, column = np.argwhere(seen)[len(np.argwhere(seen)) // 2]
 clip = ExtractSubset(Input=other, VOI=[column, column + 7, row, row + 7, 0, 0])
 file = output("Mirror.igs")
-if os.path.exists(file):
+if os.path.exists(file):  # of a run before
     os.remove(file)
 try:
     with raising():
