@@ -74,8 +74,8 @@ public:
   vtkGetMacro(ArcTolerance, double);
   ///@}
   ///@{
-  /** Least and largest x, y and z, mm, that the tool's tip may reach; a path that leaves them is
-   * refused. Default 1 -1 1 -1 1 -1: no limits. */
+  /** Least and largest x, y and z, mm, that the tool's tip may reach; a path or template that leaves
+   * them is refused. Default 1 -1 1 -1 1 -1: no limits. */
   vtkSetVector6Macro(Envelope, double);
   vtkGetVector6Macro(Envelope, double);
   ///@}
@@ -87,7 +87,9 @@ public:
   vtkBooleanMacro(AllowMirrored, bool);
   ///@}
   ///@{
-  /** Lines before and after the motions; empty: the default ones, see lacuna::GCodeOptions. */
+  /** Lines before and after the motions; empty: the default ones, see lacuna::GCodeOptions. Words that
+   * would give the path another meaning, and places outside of Envelope or below the path's start or
+   * end, are refused, see lacuna::FillInTemplate. */
   vtkSetStringMacro(Header);
   vtkGetStringMacro(Header);
   vtkSetStringMacro(Footer);

@@ -124,7 +124,7 @@ writer.UpdatePipeline()
 writer.UpdatePropertyInformation()
 assert writer.GetPropertyValue("FileSize") == os.path.getsize(output("Options.nc"))
 with open(output("Options.nc"), encoding="ascii") as file:
-    assert "\nN10 G21 G90 (MINE)\nN20 T01 M06\n" in file.read()
+    assert "\nN10 G21 G17 G40 G49 G80 G90\nN20 G21 G90 (MINE)\nN30 T01 M06\n" in file.read()
 
 # Motions joined to arcs: a shorter program
 file = output("Arcs.nc")
@@ -133,13 +133,16 @@ with open(file, encoding="ascii") as program:
     arcs = program.read()
 assert len(arcs.splitlines()) < 0.7 * len(text.splitlines()) and "\nG18\nG0" in arcs and "G18" not in text
 
-# Refused: outside of the envelope, no path. No file is left.
+# Refused: outside of the envelope, inches and increments, a plunge at the end, no path. No file is left.
 vtkObject.GlobalWarningDisplayOff()
 file = output("Refused.nc")
 if os.path.exists(file):
     os.remove(file)
 SaveData(file, path, Envelope=[0, 61, 0, 41, -50, 50])
 assert not os.path.exists(file)
+for options in ({"Header": "G20 G91\nS{SPEED} M03"}, {"Footer": "G00 Z-50.\nM30"}):
+    SaveData(file, path, **options)
+    assert not os.path.exists(file), options
 SaveData(file, Sphere())
 assert not os.path.exists(file)
 print("ok")

@@ -2,6 +2,7 @@
 #include "lacunaGCode.h"
 
 #include "lacunaArcFit.h"
+#include "lacunaGCodeTemplate.h"
 #include "lacunaParameterText.h"
 
 #include <algorithm>
@@ -19,6 +20,9 @@ namespace
 constexpr std::size_t CommentLength = 64;
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
 constexpr const char* AxisNames = "XYZ";
+// What the path's numbers mean: mm, in the plane of x and y, no compensation, no length, no cycle,
+// absolute. Before the header, which cannot change it.
+constexpr const char* SafeStart = "G21 G17 G40 G49 G80 G90";
 
 using Units = Micrometres;
 
@@ -85,85 +89,6 @@ void AddComment(std::string& program, const std::string& comment)
   {
     add(line);
   }
-}
-
-//------------------------------------------------------------------------------
-// A template's lines, filled in and judged.
-std::vector<std::string> FillIn(const char* which, const std::string& text,
-  const std::vector<std::pair<std::string, std::string>>& values)
-{
-  std::string filled;
-  for (std::size_t k = 0; k < text.size();)
-  {
-    if (text[k] != '{')
-    {
-      filled += static_cast<char>(std::toupper(static_cast<unsigned char>(text[k++])));
-      continue;
-    }
-    const std::size_t end = text.find('}', k);
-    const std::string name =
-      text.substr(k + 1, end == std::string::npos ? std::string::npos : end - k - 1);
-    bool found = false;
-    for (const auto& value : values)
-    {
-      if (value.first == name)
-      {
-        filled += value.second;
-        found = true;
-      }
-    }
-    if (!found || end == std::string::npos)
-    {
-      Throw(std::string(which) + " has the placeholder '{" + name +
-        "}'; {PROGRAM}, {TOOL}, {OFFSET}, {SPEED}, {X}, {Y} and {Z} are known");
-    }
-    k = end + 1;
-  }
-  std::vector<std::string> lines;
-  std::string line;
-  bool comment = false;
-  for (std::size_t k = 0; k <= filled.size(); ++k)
-  {
-    const char c = k < filled.size() ? filled[k] : '\n';
-    if (c == '\r')
-    {
-      continue;
-    }
-    if (c == '\n')
-    {
-      if (comment)
-      {
-        Throw(std::string(which) + " has a comment without its end: '" + line + "'");
-      }
-      if (!line.empty())
-      {
-        lines.push_back(line);
-      }
-      line.clear();
-      continue;
-    }
-    if (c < ' ' || c > '~' || c == '%' || (c == '(' && comment) || (c == ')' && !comment))
-    {
-      Throw(std::string(which) + " has a character that has no place there: '" +
-        (c >= ' ' && c <= '~' ? std::string(1, c) : std::string("not ASCII")) + "'");
-    }
-    comment = c == '(' || (comment && c != ')');
-    line += c;
-    if (!comment && std::string_view("XYZIJKR").find(c) != std::string_view::npos)
-    {
-      const std::size_t end = filled.find_first_not_of("+-.0123456789 ", k + 1);
-      const std::string number =
-        filled.substr(k + 1, end == std::string::npos ? std::string::npos : end - k - 1);
-      if (number.find_first_of("0123456789") != std::string::npos &&
-        number.find('.') == std::string::npos)
-      {
-        Throw(std::string(which) + " has '" + c + number +
-          "' without a decimal point, which the control would read as micrometres; write '" + c +
-          number.substr(0, number.find_last_not_of(' ') + 1) + ".'");
-      }
-    }
-  }
-  return lines;
 }
 
 //------------------------------------------------------------------------------
@@ -400,7 +325,7 @@ GCodeOptions::GCodeOptions()
 
 const char* GCodeOptions::DefaultHeader()
 {
-  return "G21 G17 G40 G49 G80 G90\n{OFFSET}\nT{TOOL} M06\nS{SPEED} M03\nG00 X{X} Y{Y}\n"
+  return "{OFFSET}\nT{TOOL} M06\nS{SPEED} M03\nG00 X{X} Y{Y}\n"
          "G43 H{TOOL} Z{Z}\n";
 }
 
@@ -432,8 +357,12 @@ GCodeProgram MakeGCode(
     { "SPEED", std::to_string(std::llround(options.SpindleSpeed)) }, { "X", FormatUnits(first[0]) },
     { "Y", FormatUnits(first[1]) }, { "Z", FormatUnits(first[2]) }
   };
-  const std::vector<std::string> header = FillIn("Header", options.Header, values);
-  const std::vector<std::string> footer = FillIn("Footer", options.Footer, values);
+  const Units last = Round(moves.back().To, moves.size(), options);
+  const auto z = [](const Units& units) { return static_cast<double>(units[2]) / 1000; };
+  const std::vector<std::string> header =
+    FillInTemplate({ "Header", options.Header, false, z(first) }, values, options);
+  const std::vector<std::string> footer =
+    FillInTemplate({ "Footer", options.Footer, true, z(last) }, values, options);
 
   GCodeProgram program;
   program.Text = "%\nO" + values[0].second + "\n";
@@ -442,6 +371,7 @@ GCodeProgram MakeGCode(
     AddComment(program.Text, comment);
   }
   BlockWriter writer(program, options.LineNumbers);
+  writer.Add(SafeStart);
   for (const std::string& line : header)
   {
     writer.Add(line);

@@ -28,7 +28,8 @@ struct GCodeOptions
   double SpindleSpeed = 6000; ///< turns per minute, rounded
   bool LineNumbers = false;   ///< N10, N20, .., N9990, N10, ..
   /// Lines before and after the motions, see DefaultHeader. {PROGRAM}, {TOOL} (two digits),
-  /// {OFFSET} (G54), {SPEED} and {X}, {Y}, {Z} (where the path starts) are filled in.
+  /// {OFFSET} (G54), {SPEED} and {X}, {Y}, {Z} (where the path starts) are filled in. See
+  /// FillInTemplate for what they may contain.
   std::string Header;
   std::string Footer;
   bool HasEnvelope = false;
@@ -53,15 +54,15 @@ struct GCodeProgram
 /// ArcTolerance G02 and G03 with I, J, K in the planes G18 and G19, back to G17 at the end. Every
 /// coordinate has a decimal point and at most three decimals: x and y are rounded to the nearest
 /// micrometre, z up, so that rounding takes the tool no deeper into a surface than 0.71 um. Words
-/// that do not change are left out; so are motions to where the tool is. The first blocks after
-/// the header go to start, first in x and y, then in z.
+/// that do not change are left out; so are motions to where the tool is. The first block, before the
+/// header, is G21 G17 G40 G49 G80 G90; the first ones after the header go to start, first in x and y,
+/// then in z.
 ///
 /// Throws std::invalid_argument, naming the motion, when a number is not finite, beyond 99 999.999
 /// mm or outside of the envelope, a feed is not above 0, a rapid motion is neither upright nor
 /// level (controls run the axes at speeds of their own there, not along the line), the path does not
-/// start with a rapid motion or straight down and end with a rapid one; for options out of range; for templates with an unknown
-/// placeholder, characters that controls do not know, or a coordinate without a decimal point, which
-/// the control would read as micrometres.
+/// start with a rapid motion or straight down and end with a rapid one; for options out of range; for
+/// templates that FillInTemplate refuses.
 GCodeProgram MakeGCode(
   const Vec3& start, const std::vector<GCodeMove>& moves, const GCodeOptions& options);
 }

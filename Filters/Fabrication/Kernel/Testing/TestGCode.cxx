@@ -135,7 +135,9 @@ TEST(GCode, Templates)
   options.Header = "(my mill)\r\nG21 G90\n\nT{TOOL} M06\nS{SPEED} M03\n";
   options.Footer = "G00 Z50.\nM30";
   const std::string text = MakeGCode(Start, Path(), options).Text;
-  EXPECT_EQ(text.find("%\nO0001\n(MY MILL)\nG21 G90\nT01 M06\nS6000 M03\nG00 X1.5 Y-2.25\n"), 0u);
+  EXPECT_EQ(text.find("%\nO0001\nG21 G17 G40 G49 G80 G90\n(MY MILL)\nG21 G90\nT01 M06\nS6000 "
+                      "M03\nG00 X1.5 Y-2.25\n"),
+    0u);
   EXPECT_NE(text.find("G00 Z50.\nM30\n%\n"), std::string::npos);
   const auto header = [](const std::string& h, const std::string& words)
   { ExpectError([&](auto&, auto& o) { o.Header = h; }, words); };
@@ -307,6 +309,73 @@ TEST(GCode, ArcsStayWithinTheEnvelope)
   const double envelope[6] = { 0, 12, 0, 0, 0, 1.55 };
   std::copy_n(envelope, 6, options.Envelope);
   EXPECT_EQ(GCodeParser(MakeGCode({ 0, 0, 1.55 }, moves, options).Text).Arcs, 0);
+}
+
+// Whatever the templates say, the path's numbers mean millimetres from the work offset's zero.
+TEST(GCode, TemplatesThatChangeTheMeaningOfThePathAreRefused)
+{
+  const auto header = [](const std::string& h, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Header = h; }, words); };
+  const auto footer = [](const std::string& f, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Footer = f; }, words); };
+  for (const char* g : { "G20", "G91", "G18", "G19", "G41", "G42", "G44", "G68", "G51", "G51.1",
+         "G16", "G52", "G92", "G10", "G2", "G03", "G31", "G65", "G66", "G81", "G93", "G95" })
+  {
+    header(std::string("G21 G90 ") + g, std::string("has ") + g + ", which may give");
+    footer(std::string("G28 ") + g + "\nM30", std::string("has ") + g + ", which may give");
+  }
+  header("g 9 1", "has G91");
+  header("G21\n(G20) G090 G020", "has G020");
+  header("(G20 G91)", "no error");
+  header("G21 G90 G00 X#100", "has 'X'; outside of comments");
+  header("#1=5.", "has '#1'");
+  header("/G00 Z50.", "has '/'");
+  header("G90 Z1.E3", "has 'E3'");
+  header("N10 G21", "has 'N10'");
+  header("X1.2.3", "has 'X1.2.3'");
+  header("G55", "WorkOffset is 54");
+  header("G54", "no error");
+  header("M98 P100", "has M98");
+  header("M30", "would not be run");
+  footer("M05\nM02", "no error");
+  footer("M99", "has M99");
+  // without a header that says so, too
+  ExpectError([](auto&, auto& o) { o.Header = "S{SPEED} M03"; }, "no error");
+  GCodeOptions options;
+  options.Header = "S{SPEED} M03\n";
+  const GCodeParser parser(MakeGCode(Start, Path(), options).Text); // which asks for G21 and G90
+  EXPECT_EQ(parser.Steps.back().To[2], 10);
+}
+
+TEST(GCode, TemplatesStayAboveThePathAndInTheEnvelope)
+{
+  const auto expect =
+    [](bool first, const std::string& text, const std::string& words, bool envelope = false)
+  {
+    ExpectError(
+      [&](auto&, auto& o)
+      {
+        (first ? o.Header : o.Footer) = text;
+        o.HasEnvelope = envelope;
+        const double values[6] = { -20, 20, -12.5, 20, -5, 40 };
+        std::copy_n(values, 6, o.Envelope);
+      },
+      words);
+  };
+  // the path starts and ends at Z 10
+  expect(false, "G00 Z-50.\nM30", "has Z-50., below where the path ends (Z 10)");
+  expect(true, "G00 Z9.999", "has Z9.999, below where the path starts (Z 10)");
+  expect(true, "G00 Z10. (Z-5.)", "no error");
+  expect(false, "G28 Z0.\nM30", "has Z0., below where the path ends");
+  expect(false, "G53 Z0.\nM30", "no error");
+  expect(false, "G04 X1.5\nG00 Z12.", "no error");
+  expect(false, "G04 X1.5 Z-2.", "has Z-2.");
+  expect(false, "G00 X500.", "no error");
+  expect(false, "G00 X20.001", "has X20.001, which leaves the envelope (X -20 to 20 mm)", true);
+  expect(false, "G00 X20. Y-12.5 Z40.", "no error", true);
+  expect(false, "G00 Y -12.6", "has Y-12.6, which leaves the envelope (Y", true);
+  expect(true, "G00 Z40.1", "has Z40.1, which leaves the envelope (Z -5 to 40 mm)", true);
+  expect(false, "G53 Z100.", "no error", true);
 }
 
 TEST(GCode, Refuses)
