@@ -10,16 +10,19 @@
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -130,11 +133,25 @@ int vtkLacunaGCodeWriter::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaGCodeWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info)
+  {
+    // Also of the pieces that write nothing: filters before this one may need all processes.
+    vtkLacunaRequest::Whole(info);
+    return 1;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaGCodeWriter::Write()
 {
   this->FileSize = 0;
   this->Superclass::Write();
-  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0));
+  this->SetErrorCode(vtkLacunaWriting::Check(this, this->FileSize > 0 || this->Piece > 0));
   return this->GetErrorCode() == vtkErrorCode::NoError ? 1 : 0;
 }
 
@@ -143,6 +160,10 @@ void vtkLacunaGCodeWriter::WriteData()
 {
   this->FileSize = 0;
   this->NumberOfBlocks = 0;
+  if (this->Piece > 0)
+  {
+    return; // another process writes
+  }
   this->SetErrorCode(vtkLacunaWriting::Run(this, this->FileName,
     [this]
     {
@@ -245,6 +266,7 @@ void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
   os << indent << "Header: " << text(this->Header) << "\n";
   os << indent << "Footer: " << text(this->Footer) << "\n";
+  os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "FileSize: " << this->FileSize << "\n";
   os << indent << "NumberOfBlocks: " << this->NumberOfBlocks << "\n";
 }

@@ -12,7 +12,9 @@
  * There is never a number in the file that is not finite.
  *
  * The file is written beside its final name and renamed when it is complete. On failure Write()
- * returns 0, GetErrorCode() says why (vtkErrorCode), and what was at FileName stays.
+ * returns 0, GetErrorCode() says why (vtkErrorCode), and what was at FileName stays. In parallel
+ * each process has a writer, with its number as Piece; all bring the whole input up to date, and
+ * piece 0 writes.
  *
  * Source: Fanuc Series 0-M, Operator's Manual; RS-274-D.
  */
@@ -97,6 +99,15 @@ public:
   ///@}
 
   ///@{
+  /** Number of this process, and of processes; only piece 0 writes. ParaView sets them. Default: 0
+   * and 1. */
+  vtkSetClampMacro(Piece, int, 0, VTK_INT_MAX);
+  vtkGetMacro(Piece, int);
+  vtkSetClampMacro(NumberOfPieces, int, 1, VTK_INT_MAX);
+  vtkGetMacro(NumberOfPieces, int);
+  ///@}
+
+  ///@{
   /** Of the last Write(): bytes and blocks; 0 when it failed. */
   vtkGetMacro(FileSize, vtkTypeInt64);
   vtkGetMacro(NumberOfBlocks, vtkTypeInt64);
@@ -107,6 +118,8 @@ protected:
   ~vtkLacunaGCodeWriter() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   void WriteData() override;
 
 private:
@@ -126,6 +139,8 @@ private:
   bool AllowMirrored = false;
   char* Header = nullptr;
   char* Footer = nullptr;
+  int Piece = 0;
+  int NumberOfPieces = 1;
   vtkTypeInt64 FileSize = 0;
   vtkTypeInt64 NumberOfBlocks = 0;
 };

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The mould, the model and the plate under MPI: one of each, whatever the number of ranks.
+"""The mould, its path and program, the model and the plate under MPI: one of each, whatever the number of ranks.
 
 Run without arguments it is the test; it runs itself in pvbatch with the folder of files.
 """
 import hashlib
 import os
+import re
 import shutil
 import sys
 
@@ -24,6 +25,7 @@ def write(folder):
                         ("model", model), ("plate", ImplantPlate(Input=filled))):
         SaveData(os.path.join(folder, name + ".stl"), proxy=proxy)
     SaveData(os.path.join(folder, "mould.igs"), proxy=press)
+    SaveData(os.path.join(folder, "mould.nc"), proxy=path)
     path.UpdatePipeline()
     counts = [proxy.GetDataInformation().GetNumberOfPoints() for proxy in (press, path)]
     with open(os.path.join(folder, "points.txt"), "w", encoding="ascii") as file:
@@ -41,6 +43,8 @@ def run(ranks):
             content = file.read()
         if name.endswith(".igs"):
             content = b"".join(line for line in content.splitlines() if line[72:73] != b"G")  # the date is there
+        elif name.endswith(".nc"):
+            content = re.sub(rb"\(\d{4}-\d\d-\d\d \d\d:\d\d\)", b"", content)
         found[name] = (len(content), hashlib.sha256(content).hexdigest())
     with open(os.path.join(folder, "points.txt"), encoding="ascii") as file:
         print(ranks, "ranks: points", file.read().strip(), flush=True)
@@ -49,7 +53,7 @@ def run(ranks):
 
 def main():
     alone = run(1)
-    assert len(alone) == 6 and min(size for name, (size, _) in alone.items() if name != "points.txt") > 1000, alone
+    assert len(alone) == 7 and min(size for name, (size, _) in alone.items() if name != "points.txt") > 1000, alone
     for ranks in (2, 3):
         together = run(ranks)
         assert together == alone, (ranks, {name for name in alone if together.get(name) != alone[name]})
