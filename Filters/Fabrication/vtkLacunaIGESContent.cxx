@@ -24,6 +24,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -276,15 +279,18 @@ void vtkLacunaIGESContent::PlaceItems()
     return;
   }
   this->Description.emplace_back("Coordinates of the press, in mm: z is up, towards the mill. "
-                                 "To patient coordinates (DICOM LPS) by the rows");
+                                 "To patient coordinates (DICOM LPS) by a matrix of the rows");
   for (int row = 0; row < 3; ++row)
   {
-    std::string text = "  ";
+    // a row in a line of 72 characters
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << std::fixed << std::setprecision(12);
     for (int column = 0; column < 4; ++column)
     {
-      text += lacuna::FormatNumber((*press->PressToPatient)(row, column)) + "  ";
+      text << ' ' << std::setw(column < 3 ? 16 : 18) << (*press->PressToPatient)(row, column);
     }
-    this->Description.push_back(text);
+    this->Description.push_back(text.str());
   }
 }
 

@@ -98,6 +98,32 @@ void TestFrames()
     LACUNA_CHECK_THAT(
       (outcome.Text.find("Coordinates of the press") != std::string::npos) == press, "says so");
   }
+  // for people to read: a row in each line
+  const auto written = [](vtkDataObject* data, const lacuna::Matrix4& expected)
+  {
+    const std::vector<std::string> start = IGESParser(Write(data).Text).Start;
+    const auto before = std::find_if(start.begin(), start.end(),
+      [](const std::string& line) { return line.find("matrix of the rows") != std::string::npos; });
+    LACUNA_CHECK(start.end() - before > 3);
+    for (int row = 0; row < 3 && start.end() - before > 3; ++row)
+    {
+      std::istringstream line(before[row + 1]);
+      for (int column = 0; column < 4; ++column)
+      {
+        double value = TestSurfaces::NaN;
+        line >> value;
+        LACUNA_CHECK_NEAR(value, expected(row, column), 6e-13);
+      }
+      std::string more;
+      LACUNA_CHECK(!(line >> more));
+    }
+  };
+  written(mould, matrix);
+  const lacuna::Matrix4 far =
+    lacuna::Matrix4::Translation({ -12345.678, 12345.678, -1e-5 }) * matrix;
+  SetPress(mould, far);
+  written(mould, far);
+  SetPress(mould, matrix);
   const Outcome alone = Write(mould);
   LACUNA_CHECK_THAT(
     alone.Text.find("Coordinates of the press") != std::string::npos, "the mould alone");
