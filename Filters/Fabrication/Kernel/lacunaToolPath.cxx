@@ -363,6 +363,20 @@ void AddPass(Execution& execution, Assembler& assembler, const std::vector<Sampl
   assembler.Retract(pass.Leads);
 }
 
+// Where the tool goes lowest; z is infinite when it goes nowhere.
+Vec3 FindDeepest(const std::vector<Samples>& lines)
+{
+  Vec3 deepest{ 0, 0, Infinity };
+  for (const Samples& line : lines)
+  {
+    for (const Vec3& p : line)
+    {
+      deepest = std::isfinite(p[2]) && p[2] < deepest[2] ? p : deepest;
+    }
+  }
+  return deepest;
+}
+
 void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   const MillSurface& surface, const ToolPathOptions& options, const Raster& raster, double along)
 {
@@ -372,14 +386,7 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   const double step = offsets[1] - offsets[0];
   const std::vector<Samples> lines =
     DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
-  double deepest = Infinity;
-  for (const Samples& line : lines)
-  {
-    for (const Vec3& p : line)
-    {
-      deepest = std::isfinite(p[2]) ? std::min(deepest, p[2]) : deepest;
-    }
-  }
+  const double deepest = FindDeepest(lines)[2];
   const double levels = std::ceil((path.StockTop - deepest) / options.RoughingStep - 1e-9);
   Require(levels <= LargestLevels,
     "RoughingStep gives " + FormatNumber(levels) + " levels; at most 10000 are possible");
@@ -437,6 +444,17 @@ void AddFinishing(Execution& execution, ToolPath& path, Assembler& assembler,
   execution.SetStage(0.6, 0.75);
   const std::vector<Samples> lines =
     DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
+  const Vec3 deepest = FindDeepest(lines);
+  const double depth = path.StockTop - deepest[2];
+  if (!(options.RoughingStep > 0) && depth > options.Tool.Radius)
+  {
+    const double top = path.StockTop + 0.0; // not -0
+    path.Warnings.push_back("without roughing the first pass takes off up to " +
+      FormatNumber(std::round(100 * depth) / 100) + " mm at once (from StockTop, z " +
+      FormatNumber(top) + ", to x " + FormatNumber(deepest[0]) + ", y " + FormatNumber(deepest[1]) +
+      "), more than the tool's radius: it may break. Give RoughingStep, "
+      "unless the part has been roughed before");
+  }
   execution.SetStage(0.75, 1);
   AddPass(execution, assembler, lines,
     { cutter, -Infinity, Infinity, options.OneWay ? 0 : 3 * path.LargestStepOver, along,

@@ -4,6 +4,7 @@
 #include "lacunaExecution.h"
 #include "lacunaMaterialRemoval.h"
 #include "lacunaMillScene.h"
+#include "lacunaParameterText.h"
 
 #include <gtest/gtest.h>
 
@@ -542,6 +543,53 @@ TEST(ToolPath, SaysWhereTheToolDoesNotFit)
   EXPECT_NEAR(large[worst], 1 - (4 - std::sqrt(12.0)), 0.01);
   const std::vector<double> flat = FindUnreachable(execution, surface, Flat);
   EXPECT_NEAR(*std::max_element(flat.begin(), flat.end()), 1, 1e-6);
+}
+
+// A full cut into solid stock is told, with how deep and where.
+TEST(ToolPath, WarnsOfDeepCutsWithoutRoughing)
+{
+  double lowest = 0;
+  const auto warnings = [&lowest](double depth, const std::function<void(ToolPathOptions&)>& change)
+  {
+    const MillSurface surface = Surface(41, 31, 1,
+      [&](double x, double y) { return -depth * std::exp(-std::hypot(x - 30, y - 10) / 9); });
+    ToolPathOptions options;
+    change(options);
+    std::string all;
+    const ToolPath path = Path(surface, options);
+    lowest = 0;
+    for (const Vec3& p : path.Points)
+    {
+      lowest = std::min(lowest, p[2]);
+    }
+    for (const std::string& warning : path.Warnings)
+    {
+      all += warning + "\n";
+    }
+    return all;
+  };
+  const auto nothing = [](ToolPathOptions&) {};
+  // the ball does not reach the tip
+  const std::string told = warnings(18, nothing);
+  EXPECT_LT(lowest, -12);
+  EXPECT_NE(told.find("takes off up to " + FormatNumber(std::round(-100 * lowest) / 100) + " mm"),
+    std::string::npos)
+    << told;
+  EXPECT_NE(told.find("z 0, to x 30, y 10"), std::string::npos) << told;
+  EXPECT_EQ(warnings(4, nothing), "");
+  // from the top of the stock, and as much as the tool's radius
+  EXPECT_NE(
+    warnings(4, [](auto& o) { o.StockTop = 3; }).find("(from StockTop, z 3,"), std::string::npos);
+  EXPECT_EQ(warnings(4, [](auto& o) { o.StockTop = 0.1; }), "");
+  EXPECT_NE(warnings(4, [](auto& o) { o.Tool.Radius = 2; }), "");
+  EXPECT_EQ(warnings(18, [](auto& o) { o.RoughingStep = 2; }), "");
+  EXPECT_EQ(warnings(18,
+              [](auto& o)
+              {
+                o.RoughingStep = 2;
+                o.Finishing = false;
+              }),
+    "");
 }
 
 TEST(ToolPath, SameBitsForAnyNumberOfThreads)
