@@ -101,7 +101,7 @@ void Write(benchmark::State& state, double tolerance)
 {
   const std::vector<lacuna::Vec3> points = Points(Shapes[state.range(0)]);
   const std::string path = OutputName("lacuna-benchmark.igs");
-  lacuna::ThreadExecution execution;
+  lacuna::ThreadExecution execution(1); // as OpenCASCADE
   lacuna::SurfaceFitOptions options;
   options.Tolerance = tolerance;
   lacuna::SurfaceFit fit;
