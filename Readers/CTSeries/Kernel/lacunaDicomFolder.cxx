@@ -35,6 +35,7 @@ void ForEachFile(const fs::path& folder, bool deep, Visit&& visit)
   {
     throw std::runtime_error(folder.string() + ": the folder cannot be read: " + error.message());
   }
+  std::string last;
   for (; file != fs::recursive_directory_iterator(); file.increment(error))
   {
     if (!deep)
@@ -46,6 +47,12 @@ void ForEachFile(const fs::path& folder, bool deep, Visit&& visit)
     {
       return;
     }
+    last = file->path().string();
+  }
+  if (error)
+  {
+    throw std::runtime_error(folder.string() + ": the folder cannot be read to its end, only to " +
+      last + ": " + error.message());
   }
 }
 

@@ -20,7 +20,7 @@ class DicomFolder
 public:
   /// path: a file, whose folder is searched; a folder, which is searched with all folders in it; a
   /// DICOMDIR, which stands for its folder. Throws std::runtime_error naming the path when there is
-  /// none, or when it holds more than 200000 files.
+  /// none, when it holds more than 200000 files or cannot be read to its end.
   void Scan(const std::string& path, Execution& execution);
 
   /// The images, by file name.
