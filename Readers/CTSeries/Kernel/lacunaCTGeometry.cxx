@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCTGeometry.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaSliceSpacing.h"
 
 #include <algorithm>
@@ -92,15 +93,31 @@ std::string Acquisition(const CTSlice& slice)
   return slice.Frame.Acquisition ? std::to_string(*slice.Frame.Acquisition) : "none";
 }
 
+// How near slices are at one position: within the tolerance, but never at neighbouring ones. Most
+// gaps may be those between copies, so that the usual distance is a large gap.
+double GetCopyDistance(const std::vector<CTSlice>& slices, double tolerance)
+{
+  constexpr double Least = 1e-6; // what rounding does to equal positions is less
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < slices.size(); ++i)
+  {
+    gaps.push_back(slices[i].Position - slices[i - 1].Position);
+  }
+  std::sort(gaps.begin(), gaps.end());
+  return gaps.empty() ? tolerance
+                      : std::min(tolerance, std::max(Least, 0.25 * gaps[gaps.size() * 3 / 4]));
+}
+
 void DropDuplicates(CTGeometry& geometry, const CTGeometryOptions& options)
 {
+  const double near = GetCopyDistance(geometry.Slices, options.PositionTolerance);
   std::vector<CTSlice> kept;
   std::vector<std::string> dropped;
   std::vector<std::string> different;
   bool several = false;
   for (const CTSlice& slice : geometry.Slices)
   {
-    if (kept.empty() || slice.Position - kept.back().Position > options.PositionTolerance)
+    if (kept.empty() || slice.Position - kept.back().Position > near)
     {
       kept.push_back(slice);
       continue;
@@ -353,6 +370,11 @@ void FindTilt(CTGeometry& geometry, const CTGeometryOptions& options)
 //------------------------------------------------------------------------------
 CTGeometry FindCTGeometry(const std::vector<CTFrame>& frames, const CTGeometryOptions& options)
 {
+  if (!(options.PositionTolerance >= 1e-6 && options.PositionTolerance <= 10))
+  {
+    throw std::runtime_error("PositionTolerance is " + FormatNumber(options.PositionTolerance) +
+      " mm; it must be from 1e-6 to 10 mm");
+  }
   const CTFrame& example = frames.front();
   CTGeometry geometry;
   geometry.FrameColumns = geometry.Columns = example.Header->Columns;

@@ -19,7 +19,8 @@ struct CTGeometryOptions
   bool InterpolateMissing = false;
   /// Whether a tilted gantry is corrected; else it is an error.
   bool CorrectTilt = true;
-  /// How far slices may lie from equal spacing or from a straight row, mm.
+  /// How far slices may lie from equal spacing or from a straight row, 1e-6 to 10 mm; for spacing
+  /// and for images at one position at most a quarter of the usual distance of slices.
   double PositionTolerance = 0.05;
   /// Whether two images at one position show the same; then the second is left out. When it is
   /// empty, they never do.

@@ -134,6 +134,41 @@ TEST(CTGeometry, DropsCopies)
   EXPECT_TRUE(Has(found.Warnings[0], "IM2 at 2 mm"));
 }
 
+// A generous tolerance does not make copies of neighbours that look the same.
+TEST(CTGeometry, ToleranceBeyondSpacing)
+{
+  CTGeometryOptions options;
+  options.SameImage = [](const CTFrame&, const CTFrame&) { return true; };
+  options.PositionTolerance = 3;
+  std::vector<Vec3> positions;
+  for (int k = 0; k < 17; ++k)
+  {
+    positions.push_back({ 0, 0, 2.0 * k });
+  }
+  const CTGeometry found = FindCTGeometry(MakeFrames(positions), options);
+  EXPECT_EQ(found.Planes.size(), 17U);
+  EXPECT_TRUE(found.Warnings.empty());
+  // copies are found where every image has one, also with other digits
+  for (int k = 0; k < 17; ++k)
+  {
+    positions.push_back({ 0, 0, 2.0 * k + 0.01 });
+  }
+  EXPECT_EQ(FindCTGeometry(MakeFrames(positions), options).Planes.size(), 17U);
+  // and where one position has many, told apart by rounding alone
+  positions.clear();
+  for (int k = 0; k < 17 * 9; ++k)
+  {
+    positions.push_back({ 0, 0, 2.0 * (k / 9) + 1e-12 * (k % 9) });
+  }
+  EXPECT_EQ(FindCTGeometry(MakeFrames(positions), options).Planes.size(), 17U);
+  positions.resize(17);
+  for (const double bad : { 0.0, -1.0, 1e-7, 11.0, HUGE_VAL, std::nan("") })
+  {
+    options.PositionTolerance = bad;
+    EXPECT_TRUE(Has(ErrorOf(MakeFrames(positions), options), "it must be from 1e-6 to 10 mm"));
+  }
+}
+
 TEST(CTGeometry, SingleSlice)
 {
   std::vector<CTFrame> frames = MakeFrames({ { 1, 2, 3 } });
