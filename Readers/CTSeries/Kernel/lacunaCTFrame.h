@@ -56,6 +56,9 @@ struct CTFileHeader
   std::string SeriesDescription;
   std::string FrameOfReferenceUid;
   std::string PatientPosition; ///< HFS, FFS, HFP, ...
+  /// (0020,0020): where rows and columns lead, in letters of LRAPHF, the main one first; empty where
+  /// it is not said, or of an animal.
+  std::vector<std::string> PatientOrientation;
   std::string ConvolutionKernel;
   std::string TransferSyntax; ///< its UID
   CTPatient Patient;

@@ -2,13 +2,16 @@
 #include "lacunaCTSeries.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace lacuna
 {
@@ -45,6 +48,68 @@ double Difference(
   return largest;
 }
 
+// Component and sign of the direction that a letter means, in LPS.
+std::optional<std::pair<int, double>> GetDirection(char letter)
+{
+  static const std::string letters = "RLAPFH";
+  const std::size_t place = letters.find(letter);
+  return place == std::string::npos
+    ? std::nullopt
+    : std::make_optional(std::make_pair(static_cast<int>(place / 2), place % 2 ? 1.0 : -1.0));
+}
+
+char GetMainLetter(const Vec3& axis)
+{
+  int largest = 0;
+  for (int i : { 1, 2 })
+  {
+    largest = std::abs(axis[i]) > std::abs(axis[largest]) ? i : largest;
+  }
+  return "RLAPFH"[2 * largest + (axis[largest] > 0 ? 1 : 0)];
+}
+
+// Two tags say how an image lies; where they contradict each other no one knows which is right.
+void CheckPatientOrientation(const CTFrame& frame)
+{
+  constexpr double LeastOfMain = 0.25; // the largest component of a unit vector is at least 0.57
+  constexpr double LeastOfOther = -0.1;
+  const std::vector<std::string>& stated = frame.Header->PatientOrientation;
+  if (stated.size() != 2)
+  {
+    return;
+  }
+  const std::array<double, 6>& a = *frame.Axes;
+  const std::array<Vec3, 2> axes = { Normalized(Vec3{ a[0], a[1], a[2] }),
+    Normalized(Vec3{ a[3], a[4], a[5] }) };
+  if (!(Norm(axes[0]) > 0 && Norm(axes[1]) > 0))
+  {
+    return; // that they are no directions is an error of the geometry
+  }
+  bool same = true;
+  for (std::size_t i = 0; i < axes.size(); ++i)
+  {
+    for (std::size_t k = 0; k < stated[i].size(); ++k)
+    {
+      const auto direction = GetDirection(stated[i][k]);
+      if (!direction)
+      {
+        return; // not understood, so there is nothing to compare
+      }
+      same = same &&
+        !(direction->second * axes[i][direction->first] < (k == 0 ? LeastOfMain : LeastOfOther));
+    }
+  }
+  if (!same)
+  {
+    Fail(frame,
+      "Patient Orientation (0020,0020) says that rows and columns lead to " + stated[0] + " and " +
+        stated[1] + ", but Image Orientation (Patient) (0020,0037) to " + GetMainLetter(axes[0]) +
+        " and " + GetMainLetter(axes[1]) +
+        ": one of them is wrong, and left and right may be exchanged. Export original images; or "
+        "compare with the hospital's viewer, and if (0020,0037) is right remove (0020,0020)");
+  }
+}
+
 void CheckImage(const CTFrame& frame)
 {
   const CTFileHeader& header = *frame.Header;
@@ -68,6 +133,7 @@ void CheckImage(const CTFrame& frame)
   {
     Fail(frame, "has no valid Pixel Spacing (0028,0030)");
   }
+  CheckPatientOrientation(frame);
 }
 
 void CheckSame(const CTFrame& frame, const CTFrame& first)

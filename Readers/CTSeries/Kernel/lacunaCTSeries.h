@@ -52,7 +52,8 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
 std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition);
 
 /// Throws std::runtime_error naming file and tag unless all images have pixels, one size, pixel
-/// spacing, position, orientation, patient and frame of reference, as one volume has.
+/// spacing, position, orientation, patient and frame of reference, as one volume has, and Patient
+/// Orientation, where it is there, agrees with Image Orientation (Patient).
 void CheckSameVolume(const std::vector<CTFrame>& frames);
 }
 #endif

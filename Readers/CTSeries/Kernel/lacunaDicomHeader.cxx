@@ -183,6 +183,10 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
   header->SeriesDescription = text(0x0008103E);
   header->FrameOfReferenceUid = text(0x00200052);
   header->PatientPosition = text(0x00185100);
+  if (text(0x00102210) != "QUADRUPED") // which has letters of its own
+  {
+    header->PatientOrientation = SplitDicomValues(data.GetText(0x00200020));
+  }
   header->ConvolutionKernel = text(0x00181210);
   header->Patient = { text(0x00100010), text(0x00100020), text(0x00100030), text(0x00100040) };
   const auto size = [&](DicomTag tag)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHounsfield.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaWide.h"
 
 #include <algorithm>
@@ -18,6 +19,11 @@ namespace
 {
 constexpr double Int16Lowest = std::numeric_limits<std::int16_t>::lowest();
 constexpr double Int16Highest = std::numeric_limits<std::int16_t>::max();
+
+bool FitsFloat(double x)
+{
+  return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max());
+}
 
 bool IsWhole(double x)
 {
@@ -245,8 +251,44 @@ template void HounsfieldScale::Convert(const unsigned char*, std::int64_t, std::
 template void HounsfieldScale::Convert(const unsigned char*, std::int64_t, float*) const;
 
 //------------------------------------------------------------------------------
+std::string CheckRescaleType(const std::vector<CTFrame>& frames)
+{
+  const CTFrame* doubtful = nullptr;
+  for (const CTFrame& frame : frames)
+  {
+    std::string type = frame.RescaleType;
+    std::transform(type.begin(), type.end(), type.begin(),
+      [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    if (type.empty() || type == "HU")
+    {
+      continue;
+    }
+    if (type != "US" && type != "HU_MOD")
+    {
+      throw std::runtime_error(frame.GetName() + ": Rescale Type (0028,1054) is " +
+        frame.RescaleType +
+        ", so its values are not Hounsfield units (HU); take a series of the scan's own images");
+    }
+    doubtful = doubtful ? doubtful : &frame;
+  }
+  if (!doubtful)
+  {
+    return {};
+  }
+  return doubtful->GetName() + ": Rescale Type (0028,1054) is " + doubtful->RescaleType +
+    ", unspecified or modified units; its values are taken as Hounsfield units (HU), compare some "
+    "with those that the hospital's "
+    "viewer shows";
+}
+
+//------------------------------------------------------------------------------
 ScalarType GetHounsfieldType(const std::vector<CTFrame>& frames, double air)
 {
+  if (!FitsFloat(air))
+  {
+    throw std::runtime_error("PaddingValue is " + FormatNumber(air) +
+      "; it must be a number of Hounsfield units within +-3.4e38");
+  }
   double lowest = air;
   double highest = air;
   bool whole = IsWhole(air);
@@ -254,6 +296,13 @@ ScalarType GetHounsfieldType(const std::vector<CTFrame>& frames, double air)
   {
     const HounsfieldScale scale(frame, air);
     const auto [first, last] = scale.GetRange();
+    if (!FitsFloat(first) || !FitsFloat(last))
+    {
+      throw std::runtime_error(frame.GetName() + ": with Rescale Slope (0028,1053) " +
+        FormatNumber(*frame.RescaleSlope) + " and Rescale Intercept (0028,1052) " +
+        FormatNumber(*frame.RescaleIntercept) + " its values are from " + FormatNumber(first) +
+        " to " + FormatNumber(last) + ", beyond what a voxel can hold; export original images");
+    }
     lowest = std::min(lowest, first);
     highest = std::max(highest, last);
     whole = whole && scale.IsIntegral();

@@ -51,8 +51,14 @@ private:
   std::int64_t PaddingLast = 0;
 };
 
+/// Throws std::runtime_error naming the file when a Rescale Type (0028,1054) says that values are no
+/// Hounsfield units (optical density, atomic numbers, percent). Returns a warning when it leaves that
+/// open (US, HU_MOD), else an empty text: for HU, and where there is none.
+std::string CheckRescaleType(const std::vector<CTFrame>& frames);
+
 /// The smallest of Int16, Int32, Float32 that holds all values of the frames exactly (as far as
-/// their headers tell), so that the type of a volume is known before its pixels.
+/// their headers tell), so that the type of a volume is known before its pixels. Throws
+/// std::runtime_error when a value or air is beyond what a float holds.
 ScalarType GetHounsfieldType(const std::vector<CTFrame>& frames, double air);
 }
 #endif

@@ -146,6 +146,37 @@ TEST(Hounsfield, Types)
   EXPECT_EQ(GetHounsfieldType({ MakeFrame(32, 32, 31, false) }, 0), ScalarType::Float32);
 }
 
+TEST(Hounsfield, RescaleType)
+{
+  std::vector<CTFrame> frames(3, MakeFrame(16, 12, 11, false));
+  EXPECT_EQ(CheckRescaleType(frames), "");
+  frames[0].RescaleType = "HU";
+  frames[2].RescaleType = "hu";
+  EXPECT_EQ(CheckRescaleType(frames), "");
+  for (const char* open : { "US", "HU_MOD" })
+  {
+    frames[1].RescaleType = open;
+    EXPECT_EQ(CheckRescaleType(frames).find("IM1: Rescale Type (0028,1054) is " +
+                std::string(open) + ", unspecified or modified units; its values are taken"),
+      0U);
+  }
+  for (const char* other : { "OD", "Z_EFF", "ED", "MGML", "PCT", "HUGE" })
+  {
+    frames[2].RescaleType = other;
+    try
+    {
+      CheckRescaleType(frames);
+      ADD_FAILURE() << other;
+    }
+    catch (const std::runtime_error& e)
+    {
+      EXPECT_EQ(std::string(e.what()).find("IM1: Rescale Type (0028,1054) is " +
+                  std::string(other) + ", so its values are not Hounsfield units"),
+        0U);
+    }
+  }
+}
+
 TEST(Hounsfield, RefusesWhatCannotBe)
 {
   for (const CTFrame& bad :
@@ -155,6 +186,15 @@ TEST(Hounsfield, RefusesWhatCannotBe)
     EXPECT_THROW(HounsfieldScale(bad, 0), std::runtime_error);
   }
   CTFrame frame = MakeFrame(16, 12, 11, false);
+  for (const double air : { HUGE_VAL, -1e300, std::nan("") })
+  {
+    EXPECT_THROW(GetHounsfieldType({ frame }, air), std::runtime_error) << air;
+  }
+  EXPECT_EQ(GetHounsfieldType({ frame }, 3e38), ScalarType::Float32);
+  frame.RescaleSlope = 1e36; // 4095 of it are beyond a float
+  EXPECT_THROW(GetHounsfieldType({ frame }, 0), std::runtime_error);
+  frame.RescaleSlope = 1e300;
+  EXPECT_THROW(GetHounsfieldType({ frame }, 0), std::runtime_error);
   frame.RescaleIntercept.reset();
   EXPECT_THROW(HounsfieldScale(frame, 0), std::runtime_error);
 }
