@@ -89,6 +89,29 @@ protected:
   bool OnProgress(double) override { return true; }
 };
 
+// The notes on files that message does not have yet: a file that was left out may be what it is
+// about.
+std::string AddNotes(const std::string& message, const std::vector<std::string>& notes)
+{
+  constexpr std::size_t Most = 8;
+  std::vector<std::string> fresh;
+  for (const std::string& note : notes)
+  {
+    if (message.find(note.substr(0, note.rfind("; the file is left out"))) == std::string::npos)
+    {
+      fresh.push_back(note);
+    }
+  }
+  std::string text = message;
+  for (std::size_t i = 0; i < std::min(fresh.size(), Most); ++i)
+  {
+    text += (i == 0 ? "\nOf the files there:\n  " : "\n  ") + fresh[i];
+  }
+  return fresh.size() > Most
+    ? text + "\n  and " + std::to_string(fresh.size() - Most) + " notes more"
+    : text;
+}
+
 bool IsSameImage(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
 {
   if (a.RescaleSlope != b.RescaleSlope || a.RescaleIntercept != b.RescaleIntercept)
@@ -109,7 +132,8 @@ struct vtkLacunaCTSeriesReader::Content
   vtkNew<vtkStringArray> SeriesList;
   vtkNew<vtkStringArray> Notes;
   bool Opened = false;
-  std::string Error;   // why it is not
+  std::string Error; // why it is not
+  unsigned long ErrorCode = vtkErrorCode::NoError;
   bool Warned = false; // of what follows
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
@@ -155,16 +179,55 @@ void vtkLacunaCTSeriesReader::OpenSeries()
 {
   Content& found = *this->Found;
   HeaderExecution execution(this);
+  const auto add = [&](const std::vector<std::string>& notes)
+  {
+    for (const std::string& note : notes)
+    {
+      found.Notes->InsertNextValue(note);
+    }
+  };
   found.Folder.Scan(this->FileName, execution);
   const lacuna::CTSeriesList list = lacuna::ListSeries(found.Folder.GetFrames());
   for (const lacuna::CTSeries& series : list.Series)
   {
     found.SeriesList->InsertNextValue(series.Describe());
   }
+  found.Warnings = found.Folder.GetWarnings();
+  add(found.Folder.GetNotes());
+  add(list.Notes);
+  try
+  {
+    this->FindVolume(list);
+  }
+  catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const std::runtime_error& e)
+  {
+    std::vector<std::string> omissions = found.Folder.GetWarnings();
+    omissions.insert(omissions.end(), list.Notes.begin(), list.Notes.end());
+    throw std::runtime_error(AddNotes(e.what(), omissions));
+  }
+  add(found.Geometry.Notes);
+  found.Warnings.insert(
+    found.Warnings.end(), found.Geometry.Warnings.begin(), found.Geometry.Warnings.end());
+  found.Opened = true;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
+{
+  Content& found = *this->Found;
   const lacuna::CTSeries& series = lacuna::SelectSeries(
     list, Text(this->SeriesUID), this->FileName, found.Folder.GetOpenedSeries());
   const std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
   lacuna::CheckSameVolume(frames);
+  const std::string doubt = lacuna::CheckRescaleType(frames);
+  if (!doubt.empty())
+  {
+    found.Warnings.push_back(doubt);
+  }
   found.Type = lacuna::GetHounsfieldType(frames, this->PaddingValue);
 
   lacuna::CTGeometryOptions options;
@@ -173,21 +236,6 @@ void vtkLacunaCTSeriesReader::OpenSeries()
   options.PositionTolerance = this->PositionTolerance;
   options.SameImage = IsSameImage;
   found.Geometry = lacuna::FindCTGeometry(frames, options);
-
-  const auto add = [&](const std::vector<std::string>& notes)
-  {
-    for (const std::string& note : notes)
-    {
-      found.Notes->InsertNextValue(note);
-    }
-  };
-  add(found.Folder.GetNotes());
-  add(list.Notes);
-  add(found.Geometry.Notes);
-  found.Warnings = found.Folder.GetWarnings();
-  found.Warnings.insert(
-    found.Warnings.end(), found.Geometry.Warnings.begin(), found.Geometry.Warnings.end());
-  found.Opened = true;
 }
 
 //------------------------------------------------------------------------------
@@ -201,47 +249,52 @@ int vtkLacunaCTSeriesReader::RequestInformation(
   found.Notes->Reset();
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkInformation* info = outputs->GetInformationObject(0);
+  // Nothing here is an error yet: ParaView asks as soon as one of several properties is set, and the
+  // next may choose the series or allow that slices are missing. RequestData tells.
+  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
+  const auto fail = [&](const std::string& error, unsigned long code)
+  {
+    found.Error = error;
+    found.ErrorCode = code;
+    this->SetErrorCode(code);
+    return 1;
+  };
+  found.ErrorCode = vtkErrorCode::NoError;
   if (Text(this->FileName).empty())
   {
-    // Not yet an error: ParaView asks as soon as one of several properties is set.
-    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
-    return 1;
+    return fail("FileName is not set; it must be a DICOM file of a CT series, or its folder",
+      vtkErrorCode::NoFileNameError);
   }
-  const int opened = vtkLacunaExecution::RunInformation(this, outputs,
-    [&]
-    {
-      try
-      {
-        this->OpenSeries();
-      }
-      catch (const std::exception& e)
-      {
-        found.Error = e.what();
-        throw;
-      }
-      const lacuna::CTGeometry& geometry = found.Geometry;
-      const int extent[6] = { 0, static_cast<int>(geometry.Columns) - 1, 0,
-        static_cast<int>(geometry.Rows) - 1, 0, static_cast<int>(geometry.Planes.size()) - 1 };
-      double direction[9];
-      for (int i = 0; i < 9; ++i)
-      {
-        direction[i] = geometry.Axes[i % 3][i / 3];
-      }
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkDataObject::ORIGIN(), geometry.Origin.data(), 3);
-      info->Set(vtkDataObject::SPACING(), geometry.Spacing.data(), 3);
-      info->Set(vtkDataObject::DIRECTION(), direction, 9);
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      // Ranks share out whole images, each of which is read by one of them.
-      info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
-      vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
-    });
-  if (!opened)
+  try
   {
-    this->SetErrorCode(GetReadError(this->FileName));
+    this->OpenSeries();
   }
-  return opened;
+  catch (const std::bad_alloc&)
+  {
+    return fail("out of memory", vtkErrorCode::UserError);
+  }
+  catch (const std::exception& e)
+  {
+    return fail(e.what(), GetReadError(this->FileName));
+  }
+  const lacuna::CTGeometry& geometry = found.Geometry;
+  const int extent[6] = { 0, static_cast<int>(geometry.Columns) - 1, 0,
+    static_cast<int>(geometry.Rows) - 1, 0, static_cast<int>(geometry.Planes.size()) - 1 };
+  double direction[9];
+  for (int i = 0; i < 9; ++i)
+  {
+    direction[i] = geometry.Axes[i % 3][i / 3];
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), geometry.Origin.data(), 3);
+  info->Set(vtkDataObject::SPACING(), geometry.Spacing.data(), 3);
+  info->Set(vtkDataObject::DIRECTION(), direction, 9);
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  // Ranks share out whole images, each of which is read by one of them.
+  info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -303,23 +356,10 @@ int vtkLacunaCTSeriesReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   Content& found = *this->Found;
-  if (!found.Opened)
-  {
-    vtkDataObject::GetData(outputs, 0)->Initialize();
-    if (Text(this->FileName).empty())
-    {
-      this->SetErrorCode(vtkErrorCode::NoFileNameError);
-      vtkErrorMacro("FileName is not set; it must be a DICOM file of a CT series, or its folder");
-      return 0;
-    }
-    // Said before, but perhaps long before: ParaView asks for information when it makes a reader.
-    this->SetErrorCode(GetReadError(this->FileName));
-    vtkErrorMacro(<< found.Error);
-    return 0;
-  }
+  this->SetErrorCode(found.ErrorCode);
   for (const std::string& warning : found.Warnings)
   {
-    if (!found.Warned)
+    if (found.Opened && !found.Warned)
     {
       vtkWarningMacro(<< warning);
     }
@@ -328,6 +368,12 @@ int vtkLacunaCTSeriesReader::RequestData(
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
+      if (!found.Opened)
+      {
+        // Of an empty extent VTK takes empty data for up to date, and would not ask again.
+        outputs->GetInformationObject(0)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+        throw std::runtime_error(found.Error);
+      }
       vtkInformation* info = outputs->GetInformationObject(0);
       vtkImageData* output = vtkImageData::GetData(outputs, 0);
       std::array<int, 6> extent{};

@@ -23,13 +23,14 @@
  * - Enhanced (multi-frame) CT, deflated files, files without preamble and compressed pixels (RLE;
  *   JPEG, JPEG-LS, JPEG 2000 when built with GDCM) are read.
  *
- * Field data: `PatientPosition` (HFS, ...), `ConvolutionKernel`, `GantryTilt` (degrees, where one
+ * Field data: `DirectionMatrix` (vtkLacunaVolumeDirection), `PatientPosition` (HFS, ...), `ConvolutionKernel`, `GantryTilt` (degrees, where one
  * was corrected), `InterpolatedSlices` (indices along the third axis, where there are any),
  * `Provenance`. The patient's identity is copied only with KeepPatientIdentity; provenance has a
  * hash of the series' UID instead (64-bit FNV-1a of its text).
  *
- * Requested extents are honoured: only the images of the slices asked for are read. Errors set
- * vtkErrorCode::FileNotFoundError or FileFormatError. Source: DICOM PS3.3 C.7.6.2, C.7.6.16, C.8.2;
+ * Requested extents are honoured: only the images of the slices asked for are read. What hinders a
+ * volume is an error of RequestData, with the files that were left out; until then the extent is
+ * empty. Errors set vtkErrorCode::FileNotFoundError or FileFormatError. Source: DICOM PS3.3 C.7.6.2, C.7.6.16, C.8.2;
  * Carr 1996, 6.7.1 (slices missing or displaced).
  */
 #ifndef vtkLacunaCTSeriesReader_h
@@ -42,6 +43,11 @@
 #include <string> // for std::string
 
 class vtkStringArray;
+
+namespace lacuna
+{
+struct CTSeriesList;
+}
 
 class VTKLACUNAREADERSCTSERIES_EXPORT vtkLacunaCTSeriesReader : public vtkImageAlgorithm
 {
@@ -96,15 +102,16 @@ public:
   ///@}
 
   ///@{
-  /// How far slices may lie from equal spacing and from a straight row, in mm; also the distance
-  /// within which two images are at one position. Default: 0.05.
-  vtkSetClampMacro(PositionTolerance, double, 1e-6, 10);
+  /// How far slices may lie from equal spacing and from a straight row, in mm, 1e-6 to 10; also the
+  /// distance within which two images are at one position. For spacing and for one position at most
+  /// a quarter of the usual distance of slices counts. Default: 0.05.
+  vtkSetMacro(PositionTolerance, double);
   vtkGetMacro(PositionTolerance, double);
   ///@}
 
   ///@{
   /// Hounsfield units of pixels that the file calls padding, and of what lies outside of tilted
-  /// images. Default: -1024.
+  /// images; a number that a float can hold. Default: -1024.
   vtkSetMacro(PaddingValue, double);
   vtkGetMacro(PaddingValue, double);
   ///@}
@@ -118,7 +125,7 @@ public:
   ///@}
 
   /// The CT series found, one a line that begins with the UID. Filled by UpdateInformation, also
-  /// when that fails because the series is not clear.
+  /// when no volume can be made; the error then comes with the request for data.
   vtkStringArray* GetSeriesList();
   /// What was left out, corrected or interpolated.
   vtkStringArray* GetNotes();
@@ -142,6 +149,7 @@ private:
 
   struct Content;
   void OpenSeries();
+  void FindVolume(const lacuna::CTSeriesList& list);
   void AddFieldData(vtkImageData* output) const;
   std::string DescribeParameters() const;
 

@@ -139,6 +139,47 @@ for choice in ("1.2.3.77", lines[[line.startswith("1.2.3.77") for line in lines]
     assert reader.GetDataInformation().GetExtent() == (0, 43, 0, 35, 0, 3)
 Delete(reader)
 
+# A script that sets several properties at once gets no error of those that came first.
+for settings in (dict(FileName=case("missing"), MissingSlices="Interpolate"), dict(FileName=case("two"), SeriesUID="1.2.3.77"),
+                 dict(FileName=case("two"), PositionTolerance=0.1, SeriesUID=lines[0])):
+    with raising():
+        reader = CTSeriesReader(**settings)
+        reader.UpdatePipeline()
+    assert reader.GetDataInformation().GetNumberOfPoints() > 0
+    Delete(reader)
+
+# The error comes with the data, also to who asks through a filter later.
+with raising():
+    reader = CTSeriesReader(FileName=case("missing"))
+    behind = SpeckleFilter(Input=reader)
+for proxy in (reader, behind):
+    try:
+        with raising():
+            proxy.UpdatePipeline()
+        raise AssertionError("a missing slice is no error")
+    except PipelineError as error:
+        assert "1 slice is missing at -10 mm" in str(error), error
+assert "images of 44 x 36" in list(reader.SeriesList)[0]
+with raising():
+    reader.MissingSlices = "Interpolate"
+    behind.UpdatePipeline()
+assert behind.GetDataInformation().GetExtent()[5] == 6
+Delete(behind)
+Delete(reader)
+
+# A file that leaves a gap is named.
+shutil.copytree(case("axial"), case("gap"))
+victim = sorted(glob.glob(case("gap/*")))[6]
+os.truncate(victim, 300)
+reader = CTSeriesReader(FileName=case("gap"))
+try:
+    with raising():
+        reader.UpdatePipeline()
+    raise AssertionError("a missing slice is no error")
+except PipelineError as error:
+    assert "1 slice is missing at" in str(error) and victim + ": is cut off or damaged" in str(error), error
+Delete(reader)
+
 # Missing slices and tilt are told.
 reader = CTSeriesReader(FileName=case("missing"), MissingSlices="Interpolate")
 reader.UpdatePipeline()

@@ -55,6 +55,11 @@ void TestTags()
   ExpectEditError({ 0x0028, 0x1053, "DS", "", { 4 } }, "Rescale Slope (0028,1053)");
   ExpectEditError({ 0x0028, 0x1052, "DS", "", { 4 } }, "Rescale Intercept (0028,1052)");
   ExpectEditError({ 0x0028, 0x1053, "DS", "0", { 4 } }, "Rescale Slope (0028,1053)");
+  ExpectEditError({ 0x0028, 0x1053, "DS", "1e300", { 4 } }, "beyond what a voxel can hold");
+  ExpectEditError({ 0x0028, 0x1052, "DS", "-1e39", { 4 } }, "beyond what a voxel can hold");
+  ExpectEditError({ 0x0028, 0x1053, "DS", "inf", { 4 } }, "Rescale Slope (0028,1053)");
+  ExpectEditError({ 0x0028, 0x1054, "LO", "OD", { 4 } }, "Rescale Type (0028,1054) is OD");
+  ExpectEditError({ 0x0020, 0x0020, "CS", "R\\P", { 2 } }, "Patient Orientation (0020,0020)");
   ExpectEditError({ 0x0028, 0x0010, "US", "20", { 1 } }, "has 44 x 20 pixels, but");
   ExpectEditError({ 0x0028, 0x0010, "US", "80", { 1 } }, "take 7040");
   ExpectEditError({ 0x0028, 0x0100, "US", "12", { 1 } }, "Bits Allocated (0028,0100)");
@@ -66,6 +71,102 @@ void TestTags()
   ExpectEditError({ 0x0020, 0x0032, "DS", "1e300\\0\\-10", { 3 } }, "displaced sideways");
   ExpectEditError(
     { 0x0020, 0x0032, "DS", "0\\0\\1e12", { 5 } }, "from slice to slice that would be");
+}
+
+// What the files say of themselves besides, and contradicts or leaves open.
+void TestDoubts()
+{
+  ReaderOf unspecified(Edited({ { 0x0028, 0x1054, "LO", "US", { 1 } } }));
+  unspecified.ExpectGood();
+  LACUNA_CHECK_CONTAINS(unspecified.Warnings,
+    BaseName(unspecified.Files[1]) + ": Rescale Type (0028,1054) is US, unspecified");
+  ReaderOf unsaid(Edited({ { 0x0028, 0x1054, "LO", "", {} } }));
+  unsaid.ExpectGood();
+  LACUNA_CHECK(unsaid.Warnings.empty());
+
+  ReaderOf agrees(Edited({ { 0x0020, 0x0020, "CS", "L\\P", {} } }));
+  agrees.ExpectGood();
+  ReaderOf animal(
+    Edited({ { 0x0020, 0x0020, "CS", "R\\D", {} }, { 0x0010, 0x2210, "CS", "QUADRUPED", {} } }));
+  animal.ExpectGood();
+  CTTestSeries frames = Edited({ { 0x0020, 0x0020, "CS", "R\\P", {} } });
+  frames.MultiFrame = true;
+  ReaderOf multi(frames);
+  multi.ExpectError("IM0001 frame 1: Patient Orientation (0020,0020)");
+}
+
+void TestProperties()
+{
+  ReaderOf test(Edited({}));
+  for (const double padding : { HUGE_VAL, -1e300, std::nan("") })
+  {
+    test.Reader->SetPaddingValue(padding);
+    test.ExpectError("PaddingValue is ");
+  }
+  test.Reader->SetPaddingValue(3e38);
+  test.ExpectGood();
+  test.Reader->SetPaddingValue(-1024);
+  for (const double tolerance : { HUGE_VAL, -1.0, 0.0, 20.0, std::nan("") })
+  {
+    test.Reader->SetPositionTolerance(tolerance);
+    test.ExpectError("PositionTolerance is ");
+  }
+  test.Reader->SetPositionTolerance(3); // more than the distance of slices
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 6);
+  LACUNA_CHECK(test.Warnings.empty());
+}
+
+// A file that was left out is named where it leaves a gap.
+void TestGapOfLeftOut()
+{
+  const std::string gap = "1 slice is missing at -10 mm";
+  ReaderOf cut(Edited({}));
+  std::filesystem::resize_file(cut.Files[3], 300);
+  cut.ExpectError(gap);
+  LACUNA_CHECK_CONTAINS(cut.Errors, "\nOf the files there:\n  " + cut.Files[3] + ": ");
+  LACUNA_CHECK_CONTAINS(cut.Errors, "; the file is left out");
+
+  ReaderOf empty(Edited({ { 0x0028, 0x0002, "US", "3", { 2 } } }));
+  std::filesystem::resize_file(empty.Files[3], 0);
+  empty.ExpectError("2 slices are missing at -12 mm, -10 mm");
+  LACUNA_CHECK_CONTAINS(
+    empty.Errors, BaseName(empty.Files[2]) + ": left out, it is a colour image (0028,0002)");
+  LACUNA_CHECK_CONTAINS(empty.GetNotes(), "1 files are no DICOM files");
+  LACUNA_CHECK_CONTAINS(empty.GetNotes(), "left out, it is a colour image");
+
+  // the file that was opened is named once; of many, the first ones are
+  cut.Reader->SetFileName(cut.Files[3].c_str());
+  cut.ExpectError(cut.Files[3] + ": ");
+  LACUNA_CHECK(cut.Errors.find("Of the files there") == std::string::npos);
+  ReaderOf many{ CTTestSeries() };
+  for (const int k : { 1, 2, 3, 5, 6, 8, 9, 10, 11, 13 })
+  {
+    std::filesystem::resize_file(many.Files[k], 300);
+  }
+  many.ExpectError("the slices are not equally spaced");
+  LACUNA_CHECK_CONTAINS(many.Errors, "and 2 notes more");
+}
+
+// ParaView sets one property after the other and asks for information in between: only what the data
+// are asked with counts.
+void TestInformation()
+{
+  CTTestSeries series;
+  series.Places = { 0, 1, 2, 4, 5, 6 };
+  ReaderOf test(series);
+  test.Reader->UpdateInformation();
+  LACUNA_CHECK_THAT(test.Errors.empty(), test.Errors);
+  LACUNA_CHECK(test.Reader->GetErrorCode() == vtkErrorCode::FileFormatError);
+  LACUNA_CHECK_CONTAINS(test.GetSeriesList(), "6 images of 44 x 36");
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.ExpectGood();
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_ERROR);
+  test.Reader->UpdateInformation();
+  test.ExpectError("1 slice is missing");
+  test.ExpectError("1 slice is missing"); // again, not an empty volume in silence
+  test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+  test.ExpectGood();
 }
 
 void TestLeftOut()
@@ -339,6 +440,10 @@ void TestAbort()
 int TestCTSeriesReaderErrors(int, char*[])
 {
   TestTags();
+  TestDoubts();
+  TestProperties();
+  TestGapOfLeftOut();
+  TestInformation();
   TestLeftOut();
   TestSeries();
   TestFiles();
