@@ -193,6 +193,7 @@ void vtkLacunaCTSeriesReader::OpenSeries()
     found.SeriesList->InsertNextValue(series.Describe());
   }
   found.Warnings = found.Folder.GetWarnings();
+  add(found.Folder.GetWarnings());
   add(found.Folder.GetNotes());
   add(list.Notes);
   try

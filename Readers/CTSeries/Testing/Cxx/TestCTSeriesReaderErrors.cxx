@@ -126,6 +126,7 @@ void TestGapOfLeftOut()
   cut.ExpectError(gap);
   LACUNA_CHECK_CONTAINS(cut.Errors, "\nOf the files there:\n  " + cut.Files[3] + ": ");
   LACUNA_CHECK_CONTAINS(cut.Errors, "; the file is left out");
+  LACUNA_CHECK_CONTAINS(cut.GetNotes(), cut.Files[3] + ": ");
 
   ReaderOf empty(Edited({ { 0x0028, 0x0002, "US", "3", { 2 } } }));
   std::filesystem::resize_file(empty.Files[3], 0);
