@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaFileBytes.h"
 
+#include "lacunaMemory.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -146,7 +148,9 @@ void FileBytes::Inflate(std::int64_t first, std::size_t most)
         throw std::runtime_error(
           this->Path + ": is deflated and holds more than " + std::to_string(most >> 20) + " MiB");
       }
-      bytes.resize(done + std::min(std::max(InflateStep, done / 2), most - done));
+      const std::size_t size = done + std::min(std::max(InflateStep, done / 2), most - done);
+      RequireMemory(this->Path + ": its data set, which is deflated,", static_cast<double>(size));
+      bytes.resize(size);
     }
     zlib.next_out = bytes.data() + done;
     zlib.avail_out = static_cast<uInt>(bytes.size() - done);

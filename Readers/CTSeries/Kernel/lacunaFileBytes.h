@@ -38,8 +38,8 @@ public:
   bool Read(std::int64_t offset, std::int64_t count, unsigned char* bytes);
 
   /// The file is a deflate stream (RFC 1951) from first on; inflated bytes take its place. Throws
-  /// std::runtime_error naming the file when it is cut off, damaged or gives more than most bytes, of
-  /// which no more are ever held: two bytes of a stream can stand for 2 KiB.
+  /// std::runtime_error naming the file when it is cut off, damaged or gives more than most bytes or
+  /// than there is memory: two bytes of a stream can stand for 2 KiB.
   void Inflate(std::int64_t first, std::size_t most = MostInflated);
   /// Of Inflate; it may be kept and given to another FileBytes of the same file.
   std::shared_ptr<const InflatedBytes> GetInflated() const { return this->Inflated; }
