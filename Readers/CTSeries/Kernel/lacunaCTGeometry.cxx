@@ -311,6 +311,20 @@ void RefuseDisplaced(const CTGeometry& geometry, const CTGeometryOptions& option
   }
 }
 
+// A shift of more is no tilt but a wrong number, and the grid would have no end.
+void CheckShift(const CTGeometry& geometry, double shift)
+{
+  constexpr double Most = 32768; // columns or rows
+  if (!(shift <= Most))
+  {
+    std::ostringstream message;
+    message << "the slices are sheared by " << shift << " pixels from "
+            << Place(geometry.Slices.front()) << " to " << Place(geometry.Slices.back())
+            << ": Image Position (Patient) (0020,0032) or Pixel Spacing (0028,0030) is wrong";
+    throw std::runtime_error(message.str());
+  }
+}
+
 void FindTilt(CTGeometry& geometry, const CTGeometryOptions& options)
 {
   const Line x = FitLine(geometry, geometry.Axes[0]);
@@ -359,10 +373,33 @@ void FindTilt(CTGeometry& geometry, const CTGeometryOptions& options)
       shift = (Along(geometry.Axes[axis], slice) - first) / geometry.Spacing[axis];
       most = std::max(most, shift);
     }
+    CheckShift(geometry, most);
     std::int64_t& size = axis == 0 ? geometry.Columns : geometry.Rows;
     size += static_cast<std::int64_t>(std::ceil(most - 1e-6));
     geometry.Origin = geometry.Origin +
       (first - Along(geometry.Axes[axis], geometry.Slices[0])) * geometry.Axes[axis];
+  }
+}
+
+// Numbers play no part, but one who knows the scanner's order may want to know of another.
+void NoteNumbers(CTGeometry& geometry)
+{
+  const std::vector<CTSlice>& slices = geometry.Slices;
+  bool rises = true;
+  bool falls = slices.size() > 1;
+  for (std::size_t i = 1; i < slices.size(); ++i)
+  {
+    const std::optional<int>& before = slices[i - 1].Frame.Instance;
+    const std::optional<int>& after = slices[i].Frame.Instance;
+    rises = rises && (!before || !after || *before < *after);
+    falls = falls && before && after && *before > *after;
+  }
+  if (!rises)
+  {
+    geometry.Notes.push_back("Instance Number (0020,0013) " +
+      std::string(falls ? "falls" : "is in another order") + " along the slice normal, from " +
+      Place(slices.front()) + " to " + Place(slices.back()) +
+      "; the images are sorted by Image Position (Patient) (0020,0032)");
   }
 }
 }
@@ -386,6 +423,7 @@ CTGeometry FindCTGeometry(const std::vector<CTFrame>& frames, const CTGeometryOp
   FindPlanes(geometry, options);
   FindTilt(geometry, options);
   geometry.Origin = geometry.Origin + *geometry.Slices[0].Frame.Position;
+  NoteNumbers(geometry);
   return geometry;
 }
 }

@@ -110,6 +110,17 @@ void CheckPatientOrientation(const CTFrame& frame)
   }
 }
 
+std::size_t CountPatients(const std::vector<CTSeries>& all)
+{
+  std::set<std::pair<std::string, std::string>> patients;
+  for (const CTSeries& series : all)
+  {
+    const CTPatient& patient = series.Frames.front().Header->Patient;
+    patients.emplace(patient.Id, patient.Name);
+  }
+  return patients.size();
+}
+
 void CheckImage(const CTFrame& frame)
 {
   const CTFileHeader& header = *frame.Header;
@@ -143,7 +154,8 @@ void CheckSame(const CTFrame& frame, const CTFrame& first)
   if (a.Columns != b.Columns || a.Rows != b.Rows)
   {
     std::ostringstream what;
-    what << "has " << a.Columns << " x " << a.Rows << " pixels, but " << first.GetName() << " has "
+    what << "has " << a.Columns << " x " << a.Rows
+         << " pixels (Columns (0028,0011) x Rows (0028,0010)), but " << first.GetName() << " has "
          << b.Columns << " x " << b.Rows;
     Fail(frame, what.str());
   }
@@ -230,7 +242,7 @@ std::string CTSeriesList::Describe() const
   std::string text;
   for (const CTSeries& series : this->Series)
   {
-    text += "\n  " + series.Describe();
+    text += "\n  " + series.Describe() + ", first file " + series.Frames.front().GetName();
   }
   return text;
 }
@@ -272,7 +284,7 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
     int Count = 0;
   };
   std::map<std::string, Omission> omitted;
-  std::map<std::pair<long, std::string>, CTSeries> found;
+  std::map<std::string, CTSeries> found;
   for (const CTFrame& frame : frames)
   {
     const std::string why = WhyNotInVolume(frame);
@@ -283,25 +295,24 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
       ++omission.Count;
       continue;
     }
-    const std::string& uid = frame.Header->SeriesUid;
-    const long number = std::strtol(frame.Header->SeriesNumber.c_str(), nullptr, 10);
-    CTSeries& series = found[{ number, uid }];
-    series.Uid = uid;
+    // a series whose files disagree on its number is one nevertheless
+    CTSeries& series = found[frame.Header->SeriesUid];
+    series.Uid = frame.Header->SeriesUid;
     series.Frames.push_back(frame);
   }
   CTSeriesList list;
   for (auto& entry : found)
   {
-    // a series whose files disagree on its number is one nevertheless
-    const auto same = std::find_if(list.Series.begin(), list.Series.end(),
-      [&](const CTSeries& series) { return series.Uid == entry.second.Uid; });
-    if (same != list.Series.end())
-    {
-      same->Frames.insert(
-        same->Frames.end(), entry.second.Frames.begin(), entry.second.Frames.end());
-      continue;
-    }
     list.Series.push_back(std::move(entry.second));
+  }
+  const auto number = [](const CTSeries& series)
+  { return std::strtol(series.Frames.front().Header->SeriesNumber.c_str(), nullptr, 10); };
+  std::stable_sort(list.Series.begin(), list.Series.end(),
+    [&](const CTSeries& a, const CTSeries& b) { return number(a) < number(b); });
+  if (list.Series.size() > 1)
+  {
+    list.Notes.push_back("there are " + std::to_string(list.Series.size()) +
+      " CT series (0020,000E); SeriesList names them, one is read");
   }
   for (const auto& [why, omission] : omitted)
   {
@@ -336,8 +347,11 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
   }
   if (wanted.empty())
   {
+    const std::size_t patients = CountPatients(list.Series);
     throw std::runtime_error(file + ": there are " + std::to_string(list.Series.size()) +
-      " CT series; set SeriesUID to one of these:" + list.Describe());
+      " CT series" +
+      (patients > 1 ? " of " + std::to_string(patients) + " patients (0010,0020)" : "") +
+      "; set SeriesUID to one of these (0020,000E):" + list.Describe());
   }
   for (const CTSeries& series : list.Series)
   {

@@ -155,9 +155,10 @@ std::int64_t DicomParser::ReadValue(
     // a sequence of unknown type is implicit (CP 246)
     const std::int64_t next =
       this->ReadSequence(element, end, items, implicit || element.Vr == "UN", depth + 1);
-    if (IsKnownSequence(element.Tag))
+    if (IsKnownSequence(element.Tag) &&
+      !data.Sequences.emplace(element.Tag, std::move(items)).second)
     {
-      data.Sequences[element.Tag] = std::move(items);
+      this->Fail("has sequence " + Name(element.Tag) + " twice");
     }
     return next;
   }
@@ -174,8 +175,13 @@ std::int64_t DicomParser::ReadValue(
   if (element.Length <= LongestValue && (element.Tag >> 16) % 2 == 0)
   {
     const unsigned char* bytes = this->Get(element.Value, element.Length, element.Tag);
-    data.Values[element.Tag].assign(
+    const std::string value(
       reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(element.Length));
+    const auto [known, isNew] = data.Values.emplace(element.Tag, value);
+    if (!isNew && known->second != value)
+    {
+      this->Fail("has element " + Name(element.Tag) + " twice with different values");
+    }
   }
   return element.Value + element.Length;
 }
@@ -219,6 +225,11 @@ std::int64_t DicomParser::ReadDataSet(std::int64_t offset, std::int64_t end, Dic
     {
       *pixels = element;
       return element.Value;
+    }
+    if (element.Tag >> 16 == 0xFFFE && element.Length > 0)
+    {
+      // a length before it was wrong, and what follows may belong to another item
+      this->Fail("has " + Name(element.Tag) + " outside of a sequence");
     }
     offset = this->ReadValue(element, data, end, implicit, depth);
     before = element.Tag;

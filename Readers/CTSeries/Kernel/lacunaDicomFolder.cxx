@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t MostFiles = 200000;
 constexpr int MostTried = 200; // files of a folder, until one is CT
+constexpr std::size_t MostNamed = 3;
 
 bool IsDirectoryRecord(const fs::path& path)
 {
@@ -54,6 +55,27 @@ void ForEachFile(const fs::path& folder, bool deep, Visit&& visit)
     throw std::runtime_error(folder.string() + ": the folder cannot be read to its end, only to " +
       last + ": " + error.message());
   }
+}
+
+bool IsNamedDicom(const fs::path& path)
+{
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension == ".dcm" || extension == ".ima";
+}
+
+// "a, b, c and 5 more"
+std::string JoinNames(const std::vector<std::string>& paths)
+{
+  std::string names;
+  for (std::size_t i = 0; i < std::min(paths.size(), MostNamed); ++i)
+  {
+    names += (i == 0 ? "" : ", ") + fs::path(paths[i]).filename().string();
+  }
+  return paths.size() > MostNamed
+    ? names + " and " + std::to_string(paths.size() - MostNamed) + " more"
+    : names;
 }
 
 bool IsCTFile(const std::string& path)
@@ -169,11 +191,19 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
     });
   this->Files = std::move(files);
 
-  std::size_t others = 0;
+  std::vector<std::string> others;
   std::size_t bare = 0;
   for (const auto& [name, entry] : this->Files)
   {
-    others += entry.IsDicom ? 0 : 1;
+    if (!entry.IsDicom && IsNamedDicom(name))
+    {
+      this->Warnings.push_back(
+        name + ": is not a DICOM file, though its name says so; the file is left out");
+    }
+    else if (!entry.IsDicom)
+    {
+      others.push_back(name);
+    }
     bare += !entry.Frames.empty() && entry.Frames[0].Header->IsBare ? 1 : 0;
     if (!entry.Error.empty())
     {
@@ -184,9 +214,10 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
       this->Frames.insert(this->Frames.end(), entry.Frames.begin(), entry.Frames.end());
     }
   }
-  if (others > 0)
+  if (!others.empty())
   {
-    this->Notes.push_back(std::to_string(others) + " files are no DICOM files");
+    this->Notes.push_back(
+      std::to_string(others.size()) + " files are no DICOM files: " + JoinNames(others));
   }
   if (bare > 0)
   {

@@ -13,7 +13,8 @@ namespace lacuna
 namespace
 {
 constexpr int MostFrames = 100000;
-constexpr std::int64_t LargestImage = 65535; // columns or rows
+constexpr std::int64_t LargestImage = 65535;                 // columns or rows
+constexpr const char* CTClass = "1.2.840.10008.5.1.4.1.1.2"; // and what begins so: enhanced CT
 constexpr DicomTag SharedGroups = 0x52009229;
 constexpr DicomTag FrameGroups = 0x52009230;
 
@@ -55,38 +56,69 @@ private:
   const DicomDataSet* Shared;
 };
 
+// A number of 2 bytes; -1 when it is absent or no such number.
+int ReadShort(const DicomDataSet& data, DicomTag tag)
+{
+  const std::int64_t number = data.GetBinary(tag, false).value_or(-1);
+  return number <= 0xFFFF ? static_cast<int>(number) : -1;
+}
+
 CTPixelFormat ReadFormat(const DicomDataSet& data)
 {
   CTPixelFormat format;
-  format.BitsAllocated = static_cast<int>(data.GetBinary(0x00280100, false).value_or(0));
-  format.BitsStored =
-    static_cast<int>(data.GetBinary(0x00280101, false).value_or(format.BitsAllocated));
-  format.HighBit =
-    static_cast<int>(data.GetBinary(0x00280102, false).value_or(format.BitsStored - 1));
-  format.Signed = data.GetBinary(0x00280103, false).value_or(0) == 1;
+  format.BitsAllocated = ReadShort(data, 0x00280100);
+  format.BitsStored = ReadShort(data, 0x00280101);
+  format.HighBit = ReadShort(data, 0x00280102);
+  if (format.HighBit == -1)
+  {
+    format.HighBit = format.BitsStored - 1; // the standard allows no other today
+  }
+  format.Signed = ReadShort(data, 0x00280103) == 1;
   return format;
+}
+
+// What is wrong with the description of the pixels, without which they cannot be understood.
+std::string WhyNotPixels(const DicomDataSet& data, const CTFileHeader& header)
+{
+  if (header.Columns < 1 || header.Rows < 1)
+  {
+    return "has no valid Rows (0028,0010) and Columns (0028,0011)";
+  }
+  const int bits = header.Format.BitsAllocated;
+  if (bits != 8 && bits != 16 && bits != 32)
+  {
+    return "has no Bits Allocated (0028,0100) that are read: 8, 16 or 32";
+  }
+  if (header.Format.BitsStored < 1)
+  {
+    return "has no valid Bits Stored (0028,0101)";
+  }
+  const int representation = ReadShort(data, 0x00280103);
+  if (representation != 0 && representation != 1)
+  {
+    return "has no valid Pixel Representation (0028,0103), so whether its values have a sign is "
+           "unknown";
+  }
+  return {};
 }
 
 void FindNativePixels(const DicomFile& file, CTFileHeader& header)
 {
-  if (header.Format.BitsAllocated > 64 || header.SamplesPerPixel > 4)
-  {
-    header.PixelError = "has " + std::to_string(header.SamplesPerPixel) +
-      " samples per pixel "
-      "(0028,0002) of " +
-      std::to_string(header.Format.BitsAllocated) + " bits (0028,0100)";
-    return;
-  }
-  const std::int64_t size = header.Columns * header.Rows * (header.Format.BitsAllocated / 8) *
-    std::max(1, header.SamplesPerPixel);
+  const std::int64_t width =
+    header.Format.BitsAllocated / 8 * std::clamp(header.SamplesPerPixel, 1, 4);
+  const std::int64_t size = header.Columns * header.Rows * width;
   const std::int64_t there = std::min(file.PixelLength, file.FileSize - file.PixelOffset);
-  if (size < 1 || there < size * header.Frames)
+  // Padding is less than a row; more means that the numbers of rows, columns or frames are wrong,
+  // and then rows would be shifted against each other.
+  const std::int64_t row = std::min(header.Columns, header.Rows) * width;
+  if (there < size * header.Frames ||
+    file.PixelLength >= size * header.Frames + std::max(row, std::int64_t{ 2 }))
   {
     header.PixelError = "has " + std::to_string(there) + " bytes of Pixel Data (7FE0,0010), but " +
       std::to_string(header.Frames) + " x " + std::to_string(header.Columns) + " x " +
-      std::to_string(header.Rows) + " pixels of " + std::to_string(header.Format.BitsAllocated) +
-      " bits take " + std::to_string(size * header.Frames) +
-      (there < file.PixelLength ? ": it is cut off" : "");
+      std::to_string(header.Rows) + " pixels (0028,0008), (0028,0011), (0028,0010) of " +
+      std::to_string(header.Format.BitsAllocated) + " bits take " +
+      std::to_string(size * header.Frames) + (there < file.PixelLength ? ": it is cut off" : "");
     return;
   }
   for (int i = 0; i < header.Frames; ++i)
@@ -117,7 +149,8 @@ void FindFragments(const DicomFile& file, CTFileHeader& header)
       header.Pixels[i] = { fragments[i] };
     }
   }
-  else if (file.FrameOffsets.size() == frames && !fragments.empty())
+  else if (file.FrameOffsets.size() == frames && !fragments.empty() &&
+    std::is_sorted(file.FrameOffsets.begin(), file.FrameOffsets.end()))
   {
     // the table counts from the first fragment's item, 8 bytes before its bytes
     const std::int64_t first = fragments[0].Offset;
@@ -150,6 +183,10 @@ void FindPixels(const DicomFile& file, CTFileHeader& header)
   {
     header.PixelError = "has no Pixel Data (7FE0,0010)";
   }
+  else if (std::string why = WhyNotPixels(file.Data, header); !why.empty())
+  {
+    header.PixelError = std::move(why);
+  }
   else if (header.Compressed != (file.PixelLength == -1))
   {
     header.PixelError =
@@ -163,6 +200,21 @@ void FindPixels(const DicomFile& file, CTFileHeader& header)
   {
     FindNativePixels(file, header);
   }
+}
+
+// A file that says by its class that it is CT, and then has not what makes it so, is damaged.
+std::string WhyNotCT(const CTFileHeader& header)
+{
+  if (header.SopClassUid != CTClass && header.SopClassUid.rfind(CTClass + std::string("."), 0) != 0)
+  {
+    return {}; // may be anything else
+  }
+  if (header.Modality != "CT")
+  {
+    return "is CT by its SOP Class (0008,0016), but its Modality (0008,0060) is " +
+      (header.Modality.empty() ? "missing" : header.Modality);
+  }
+  return header.SeriesUid.empty() ? "has no Series Instance UID (0020,000E)" : "";
 }
 
 std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFile& file)
@@ -189,6 +241,10 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
   }
   header->ConvolutionKernel = text(0x00181210);
   header->Patient = { text(0x00100010), text(0x00100020), text(0x00100030), text(0x00100040) };
+  if (const std::string why = WhyNotCT(*header); !why.empty())
+  {
+    throw std::runtime_error(path + ": " + why);
+  }
   const auto size = [&](DicomTag tag)
   {
     const std::int64_t number = data.GetBinary(tag, false).value_or(0);
@@ -196,16 +252,24 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
   };
   header->Rows = size(0x00280010);
   header->Columns = size(0x00280011);
-  header->SamplesPerPixel = static_cast<int>(data.GetBinary(0x00280002, false).value_or(1));
+  header->SamplesPerPixel = static_cast<int>(
+    std::min<std::int64_t>(LargestImage, data.GetBinary(0x00280002, false).value_or(1)));
   header->Format = ReadFormat(data);
   header->Padding = data.GetBinary(0x00280120, header->Format.Signed);
   header->PaddingLimit = data.GetBinary(0x00280121, header->Format.Signed);
   header->GantryTilt = data.GetNumber(0x00181120);
-  header->Frames = data.GetInteger(0x00280008).value_or(1);
+  const std::string frames = data.GetText(0x00280008);
+  header->Frames = frames.empty() ? 1 : data.GetInteger(0x00280008).value_or(0);
   if (header->Frames < 1 || header->Frames > MostFrames)
   {
-    throw std::runtime_error(
-      path + ": Number of Frames (0028,0008) is " + data.GetText(0x00280008));
+    throw std::runtime_error(path + ": Number of Frames (0028,0008) is " + frames);
+  }
+  const std::size_t groups = data.GetItems(FrameGroups).size();
+  if (groups > 0 && groups != static_cast<std::size_t>(header->Frames))
+  {
+    throw std::runtime_error(path + ": Number of Frames (0028,0008) is " +
+      std::to_string(header->Frames) + ", but positions are there for " + std::to_string(groups) +
+      " (Per-frame Functional Groups Sequence (5200,9230))");
   }
   header->IsBare = file.IsBare;
   if (file.Inflated)
@@ -264,7 +328,9 @@ std::vector<CTFrame> ReadDicomFrames(const std::string& path)
   const DicomFile file = ReadDicomFile(path);
   const std::shared_ptr<const CTFileHeader> header = ReadHeader(path, file);
   std::vector<CTFrame> frames;
-  for (int i = 0; i < header->Frames; ++i)
+  // without pixels one stands for all, of which the file may claim any number
+  const int count = header->PixelError.empty() ? header->Frames : 1;
+  for (int i = 0; i < count; ++i)
   {
     frames.push_back(ReadFrame(file.Data, header, i));
   }

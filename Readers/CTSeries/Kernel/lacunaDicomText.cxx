@@ -80,8 +80,12 @@ std::optional<std::vector<double>> ParseDicomNumbers(std::string_view text, std:
   std::vector<double> numbers;
   for (const std::string& value : values)
   {
-    const char* begin = value.data() + (!value.empty() && value[0] == '+' ? 1 : 0);
-    const char* end = value.data() + value.size();
+    const char* begin = value.data();
+    const char* end = begin + value.size();
+    if (value.size() > 1 && value[0] == '+' && value[1] != '-')
+    {
+      ++begin; // which from_chars does not take
+    }
     double number = 0;
     const auto [rest, error] = std::from_chars(begin, end, number);
     if (error != std::errc() || rest != end || !std::isfinite(number))

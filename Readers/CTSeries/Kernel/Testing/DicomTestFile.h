@@ -66,6 +66,19 @@ inline std::string Implicit(lacuna::DicomTag tag, const std::string& value, bool
   return Tag(tag) + Number(open ? 0xFFFFFFFF : static_cast<std::uint32_t>(value.size()), 4) + value;
 }
 
+/// Whole numbers of so many bits, without sign.
+inline std::string Format(std::uint32_t bits)
+{
+  return Short(0x00280100, "US", Number(bits, 2)) + Short(0x00280101, "US", Number(bits, 2)) +
+    Short(0x00280103, "US", Number(0, 2));
+}
+
+inline std::string ImplicitFormat(std::uint32_t bits)
+{
+  return Implicit(0x00280100, Number(bits, 2)) + Implicit(0x00280101, Number(bits, 2)) +
+    Implicit(0x00280103, Number(0, 2));
+}
+
 inline const std::string ItemEnd = Tag(0xFFFEE00D) + Number(0, 4);
 inline const std::string SequenceEnd = Tag(0xFFFEE0DD) + Number(0, 4);
 

@@ -34,8 +34,8 @@ const std::string Deflated = "1.2.840.10008.1.2.1.99";
 std::string MakeFrames()
 {
   return Short(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2.1") + Short(0x00080060, "CS", "CT") +
-    Short(0x00280008, "IS", "2") + Short(0x00280010, "US", Number(2, 2)) +
-    Short(0x00280011, "US", Number(2, 2)) + Short(0x00280100, "US", Number(8, 2)) +
+    Short(0x0020000E, "UI", "1.2.3") + Short(0x00280008, "IS", "2") +
+    Short(0x00280010, "US", Number(2, 2)) + Short(0x00280011, "US", Number(2, 2)) + Format(8) +
     Long(0x7FE00010, "OB", "abcdefgh");
 }
 
@@ -86,8 +86,7 @@ TEST(DicomBegin, DeflatedInPieces)
     c = static_cast<char>(random() % 64);
   }
   const std::string data = Short(0x00080060, "CS", "CT") + Short(0x00280010, "US", Number(600, 2)) +
-    Short(0x00280011, "US", Number(600, 2)) + Short(0x00280100, "US", Number(8, 2)) +
-    Long(0x7FE00010, "OB", pixels);
+    Short(0x00280011, "US", Number(600, 2)) + Format(8) + Long(0x7FE00010, "OB", pixels);
   const Temporary folder;
   EXPECT_EQ(Pixels(ReadDicomFrames(folder.Write(Head(Deflated) + Deflate(data))).at(0)), pixels);
 }
@@ -147,8 +146,8 @@ TEST(DicomBegin, WithoutPreamble)
   const Temporary folder;
   const std::string implicit = Implicit(0x00080000, Number(8, 4)) +
     Implicit(0x00080016, "1.2.840.10008.5.1.4.1.1.2 ") + Implicit(0x00080060, "CT") +
-    Implicit(0x00200032, "7\\8\\9 ") + Implicit(0x00280010, Number(1, 2)) +
-    Implicit(0x00280011, Number(2, 2)) + Implicit(0x00280100, Number(8, 2)) +
+    Implicit(0x0020000E, "1.2.3 ") + Implicit(0x00200032, "7\\8\\9 ") +
+    Implicit(0x00280010, Number(1, 2)) + Implicit(0x00280011, Number(2, 2)) + ImplicitFormat(8) +
     Implicit(0x7FE00010, "xy");
   const std::string path = folder.Write(implicit);
   EXPECT_TRUE(IsCTFileOrFolder(path));

@@ -34,8 +34,8 @@ TEST(DicomDataSet, ReadsImplicit)
   const std::string item = Implicit(0xFFFEE000, Implicit(0x00200032, "7\\8\\9 "));
   const std::string group = Implicit(0xFFFEE000, Implicit(0x00209113, item));
   const std::string file = Head("1.2.840.10008.1.2 ") + Implicit(0x00080060, "CT") +
-    Implicit(0x00280010, Number(1, 2)) + Implicit(0x00280011, Number(2, 2)) +
-    Implicit(0x00280100, Number(8, 2)) + Implicit(0x52009229, group) + Implicit(0x7FE00010, "xy");
+    Implicit(0x00280010, Number(1, 2)) + Implicit(0x00280011, Number(2, 2)) + ImplicitFormat(8) +
+    Implicit(0x52009229, group) + Implicit(0x7FE00010, "xy");
   const std::vector<CTFrame> frames = ReadDicomFrames(folder.Write(file));
   EXPECT_EQ(*frames.at(0).Position, (Vec3{ 7, 8, 9 }));
   EXPECT_EQ(Pixels(frames[0]), "xy");

@@ -32,7 +32,8 @@ int main(int argc, char* argv[])
     second.Slices = 4;
     second.Write(folder + "/two/second");
     CTTestSeries resonance;
-    resonance.Edits = { { 0x0008, 0x0060, "CS", "MR", {} } };
+    resonance.Edits = { { 0x0008, 0x0060, "CS", "MR", {} },
+      { 0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.4", {} } };
     resonance.Write(folder + "/MR");
   }
   catch (const std::exception& e)

@@ -60,7 +60,7 @@ void TestTags()
   ExpectEditError({ 0x0028, 0x1053, "DS", "inf", { 4 } }, "Rescale Slope (0028,1053)");
   ExpectEditError({ 0x0028, 0x1054, "LO", "OD", { 4 } }, "Rescale Type (0028,1054) is OD");
   ExpectEditError({ 0x0020, 0x0020, "CS", "R\\P", { 2 } }, "Patient Orientation (0020,0020)");
-  ExpectEditError({ 0x0028, 0x0010, "US", "20", { 1 } }, "has 44 x 20 pixels, but");
+  ExpectEditError({ 0x0028, 0x0010, "US", "20", { 1 } }, "but 1 x 44 x 20 pixels");
   ExpectEditError({ 0x0028, 0x0010, "US", "80", { 1 } }, "take 7040");
   ExpectEditError({ 0x0028, 0x0100, "US", "12", { 1 } }, "Bits Allocated (0028,0100)");
   ExpectEditError({ 0x0028, 0x0101, "US", "17", { 1 } }, "Bits Stored (0028,0101)");
@@ -172,7 +172,8 @@ void TestInformation()
 
 void TestLeftOut()
 {
-  CTTestSeries other = Edited({ { 0x0008, 0x0060, "CS", "MR", {} } });
+  CTTestSeries other = Edited({ { 0x0008, 0x0060, "CS", "MR", {} },
+    { 0x0008, 0x0016, "UI", "1.2.840.10008.5.1.4.1.1.4", {} } });
   ReaderOf test(other);
   test.ExpectError("there is no CT image");
   LACUNA_CHECK_CONTAINS(test.Errors, "is of modality MR, not CT (0008,0060); so are 5 others");
@@ -200,7 +201,7 @@ void TestSeries()
   second.Slices = 4;
   const std::string file = second.Write(test.Folder + "/inner folder")[2];
   second.MultiFrame = true;
-  test.ExpectError("there are 2 CT series; set SeriesUID to one of these:");
+  test.ExpectError("there are 2 CT series; set SeriesUID to one of these (0020,000E):");
   const std::string line = "1.2.3.77  series 4, \"Other\", 4 images of 44 x 36";
   LACUNA_CHECK_CONTAINS(test.Errors, line);
   LACUNA_CHECK_CONTAINS(test.GetSeriesList(), line);
