@@ -69,7 +69,15 @@ Outcome Read(const std::string& folder)
     }
     for (const CTSlice& slice : found.Slices)
     {
-      text << " " << slice.Frame.GetName();
+      // what each image says of itself, too
+      const CTFrame& frame = slice.Frame;
+      text << " " << frame.GetName() << " " << (*frame.Position)[0] << " " << (*frame.Position)[1]
+           << " " << (*frame.Position)[2] << " " << (*frame.Spacing)[0] << " "
+           << (*frame.Spacing)[1] << " " << frame.Header->Format.Signed;
+      for (const double x : *frame.Axes)
+      {
+        text << " " << x + 0.0;
+      }
     }
     outcome.Geometry = text.str();
     for (const auto* all : { &found.Notes, &found.Warnings })
