@@ -24,6 +24,17 @@ constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and wha
   throw std::runtime_error(frame.GetName() + ": " + what);
 }
 
+std::size_t CountPatients(const std::vector<CTSeries>& all)
+{
+  std::set<std::pair<std::string, std::string>> patients;
+  for (const CTSeries& series : all)
+  {
+    const CTPatient& patient = series.Frames.front().Header->Patient;
+    patients.emplace(patient.Id, patient.Name);
+  }
+  return patients.size();
+}
+
 bool IsLocalizer(const CTFrame& frame)
 {
   return std::any_of(frame.ImageType.begin(), frame.ImageType.end(),
@@ -108,17 +119,6 @@ void CheckPatientOrientation(const CTFrame& frame)
         ": one of them is wrong, and left and right may be exchanged. Export original images; or "
         "compare with the hospital's viewer, and if (0020,0037) is right remove (0020,0020)");
   }
-}
-
-std::size_t CountPatients(const std::vector<CTSeries>& all)
-{
-  std::set<std::pair<std::string, std::string>> patients;
-  for (const CTSeries& series : all)
-  {
-    const CTPatient& patient = series.Frames.front().Header->Patient;
-    patients.emplace(patient.Id, patient.Name);
-  }
-  return patients.size();
 }
 
 void CheckImage(const CTFrame& frame)
