@@ -200,7 +200,7 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
       this->Warnings.push_back(
         name + ": is not a DICOM file, though its name says so; the file is left out");
     }
-    else if (!entry.IsDicom)
+    if (!entry.IsDicom)
     {
       others.push_back(name);
     }

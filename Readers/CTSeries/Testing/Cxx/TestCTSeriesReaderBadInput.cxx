@@ -114,7 +114,8 @@ void TestDamagedFiles()
     BaseName(test.Files[0]) + ": is CT by its SOP Class (0008,0016), but its Modality (0008,0060)");
   LACUNA_CHECK_CONTAINS(
     test.Warnings, BaseName(test.Files[1]) + ": has no Series Instance UID (0020,000E)");
-  LACUNA_CHECK_CONTAINS(test.GetNotes(), "1 files are no DICOM files: liesmich.txt");
+  LACUNA_CHECK_CONTAINS(
+    test.GetNotes(), "2 files are no DICOM files: " + BaseName(last) + ", liesmich.txt");
 }
 
 void TestSizes()
