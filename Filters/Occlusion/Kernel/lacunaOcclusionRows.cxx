@@ -15,49 +15,42 @@ namespace
 {
 constexpr float LongestPath = 100; // beyond it nothing gets through that a float's angle could show
 
-/// 2^-x for x >= 0 to a relative error of 2e-7; exactly 1 at 0.
-LACUNA_INLINE float PowerOfTwo(float x)
+/// How many voxels each ray passes: the last weights are 0.
+int CountVoxels(const LayerCrossing& c)
 {
-  const float bounded = x < LongestPath ? x : LongestPath;
-  const float magic = 12582912.0F; // 1.5 * 2^23: the difference's low bits are -x rounded
-  const float shifted = magic - bounded;
-  const float f = bounded + (shifted - magic);
-  // 2^-f for |f| <= 1/2, relative error 9e-8
-  float p = -0.00132647250F;
-  p = p * f + 0.00967151299F;
-  p = p * f - 0.0555073358F;
-  p = p * f + 0.240222424F;
-  p = p * f - 0.693147004F;
-  p = p * f + 1.0F;
-  std::uint32_t bits;
-  std::uint32_t exponent;
-  std::memcpy(&bits, &p, sizeof bits);
-  std::memcpy(&exponent, &shifted, sizeof exponent);
-  bits += exponent << 23;
-  float result;
-  std::memcpy(&result, &bits, sizeof result);
-  return result;
+  const int upToTwo = c.Weights[1] != 0 ? 2 : 1;
+  return c.Weights[2] != 0 ? 3 : upToTwo;
 }
+
+// One set of functions per instruction set, all from the same code.
+#define LACUNA_AVX2 __attribute__((target("avx2")))
+#define LACUNA_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
+
+#define LACUNA_LANES_SET Plain
+#define LACUNA_LANES_TARGET
+#define LACUNA_LANES_WIDEST 4
+#include "lacunaOcclusionLanes.h"
+
+#ifdef LACUNA_WIDE_VECTORS
+#define LACUNA_LANES_SET Avx2
+#define LACUNA_LANES_TARGET LACUNA_AVX2
+#define LACUNA_LANES_WIDEST 8
+#include "lacunaOcclusionLanes.h"
+
+#define LACUNA_LANES_SET Avx512
+#define LACUNA_LANES_TARGET LACUNA_AVX512
+#define LACUNA_LANES_WIDEST 16
+#include "lacunaOcclusionLanes.h"
+#endif
+
+// What follows is left to the compiler to vectorise.
+using Plain::Interpolate;
+using Plain::PowerOfTwo;
 
 LACUNA_INLINE float LayerPath(const LayerCrossing& c, std::int64_t i)
 {
   return (c.Weights[0] * c.Voxels[0][i] + c.Weights[1] * c.Voxels[1][i]) +
     c.Weights[2] * c.Voxels[2][i];
-}
-
-/// Equal neighbours give exactly their value.
-LACUNA_INLINE float Interpolate(float a, float b, float toB)
-{
-  return a + toB * (b - a);
-}
-
-LACUNA_INLINE void AddPathBody(float* __restrict path, const LayerCrossing& layer, std::int64_t n)
-{
-  const LayerCrossing c = layer;
-  for (std::int64_t i = 0; i < n; ++i)
-  {
-    path[i] += LayerPath(c, i);
-  }
 }
 
 template <bool Binary>
@@ -75,30 +68,6 @@ LACUNA_INLINE void SeeBody(const float* __restrict first, const float* __restric
   }
 }
 
-LACUNA_INLINE void SeeBothBody(float* __restrict path, const float* __restrict total,
-  const LayerCrossing& layer, const OcclusionRows::View& after, const OcclusionRows::View& before,
-  float fy, std::int64_t n)
-{
-  const LayerCrossing c = layer;
-  float* __restrict afterRow = after.Row;
-  float* __restrict afterBetween = after.Between;
-  float* __restrict beforeRow = before.Row;
-  float* __restrict beforeBetween = before.Between;
-#pragma GCC ivdep
-  for (std::int64_t i = 0; i < n; ++i)
-  {
-    const float beyond = path[i];
-    const float with = beyond + LayerPath(c, i);
-    path[i] = with;
-    const float rest = total[i] - with;
-    const float bounded = rest > 0 ? rest : 0.0F;
-    afterBetween[i] = Interpolate(beyond, afterRow[i], fy);
-    afterRow[i] = beyond;
-    beforeBetween[i] = Interpolate(bounded, beforeRow[i], fy);
-    beforeRow[i] = bounded;
-  }
-}
-
 /// How much of the ray of voxel i is hidden on one side.
 template <bool Binary>
 LACUNA_INLINE float HiddenOn(
@@ -111,7 +80,7 @@ LACUNA_INLINE float HiddenOn(
     const float bounded = part < 1.0F ? part : 1.0F;
     return own + LayerPath(side.Next, i) > 0 ? 1.0F : bounded;
   }
-  return 1.0F - PowerOfTwo(own + rest);
+  return 1.0F - PowerOfTwo<float, std::uint32_t>(own + rest);
 }
 
 template <bool Binary>
@@ -141,25 +110,14 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
   }
 }
 
-// One set of functions per instruction set, all from the bodies above.
-#define LACUNA_ROWS(NAME, TARGET)                                                                  \
+#define LACUNA_ROWS(SET, TARGET)                                                                   \
   template <bool Binary>                                                                           \
-  struct NAME                                                                                      \
+  struct SET##Rows                                                                                 \
   {                                                                                                \
-    TARGET static void AddPath(float* path, const LayerCrossing& layer, std::int64_t n)            \
-    {                                                                                              \
-      AddPathBody(path, layer, n);                                                                 \
-    }                                                                                              \
     TARGET static void See(                                                                        \
       const float* first, const float* last, float* row, float* between, float fy, std::int64_t n) \
     {                                                                                              \
       SeeBody<Binary>(first, last, row, between, fy, n);                                           \
-    }                                                                                              \
-    TARGET static void SeeBoth(float* path, const float* total, const LayerCrossing& layer,        \
-      const OcclusionRows::View& after, const OcclusionRows::View& before, float fy,               \
-      std::int64_t n)                                                                              \
-    {                                                                                              \
-      SeeBothBody(path, total, layer, after, before, fy, n);                                       \
     }                                                                                              \
     TARGET static void Hide(float* hidden, const float* own, float half,                           \
       const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,   \
@@ -172,14 +130,13 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
     {                                                                                              \
       HideSideBody<Binary>(hidden, own, half, side, fx, gain, n);                                  \
     }                                                                                              \
-    static OcclusionRows Get() { return { AddPath, See, SeeBoth, Hide, HideSide }; }               \
+    static OcclusionRows Get() { return { SET::AddPath, SET::Pass, See, Hide, HideSide }; }        \
   };
 
-LACUNA_ROWS(PlainRows, )
+LACUNA_ROWS(Plain, )
 #ifdef LACUNA_WIDE_VECTORS
-LACUNA_ROWS(Avx2Rows, __attribute__((target("avx2"))))
-LACUNA_ROWS(
-  Avx512Rows, __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512"))))
+LACUNA_ROWS(Avx2, LACUNA_AVX2)
+LACUNA_ROWS(Avx512, LACUNA_AVX512)
 #endif
 
 template <bool Binary>

@@ -21,27 +21,48 @@ struct LayerCrossing
   float Weights[3];
 };
 
-/// Operations on rows of n values. What is interpolated between rays is their path; in Binary mode
-/// whether they are hidden, 1 where path > 0 and else 0. All implementations give the same bits.
+/// Rows of parallel rays that pass one layer.
+struct LayerRays
+{
+  LayerCrossing Layer; ///< of the first row
+  std::int64_t Count;  ///< of rays in a row
+  std::int64_t Rows;
+  std::int64_t Stride;      ///< from row to row of rays
+  std::int64_t FieldStride; ///< from row to row of voxels
+  std::int64_t FieldAhead;  ///< to a voxel of the layer that is passed next: fetched meanwhile
+};
+
+/// Operations on rows. What is interpolated between rays is their path; in Binary mode whether they
+/// are hidden, 1 where path > 0 and else 0. All implementations give the same bits.
 struct OcclusionRows
 {
   /// path += what the layer adds.
-  void (*AddPath)(float* path, const LayerCrossing& layer, std::int64_t n);
+  void (*AddPath)(float* path, const LayerRays& rays);
 
-  /// row = the path from first to last (at least 0), or whether it hides; between = fy of the way
+  /// Not in Binary mode: what rays in a layer, both sides at once. Row after row: See of the path
+  /// itself, then path += what the layer adds, then See of what remains of Total, then Hide.
+  struct Passage
+  {
+    LayerRays Rays;
+    float* Path; ///< of each ray beyond the layer
+    const float* Total;
+    float* After; ///< what the row of rays before saw on each side, in the end the last row
+    float* Before;
+    float FractionY;  ///< of the way from a row of rays to the one before
+    float FractionX;  ///< of the way from ray i to ray i - 1
+    const float* Own; ///< voxel i lies between the rays i - 1 and i, the first one is not served
+    float Half;
+    float* Hidden;
+    std::int64_t HiddenStride; ///< from row to row of voxels
+    std::int64_t HiddenAhead;  ///< as Rays.FieldAhead
+    bool FirstServes;          ///< else the first row of rays has no voxels
+  };
+  void (*Pass)(const Passage& passage);
+
+  /// For n rays: row = the path from first to last (at least 0), or whether it hides; between = fy of the way
   /// from there to what was in row before: the row of rays before.
   void (*See)(
     const float* first, const float* last, float* row, float* between, float fy, std::int64_t n);
-
-  /// Not in Binary mode, both sides of a layer at once: See of the path itself, then path += what the
-  /// layer adds, then See of what remains of total.
-  struct View
-  {
-    float* Row;
-    float* Between;
-  };
-  void (*SeeBoth)(float* path, const float* total, const LayerCrossing& layer, const View& after,
-    const View& before, float fy, std::int64_t n);
 
   /// What voxels see on one side: voxel i lies fx of the way from ray i to ray i - 1 of Between
   /// (read from -1 on). In Binary mode the voxel's own ray hits Next first.

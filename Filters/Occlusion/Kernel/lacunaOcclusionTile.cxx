@@ -31,15 +31,14 @@ LinePath::LinePath(
   , OffsetX(offsetX)
   , OffsetY(offsetY)
   , Step(step)
-  , Layers(layers)
 {
-}
-
-LinePath::Layer LinePath::GetLayer(std::int64_t k) const
-{
-  const double fromMiddle = static_cast<double>(k) - 0.5 * static_cast<double>(this->Layers - 1);
-  return this->GetLayerAt(
-    this->OffsetX + this->SlopeX * fromMiddle, this->OffsetY + this->SlopeY * fromMiddle);
+  this->Layers.reserve(layers);
+  for (std::int64_t k = 0; k < layers; ++k)
+  {
+    const double fromMiddle = static_cast<double>(k) - 0.5 * static_cast<double>(layers - 1);
+    this->Layers.push_back(
+      this->GetLayerAt(offsetX + slopeX * fromMiddle, offsetY + slopeY * fromMiddle));
+  }
 }
 
 LinePath::Layer LinePath::GetNeighborLayer(int side) const
@@ -78,7 +77,7 @@ void LinePath::GetRays(int axis, std::int64_t length, std::int64_t& first, std::
   // Voxel i lies between the rays i - shift - 1 and i - shift.
   const double slope = axis == 0 ? this->SlopeX : this->SlopeY;
   const double offset = axis == 0 ? this->OffsetX : this->OffsetY;
-  const double reach = 0.5 * std::abs(slope) * static_cast<double>(this->Layers - 1);
+  const double reach = 0.5 * std::abs(slope) * static_cast<double>(this->Layers.size() - 1);
   first = -static_cast<std::int64_t>(std::floor(offset + reach));
   last = length - static_cast<std::int64_t>(std::floor(offset - reach));
 }
@@ -147,24 +146,41 @@ const float* TileMarch::GetStored(std::int64_t plane) const
   return this->Store.data() + plane * this->Plane;
 }
 
+/// The first row of rays that pass layer k, none of them if there is none.
+TileMarch::Span TileMarch::GetSpan(std::int64_t k) const
+{
+  const LinePath::Layer& layer = this->Line->GetLayer(k);
+  const MarchFrame& frame = *this->Frame;
+  const std::int64_t firstX = std::max(this->Tile.FirstX - 1, -1 - layer.ShiftX);
+  const std::int64_t lastX = std::min(this->Tile.LastX, frame.Length - layer.ShiftX);
+  const std::int64_t firstY = frame.Rows == 1 ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
+  return { layer, k, firstY, firstX, std::max<std::int64_t>(0, lastX - firstX) };
+}
+
+/// Where the rows of rays end that pass the layer of first.
+std::int64_t TileMarch::GetEndOfRows(const Span& first) const
+{
+  const std::int64_t last = std::min(this->Tile.LastY, this->Frame->Rows - first.Layer.ShiftY);
+  return first.Count > 0 ? last : first.Q;
+}
+
 template <class Body>
 void TileMarch::ForRows(std::int64_t k, Body&& body)
 {
-  const MarchFrame& frame = *this->Frame;
-  Span span{ this->Line->GetLayer(k), k, 0, 0, 0 };
-  const LinePath::Layer& layer = span.Layer;
-  span.FirstX = std::max(this->Tile.FirstX - 1, -1 - layer.ShiftX);
-  span.Count = std::min(this->Tile.LastX, frame.Length - layer.ShiftX) - span.FirstX;
-  if (span.Count <= 0)
-  {
-    return;
-  }
-  const std::int64_t first = frame.Rows == 1 ? 0 : std::max(this->FirstRow, -1 - layer.ShiftY);
-  const std::int64_t last = std::min(this->Tile.LastY, frame.Rows - layer.ShiftY);
-  for (span.Q = first; span.Q < last; ++span.Q)
+  Span span = this->GetSpan(k);
+  for (const std::int64_t last = this->GetEndOfRows(span); span.Q < last; ++span.Q)
   {
     body(span);
   }
+}
+
+/// All rows of rays from first on; ahead is the layer to be passed next, as seen from first's.
+LayerRays TileMarch::GetRays(const Span& first, std::int64_t ahead) const
+{
+  const MarchFrame& frame = *this->Frame;
+  return { this->GetCrossing(first.Layer, first.FirstX, first.Q, first.K), first.Count,
+    this->GetEndOfRows(first) - first.Q, this->Width, frame.FieldRowStride,
+    ahead * frame.FieldLayerStride + (frame.Rows == 1 ? 0 : frame.FieldRowStride) };
 }
 
 /// What rays meet in a layer, the first one being layer's from voxel (i, j) of layer k.
@@ -181,7 +197,7 @@ LayerCrossing TileMarch::GetCrossing(
 
 /// Rows lie too far apart for the processor to foresee them: asks for what the rays of span meet in
 /// layer k, about the time of a layer ahead.
-void TileMarch::Foresee(const Span& span, std::int64_t k, bool hidden) const
+void TileMarch::Foresee(const Span& span, std::int64_t k) const
 {
   const MarchFrame& frame = *this->Frame;
   if (k < 0 || k >= frame.Layers)
@@ -191,42 +207,24 @@ void TileMarch::Foresee(const Span& span, std::int64_t k, bool hidden) const
   const std::int64_t i = std::max<std::int64_t>(0, span.FirstX + span.Layer.ShiftX);
   const std::int64_t j = span.Q + span.Layer.ShiftY;
   Prefetch(frame.FieldAt(i, std::min(frame.Rows - 1, j + 1), k), span.Count);
-  if (hidden)
-  {
-    const std::int64_t row = std::max<std::int64_t>(0, j);
-    Prefetch(
-      frame.Hidden + k * frame.HiddenLayerStride + row * frame.HiddenRowStride + i, span.Count);
-  }
-}
-
-void TileMarch::AddPath(float* plane, const Span& span) const
-{
-  this->Rows.AddPath(plane + this->GetOffset(span),
-    this->GetCrossing(span.Layer, span.FirstX, span.Q, span.K), span.Count);
+  const std::int64_t row = std::max<std::int64_t>(0, j);
+  Prefetch(
+    frame.Hidden + k * frame.HiddenLayerStride + row * frame.HiddenRowStride + i, span.Count);
 }
 
 /// Adds a layer to the path of each ray.
 void TileMarch::Advance(float* plane, std::int64_t k)
 {
-  this->ForRows(k,
-    [&](const Span& span)
-    {
-      this->Foresee(span, k + 1, false);
-      this->AddPath(plane, span);
-    });
-}
-
-OcclusionRows::View TileMarch::GetView(Sides side, const Span& span)
-{
-  const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
-  return { this->Seen[side].data() + column, this->Between[side].data() + column };
+  const Span first = this->GetSpan(k);
+  this->Rows.AddPath(plane + this->GetOffset(first), this->GetRays(first, 1));
 }
 
 /// What the rays of span see on one side; first and last are its first ray's.
 void TileMarch::See(Sides side, const float* first, const float* last, const Span& span)
 {
-  const OcclusionRows::View view = this->GetView(side, span);
-  this->Rows.See(first, last, view.Row, view.Between, span.Layer.FractionY, span.Count);
+  const std::int64_t column = span.FirstX - this->Tile.FirstX + 1;
+  this->Rows.See(first, last, this->Seen[side].data() + column, this->Between[side].data() + column,
+    span.Layer.FractionY, span.Count);
 }
 
 /// Serves the voxels between the rows of rays span.Q - 1 and span.Q.
@@ -280,18 +278,27 @@ void TileMarch::MarchWhole()
   this->Path.assign(this->Plane, 0);
   for (std::int64_t k = layers - 1; k >= 0; --k)
   {
-    this->ForRows(k,
-      [&](const Span& span)
-      {
-        const std::int64_t offset = this->GetOffset(span);
-        this->Foresee(span, k - 1, true);
-        this->Rows.SeeBoth(this->Path.data() + offset, this->Total.data() + offset,
-          this->GetCrossing(span.Layer, span.FirstX, span.Q, span.K),
-          this->GetView(AfterSide, span), this->GetView(BeforeSide, span), span.Layer.FractionY,
-          span.Count);
-        this->Hide(span, BothSides);
-      });
+    this->PassLayer(k);
   }
+}
+
+/// What both directions see, on the way back.
+void TileMarch::PassLayer(std::int64_t k)
+{
+  const MarchFrame& frame = *this->Frame;
+  const Span first = this->GetSpan(k);
+  const LinePath::Layer& layer = first.Layer;
+  const std::int64_t offset = this->GetOffset(first);
+  const std::int64_t column = first.FirstX - this->Tile.FirstX + 1;
+  // of the voxel between the first ray and the one before, both outside
+  const std::int64_t i = first.FirstX + layer.ShiftX;
+  const std::int64_t j = first.Q + layer.ShiftY;
+  float* hidden = frame.Hidden + (k * frame.HiddenLayerStride + j * frame.HiddenRowStride + i);
+  this->Rows.Pass(
+    { this->GetRays(first, -1), this->Path.data() + offset, this->Total.data() + offset,
+      this->Seen[AfterSide].data() + column, this->Seen[BeforeSide].data() + column,
+      layer.FractionY, layer.FractionX, frame.FieldAt(i, j, k), this->OwnHalf, hidden,
+      frame.HiddenRowStride, -frame.HiddenLayerStride, frame.Rows == 1 });
 }
 
 /// The same in Binary mode: the layer before and the one after are left to the voxels' own rays.
@@ -321,7 +328,7 @@ void TileMarch::MarchBinary()
       [&](const Span& span)
       {
         const std::int64_t offset = this->GetOffset(span);
-        this->Foresee(span, k + 1, true);
+        this->Foresee(span, k + 1);
         this->See(BeforeSide, this->Zero.data(), this->Before.data() + offset, span);
         this->See(AfterSide, this->Path.data() + offset, this->Total.data() + offset, span);
         this->Hide(span, BothSides);
@@ -397,7 +404,7 @@ void TileMarch::MarchWindowed(Sides side)
       }
       this->UpdateSpace(span, this->GetStored(side == BeforeSide ? span.K + 1 : span.K) + offset);
     }
-    this->Foresee(span, side == BeforeSide ? span.K + 1 : span.K - 1, true);
+    this->Foresee(span, side == BeforeSide ? span.K + 1 : span.K - 1);
     const std::int64_t exact = this->Options.Binary ? 1 : 0;
     const std::int64_t plane = side == BeforeSide ? std::max<std::int64_t>(0, span.K - exact)
                                                   : std::min(layers, span.K + 1 + exact);

@@ -60,7 +60,7 @@ public:
   LinePath(
     double slopeX, double slopeY, double offsetX, double offsetY, double step, std::int64_t layers);
 
-  Layer GetLayer(std::int64_t k) const;
+  const Layer& GetLayer(std::int64_t k) const { return this->Layers[k]; }
   /// The ray through a voxel's centre one layer later (side 1) or earlier (side -1), relative to
   /// that voxel: shifts in -1, 0.
   Layer GetNeighborLayer(int side) const;
@@ -77,7 +77,7 @@ private:
   double OffsetX;
   double OffsetY;
   double Step;
-  std::int64_t Layers;
+  std::vector<Layer> Layers;
 };
 
 /// The voxels that lie between rays r - 1 and r, FirstX <= r < LastX, and q - 1 and q.
@@ -112,7 +112,7 @@ private:
   /// The part of a row of rays that passes the grid in a layer.
   struct Span
   {
-    LinePath::Layer Layer;
+    const LinePath::Layer& Layer;
     std::int64_t K; ///< of the layer
     std::int64_t Q; ///< of the row of rays
     std::int64_t FirstX;
@@ -129,16 +129,18 @@ private:
   void MarchBinary();
   void MarchWindowed(Sides side);
   void StorePaths();
+  void PassLayer(std::int64_t k);
   LayerCrossing GetCrossing(
     const LinePath::Layer& layer, std::int64_t i, std::int64_t j, std::int64_t k) const;
-  void Foresee(const Span& span, std::int64_t k, bool hidden) const;
-  void AddPath(float* plane, const Span& span) const;
+  void Foresee(const Span& span, std::int64_t k) const;
   void Advance(float* plane, std::int64_t k);
   void PathAt(double plane, const Span& span, float* path) const;
   void UpdateSpace(const Span& span, const float* path);
-  OcclusionRows::View GetView(Sides side, const Span& span);
   void See(Sides side, const float* first, const float* last, const Span& span);
   void Hide(const Span& span, Sides sides);
+  Span GetSpan(std::int64_t k) const;
+  std::int64_t GetEndOfRows(const Span& first) const;
+  LayerRays GetRays(const Span& first, std::int64_t ahead) const;
   template <class Body>
   void ForRows(std::int64_t k, Body&& body);
 
