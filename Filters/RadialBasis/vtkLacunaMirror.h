@@ -5,8 +5,9 @@
  *
  * The output shows the MIRROR IMAGE of the patient: left is right. It is the only mirrored thing in
  * Lacuna and is marked so that it cannot be taken for the patient: field data Mirrored = 1 (with the
- * plane), which filters pass on; volumes get another array name; Implant Plate refuses it and IGES
- * Writer writes it with a warning. Its use: the sound side as a pattern for the side with the defect.
+ * plane), which filters pass on; volumes get another array name; Implant Plate and Press Orientation
+ * refuse it, IGES Writer and G-Code Writer unless told otherwise. Its use: the sound side as a pattern
+ * for the side with the defect.
  *
  * Input: a volume or slice (active point scalars of one component, any real type and direction;
  * vtkValidPointMask is respected) or a parallel depth map (vtkLacunaDepthMap), known by its Depth and

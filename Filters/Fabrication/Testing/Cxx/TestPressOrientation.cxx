@@ -3,6 +3,7 @@
 #include "lacunaCheck.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
+#include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -360,6 +361,9 @@ void TestErrors()
   auto mirrored = FilledMap(
     { geometry.Origin, -1.0 * geometry.Right, geometry.Down, geometry.View, { 0.5, 0.75 } });
   refuses(mirrored, "mirror", nothing);
+  auto marked = FilledMap(geometry);
+  vtkLacunaMirrored::Mark(marked, { 1, 2, 3 }, { 1, 0, 0 });
+  refuses(marked, "mirror image (field data Mirrored)", nothing);
   const auto map = FilledMap(geometry);
   using Filter = vtkLacunaPressOrientation;
   refuses(map, "Mould is 2", [](Filter* f) { f->SetMould(2); });
