@@ -3,6 +3,7 @@
 
 #include "lacunaAtomicFile.h"
 #include "lacunaGCode.h"
+#include "lacunaLandmarks.h"
 #include "lacunaParameterText.h"
 #include "lacunaToolPath.h"
 #include "vtkCellArray.h"
@@ -27,6 +28,7 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -36,6 +38,8 @@ vtkStandardNewMacro(vtkLacunaGCodeWriter);
 
 namespace
 {
+constexpr double PlaceTolerance = 0.002; // mm
+constexpr double TiltTolerance = 0.001;  // degrees
 constexpr double NoEnvelope[6] = { 1, -1, 1, -1, 1, -1 };
 
 //------------------------------------------------------------------------------
@@ -91,6 +95,72 @@ std::vector<lacuna::GCodeMove> GetMoves(vtkPolyData* path, lacuna::Vec3& start)
     }
   }
   return moves;
+}
+
+//------------------------------------------------------------------------------
+// Whether the path is where Milling Tool Path made it, by its landmarks. Throws when it has another
+// shape now or lies aslant; returns a warning when it lies elsewhere or there is no telling.
+std::string CheckPlace(vtkPolyData* path)
+{
+  vtkDataArray* marks =
+    vtkLacunaFieldData::Find(path, vtkLacunaMillingToolPath::LandmarksName, 4, 4);
+  if (!marks)
+  {
+    return {};
+  }
+  vtkDataArray* times = GetArray(path, vtkLacunaMillingToolPath::TimeName);
+  std::array<lacuna::Vec3, 4> before;
+  std::array<lacuna::Vec3, 4> after;
+  for (int k = 0; k < 4; ++k)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      before[k][c] = marks->GetComponent(k, c + 1);
+    }
+    const double time = marks->GetComponent(k, 0);
+    double least = 1e-6 * (1 + std::abs(time)); // single precision may have come between
+    bool found = false;
+    for (vtkIdType id = 0; id < times->GetNumberOfTuples(); ++id)
+    {
+      if (const double off = std::abs(times->GetComponent(id, 0) - time); off <= least)
+      {
+        least = off;
+        found = true;
+        path->GetPoint(id, after[k].data());
+      }
+    }
+    if (!found)
+    {
+      return "a part of the path has been cut out, so there is no telling whether it lies where "
+             "Milling Tool Path made it";
+    }
+  }
+  const lacuna::LandmarkMove move = lacuna::CompareLandmarks(before, after);
+  const std::string since = "the path has been changed since Milling Tool Path made it (by "
+                            "Transform?): ";
+  if (move.Mirrored)
+  {
+    throw std::runtime_error(since +
+      "it is mirrored, so what it mills is no part of this patient. Write the path as it was made");
+  }
+  if (!(move.Stretch <= PlaceTolerance))
+  {
+    throw std::runtime_error(since + "distances in it are other ones by up to " +
+      lacuna::FormatNumber(std::round(1000 * move.Stretch) / 1000) +
+      " mm. The program is in mm; write the path as it was made");
+  }
+  if (!(move.Tilt <= TiltTolerance))
+  {
+    throw std::runtime_error(since + "it is tilted by " +
+      lacuna::FormatNumber(std::round(1000 * move.Tilt) / 1000) +
+      " degrees, and the mill goes along z only. Turn the part with Press Orientation instead");
+  }
+  return move.Way <= PlaceTolerance
+    ? std::string()
+    : since + "it lies up to " + lacuna::FormatNumber(std::round(1000 * move.Way) / 1000) +
+      " mm elsewhere. The program's zero is no longer that of the press, and PressToPatient does "
+      "not "
+      "lead from it to the patient; better set the zero on the machine (WorkOffset)";
 }
 
 //------------------------------------------------------------------------------
@@ -189,6 +259,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
       "fits the side it was taken from. Turn on AllowMirrored if the mirrored side is what you "
       "want");
   }
+  const std::string moved = CheckPlace(path);
 
   lacuna::GCodeOptions options;
   options.ProgramNumber = this->ProgramNumber;
@@ -243,6 +314,10 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   {
     vtkWarningMacro(<< this->FileName
                     << ": the path is over a mirror image of the patient; the file says so, too");
+  }
+  if (!moved.empty())
+  {
+    vtkWarningMacro(<< this->FileName << ": " << moved);
   }
   vtkLog(INFO, << "G-Code Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << this->NumberOfBlocks << " blocks");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMillingToolPath.h"
 
+#include "lacunaLandmarks.h"
 #include "lacunaMaterialRemoval.h"
 #include "lacunaParameterText.h"
 #include "lacunaToolPath.h"
@@ -27,6 +28,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -117,6 +119,24 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
   output->SetLines(lines);
   output->GetPointData()->SetActiveScalars(vtkLacunaMillingToolPath::MotionName);
   return totals;
+}
+
+//------------------------------------------------------------------------------
+void SetLandmarks(vtkPolyData* output, const std::vector<lacuna::Vec3>& points)
+{
+  std::array<std::size_t, 4> indices{};
+  if (!lacuna::FindLandmarks(points, indices))
+  {
+    return; // of a path in a plane
+  }
+  vtkDataArray* times = output->GetPointData()->GetArray(vtkLacunaMillingToolPath::TimeName);
+  std::vector<double> values;
+  for (const std::size_t k : indices)
+  {
+    values.push_back(times->GetComponent(static_cast<vtkIdType>(k), 0));
+    values.insert(values.end(), points[k].data(), points[k].data() + 3);
+  }
+  vtkLacunaFieldData::Set(output, vtkLacunaMillingToolPath::LandmarksName, values, 4);
 }
 
 //------------------------------------------------------------------------------
@@ -394,6 +414,10 @@ int vtkLacunaMillingToolPath::RequestData(
       set("MachiningTime", { totals.Time });
       set("LargestLeftOver", { map.LargestLeftOver });
       set("LargestGouge", { map.LargestGouge });
+      if (output == lines)
+      {
+        SetLandmarks(output, path.Points);
+      }
       vtkLacunaProvenance::Record(output, this, { grid }, parameters);
     }
   };

@@ -31,6 +31,8 @@
  * | MachiningTime   | s, without acceleration                                                    |
  * | LargestLeftOver | mm, on the map                                                             |
  * | LargestGouge    | mm, depth of the deepest point of the map within the swept tool            |
+ * | Landmarks       | four points of the path that are not in a plane: Time, x, y, z of each (of |
+ * |                 | output 0), by which vtkLacunaGCodeWriter sees that the path has been moved |
  *
  * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
  * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
@@ -60,6 +62,7 @@ public:
   static constexpr const char* PassName = "Pass";
   static constexpr const char* FeedRateName = "FeedRate";
   static constexpr const char* TimeName = "Time";
+  static constexpr const char* LandmarksName = "Landmarks";
 
   enum ToolShapeType
   {

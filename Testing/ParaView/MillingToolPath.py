@@ -133,7 +133,7 @@ with open(file, encoding="ascii") as program:
     arcs = program.read()
 assert len(arcs.splitlines()) < 0.7 * len(text.splitlines()) and "\nG18\nG0" in arcs and "G18" not in text
 
-# Refused: outside of the envelope, inches and increments, a plunge at the end, no path. No file is left.
+# Refused: outside of the envelope, inches and increments, a plunge at the end, a mirrored path, no path. No file is left.
 vtkObject.GlobalWarningDisplayOff()
 file = output("Refused.nc")
 if os.path.exists(file):
@@ -143,6 +143,10 @@ assert not os.path.exists(file)
 for options in ({"Header": "G20 G91\nS{SPEED} M03"}, {"Footer": "G00 Z-50.\nM30"}):
     SaveData(file, path, **options)
     assert not os.path.exists(file), options
+moved = Transform(Input=path)
+moved.Transform.Scale = [-1, 1, 1]  # PressToPatient would go along unchanged
+SaveData(file, moved)
+assert not os.path.exists(file)
 SaveData(file, Sphere())
 assert not os.path.exists(file)
 print("ok")

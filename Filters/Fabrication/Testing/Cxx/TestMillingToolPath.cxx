@@ -309,6 +309,68 @@ void TestMirrored(const std::string& file)
 }
 
 //------------------------------------------------------------------------------
+// What ParaView's Transform does to a path is seen by the writer.
+void TestMoved(const std::string& file)
+{
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  filter->SetInputData(Mould());
+  filter->SetRoughingStep(2);
+  filter->Update();
+  const auto write =
+    [&](const lacuna::Matrix4& move, bool single, const std::string& words, bool written)
+  {
+    vtkNew<vtkPolyData> path;
+    path->DeepCopy(filter->GetOutput());
+    vtkNew<vtkPoints> points;
+    points->SetDataType(single ? VTK_FLOAT : VTK_DOUBLE);
+    for (vtkIdType k = 0; k < path->GetNumberOfPoints(); ++k)
+    {
+      lacuna::Vec3 p;
+      path->GetPoint(k, p.data());
+      points->InsertNextPoint(move.Point(p).data());
+    }
+    path->SetPoints(points);
+    vtkNew<vtkLacunaGCodeWriter> writer;
+    writer->SetInputData(path);
+    writer->SetFileName(file.c_str());
+    vtksys::SystemTools::RemoveFile(file);
+    const auto messages = lacunaCheck::Watch(writer);
+    LACUNA_CHECK(writer->Write() == (written ? 1 : 0));
+    LACUNA_CHECK(vtksys::SystemTools::FileExists(file) == written);
+    LACUNA_CHECK_CONTAINS((written ? messages->Warnings : messages->Errors), words);
+    LACUNA_CHECK((written ? messages->Errors : messages->Warnings).empty());
+    return messages->Warnings.empty();
+  };
+  using lacuna::Matrix4;
+  LACUNA_CHECK(write({}, false, "", true));
+  LACUNA_CHECK(write({}, true, "", true));
+  write(Matrix4::Scaling({ -1, 1, 1 }), false, "it is mirrored", false);
+  // about the middle of the part, where its bounds stay
+  write(Matrix4::Translation({ 0, 20, 0 }) * Matrix4::Scaling({ 1, -1, 1 }), true, "it is mirrored",
+    false);
+  write(Matrix4::Scaling({ 1 / 25.4, 1 / 25.4, 1 / 25.4 }), false, "distances in it", false);
+  write(Matrix4::Scaling({ 1, 1, 1.01 }), true, "distances in it", false);
+  write(Matrix4::Rotation({ 1, 0, 0 }, 0.001), false, "it is tilted by 0.057 degrees", false);
+  write(Matrix4::Translation({ 5, 0, 0 }), true, "it lies up to 5 mm elsewhere", true);
+  write(Matrix4::Rotation({ 0, 0, 1 }, 0.001), false, "PressToPatient does not lead", true);
+
+  // a piece of the path
+  vtkNew<vtkPolyData> piece;
+  piece->ShallowCopy(filter->GetOutput());
+  vtkNew<vtkDoubleArray> times;
+  times->DeepCopy(piece->GetPointData()->GetArray("Time"));
+  times->FillComponent(0, -1);
+  times->SetName("Time");
+  piece->GetPointData()->AddArray(times);
+  vtkNew<vtkLacunaGCodeWriter> writer;
+  writer->SetInputData(piece);
+  writer->SetFileName(file.c_str());
+  const auto messages = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 1);
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "no telling");
+}
+
+//------------------------------------------------------------------------------
 void TestProgram(const std::string& file)
 {
   vtkNew<vtkLacunaMillingToolPath> filter;
@@ -450,5 +512,6 @@ int TestMillingToolPath(int argc, char* argv[])
   TestWarnsAndRefuses();
   TestProgram(folder + "/TestMillingToolPath.nc");
   TestMirrored(folder + "/TestMillingToolPathMirrored.nc");
+  TestMoved(folder + "/TestMillingToolPathMoved.nc");
   return lacunaCheck::Result();
 }
