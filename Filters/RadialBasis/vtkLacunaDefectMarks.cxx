@@ -8,9 +8,11 @@
 #include "vtkExtractSelection.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
+#include "vtkImplicitSelectionLoop.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkSelection.h"
 #include "vtkSmartPointer.h"
 
@@ -106,6 +108,32 @@ private:
   vtkNew<vtkDoubleArray> Values;
 };
 
+// A loop, in the axes of the map.
+std::vector<lacuna::Vec2> GetPolygon(
+  const vtkLacunaDepthMap& contract, const lacuna::MapGrid& grid, vtkPoints* loop)
+{
+  const lacuna::Matrix4 toPixels = contract.GetImageToWorld().Inverse();
+  std::vector<lacuna::Vec2> polygon;
+  for (vtkIdType i = 0; loop && i < loop->GetNumberOfPoints(); ++i)
+  {
+    lacuna::Vec3 p;
+    loop->GetPoint(i, p.data());
+    if (!lacuna::IsFinite(p))
+    {
+      throw std::runtime_error(
+        "DefectRegion: a point of the loop has a coordinate that is not a finite number");
+    }
+    p = toPixels.Point(p);
+    polygon.push_back({ p[0] * grid.Spacing[0], p[1] * grid.Spacing[1] });
+  }
+  if (polygon.size() < 3)
+  {
+    throw std::runtime_error("DefectRegion: the loop has " + std::to_string(polygon.size()) +
+      " different points, and it takes at least 3 to enclose the defect");
+  }
+  return polygon;
+}
+
 // What a selection selects, as a data set of the selected points.
 vtkSmartPointer<vtkDataSet> Extract(vtkDataSet* data, vtkSelection* selection)
 {
@@ -148,6 +176,11 @@ MapMask FromArray(vtkImageData* map, const std::string& name, const char* proper
 MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
   const lacuna::MarkedMap& map, vtkImplicitFunction* region)
 {
+  auto* loop = vtkImplicitSelectionLoop::SafeDownCast(region);
+  if (loop && loop->GetAutomaticNormalGeneration())
+  {
+    return lacuna::FindEnclosed(map.Grid, GetPolygon(contract, map.Grid, loop->GetLoop()));
+  }
   return RegionMarker(contract, map, region).Run(execution);
 }
 

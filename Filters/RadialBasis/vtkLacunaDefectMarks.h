@@ -28,7 +28,8 @@ constexpr int RegionSamples = 64;
 /// Where a point array of one component is neither 0 nor NaN. property names it in messages.
 lacuna::MapMask FromArray(vtkImageData* map, const std::string& name, const char* property);
 
-/// Pixels whose surface point is in region (where it is <= 0), or is hidden by it from the viewer.
+/// Pixels whose surface point is in region (where it is <= 0), or is hidden by it from the viewer. Of
+/// a vtkImplicitSelectionLoop with automatic normal: what the loop encloses as the map sees it.
 lacuna::MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
   const lacuna::MarkedMap& map, vtkImplicitFunction* region);
 

@@ -10,7 +10,9 @@
  *  - DefectRegion: a pixel is in it when its surface point is, or when the region lies in front of
  *    that point: when one of 64 points of its ray, evenly spaced over the range of depths of the
  *    map, is in the region and not behind the surface. So a sphere put over a hole also takes what
- *    is seen through it; pixels without depth are in the region when any of these points is;
+ *    is seen through it; pixels without depth are in the region when any of these points is.
+ *    Of a loop (vtkLacunaSplineLoop, or any vtkImplicitSelectionLoop with automatic normal): what it
+ *    encloses in the view of the map, at whatever depth;
  *  - DefectArray;
  *  - the selection: the pixels of the selected points of the surface (or all its points when
  *    there is no selection), and those that they enclose, over edges between pixels: a patch, or a

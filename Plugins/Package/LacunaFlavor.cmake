@@ -4,7 +4,7 @@
 # One list, used here and again by LacunaConfig.cmake. Never find_package(VTK) without
 # COMPONENTS: that asks for every third party of every VTK module (Qt5, HDF5, ...).
 set(lacuna_vtk_components
-  CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
+  CommonComputationalGeometry CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
   CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry
   FiltersSources ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML)
 if (LACUNA_WITH_PARAVIEW)

@@ -54,6 +54,18 @@ filler.DefectRegion.Length = [12, 9, 200]
 filled = fetch(filler)[0]["FilledMask"] == 1
 assert (filled == ((x > 10.5) & (x < 22.5) & (y > 10.5) & (y < 19.5))).all()
 
+filler.DefectRegion = "Spline Loop"  # round a corner of the hole, and above and below the surface
+assert filler.DefectRegion.Closed == 1
+corners = [(30, 12, 0), (48, 16, 9), (44, 27, -5), (33, 38, 20)]
+filler.DefectRegion.Points = [value for i, j, off in corners
+                              for value in (3 + i, 4 - j, 5 - surface(i, j) + off)]
+loop = fetch(filler)[0]["FilledMask"] == 1
+assert loop[14, 32] and loop[25, 37] and loop[36, 33] and not loop[34, 44] and not loop[8, 30]
+assert 300 < loop.sum() < 500
+filler.DefectRegion.Closed = 0  # without the bulge from the last corner to the first
+straight = fetch(filler)[0]["FilledMask"] == 1
+assert not (straight & ~loop)[:, :31].any() and (loop & ~straight)[:, :31].sum() > 20
+
 filler.DefectRegion = "None"
 filler.SupportArray = "vtkValidPointMask"  # all that is not a hole
 filler.DefectArray = "vtkValidPointMask"

@@ -244,6 +244,41 @@ MapMask FindInteriorHoles(const MapGrid& grid, const MapMask& mask)
 }
 
 //------------------------------------------------------------------------------
+MapMask FindEnclosed(const MapGrid& grid, const std::vector<Vec2>& polygon)
+{
+  MapMask mask(grid.GetSize(), 0);
+  std::vector<std::pair<double, int>> crossings; // of a row: where, and whether down or up
+  for (int j = 0; j < grid.Height; ++j)
+  {
+    const double y = (static_cast<double>(grid.FirstRow) + j) * grid.Spacing[1];
+    crossings.clear();
+    for (std::size_t k = 0; k < polygon.size(); ++k)
+    {
+      const Vec2& a = polygon[k];
+      const Vec2& b = polygon[k + 1 < polygon.size() ? k + 1 : 0];
+      if ((a[1] <= y) != (b[1] <= y))
+      {
+        crossings.emplace_back(
+          a[0] + (y - a[1]) * ((b[0] - a[0]) / (b[1] - a[1])), b[1] > a[1] ? 1 : -1);
+      }
+    }
+    std::sort(crossings.begin(), crossings.end());
+    int winding = 0;
+    auto next = crossings.begin();
+    for (int i = 0; i < grid.Width; ++i)
+    {
+      const double x = (static_cast<double>(grid.FirstColumn) + i) * grid.Spacing[0];
+      for (; next != crossings.end() && next->first <= x; ++next)
+      {
+        winding += next->second;
+      }
+      mask[static_cast<std::size_t>(j) * grid.Width + i] = winding != 0;
+    }
+  }
+  return mask;
+}
+
+//------------------------------------------------------------------------------
 MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& region,
   double margin, const MapMask& candidates)
 {

@@ -47,6 +47,11 @@ using MapMask = std::vector<unsigned char>;
 /// pixels outside of mask: its interior holes.
 MapMask FindInteriorHoles(const MapGrid& grid, const MapMask& mask);
 
+/// Pixels around whose centres a closed polygon winds, in whichever sense: where it crosses itself all
+/// that it encloses. Its corners are x, y in the map's axes, mm; the last is joined to the first. Of
+/// centres on the polygon those on its left and upper sides count.
+MapMask FindEnclosed(const MapGrid& grid, const std::vector<Vec2>& polygon);
+
 /// Pixels of candidates whose centres are at most margin mm from the centre of a pixel of region.
 MapMask SelectWithin(Execution& execution, const MapGrid& grid, const MapMask& region,
   double margin, const MapMask& candidates);

@@ -53,6 +53,65 @@ TEST(HoleSupport, FindsInteriorHoles)
   EXPECT_EQ(lacuna::FindInteriorHoles(Grid(map), Mask(map)), expected);
 }
 
+TEST(HoleSupport, FindsWhatAPolygonEnclosesByItsEdges)
+{
+  // corners at pixel centres: left and upper sides count, right and lower ones do not
+  const std::vector<std::string> map = { ".......", ".###...", ".###...", "......." };
+  lacuna::MapGrid grid = Grid(map);
+  grid.Spacing = { 2, 0.5 };
+  grid.FirstColumn = 3;
+  grid.FirstRow = -2;
+  std::vector<lacuna::Vec2> box = { { 8, -0.5 }, { 14, -0.5 }, { 14, 0.5 }, { 8, 0.5 } };
+  EXPECT_EQ(lacuna::FindEnclosed(grid, box), Mask(map));
+  std::reverse(box.begin(), box.end());
+  EXPECT_EQ(lacuna::FindEnclosed(grid, box), Mask(map));
+  EXPECT_EQ(lacuna::FindEnclosed(grid, {}), lacuna::MapMask(grid.GetSize(), 0));
+}
+
+TEST(HoleSupport, FindsWhatAPolygonEnclosesByItsAngle)
+{
+  // The angle by which the direction to the corners turns is the definition. Polygons that cross
+  // themselves, beside the map, wound twice.
+  lacuna::MapGrid grid;
+  grid.Width = 37;
+  grid.Height = 29;
+  grid.Spacing = { 0.7, 1.1 };
+  grid.FirstColumn = -11;
+  grid.FirstRow = 5;
+  const auto corner = [](int n, int k, double turns)
+  {
+    const double angle = 6.283185307179586 * turns * k / n + 0.1;
+    const double radius = 9 + 4 * std::sin(3.7 * k);
+    return lacuna::Vec2{ 4 + radius * std::cos(angle), 21 + 1.3 * radius * std::sin(angle) };
+  };
+  for (const double turns : { 1.0, -1.0, 2.0, 5.0 })
+  {
+    std::vector<lacuna::Vec2> polygon;
+    for (int k = 0; k < 13; ++k)
+    {
+      polygon.push_back(corner(13, k, turns));
+    }
+    const lacuna::MapMask mask = lacuna::FindEnclosed(grid, polygon);
+    int inside = 0;
+    for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+    {
+      const double x = 0.7 * static_cast<double>(grid.GetColumn(pixel));
+      const double y = 1.1 * static_cast<double>(grid.GetRow(pixel));
+      double turned = 0;
+      for (std::size_t k = 0; k < polygon.size(); ++k)
+      {
+        const lacuna::Vec2& a = polygon[k];
+        const lacuna::Vec2& b = polygon[(k + 1) % polygon.size()];
+        turned += std::remainder(
+          std::atan2(b[1] - y, b[0] - x) - std::atan2(a[1] - y, a[0] - x), 6.283185307179586);
+      }
+      EXPECT_EQ(mask[pixel], std::abs(turned) > 1) << turns << ": " << x << " " << y;
+      inside += mask[pixel];
+    }
+    EXPECT_GT(inside, 100);
+  }
+}
+
 TEST(HoleSupport, SelectsByDistanceInMillimetres)
 {
   const std::vector<std::string> map = { ".......", ".......", "...#...", ".......", "......." };
