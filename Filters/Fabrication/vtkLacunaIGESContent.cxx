@@ -203,12 +203,26 @@ void vtkLacunaIGESContent::Collect(vtkDataObject* data, const std::string& name,
   }
   else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(data))
   {
+    bool empty = parts->GetNumberOfPartitions() > 0;
     for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
     {
-      this->Collect(parts->GetPartition(i), name.empty() ? inner(i) : name, true);
+      vtkDataSet* part = parts->GetPartition(i);
+      if (!part || part->GetNumberOfPoints() > 0) // some pieces of a whole may be empty
+      {
+        this->Collect(part, name.empty() ? inner(i) : name, true);
+        empty = false;
+      }
+    }
+    if (empty)
+    {
+      this->Warnings.push_back("left out: block '" + name + "' is empty");
     }
   }
-  else if (data && !(nested && data->GetNumberOfElements(vtkDataObject::POINT) == 0))
+  else if (data && nested && data->GetNumberOfElements(vtkDataObject::POINT) == 0)
+  {
+    this->Warnings.push_back("left out: block '" + name + "' is empty");
+  }
+  else if (data)
   {
     this->Items.push_back({ data, name, FindPressToPatient(data), {} });
     if (vtkLacunaMirrored::IsMarked(data))

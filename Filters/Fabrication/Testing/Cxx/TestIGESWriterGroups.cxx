@@ -61,6 +61,22 @@ void TestGroups()
   Refuses(Group({ { "Mesh", mesh } }), "nothing to write",
     [](vtkLacunaIGESWriter* w) { w->SkipUnsupportedOn(); });
   Refuses(Group({}), "nothing to write");
+  // blocks of size zero are not missed in silence
+  vtkNew<vtkStructuredGrid> failed;
+  vtkNew<vtkPartitionedDataSetCollection> two;
+  two->SetPartition(0, 0, grid);
+  two->SetPartition(1, 0, failed);
+  two->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "Failed");
+  auto whole = Group({ { "Mould", grid }, { "Failed", failed } });
+  for (vtkDataObject* input : std::vector<vtkDataObject*>{ two, whole })
+  {
+    const Outcome rest = Write(input);
+    LACUNA_CHECK_THAT(rest.Surfaces == 1, "what there is");
+    LACUNA_CHECK_CONTAINS(rest.Warning, "left out: block 'Failed' is empty");
+  }
+  two->SetPartition(0, 1, failed); // a piece
+  LACUNA_CHECK_THAT(Write(two).Warning.find("Block 0") == std::string::npos, "a piece is empty");
+  Refuses(Group({ { "Failed", failed } }), "nothing to write");
   map->GetPointData()->GetArray("Fitted")->SetComponent(3000, 0, TestSurfaces::NaN);
   Refuses(group, "block 'Implant': the surface has holes");
 }
