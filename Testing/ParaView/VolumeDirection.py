@@ -13,6 +13,7 @@ from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+from lacuna import coordinates
 from lacuna.errors import PipelineError, raising
 folder = lacuna_test.output("Volume direction")
 shutil.rmtree(folder, ignore_errors=True)
@@ -115,12 +116,20 @@ for name in SERIES:
             error = refusal(take(volume))
             assert ("its source recorded" in error) == turned, (name, what, taker, error)
             assert turned or not error or what != "Median", (name, what, taker, error)
+        # nor are pictures and files of ParaView's own called the patient's
+        contour = Contour(Input=volume, ContourBy=["POINTS", volume.PointData[0].GetName()], Isosurfaces=[300])
+        for proxy in (volume, contour):
+            proxy.UpdatePipeline()
+            assert (coordinates.find(proxy) == coordinates.PATIENT) != turned, (name, what, coordinates.find(proxy))
+        assert (coordinates.find(servermanager.Fetch(volume)) == coordinates.PATIENT) != turned, (name, what)
     # the difference also goes through files
     median = RESETTING["Median"](scan)
     file = os.path.join(folder, name + ".vti")
     SaveData(file, proxy=median, DataMode="Binary")
     error = refusal(TAKERS["ray caster"](XMLImageDataReader(FileName=[file])))
     assert ("its source recorded" in error) == turned, (name, error)
+
+    assert (coordinates.find(XMLImageDataReader(FileName=[file])) == coordinates.PATIENT) != turned, name
 
     # no false alarm
     for mode in ("Binary", "Ascii"):
@@ -131,6 +140,8 @@ for name in SERIES:
         shown = centroid(volume)
         assert np.abs(shown - place).max() < 0.3, (name, what, shown, place)
         assert np.allclose(directions(volume)[0], direction), (name, what)
+        known = what not in ("Pass Arrays", "RBF Image Warp")  # the first has taken the mark away
+        assert (coordinates.find(volume) == coordinates.PATIENT) == known, (name, what)
     for what, take in TAKERS.items():
         assert not refusal(take(scan)), (name, what)
     # what is no volume has no directions to compare, whatever field data came along
