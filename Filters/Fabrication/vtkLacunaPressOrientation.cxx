@@ -267,12 +267,23 @@ int vtkLacunaPressOrientation::RequestInformation(
       if (map && map->GetNumberOfPoints() > 0)
       {
         vtkLacunaExecution execution(this);
-        const Plan plan(execution, this, map);
-        if (plan.Layout.SingleValued)
+        try
         {
-          extent[1] = plan.GetColumns() - 1;
-          extent[3] = plan.GetRows() - 1;
-          extent[5] = 0;
+          const Plan plan(execution, this, map);
+          if (plan.Layout.SingleValued)
+          {
+            extent[1] = plan.GetColumns() - 1;
+            extent[3] = plan.GetRows() - 1;
+            extent[5] = 0;
+          }
+        }
+        catch (const lacuna::Aborted&)
+        {
+          throw;
+        }
+        catch (const std::exception&)
+        {
+          extent[1] = -1; // no mould; RequestData meets the same error and reports it, once
         }
       }
       outputVector->GetInformationObject(0)->Set(

@@ -378,6 +378,19 @@ void TestErrors()
   refuses(map, "BlockSize is 0.5", [](Filter* f) { f->SetBlockSize(0, 0, 0.5); });
   refuses(map, "FlangeWidth is inf",
     [](Filter* f) { f->SetFlangeWidth(std::numeric_limits<double>::infinity()); });
+  // said once, though ParaView asks for the information first; and on again
+  const auto filter = MakeFilter(map);
+  filter->SetPlateThickness(-1);
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->UpdateInformation();
+  LACUNA_CHECK(messages->Errors.empty());
+  filter->Update();
+  const std::size_t first = messages->Errors.find("PlateThickness is -1");
+  LACUNA_CHECK(first != std::string::npos);
+  LACUNA_CHECK(messages->Errors.find("PlateThickness is -1", first + 1) == std::string::npos);
+  filter->SetPlateThickness(0.7);
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
   // the bump is rounder than that
   refuses(FilledMap(geometry, [](double x, double y) { return std::hypot(x, y) < 4; }),
     "radius below PlateThickness",
