@@ -18,6 +18,8 @@ CASES = [
      dict(Mode="Binary", NumberOfDirections=150, ThresholdsOverPi=[0.6], MedianKernel=5), 6, 12),
     ("noisy blob", dict(Shape="Blob", Dimensions=FLAT, PresentFraction=0.4, OutlierFraction=0.1, Seed=2),
      dict(NumberOfDirections=100, ThresholdsOverPi=[1.6, 1.6, 1.3, 1.3]), 3, 6),
+    ("cavity, doughnut", dict(Shape="Cavity", Dimensions=FLAT, PresentFraction=0.6),
+     dict(NumberOfDirections=100, ThresholdsOverPi=[1.6] * 3), 3, 3),
     ("cavity, local radii", dict(Shape="Cavity", Dimensions=FLAT, PresentFraction=0.6, TissueFraction=0.15),
      dict(NumberOfDirections=100, ThresholdsOverPi=[1.4] * 3 + [1.5] * 2, LocalRadii=[10] * 3 + [15] * 2), 2, 4),
     ("cube, 80 % missing", dict(Shape="Cube", Dimensions=[44] * 3, PresentFraction=0.2),
@@ -29,8 +31,13 @@ CASES = [
      dict(NumberOfDirections=300, ThresholdsOverPi=[2, 2]), 7, 6),
 ]
 
+# The reconstruction space of the doughnut: all but the bay within its rim.
+BAY = "if(abs(coordsY) < 15 & (coordsX > 0 | coordsX^2 + coordsY^2 < 225), 0, 1)"
+
 for name, data, schedule, most, most_suggested in CASES:
     source = IncompleteShape(**data)
+    if "doughnut" in name:
+        schedule["SpaceMask"] = Calculator(Input=source, ResultArrayName="Space", Function=BAY)
     truth = servermanager.Fetch(source).GetFieldData().GetArray("CompleteVolume").GetValue(0)
     shape = OccludedAngle(Input=source, **schedule)
     error = 100 * (occlusion.closed_surface(shape).volume / truth - 1)

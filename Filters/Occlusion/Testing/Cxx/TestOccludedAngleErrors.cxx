@@ -9,6 +9,7 @@
 #include "vtkPointData.h"
 #include "vtkSphere.h"
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -86,6 +87,12 @@ int TestOccludedAngleErrors(int, char*[])
     {
       filter->SetAttenuation(Filter::ARRAY);
       image->SetScalarComponentFromDouble(6, 2, 1, 0, -0.25);
+    });
+  Expect("negative or not a number at voxel (6, 2, 1)",
+    [](Filter* filter, vtkImageData* image)
+    {
+      filter->SetAttenuation(Filter::ARRAY);
+      image->SetScalarComponentFromDouble(6, 2, 1, 0, std::nan(""));
     });
   Expect("no OpacityFunction",
     [](Filter* filter, vtkImageData*) { filter->SetAttenuation(Filter::OPACITY_FUNCTION); });
