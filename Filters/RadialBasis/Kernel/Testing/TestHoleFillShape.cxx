@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What shapes the filling besides the surface around it: control points, a prior surface, a trend.
+#include "lacunaHoleFillTest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+using namespace lacunaHoleFillTest;
+
+TEST(HoleFill, PassesThroughControlPoints)
+{
+  for (const auto solver : { lacuna::RadialSolver::Direct, lacuna::RadialSolver::Fast })
+  {
+    HoleFillInput input = MakeMap(Sphere);
+    HoleFillOptions options;
+    options.Solver = solver;
+    options.Smoothing = 1;
+    options.Accuracy = 1e-6;
+    lacuna::ThreadExecution execution(2);
+    lacuna::HoleFiller filler;
+    const HoleFillResult before = filler.Fill(execution, input, options);
+    const std::size_t pixel = 27 * Width + 30; // the middle of the defect, and 4 mm beside it
+    const std::size_t other = 27 * Width + 34;
+    input.ControlPoints = { { 45, 27, before.Fitted[pixel] + 2 }, { 60, 27, 11 } };
+    HoleFillResult result;
+    for (int step = 0; step < 3; ++step) // the user drags the first one deeper
+    {
+      input.ControlPoints[0][2] += 0.5;
+      input.ControlPoints[1][1] += 0.25;
+      result = filler.Fill(execution, input, options);
+      EXPECT_EQ(result.Reused, step > 0);
+    }
+    EXPECT_NEAR(result.Fitted[pixel], input.ControlPoints[0][2], 1e-5);
+    EXPECT_GT(result.Fitted[other], before.Fitted[other] + 0.5); // the surface follows
+    EXPECT_NEAR(result.Fit.NodeCount, before.Fit.NodeCount, 4);
+    const HoleFillResult fresh = Fill(input, options);
+    EXPECT_EQ(std::memcmp(fresh.Fitted.data(), result.Fitted.data(), fresh.Fitted.size() * 8), 0);
+    EXPECT_EQ(fresh.Gradients, result.Gradients);
+    // and back
+    input.ControlPoints.clear();
+    const HoleFillResult after = filler.Fill(execution, input, options);
+    EXPECT_EQ(std::memcmp(before.Fitted.data(), after.Fitted.data(), after.Fitted.size() * 8), 0);
+  }
+}
+
+TEST(HoleFill, RefusesBadControlPoints)
+{
+  HoleFillInput input = MakeMap(Plane);
+  input.ControlPoints = { { 45, 27, 30 }, { 200, 27, 30 } };
+  ExpectContains(ErrorOf(input), "control point 1 lies beside the map");
+  input.ControlPoints[1] = { 45, 27, 31 };
+  ExpectContains(ErrorOf(input), "lie at the same place");
+  input.ControlPoints[1] = { 45, 27, 30 };
+  EXPECT_EQ(ErrorOf(input), "");
+  input.ControlPoints[1] = { 45, std::nan(""), 30 };
+  ExpectContains(ErrorOf(input), "not a finite number");
+}
+
+namespace
+{
+// The prior's own lattice is inclined and shifted against the map, and coarser.
+lacuna::SurfaceSheet MakeSheet(double (*surface)(double, double))
+{
+  lacuna::SurfaceSheet sheet;
+  sheet.Width = 130;
+  sheet.Height = 120;
+  for (int j = 0; j < sheet.Height; ++j)
+  {
+    for (int i = 0; i < sheet.Width; ++i)
+    {
+      const double x = -12.3 + 1.1 * i - 0.2 * j;
+      const double y = -15.1 + 0.1 * i + 0.9 * j;
+      sheet.Points.push_back({ x, y, surface(x, y) });
+    }
+  }
+  return sheet;
+}
+
+double Bump(double x, double y)
+{
+  return 2 * std::exp(-(std::pow(x - 42, 2) + std::pow(y - 25, 2)) / 60);
+}
+
+double BumpedSphere(double x, double y)
+{
+  return Sphere(x, y) + Bump(x, y);
+}
+
+// Nearer and inclined: what the residual's polynomial takes up.
+double Prior(double x, double y)
+{
+  return BumpedSphere(x, y) - 7 + 0.1 * x;
+}
+
+double GetWorst(const HoleFillResult& result)
+{
+  double worst = 0;
+  for (const std::size_t pixel : result.Filled)
+  {
+    worst = std::max(worst, std::abs(result.Deviation[pixel]));
+  }
+  return worst;
+}
+}
+
+TEST(HoleFill, KeepsTheShapeOfAPrior)
+{
+  HoleFillInput input = MakeMap(BumpedSphere); // the bump is in the defect
+  HoleFillOptions options;
+  options.OutputSpacing = { 0.75, 1 };
+  options.Accuracy = 0;
+  EXPECT_GT(GetWorst(Fill(input, options)), 1.5);
+  input.Prior = MakeSheet(Prior);
+  const HoleFillResult result = Fill(input, options);
+  EXPECT_LT(GetWorst(result), 0.03); // the prior's triangles are flat
+  double residual = 0;
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < result.Use.size(); ++i)
+  {
+    if (result.Use[i] == lacuna::SupportUse::Used)
+    {
+      met += std::abs(result.Deviation[i]) < 1e-9;
+      residual = std::max(residual, std::abs(result.Deviation[i]));
+    }
+  }
+  EXPECT_GE(met, result.Fit.NodeCount); // the margin is met exactly at the nodes
+  EXPECT_LT(residual, 0.03);
+  // The gradients are those of the whole surface.
+  for (std::size_t k = 0; k < result.Filled.size(); ++k)
+  {
+    const std::size_t i = result.Filled[k];
+    EXPECT_NEAR(result.Gradients[k][0], (result.Fitted[i + 1] - result.Fitted[i - 1]) / 1.5, 0.03);
+  }
+
+  // on the map's own grid the prior is taken as it is
+  lacuna::SurfaceSheet own;
+  own.Width = Width;
+  own.Height = Height;
+  for (std::size_t i = 0; i < Width * Height; ++i)
+  {
+    own.Points.push_back({ GetX(i), GetY(i), Prior(GetX(i), GetY(i)) });
+  }
+  input.Prior = own;
+  EXPECT_LT(GetWorst(Fill(input)), 1e-9);
+
+  // what is missing of it is named
+  input.Prior.Points[27 * Width + 30][2] = std::nan("");
+  ExpectContains(ErrorOf(input), "missing at 1 pixels of the defect, first at column 30, row 27");
+  input.Prior = own;
+  input.Prior.Points[27 * Width + 44][2] = std::nan("");
+  const HoleFillResult lacking = Fill(input);
+  ASSERT_EQ(lacking.Warnings.size(), 1u);
+  ExpectContains(lacking.Warnings[0], "first at column 44, row 27, the prior surface is missing");
+  EXPECT_EQ(lacking.Use[27 * Width + 44], lacuna::SupportUse::NoPrior);
+  for (lacuna::Vec3& p : input.Prior.Points)
+  {
+    p[0] += 1000;
+  }
+  ExpectContains(ErrorOf(input), "nowhere around the defect");
+  options.Trend = lacuna::HoleTrend::Ellipsoid;
+  ExpectContains(ErrorOf(input, options), "exclude each other");
+}
+
+TEST(HoleFill, EllipsoidTrend)
+{
+  const auto ellipsoid = [](double x, double y)
+  { return 100 - 90 * std::sqrt(1 - std::pow((x - 50) / 80, 2) - std::pow((y - 30) / 100, 2)); };
+  HoleFillOptions options;
+  options.Trend = lacuna::HoleTrend::Ellipsoid;
+  EXPECT_LT(GetWorst(Fill(MakeMap(Sphere), options)), 1e-8); // a sphere it is exactly
+  const double plain = GetWorst(Fill(MakeMap(ellipsoid)));
+  const double trend = GetWorst(Fill(MakeMap(ellipsoid), options));
+  EXPECT_LT(trend, 0.1 * plain) << plain;
+  // from the inside
+  EXPECT_LT(
+    GetWorst(Fill(MakeMap([](double x, double y) { return -Sphere(x, y); }), options)), 1e-8);
+  ExpectContains(ErrorOf(MakeMap(Plane), options), "does not determine an ellipsoid");
+  ExpectContains(
+    ErrorOf(MakeMap([](double x, double y) { return 0.02 * (x - 45) * (y - 27); }), options),
+    "does not determine an ellipsoid");
+}
