@@ -8,12 +8,38 @@
 ///
 /// Point data: Depth (double, mm, NaN where there is none), vtkValidPointMask (char, 1 where Depth
 /// is a number), Normals (float x 3, unit, world, towards the viewer), for further iso-values
-/// Depth_1, ... Filled maps add Fitted (double), FilledMask (char), Deviation (double) and SupportMask
-/// (char). Shaded maps
-/// add Color (unsigned char x 3, the active scalars), the normals used (Normals for Depth, Normals_1
-/// for Depth_1, ..., FittedNormals for Fitted) and NormalDifference (float, degrees).
+/// Depth_1, ... Shaded maps add Color (unsigned char x 3, the active scalars), the normals used
+/// (Normals for Depth, Normals_1 for Depth_1, ..., FittedNormals for Fitted) and NormalDifference
+/// (float, degrees).
 /// Field data: ImageToWorld (16, (column, row, mm along z, 1) to world mm), IsoValues, and for
 /// perspective maps EyePosition (3) and ViewAngle (degrees).
+///
+/// Filled maps have Depth = measured outside of the defect, fitted inside; vtkValidPointMask and Normals
+/// (of the gradient of the fit) likewise. They add the point data
+/// | array       | type       | meaning                                                            |
+/// |-------------|------------|--------------------------------------------------------------------|
+/// | Fitted      | double, mm | the fit over the rectangle, in map axes, around defect and support,|
+/// |             |            | grown by a margin; NaN elsewhere                                   |
+/// | FilledMask  | char       | 1 in the defect                                                    |
+/// | Deviation   | double, mm | Fitted - measured, positive where the fit is farther from the      |
+/// |             |            | viewer; on the support, and in the defect where a measured depth   |
+/// |             |            | was replaced; NaN elsewhere                                        |
+/// | SupportMask | char       | lacuna::SupportUse: what became of the surface around the defect   |
+/// and the field data
+/// | array             | components | meaning                                                     |
+/// |-------------------|------------|-------------------------------------------------------------|
+/// | RBFPlane          | 3          | c0 c1 c2 of the polynomial part c0 + c1 x + c2 y, mm; x, y  |
+/// |                   |            | are mm along the map's axes from index (0,0); with a prior  |
+/// |                   |            | or trend, its best plane over defect and support is added   |
+/// | PlaneNormal       | 3          | (c1, c2, -1)/length, map axes, towards the viewer           |
+/// | NodeCount         | 1          |                                                             |
+/// | Residual          | 1          | mm, largest at a node, of the solved equations              |
+/// | ConditionEstimate | 1          | of the scaled equations, 1-norm; 0: fast solution           |
+/// | Iterations        | 1          | of a fast solution, else 0                                  |
+/// | BendingEnergy     | 1          | thin plate only: integral of s_xx^2 + 2 s_xy^2 + s_yy^2 of  |
+/// |                   |            | what was fitted                                             |
+/// | DefectArea        | 1          | mm^2 on the filled surface                                  |
+/// | FitTime           | 1          | s, for the equations; not the same twice                    |
 #ifndef vtkLacunaDepthMap_h
 #define vtkLacunaDepthMap_h
 

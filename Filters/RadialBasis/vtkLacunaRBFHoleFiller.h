@@ -33,29 +33,10 @@
  * the difference to it, as it is seen in this map (its own grid and view may be others): its shape
  * stays, its height and inclination do not count.
  *
- * Output: the map with Depth = measured outside of the defect, fitted inside (double);
- * vtkValidPointMask (char) and Normals (float x 3, when the input has them; from the gradient of
- * the fit inside) likewise; Fitted (double, mm: the fit over the rectangle, in map axes, around
- * defect, support and control points, grown by OutputMargin; NaN elsewhere); FilledMask (char, 1 in
- * the defect); Deviation (double, mm, Fitted - measured: positive where the fit is farther from the
- * viewer; on the support, and in the defect where a measured depth was replaced; NaN elsewhere);
- * SupportMask (char, lacuna::SupportUse). Other arrays are passed on. Field data: that of the map, and
- * | array             | components | meaning                                                     |
- * |-------------------|------------|-------------------------------------------------------------|
- * | RBFPlane          | 3          | c0 c1 c2 of the polynomial part c0 + c1 x + c2 y, mm; x, y  |
- * |                   |            | are mm along the map's axes from index (0,0); with a prior  |
- * |                   |            | or trend, its best plane over defect and support is added   |
- * | PlaneNormal       | 3          | (c1, c2, -1)/length, map axes, towards the viewer           |
- * | NodeCount         | 1          |                                                             |
- * | Residual          | 1          | mm, largest at a node, of the solved equations              |
- * | ConditionEstimate | 1          | of the scaled equations, 1-norm; 0: fast solution           |
- * | Iterations        | 1          | of a fast solution, else 0                                  |
- * | BendingEnergy     | 1          | thin plate only: integral of s_xx^2 + 2 s_xy^2 + s_yy^2 of  |
- * |                   |            | what was fitted                                             |
- * | DefectArea        | 1          | mm^2 on the filled surface                                  |
- * | FitTime           | 1          | s, for the equations; not the same twice                    |
- *
- * An empty defect is no error: the output is the input with empty arrays, with a warning.
+ * Output: a filled map (see vtkLacunaDepthMap.h for its arrays and field data), as large as the map
+ * or, with an OutputMargin, larger. The rectangle of Fitted bounds defect, support and control
+ * points. Other arrays and field data of the map are passed on.
+ * An empty defect is no error: the output is the input with empty arrays, and a warning.
  *
  * Source: Carr 1996, sections 6.3 and 6.4. @sa lacuna::HoleFiller
  */
@@ -153,7 +134,7 @@ public:
   ///@}
 
   ///@{
-  /** Point array of the map with one component: neither 0 nor NaN is defect. Default "" (or "None"): none. */
+  /** Point array of the map, one component: neither 0 nor NaN is defect. Default "" (or "None"). */
   void SetDefectArray(const char* name);
   const char* GetDefectArray() const { return this->DefectArray.c_str(); }
   ///@}
@@ -206,9 +187,10 @@ public:
 
   ///@{
   /**
-   * Cut-off wavelength of the fit, mm, >= 0. Above 0 it determines the smoothing, for any NodeSpacing
-   * and every kernel but Gaussian and Multiquadric: of waves of this length the fit follows half the amplitude, of shorter ones less
-   * (the spline filter of ISO 16610-22). Smoothing must be 0 then. Default 0.
+   * Cut-off wavelength of the fit, mm, >= 0. Above 0 it determines the smoothing, for any
+   * NodeSpacing and every kernel but Gaussian and Multiquadric: of waves of this length the fit
+   * follows half the amplitude, of shorter ones less (the spline filter of ISO 16610-22). Smoothing
+   * must be 0 then. Default 0.
    */
   vtkSetMacro(CutoffWavelength, double);
   vtkGetMacro(CutoffWavelength, double);
@@ -236,9 +218,9 @@ public:
   ///@{
   /**
    * Pixels of the output along the map's right and down, mm; 0 (each): those of the map. The fit
-   * is evaluated there; outside of the defect depths of the filled map are interpolated linearly, but
-   * not across steps, other arrays come from the nearest pixel. The third number is for the one layer of the map and has no effect.
-   * Default 0 0 0.
+   * is evaluated there; outside of the defect depths of the filled map are interpolated linearly,
+   * but not across steps, other arrays come from the nearest pixel. The third number is for the one
+   * layer of the map and has no effect. Default 0 0 0.
    */
   vtkSetVector3Macro(OutputSpacing, double);
   vtkGetVector3Macro(OutputSpacing, double);
