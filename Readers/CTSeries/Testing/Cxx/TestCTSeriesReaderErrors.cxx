@@ -87,7 +87,7 @@ void TestDoubts()
   ReaderOf agrees(Edited({ { 0x0020, 0x0020, "CS", "L\\P", {} } }));
   agrees.ExpectGood();
   ReaderOf animal(
-    Edited({ { 0x0020, 0x0020, "CS", "R\\D", {} }, { 0x0010, 0x2210, "CS", "QUADRUPED", {} } }));
+    Edited({ { 0x0020, 0x0020, "CS", "R\\PA", {} }, { 0x0010, 0x2210, "CS", "QUADRUPED", {} } }));
   animal.ExpectGood();
   CTTestSeries frames = Edited({ { 0x0020, 0x0020, "CS", "R\\P", {} } });
   frames.MultiFrame = true;
