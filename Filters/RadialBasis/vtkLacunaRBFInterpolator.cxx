@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFInterpolator.h"
 
+#include "lacunaCenterReduction.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaRadialBasis.h"
@@ -29,6 +30,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -130,10 +132,29 @@ vtkDataArray* FindArray(vtkDataSet* points, const std::string& name, const char*
   return array;
 }
 
+// Through all nodes, or with a tolerance above 0 through few of them.
+template <int Dimension>
+lacuna::ReducedCenters<Dimension> Fit(vtkLacunaExecution& execution,
+  const std::vector<std::array<double, Dimension>>& nodes,
+  const std::vector<std::vector<double>>& values, const lacuna::RadialBasisOptions& options,
+  double tolerance)
+{
+  if (tolerance > 0)
+  {
+    return lacuna::ReduceCenters<Dimension>(execution, nodes, values, options, tolerance);
+  }
+  lacuna::ReducedCenters<Dimension> all;
+  all.Function =
+    std::make_shared<const lacuna::RadialBasis<Dimension>>(execution, nodes, values, options);
+  all.NodeCount = all.Function->GetReport().NodeCount;
+  all.Residual = all.Function->GetReport().Residual;
+  return all;
+}
+
 template <int Dimension>
 void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray* array,
-  const OutputGrid& to, const lacuna::RadialBasisOptions& options, vtkDoubleArray* image,
-  vtkImageData* output)
+  const OutputGrid& to, const lacuna::RadialBasisOptions& options, double tolerance,
+  vtkDoubleArray* image, vtkImageData* output)
 {
   const vtkIdType n = points->GetNumberOfPoints();
   const int components = array->GetNumberOfComponents();
@@ -153,7 +174,9 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     }
   }
   execution.SetStage(0, 0.7);
-  const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
+  const lacuna::ReducedCenters<Dimension> fit =
+    Fit<Dimension>(execution, nodes, values, options, tolerance);
+  const lacuna::RadialBasis<Dimension>& function = *fit.Function;
 
   lacuna::RegularGrid<Dimension> grid;
   for (int c = 0; c < Dimension; ++c)
@@ -177,8 +200,9 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     }
   }
   const lacuna::RadialBasisReport& report = function.GetReport();
-  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
-  vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
+  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(fit.NodeCount) }, 1);
+  vtkLacunaFieldData::Set(output, "CenterCount", { static_cast<double>(report.NodeCount) }, 1);
+  vtkLacunaFieldData::Set(output, "Residual", { fit.Residual }, 1);
   vtkLacunaFieldData::Set(output, "ConditionEstimate", { report.ConditionEstimate }, 1);
   vtkLacunaFieldData::Set(output, "Iterations", { static_cast<double>(report.Iterations) }, 1);
 }
@@ -279,6 +303,15 @@ int vtkLacunaRBFInterpolator::RequestData(
         throw std::runtime_error("Solver is " + std::to_string(this->Solver) +
           "; it must be 0 (Auto), 1 (Direct) or 2 (Fast)");
       }
+      if (!(this->CenterTolerance >= 0) || !std::isfinite(this->CenterTolerance))
+      {
+        throw std::runtime_error("CenterTolerance must be a finite number >= 0");
+      }
+      if (this->CenterTolerance > 0 && !this->ErrorArray.empty())
+      {
+        throw std::runtime_error("ErrorArray cannot be used together with CenterTolerance, which "
+                                 "holds for all values alike: empty one, or set the other to 0");
+      }
       const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
       vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
       to.RequireMemory(array->GetNumberOfComponents());
@@ -306,10 +339,12 @@ int vtkLacunaRBFInterpolator::RequestData(
       switch (to.Axes.size())
       {
         case 3:
-          Interpolate<3>(execution, points, array, to, options, image, whole);
+          Interpolate<3>(
+            execution, points, array, to, options, this->CenterTolerance, image, whole);
           break;
         case 2:
-          Interpolate<2>(execution, points, array, to, options, image, whole);
+          Interpolate<2>(
+            execution, points, array, to, options, this->CenterTolerance, image, whole);
           break;
         default:
           throw std::runtime_error("all points lie at one place or on one line along an axis: that "
@@ -325,6 +360,7 @@ int vtkLacunaRBFInterpolator::RequestData(
         .Add("ErrorArray", this->ErrorArray)
         .Add("Accuracy", this->Accuracy)
         .Add("Solver", this->Solver)
+        .Add("CenterTolerance", this->CenterTolerance)
         .Add("OutputSpacing", this->OutputSpacing)
         .Add("OutputBounds", this->OutputBounds);
       vtkLacunaProvenance::Record(whole, this, { points }, parameters.Get());
@@ -347,6 +383,7 @@ void vtkLacunaRBFInterpolator::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ErrorArray: " << this->ErrorArray << "\n";
   os << indent << "Accuracy: " << this->Accuracy << "\n";
   os << indent << "Solver: " << this->Solver << "\n";
+  os << indent << "CenterTolerance: " << this->CenterTolerance << "\n";
   os << indent << "OutputSpacing: " << this->OutputSpacing[0] << " " << this->OutputSpacing[1]
      << " " << this->OutputSpacing[2] << "\n";
   os << indent << "OutputBounds:";

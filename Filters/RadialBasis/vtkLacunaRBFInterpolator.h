@@ -16,7 +16,10 @@
  * | array             | components | meaning                                                      |
  * |-------------------|------------|--------------------------------------------------------------|
  * | NodeCount         | 1          | points at different places                                   |
- * | Residual          | 1          | largest |value - fit| at a point, less what smoothing allows |
+ * | CenterCount       | 1          | points that the function passes through (or near); less than |
+ * |                   |            | NodeCount with CenterTolerance above 0                       |
+ * | Residual          | 1          | largest |value - fit| at a point, less what smoothing        |
+ * |                   |            | allows; with CenterTolerance above 0 nothing is taken away   |
  * | ConditionEstimate | 1          | of the scaled equations, 1-norm; 0 when they were solved by  |
  * |                   |            | iteration                                                    |
  * | Iterations        | 1          | 0 when the equations were solved directly                    |
@@ -126,6 +129,16 @@ public:
   vtkGetVector6Macro(OutputBounds, double);
   ///@}
 
+  ///@{
+  /**
+   * In the unit of the values, >= 0. Above 0 the function passes through a few of the points only,
+   * chosen greedily so that the values of all points are missed by no more than this; see
+   * lacuna::ReduceCenters. Not together with ErrorArray. Default 0: through all points.
+   */
+  vtkSetMacro(CenterTolerance, double);
+  vtkGetMacro(CenterTolerance, double);
+  ///@}
+
 protected:
   vtkLacunaRBFInterpolator() = default;
   ~vtkLacunaRBFInterpolator() override = default;
@@ -145,6 +158,7 @@ private:
   double Smoothing = 0;
   double Accuracy = 1e-4;
   int Solver = Auto;
+  double CenterTolerance = 0;
   double OutputSpacing[3] = { 0, 0, 0 };
   double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
 };

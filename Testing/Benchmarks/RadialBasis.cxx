@@ -2,6 +2,7 @@
 // Radial basis functions on Franke's function in the unit square (in 3-D times cos 3z): fit, and
 // evaluation on a grid, beside the direct sum that one would write first and VTK's thin plate
 // spline. CPU is processor time over all threads.
+#include "lacunaCenterReduction.h"
 #include "lacunaExecution.h"
 #include "lacunaRadialBasis.h"
 
@@ -283,6 +284,26 @@ void FastGrid(benchmark::State& state)
   }
 }
 
+// Fewer centres for values that are missed by no more than a tolerance (1 is their range). arguments:
+// kernel, nodes, digits of the tolerance
+template <int Dimension>
+void Reduce(benchmark::State& state)
+{
+  const Scattered<Dimension> problem(state.range(1));
+  lacuna::RadialBasisOptions options = MakeOptions(state.range(0));
+  options.Accuracy = 1e-4;
+  const auto ends = std::minmax_element(problem.Values.begin(), problem.Values.end());
+  const double tolerance = (*ends.second - *ends.first) * MakeFastOptions(state).Accuracy;
+  lacuna::ThreadExecution execution;
+  for (auto _ : state)
+  {
+    const lacuna::ReducedCenters<Dimension> reduced = lacuna::ReduceCenters<Dimension>(
+      execution, problem.Nodes, { problem.Values }, options, tolerance);
+    state.counters["centers"] = static_cast<double>(reduced.Indices.size());
+    state.counters["residual/tolerance"] = reduced.Residual / tolerance;
+  }
+}
+
 // What it takes to set up a warp by landmarks in space. arguments: pairs
 void WarpSetUp(benchmark::State& state)
 {
@@ -383,6 +404,20 @@ BENCHMARK_TEMPLATE(FastGrid, 3)
   ->Args({ Linear, 100000, 3, 64 })
   ->Args({ Linear, 1000000, 3, 128 })
   ->Iterations(1) // the fit is not counted, but would be made anew for each trial
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(Reduce, 2)
+  ->ArgNames({ "kernel", "nodes", "digits" })
+  ->ArgsProduct({ { ThinPlate }, { 100000 }, { 2, 3, 4 } })
+  ->Iterations(1)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(Reduce, 3)
+  ->ArgNames({ "kernel", "nodes", "digits" })
+  ->ArgsProduct({ { Linear }, { 100000 }, { 1, 2, 3 } })
+  ->Iterations(1)
   ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);

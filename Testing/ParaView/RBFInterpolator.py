@@ -35,7 +35,7 @@ scattered = write_points("RBFInterpolator", points, Height=height)
 filter = RBFInterpolator(Input=scattered, ScalarArray="Height")
 
 direct = lacuna.vtkLacunaRBFInterpolator()
-check_defaults(filter, direct, ["Smoothing", "KernelLength", "Accuracy", "OutputSpacing", "OutputBounds"],
+check_defaults(filter, direct, ["Smoothing", "KernelLength", "Accuracy", "CenterTolerance", "OutputSpacing", "OutputBounds"],
                {"Solver": ["Auto", "Direct", "Fast"]})
 assert filter.Kernel == "ThinPlate" and direct.GetKernel() == direct.ThinPlate
 assert filter.ErrorArray in ("", None) and direct.GetErrorArray() == ""
@@ -60,6 +60,12 @@ assert fast.GetFieldData().GetArray("Iterations").GetValue(0) > 0
 span = np.ptp(height)
 assert np.abs(vtk_to_numpy(fast.GetPointData().GetArray("Height")) -
               vtk_to_numpy(image.GetPointData().GetArray("Height"))).max() < 1e-3 * span
+
+filter.CenterTolerance = 0.01
+few = fetch(filter)
+centers = few.GetFieldData().GetArray("CenterCount").GetValue(0)
+assert few.GetFieldData().GetArray("NodeCount").GetValue(0) == 900 and centers < 500, centers
+assert few.GetFieldData().GetArray("Residual").GetValue(0) <= 0.01
 
 # A volume of which all landmarks move by (2, -1, 3): what was at x is at x + (2, -1, 3).
 volume = Wavelet(WholeExtent=[-10, 10, -8, 8, -6, 6])

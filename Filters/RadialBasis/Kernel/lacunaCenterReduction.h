@@ -8,19 +8,34 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace lacuna
 {
-/// Chooses nodes greedily so that the radial basis function through them misses no value by more
-/// than tolerance (> 0, in the unit of the values): starts from a few that are spread evenly and
-/// adds those with the largest errors, no two neighbours at once, until all values are met. Returns
-/// their indices, ascending. options are those of the fits (without Errors); with Smoothing the
-/// tolerance may be out of reach. Throws what RadialBasis throws, and std::runtime_error when
-/// all nodes together miss a value by more.
 template <int Dimension>
-std::vector<std::size_t> ReduceCenters(Execution& execution,
-  const std::vector<std::array<double, Dimension>>& nodes, const std::vector<double>& values,
-  const RadialBasisOptions& options, double tolerance);
+struct ReducedCenters
+{
+  std::vector<std::size_t> Indices; ///< of the nodes that are kept, ascending
+  std::size_t NodeCount = 0;        ///< nodes at different places, kept or not
+  /// Bound of |value - function| at all nodes, in the unit of the values; at most the tolerance.
+  double Residual = 0;
+  std::shared_ptr<const RadialBasis<Dimension>> Function; ///< through the nodes that are kept
+};
+
+/// Chooses nodes greedily so that the radial basis function through them misses none of the values,
+/// values[component][node], by more than tolerance (> 0, in the unit of the values): starts from a few
+/// that are spread evenly and adds those with the largest errors, no two neighbours at once, until
+/// all values are met. Takes some ten fits of which the last is as large as what is kept, and as
+/// many evaluations at all nodes (fast sums where that pays).
+///
+/// options are those of the fits, without Errors; their Accuracy, if above 0, is raised where the
+/// tolerance needs it. With Smoothing the tolerance may be out of reach. Throws what RadialBasis
+/// throws, and std::runtime_error when values are missed by more with no node left that would help.
+template <int Dimension>
+ReducedCenters<Dimension> ReduceCenters(Execution& execution,
+  const std::vector<std::array<double, Dimension>>& nodes,
+  const std::vector<std::vector<double>>& values, const RadialBasisOptions& options,
+  double tolerance);
 }
 #endif

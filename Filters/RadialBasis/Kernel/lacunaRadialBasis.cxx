@@ -16,6 +16,9 @@ namespace lacuna
 {
 namespace
 {
+// Direct sums of so many functions take less time than to set up fast ones.
+constexpr double FewEvaluations = 2e8;
+
 void CheckOptions(const RadialBasisOptions& options)
 {
   if (!(options.Smoothing >= 0) || !std::isfinite(options.Smoothing))
@@ -408,6 +411,36 @@ void RadialBasis<Dimension>::Evaluate(Execution& execution, const std::vector<Po
   values.resize(points.size());
   gradients.resize(points.size());
   this->EvaluateBlocks(execution, component, points, values.data(), gradients.data());
+}
+
+template <int Dimension>
+double RadialBasis<Dimension>::EvaluateWithin(Execution& execution, double tolerance,
+  const std::vector<Point>& points, std::vector<double>& values, int component) const
+{
+  const std::size_t n = this->GetCenters().GetSize();
+  if (static_cast<double>(n) * static_cast<double>(points.size()) < FewEvaluations)
+  {
+    this->Evaluate(execution, points, values, component);
+    return 0;
+  }
+  std::vector<Point> scaled;
+  scaled.reserve(points.size());
+  for (const Point& p : points)
+  {
+    scaled.push_back(this->Frame.ToScaled(p));
+  }
+  values.resize(points.size());
+  const std::vector<double>& coefficients = this->Coefficients[component];
+  FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
+  const double bound = sum.Apply(execution,
+    { coefficients.begin(), coefficients.begin() + static_cast<std::ptrdiff_t>(n) }, tolerance,
+    values.data());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    values[i] += this->Means[component] +
+      this->EvaluatePolynomial(coefficients.data() + n, scaled[i], nullptr);
+  }
+  return bound;
 }
 
 //------------------------------------------------------------------------------

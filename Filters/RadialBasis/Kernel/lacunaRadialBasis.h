@@ -116,6 +116,11 @@ public:
   /// s and its gradient at points, by direct sums; both are resized.
   void Evaluate(Execution& execution, const std::vector<Point>& points, std::vector<double>& values,
     std::vector<Point>& gradients, int component = 0) const;
+  /// s at points, by direct sums or, where these would take longer, fast ones with an error of at most
+  /// tolerance (> 0, in the unit of the values); values is resized. Returns the bound of the error.
+  /// Throws std::runtime_error when doubles cannot give the tolerance.
+  double EvaluateWithin(Execution& execution, double tolerance, const std::vector<Point>& points,
+    std::vector<double>& values, int component = 0) const;
   /// s at the points of a grid, the first index fastest: by direct sums when Accuracy is 0, else
   /// with an error of at most Accuracy x GetRange. values has room for all points.
   void EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid, double* values,

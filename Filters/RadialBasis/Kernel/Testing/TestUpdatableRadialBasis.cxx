@@ -157,8 +157,10 @@ TEST(CenterReduction, KeepsTheToleranceWithFewCentres)
   }
   for (const double tolerance : { 0.1, 0.01 })
   {
-    const std::vector<std::size_t> centers =
-      lacuna::ReduceCenters<2>(execution, nodes, values, {}, tolerance);
+    const lacuna::ReducedCenters<2> reduced =
+      lacuna::ReduceCenters<2>(execution, nodes, { values }, {}, tolerance);
+    const std::vector<std::size_t>& centers = reduced.Indices;
+    EXPECT_EQ(reduced.NodeCount, nodes.size());
     EXPECT_LT(centers.size(), tolerance == 0.1 ? 250U : 900U);
     EXPECT_TRUE(std::is_sorted(centers.begin(), centers.end()));
     Points<2> own;
@@ -171,11 +173,110 @@ TEST(CenterReduction, KeepsTheToleranceWithFewCentres)
     const RadialBasis<2> s(execution, own, at, {});
     std::vector<double> fit;
     s.Evaluate(execution, nodes, fit);
+    std::vector<double> ownFit;
+    reduced.Function->Evaluate(execution, nodes, ownFit);
+    EXPECT_EQ(ownFit, fit);
+    double worst = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i)
     {
-      EXPECT_LE(std::abs(fit[i] - values[i]), tolerance);
+      worst = std::max(worst, std::abs(fit[i] - values[i]));
+    }
+    EXPECT_EQ(worst, reduced.Residual);
+    EXPECT_LE(worst, tolerance);
+  }
+}
+
+TEST(CenterReduction, ServesSeveralValuesWithFastFits)
+{
+  const Points<3> nodes = Scatter<3>(6000, 5);
+  std::vector<std::vector<double>> values(2);
+  for (const auto& p : nodes)
+  {
+    values[0].push_back(Value<3>(p));
+    values[1].push_back(7 + 2 * std::cos(p[0] / 20) * std::sin(p[2] / 25));
+  }
+  RadialBasisOptions options;
+  options.Kernel = RadialKernel::Linear;
+  options.Solver = lacuna::RadialSolver::Fast;
+  options.Accuracy = 0.1; // coarser than the tolerance
+  constexpr double tolerance = 0.1;
+  std::vector<std::size_t> before;
+  for (const int threads : { 1, 2, 5 })
+  {
+    lacuna::ThreadExecution execution(threads);
+    const lacuna::ReducedCenters<3> reduced =
+      lacuna::ReduceCenters<3>(execution, nodes, values, options, tolerance);
+    EXPECT_GT(reduced.Function->GetReport().Iterations, 0);
+    EXPECT_LT(reduced.Indices.size(), nodes.size() / 2);
+    EXPECT_LE(reduced.Residual, tolerance);
+    EXPECT_TRUE(before.empty() || reduced.Indices == before);
+    before = reduced.Indices;
+    double worst = 0;
+    for (int k = 0; k < 2; ++k)
+    {
+      std::vector<double> fit;
+      reduced.Function->Evaluate(execution, nodes, fit, k);
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+      {
+        worst = std::max(worst, std::abs(fit[i] - values[k][i]));
+      }
+    }
+    EXPECT_EQ(worst, reduced.Residual);
+  }
+}
+
+TEST(CenterReduction, FastSumsAtNodesKeepTheirBound)
+{
+  lacuna::ThreadExecution execution(2);
+  const Points<2> nodes = Scatter<2>(3000, 6);
+  std::vector<double> values;
+  for (const auto& p : nodes)
+  {
+    values.push_back(Value<2>(p));
+  }
+  RadialBasisOptions options;
+  options.Accuracy = 1e-4;
+  const RadialBasis<2> s(execution, nodes, values, options);
+  const Points<2> points = Scatter<2>(80000, 7);
+  std::vector<double> direct;
+  s.Evaluate(execution, points, direct);
+  for (const double tolerance : { 1e-1, 1e-3, 1e-5 })
+  {
+    std::vector<double> fast;
+    const double bound = s.EvaluateWithin(execution, tolerance, points, fast);
+    EXPECT_GT(bound, 0) << "that was no fast sum";
+    EXPECT_LE(bound, tolerance);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      ASSERT_LE(std::abs(fast[i] - direct[i]), bound);
     }
   }
+  // few: directly
+  std::vector<double> few;
+  EXPECT_EQ(s.EvaluateWithin(execution, 1e-3, nodes, few), 0);
+  s.Evaluate(execution, nodes, direct);
+  EXPECT_EQ(few, direct);
+}
+
+TEST(CenterReduction, StartsFromNodesThatDetermineThePolynomial)
+{
+  // All but two lie on one line, and at one end of it
+  Points<2> nodes;
+  std::vector<double> values;
+  for (int i = 0; i < 4000; ++i)
+  {
+    nodes.push_back({ 0.01 * i, 0 });
+  }
+  nodes[1234][1] = 1;
+  nodes[2345][1] = -3;
+  for (const auto& p : nodes)
+  {
+    values.push_back(std::sin(p[0]) + p[1]);
+  }
+  lacuna::ThreadExecution execution(2);
+  const auto reduced = lacuna::ReduceCenters<2>(execution, nodes, { values }, {}, 0.01);
+  EXPECT_LE(reduced.Residual, 0.01);
+  EXPECT_LT(reduced.Indices.size(), 500U);
 }
 
 TEST(CenterReduction, SaysWhatItCannotDo)
@@ -184,9 +285,10 @@ TEST(CenterReduction, SaysWhatItCannotDo)
   const Points<2> nodes = Scatter<2>(100, 4);
   std::vector<double> values(100, 0.0);
   values[50] = 1;
-  EXPECT_THROW(lacuna::ReduceCenters<2>(execution, nodes, values, {}, 0), std::invalid_argument);
+  EXPECT_THROW(
+    lacuna::ReduceCenters<2>(execution, nodes, { values }, {}, 0), std::invalid_argument);
   RadialBasisOptions smooth;
   smooth.Smoothing = 1e6;
   EXPECT_THROW(
-    lacuna::ReduceCenters<2>(execution, nodes, values, smooth, 1e-3), std::runtime_error);
+    lacuna::ReduceCenters<2>(execution, nodes, { values }, smooth, 1e-3), std::runtime_error);
 }

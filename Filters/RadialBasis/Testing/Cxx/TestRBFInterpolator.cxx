@@ -11,6 +11,7 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -164,6 +165,72 @@ void CheckErrorsOfValues()
   LACUNA_CHECK(sum / 50 < 0.1);
 }
 
+double Field(vtkImageData* image, const char* name)
+{
+  return image->GetFieldData()->GetArray(name)->GetComponent(0, 0);
+}
+
+// Few centres meet all values up to the tolerance, and the report is true.
+void CheckCenters(bool flat)
+{
+  vtkSmartPointer<vtkPolyData> points = MakePoints(6000, flat);
+  vtkNew<vtkLacunaRBFInterpolator> filter;
+  filter->SetInputData(points);
+  filter->SetKernel(flat ? vtkLacunaRBFInterpolator::ThinPlate : vtkLacunaRBFInterpolator::Linear);
+  filter->SetOutputSpacing(4, 4, 4);
+  filter->Update();
+  LACUNA_CHECK(Field(filter->GetOutput(), "NodeCount") == 6000);
+  LACUNA_CHECK(Field(filter->GetOutput(), "CenterCount") == 6000);
+  vtkNew<vtkImageData> all;
+  all->ShallowCopy(filter->GetOutput());
+  double before = 3000;
+  for (const double tolerance : { 0.02, 0.2 })
+  {
+    filter->SetCenterTolerance(tolerance);
+    filter->Update();
+    vtkImageData* image = filter->GetOutput();
+    LACUNA_CHECK(Field(image, "NodeCount") == 6000);
+    LACUNA_CHECK(Field(image, "CenterCount") < before);
+    LACUNA_CHECK(Field(image, "Residual") <= tolerance);
+    LACUNA_CHECK(Field(image, "Residual") > 0.2 * tolerance);
+    before = Field(image, "CenterCount");
+    double worst = 0;
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      worst = std::max(worst,
+        std::abs(image->GetPointData()->GetScalars()->GetComponent(i, 0) -
+          all->GetPointData()->GetScalars()->GetComponent(i, 0)));
+    }
+    // between the points, too, which lie close together; a corner of the grid is beyond them
+    LACUNA_CHECK(worst < 3 * tolerance);
+    LACUNA_CHECK(worst > 0.1 * tolerance);
+  }
+  // A grid whose points are those given shows what the residual says.
+  vtkNew<vtkImageData> grid;
+  grid->SetDimensions(40, 30, flat ? 1 : 5);
+  grid->SetSpacing(2, 2, 8);
+  vtkNew<vtkDoubleArray> wave;
+  wave->SetName("Wave");
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    wave->InsertNextValue(Wave(grid->GetPoint(i)));
+  }
+  grid->GetPointData()->SetScalars(wave);
+  filter->SetInputData(grid);
+  filter->SetOutputSpacing(2, 2, 8);
+  filter->SetCenterTolerance(0.05);
+  filter->Update();
+  double worst = 0;
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    worst = std::max(worst,
+      std::abs(
+        filter->GetOutput()->GetPointData()->GetScalars()->GetComponent(i, 0) - wave->GetValue(i)));
+  }
+  LACUNA_CHECK(worst <= 0.05 + 1e-4 * 4);
+  LACUNA_CHECK(std::abs(worst - Field(filter->GetOutput(), "Residual")) < 1e-4 * 4);
+}
+
 struct Case
 {
   const char* Name;
@@ -213,6 +280,26 @@ const Case Errors[] = {
       f->SetKernelLength(-3);
     },
     "length of the kernel" },
+  { "negative tolerance",
+    [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetCenterTolerance(-1); },
+    "CenterTolerance" },
+  { "tolerance",
+    [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetCenterTolerance(std::nan("")); },
+    "CenterTolerance" },
+  { "tolerance and errors",
+    [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
+    {
+      f->SetCenterTolerance(0.1);
+      f->SetErrorArray("Errors");
+    },
+    "ErrorArray cannot be used together" },
+  { "tolerance and smoothing",
+    [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
+    {
+      f->SetCenterTolerance(1e-6);
+      f->SetSmoothing(1e6);
+    },
+    "lower the smoothing" },
   { "smoothing", [](vtkPolyData*, vtkLacunaRBFInterpolator* f) { f->SetSmoothing(-3); },
     "smoothing" },
   { "errors",
@@ -279,6 +366,8 @@ int TestRBFInterpolator(int, char*[])
   CheckPlanes(true, 300);
   CheckPlanes(true, 2500);
   CheckDefaultsAndPieces();
+  CheckCenters(true);
+  CheckCenters(false);
   CheckErrorsOfValues();
   CheckErrors();
   return lacunaCheck::Result();
