@@ -5,11 +5,27 @@
 #include "lacunaOutputFile.h"
 #include "vtkAlgorithm.h"
 #include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaRequest.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <exception>
 #include <new>
 #include <stdexcept>
 #include <string>
+
+//------------------------------------------------------------------------------
+bool vtkLacunaWriting::AskForWhole(vtkInformation* request, vtkInformationVector** inputs)
+{
+  vtkInformation* info = inputs[0]->GetInformationObject(0);
+  if (!info || !request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
+  {
+    return false;
+  }
+  vtkLacunaRequest::Whole(info);
+  return true;
+}
 
 //------------------------------------------------------------------------------
 unsigned long vtkLacunaWriting::Run(

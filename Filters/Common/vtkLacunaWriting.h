@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// How writers report what went wrong.
+/// How writers ask for their input, and report what went wrong.
 #ifndef vtkLacunaWriting_h
 #define vtkLacunaWriting_h
 
@@ -9,9 +9,17 @@
 #include <functional>
 
 class vtkAlgorithm;
+class vtkInformation;
+class vtkInformationVector;
 
 namespace vtkLacunaWriting
 {
+/// For ProcessRequest of writers whose first process writes all: when the request is for the update
+/// extent, asks for the whole input and returns true. The processes that write nothing ask, too, since
+/// filters before the writer may need all of them.
+VTKLACUNAFILTERSCOMMON_EXPORT bool AskForWhole(
+  vtkInformation* request, vtkInformationVector** inputs);
+
 /// Runs the body of writer's WriteData and returns its error code (vtkErrorCode::NoError when all
 /// went well). An exception becomes writer's error message and the code for no file name, disk full,
 /// file cannot be opened, or unknown; a stop by the user only a code.

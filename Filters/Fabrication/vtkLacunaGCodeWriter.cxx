@@ -11,19 +11,16 @@
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -206,14 +203,9 @@ int vtkLacunaGCodeWriter::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaGCodeWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkInformation* info = inputs[0]->GetInformationObject(0);
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info)
-  {
-    // Also of the pieces that write nothing: filters before this one may need all processes.
-    vtkLacunaRequest::Whole(info);
-    return 1;
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  return vtkLacunaWriting::AskForWhole(request, inputs)
+    ? 1
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------

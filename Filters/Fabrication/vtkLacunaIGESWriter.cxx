@@ -6,17 +6,14 @@
 #include "lacunaParameterText.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaIGESContent.h"
 #include "vtkLacunaProvenance.h"
-#include "vtkLacunaRequest.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -170,14 +167,9 @@ int vtkLacunaIGESWriter::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaIGESWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkInformation* info = inputs[0]->GetInformationObject(0);
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info)
-  {
-    // Also of the pieces that write nothing: filters before this one may need all processes.
-    vtkLacunaRequest::Whole(info);
-    return 1;
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  return vtkLacunaWriting::AskForWhole(request, inputs)
+    ? 1
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------
