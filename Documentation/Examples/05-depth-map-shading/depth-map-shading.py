@@ -15,12 +15,11 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import BONE, mark_pixels, new_view, shaded_pixels, show_surface, side_by_side, write_pixels
+from lacuna.pictures import BONE, mark_pixels, new_view, read_pixels, shaded_pixels, show_surface, side_by_side, write_pixels
 from lacuna.views import in_patient_coordinates, map_letters, show_orientation
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -34,15 +33,6 @@ def write(name, panels, depth_map=None):
     if image and in_patient_coordinates(image):
         panels = {title: mark_pixels(pixels, map_letters(image)) for title, pixels in panels.items()}
     write_pixels(name, side_by_side(list(panels.items())))
-
-
-def read_pixels(name):
-    """Red, green and blue of a screenshot; row 0 on top."""
-    reader = vtkPNGReader()
-    reader.SetFileName(name)
-    reader.Update()
-    width, height, _ = reader.GetOutput().GetDimensions()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)[::-1]
 
 
 def main(folder, head=None):

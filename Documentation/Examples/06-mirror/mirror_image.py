@@ -14,24 +14,14 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import BONE, METAL, color_bar, mark_pixels, new_view, show_surface, side_by_side, write_pixels
+from lacuna.pictures import BONE, METAL, color_bar, mark_pixels, new_view, read_pixels, show_surface, side_by_side, write_pixels
 from lacuna.views import in_patient_coordinates, map_letters, show_orientation
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 LIMIT = 4  # mm
 NOTHING = (250, 205, 60)  # where bone has no counterpart
-
-
-def read_pixels(name):
-    """Red, green and blue of a screenshot; row 0 on top."""
-    reader = vtkPNGReader()
-    reader.SetFileName(name)
-    reader.Update()
-    width, height, _ = reader.GetOutput().GetDimensions()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)[::-1]
 
 
 def colors(values):

@@ -5,7 +5,7 @@ import paraview.simple as pv
 from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
 
@@ -176,6 +176,15 @@ def write_pixels(name, pixels):
     writer.SetFileName(name)
     writer.SetInputData(image)
     writer.Write()
+
+
+def read_pixels(name):
+    """Red, green and blue of a PNG file; row 0 on top."""
+    reader = vtkPNGReader()
+    reader.SetFileName(name)
+    reader.Update()
+    width, height, _ = reader.GetOutput().GetDimensions()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)[::-1]
 
 
 def text_pixels(text, size=13, dpi=72):
