@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaCalibrationAdvice.h"
+
+#include <cstdio>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Degree = 3.14159265358979323846 / 180;
+
+const char* const AxisNames[3] = { "column", "row", "normal" };
+
+std::string Format(const char* format, double a, double b = 0)
+{
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+// How far the probe was turned about each axis of the image, degrees from least to most.
+Vec3 GetTurns(const std::vector<CalibrationPick>& picks, const CalibrationState& state)
+{
+  const auto orientation = [&](const CalibrationPick& pick)
+  {
+    Eigen::Matrix3d rotation;
+    for (int i = 0; i < 9; ++i)
+    {
+      rotation(i / 3, i % 3) = pick.ProbeToTracker(i / 3, i % 3);
+    }
+    return Eigen::Matrix3d(rotation * state.ImageRotation);
+  };
+  const Eigen::Matrix3d first = orientation(picks.front());
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
+  for (const CalibrationPick& pick : picks)
+  {
+    const Eigen::AngleAxisd turn(first.transpose() * orientation(pick));
+    const Eigen::Vector3d vector = turn.angle() / Degree * turn.axis();
+    low = low.cwiseMin(vector);
+    high = high.cwiseMax(vector);
+  }
+  return { high[0] - low[0], high[1] - low[1], high[2] - low[2] };
+}
+}
+
+std::string DescribeCalibrationWeakness(const std::vector<int>& unknowns,
+  const Eigen::VectorXd& direction, const std::vector<CalibrationPick>& picks,
+  const CalibrationState& state)
+{
+  constexpr int imageUnknowns = CalibrationModel::PhantomTurn;
+  Eigen::Matrix<double, imageUnknowns, 1> part = Eigen::Matrix<double, imageUnknowns, 1>::Zero();
+  for (std::size_t u = 0; u < unknowns.size(); ++u)
+  {
+    if (unknowns[u] < imageUnknowns)
+    {
+      part[unknowns[u]] = direction[static_cast<Eigen::Index>(u)];
+    }
+  }
+  // along the image's own axes
+  part.segment<3>(CalibrationModel::ImageTurn) =
+    (state.ImageRotation.transpose() * part.segment<3>(CalibrationModel::ImageTurn)).eval();
+  part.segment<3>(CalibrationModel::ImageShift) =
+    (state.ImageRotation.transpose() * part.segment<3>(CalibrationModel::ImageShift)).eval();
+  Eigen::Index largest;
+  part.cwiseAbs().maxCoeff(&largest);
+  const int axis = static_cast<int>(largest % 3);
+  const Vec3 turns = GetTurns(picks, state);
+  const int across[2] = { (axis + 1) % 3, (axis + 2) % 3 };
+  if (largest >= CalibrationModel::Scale)
+  {
+    return std::string("the pixel spacing along the ") +
+      (largest == CalibrationModel::Scale ? "columns" : "rows") +
+      ": give PixelSpacing, or pick targets that lie further apart in the image and at more depths";
+  }
+  if (largest >= CalibrationModel::ImageShift)
+  {
+    return std::string("where the image lies along its ") + AxisNames[axis] +
+      " direction: turn the probe more about its " + AxisNames[across[0]] + " and " +
+      AxisNames[across[1]] + " directions" +
+      Format(
+        " (so far %.0f and %.0f degrees, better 60 and more)", turns[across[0]], turns[across[1]]);
+  }
+  return std::string("how the image is turned about its ") + AxisNames[axis] +
+    " direction: let the targets appear all over the image, near and far, left and right" +
+    Format(", and turn the probe about that direction, too (so far %.0f degrees)", turns[axis]);
+}
+}

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaProbeCalibration.h"
+
+#include "lacunaCalibrationAdvice.h"
+#include "lacunaCalibrationModel.h"
+#include "lacunaCalibrationStart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Degree = 3.14159265358979323846 / 180;
+constexpr std::size_t Starts = 24;
+constexpr int SpareEquations = 3;
+constexpr int OutlierRounds = 20;
+// Standard deviation of a normal distribution over the median of its absolute values.
+constexpr double SpreadPerMedian = 1.4826;
+constexpr double OtherSolution = 5;     // mm at a corner
+constexpr double SingularRatio = 1e-10; // of the normal matrix's eigenvalues
+constexpr double WeakError = 1;         // mm
+constexpr double WeakRatio = 3;
+
+void CheckPose(const Matrix4& pose, std::size_t pick)
+{
+  const auto fail = [pick](const char* what)
+  { throw std::invalid_argument("pick " + std::to_string(pick) + ": ProbeToTracker " + what); };
+  if (!pose.IsFinite())
+  {
+    fail("has numbers that are not finite");
+  }
+  if (!pose.IsAffine())
+  {
+    fail("has a last row other than 0 0 0 1");
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    for (int b = a; b < 3; ++b)
+    {
+      if (std::abs(Dot(pose.Column(a), pose.Column(b)) - (a == b)) > 1e-3)
+      {
+        fail("is not a rotation and a translation");
+      }
+    }
+  }
+  if (pose.Determinant3() < 0)
+  {
+    fail("mirrors");
+  }
+}
+
+void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOptions& options)
+{
+  for (std::size_t pick = 0; pick < picks.size(); ++pick)
+  {
+    CheckPose(picks[pick].ProbeToTracker, pick);
+    if (!std::isfinite(picks[pick].Pixel[0]) || !std::isfinite(picks[pick].Pixel[1]))
+    {
+      throw std::invalid_argument("pick " + std::to_string(pick) + ": its pixel is not finite");
+    }
+  }
+  for (const double spacing : options.PixelSpacing)
+  {
+    if (!options.EstimateScale && !(spacing > 0 && std::isfinite(spacing)))
+    {
+      throw std::invalid_argument(
+        "PixelSpacing must be two lengths in mm above 0; where it is not known set EstimateScale");
+    }
+  }
+  if (!(options.OutlierLimit == 0 ||
+        (options.OutlierLimit >= 2 && std::isfinite(options.OutlierLimit))))
+  {
+    throw std::invalid_argument("OutlierLimit must be 0 (none is left out) or at least 2");
+  }
+}
+
+Matrix4 ToMatrix4(
+  const Eigen::Matrix3d& rotation, const Eigen::Vector2d& scale, const Eigen::Vector3d& origin)
+{
+  const auto column = [&](int c, double s) {
+    return Vec3{ s * rotation(0, c), s * rotation(1, c), s * rotation(2, c) };
+  };
+  return Matrix4::FromColumns(
+    column(0, scale[0]), column(1, scale[1]), column(2, 1), { origin[0], origin[1], origin[2] });
+}
+
+// The solution that is being found, with what the steps towards it share.
+class Solver
+{
+public:
+  Solver(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOptions& options)
+    : Options(options)
+    , Model(picks, options.EstimateScale)
+    , Unknowns(static_cast<int>(this->Model.GetUnknowns().size()))
+  {
+    int equations = 0;
+    for (std::size_t pick = 0; pick < picks.size(); ++pick)
+    {
+      equations += this->Model.GetNumberOfEquations(pick);
+      this->FarPixel[0] = std::max(this->FarPixel[0], std::abs(picks[pick].Pixel[0]));
+      this->FarPixel[1] = std::max(this->FarPixel[1], std::abs(picks[pick].Pixel[1]));
+    }
+    if (equations < this->Unknowns + SpareEquations)
+    {
+      throw std::invalid_argument(std::to_string(picks.size()) + " picks give " +
+        std::to_string(equations) + " equations for " + std::to_string(this->Unknowns) +
+        " unknowns; pick in more slices until there are at least " +
+        std::to_string(this->Unknowns + SpareEquations) + ", better three times the unknowns");
+    }
+  }
+
+  struct Solution
+  {
+    CalibrationState State;
+    std::vector<double> Weights; // 1: used, 0: outlier
+    double Square = 0;           // sum of the squared errors used
+    int Equations = 0;
+    double GetRms() const { return std::sqrt(this->Square / this->Equations); }
+  };
+
+  // From a start to the end, outliers left out.
+  Solution Finish(CalibrationState state) const
+  {
+    Solution solution{ state, std::vector<double>(this->Model.GetNumberOfPicks(), 1.0) };
+    if (this->Options.OutlierLimit > 0)
+    {
+      double spread = this->GetRobustSpread(solution.State);
+      for (int round = 0; round < OutlierRounds; ++round)
+      {
+        const std::vector<double> before = solution.Weights;
+        this->MarkOutliers(solution, spread);
+        this->CheckEnough(solution);
+        this->Model.Refine(solution.State, &solution.Weights);
+        this->Sum(solution);
+        spread = std::sqrt(solution.Square / (solution.Equations - this->Unknowns));
+        if (round > 0 && solution.Weights == before)
+        {
+          break;
+        }
+      }
+    }
+    else
+    {
+      this->Model.Refine(solution.State, &solution.Weights);
+      this->Sum(solution);
+    }
+    return solution;
+  }
+
+  // Solutions that differ, the best first. At least one.
+  std::vector<Solution> Solve() const
+  {
+    const Eigen::Vector2d spacing = this->Options.EstimateScale
+      ? Eigen::Vector2d::Ones()
+      : Eigen::Vector2d(this->Options.PixelSpacing[0], this->Options.PixelSpacing[1]);
+    std::vector<std::pair<double, CalibrationState>> minima;
+    const std::vector<double> all(this->Model.GetNumberOfPicks(), 1.0);
+    for (CalibrationState state : FindCalibrationStarts(this->Model, spacing, Starts))
+    {
+      this->Model.Refine(state, this->Options.OutlierLimit > 0 ? nullptr : &all);
+      const double error = this->GetRobustSpread(state);
+      const auto same = std::find_if(minima.begin(), minima.end(),
+        [&](const auto& other) { return this->GetDistance(other.second, state) < OtherSolution; });
+      if (same == minima.end())
+      {
+        minima.emplace_back(error, state);
+      }
+      else if (error < same->first)
+      {
+        *same = { error, state };
+      }
+    }
+    std::sort(
+      minima.begin(), minima.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (minima.empty())
+    {
+      throw std::invalid_argument("no position of the image fits the picks at all: are the poses "
+                                  "ProbeToTracker, and the columns and rows not exchanged?");
+    }
+    std::vector<Solution> solutions{ this->Finish(minima[0].second) };
+    if (minima.size() > 1)
+    {
+      try
+      {
+        solutions.push_back(this->Finish(minima[1].second));
+      }
+      catch (const std::invalid_argument&)
+      {
+        // It fits so few picks that it is no rival.
+      }
+    }
+    return solutions;
+  }
+
+  // Furthest that a corner of the picked part of the image moves, mm.
+  double GetDistance(const CalibrationState& a, const CalibrationState& b) const
+  {
+    double largest = 0;
+    for (const Vec2& pixel : { Vec2{ 0, 0 }, Vec2{ this->FarPixel[0], 0.0 },
+           Vec2{ 0.0, this->FarPixel[1] }, this->FarPixel })
+    {
+      const auto place = [&pixel](const CalibrationState& s) -> Eigen::Vector3d
+      {
+        return s.ImageRotation *
+          Eigen::Vector3d(s.Spacing[0] * pixel[0], s.Spacing[1] * pixel[1], 0) +
+          s.ImageOrigin;
+      };
+      largest = std::max(largest, (place(a) - place(b)).norm());
+    }
+    return largest;
+  }
+
+  const CalibrationModel& GetModel() const { return this->Model; }
+  int GetNumberOfUnknowns() const { return this->Unknowns; }
+  const Vec2& GetFarPixel() const { return this->FarPixel; }
+
+private:
+  // Standard deviation of an equation's error that a few wild ones do not spoil.
+  double GetRobustSpread(const CalibrationState& state) const
+  {
+    std::vector<double> absolute;
+    for (std::size_t pick = 0; pick < this->Model.GetNumberOfPicks(); ++pick)
+    {
+      double errors[3];
+      this->Model.GetErrors(state, pick, errors);
+      for (int e = 0; e < this->Model.GetNumberOfEquations(pick); ++e)
+      {
+        absolute.push_back(std::abs(errors[e]));
+      }
+    }
+    const auto middle = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() / 2);
+    std::nth_element(absolute.begin(), middle, absolute.end());
+    const double equations = static_cast<double>(absolute.size());
+    return SpreadPerMedian * *middle * std::sqrt(equations / (equations - this->Unknowns));
+  }
+
+  void MarkOutliers(Solution& solution, double spread) const
+  {
+    // Exact picks have no spread to speak of.
+    const double limit = std::max(1e-6, this->Options.OutlierLimit * spread);
+    for (std::size_t pick = 0; pick < solution.Weights.size(); ++pick)
+    {
+      double errors[3];
+      this->Model.GetErrors(solution.State, pick, errors);
+      solution.Weights[pick] = 1;
+      for (int e = 0; e < this->Model.GetNumberOfEquations(pick); ++e)
+      {
+        if (std::abs(errors[e]) > limit)
+        {
+          solution.Weights[pick] = 0;
+        }
+      }
+    }
+  }
+
+  void CheckEnough(const Solution& solution) const
+  {
+    int equations = 0, outliers = 0;
+    for (std::size_t pick = 0; pick < solution.Weights.size(); ++pick)
+    {
+      (solution.Weights[pick] > 0 ? equations : outliers) +=
+        solution.Weights[pick] > 0 ? this->Model.GetNumberOfEquations(pick) : 1;
+    }
+    if (equations < this->Unknowns + SpareEquations)
+    {
+      throw std::invalid_argument(std::to_string(outliers) + " of " +
+        std::to_string(solution.Weights.size()) +
+        " picks do not agree with the others, which are too few then; pick again, check which wire "
+        "is which, or raise OutlierLimit");
+    }
+  }
+
+  void Sum(Solution& solution) const
+  {
+    solution.Square = 0;
+    solution.Equations = 0;
+    for (std::size_t pick = 0; pick < solution.Weights.size(); ++pick)
+    {
+      if (solution.Weights[pick] > 0)
+      {
+        double errors[3];
+        this->Model.GetErrors(solution.State, pick, errors);
+        for (int e = 0; e < this->Model.GetNumberOfEquations(pick); ++e)
+        {
+          solution.Square += errors[e] * errors[e];
+          ++solution.Equations;
+        }
+      }
+    }
+  }
+
+  const ProbeCalibrationOptions& Options;
+  CalibrationModel Model;
+  int Unknowns;
+  Vec2 FarPixel{ 0, 0 };
+};
+
+// The normal matrix in units that compare: mm, and rotations by what they move at mean distance.
+struct Conditioning
+{
+  Eigen::VectorXd Lengths; // mm moved per unit of each unknown
+  Eigen::VectorXd Values;  // eigenvalues of the scaled normal matrix, ascending
+  Eigen::MatrixXd Vectors; // scaled unknowns
+};
+
+Conditioning GetConditioning(const Solver& solver, const Solver::Solution& solution)
+{
+  const CalibrationModel& model = solver.GetModel();
+  const std::vector<int>& unknowns = model.GetUnknowns();
+  double image = 0, phantom = 0;
+  for (std::size_t pick = 0; pick < model.GetNumberOfPicks(); ++pick)
+  {
+    const Eigen::Vector3d point = model.GetPhantomPoint(solution.State, pick);
+    phantom += point.norm() / static_cast<double>(model.GetNumberOfPicks());
+  }
+  image = 0.5 *
+    std::hypot(solution.State.Spacing[0] * solver.GetFarPixel()[0],
+      solution.State.Spacing[1] * solver.GetFarPixel()[1]);
+  Conditioning conditioning;
+  conditioning.Lengths.resize(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t u = 0; u < unknowns.size(); ++u)
+  {
+    const int unknown = unknowns[u];
+    const bool shift =
+      (unknown >= CalibrationModel::ImageShift && unknown < CalibrationModel::Scale) ||
+      unknown >= CalibrationModel::PhantomShift;
+    const double length = shift ? 1 : (unknown < CalibrationModel::PhantomTurn ? image : phantom);
+    conditioning.Lengths[static_cast<Eigen::Index>(u)] = std::max(length, 1e-6);
+  }
+  const Eigen::VectorXd inverse = conditioning.Lengths.cwiseInverse();
+  const Eigen::MatrixXd scaled = inverse.asDiagonal() *
+    model.GetNormalMatrix(solution.State, solution.Weights) * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  conditioning.Values = eigen.eigenvalues();
+  conditioning.Vectors = eigen.eigenvectors();
+  return conditioning;
+}
+}
+
+bool IsZeroAt(CalibrationTarget target, int axis)
+{
+  switch (target)
+  {
+    case CalibrationTarget::Wall:
+      return axis == 2;
+    case CalibrationTarget::Point:
+      return true;
+    default:
+      return axis != static_cast<int>(target);
+  }
+}
+
+ProbeCalibration ProbeCalibration::Solve(
+  const std::vector<CalibrationPick>& picks, const ProbeCalibrationOptions& options)
+{
+  Check(picks, options);
+  const Solver solver(picks, options);
+  const std::vector<Solver::Solution> solutions = solver.Solve();
+  const Solver::Solution& best = solutions.front();
+  const CalibrationState& state = best.State;
+  const std::vector<int>& unknowns = solver.GetModel().GetUnknowns();
+
+  ProbeCalibration result;
+  result.PixelSpacing = { state.Spacing[0], state.Spacing[1] };
+  result.ImageToProbe = ToMatrix4(state.ImageRotation, state.Spacing, state.ImageOrigin);
+  result.TrackerToPhantom =
+    ToMatrix4(state.PhantomRotation, Eigen::Vector2d::Ones(), state.PhantomOrigin);
+  for (std::size_t pick = 0; pick < picks.size(); ++pick)
+  {
+    const Eigen::Vector3d point = solver.GetModel().GetPhantomPoint(state, pick);
+    result.PhantomPoints.push_back({ point[0], point[1], point[2] });
+    result.Used.push_back(best.Weights[pick] > 0);
+  }
+  result.Equations = static_cast<std::size_t>(best.Equations);
+  result.Unknowns = unknowns.size();
+  result.Rms = best.GetRms();
+  result.Spread = std::sqrt(best.Square / (best.Equations - static_cast<int>(unknowns.size())));
+  result.RunnerUpRms =
+    solutions.size() > 1 ? solutions[1].GetRms() : std::numeric_limits<double>::infinity();
+
+  const Conditioning conditioning = GetConditioning(solver, best);
+  const Eigen::Index count = conditioning.Values.size();
+  const double largest = conditioning.Values[count - 1];
+  if (!(conditioning.Values[0] > SingularRatio * largest))
+  {
+    throw std::invalid_argument("the picks leave open " +
+      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(0), picks, state));
+  }
+  result.Condition = std::sqrt(largest / conditioning.Values[0]);
+
+  // Covariance of all unknowns, of which the image's are kept.
+  const Eigen::MatrixXd root = conditioning.Lengths.cwiseInverse().asDiagonal() *
+    conditioning.Vectors * conditioning.Values.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd covariance = result.Spread * result.Spread * root * root.transpose();
+  for (std::size_t a = 0; a < unknowns.size(); ++a)
+  {
+    for (std::size_t b = 0; b < unknowns.size(); ++b)
+    {
+      if (unknowns[a] < ImageUnknowns && unknowns[b] < ImageUnknowns)
+      {
+        result.Covariance[static_cast<std::size_t>(ImageUnknowns * unknowns[a] + unknowns[b])] =
+          covariance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      }
+    }
+  }
+
+  // The part of each direction that the image has in it.
+  std::vector<CalibrationWeakness> directions;
+  for (Eigen::Index v = 0; v < count; ++v)
+  {
+    double square = 0;
+    for (std::size_t u = 0; u < unknowns.size(); ++u)
+    {
+      if (unknowns[u] < ImageUnknowns)
+      {
+        square += std::pow(conditioning.Vectors(static_cast<Eigen::Index>(u), v), 2);
+      }
+    }
+    directions.push_back({ result.Spread * std::sqrt(square / conditioning.Values[v]),
+      DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(v), picks, state) });
+  }
+  std::sort(directions.begin(), directions.end(),
+    [](const CalibrationWeakness& a, const CalibrationWeakness& b) { return a.Error > b.Error; });
+  const double median = directions[directions.size() / 2].Error;
+  for (const CalibrationWeakness& direction : directions)
+  {
+    if (direction.Error > WeakError && direction.Error > WeakRatio * median)
+    {
+      result.Weaknesses.push_back(direction);
+    }
+  }
+  return result;
+}
+
+std::array<Vec3, 3> ProbeCalibration::GetCovariance(const Vec2& pixel) const
+{
+  const Vec3 x = pixel[0] * this->ImageToProbe.Column(0);
+  const Vec3 y = pixel[1] * this->ImageToProbe.Column(1);
+  const Vec3 arm = x + y;
+  const std::array<Vec3, ImageUnknowns> moves{ Cross({ 1, 0, 0 }, arm), Cross({ 0, 1, 0 }, arm),
+    Cross({ 0, 0, 1 }, arm), { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, x, y };
+  std::array<Vec3, 3> covariance{};
+  for (std::size_t a = 0; a < ImageUnknowns; ++a)
+  {
+    for (std::size_t b = 0; b < ImageUnknowns; ++b)
+    {
+      for (int i = 0; i < 3; ++i)
+      {
+        covariance[static_cast<std::size_t>(i)] = covariance[static_cast<std::size_t>(i)] +
+          (this->Covariance[ImageUnknowns * a + b] * moves[a][i]) * moves[b];
+      }
+    }
+  }
+  return covariance;
+}
+
+double ProbeCalibration::GetExpectedError(const Vec2& pixel) const
+{
+  const std::array<Vec3, 3> covariance = this->GetCovariance(pixel);
+  return std::sqrt(covariance[0][0] + covariance[1][1] + covariance[2][2]);
+}
+
+Vec3 ProbeCalibration::GetAngles() const
+{
+  const Vec3 x = Normalized(this->ImageToProbe.Column(0));
+  const Vec3 y = Normalized(this->ImageToProbe.Column(1));
+  const Vec3 z = Cross(x, y);
+  return { std::atan2(x[1], x[0]) / Degree,
+    std::asin(std::max(-1.0, std::min(1.0, -x[2]))) / Degree, std::atan2(y[2], z[2]) / Degree };
+}
+}
