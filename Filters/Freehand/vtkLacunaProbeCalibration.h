@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaProbeCalibration
+ * @brief   Finds where the image of a tracked ultrasound probe lies on the probe
+ *
+ * A tracker measures where its receiver on the probe is; calibration finds ImageToProbe, from
+ * (column, row) of the image to mm in the receiver's coordinate system. A phantom is scanned from
+ * many sides, and what is seen of it is picked:
+ *
+ * - ThreeWires: three thin wires at right angles that cross in one point (Carr 1996, appendix A)
+ * - SingleWall: a flat floor or wall, such as that of a water bath (Prager et al. 1998)
+ * - PointTarget: a point that does not move, such as a small ball or the tip of a needle
+ *
+ * The equations are solved from many starts without a first guess, picks that do not agree with the
+ * others are left out, and the result says how exact it is and which motion of the probe would make
+ * it more so (lacunaProbeCalibration.h).
+ *
+ * Input port 0: tracked slices (vtkLacunaTrackedSlices.h) with the field data array
+ * ProbeToTracker; the probe need not be calibrated. Port 1: vtkTable of picks with the columns Slice
+ * (number in the sweep, 0-based), Column, Row (pixels, not whole numbers only) and for ThreeWires
+ * Wire (text X, Y or Z). Optional for SingleWall: without it the floor's line is looked for in each
+ * slice (lacunaWallDetection.h).
+ *
+ * Output port 0: the slices, calibrated: field data ImageToProbe and ImageToReference, whose reference
+ * frame is the tracker. Port 1: vtkTable of the picks with their places in the phantom (PhantomX,
+ * PhantomY, PhantomZ, mm), Error (mm, from the wire, wall or point) and Used (0: an outlier). Port 2:
+ * vtkPolyData in phantom coordinates (mm): the picks as vertices with Error and Used, and as lines the
+ * wires, or the border of the wall.
+ *
+ * All have the field data PixelSpacing (2, mm a column and a row), CalibrationRms (mm, eq. A.14),
+ * CalibrationSpread (mm, standard deviation of an equation), ExpectedError (mm, RMS, largest of the
+ * image's four corners), Condition, RunnerUpRms (mm, of another solution; infinite without one),
+ * ImageAngles (3, degrees: azimuth, elevation, roll) and Advice (text, one value for each sentence).
+ *
+ * @sa vtkLacunaTemporalCalibration
+ */
+#ifndef vtkLacunaProbeCalibration_h
+#define vtkLacunaProbeCalibration_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaFiltersFreehandModule.h" // for export macro
+
+#include <string>
+
+class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaProbeCalibration : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaProbeCalibration* New();
+  vtkTypeMacro(vtkLacunaProbeCalibration, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum Methods
+  {
+    ThreeWires = 0,
+    SingleWall = 1,
+    PointTarget = 2
+  };
+
+  ///@{
+  /// What was scanned. Default: ThreeWires.
+  vtkSetClampMacro(Method, int, ThreeWires, PointTarget);
+  vtkGetMacro(Method, int);
+  void SetMethodToThreeWires() { this->SetMethod(ThreeWires); }
+  void SetMethodToSingleWall() { this->SetMethod(SingleWall); }
+  void SetMethodToPointTarget() { this->SetMethod(PointTarget); }
+  ///@}
+
+  ///@{
+  /// mm from column to column. 0: an error unless EstimateScale, since no one may guess it.
+  /// Default: 0.
+  vtkSetMacro(PixelSpacing, double);
+  vtkGetMacro(PixelSpacing, double);
+  ///@}
+
+  ///@{
+  /// mm from row to row; 0: as PixelSpacing. Default: 0.
+  vtkSetMacro(RowSpacing, double);
+  vtkGetMacro(RowSpacing, double);
+  ///@}
+
+  ///@{
+  /// Find both spacings along with the rest. The result is a little less exact then. Default: off.
+  vtkSetMacro(EstimateScale, bool);
+  vtkGetMacro(EstimateScale, bool);
+  vtkBooleanMacro(EstimateScale, bool);
+  ///@}
+
+  ///@{
+  /// Picks that are off by more than so many standard deviations are left out; at least 2. 0: none
+  /// is. Default: 4.
+  vtkSetMacro(OutlierLimit, double);
+  vtkGetMacro(OutlierLimit, double);
+  ///@}
+
+  ///@{
+  /// A file to write ImageToProbe to: the XML that vtkLacunaTrackedSliceReader takes as calibration,
+  /// as do PLUS and 3D Slicer. It appears whole or not at all. Empty: none is written. Default: empty.
+  void SetOutputFileName(const char* name);
+  const char* GetOutputFileName() const { return this->OutputFileName.c_str(); }
+  ///@}
+
+  /// Takes the table of input port 1 away.
+  void RemovePicks() { this->SetInputConnection(1, nullptr); }
+
+protected:
+  vtkLacunaProbeCalibration();
+  ~vtkLacunaProbeCalibration() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaProbeCalibration(const vtkLacunaProbeCalibration&) = delete;
+  void operator=(const vtkLacunaProbeCalibration&) = delete;
+
+  int Method = ThreeWires;
+  double PixelSpacing = 0;
+  double RowSpacing = 0;
+  bool EstimateScale = false;
+  double OutlierLimit = 4;
+  std::string OutputFileName;
+};
+#endif

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scans of calibration phantoms with a probe whose image lies in a known place."""
+import csv
+
+import numpy as np
+from paraview.simple import CSVReader, XMLImageDataReader
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+from lacuna_test import output
+from tracked_slice_files import tracked_slices
+
+WIDTH, HEIGHT, SPACING = 200, 160, 0.4  # 80 x 64 mm
+
+
+def rotation(axis, degrees):
+    axis = np.asarray(axis, float) / np.linalg.norm(axis)
+    angle = np.radians(degrees)
+    cross = np.cross(np.eye(3), -axis)
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def pose(turn=np.eye(3), origin=(0, 0, 0)):
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn
+    matrix[:3, 3] = origin
+    return matrix
+
+
+# The receiver is some way off the image and askew; nothing is symmetric.
+SCAN_TO_PROBE = pose(rotation([1, 2, -0.5], 70), [25, -60, 110])
+IMAGE_TO_PROBE = SCAN_TO_PROBE @ np.diag([SPACING, SPACING, 1, 1])
+PHANTOM_TO_TRACKER = pose(rotation([0.3, -1, 0.4], 130), [200, -80, 150])
+
+
+def probe_to_tracker(scan_to_phantom):
+    return PHANTOM_TO_TRACKER @ scan_to_phantom @ np.linalg.inv(SCAN_TO_PROBE)
+
+
+def corner_error(matrix):
+    """Largest distance in mm of the image's corners from where they are."""
+    corners = np.array([[c, r, 0, 1] for c in (0, WIDTH - 1) for r in (0, HEIGHT - 1)])
+    return np.linalg.norm(((matrix - IMAGE_TO_PROBE) @ corners.T)[:3], axis=0).max()
+
+
+def looking_down(random, degrees):
+    """Image axes in the phantom: rows go down, turned by up to so many degrees each way."""
+    down = np.column_stack([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    turns = random.uniform(-degrees, degrees, 2)
+    return (rotation([0, 0, 1], random.uniform(0, 360)) @ rotation([1, 0, 0], turns[0])
+            @ rotation([0, 1, 0], turns[1]) @ down)
+
+
+def wall_picture(scan_to_phantom, random):
+    """A bath with specks and the floor z = 0 of the phantom."""
+    row, column = np.mgrid[:HEIGHT, :WIDTH]
+    pixels = np.stack([SPACING * column, SPACING * row, 0 * row, 1 + 0 * row], axis=-1)
+    height = pixels @ scan_to_phantom[2]
+    # ultrasound comes back only where it meets the floor near to a right angle; here everywhere
+    grey = 20 * random.random((HEIGHT, WIDTH)) + 220 * np.exp(-(height / 0.8) ** 2)
+    return np.clip(grey, 0, 255).astype(np.uint8)
+
+
+def open_scan(name, pixels, poses, times=None):
+    stack = tracked_slices(pixels, poses)
+    fields = stack.GetFieldData()
+    fields.GetArray("ImageToReference").SetName("ProbeToTracker")
+    if times is not None:
+        array = numpy_to_vtk(np.asarray(times, float), deep=1)
+        array.SetName("Timestamp")
+        fields.AddArray(array)
+    path = output(name + ".vti")
+    writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()
+    writer.SetInputData(stack)
+    writer.SetFileName(path)
+    writer.Write()
+    return XMLImageDataReader(FileName=[path])
+
+
+def open_table(name, columns, rows):
+    path = output(name + ".csv")
+    with open(path, "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(rows)
+    return CSVReader(FileName=[path])
