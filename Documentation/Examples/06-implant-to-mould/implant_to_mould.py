@@ -68,8 +68,8 @@ def fill(ct, hole, radius, view):
     """Depth map of the bone, and the same with the hole filled."""
     depth = BSplineIsoRayCaster(Input=ct, IsoValues=[500], ViewDirection=view, ViewUp=up(view),
                                 Interpolation="InterpolatingBSpline", ComputeThickness=1)
-    filled = RBFHoleFiller(Input=depth, Kernel="Cubic", NodeSpacing=2, SupportMargin=20, CutoffWavelength=10,
-                           OutputMargin=10)
+    filled = RBFHoleFiller(Input=depth, Kernel="Cubic", NodeSpacing=2, SupportMargin=20, SupportStepMargin=3,
+                           CutoffWavelength=10, OutputMargin=10)
     filled.DefectRegion = "Cylinder"
     filled.DefectRegion.Center = hole
     filled.DefectRegion.Axis = view
