@@ -56,5 +56,6 @@ assert found == {
     "LacunaImplantPlate": {"HoleMarks"},
     "LacunaOccludedAngle": {"SpaceMask"},
     "LacunaPhantomSweep": {"Input"},
+    "LacunaProbeCalibration": {"Picks"},
     "LacunaRBFHoleFiller": {"Surface", "Selection", "ControlPoints", "PriorSurface"},
 }

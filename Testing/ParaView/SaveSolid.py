@@ -34,7 +34,8 @@ def refused(path, proxy, *words, **options):
     else:
         raise AssertionError((path, words))
     assert not os.path.exists(path) and not os.path.exists(path + ".json"), path
-    parts = [name for name in os.listdir(os.path.dirname(path)) if ".part" in name]
+    folder, file = os.path.split(path)
+    parts = [name for name in os.listdir(folder) if name.startswith(file + ".part")]
     assert not parts, parts
 
 
