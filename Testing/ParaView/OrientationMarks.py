@@ -105,14 +105,18 @@ def render():
     return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[..., :3].astype(float) / 255
 
 
+def texts(window):
+    return [each for each in window.Representations if each.Input is not None and each.Input.GetXMLName() == "TextSource"]
+
+
 def shown():
     """Texts in the window by the edge that they stand at."""
     found = {}
-    for source in GetSources().values():
-        if source.GetXMLName() == "TextSource" and GetDisplayProperties(source, view).Visibility:
-            x, y = GetDisplayProperties(source, view).Position
+    for display in texts(view):
+        if display.Visibility:
+            x, y = display.Position
             edge = ("left" if x < 0.2 else "right" if x > 0.8 else "") or ("bottom" if y < 0.5 else "top")
-            found[edge] = source.Text
+            found[edge] = display.Input.Text
     return found
 
 
@@ -147,9 +151,37 @@ view.GetActiveCamera().SetUserViewTransform(None)
 
 # again replaces, hide takes away
 views.show_orientation(view, font_size=24)
-check(len(shown()) == 4 and sum(s.GetXMLName() == "TextSource" for s in GetSources().values()) == 4, "no marks twice")
+check(len(shown()) == 4 and len(texts(view)) == 4, "no marks twice")
+
+# letters that do not follow the camera would lie: they are not in state files, and can be shown again after loading one
+look((0, 1, 0), (0, 0, 1))
+check(len(GetSources()) == len(BALLS), "letters are not in the pipeline")
+before = GetRenderViews()
+for ending in (".pvsm", ".py"):
+    state = os.path.join(tempfile.gettempdir(), f"lacuna-marks-{os.getpid()}{ending}")
+    SaveState(state)
+    with open(state, encoding="utf-8") as file:
+        content = file.read()
+    check("TextSource" not in content and "Text(" not in content, f"letters in a state file ({ending})")
+    if ending == ".pvsm":
+        LoadState(state)
+    os.remove(state)
+loaded, = [each for each in GetRenderViews() if each not in before]
+check(len(loaded.Representations) == len(BALLS) and not texts(loaded), "letters come back with a state file")
+pictures.look(loaded, (0, -1, 0), (0, 0, 1))
+check(views.show_orientation(loaded) == {"left": "L", "right": "R", "top": "H", "bottom": "F"}, "marks from behind")
+check(sorted(each.Input.Text for each in texts(loaded)) == list("FHLR") and shown()["left"] == "R", "marks of two views")
+views.hide_orientation(loaded)
+check(not texts(loaded) and len(shown()) == 4, "hidden in one of two views")
+Delete(loaded)
+
+marked = render()
 views.hide_orientation(view)
-check(not shown(), "hidden")
+check(not shown() and not texts(view), "hidden")
+ink = (render() - marked > 0.3).all(axis=2)
+strips = (ink[190:210, :40], ink[190:210, -40:], ink[:30, 180:220], ink[-30:, 180:220])
+check(all(20 < strip.sum() for strip in strips) and ink.sum() == sum(strip.sum() for strip in strips),
+      "the letters have gone from the picture, and nothing else")
 views.show_patient_axes(view)
 check(view.AxesGrid.Visibility and view.AxesGrid.XTitle == "R to L, mm", "titles of the axes")
 check(view.AxesGrid.YTitle == "A to P, mm" and view.AxesGrid.ZTitle == "F to H, mm", "titles of the axes")

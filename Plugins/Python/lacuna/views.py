@@ -132,20 +132,22 @@ def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):
 
     For data in patient coordinates only (in_patient_coordinates), not for tracked ultrasound, whose reference frame
     knows no patient. The letters follow the camera. Call it again to change color or size, hide_orientation to
-    take them away. Returns the letters by edge.
+    take them away. They are not in the pipeline browser and not in state files: loaded from one they would not follow
+    the camera any more. Returns the letters by edge.
     """
     import paraview.simple as pv
+    from paraview import servermanager
     view = view or pv.GetActiveView()
     if view is None or not hasattr(view, "GetActiveCamera"):
         raise ValueError("there is no active render view that could be marked; give one")
     hide_orientation(view)
-    active = pv.GetActiveSource()
     camera = view.GetActiveCamera()
     width, height = view.ViewSize
     marks = {}
     for edge, letters in camera_letters(camera).items():
-        source = pv.Text(Text=letters)
-        display = pv.Show(source, view)
+        # not registered with the proxy manager, which writes the state files
+        source = servermanager.sources.Text(Text=letters)
+        display = servermanager.CreateRepresentation(source, view)
         display.Color, display.FontSize, display.Bold = list(color), font_size, 1
         display.WindowLocation = "Any Location"
         marks[edge] = (source, display)
@@ -168,18 +170,17 @@ def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):
     place()
     tag = camera.AddObserver("ModifiedEvent", place)
     _marked[view.GetGlobalIDAsString()] = (marks, camera, tag)
-    pv.SetActiveSource(active)
     return {edge: source.Text for edge, (source, _) in marks.items()}
 
 
 def hide_orientation(view):
     """Takes the marks of show_orientation away."""
-    import paraview.simple as pv
     marks, camera, tag = _marked.pop(view.GetGlobalIDAsString(), ({}, None, None))
     if camera is not None:
         camera.RemoveObserver(tag)
-    for source, _ in marks.values():
-        pv.Delete(source)
+    for _, display in marks.values():
+        view.Representations.remove(display)
+    view.UpdateVTKObjects()
 
 
 def show_patient_axes(view=None):
