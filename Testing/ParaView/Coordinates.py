@@ -5,6 +5,7 @@ import os
 import zipfile
 
 from lacuna import coordinates, views
+from lacuna.data import fetch
 from lacuna.errors import PipelineError
 from lacuna.solids import save_solid
 from lacuna_test import output
@@ -48,6 +49,21 @@ for proxy in (press, mould, top, MillingToolPath(Input=press)):
 assert not views.in_patient_coordinates(servermanager.Fetch(press))
 assert save_solid(output("Coordinates.stl"), Triangulate(Input=mould))["coordinates"] == coordinates.PRESS
 assert save_solid(output("Coordinates.stl"), Triangulate(Input=top))["coordinates"] == coordinates.PRESS
+
+# each output for itself: the first is the patient's, the second the press's
+port = OutputPort(model, 1)
+check(port, coordinates.PRESS)
+check(GroupDatasets(Input=[model, port]), coordinates.UNKNOWN)
+bounds = model.GetClientSideObject().GetOutputDataObject(1).GetBounds()
+assert fetch(port).GetBounds() == bounds != fetch(model).GetBounds()
+record = save_solid(output("Coordinates.vts"), port)
+assert record["coordinates"] == coordinates.PRESS and tuple(record["bounds"]) == bounds, record
+assert fetch(OpenDataFile(output("Coordinates.vts"))).GetBounds() == bounds
+try:
+    save_solid(output("Coordinates.3mf"), port)
+    raise AssertionError("a grid in 3MF, or another output")
+except PipelineError as error:
+    assert "vtkStructuredGrid" in str(error), error
 
 # moved by a filter of ParaView, which passes the field data on
 turned = Transform(Input=plate)

@@ -4,6 +4,8 @@
     from lacuna import coordinates
     coordinates.find(proxy)            # "patient, DICOM LPS", "press" or "unknown", with ", mirrored" behind it
 """
+from lacuna.data import fetch
+
 PATIENT, PRESS, UNKNOWN, MIRRORED = "patient, DICOM LPS", "press", "unknown", ", mirrored"
 NAMES = {"Patient": PATIENT, "Press": PRESS}  # by the field data array Coordinates
 
@@ -28,12 +30,11 @@ def find(source):
     seen in its pipeline, and the answer is "unknown"; data alone do not tell, nor do files. It is "unknown" as well
     where a filter has reset the direction of an image.
     """
-    from paraview import servermanager
     data = source
     if hasattr(source, "GetXMLLabel"):
         if not _keeps_points(source):
             return UNKNOWN
-        data = servermanager.Fetch(source)
+        data = fetch(source)
     if data is None or _is_reset(data):
         return UNKNOWN
     mark = data.GetFieldData().GetAbstractArray("Coordinates")

@@ -5,11 +5,11 @@ import os
 
 import numpy as np
 import paraview.simple as pv
-from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import lacuna
 from lacuna import pictures, views
+from lacuna.data import fetch
 
 ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
 
@@ -34,7 +34,7 @@ def run(options, report):
         report.add("view direction", " ".join(f"{c:.3g}" for c in view))
     with report.stage("fill the hole"):
         filled = fill(depth, options, skull, ct)
-        image = servermanager.Fetch(filled)
+        image = fetch(filled)
         describe(image, skull, report)
         pv.SaveData(os.path.join(options.output, "filled-depth-map.vti"), proxy=filled, DataMode="Binary")
     with report.stage("write the implant surface"):

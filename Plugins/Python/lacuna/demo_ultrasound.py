@@ -4,13 +4,13 @@ import os
 
 import numpy as np
 import paraview.simple as pv
-from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties, vtkTriangleFilter
 
 from lacuna import pictures
+from lacuna.data import fetch
 
 PHANTOM = dict(NumberOfSlices=120, Motion="Arbitrary", Anatomy="Ellipsoids", SpeckleLevel=0.15)
 
@@ -70,7 +70,7 @@ def dimensions(image):
 
 def surface_level(volume):
     """Otsu's threshold of the voxels that have a grey level: the best split into dark and bright."""
-    data = servermanager.Fetch(volume).GetPointData()
+    data = fetch(volume).GetPointData()
     grey = vtk_to_numpy(data.GetArray("Intensity"))[vtk_to_numpy(data.GetArray("vtkValidPointMask")) > 0]
     counts, edges = np.histogram(grey, 256)
     centers = (edges[:-1] + edges[1:]) / 2
@@ -99,7 +99,7 @@ def closed_surface(sweep, volume, level, median):
 def measure(surface):
     """Enclosed volume in ml, and the number of edges that only one triangle has (0 = closed)."""
     triangles = vtkTriangleFilter()
-    triangles.SetInputData(servermanager.Fetch(surface))
+    triangles.SetInputData(fetch(surface))
     mass = vtkMassProperties()
     mass.SetInputConnection(triangles.GetOutputPort())
     mass.Update()
@@ -136,7 +136,7 @@ def picture(sweep, surface, name):
     """The surface among the outlines of the slices that it was made from."""
     render = pictures.new_view()
     pictures.show_surface(surface, render, pictures.TISSUE)
-    image = servermanager.Fetch(sweep)
+    image = fetch(sweep)
     frames = pv.TrivialProducer()
     frames.GetClientSideObject().SetOutput(slice_frames(image, max(1, dimensions(sweep)[2] // 20)))
     display = pictures.show_surface(frames, render, (0.35, 0.45, 0.6))

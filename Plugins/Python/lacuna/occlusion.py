@@ -50,9 +50,9 @@ def _image(source):
     if hasattr(source, "GetOutputDataObject"):
         source.Update()
         return source.GetOutputDataObject(0)
-    from paraview import servermanager
+    from lacuna.data import fetch
     source.UpdatePipeline()
-    return servermanager.Fetch(source)
+    return fetch(source)
 
 
 def _flat(image):

@@ -2,13 +2,13 @@
 """Pictures in one style: white background, matt surfaces, scalar bars with units."""
 import numpy as np
 import paraview.simple as pv
-from paraview import servermanager
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
 
+from lacuna.data import fetch
 from lacuna.views import map_letters
 
 BONE = (0.93, 0.89, 0.80)
@@ -150,7 +150,7 @@ def save(view, name):
 
 def shaded_pixels(proxy):
     """The picture of a Depth Map Shader as (rows, columns, red green blue), uint8; row 0 is on top."""
-    image = servermanager.Fetch(proxy)
+    image = fetch(proxy)
     width, height, _ = image.GetDimensions()
     return vtk_to_numpy(image.GetPointData().GetArray("Color")).reshape(height, width, 3)
 
@@ -266,4 +266,4 @@ def color_bar(to_colors, low, high, unit, height, ticks=5):
 def save_shaded(proxy, name, marks=False):
     """Saves the picture of a Depth Map Shader as PNG, pixel by pixel; marks: framed by the patient's sides."""
     pixels = shaded_pixels(proxy)
-    write_pixels(name, mark_pixels(pixels, map_letters(servermanager.Fetch(proxy))) if marks else pixels)
+    write_pixels(name, mark_pixels(pixels, map_letters(fetch(proxy))) if marks else pixels)

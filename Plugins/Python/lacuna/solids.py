@@ -31,8 +31,8 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
     options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
     from lacuna import __version__, coordinates
+    from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
-    from paraview import servermanager
 
     beside = path + ".json"
     for old in (path, beside):
@@ -40,7 +40,7 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
             os.remove(old)  # what is there after a failure would be taken for the new one
     with raising():
         proxy.UpdatePipeline()
-        data = servermanager.Fetch(proxy)
+        data = fetch(proxy)
         if data is None or data.GetNumberOfPoints() == 0:
             raise PipelineError(f"there is nothing to write to {path}")
     if coordinates.is_mirrored(data) and not allow_mirrored:

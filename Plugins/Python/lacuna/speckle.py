@@ -6,7 +6,8 @@
     print(speckle.table(rows))
 """
 import paraview.simple as pv
-from paraview import servermanager
+
+from lacuna.data import fetch
 
 #: label -> properties of Speckle Filter; None is the image as it is.
 FILTERS = {
@@ -34,7 +35,7 @@ def measure(image, inside_array="", outside_array="", inside_bounds=None, outsid
         contrast.InsideBounds = inside_bounds
     if outside_bounds is not None:
         contrast.OutsideBounds = outside_bounds
-    table = servermanager.Fetch(contrast)
+    table = fetch(contrast)
     pv.Delete(contrast)
     return {table.GetColumnName(i): table.GetColumn(i).GetValue(0)
             for i in range(table.GetNumberOfColumns())}
