@@ -97,8 +97,136 @@ KEEPING = {
 }
 
 
+HU = ["POINTS", "HounsfieldUnits"]
+
+
+def group(source):
+    return GroupDatasets(Input=[source])
+
+
+def surface_of(source):
+    return ExtractSurface(Input=source)
+
+
+def place_at(cut, shape):
+    """A filter that cuts, with its plane, ball or cylinder near the middle."""
+    setattr(shape, "Origin" if shape.GetXMLLabel() == "Plane" else "Center", [0.7, 1.1, -0.6])
+    if shape.GetXMLLabel() != "Plane":
+        shape.Radius = 12
+    return cut
+
+
+def slice_by(source, kind, **options):
+    cut = Slice(Input=source, SliceType=kind, **options)
+    return place_at(cut, cut.SliceType)
+
+
+def clip_by(source, kind, **options):
+    cut = Clip(Input=source, ClipType=kind, **options)
+    return place_at(cut, cut.ClipType)
+
+
+# the filters of coordinates.KEEPING by label, each in its variants
+CUTS = {
+    "Contour": [lambda source: Contour(Input=source, ContourBy=HU, Isosurfaces=[300], ComputeScalars=1)],
+    "Iso Volume": [lambda source: IsoVolume(Input=source, InputScalars=HU, ThresholdRange=[300, 5000])],
+    "Clip": [lambda source: clip_by(source, "Plane"), lambda source: clip_by(source, "Sphere"),
+             lambda source: Clip(Input=source, ClipType="Scalar", Scalars=HU, Value=300),
+             lambda source: clip_by(source, "Plane", Crinkleclip=1)],
+    "Slice": [lambda source: slice_by(source, "Plane"), lambda source: slice_by(source, "Plane", Crinkleslice=1),
+              lambda source: slice_by(source, "Sphere"), lambda source: slice_by(source, "Cylinder")],
+}
+KEPT = dict(CUTS, **{
+    "Append Attributes": [lambda source: AppendAttributes(Input=[source, RandomAttributes(Input=source)])],
+    "Append Datasets": [lambda source: AppendDatasets(Input=[source, source])],
+    "Append Geometry": [lambda source: AppendGeometry(Input=[surface_of(source), surface_of(source)])],
+    "Cell Data to Point Data": [lambda source: CellDatatoPointData(Input=source)],
+    "Clean": [lambda source: Clean(Input=surface_of(source))],
+    "Clean to Grid": [lambda source: CleantoGrid(Input=source)],
+    "Connectivity": [lambda source: Connectivity(Input=source)],
+    "Decimate": [lambda source: Decimate(Input=Triangulate(Input=surface_of(source)), TargetReduction=0.5)],
+    "Extract Block": [lambda source: ExtractBlock(Input=group(source), Selectors=["/Root"])],
+    "Extract Cells By Region": [lambda source: ExtractCellsByRegion(Input=source, IntersectWith="Plane")],
+    "Extract Selection": [lambda source: ExtractSelection(Input=source, Selection=SelectionQuerySource(
+        ElementType=0, QueryString="HounsfieldUnits > 300"))],
+    "Extract Subset": [lambda source: ExtractSubset(Input=source, VOI=[3, 30, 2, 30, 1, 9])],
+    "Extract Surface": [surface_of],
+    "Feature Edges": [lambda source: FeatureEdges(Input=surface_of(source))],
+    "Generate Surface Normals": [lambda source: GenerateSurfaceNormals(Input=surface_of(source))],
+    "Group Datasets": [group],
+    "Merge Blocks": [lambda source: MergeBlocks(Input=group(source))],
+    "Pass Arrays": [lambda source: PassArrays(Input=source, PointDataArrays=["HounsfieldUnits"],
+                                              FieldDataArrays=[ARRAY, "Coordinates"])],
+    "Point Data to Cell Data": [KEEPING["Point Data To Cell Data"]],
+    "Tetrahedralize": [lambda source: Tetrahedralize(Input=source)],
+    "Threshold": [lambda source: Threshold(Input=source, Scalars=HU, LowerThreshold=300, UpperThreshold=5000)],
+    "Triangulate": [lambda source: Triangulate(Input=surface_of(source))],
+})
+
+
+def is_true(proxy, scan):
+    """Whether points of a proxy's data have the (whole) values that the scan has where they are. Points of Iso Volume within
+    hexahedra have others, an eighth of all."""
+    data = servermanager.Fetch(proxy)
+    while data.IsA("vtkCompositeDataSet"):
+        data = data.GetBlock(0) if hasattr(data, "GetBlock") else data.GetPartition(0, 0)
+    if data.GetNumberOfPoints() < 50:
+        return False
+    places = np.array([data.GetPoint(k) for k in range(0, data.GetNumberOfPoints(), data.GetNumberOfPoints() // 500 + 1)])
+    values = vtk_to_numpy(data.GetPointData().GetArray("HounsfieldUnits"))[::data.GetNumberOfPoints() // 500 + 1]
+    volume = servermanager.Fetch(scan)
+    to_index = np.array([volume.GetPhysicalToIndexMatrix().GetElement(i, j) for i in range(4) for j in range(4)])
+    index = np.c_[places, np.ones(len(places))] @ to_index.reshape(4, 4)[:3].T
+    size = np.array(volume.GetDimensions())
+    grey = vtk_to_numpy(volume.GetPointData().GetArray("HounsfieldUnits")).reshape(size[::-1]).astype(float)
+    base = np.clip(np.floor(index).astype(int), 0, size - 2)
+    part, true = index - base, np.zeros(len(index))
+    for corner in np.ndindex(2, 2, 2):
+        i, j, k = (base + corner).T
+        true += np.where(corner, part, 1 - part).prod(axis=1) * grey[k, j, i]
+    inside = ((index > -1e-3) & (index < size - 1 + 1e-3)).all(axis=1)
+    return np.mean(inside & (np.abs(true - values) < 1.01)) > 0.8
+
+
+def is_marked(proxy):
+    """Some filters drop field data, and so the mark."""
+    return servermanager.Fetch(proxy).GetFieldData().HasArray("Coordinates") == 1
+
+
+# ParaView's filters that are said to leave points where they are do so, or are not called the patient's
+assert set(KEPT) == coordinates.KEEPING and set(CUTS) == coordinates.STRAIGHTENING
+marked = {}
+for name in ("axial", "feet first", "oblique"):  # the grey level is a formula of the place
+    scan = CTSeriesReader(FileName=os.path.join(folder, name))
+    for what, variants in KEPT.items():
+        for variant, make in enumerate(variants):
+            made = make(scan)
+            made.UpdatePipeline()
+            true, place = is_true(made, scan), coordinates.find(made)
+            known = is_marked(made)
+            assert place == (coordinates.PATIENT if true and known else coordinates.UNKNOWN), (name, what, variant, place)
+            marked[what] = marked.get(what, False) or known
+            assert true or name != "axial" and what in CUTS, (name, what, variant)
+            if what in CUTS:
+                through = make(Transform(Input=scan))  # that does nothing
+                through.UpdatePipeline()
+                assert is_true(through, scan), (name, what, variant)
+                assert (coordinates.find(through) == coordinates.PATIENT) == is_marked(through), (name, what, variant)
+                held = make(group(scan))
+                held.UpdatePipeline()
+                assert is_true(held, scan) == true and coordinates.find(held) == place, (name, what, variant)
+    for change, values in ("Translate", [1, 0, 0]), ("Rotate", [0, 0, 1]), ("Scale", [-1, 1, 1]):
+        moved = Transform(Input=scan)
+        setattr(moved.Transform, change, values)
+        moved.UpdatePipeline()
+        assert coordinates.find(moved) == coordinates.UNKNOWN, change
+
+print("drop the mark:", sorted(what for what, known in marked.items() if not known))
+assert sum(marked.values()) > len(marked) - 4, marked
+
 straight = CTSeriesReader(FileName=os.path.join(folder, SERIES[0]))
 truth = centroid(straight)
+straight_contour = Contour(Input=straight, ContourBy=["POINTS", "HounsfieldUnits"], Isosurfaces=[300])
 for name in SERIES:
     scan = CTSeriesReader(FileName=os.path.join(folder, name))
     direction, record = directions(scan)
@@ -145,7 +273,12 @@ for name in SERIES:
     for what, take in TAKERS.items():
         assert not refusal(take(scan)), (name, what)
     # what is no volume has no directions to compare, whatever field data came along
-    contour = Contour(Input=scan, ContourBy=["POINTS", "HounsfieldUnits"], Isosurfaces=[300], ComputeScalars=1)
+    contour = Contour(Input=Transform(Input=scan), ContourBy=["POINTS", "HounsfieldUnits"], Isosurfaces=[300],
+                      ComputeScalars=1)
+    shown = vtk_to_numpy(servermanager.Fetch(contour).GetPoints().GetData())
+    box = vtk_to_numpy(servermanager.Fetch(straight_contour).GetPoints().GetData())
+    assert np.abs(np.percentile(shown, (1, 50, 99), axis=0) - np.percentile(box, (1, 50, 99), axis=0)).max() < 1.5, name
+    assert coordinates.find(contour) == coordinates.PATIENT, name
     threshold = Threshold(Input=scan, Scalars=["POINTS", "HounsfieldUnits"], LowerThreshold=500, UpperThreshold=4000)
     for what in (contour, Clip(Input=contour, ClipType="Plane"), threshold):
         interpolator = RBFInterpolator(Input=MaskPoints(Input=what, MaximumNumberofPoints=50), OutputSpacing=[9, 9, 9])

@@ -14,8 +14,12 @@ KEEPING = frozenset((
     "Append Attributes", "Append Datasets", "Append Geometry", "Cell Data to Point Data", "Clean", "Clean to Grid",
     "Clip", "Connectivity", "Contour", "Decimate", "Extract Block", "Extract Cells By Region", "Extract Selection",
     "Extract Subset", "Extract Surface", "Feature Edges", "Generate Surface Normals", "Group Datasets",
-    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Surface Normals", "Tetrahedralize",
-    "Threshold", "Triangulate"))
+    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Tetrahedralize", "Threshold",
+    "Triangulate"))
+
+# ParaView's filters that cut the cells of an image as though its direction were the identity: their points are where
+# nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
+STRAIGHTENING = frozenset(("Clip", "Contour", "Iso Volume", "Slice"))
 
 # ParaView's filters that set the direction of an image back to the identity.
 RESETTING = frozenset(("Color By Array", "Crop", "Gradient Legacy", "Gradient Magnitude", "Image Shrink", "Median"))
@@ -28,7 +32,7 @@ def find(source):
 
     ParaView's filters pass field data on, too, even those that move points (Transform, Reflect). Of a proxy these are
     seen in its pipeline, and the answer is "unknown"; data alone do not tell, nor do files. It is "unknown" as well
-    where a filter has reset the direction of an image.
+    where a filter has reset the direction of an image, or does not heed it (STRAIGHTENING).
     """
     data = source
     if hasattr(source, "GetXMLLabel"):
@@ -62,20 +66,64 @@ def _is_reset(data):
     return not _is_same(record.GetTuple(0), data.GetDirectionMatrix().GetData())
 
 
+def _record(proxy):
+    """The field data DirectionMatrix of a proxy's data, or None."""
+    record = proxy.FieldData.GetArray("DirectionMatrix")
+    if record is None or record.GetNumberOfTuples() != 1 or record.GetNumberOfComponents() != 9:
+        return None
+    return [record.GetRange(k)[0] for k in range(9)]
+
+
+def _is_image(proxy):
+    return proxy.GetDataInformation().DataInformation.GetDataSetTypeAsString() == "vtkImageData"
+
+
+def _is_no_transform(proxy):
+    """Whether a proxy is a Transform that leaves points where they are."""
+    return proxy.GetXMLLabel() == "Transform" and proxy.Transform.GetXMLLabel() == "Transform" and \
+        [*proxy.Transform.Translate, *proxy.Transform.Rotate, *proxy.Transform.Scale] == [0, 0, 0, 0, 0, 0, 1, 1, 1]
+
+
+def _is_straightening(proxy):
+    """Whether a proxy cuts cells of images without heeding their direction."""
+    label = proxy.GetXMLLabel()
+    right = label == "Slice" and proxy.SliceType.GetXMLLabel() == "Plane" or label == "Clip" and proxy.Crinkleclip
+    return label in STRAIGHTENING and not right
+
+
+def _is_turned(source):
+    """Whether a proxy's data are, or hold, an image whose direction is not the identity."""
+    record = _record(source)  # what is fetched of several ranks may be an image no more
+    if record is not None and not _is_same(record, IDENTITY) and _is_image(source):
+        return True
+    data = fetch(source)
+    leaves = [data]
+    if data is not None and data.IsA("vtkCompositeDataSet"):
+        visitor = data.NewIterator()
+        leaves = []
+        while not visitor.IsDoneWithTraversal():
+            leaves.append(visitor.GetCurrentDataObject())
+            visitor.GoToNextItem()
+    return any(each.IsA("vtkImageData") and not _is_same(each.GetDirectionMatrix().GetData(), IDENTITY)
+               for each in leaves if each is not None)
+
+
 def _keeps_points(proxy):
     """Whether points come to a proxy from their source without having been moved by a filter of ParaView.
 
     Images are not asked: their points are where origin, spacing and direction say, unless the direction was reset.
-    Where several come together, all have to be in the same coordinates.
+    A Transform that does nothing moves none. Where several come together, all have to be in the same coordinates.
     """
     inputs = proxy.GetProperty("Input")
     inputs = [inputs[k] for k in range(len(inputs))] if inputs is not None else []
     if inputs and not proxy.GetXMLName().startswith("Lacuna"):
-        if proxy.GetXMLLabel() not in KEEPING and \
-                proxy.GetDataInformation().DataInformation.GetDataSetTypeAsString() != "vtkImageData":
+        label = proxy.GetXMLLabel()
+        if label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):
             return False
-        record = proxy.FieldData.GetArray("DirectionMatrix") if proxy.GetXMLLabel() in RESETTING else None
-        if record is not None and not _is_same([record.GetRange(k)[0] for k in range(9)], IDENTITY):
+        if _is_straightening(proxy) and any(_is_turned(each) for each in inputs):
+            return False
+        record = _record(proxy) if label in RESETTING else None
+        if record is not None and not _is_same(record, IDENTITY):
             return False
         if len(inputs) > 1 and len({find(each) for each in inputs}) > 1:
             return False
