@@ -137,7 +137,7 @@ def check_balls(what):
 
 
 look((0, 1, 0), (0, 0, 1))
-check(views.show_orientation(view) == {"left": "R", "right": "L", "top": "H", "bottom": "F"}, "marks from the front")
+check(views.show_orientation(view, force=True) == {"left": "R", "right": "L", "top": "H", "bottom": "F"}, "marks from the front")
 for direction, up in KNOWN:
     look(direction, up)
     check_balls(f"{direction}")
@@ -150,7 +150,7 @@ check_balls("mirrored")
 view.GetActiveCamera().SetUserViewTransform(None)
 
 # again replaces, hide takes away
-views.show_orientation(view, font_size=24)
+views.show_orientation(view, font_size=24, force=True)
 check(len(shown()) == 4 and len(texts(view)) == 4, "no marks twice")
 
 # letters that do not follow the camera would lie: they are not in state files, and can be shown again after loading one
@@ -169,7 +169,7 @@ for ending in (".pvsm", ".py"):
 loaded, = [each for each in GetRenderViews() if each not in before]
 check(len(loaded.Representations) == len(BALLS) and not texts(loaded), "letters come back with a state file")
 pictures.look(loaded, (0, -1, 0), (0, 0, 1))
-check(views.show_orientation(loaded) == {"left": "L", "right": "R", "top": "H", "bottom": "F"}, "marks from behind")
+check(views.show_orientation(loaded, force=True) == {"left": "L", "right": "R", "top": "H", "bottom": "F"}, "marks from behind")
 check(sorted(each.Input.Text for each in texts(loaded)) == list("FHLR") and shown()["left"] == "R", "marks of two views")
 views.hide_orientation(loaded)
 check(not texts(loaded) and len(shown()) == 4, "hidden in one of two views")
@@ -182,7 +182,7 @@ ink = (render() - marked > 0.3).all(axis=2)
 strips = (ink[190:210, :40], ink[190:210, -40:], ink[:30, 180:220], ink[-30:, 180:220])
 check(all(20 < strip.sum() for strip in strips) and ink.sum() == sum(strip.sum() for strip in strips),
       "the letters have gone from the picture, and nothing else")
-views.show_patient_axes(view)
+views.show_patient_axes(view, force=True)
 check(view.AxesGrid.Visibility and view.AxesGrid.XTitle == "R to L, mm", "titles of the axes")
 check(view.AxesGrid.YTitle == "A to P, mm" and view.AxesGrid.ZTitle == "F to H, mm", "titles of the axes")
 
@@ -202,6 +202,52 @@ try:
     check(False, "a volume is no depth map")
 except ValueError:
     pass
+
+# what is not known to be the patient's gets no letters
+def refused(what, mark, *arguments):
+    try:
+        mark(*arguments)
+    except ValueError as error:
+        check("force=True" in str(error), str(error))
+        mark(*arguments, force=True)
+        return
+    check(False, f"letters for {what}")
+
+
+front = dict(IsoValues=[500], ViewDirection=[0, 1, 0], ViewUp=[0, 0, 1], PixelSpacing=2)
+known = DepthMapSurface(Input=BSplineIsoRayCaster(Input=skull, **front))
+mirrored = BSplineIsoRayCaster(Input=Mirror(Input=skull, PlaneMethod="Given", Normal=[1, 0, 0]), **front)
+above = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[2, 2, 2]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+press = PressOrientation(Input=RBFHoleFiller(Input=above, Smoothing=5, OutputMargin=25))
+view = pictures.new_view((300, 200))
+pictures.color_by(pictures.show_surface(known, view, pictures.BONE), view, "Depth", "mm", (0, 9))
+pictures.add_title(view, "known")
+check(len(views.show_orientation(view)) == 4, "a known surface, beside a scalar bar and a title")
+views.show_patient_axes(view)
+for what, source in (("a mould", press), ("a moved surface", Reflect(Input=known)), ("no patient", Wavelet()),
+                     ("a mirror image", DepthMapSurface(Input=mirrored))):
+    display = Show(source, view)
+    refused(what, views.show_orientation, view)
+    refused(what, views.show_patient_axes, view)
+    display.Visibility = 0
+    check(len(views.show_orientation(view)) == 4, f"{what}, hidden")
+    Delete(source)
+mirrored.UpdatePipeline()
+refused("a mirrored map", views.map_letters, mirrored)
+refused("a mirrored map's data", views.map_letters, servermanager.Fetch(mirrored))
+shaded = DepthMapShader(Input=mirrored)
+name = os.path.join(tempfile.gettempdir(), f"lacuna-shaded-{os.getpid()}.png")
+try:
+    pictures.save_shaded(shaded, name, marks=True)
+    check(False, "a mirrored picture")
+except ValueError:
+    check(not os.path.exists(name), "a picture beside an error")
+pictures.save_shaded(shaded, name)
+plain = pictures.read_pixels(name).shape
+shaded.Input = BSplineIsoRayCaster(Input=skull, **front)
+pictures.save_shaded(shaded, name, marks=True)
+check(pictures.read_pixels(name).shape[1] > plain[1], "the frame")
+os.remove(name)
 
 # the letters get onto the picture, and the picture is not moved
 picture = np.full((60, 90, 3), 200, dtype=np.uint8)

@@ -238,7 +238,7 @@ def picture(name, shown, direction, upwards, letters, scale_bar=50):
     shown(view)
     pictures.look(view, direction, upwards, 1.15)
     if letters:
-        views.show_orientation(view)
+        views.show_orientation(view, force=True)  # the plate is lifted in one
     pictures.add_scale_bar(view, scale_bar, aside=letters)
     pictures.save(view, name)
     Delete(view)

@@ -69,7 +69,7 @@ def show_plane(skull, origin, normal, size, viewer, letters):
     ResetCamera(view)
     view.CameraParallelScale = 1.3 * half[2]
     if letters:
-        show_orientation(view, font_size=13)
+        show_orientation(view, font_size=13, force=True)  # the plane of symmetry has no mark
     return view
 
 

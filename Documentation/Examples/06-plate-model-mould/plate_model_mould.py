@@ -69,7 +69,7 @@ def save(view, name, middle, direction, up, zoom, letters):
     camera.SetPosition(*(camera.GetPosition() + shift))
     Render(view)  # sets the clipping range, by which the scale bar is placed
     if letters:
-        views.show_orientation(view)
+        views.show_orientation(view, force=True)  # a lifted plate is marked, too
     pictures.add_scale_bar(view, 20, aside=letters)
     pictures.save(view, name)
     Delete(view)

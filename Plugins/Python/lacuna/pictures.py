@@ -264,6 +264,9 @@ def color_bar(to_colors, low, high, unit, height, ticks=5):
 
 
 def save_shaded(proxy, name, marks=False):
-    """Saves the picture of a Depth Map Shader as PNG, pixel by pixel; marks: framed by the patient's sides."""
+    """Saves the picture of a Depth Map Shader as PNG, pixel by pixel.
+
+    marks: framed by the patient's sides; raises ValueError as views.map_letters does.
+    """
     pixels = shaded_pixels(proxy)
-    write_pixels(name, mark_pixels(pixels, map_letters(fetch(proxy))) if marks else pixels)
+    write_pixels(name, mark_pixels(pixels, map_letters(proxy)) if marks else pixels)

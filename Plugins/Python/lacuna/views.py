@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from lacuna import coordinates
+from lacuna.data import fetch
 
 
 def camera_view(camera, size, rows=None):
@@ -110,11 +111,17 @@ def camera_letters(camera):
     return edge_letters(axes[0], axes[1])
 
 
-def map_letters(image):
-    """edge_letters of a depth map or its shaded picture (vtkImageData), whose row 0 is on top."""
+def map_letters(source, force=False):
+    """edge_letters of a depth map or its shaded picture (a proxy or vtkImageData), whose row 0 is on top.
+
+    Raises ValueError when it is not known to be the patient's or is mirrored, unless force: for those who know.
+    """
+    image = fetch(source) if hasattr(source, "GetXMLLabel") else source
     to_world = image.GetFieldData().GetArray("ImageToWorld")
     if to_world is None:
         raise ValueError("the image is no depth map: it lacks the field data array ImageToWorld")
+    if not force:
+        _check_patient(source, "the depth map")
     to_world = np.array(to_world.GetTuple(0)).reshape(4, 4)
     return edge_letters(to_world[:3, 0], -to_world[:3, 1])
 
@@ -127,11 +134,30 @@ def in_patient_coordinates(source):
     return coordinates.find(source) == coordinates.PATIENT
 
 
-def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):
+def _check_patient(source, name):
+    place = coordinates.find(source)
+    if place != coordinates.PATIENT:
+        raise ValueError(
+            f"{name} is not known to be in the patient's coordinates (it is: {place}), so that letters for left and right "
+            "could be wrong. Hide it or leave the letters out; force=True if you know better")
+
+
+def _check_view(view):
+    """Raises ValueError unless all data that a view shows are known to be in patient coordinates."""
+    for display in view.Representations:
+        if display.GetProperty("Input") is None or display.GetProperty("WindowLocation") is not None:
+            continue  # scalar bars and texts
+        if display.Visibility and display.Input is not None:
+            display.Input.UpdatePipeline()
+            _check_patient(display.Input, f"what the view shows of {display.Input.GetXMLLabel()}")
+
+
+def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18, force=False):
     """Marks the edges of a render view with L, R, A, P, H, F: where the patient's left is, and so on.
 
-    For data in patient coordinates only (in_patient_coordinates), not for tracked ultrasound, whose reference frame
-    knows no patient. The letters follow the camera. Call it again to change color or size, hide_orientation to
+    For data in patient coordinates only (in_patient_coordinates), not for moulds, mirror images or tracked ultrasound,
+    whose reference frame knows no patient: raises ValueError when the view shows any such data, unless force. What is
+    shown later is not asked. The letters follow the camera. Call it again to change color or size, hide_orientation to
     take them away. They are not in the pipeline browser and not in state files: loaded from one they would not follow
     the camera any more. Returns the letters by edge.
     """
@@ -140,6 +166,8 @@ def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18):
     view = view or pv.GetActiveView()
     if view is None or not hasattr(view, "GetActiveCamera"):
         raise ValueError("there is no active render view that could be marked; give one")
+    if not force:
+        _check_view(view)
     hide_orientation(view)
     camera = view.GetActiveCamera()
     width, height = view.ViewSize
@@ -183,12 +211,17 @@ def hide_orientation(view):
     view.UpdateVTKObjects()
 
 
-def show_patient_axes(view=None):
-    """Shows ParaView's axes grid with titles that say which way the patient's axes run. Kept in state files."""
+def show_patient_axes(view=None, force=False):
+    """Shows ParaView's axes grid with titles that say which way the patient's axes run. Kept in state files.
+
+    For data in patient coordinates, as show_orientation.
+    """
     import paraview.simple as pv
     view = view or pv.GetActiveView()
     if view is None or not hasattr(view, "AxesGrid"):
         raise ValueError("there is no active render view that could have axes; give one")
+    if not force:
+        _check_view(view)
     grid = view.AxesGrid
     for title, (positive, negative) in zip(("XTitle", "YTitle", "ZTitle"), SIDES):
         setattr(grid, title, f"{negative} to {positive}, mm")
