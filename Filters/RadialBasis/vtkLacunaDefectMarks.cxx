@@ -233,6 +233,40 @@ MapMask FromSelection(
 }
 
 //------------------------------------------------------------------------------
+std::string DescribeRuns(const MapMask& mask)
+{
+  std::string text;
+  const auto end = mask.end();
+  for (auto first = std::find(mask.begin(), end, 1); first != end;)
+  {
+    const auto stop = std::find(first, end, 0);
+    text += (text.empty() ? "" : ",") + std::to_string(first - mask.begin());
+    text += stop - first > 1 ? "-" + std::to_string(stop - 1 - mask.begin()) : "";
+    first = std::find(stop, end, 1);
+  }
+  return text;
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> GetExtent(const lacuna::MapGrid& grid, const MapMask& mask)
+{
+  std::vector<int> extent;
+  for (std::size_t i = 0; i < mask.size(); ++i)
+  {
+    if (mask[i])
+    {
+      const auto width = static_cast<std::size_t>(grid.Width);
+      const int column = grid.FirstColumn + static_cast<int>(i % width);
+      const int row = grid.FirstRow + static_cast<int>(i / width);
+      extent = extent.empty() ? std::vector<int>{ column, column, row, row }
+                              : std::vector<int>{ std::min(extent[0], column),
+                                  std::max(extent[1], column), extent[2], row };
+    }
+  }
+  return extent;
+}
+
+//------------------------------------------------------------------------------
 void Merge(MapMask& mask, const MapMask& other)
 {
   std::transform(mask.begin(), mask.end(), other.begin(), mask.begin(),

@@ -8,6 +8,7 @@
 #include "lacunaSupportSelection.h"
 
 #include <string>
+#include <vector>
 
 class vtkDataSet;
 class vtkImageData;
@@ -38,6 +39,12 @@ lacuna::MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap
 /// selection is one of the map's own points. Without selection all points of surface are selected.
 lacuna::MapMask FromSelection(
   vtkImageData* map, const lacuna::MapGrid& grid, vtkDataSet* surface, vtkSelection* selection);
+
+/// Numbers of the pixels that are marked, "3-17,20,25-29", for provenance.
+std::string DescribeRuns(const lacuna::MapMask& mask);
+
+/// First and last column, first and last row of what is marked; empty when nothing is.
+std::vector<int> GetExtent(const lacuna::MapGrid& grid, const lacuna::MapMask& mask);
 
 void Merge(lacuna::MapMask& mask, const lacuna::MapMask& other);
 }

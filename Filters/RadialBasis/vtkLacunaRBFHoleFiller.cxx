@@ -13,6 +13,7 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFilledMap.h"
+#include "vtkLacunaFunctionText.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -316,11 +317,13 @@ lacuna::HoleFillOptions vtkLacunaRBFHoleFiller::GetOptions() const
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageData* map,
-  vtkInformationVector** inputs, lacuna::MarkedMap& marked)
+  vtkInformationVector** inputs, lacuna::MarkedMap& marked, lacuna::ParameterText& where)
 {
   auto* surface = GetOptional<vtkDataSet>(inputs[SurfacePort]);
   auto* selection = GetOptional<vtkSelection>(inputs[SelectionPort]);
   marked.Defect.assign(marked.Grid.GetSize(), 0);
+  where.Add("DefectRegion", vtkLacunaFunctionText::Describe(this->DefectRegion))
+    .Add("DefectArray", this->DefectArray);
   if (!this->SupportArray.empty())
   {
     marked.Painted = vtkLacunaDefectMarks::FromArray(map, this->SupportArray, "SupportArray");
@@ -343,13 +346,17 @@ void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageD
   }
   if (surface || selection)
   {
-    vtkLacunaDefectMarks::Merge(
-      marked.Defect, vtkLacunaDefectMarks::FromSelection(map, marked.Grid, surface, selection));
+    const MapMask selected =
+      vtkLacunaDefectMarks::FromSelection(map, marked.Grid, surface, selection);
+    where.Add("SelectedPixels", vtkLacunaDefectMarks::DescribeRuns(selected));
+    vtkLacunaDefectMarks::Merge(marked.Defect, selected);
   }
   else if (!this->DefectRegion && this->DefectArray.empty())
   {
     marked.Defect = FindDefect(execution, marked);
   }
+  where.Add("DefectPixels", std::count(marked.Defect.begin(), marked.Defect.end(), 1))
+    .Add("DefectExtent", vtkLacunaDefectMarks::GetExtent(marked.Grid, marked.Defect));
 }
 
 //------------------------------------------------------------------------------
@@ -387,7 +394,8 @@ int vtkLacunaRBFHoleFiller::RequestData(
                       << "depth; they are taken as pixels without depth");
     }
     execution.SetStage(0, 0.1);
-    this->MarkDefect(execution, map, inputs, input);
+    lacuna::ParameterText parameters;
+    this->MarkDefect(execution, map, inputs, input, parameters);
     auto* control = GetOptional<vtkDataSet>(inputs[ControlPointsPort]);
     auto* prior = GetOptional<vtkImageData>(inputs[PriorSurfacePort]);
     const lacuna::Matrix4 toMap = GetWorldToMap(contract, input.Grid);
@@ -410,13 +418,9 @@ int vtkLacunaRBFHoleFiller::RequestData(
     vtkNew<vtkImageData> filled;
     vtkLacunaFilledMap::Make(map, contract, result, options.Kernel, marked > 0, filled);
 
-    lacuna::ParameterText parameters;
     parameters.Add("Kernel", this->Kernel)
       .Add("KernelLength", this->KernelLength)
       .Add("Trend", this->Trend)
-      .Add("DefectRegion", this->DefectRegion ? this->DefectRegion->GetClassName() : "None")
-      .Add("DefectArray", this->DefectArray)
-      .Add("DefectPixels", marked)
       .Add("SupportArray", this->SupportArray)
       .Add("SupportMargin", this->SupportMargin)
       .Add("SupportStepMargin", this->SupportStepMargin)

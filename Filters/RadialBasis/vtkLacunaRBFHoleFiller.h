@@ -56,6 +56,7 @@ namespace lacuna
 {
 class HoleFiller;
 struct HoleFillOptions;
+class ParameterText;
 struct MarkedMap;
 }
 
@@ -262,8 +263,9 @@ private:
   void SetArrayName(std::string& member, const char* name);
   /// Throws std::runtime_error when a choice is none of those there are.
   lacuna::HoleFillOptions GetOptions() const;
+  /// Adds to where what says which pixels are marked, and how.
   void MarkDefect(vtkLacunaExecution& execution, vtkImageData* map, vtkInformationVector** inputs,
-    lacuna::MarkedMap& marked);
+    lacuna::MarkedMap& marked, lacuna::ParameterText& where);
 
   int Kernel = ThinPlate;
   double KernelLength = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSplineLoop.h"
 
+#include "lacunaParameterText.h"
 #include "vtkObjectFactory.h"
 #include "vtkParametricSpline.h"
 #include "vtkPoints.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 vtkStandardNewMacro(vtkLacunaSplineLoop);
 
@@ -157,6 +159,12 @@ void vtkLacunaSplineLoop::UpdateLoop()
 void vtkLacunaSplineLoop::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  os << indent << "NumberOfPoints: " << this->Points->GetNumberOfPoints() << "\n";
+  std::vector<double> points;
+  for (vtkIdType i = 0; i < this->Points->GetNumberOfPoints(); ++i)
+  {
+    const double* p = this->Points->GetPoint(i);
+    points.insert(points.end(), p, p + 3);
+  }
+  os << indent << "Points: " << lacuna::FormatValue(points) << "\n"; // no digit is lost
   os << indent << "Closed: " << this->Closed << "\n";
 }

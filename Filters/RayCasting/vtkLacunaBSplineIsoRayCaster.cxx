@@ -19,6 +19,7 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaFunctionText.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeCaster.h"
@@ -231,7 +232,7 @@ public:
       parameters.Add("EyePosition", casting.Request.Eye->Elements);
     }
     parameters.Add("NormalMethod", self->NormalMethod)
-      .Add("CutAway", vtkLacunaCutAway::Describe(self->CutAway))
+      .Add("CutAway", vtkLacunaFunctionText::Describe(self->CutAway))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Add("ComputeThickness", self->ComputeThickness);

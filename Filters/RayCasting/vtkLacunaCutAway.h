@@ -7,7 +7,6 @@
 #include "lacunaCutRegion.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 class vtkImplicitFunction;
@@ -20,11 +19,5 @@ namespace vtkLacunaCutAway
 /// are no numbers. function must outlive the result.
 std::unique_ptr<lacuna::CutRegion> MakeRegion(
   vtkImplicitFunction* function, double step, const std::vector<lacuna::Vec3>& points);
-
-/// What is cut away, for provenance: the class and, as parameters, the shape (mm) and Transform, the
-/// 16 numbers row by row of the matrix from the world to the shape, when there is one. Of functions
-/// that are not planes, boxes, spheres, cylinders or booleans of these what they print of
-/// themselves, without addresses and times. "None" for null.
-std::string Describe(vtkImplicitFunction* function);
 }
 #endif

@@ -12,9 +12,9 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaCasterView.h"
-#include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaFunctionText.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -214,7 +214,7 @@ public:
       .Add("Interpolation", self->Interpolation)
       .Add("SolidSide", self->SolidSide)
       .Add("ShadowBias", self->ShadowBias)
-      .Add("CutAway", vtkLacunaCutAway::Describe(self->GetCutAway()))
+      .Add("CutAway", vtkLacunaFunctionText::Describe(self->GetCutAway()))
       .Add("CapCutAway", self->CapCutAway)
       .Add("CapBoundary", self->CapBoundary)
       .Get();

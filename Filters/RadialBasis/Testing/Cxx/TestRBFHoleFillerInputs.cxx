@@ -2,6 +2,7 @@
 // Optional inputs: selections, control points, prior surfaces; output on another grid.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaParameterText.h"
 #include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -12,6 +13,8 @@
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
+#include "vtkSphere.h"
+#include "vtkTransform.h"
 
 #include <cmath>
 #include <cstring>
@@ -65,6 +68,12 @@ vtkSmartPointer<vtkSelection> MakeSelection(int content, const std::vector<vtkId
   auto selection = vtkSmartPointer<vtkSelection>::New();
   selection->AddNode(node);
   return selection;
+}
+
+std::string GetStep(Filler* filler)
+{
+  const std::vector<std::string> steps = vtkLacunaProvenance::Get(filler->GetOutput());
+  return steps.empty() ? "" : steps.back();
 }
 
 void CheckFilled(
@@ -150,11 +159,17 @@ void TestSelections()
   filler->SetInputDataObject(Filler::SurfacePort, extracted);
   filler->SetDefectArray("corner");
   filler->Update();
+  LACUNA_CHECK_CONTAINS(GetStep(filler), "DefectArray=corner SelectedPixels=");
   CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return disc(i) || i == 30 * 80 + 70; });
 
   // a selection of the map's own points: a patch, nothing more
   filler->SetDefectArray("");
   filler->SetInputDataObject(Filler::SurfacePort, nullptr);
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, { 82, 80, 81, 1604, 1605 }));
+  filler->Update();
+  LACUNA_CHECK_CONTAINS(GetStep(filler), " SelectedPixels=\"80-82,1604-1605\" DefectPixels=5 ");
+  LACUNA_CHECK_CONTAINS(GetStep(filler), " DefectExtent=10,15,21,40 ");
   filler->SetInputDataObject(
     Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, patch));
   filler->Update();
@@ -165,6 +180,33 @@ void TestSelections()
   filler->SetInputDataObject(Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, {}));
   filler->Update();
   LACUNA_CHECK(messages->HasWarning("the defect is empty"));
+  LACUNA_CHECK_CONTAINS(GetStep(filler), "SelectedPixels=\"\" DefectPixels=0 DefectExtent= ");
+}
+
+// The provenance says which region: a sphere elsewhere is another step.
+void TestRegionProvenance()
+{
+  TestMap map;
+  vtkNew<Filler> filler;
+  filler->SetInputData(map.Image);
+  const lacuna::Vec3 center = map.GetSurfacePoint(45, 42);
+  vtkNew<vtkSphere> ball;
+  ball->SetCenter(center[0], center[1], center[2]);
+  ball->SetRadius(6.25);
+  filler->SetDefectRegion(ball);
+  filler->Update();
+  const std::string first = GetStep(filler);
+  LACUNA_CHECK_CONTAINS(
+    first, "DefectRegion=\"vtkSphere Center=" + lacuna::FormatValue(center.Elements));
+  LACUNA_CHECK_CONTAINS(first, " Radius=6.25\"");
+  vtkNew<vtkTransform> shift;
+  shift->Translate(0.125, 0, 0);
+  ball->SetTransform(shift);
+  filler->Update();
+  LACUNA_CHECK_CONTAINS(GetStep(filler), "Transform=1,0,0,0.125,0,1,0,0,0,0,1,0,0,0,0,1");
+  filler->SetDefectRegion(nullptr);
+  filler->Update();
+  LACUNA_CHECK_CONTAINS(GetStep(filler), "DefectRegion=None");
 }
 
 // NaN, as a calculator makes it, marks neither a defect nor painted bone.
@@ -435,6 +477,7 @@ void TestFieldData()
 int TestRBFHoleFillerInputs(int, char*[])
 {
   TestSelections();
+  TestRegionProvenance();
   TestMarksThatAreNoNumbers();
   TestControlPoints();
   TestPriorOfAnotherView();

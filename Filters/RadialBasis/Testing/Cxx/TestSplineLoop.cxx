@@ -2,12 +2,15 @@
 // A loop around the defect: what it encloses as the map sees it, wherever its points lie along the view.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
+#include "lacunaParameterText.h"
+#include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaSplineLoop.h"
 #include "vtkPoints.h"
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace
@@ -153,6 +156,50 @@ void TestOpenSpline()
   LACUNA_CHECK(loop->GetLoop()->GetNumberOfPoints() == 2);
 }
 
+// From the provenance the loop can be made again, to the last digit.
+void TestProvenance()
+{
+  const TestMap map;
+  vtkNew<vtkLacunaSplineLoop> loop;
+  SetCircle(map, loop, 4, 14, 2);
+  vtkNew<vtkLacunaRBFHoleFiller> filler;
+  filler->SetInputData(map.Image);
+  filler->SetDefectRegion(loop);
+  const auto step = [&]()
+  {
+    filler->Modified();
+    filler->Update();
+    const std::vector<std::string> steps = vtkLacunaProvenance::Get(filler->GetOutput());
+    return steps.empty() ? std::string() : steps.back();
+  };
+  const std::string first = step();
+  std::vector<double> points(12);
+  for (int k = 0; k < 4; ++k)
+  {
+    loop->GetPoint(k, &points[3 * k]);
+  }
+  LACUNA_CHECK_CONTAINS(first, "DefectRegion=\"vtkLacunaSplineLoop Printed=");
+  LACUNA_CHECK_CONTAINS(first, "Points: " + lacuna::FormatValue(points) + "; Closed: 1");
+  double p[3] = { 1, 2, 3 };
+  loop->FunctionValue(p);
+  LACUNA_CHECK_THAT(step() == first, step());
+  loop->SetPoint(2, points[6], points[7], points[8] + 1e-9);
+  LACUNA_CHECK(step() != first);
+
+  vtkNew<vtkImplicitSelectionLoop> plain; // its corners
+  plain->SetLoop(loop->GetLoop());
+  filler->SetDefectRegion(plain);
+  std::vector<double> corners;
+  for (vtkIdType i = 0; i < loop->GetLoop()->GetNumberOfPoints(); ++i)
+  {
+    loop->GetLoop()->GetPoint(i, p);
+    corners.insert(corners.end(), p, p + 3);
+  }
+  LACUNA_CHECK(corners.size() == 4 * 32 * 3);
+  LACUNA_CHECK_CONTAINS(
+    step(), "DefectRegion=\"vtkImplicitSelectionLoop Loop=" + lacuna::FormatValue(corners) + '"');
+}
+
 void TestErrors()
 {
   const TestMap map;
@@ -182,6 +229,7 @@ void TestErrors()
 
 int TestSplineLoop(int, char*[])
 {
+  TestProvenance();
   TestCircle();
   TestPolygon();
   TestOpenSpline();
