@@ -226,7 +226,7 @@ int vtkLacunaDefectModel::RequestData(
     SetMesh(solid, model, input.ToWorld);
     SetTop(top, model, input.Scene, fromPress.Inverse());
 
-    vtkLacunaCoordinates::Mark(top, vtkLacunaCoordinates::Press);
+    vtkLacunaCoordinates::MarkPress(map, top);
     lacuna::ParameterText parameters;
     parameters.Add("Margin", this->Margin)
       .Add("FloorShape", this->FloorShape)

@@ -10,6 +10,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMirrored.h"
@@ -40,11 +41,12 @@ std::string NameOf(vtkInformation* meta, const std::string& otherwise)
   return name && *name ? name : otherwise;
 }
 
-// The matrix of data from the press; throws when it is no rotation and translation.
+// The matrix of data from the press; throws when it is no rotation and translation. The block of
+// Defect Model has one, for its top, and lies in the patient.
 std::optional<lacuna::Matrix4> FindPressToPatient(vtkDataObject* data)
 {
   vtkDataArray* array = vtkLacunaFieldData::Find(data, "PressToPatient", 16, 1);
-  if (!array)
+  if (!array || vtkLacunaCoordinates::Get(data) == vtkLacunaCoordinates::Patient)
   {
     return std::nullopt;
   }
@@ -267,7 +269,7 @@ void vtkLacunaIGESContent::PlaceItems()
   {
     throw std::runtime_error("block '" + press->Name +
       "' is in the coordinates of the press (PressToPatient), block '" + patient->Name +
-      "' in those of the patient; set Coordinates to Patient or Press to bring them together");
+      "' is not; set Coordinates to Patient or Press to bring them together");
   }
   if (!press && this->Settings.Frame == Press)
   {
@@ -286,14 +288,48 @@ void vtkLacunaIGESContent::PlaceItems()
       item.ToFile = *item.PressToPatient;
     }
   }
-  if (!inPress)
+  this->DescribeFrame(inPress ? press : nullptr);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaIGESContent::Item::IsPatient() const
+{
+  return (this->PressToPatient
+             ? vtkLacunaCoordinates::GetBeforePress(this->Data)
+             : vtkLacunaCoordinates::Get(this->Data)) == vtkLacunaCoordinates::Patient;
+}
+
+//------------------------------------------------------------------------------
+// For people, in the file: nobody may take for the patient's what is not known to be. press: whose
+// coordinates the file has, or nullptr.
+void vtkLacunaIGESContent::DescribeFrame(const Item* press)
+{
+  std::string unknown;
+  bool any = false;
+  for (const Item& item : this->Items)
   {
-    this->Description.emplace_back("Coordinates of the input, in mm; for data from a scan those of "
-                                   "the patient (DICOM LPS: left, back, up).");
+    any = any || item.IsPatient();
+    if (!item.IsPatient() && !item.Name.empty())
+    {
+      unknown += (unknown.empty() ? "'" : ", '") + item.Name + "'";
+    }
+  }
+  if (any && !unknown.empty())
+  {
+    this->Description.push_back("NOT KNOWN to be placed by the patient's coordinates: " + unknown +
+      " (no mark says whose theirs are).");
+  }
+  if (!press)
+  {
+    this->Description.emplace_back(any
+        ? "Coordinates of the patient (DICOM LPS: left, back, up), in mm, by the input's mark."
+        : "Coordinates of the input, in mm; not known whose they are (it has no mark).");
     return;
   }
-  this->Description.emplace_back("Coordinates of the press, in mm: z is up, towards the mill. "
-                                 "To patient coordinates (DICOM LPS) by a matrix of the rows");
+  this->Description.emplace_back("Coordinates of the press, in mm: z is up, towards the mill.");
+  this->Description.emplace_back(press->IsPatient()
+      ? "To patient coordinates (DICOM LPS) by a matrix of the rows"
+      : "To the input's coordinates (not known whose) by a matrix of the rows");
   for (int row = 0; row < 3; ++row)
   {
     // a row in a line of 72 characters

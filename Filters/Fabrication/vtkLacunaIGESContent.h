@@ -80,9 +80,12 @@ private:
     std::string Name; ///< of the block; empty when the input is no collection
     std::optional<lacuna::Matrix4> PressToPatient;
     lacuna::Matrix4 ToFile;
+    bool IsPatient()
+      const; ///< the input, before it was laid into a press, is marked as the patient's
   };
   void Collect(vtkDataObject* data, const std::string& name, bool nested);
   void PlaceItems();
+  void DescribeFrame(const Item* press);
   void AddItem(const Item& item, lacuna::Execution& execution);
   void AddMap(const Item& item, lacuna::Execution& execution);
   void AddPolyData(const Item& item);

@@ -363,7 +363,7 @@ int vtkLacunaPressOrientation::RequestData(
       plan.OwnPlane ? "PlaneNormal of the hole filler"
                     : "least squares plane through Fitted over the defect");
 
-    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Press);
+    vtkLacunaCoordinates::MarkPress(map, output);
     lacuna::ParameterText parameters;
     parameters.Add("PlaneMethod", this->PlaneMethod)
       .Add("Mould", this->Mould)

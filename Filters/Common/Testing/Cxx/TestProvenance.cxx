@@ -59,9 +59,12 @@ int TestProvenance(int, char*[])
   // the mark of coordinates is that of the first input, unless the output has its own
   const auto coordinates = [](vtkDataObject* data) -> std::string
   {
-    auto* mark = vtkStringArray::SafeDownCast(
-      data->GetFieldData()->GetAbstractArray(vtkLacunaCoordinates::ArrayName));
-    return mark && mark->GetNumberOfValues() == 1 ? mark->GetValue(0) : std::string("-");
+    auto* mark =
+      vtkStringArray::SafeDownCast(data->GetFieldData()->GetAbstractArray("Coordinates"));
+    const std::string text =
+      mark && mark->GetNumberOfValues() == 1 ? mark->GetValue(0) : std::string("-");
+    LACUNA_CHECK(vtkLacunaCoordinates::Get(data) == (text == "-" ? "" : text));
+    return text;
   };
   vtkLacunaCoordinates::Mark(a, vtkLacunaCoordinates::Patient);
   vtkLacunaCoordinates::Mark(b, vtkLacunaCoordinates::Press);
@@ -76,5 +79,22 @@ int TestProvenance(int, char*[])
   LACUNA_CHECK(coordinates(d) == "Press" && coordinates(a) == "Patient");
   vtkLacunaCoordinates::Clear(d);
   LACUNA_CHECK(coordinates(d) == "-");
+
+  // what lies in the press says where it comes from, when that is known
+  using namespace vtkLacunaCoordinates;
+  MarkPress(a, d);
+  LACUNA_CHECK(coordinates(d) == "Press" && GetBeforePress(d) == "Patient");
+  vtkNew<vtkImageData> path;
+  vtkLacunaProvenance::Record(path, step, { d }, "");
+  LACUNA_CHECK(coordinates(path) == "Press" && GetBeforePress(path) == "Patient");
+  vtkNew<vtkImageData> unmarked;
+  MarkPress(unmarked, d);
+  LACUNA_CHECK(coordinates(d) == "Press" && GetBeforePress(d).empty());
+  vtkLacunaProvenance::Record(path, step, { d }, ""); // keeps its own, both
+  LACUNA_CHECK(GetBeforePress(path) == "Patient");
+  Mark(path, Patient);
+  LACUNA_CHECK(coordinates(path) == "Patient" && GetBeforePress(path).empty());
+  vtkLacunaCoordinates::Clear(path);
+  LACUNA_CHECK(coordinates(path) == "-");
   return lacunaCheck::Result();
 }

@@ -3,6 +3,7 @@
 #include "TestSolids.h"
 #include "lacunaCheck.h"
 #include "vtkFieldData.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDefectModel.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkStructuredGrid.h"
@@ -113,7 +114,9 @@ void TestRecord()
   vtkNew<vtkLacunaDefectModel> filter;
   vtkNew<lacunaCheck::Messages> messages;
   messages->Watch(filter);
-  filter->SetInputData(FilledMap(geometry));
+  auto map = FilledMap(geometry);
+  vtkLacunaCoordinates::Mark(map, vtkLacunaCoordinates::Patient);
+  filter->SetInputData(map);
   filter->SetFloorShape(vtkLacunaDefectModel::Parallel);
   filter->SetDefectDepth(3);
   filter->Update();
@@ -126,6 +129,8 @@ void TestRecord()
     LACUNA_CHECK(!steps.empty() && steps.back().find("DefectDepth=3") != std::string::npos);
     LACUNA_CHECK(!output->GetFieldData()->GetArray("ImageToWorld"));
     LACUNA_CHECK(vtkLacunaFieldData::Get(output, "DefectCount", 1, 1)->GetComponent(0, 0) == 1);
+    LACUNA_CHECK(vtkLacunaCoordinates::Get(output) == (port ? "Press" : "Patient"));
+    LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(output) == (port ? "Patient" : ""));
   }
   filter->SetMargin(2);
   filter->Update(); // another size of the grid

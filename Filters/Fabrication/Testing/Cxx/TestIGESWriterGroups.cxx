@@ -4,6 +4,7 @@
 #include "TestBadPlaces.h"
 #include "TestIGESContent.h"
 #include "lacunaMatrix4.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkStringArray.h"
@@ -156,6 +157,65 @@ void TestFrames()
   Refuses(other, "PressToPatient");
 }
 
+// The file says DICOM LPS only of data that are marked as the patient's.
+void TestWhose()
+{
+  using namespace vtkLacunaCoordinates;
+  const auto start = [](vtkDataObject* data, int frame)
+  {
+    std::string text;
+    const auto set = [frame](vtkLacunaIGESWriter* w) { w->SetCoordinates(frame); };
+    for (const std::string& line : IGESParser(Write(data, set).Text).Start)
+    {
+      text += line + ' ';
+    }
+    return text;
+  };
+  const auto isLPS = [](const std::string& text)
+  { return text.find("LPS") != std::string::npos || text.find("atient co") != std::string::npos; };
+  std::vector<lacuna::Vec3> points;
+  auto surface = TestSurfaces::Grid(2, points);
+  std::string text = start(surface, 0);
+  LACUNA_CHECK_CONTAINS(text, "Coordinates of the input, in mm; not known whose");
+  LACUNA_CHECK_THAT(!isLPS(text), text);
+  Mark(surface, Patient);
+  text = start(surface, 0);
+  LACUNA_CHECK_CONTAINS(text, "Coordinates of the patient (DICOM LPS");
+  LACUNA_CHECK_THAT(text.find("ot known") == std::string::npos, text);
+
+  // in the press: where the matrix leads
+  auto mould = TestSurfaces::Grid(2, points);
+  SetPress(mould, lacuna::Matrix4::Translation({ 10, -20, 30 }));
+  vtkNew<vtkImageData> unmarked;
+  MarkPress(unmarked, mould);
+  text = start(mould, 0);
+  LACUNA_CHECK_CONTAINS(text, "To the input's coordinates (not known whose) by a matrix");
+  LACUNA_CHECK_THAT(!isLPS(text), text);
+  text = start(mould, 1); // led back
+  LACUNA_CHECK_CONTAINS(text, "Coordinates of the input, in mm; not known whose");
+  LACUNA_CHECK_THAT(!isLPS(text), text);
+  MarkPress(surface, mould);
+  LACUNA_CHECK_CONTAINS(start(mould, 0), "To patient coordinates (DICOM LPS) by a matrix");
+  LACUNA_CHECK_CONTAINS(start(mould, 1), "Coordinates of the patient (DICOM LPS");
+
+  // one of two is not known
+  auto outline = Lines(Corners, { { 0, 1, 2, 3 } });
+  auto group = Group({ { "Mould", mould }, { "Outline", outline } });
+  for (const int frame : { 1, 2 })
+  {
+    LACUNA_CHECK_CONTAINS(start(group, frame), "NOT KNOWN to be placed by the patient's");
+    LACUNA_CHECK_CONTAINS(start(group, frame), "'Outline'");
+  }
+  Mark(outline, Patient);
+  LACUNA_CHECK_THAT(start(group, 2).find("NOT KNOWN") == std::string::npos, "both are known");
+
+  // edges of Defect Model's block lie in the patient, whatever its top's matrix is
+  SetPress(outline, lacuna::Matrix4::Translation({ 100, 0, 0 }));
+  const IGESParser file(Write(outline, [](vtkLacunaIGESWriter* w) { w->SetCoordinates(1); }).Text);
+  const IGESPolygon curve(file, *OfType(file, 102).at(0));
+  LACUNA_CHECK(lacuna::Norm(Vec(curve.Corners.at(3)) - Corners[3]) < 0.0002);
+}
+
 void TestMirrored()
 {
   auto map = DefectMap();
@@ -197,6 +257,7 @@ int TestIGESWriterGroups(int argc, char* argv[])
     {
       TestGroups();
       TestFrames();
+      TestWhose();
       TestMirrored();
       TestPrivacy();
       vtkNew<vtkLacunaIGESWriter> writer;

@@ -3,6 +3,7 @@
 #include "lacunaCheck.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLacunaProvenance.h"
@@ -192,6 +193,14 @@ void TestPipeline()
   const auto steps = vtkLacunaProvenance::Get(filter->GetOutput());
   LACUNA_CHECK(!steps.empty() && steps.back().find("PlateMargin=0.5") != std::string::npos);
   LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("ImageToWorld"));
+  // whose coordinates PressToPatient leads to: nobody's before the map says so
+  LACUNA_CHECK(vtkLacunaCoordinates::Get(filter->GetOutput()) == "Press");
+  LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(filter->GetOutput()).empty());
+  vtkLacunaCoordinates::Mark(map, vtkLacunaCoordinates::Patient);
+  map->Modified();
+  filter->Update();
+  LACUNA_CHECK(vtkLacunaCoordinates::Get(filter->GetOutput()) == "Press");
+  LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(filter->GetOutput()) == "Patient");
   // x runs fastest and both spacings are the same everywhere
   for (vtkIdType k = 1; k < filter->GetOutput()->GetNumberOfPoints(); ++k)
   {
