@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFastrakRecord.h"
+#include "lacunaMotionCheck.h"
+#include "lacunaPoseTrack.h"
+#include "lacunaTestFastrak.h"
+
+#include <gtest/gtest.h>
+
+using namespace lacuna;
+using namespace lacunaTest;
+
+namespace
+{
+// Accelerates and turns.
+TrackedPose PoseAt(double time, const Vec3& shift = { 0, 0, 0 })
+{
+  TrackedPose pose;
+  pose.Time = time;
+  const Vec3 position{ 300 - 200 * time + 500 * time * time, 40 * time, -120 };
+  pose.ReceiverToTransmitter =
+    Matrix4::Translation(position + shift) * FastrakRotation(Vec3{ 60 * time, 20, -30 * time });
+  return pose;
+}
+}
+
+TEST(MotionCheck, TakesAHandsMotionFromTheThirdPoseOn)
+{
+  MotionCheck check;
+  std::vector<TrackedPose> accepted;
+  for (int i = 0; i < 50; ++i)
+  {
+    check.Judge(PoseAt(0.02 * i), accepted);
+    EXPECT_EQ(accepted.size(), i < 2 ? 0u : i + 1u);
+  }
+  for (int i = 0; i < 50; ++i)
+  {
+    EXPECT_EQ(accepted[i].Time, 0.02 * i);
+  }
+  EXPECT_EQ(check.GetNumberOfDropped(), 0u);
+}
+
+TEST(MotionCheck, DropsWhatIsOffInAnyCoordinateOrAngle)
+{
+  for (int kind = 0; kind < 4; ++kind)
+  {
+    MotionCheck check;
+    std::vector<TrackedPose> accepted;
+    for (int i = 0; i < 20; ++i)
+    {
+      TrackedPose pose = PoseAt(0.02 * i);
+      if (i == 7 || i == 8 || i == 12)
+      {
+        Vec3 shift{ 0, 0, 0 };
+        if (kind < 3)
+        {
+          shift[kind] = i == 8 ? -15 : 15;
+        }
+        pose = PoseAt(0.02 * i, shift);
+        if (kind == 3)
+        {
+          pose.ReceiverToTransmitter =
+            pose.ReceiverToTransmitter * Matrix4::Rotation({ 1, 0.3, 0 }, i == 8 ? -0.15 : 0.15);
+        }
+      }
+      check.Judge(pose, accepted);
+    }
+    ASSERT_EQ(accepted.size(), 17u) << kind;
+    EXPECT_EQ(check.GetNumberOfDropped(), 3u);
+    for (const TrackedPose& pose : accepted)
+    {
+      EXPECT_LT(
+        Distance(pose.ReceiverToTransmitter, PoseAt(pose.Time).ReceiverToTransmitter), 1e-12);
+    }
+  }
+}
+
+TEST(MotionCheck, AJumpIsANewMotion)
+{
+  MotionCheck check;
+  std::vector<TrackedPose> accepted;
+  for (int i = 0; i < 20; ++i)
+  {
+    check.Judge(PoseAt(0.02 * i, { 0, i < 10 ? 0.0 : 80.0, 0 }), accepted);
+  }
+  EXPECT_EQ(accepted.size(), 20u);
+  EXPECT_EQ(check.GetNumberOfDropped(), 0u);
+}
+
+TEST(MotionCheck, PassageIntoTheOtherHemisphereIsSetRight)
+{
+  MotionCheck check;
+  std::vector<TrackedPose> accepted;
+  for (int i = 0; i < 100; ++i)
+  {
+    TrackedPose pose;
+    pose.Time = 0.02 * i;
+    const Vec3 truth{ 100 - 4.0 * i, 150, -80 };
+    pose.ReceiverToTransmitter =
+      Matrix4::Translation((truth[0] < 0 ? -1 : 1) * truth) * FastrakRotation(Vec3{ 10, 20, 30 });
+    check.Judge(pose, accepted);
+  }
+  ASSERT_EQ(accepted.size(), 100u);
+  EXPECT_EQ(check.GetNumberOfFlipped(), 74u);
+  for (int i = 0; i < 100; ++i)
+  {
+    EXPECT_LT(
+      Norm(accepted[i].ReceiverToTransmitter.Column(3) - Vec3{ 100 - 4.0 * i, 150, -80 }), 1e-9);
+    EXPECT_EQ(accepted[i].Flipped, i > 25);
+    EXPECT_NEAR(accepted[i].ReceiverToTransmitter.Determinant3(), 1, 1e-12);
+  }
+}
+
+TEST(PoseTrack, InterpolatesButDoesNotGuess)
+{
+  PoseTrack track(1, 0.25);
+  EXPECT_FALSE(track.At(0));
+  EXPECT_TRUE(track.IsAhead(0));
+  for (const double time : { 0.0, 0.02, 0.04, 0.5, 0.52 })
+  {
+    TrackedPose pose;
+    pose.Time = time;
+    pose.ReceiverToTransmitter =
+      Matrix4::Translation({ 100 * time, 7, 0 }) * Matrix4::Rotation({ 0, 0, 1 }, 2 * time);
+    track.Add(pose);
+  }
+  const auto middle = track.At(0.025);
+  ASSERT_TRUE(middle);
+  EXPECT_NEAR(middle->Gap, 0.02, 1e-12);
+  EXPECT_NEAR(middle->Nearest, 0.005, 1e-12);
+  EXPECT_LT(Distance(middle->ReceiverToTransmitter,
+              Matrix4::Translation({ 2.5, 7, 0 }) * Matrix4::Rotation({ 0, 0, 1 }, 0.05)),
+    1e-12);
+  EXPECT_EQ(track.At(0.5)->Gap, 0);
+  EXPECT_FALSE(track.At(0.3)); // gap of 0.46 s
+  EXPECT_FALSE(track.At(-0.1));
+  EXPECT_FALSE(track.At(0.53));
+  EXPECT_TRUE(track.IsAhead(0.53));
+  TrackedPose doubtful;
+  doubtful.Time = 0.54;
+  doubtful.Usable = false;
+  track.Add(doubtful);
+  EXPECT_FALSE(track.At(0.53));
+  TrackedPose late;
+  late.Time = 1.53;
+  track.Add(late);
+  EXPECT_FALSE(track.At(0.51)); // forgotten
+}

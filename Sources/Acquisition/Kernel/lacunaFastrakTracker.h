@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Drives a FASTRAK: sets it up and asks for one record after the other.
+#ifndef lacunaFastrakTracker_h
+#define lacunaFastrakTracker_h
+
+#include "lacunaByteChannel.h"
+#include "lacunaClock.h"
+#include "lacunaFastrakParser.h"
+#include "lacunaMotionCheck.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+struct FastrakSettings
+{
+  std::vector<int> Stations{ 1 }; ///< the receivers to follow, ascending
+  /// The binary record; must have a pose. The one of 27 bytes allows 49 records a second at 19200
+  /// baud. From 38400 baud on, list items twice (2 4 2 4): then every damage but an equal one to
+  /// both is seen.
+  FastrakLayout Layout{ { FastrakItem::Position, FastrakItem::Angles } };
+  Vec3 Hemisphere{ 1, 0, 0 };    ///< zenith of the half of space the receivers are in at first
+  bool ResetFrames = true;       ///< alignment and boresight as from the factory
+  bool FiltersOff = false;       ///< no smoothing, which delays; false: as they are set
+  double SampleLatency = 0.0035; ///< s from request to the instant of the pose (Carr 1996, ch. 2)
+  double ResponseTime = 0.25;    ///< s without an answer after which a request has failed
+  double GapTime = 0.03;         ///< s of silence within a record after which the rest is lost
+  MotionLimits Motion;
+};
+
+/// Why there is no tracking; the text says what to do.
+class TrackerError : public std::runtime_error
+{
+public:
+  enum class Kind
+  {
+    Silent,      ///< no byte comes
+    Garbage,     ///< bytes come that no FASTRAK sends: the wrong baud rate
+    Complaint,   ///< the unit refuses a command
+    WrongStation ///< records come from other receivers, or none
+  };
+  TrackerError(Kind kind, const std::string& message)
+    : std::runtime_error(message)
+    , Reason(kind)
+  {
+  }
+  Kind GetKind() const { return this->Reason; }
+
+private:
+  Kind Reason;
+};
+
+/// Single-record mode only: the buffer of continuous output skips records, and a record that was
+/// asked for has a known instant. The channel and the clock must live longer and have one time.
+/// All functions throw ChannelError when the line breaks and Aborted when stopped.
+class FastrakTracker
+{
+public:
+  struct Counts
+  {
+    std::uint64_t Requests = 0;
+    std::uint64_t Records = 0;     ///< right ones, of all stations
+    std::uint64_t Silent = 0;      ///< requests without any byte for an answer
+    std::uint64_t Damaged = 0;     ///< requests whose answer was incomplete or no record
+    std::uint64_t Early = 0;       ///< of which sooner than the line can carry: an older answer
+    std::uint64_t Implausible = 0; ///< records that no motion explains
+    std::uint64_t Flipped = 0;     ///< records whose hemisphere was set right
+    std::uint64_t StrayBytes = 0;  ///< that came without being asked for
+  };
+
+  /// Throws std::invalid_argument for settings that cannot be. stopped is asked about ten times a
+  /// second.
+  FastrakTracker(ByteChannel& channel, const Clock& clock, const FastrakSettings& settings = {},
+    std::function<bool()> stopped = {});
+
+  /// Ends what the unit is doing, sets it up (binary, centimetres, stations, output lists,
+  /// hemisphere) and makes sure that it answers with the records asked for; repeats steps that
+  /// damage spoilt. Throws TrackerError.
+  void SetUp();
+
+  /// Asks for one record of each station and adds the poses that are taken now (see MotionCheck).
+  /// False when no right record came. After failures it first makes sure of the unit's state; one
+  /// that was restarted is set up again (TrackerError when that fails). Takes at most a second and a
+  /// half otherwise.
+  bool Poll(std::vector<TrackedPose>& poses);
+
+  /// Of the unit, once set up.
+  const FastrakStatus& GetStatus() const { return this->Status; }
+  Counts GetCounts() const;
+  /// The last complaint or error code of the unit in words; empty: none.
+  const std::string& GetWarning() const { return this->Warning; }
+
+private:
+  enum class Outcome
+  {
+    Records,
+    Silent,
+    Damaged
+  };
+  void CheckStopped() const;
+  std::size_t Receive(double seconds, std::vector<FastrakMessage>& messages);
+  void Settle(double quiet, double longest);
+  bool AskStatus();
+  void SendSettings();
+  void CheckRecords();
+  bool MakeSure();
+  bool IsWanted(int station) const;
+  Outcome Request(std::vector<TrackedPose>& measured);
+  TrackedPose MakePose(const FastrakRecord& record, double request, double arrival) const;
+  void NoteReply(const FastrakReply& reply);
+
+  ByteChannel& Channel;
+  const Clock& Time;
+  FastrakSettings Settings;
+  std::function<bool()> Stopped;
+  FastrakParser Parser;
+  FastrakStatus Status;
+  Counts Count;
+  std::array<MotionCheck, FastrakStations> Motions;
+  std::string Warning;
+  std::string LastComplaint;
+  int Failures = 0;              ///< requests in a row
+  std::size_t ReceivedBytes = 0; ///< since the unit was asked for its status
+  int OtherStation = 0;          ///< from which a record came last that was not wanted
+};
+}
+#endif

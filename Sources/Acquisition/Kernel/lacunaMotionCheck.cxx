@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaMotionCheck.h"
+
+#include <algorithm>
+
+namespace lacuna
+{
+namespace
+{
+TrackedPose Flip(TrackedPose pose)
+{
+  for (int i = 0; i < 3; ++i)
+  {
+    pose.ReceiverToTransmitter(i, 3) *= -1;
+  }
+  pose.Flipped = true;
+  return pose;
+}
+}
+
+MotionCheck::MotionCheck(const MotionLimits& limits)
+  : Limits(limits)
+{
+}
+
+void MotionCheck::Reset()
+{
+  this->Track.clear();
+  this->Dropped += this->Waiting.size();
+  this->Waiting.clear();
+}
+
+bool MotionCheck::Fits(
+  const TrackedPose& first, const TrackedPose& second, const TrackedPose& third) const
+{
+  const double before = second.Time - first.Time;
+  const double after = third.Time - second.Time;
+  if (!(before > 0) || !(after > 0))
+  {
+    return false;
+  }
+  const double ratio = after / before;
+  const double bend = 0.5 * after * (after + before);
+  const double noise = 1 + 2 * ratio;
+  for (int column = 0; column < 4; ++column)
+  {
+    const Vec3 a = first.ReceiverToTransmitter.Column(column);
+    const Vec3 b = second.ReceiverToTransmitter.Column(column);
+    const Vec3 expected = b + ratio * (b - a);
+    const double limit = column == 3
+      ? this->Limits.Acceleration * bend + this->Limits.PositionNoise * noise
+      : this->Limits.AngularAcceleration * bend + this->Limits.AngularNoise * noise;
+    if (!(Norm(third.ReceiverToTransmitter.Column(column) - expected) <= limit))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accepted)
+{
+  if (!pose.Usable)
+  {
+    accepted.push_back(pose);
+    return;
+  }
+  const auto isOld = [&](const TrackedPose& earlier)
+  { return pose.Time - earlier.Time > this->Limits.MaximumGap; };
+  if (!this->Track.empty() && isOld(this->Track.back()))
+  {
+    this->Track.clear();
+  }
+  const auto firstYoung = std::find_if_not(this->Waiting.begin(), this->Waiting.end(), isOld);
+  this->Dropped += static_cast<std::uint64_t>(firstYoung - this->Waiting.begin());
+  this->Waiting.erase(this->Waiting.begin(), firstYoung);
+
+  if (this->Track.size() == 2)
+  {
+    const TrackedPose flipped = Flip(pose);
+    const bool fits = this->Fits(this->Track[0], this->Track[1], pose);
+    if (fits || this->Fits(this->Track[0], this->Track[1], flipped))
+    {
+      this->Flipped += fits ? 0 : 1;
+      accepted.push_back(fits ? pose : flipped);
+      this->Track = { this->Track[1], accepted.back() };
+      this->Dropped += this->Waiting.size();
+      this->Waiting.clear();
+      return;
+    }
+  }
+  if (this->Waiting.size() == 2)
+  {
+    if (this->Fits(this->Waiting[0], this->Waiting[1], pose))
+    {
+      this->Track = { this->Waiting[1], pose };
+      accepted.insert(accepted.end(), this->Waiting.begin(), this->Waiting.end());
+      accepted.push_back(pose);
+      this->Waiting.clear();
+      return;
+    }
+    ++this->Dropped;
+    this->Waiting.erase(this->Waiting.begin());
+  }
+  this->Waiting.push_back(pose);
+}
+}

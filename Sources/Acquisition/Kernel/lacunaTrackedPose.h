@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// One measurement of a tracker.
+#ifndef lacunaTrackedPose_h
+#define lacunaTrackedPose_h
+
+#include "lacunaMatrix4.h"
+
+#include <optional>
+
+namespace lacuna
+{
+/// Times are s of the acquisition's clock.
+struct TrackedPose
+{
+  double Request = 0; ///< when it was asked for
+  double Arrival = 0; ///< when the last byte of the record was there
+  double Time = 0;    ///< the instant that it holds for: the request and the tracker's latency
+  int Station = 1;
+  Matrix4 ReceiverToTransmitter; ///< mm
+  char Error = ' ';              ///< the unit's error code
+  bool Usable = true;            ///< false: the code says not to rely on the pose
+  bool Flipped = false;          ///< signs were set right for the other hemisphere
+  std::optional<bool> Button;
+};
+}
+#endif
