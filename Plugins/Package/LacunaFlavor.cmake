@@ -48,3 +48,13 @@ if (LACUNA_WITH_GDCM AND LACUNA_GDCM_INCLUDE_DIR AND NOT LACUNA_GDCM_LIBRARIES M
 else ()
   message(STATUS "No GDCM: the CT Series Reader will not read JPEG, JPEG-LS and JPEG 2000")
 endif ()
+
+# libserialport opens the tracker's port.
+find_path(LACUNA_SERIALPORT_INCLUDE_DIR libserialport.h)
+find_library(LACUNA_SERIALPORT_LIBRARY serialport)
+set(LACUNA_HAS_SERIALPORT OFF)
+if (LACUNA_WITH_SERIALPORT AND LACUNA_SERIALPORT_INCLUDE_DIR AND LACUNA_SERIALPORT_LIBRARY)
+  set(LACUNA_HAS_SERIALPORT ON)
+else ()
+  message(STATUS "No libserialport: trackers on serial ports cannot be opened")
+endif ()

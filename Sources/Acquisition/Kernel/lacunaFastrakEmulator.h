@@ -64,6 +64,7 @@ public:
   std::optional<double> GetNextTime();
   /// The stylus's button; may push a record (command e).
   void SetButton(bool pressed, double time);
+  int GetBaud() const { return this->Options.Baud; }
   /// From now on.
   void SetFaults(const FastrakFaults& faults) { this->Options.Faults = faults; }
 

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The real libserialport, over a pseudo-terminal to the emulator, in real time.
+#include "lacunaClock.h"
+#include "lacunaFastrakTracker.h"
+#include "lacunaPseudoTerminal.h"
+#include "lacunaSerialPort.h"
+#include "lacunaTestFastrak.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace lacuna;
+using namespace lacunaTest;
+
+namespace
+{
+Matrix4 Pose(double time, int station)
+{
+  return Matrix4::Translation({ 200.0 * station + 20 * std::sin(time), 30 * std::cos(time), -50 }) *
+    FastrakRotation(Vec3{ 10 * std::sin(time), 20, 30 });
+}
+
+// A folder that everyone may enter; removed in the end.
+struct Folder
+{
+  Folder()
+  {
+    std::string name = testing::TempDir() + "lacuna-port-XXXXXX";
+    this->Path = mkdtemp(name.data());
+    std::filesystem::permissions(this->Path, std::filesystem::perms(0755));
+  }
+  ~Folder() { std::filesystem::remove_all(this->Path); }
+  // the library takes names only that begin with /dev/ and are links beside /sys/class/tty
+  std::string GetPort(const std::string& link) const
+  {
+    return "/dev/../../.." + this->GetLink(link);
+  }
+  std::string GetLink(const std::string& link) const { return this->Path + "/" + link; }
+  std::string Path;
+};
+
+// An emulated unit that is plugged in, and unplugged when it is destroyed.
+struct Unit
+{
+  explicit Unit(const std::string& link, const FastrakEmulatorOptions& options = {})
+    : Terminal(link)
+    , Emulator(Pose, options)
+    , Thread(
+        [this] { this->Terminal.Serve(this->Emulator, [this] { return this->Ended.load(); }); })
+  {
+  }
+  ~Unit()
+  {
+    this->Ended = true;
+    this->Thread.join();
+  }
+  PseudoTerminal Terminal;
+  FastrakEmulator Emulator;
+  std::atomic<bool> Ended{ false };
+  std::thread Thread;
+};
+
+FastrakEmulatorOptions Baud(int baud)
+{
+  FastrakEmulatorOptions options;
+  options.Baud = baud;
+  return options;
+}
+
+// What a call on a port complains of.
+std::string Complaint(ChannelError::Kind kind, const std::function<void()>& call)
+{
+  try
+  {
+    call();
+  }
+  catch (const ChannelError& e)
+  {
+    EXPECT_EQ(e.GetKind(), kind) << e.what();
+    return e.what();
+  }
+  ADD_FAILURE() << "no complaint of kind " << static_cast<int>(kind);
+  return {};
+}
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+// Permissions do not bind root: goes on as another user, and back in the end.
+struct AsUser
+{
+  AsUser() { this->Changed = geteuid() == 0 && seteuid(65534) == 0; }
+  ~AsUser() { EXPECT_TRUE(!this->Changed || seteuid(0) == 0); }
+  bool Changed = false;
+};
+}
+
+TEST(SerialPort, TheDriverFollowsTheEmulatorThroughTheRealLibrary)
+{
+  const Folder folder;
+  for (const int baud : { 19200, 115200 })
+  {
+    const Unit unit(folder.GetLink("tracker"), Baud(baud));
+    SerialPort port(folder.GetPort("tracker"), baud);
+    const SteadyClock clock;
+    FastrakTracker tracker(port, clock);
+    tracker.SetUp();
+    EXPECT_TRUE(tracker.GetStatus().Binary);
+    std::vector<TrackedPose> poses;
+    const double begin = clock.Now();
+    while (poses.size() < 100 && clock.Now() < begin + 60)
+    {
+      tracker.Poll(poses);
+    }
+    ASSERT_GE(poses.size(), 100u);
+    for (const TrackedPose& pose : poses)
+    {
+      // the emulator's instant is when it saw the request, a little after it was written
+      const double late = 40 * (pose.Arrival - pose.Request);
+      EXPECT_LT(Distance(pose.ReceiverToTransmitter, Pose(pose.Time, 1)), 2e-4 + late);
+      EXPECT_GE(pose.Arrival - pose.Request, 28 * 10.0 / baud); // 1 byte there, 27 back
+    }
+    std::cout << baud << " baud: " << 99 / (poses.back().Request - poses.front().Request)
+              << " records a second\n";
+  }
+}
+
+TEST(SerialPort, WrongBaudRateIsSaid)
+{
+  const Folder folder;
+  const Unit unit(folder.GetLink("tracker"), Baud(9600));
+  SerialPort port(folder.GetPort("tracker"), 115200);
+  const SteadyClock clock;
+  FastrakTracker tracker(port, clock);
+  try
+  {
+    tracker.SetUp();
+    FAIL() << "no complaint";
+  }
+  catch (const TrackerError& e)
+  {
+    EXPECT_HAS(std::string(e.what()), "115200 baud");
+    EXPECT_HAS(std::string(e.what()), "baud rate");
+  }
+}
+
+TEST(SerialPort, UnpluggedAndPluggedInAgain)
+{
+  const Folder folder;
+  auto unit = std::make_unique<Unit>(folder.GetLink("tracker"), Baud(115200));
+  const SteadyClock clock;
+  {
+    SerialPort port(folder.GetPort("tracker"), 115200);
+    FastrakTracker tracker(port, clock);
+    tracker.SetUp();
+    std::vector<TrackedPose> poses;
+    EXPECT_TRUE(tracker.Poll(poses));
+    unit.reset();
+    const double begin = clock.Now();
+    const std::string gone = Complaint(ChannelError::Kind::Unplugged,
+      [&]
+      {
+        while (clock.Now() < begin + 20)
+        {
+          tracker.Poll(poses);
+        }
+      });
+    EXPECT_LT(clock.Now(), begin + 5);
+    EXPECT_HAS(gone, "plug its adapter in again");
+    EXPECT_HAS(gone, "/tracker");
+    // also for one that only listens
+    char byte = 0;
+    Complaint(ChannelError::Kind::Unplugged, [&] { port.Read(&byte, 1, 10); });
+    EXPECT_LT(clock.Now(), begin + 5);
+  }
+  EXPECT_HAS(Complaint(ChannelError::Kind::NotFound,
+               [&] { SerialPort again(folder.GetPort("tracker"), 115200); }),
+    "There is no port");
+  unit = std::make_unique<Unit>(folder.GetLink("tracker"), Baud(115200));
+  SerialPort port(folder.GetPort("tracker"), 115200);
+  FastrakTracker tracker(port, clock);
+  tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  EXPECT_TRUE(tracker.Poll(poses));
+}
+
+TEST(SerialPort, SaysWhyItCannotBeOpened)
+{
+  for (const char* name : { "/dev/ttyLacunaNone", "COM7", "", "/etc/passwd", "/dev/null" })
+  {
+    const std::string text =
+      Complaint(ChannelError::Kind::NotFound, [&] { SerialPort port(name, 19200); });
+    EXPECT_HAS(text, "There is no port " + std::string(name));
+    EXPECT_HAS(text, SerialPort::List().empty() ? "no serial port now" : SerialPort::List()[0]);
+  }
+  const Folder folder;
+  const PseudoTerminal terminal(folder.GetLink("tracker"));
+  const std::string name = folder.GetPort("tracker");
+  const std::string device = std::filesystem::canonical(terminal.GetName());
+  ASSERT_EQ(chmod(device.c_str(), 0), 0);
+  {
+    const AsUser user;
+    EXPECT_HAS(
+      Complaint(ChannelError::Kind::Permission, [&] { SerialPort port(name, 19200); }), "adduser");
+  }
+  ASSERT_EQ(chmod(device.c_str(), 0666), 0);
+  for (const int baud : { 0, -5 })
+  {
+    EXPECT_HAS(Complaint(ChannelError::Kind::Unsupported, [&] { SerialPort port(name, baud); }),
+      "positive, not " + std::to_string(baud));
+  }
+  SerialPort port(name, 19200);
+  EXPECT_HAS(Complaint(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); }),
+    "end the other program");
+}
+
+TEST(SerialPort, OnlyOneProgramHasIt)
+{
+  const Folder folder;
+  const PseudoTerminal terminal(folder.GetLink("tracker"));
+  const std::string name = folder.GetPort("tracker");
+  const std::string device = std::filesystem::canonical(terminal.GetName());
+  ASSERT_EQ(chmod(device.c_str(), 0666), 0);
+  const AsUser user; // root may always open
+  for (int i = 0; i < 2; ++i)
+  {
+    const SerialPort port(name, 19200);
+    Complaint(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); });
+  }
+}
+
+TEST(SerialPort, WaitsNoLongerThanTold)
+{
+  const Folder folder;
+  const PseudoTerminal terminal(folder.GetLink("tracker"));
+  SerialPort port(folder.GetPort("tracker"), 19200);
+  const SteadyClock clock;
+  std::array<char, 10> bytes{};
+  for (const double seconds : { 0.0, 0.0001, 0.2 })
+  {
+    const double begin = clock.Now();
+    EXPECT_EQ(port.Read(bytes.data(), bytes.size(), seconds), 0u);
+    EXPECT_GE(clock.Now() - begin, seconds);
+    EXPECT_LT(clock.Now() - begin, seconds + 5);
+  }
+}
+
+TEST(PseudoTerminal, KeepsFilesThatHaveTheNameOfItsLink)
+{
+  const Folder folder;
+  const std::string link = folder.GetLink("tracker");
+  std::filesystem::create_symlink("/dev/pts/nowhere", link); // left over
+  {
+    const PseudoTerminal terminal(link);
+    EXPECT_EQ(terminal.GetName(), link);
+    EXPECT_TRUE(std::filesystem::exists(link));
+    EXPECT_HAS(
+      Complaint(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); }), "tracker");
+    EXPECT_TRUE(std::filesystem::exists(link));
+  }
+  EXPECT_FALSE(std::filesystem::is_symlink(link));
+  std::filesystem::create_directory(link);
+  Complaint(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); });
+  EXPECT_TRUE(std::filesystem::is_directory(link));
+}
