@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaEmulatorSettings.h"
+
+#include "lacunaPoseScript.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace lacuna
+{
+const char* const EmulatorHelp =
+  "lacuna-fastrak-emulator [option]...\n"
+  "A Polhemus FASTRAK without hardware: it makes a pseudo-terminal, prints its name and answers\n"
+  "there in real time until it is interrupted.\n"
+  "\n"
+  "  --link NAME           a name that points at the terminal, removed in the end\n"
+  "  --baud RATE           2400 ... 115200 (default 19200); at another rate of the host every "
+  "byte\n"
+  "                        is another one, as on a line\n"
+  "  --receivers LIST      stations that are plugged in, 1,3 (default 1)\n"
+  "  --poses FILE          motion: lines of time station x y z azimuth elevation roll in s, mm "
+  "and\n"
+  "                        degrees (default: a sweep to and fro by 80 mm every 8 s)\n"
+  "  --loop                begins the motion again when it has ended\n"
+  "  --noise MM DEGREES    standard deviations of each coordinate and angle (default 0 0)\n"
+  "  --latency S S         from request to the pose's instant, and to the answer (0.0035 0.0055)\n"
+  "  --seed N              of noise and faults (default 1)\n"
+  "  --fault [TIME:]KIND   from a time in s (default 0) on, in addition to those before:\n"
+  "                          changed=P lost=P added=P  each byte to the host, with probability P\n"
+  "                          silent     nothing is sent\n"
+  "                          garbage    every byte is another one\n"
+  "                          error=C    the error code of all records\n"
+  "                          none       ends all\n"
+  "  --button TIME         presses the stylus's button (or a foot switch there) for 0.2 s; may be\n"
+  "                        repeated, as --fault may\n"
+  "  --seconds S           ends after a time\n"
+  "  --help                prints this\n"
+  "\n"
+  "Lacuna opens ports by libserialport, which refuses pseudo-terminals. Preload\n"
+  "libLacunaPseudoTerminalPorts.so (LD_PRELOAD) into the program that opens the port, and give it\n"
+  "the name of a link as /dev/../../..LINK, LINK being its full path from the root.\n";
+
+namespace
+{
+constexpr double PressTime = 0.2; // s
+
+double ReadNumber(std::string_view word, double minimum, double maximum, const std::string& what)
+{
+  double number = 0;
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (result.ec != std::errc() || result.ptr != word.data() + word.size() ||
+    !(number >= minimum && number <= maximum))
+  {
+    throw std::runtime_error(what + ", not '" + std::string(word) + "' (see --help)");
+  }
+  return number;
+}
+
+std::array<bool, FastrakStations> ReadReceivers(const std::string& list)
+{
+  std::array<bool, FastrakStations> receivers{};
+  std::size_t begin = 0;
+  while (begin <= list.size())
+  {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string_view word = std::string_view(list).substr(begin, end - begin);
+    if (word.size() != 1 || word[0] < '1' || word[0] > '0' + FastrakStations)
+    {
+      throw std::runtime_error(
+        "--receivers takes stations 1 to 4 parted by commas, not '" + list + "' (see --help)");
+    }
+    receivers[static_cast<std::size_t>(word[0] - '1')] = true;
+    begin = end + 1;
+  }
+  return receivers;
+}
+
+// Changes the faults as a word says.
+std::function<void(FastrakFaults&)> ReadFault(const std::string& word)
+{
+  const std::size_t equals = word.find('=');
+  const std::string kind = word.substr(0, equals);
+  const std::string value = equals == std::string::npos ? std::string() : word.substr(equals + 1);
+  const auto probability = [&](double FastrakFaults::*fault)
+  {
+    const double number =
+      ReadNumber(value, 0, 1, "--fault " + kind + " takes a probability 0 to 1");
+    return [fault, number](FastrakFaults& faults) { faults.*fault = number; };
+  };
+  if (kind == "changed")
+  {
+    return probability(&FastrakFaults::Changed);
+  }
+  if (kind == "lost")
+  {
+    return probability(&FastrakFaults::Lost);
+  }
+  if (kind == "added")
+  {
+    return probability(&FastrakFaults::Added);
+  }
+  if (kind == "error" && value.size() == 1)
+  {
+    return [code = value[0]](FastrakFaults& faults) { faults.Error = code; };
+  }
+  if (word == "silent")
+  {
+    return [](FastrakFaults& faults) { faults.Silent = true; };
+  }
+  if (word == "garbage")
+  {
+    return [](FastrakFaults& faults) { faults.Garbage = true; };
+  }
+  if (word == "none")
+  {
+    return [](FastrakFaults& faults) { faults = FastrakFaults(); };
+  }
+  throw std::runtime_error("There is no fault '" + word + "' (see --help)");
+}
+
+struct TimedFault
+{
+  double Time;
+  std::function<void(FastrakFaults&)> Change;
+};
+
+TimedFault ReadTimedFault(const std::string& word)
+{
+  const std::size_t colon = word.find(':');
+  if (colon == std::string::npos || word.find('=') < colon)
+  {
+    return { 0, ReadFault(word) };
+  }
+  const double time =
+    ReadNumber(std::string_view(word).substr(0, colon), 0, 1e9, "--fault begins at a time in s");
+  return { time, ReadFault(word.substr(colon + 1)) };
+}
+
+FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop)
+{
+  if (fileName.empty())
+  {
+    return EverydaySweep;
+  }
+  std::ifstream file(fileName);
+  if (!file)
+  {
+    throw std::runtime_error("The file '" + fileName + "' cannot be read");
+  }
+  const PoseScript script(file, fileName);
+  const double duration = script.GetDuration();
+  if (loop && duration > 0)
+  {
+    return [script, duration](double time, int station)
+    { return script(time - duration * std::floor(time / duration), station); };
+  }
+  return script;
+}
+}
+
+EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
+{
+  constexpr double longest = 1e9; // s
+  EmulatorSettings settings;
+  FastrakEmulatorOptions& options = settings.Options;
+  std::vector<TimedFault> faults;
+  std::string poses;
+  bool loop = false;
+  for (std::size_t i = 0; i < words.size(); ++i)
+  {
+    const std::string& option = words[i];
+    const auto next = [&]() -> const std::string&
+    {
+      if (i + 1 == words.size())
+      {
+        throw std::runtime_error(option + " needs a value (see --help)");
+      }
+      return words[++i];
+    };
+    const auto number = [&](double minimum, double maximum, const char* what)
+    { return ReadNumber(next(), minimum, maximum, option + " takes " + what); };
+    if (option == "--help" || option == "-h")
+    {
+      settings.Help = true;
+    }
+    else if (option == "--link")
+    {
+      settings.Link = next();
+    }
+    else if (option == "--baud")
+    {
+      options.Baud = static_cast<int>(number(1, 1e6, "a rate in baud"));
+    }
+    else if (option == "--receivers")
+    {
+      options.Receivers = ReadReceivers(next());
+    }
+    else if (option == "--poses")
+    {
+      poses = next();
+    }
+    else if (option == "--loop")
+    {
+      loop = true;
+    }
+    else if (option == "--noise")
+    {
+      options.PositionNoise = number(0, 1000, "mm and degrees");
+      options.AngularNoise = number(0, 180, "mm and degrees");
+    }
+    else if (option == "--latency")
+    {
+      options.SampleLatency = number(0, 10, "two times up to 10 s");
+      options.AnswerLatency = number(0, 10, "two times up to 10 s");
+    }
+    else if (option == "--seed")
+    {
+      options.Seed = static_cast<std::uint32_t>(number(0, 4294967295.0, "a number of 32 bits"));
+    }
+    else if (option == "--fault")
+    {
+      faults.push_back(ReadTimedFault(next()));
+    }
+    else if (option == "--button")
+    {
+      const double time = number(0, longest, "a time in s");
+      settings.Events.push_back(
+        { time, [](FastrakEmulator& emulator, double now) { emulator.SetButton(true, now); } });
+      settings.Events.push_back({ time + PressTime,
+        [](FastrakEmulator& emulator, double now) { emulator.SetButton(false, now); } });
+    }
+    else if (option == "--seconds")
+    {
+      settings.Duration = number(0, longest, "a time in s");
+    }
+    else
+    {
+      throw std::runtime_error("There is no option '" + option + "' (see --help)");
+    }
+  }
+  const auto earlier = [](const auto& a, const auto& b) { return a.Time < b.Time; };
+  std::stable_sort(faults.begin(), faults.end(), earlier);
+  FastrakFaults sum;
+  for (const TimedFault& fault : faults)
+  {
+    fault.Change(sum);
+    settings.Events.push_back(
+      { fault.Time, [sum](FastrakEmulator& emulator, double) { emulator.SetFaults(sum); } });
+  }
+  std::stable_sort(settings.Events.begin(), settings.Events.end(), earlier);
+  settings.Motion = ReadMotion(poses, loop);
+  FastrakEmulator(settings.Motion, options); // throws for a rate that the unit does not have
+  return settings;
+}
+}
