@@ -58,3 +58,17 @@ if (LACUNA_WITH_SERIALPORT AND LACUNA_SERIALPORT_INCLUDE_DIR AND LACUNA_SERIALPO
 else ()
   message(STATUS "No libserialport: trackers on serial ports cannot be opened")
 endif ()
+
+# FFmpeg reads the scanner's video.
+find_path(LACUNA_FFMPEG_INCLUDE_DIR libavdevice/avdevice.h PATH_SUFFIXES ffmpeg)
+set(LACUNA_FFMPEG_LIBRARIES)
+foreach (library IN ITEMS avdevice avformat avcodec swscale avutil)
+  find_library(LACUNA_FFMPEG_${library} ${library})
+  list(APPEND LACUNA_FFMPEG_LIBRARIES "${LACUNA_FFMPEG_${library}}")
+endforeach ()
+set(LACUNA_HAS_FFMPEG OFF)
+if (LACUNA_WITH_FFMPEG AND LACUNA_FFMPEG_INCLUDE_DIR AND NOT LACUNA_FFMPEG_LIBRARIES MATCHES "NOTFOUND")
+  set(LACUNA_HAS_FFMPEG ON)
+else ()
+  message(STATUS "No FFmpeg: video cannot be read")
+endif ()
