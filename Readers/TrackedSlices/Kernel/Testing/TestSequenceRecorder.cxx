@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "FileSizeLimit.h"
 #include "WrittenSequence.h"
 #include "lacunaSequenceRecorder.h"
 
@@ -7,7 +8,6 @@
 #include <csignal>
 #include <random>
 
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,31 +47,6 @@ std::string GetDataName(const std::string& fileName, int level)
   }
   return ::testing::AssertionSuccess();
 }
-
-/// Writing beyond size fails, as on a full disk.
-class FileSizeLimit
-{
-public:
-  explicit FileSizeLimit(rlim_t size)
-    : Handler(std::signal(SIGXFSZ, SIG_IGN))
-  {
-    getrlimit(RLIMIT_FSIZE, &this->Before);
-    rlimit small = this->Before;
-    small.rlim_cur = size;
-    setrlimit(RLIMIT_FSIZE, &small);
-  }
-  ~FileSizeLimit()
-  {
-    setrlimit(RLIMIT_FSIZE, &this->Before);
-    std::signal(SIGXFSZ, this->Handler);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
-private:
-  rlimit Before{};
-  void (*Handler)(int);
-};
 }
 
 TEST(SequenceRecorder, IsReadableAfterEverySlice)

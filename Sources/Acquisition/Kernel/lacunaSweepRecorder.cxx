@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweepRecorder.h"
+
+#include "lacunaClock.h"
+#include "lacunaOutputFile.h"
+#include "lacunaSequenceRecorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double SyncInterval = 0.3; // s
+constexpr double RetryInterval = 1;  // s
+
+struct Slice
+{
+  SweepRecorder::Pixels Pixels;
+  SequenceFields Fields;
+  double Time; // when it was added
+};
+
+std::string Advise(const std::string& reason)
+{
+  return reason +
+    ". The capture goes on, its slices wait in memory: make room on that disk, then they are "
+    "written; or save the sweep elsewhere";
+}
+}
+
+struct SweepRecorder::Work
+{
+  Work(const std::string& fileName, const SequenceDescription& description, int level)
+    : Kind(fileName, level > 0)
+    , Bytes(static_cast<std::size_t>(description.Columns * description.Rows))
+    , Recorder(fileName, description, level)
+    , Thread([this] { this->Run(); })
+  {
+  }
+  ~Work() { this->End(); }
+
+  void End()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(this->Mutex);
+      this->Ending = true;
+      this->Failed = false;
+    }
+    this->Changed.notify_all();
+    if (this->Thread.joinable())
+    {
+      this->Thread.join();
+    }
+  }
+
+  bool IsSyncDue(double now) const
+  {
+    return !this->Unsynced.empty() &&
+      (this->Hurry || this->Ending || now >= this->Unsynced.front() + SyncInterval);
+  }
+  // When there is something to do next; a time passed: now.
+  double GetNextTime() const
+  {
+    if (!this->Queue.empty())
+    {
+      return this->RetryTime;
+    }
+    if (this->Unsynced.empty())
+    {
+      return this->Clock.Now() + 3600;
+    }
+    return this->Hurry || this->Ending
+      ? this->RetryTime
+      : std::max(this->RetryTime, this->Unsynced.front() + SyncInterval);
+  }
+  bool HasAll() const { return this->Queue.empty() && this->Unsynced.empty(); }
+
+  void Run();
+  // Each is called with the lock and gives it up while the disk works.
+  bool Try(std::unique_lock<std::mutex>& lock, const std::function<void()>& action);
+  void WriteFront(std::unique_lock<std::mutex>& lock);
+  void Sync(std::unique_lock<std::mutex>& lock);
+  void Fail(FileError::Kind kind, const std::string& reason);
+
+  SteadyClock Clock;
+  const SequenceKind Kind;
+  const std::size_t Bytes;
+  SequenceRecorder Recorder; // used by the thread alone until that has ended
+
+  mutable std::mutex Mutex;
+  std::condition_variable Changed;
+  std::deque<Slice> Queue;
+  std::deque<double> Unsynced; // when those were added that are written and not synced
+  State Now;
+  double RetryTime = 0;
+  FileError::Kind TroubleKind = FileError::Kind::Other;
+  bool Hurry = false;  // Finish waits
+  bool Failed = false; // since it does
+  bool Ending = false; // the thread has to end, at the first failure or when all is done
+  bool Finished = false;
+  std::thread Thread; // last: it uses all the others
+};
+
+void SweepRecorder::Work::Run()
+{
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  while (!this->Ending || (!this->HasAll() && !this->Failed))
+  {
+    const double now = this->Clock.Now();
+    const bool retry = this->Ending || now >= this->RetryTime;
+    if (retry && this->IsSyncDue(now) && (this->Queue.empty() || !this->Hurry))
+    {
+      this->Sync(lock);
+    }
+    else if (retry && !this->Queue.empty())
+    {
+      this->WriteFront(lock);
+    }
+    else
+    {
+      this->Changed.wait_for(lock,
+        std::chrono::duration<double>(std::clamp(this->GetNextTime() - now, 0.001, RetryInterval)));
+    }
+  }
+}
+
+bool SweepRecorder::Work::Try(
+  std::unique_lock<std::mutex>& lock, const std::function<void()>& action)
+{
+  lock.unlock();
+  FileError::Kind kind = FileError::Kind::Other;
+  std::string failure;
+  try
+  {
+    action();
+  }
+  catch (const FileError& e)
+  {
+    kind = e.GetKind();
+    failure = e.what();
+  }
+  catch (const std::exception& e)
+  {
+    failure = e.what();
+  }
+  lock.lock();
+  if (!failure.empty())
+  {
+    this->Fail(kind, failure);
+  }
+  return failure.empty();
+}
+
+void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
+{
+  const Slice& slice = this->Queue.front(); // stays where it is while others are added
+  if (this->Try(lock, [&] { this->Recorder.Append(slice.Pixels->data(), slice.Fields); }))
+  {
+    this->Now.Trouble.clear();
+    ++this->Now.Written;
+    this->Now.WaitingBytes -= static_cast<std::int64_t>(this->Bytes);
+    this->Unsynced.push_back(slice.Time);
+    this->Queue.pop_front();
+  }
+}
+
+void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
+{
+  if (this->Try(lock, [&] { this->Recorder.Sync(); }))
+  {
+    this->Now.LongestDelay =
+      std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front());
+    this->Unsynced.clear(); // only this thread adds to it
+    this->Now.Synced = this->Now.Written;
+    this->Changed.notify_all();
+  }
+}
+
+void SweepRecorder::Work::Fail(FileError::Kind kind, const std::string& reason)
+{
+  this->TroubleKind = kind;
+  this->Now.Trouble = Advise(reason);
+  this->RetryTime = this->Clock.Now() + RetryInterval;
+  this->Failed = this->Hurry || this->Ending;
+  this->Changed.notify_all();
+}
+
+SweepRecorder::SweepRecorder(
+  const std::string& fileName, const SequenceDescription& description, int compressionLevel)
+{
+  if (description.Type != ScalarType::UInt8)
+  {
+    throw std::invalid_argument("A sweep is recorded with 8-bit pixels");
+  }
+  this->Job = std::make_unique<Work>(fileName, description, compressionLevel);
+}
+
+SweepRecorder::~SweepRecorder() = default;
+
+void SweepRecorder::Add(Pixels pixels, SequenceFields fields)
+{
+  Work& job = *this->Job;
+  if (!pixels || pixels->size() != job.Bytes)
+  {
+    throw std::invalid_argument("A slice of the recording has " + std::to_string(job.Bytes) +
+      " pixels, not " + std::to_string(pixels ? pixels->size() : 0));
+  }
+  job.Kind.GetFrame(0, fields); // throws for fields that cannot be written
+  {
+    const std::lock_guard<std::mutex> lock(job.Mutex);
+    if (job.Finished)
+    {
+      throw std::invalid_argument("The recording has been finished");
+    }
+    job.Queue.push_back({ std::move(pixels), std::move(fields), job.Clock.Now() });
+    ++job.Now.Added;
+    job.Now.WaitingBytes += static_cast<std::int64_t>(job.Bytes);
+  }
+  job.Changed.notify_all();
+}
+
+SweepRecorder::State SweepRecorder::GetState() const
+{
+  const std::lock_guard<std::mutex> lock(this->Job->Mutex);
+  return this->Job->Now;
+}
+
+void SweepRecorder::Finish()
+{
+  Work& job = *this->Job;
+  {
+    std::unique_lock<std::mutex> lock(job.Mutex);
+    job.Hurry = true;
+    job.Failed = false;
+    job.RetryTime = 0;
+    job.Changed.notify_all();
+    job.Changed.wait(lock, [&] { return job.HasAll() || job.Failed; });
+    job.Hurry = false;
+    if (!job.HasAll())
+    {
+      throw FileError(job.TroubleKind, job.Now.Trouble);
+    }
+    job.Finished = true;
+  }
+  job.End();
+  job.Recorder.Close();
+}
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Puts the slices of a sweep on disk while it is taken.
+#ifndef lacunaSweepRecorder_h
+#define lacunaSweepRecorder_h
+
+#include "lacunaSequenceFormat.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// A SequenceRecorder on a thread of its own: who takes slices never waits for a disk. Slices are
+/// written as they come, and every 0.3 s the disk is made to have them, so that the end of the
+/// program loses none that are written and a failure of the power none that are synced.
+///
+/// On a full or failing disk slices wait in memory, in order, and writing is tried again every
+/// second: with room made, the recording goes on by itself.
+class SweepRecorder
+{
+public:
+  using Pixels = std::shared_ptr<const std::vector<std::uint8_t>>;
+  struct State
+  {
+    std::int64_t Added = 0;
+    std::int64_t Written = 0;      ///< in the file
+    std::int64_t Synced = 0;       ///< on the disk
+    std::int64_t WaitingBytes = 0; ///< of pixels in memory that are not written
+    double LongestDelay = 0;       ///< s from Add to the disk, of those synced
+    std::string Trouble; ///< why nothing is written now, and what to do; empty: all is well
+  };
+
+  /// Begins a file, of 8-bit pixels; see SequenceRecorder for kinds, compression and errors.
+  SweepRecorder(
+    const std::string& fileName, const SequenceDescription& description, int compressionLevel = 0);
+  /// Writes what waits, unless that fails, and closes, without a word.
+  ~SweepRecorder();
+  SweepRecorder(const SweepRecorder&) = delete;
+  SweepRecorder& operator=(const SweepRecorder&) = delete;
+
+  /// Takes a slice, whose pixels must not change any more. Throws std::invalid_argument when its
+  /// size is not that of the description, a field cannot be written, or after Finish.
+  void Add(Pixels pixels, SequenceFields fields);
+  State GetState() const;
+  /// Waits until all slices are on the disk and ends the file. Throws FileError when that fails:
+  /// the slices still wait, and it may be called again.
+  void Finish();
+
+private:
+  struct Work;
+  std::unique_ptr<Work> Job;
+};
+}
+#endif
