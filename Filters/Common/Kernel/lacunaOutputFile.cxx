@@ -2,6 +2,7 @@
 #include "lacunaOutputFile.h"
 
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 #include <fcntl.h>
@@ -125,5 +126,18 @@ void OutputFile::Close()
 void OutputFile::Throw(int error) const
 {
   throw FileError::Make("cannot write", this->Name, error);
+}
+
+//------------------------------------------------------------------------------
+void SyncFolderOf(const std::string& path)
+{
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int descriptor =
+    open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0)
+  {
+    fsync(descriptor);
+    close(descriptor);
+  }
 }
 }

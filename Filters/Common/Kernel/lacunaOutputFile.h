@@ -71,5 +71,9 @@ private:
   std::string Name;
   int Descriptor = -1;
 };
+
+/// Waits until the disk has the names of new files in the folder of path: without them a failure of
+/// the power takes the files, however synced. File systems that cannot do it are left alone.
+void SyncFolderOf(const std::string& path);
 }
 #endif

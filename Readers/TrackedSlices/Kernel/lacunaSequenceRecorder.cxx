@@ -60,6 +60,7 @@ SequenceRecorder::SequenceRecorder(
       static_cast<std::int64_t>(beginning.find(this->Kind.GetCounts(description, 0, 0)));
     this->Header->WriteAt(0, beginning + this->Kind.GetEnd());
     this->HeaderSize = static_cast<std::int64_t>(beginning.size());
+    SyncFolderOf(fileName);
   }
   catch (const FileError&)
   {
