@@ -4,7 +4,7 @@
 #include "lacunaFastrakTracker.h"
 #include "lacunaPseudoTerminal.h"
 #include "lacunaSerialPort.h"
-#include "lacunaTestFastrak.h"
+#include "lacunaTestPairing.h"
 
 #include <gtest/gtest.h>
 
@@ -52,9 +52,10 @@ struct Folder
 // An emulated unit that is plugged in, and unplugged when it is destroyed.
 struct Unit
 {
-  explicit Unit(const std::string& link, const FastrakEmulatorOptions& options = {})
+  explicit Unit(const std::string& link, const FastrakEmulatorOptions& options = {},
+    FastrakEmulator::PoseScript script = Pose)
     : Terminal(link)
-    , Emulator(Pose, options)
+    , Emulator(std::move(script), options)
     , Thread(
         [this] { this->Terminal.Serve(this->Emulator, [this] { return this->Ended.load(); }); })
   {
@@ -141,6 +142,37 @@ TEST(SerialPort, TheDriverFollowsTheEmulatorThroughTheRealLibrary)
               << " records a second\n";
   }
 }
+
+// As the soak in simulated time, but through the system and in real time: minutes.
+class SerialPortSoak : public testing::TestWithParam<double>
+{
+};
+
+TEST_P(SerialPortSoak, NoFrameIsLostOrMispaired)
+{
+  const Folder folder;
+  FastrakEmulatorOptions options = Baud(115200);
+  options.Faults.Changed = 0.01;
+  const Unit unit(folder.GetLink("tracker"), options, Sweep);
+  SerialPort port(folder.GetPort("tracker"), 115200);
+  FastrakSettings settings;
+  settings.Layout = FastrakLayout::FromNumbers({ 2, 4, 2, 4 });
+  settings.Motion = { 600, 6, 0.1, 0.001 };
+  const SteadyClock clock;
+  FastrakTracker tracker(port, clock, settings);
+  tracker.SetUp();
+  const Pairing pairing = PairFrames(tracker, clock, GetParam());
+  const auto counts = tracker.GetCounts();
+  std::cout << pairing.Frames << " frames, " << pairing.Lost << " lost, worst " << pairing.Worst
+            << " mm; " << counts.Requests << " requests, " << counts.Damaged
+            << " damaged answers, latest " << 1000 * pairing.Late << " ms\n";
+  EXPECT_EQ(pairing.Lost, 0);
+  // the emulator sees a request, and so takes its sample, as late as this computer makes it
+  EXPECT_LT(pairing.Worst, 0.05 + 170 * pairing.Late);
+  EXPECT_GT(counts.Damaged, counts.Requests / 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Soak, SerialPortSoak, testing::Values(600.0));
 
 TEST(SerialPort, WrongBaudRateIsSaid)
 {
