@@ -4,6 +4,7 @@
 #include "lacunaFastrakTracker.h"
 #include "lacunaPseudoTerminal.h"
 #include "lacunaSerialPort.h"
+#include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 
 #include <gtest/gtest.h>
@@ -30,24 +31,11 @@ Matrix4 Pose(double time, int station)
     FastrakRotation(Vec3{ 10 * std::sin(time), 20, 30 });
 }
 
-// A folder that everyone may enter; removed in the end.
-struct Folder
+// The library takes names only that begin with /dev/ and are links beside /sys/class/tty.
+std::string GetPort(const std::string& link)
 {
-  Folder()
-  {
-    std::string name = testing::TempDir() + "lacuna-port-XXXXXX";
-    this->Path = mkdtemp(name.data());
-    std::filesystem::permissions(this->Path, std::filesystem::perms(0755));
-  }
-  ~Folder() { std::filesystem::remove_all(this->Path); }
-  // the library takes names only that begin with /dev/ and are links beside /sys/class/tty
-  std::string GetPort(const std::string& link) const
-  {
-    return "/dev/../../.." + this->GetLink(link);
-  }
-  std::string GetLink(const std::string& link) const { return this->Path + "/" + link; }
-  std::string Path;
-};
+  return "/dev/../../.." + link;
+}
 
 // An emulated unit that is plugged in, and unplugged when it is destroyed.
 struct Unit
@@ -78,22 +66,6 @@ FastrakEmulatorOptions Baud(int baud)
   return options;
 }
 
-// What a call on a port complains of.
-std::string Complaint(ChannelError::Kind kind, const std::function<void()>& call)
-{
-  try
-  {
-    call();
-  }
-  catch (const ChannelError& e)
-  {
-    EXPECT_EQ(e.GetKind(), kind) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "no complaint of kind " << static_cast<int>(kind);
-  return {};
-}
-
 // Polls until there are so many poses, for at most a minute: a busy computer may miss some.
 std::vector<TrackedPose> Follow(FastrakTracker& tracker, std::size_t count)
 {
@@ -106,16 +78,6 @@ std::vector<TrackedPose> Follow(FastrakTracker& tracker, std::size_t count)
   }
   return poses;
 }
-
-#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
-// Permissions do not bind root: goes on as another user, and back in the end.
-struct AsUser
-{
-  AsUser() { this->Changed = geteuid() == 0 && seteuid(65534) == 0; }
-  ~AsUser() { EXPECT_TRUE(!this->Changed || seteuid(0) == 0); }
-  bool Changed = false;
-};
 }
 
 TEST(SerialPort, TheDriverFollowsTheEmulatorThroughTheRealLibrary)
@@ -123,8 +85,8 @@ TEST(SerialPort, TheDriverFollowsTheEmulatorThroughTheRealLibrary)
   const Folder folder;
   for (const int baud : { 19200, 115200 })
   {
-    const Unit unit(folder.GetLink("tracker"), Baud(baud));
-    SerialPort port(folder.GetPort("tracker"), baud);
+    const Unit unit(folder / "tracker", Baud(baud));
+    SerialPort port(GetPort(folder / "tracker"), baud);
     const SteadyClock clock;
     FastrakTracker tracker(port, clock);
     tracker.SetUp();
@@ -153,8 +115,8 @@ TEST_P(SerialPortSoak, NoFrameIsLostOrMispaired)
   const Folder folder;
   FastrakEmulatorOptions options = Baud(115200);
   options.Faults.Changed = 0.01;
-  const Unit unit(folder.GetLink("tracker"), options, Sweep);
-  SerialPort port(folder.GetPort("tracker"), 115200);
+  const Unit unit(folder / "tracker", options, Sweep);
+  SerialPort port(GetPort(folder / "tracker"), 115200);
   FastrakSettings settings;
   settings.Layout = FastrakLayout::FromNumbers({ 2, 4, 2, 4 });
   settings.Motion = { 600, 6, 0.1, 0.001 };
@@ -177,36 +139,38 @@ INSTANTIATE_TEST_SUITE_P(Soak, SerialPortSoak, testing::Values(600.0));
 TEST(SerialPort, WrongBaudRateIsSaid)
 {
   const Folder folder;
-  const Unit unit(folder.GetLink("tracker"), Baud(9600));
-  SerialPort port(folder.GetPort("tracker"), 115200);
+  const Unit unit(folder / "tracker", Baud(9600));
+  SerialPort port(GetPort(folder / "tracker"), 115200);
   const SteadyClock clock;
   FastrakTracker tracker(port, clock);
+  // the unit does not understand either: whether it answers at all is chance
+  std::string text;
   try
   {
     tracker.SetUp();
-    FAIL() << "no complaint";
   }
   catch (const TrackerError& e)
   {
-    EXPECT_HAS(std::string(e.what()), "115200 baud");
-    EXPECT_HAS(std::string(e.what()), "baud rate");
+    text = e.what();
   }
+  EXPECT_HAS(text, "115200 baud");
+  EXPECT_HAS(text, "baud rate");
 }
 
 TEST(SerialPort, UnpluggedAndPluggedInAgain)
 {
   const Folder folder;
-  auto unit = std::make_unique<Unit>(folder.GetLink("tracker"), Baud(115200));
+  auto unit = std::make_unique<Unit>(folder / "tracker", Baud(115200));
   const SteadyClock clock;
   {
-    SerialPort port(folder.GetPort("tracker"), 115200);
+    SerialPort port(GetPort(folder / "tracker"), 115200);
     FastrakTracker tracker(port, clock);
     tracker.SetUp();
     std::vector<TrackedPose> poses = Follow(tracker, 1);
     EXPECT_FALSE(poses.empty());
     unit.reset();
     const double begin = clock.Now();
-    const std::string gone = Complaint(ChannelError::Kind::Unplugged,
+    const std::string gone = Complaint<ChannelError>(ChannelError::Kind::Unplugged,
       [&]
       {
         while (clock.Now() < begin + 20)
@@ -219,14 +183,14 @@ TEST(SerialPort, UnpluggedAndPluggedInAgain)
     EXPECT_HAS(gone, "/tracker");
     // also for one that only listens
     char byte = 0;
-    Complaint(ChannelError::Kind::Unplugged, [&] { port.Read(&byte, 1, 10); });
+    Complaint<ChannelError>(ChannelError::Kind::Unplugged, [&] { port.Read(&byte, 1, 10); });
     EXPECT_LT(clock.Now(), begin + 5);
   }
-  EXPECT_HAS(Complaint(ChannelError::Kind::NotFound,
-               [&] { SerialPort again(folder.GetPort("tracker"), 115200); }),
+  EXPECT_HAS(Complaint<ChannelError>(ChannelError::Kind::NotFound,
+               [&] { SerialPort again(GetPort(folder / "tracker"), 115200); }),
     "There is no port");
-  unit = std::make_unique<Unit>(folder.GetLink("tracker"), Baud(115200));
-  SerialPort port(folder.GetPort("tracker"), 115200);
+  unit = std::make_unique<Unit>(folder / "tracker", Baud(115200));
+  SerialPort port(GetPort(folder / "tracker"), 115200);
   FastrakTracker tracker(port, clock);
   tracker.SetUp();
   EXPECT_FALSE(Follow(tracker, 1).empty());
@@ -237,51 +201,54 @@ TEST(SerialPort, SaysWhyItCannotBeOpened)
   for (const char* name : { "/dev/ttyLacunaNone", "COM7", "", "/etc/passwd", "/dev/null" })
   {
     const std::string text =
-      Complaint(ChannelError::Kind::NotFound, [&] { SerialPort port(name, 19200); });
+      Complaint<ChannelError>(ChannelError::Kind::NotFound, [&] { SerialPort port(name, 19200); });
     EXPECT_HAS(text, "There is no port " + std::string(name));
     EXPECT_HAS(text, SerialPort::List().empty() ? "no serial port now" : SerialPort::List()[0]);
   }
   const Folder folder;
-  const PseudoTerminal terminal(folder.GetLink("tracker"));
-  const std::string name = folder.GetPort("tracker");
+  const PseudoTerminal terminal(folder / "tracker");
+  const std::string name = GetPort(folder / "tracker");
   const std::string device = std::filesystem::canonical(terminal.GetName());
   ASSERT_EQ(chmod(device.c_str(), 0), 0);
   {
     const AsUser user;
-    EXPECT_HAS(
-      Complaint(ChannelError::Kind::Permission, [&] { SerialPort port(name, 19200); }), "adduser");
+    EXPECT_HAS(Complaint<ChannelError>(
+                 ChannelError::Kind::Permission, [&] { SerialPort port(name, 19200); }),
+      "adduser");
   }
   ASSERT_EQ(chmod(device.c_str(), 0666), 0);
   for (const int baud : { 0, -5 })
   {
-    EXPECT_HAS(Complaint(ChannelError::Kind::Unsupported, [&] { SerialPort port(name, baud); }),
+    EXPECT_HAS(Complaint<ChannelError>(
+                 ChannelError::Kind::Unsupported, [&] { SerialPort port(name, baud); }),
       "positive, not " + std::to_string(baud));
   }
   SerialPort port(name, 19200);
-  EXPECT_HAS(Complaint(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); }),
+  EXPECT_HAS(
+    Complaint<ChannelError>(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); }),
     "end the other program");
 }
 
 TEST(SerialPort, OnlyOneProgramHasIt)
 {
   const Folder folder;
-  const PseudoTerminal terminal(folder.GetLink("tracker"));
-  const std::string name = folder.GetPort("tracker");
+  const PseudoTerminal terminal(folder / "tracker");
+  const std::string name = GetPort(folder / "tracker");
   const std::string device = std::filesystem::canonical(terminal.GetName());
   ASSERT_EQ(chmod(device.c_str(), 0666), 0);
   const AsUser user; // root may always open
   for (int i = 0; i < 2; ++i)
   {
     const SerialPort port(name, 19200);
-    Complaint(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); });
+    Complaint<ChannelError>(ChannelError::Kind::Busy, [&] { SerialPort second(name, 19200); });
   }
 }
 
 TEST(SerialPort, WaitsNoLongerThanTold)
 {
   const Folder folder;
-  const PseudoTerminal terminal(folder.GetLink("tracker"));
-  SerialPort port(folder.GetPort("tracker"), 19200);
+  const PseudoTerminal terminal(folder / "tracker");
+  SerialPort port(GetPort(folder / "tracker"), 19200);
   const SteadyClock clock;
   std::array<char, 10> bytes{};
   for (const double seconds : { 0.0, 0.0001, 0.2 })
@@ -296,18 +263,19 @@ TEST(SerialPort, WaitsNoLongerThanTold)
 TEST(PseudoTerminal, KeepsFilesThatHaveTheNameOfItsLink)
 {
   const Folder folder;
-  const std::string link = folder.GetLink("tracker");
+  const std::string link = folder / "tracker";
   std::filesystem::create_symlink("/dev/pts/nowhere", link); // left over
   {
     const PseudoTerminal terminal(link);
     EXPECT_EQ(terminal.GetName(), link);
     EXPECT_TRUE(std::filesystem::exists(link));
     EXPECT_HAS(
-      Complaint(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); }), "tracker");
+      Complaint<ChannelError>(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); }),
+      "tracker");
     EXPECT_TRUE(std::filesystem::exists(link));
   }
   EXPECT_FALSE(std::filesystem::is_symlink(link));
   std::filesystem::create_directory(link);
-  Complaint(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); });
+  Complaint<ChannelError>(ChannelError::Kind::Other, [&] { PseudoTerminal second(link); });
   EXPECT_TRUE(std::filesystem::is_directory(link));
 }
