@@ -11,6 +11,7 @@
 #include <functional>
 #include <iterator>
 #include <random>
+#include <thread>
 
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -76,10 +77,14 @@ std::vector<int> Times(int count)
   return times;
 }
 
-// A server that takes connections and says nothing.
-struct SilentServer
+// A server of this computer that sends bytes to the first who connects, and then closes the line or
+// holds it in silence.
+class Server
 {
-  SilentServer()
+public:
+  explicit Server(std::string bytes = {}, bool hold = true)
+    : Bytes(std::move(bytes))
+    , Hold(hold)
   {
     this->Socket = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -90,11 +95,52 @@ struct SilentServer
     EXPECT_EQ(listen(this->Socket, 5), 0);
     EXPECT_EQ(getsockname(this->Socket, reinterpret_cast<sockaddr*>(&address), &size), 0);
     this->URL = "tcp://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+    this->Thread = std::thread([this] { this->Serve(); });
   }
-  ~SilentServer() { close(this->Socket); }
+  ~Server()
+  {
+    shutdown(this->Socket, SHUT_RDWR); // ends accept
+    this->Thread.join();
+    close(this->Line);
+    close(this->Socket);
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  const std::string& GetURL() const { return this->URL; }
+
+private:
+  void Serve()
+  {
+    this->Line = accept(this->Socket, nullptr, nullptr);
+    for (std::size_t sent = 0; sent < this->Bytes.size();)
+    {
+      const ssize_t count =
+        send(this->Line, this->Bytes.data() + sent, this->Bytes.size() - sent, MSG_NOSIGNAL);
+      if (count <= 0)
+      {
+        return;
+      }
+      sent += static_cast<std::size_t>(count);
+    }
+    if (!this->Hold)
+    {
+      shutdown(this->Line, SHUT_RDWR);
+    }
+  }
+
+  std::string Bytes;
+  bool Hold;
   int Socket = -1;
+  int Line = -1;
   std::string URL;
+  std::thread Thread;
 };
+
+std::string ReadFile(const std::string& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return { std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>() };
+}
 }
 
 TEST(VideoSource, TestSignalInItsOwnPace)
@@ -255,9 +301,9 @@ TEST(VideoSource, StopsWhileItWaits)
   EXPECT_THROW(source.Read(frame), Aborted);
   EXPECT_LT(TheClock.Now(), *end + 10);
 
-  const SilentServer server;
+  const Server server;
   end = TheClock.Now() + 0.1;
-  settings = AtOnce(server.URL);
+  settings = AtOnce(server.GetURL());
   settings.OpenTime = 1000;
   EXPECT_THROW(VideoSource(settings, TheClock, stopped), Aborted);
   EXPECT_LT(TheClock.Now(), *end + 10);
@@ -265,10 +311,51 @@ TEST(VideoSource, StopsWhileItWaits)
 
 TEST(VideoSource, StreamsThatSendNothingTimeOut)
 {
-  const SilentServer server;
-  VideoSettings settings = AtOnce(server.URL);
+  const Server server;
+  VideoSettings settings = AtOnce(server.GetURL());
   settings.OpenTime = 0.2;
   EXPECT_HAS(Opening(VideoError::Kind::Silent, settings), "sends nothing: is the scanner");
+}
+
+TEST(VideoSource, NetworkStreams)
+{
+  const Folder folder;
+  const std::vector<Image> images = MakeImages(30, 40, 30);
+  EncodeVideo(folder / "a.mkv", {}, 40, 30, images, Times(30));
+  const std::string bytes = ReadFile(folder / "a.mkv");
+  VideoSettings settings;
+  settings.FrameTime = 2;
+  for (const bool hold : { false, true })
+  {
+    const Server server(bytes, hold);
+    settings.URL = server.GetURL();
+    VideoSource source(settings, TheClock);
+    VideoFrame frame;
+    double last = 0;
+    // the file's index is its end; while the line is held, the last frame may be waited with
+    for (std::size_t i = 0; i + 1 < images.size(); ++i)
+    {
+      ASSERT_EQ(source.Read(frame), VideoEvent::Frame) << i;
+      EXPECT_EQ(frame.Grey, images[i]) << i;
+      EXPECT_GE(frame.Arrival, last);
+      last = frame.Arrival;
+    }
+    if (hold)
+    {
+      EXPECT_HAS(Complaint<VideoError>(VideoError::Kind::Silent,
+                   [&]
+                   {
+                     source.Read(frame);
+                     source.Read(frame);
+                   }),
+        "sends nothing any more");
+    }
+    else
+    {
+      EXPECT_EQ(source.Read(frame), VideoEvent::Frame);
+      EXPECT_EQ(source.Read(frame), VideoEvent::End);
+    }
+  }
 }
 
 TEST(VideoSource, SaysWhyItCannotBeOpened)
@@ -327,9 +414,7 @@ TEST(VideoSource, DamagedFilesEndSoonerOrAreSaidToBeDamaged)
   for (const auto& [name, settings] : files)
   {
     EncodeVideo(folder / name, settings, 64, 48, MakeImages(10, 64, 48), Times(10));
-    std::ifstream file(folder / name, std::ios::binary);
-    const std::string whole{ std::istreambuf_iterator<char>(file),
-      std::istreambuf_iterator<char>() };
+    const std::string whole = ReadFile(folder / name);
     int read = 0;
     for (int i = 0; i < 60; ++i)
     {
