@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaEmulatorSettings.h"
 
+#include "lacunaFastrakCommand.h"
 #include "lacunaPoseScript.h"
 
 #include <algorithm>
@@ -254,7 +255,7 @@ EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
   }
   std::stable_sort(settings.Events.begin(), settings.Events.end(), earlier);
   settings.Motion = ReadMotion(poses, loop);
-  FastrakEmulator(settings.Motion, options); // throws for a rate that the unit does not have
+  FastrakCommand::SerialRate(options.Baud); // throws for one that the unit does not have
   return settings;
 }
 }

@@ -19,6 +19,11 @@ constexpr double Endless = std::numeric_limits<double>::infinity();
 constexpr double StationDistance = 100; // mm
 constexpr std::size_t Columns = 8;
 
+[[noreturn]] void ThrowLine(const std::string& name, int number, const char* why)
+{
+  throw std::runtime_error(name + ", line " + std::to_string(number) + ": " + why);
+}
+
 // The numbers of a line; nothing when a word is none.
 std::optional<std::vector<double>> ReadNumbers(std::string_view line)
 {
@@ -53,8 +58,7 @@ PoseScript::PoseScript(std::istream& text, const std::string& name)
   std::string line;
   for (int number = 1; std::getline(text, line); ++number)
   {
-    const auto fail = [&](const std::string& why)
-    { throw std::runtime_error(name + ", line " + std::to_string(number) + ": " + why); };
+    const auto fail = [&](const char* why) { ThrowLine(name, number, why); };
     const auto read = ReadNumbers(line);
     if (read && read->empty())
     {
