@@ -118,8 +118,10 @@ bool FastrakTracker::AskStatus()
   this->Channel.Write(std::string(1, FastrakCommand::Status));
   std::vector<FastrakMessage> messages;
   const double end = this->Time.Now() + StatusTime;
-  while (this->Time.Now() < end && this->Receive(end - this->Time.Now(), messages) > 0)
+  double wait = StatusTime;
+  while (this->Time.Now() < end && this->Receive(wait, messages) > 0)
   {
+    wait = std::min(this->Settings.GapTime, end - this->Time.Now()); // it comes in one piece
     for (const FastrakMessage& message : messages)
     {
       const auto* reply = std::get_if<FastrakReply>(&message);
@@ -131,7 +133,7 @@ bool FastrakTracker::AskStatus()
       }
     }
   }
-  this->Settle(CommandTime, StatusTime);
+  this->Settle(this->Settings.GapTime, StatusTime);
   return false;
 }
 

@@ -185,6 +185,26 @@ TEST(FastrakTracker, SetsARestartedUnitUpAgain)
   EXPECT_LT(Distance(poses.back().ReceiverToTransmitter, Sweep(poses.back().Time, 1)), 2e-4);
 }
 
+TEST(FastrakTracker, ADamagedStatusIsNotWaitedFor)
+{
+  FastrakEmulatorOptions options = Baud(115200);
+  options.Faults.Changed = 0.02; // two records of three, and so many in a row that it makes sure
+  FastrakSettings settings;
+  settings.Layout = FastrakLayout::FromNumbers({ 2, 4, 2, 4 });
+  Bench bench(options, settings);
+  bench.Tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  double longest = 0;
+  for (int i = 0; i < 20000; ++i)
+  {
+    const double begin = bench.Channel.Now();
+    bench.Tracker.Poll(poses);
+    longest = std::max(longest, bench.Channel.Now() - begin);
+  }
+  EXPECT_LT(longest, 0.15); // s of simulated time
+  EXPECT_GT(poses.size(), 5000u);
+}
+
 TEST(FastrakTracker, StopsWhenTold)
 {
   FastrakEmulatorOptions options = Baud(19200);
