@@ -222,7 +222,9 @@ press = PressOrientation(Input=RBFHoleFiller(Input=above, Smoothing=5, OutputMar
 view = pictures.new_view((300, 200))
 pictures.color_by(pictures.show_surface(known, view, pictures.BONE), view, "Depth", "mm", (0, 9))
 pictures.add_title(view, "known")
-check(len(views.show_orientation(view)) == 4, "a known surface, beside a scalar bar and a title")
+pictures.look(view, (0, 1, 0), (0, 0, 1))
+pictures.add_scale_bar(view, 20)
+check(len(views.show_orientation(view)) == 4, "a known surface, beside a scalar bar, a title and a scale bar")
 views.show_patient_axes(view)
 for what, source in (("a mould", press), ("a moved surface", Reflect(Input=known)), ("no patient", Wavelet()),
                      ("a mirror image", DepthMapSurface(Input=mirrored))):

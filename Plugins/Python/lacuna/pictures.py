@@ -9,7 +9,7 @@ from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
 
 from lacuna.data import fetch
-from lacuna.views import map_letters
+from lacuna.views import annotations, map_letters
 
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
@@ -123,6 +123,7 @@ def add_scale_bar(view, millimetres, aside=False):
         middle -= 0.4 * scale * width / height * right
     line = pv.Line(Point1=list(middle - millimetres / 2 * right), Point2=list(middle + millimetres / 2 * right))
     show_surface(line, view, (0.1, 0.1, 0.1)).LineWidth = 5
+    annotations.add(line.GetGlobalIDAsString())
     text = f"{millimetres:g} mm"
     display = pv.Show(pv.Text(Text=text), view)
     display.Color = [0.1, 0.1, 0.1]

@@ -74,6 +74,7 @@ def copy_camera(caster, view=None, rows=None):
 
 # Names of the positive and the negative axes of patient coordinates (LPS).
 SIDES = (("L", "R"), ("P", "A"), ("H", "F"))
+annotations = set()  # global IDs of sources that are no data, such as scale bars
 _marked = {}  # views with marks: their marks by global ID
 
 
@@ -147,7 +148,8 @@ def _check_view(view):
     for display in view.Representations:
         if display.GetProperty("Input") is None or display.GetProperty("WindowLocation") is not None:
             continue  # scalar bars and texts
-        if display.Visibility and display.Input is not None:
+        if display.Visibility and display.Input is not None and \
+                display.Input.GetGlobalIDAsString() not in annotations:
             display.Input.UpdatePipeline()
             _check_patient(display.Input, f"what the view shows of {display.Input.GetXMLLabel()}")
 
