@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The demo says which stage failed and why; so does lacuna.errors.raising."""
 import os
+import runpy
+import sys
 
 import lacuna.plugin
 import paraview.simple as pv
 from lacuna import demo
+from lacuna.data import refuse_orientation
 from lacuna.errors import PipelineError, raising
 from lacuna_test import output
 
@@ -35,6 +38,33 @@ oriented = file_with("oriented.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2
                      "TransformMatrix = -1 0 0 0 1 0 0 0 1\nElementDataFile = LOCAL\n0123456789abcdef")
 message = failure("--only", "implant", "--ct", oriented)
 assert "stage 'read the CT' failed" in message and "mirrored" in message, message
+
+# the walk from a CT to a mould takes none of them either
+walk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Documentation/Examples/06-implant-to-mould",
+                    "implant_to_mould.py")
+
+
+def walk_failure(ct):
+    arguments = sys.argv
+    sys.argv = ["implant_to_mould.py", "--output", output("demo-errors"), "--ct", ct, "--hole", "0", "0", "0", "9"]
+    try:
+        runpy.run_path(walk, run_name="__main__")
+    except ValueError as error:
+        return str(error)
+    finally:
+        sys.argv = arguments
+    raise AssertionError(f"the walk went on with {ct}")
+
+
+assert "oriented.mha is oriented" in walk_failure(oriented)
+for key, matrix in ("TransformMatrix", "-1 0 0 0 -1 0 0 0 1"), ("Rotation", "0 1 0 1 0 0 0 0 1"):
+    turned = file_with("turned.MHA", "ObjectType = Image\r\nNDims = 3\r\nDimSize = 2 2 2\r\nElementType = MET_SHORT\r\n"
+                       f"{key} = {matrix}\r\nElementDataFile = LOCAL\r\n0123456789abcdef")
+    assert f"{key} = {matrix}" in walk_failure(turned)
+assert "not a regular volume" in walk_failure(file_with("surface.stl", "solid a\nfacet normal 0 0 1\nouter loop\n"
+                                              "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+                                              "endsolid a\n"))
+refuse_orientation(file_with("straight.mha", "TransformMatrix = 1 0 0 0 1 0 0 0 1\nElementDataFile = LOCAL\n"))
 
 uncalibrated = file_with("uncalibrated.igs.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
                          "ElementType = MET_UCHAR\nSeq_Frame0000_ProbeToTrackerTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"

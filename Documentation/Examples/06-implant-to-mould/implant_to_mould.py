@@ -21,6 +21,7 @@ import numpy as np
 
 lacuna.plugin.load()
 from lacuna import pictures, views
+from lacuna.data import open_volume
 from lacuna.solids import save_solid
 from paraview import servermanager
 from paraview.simple import *
@@ -60,8 +61,7 @@ def open_ct(options):
         skull = ct.GetClientSideObject()
         on_bone = np.array(ct.Center) + direction * skull.IntersectOuterSurface(ct.Center, direction)
         return ct, on_bone, 1.25 * ct.DefectRadius, -direction
-    ct = CTSeriesReader(FileName=options.ct) if os.path.isdir(options.ct) else OpenDataFile(options.ct)
-    return ct, np.array(options.hole[:3]), options.hole[3], np.array(options.view)
+    return open_volume(options.ct), np.array(options.hole[:3]), options.hole[3], np.array(options.view)
 
 
 def fill(ct, hole, radius, view):

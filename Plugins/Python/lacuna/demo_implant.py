@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 import lacuna
 from lacuna import pictures, views
-from lacuna.data import fetch
+from lacuna.data import fetch, open_volume
 
 ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
 
@@ -55,31 +55,8 @@ def read(options):
         ct = pv.SkullPhantom()
         ct.UpdatePipeline()
         return ct, ct.GetClientSideObject()
-    if options.ct.lower().endswith((".mha", ".mhd")):
-        refuse_orientation(options.ct)
-    ct = pv.OpenDataFile(options.ct)
-    if ct is None:
-        raise ValueError(f"ParaView has no reader for {options.ct}")
-    ct.UpdatePipeline()
-    kind = ct.GetDataInformation().GetDataSetTypeAsString()
-    if kind != "vtkImageData":
-        raise ValueError(f"{options.ct} is not a regular volume but {kind}")
+    ct = open_volume(options.ct)
     return ct, None
-
-
-def refuse_orientation(name):
-    """ParaView's MetaImage reader drops TransformMatrix: a patient could come out mirrored."""
-    with open(name, "rb") as file:
-        head = file.read(10000)
-    for line in head.split(b"\n"):
-        key, _, value = line.partition(b"=")
-        if key.strip() in (b"TransformMatrix", b"Rotation", b"Orientation"):
-            if [float(x) for x in value.split()] != [1, 0, 0, 0, 1, 0, 0, 0, 1]:
-                raise ValueError(
-                    f"{name} is oriented ({key.strip().decode()} = {value.strip().decode()}), which ParaView's "
-                    "reader ignores: the result could be turned or mirrored. Keep oriented images in .vti")
-        if key.strip() == b"ElementDataFile":
-            return
 
 
 def view_up(view):
