@@ -12,4 +12,4 @@ done
 (cd "$top" && . Testing/Tools/setup.sh && lacuna_install_packages && lacuna_build release)
 . "$top/Testing/Tools/setup.sh"
 . "$top/build/release/lacuna-env.sh"
-lacuna_display pvpython --force-offscreen-rendering -m lacuna.demo "$@"
+lacuna_display pvpython --force-offscreen-rendering -- -m lacuna.demo "$@"

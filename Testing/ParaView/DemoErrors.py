@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The demo says which stage failed and why; so does lacuna.errors.raising."""
 import os
+import re
 import runpy
+import subprocess
 import sys
 
 import lacuna.plugin
@@ -65,6 +67,27 @@ assert "not a regular volume" in walk_failure(file_with("surface.stl", "solid a\
                                               "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
                                               "endsolid a\n"))
 refuse_orientation(file_with("straight.mha", "TransformMatrix = 1 0 0 0 1 0 0 0 1\nElementDataFile = LOCAL\n"))
+
+# negative whole numbers arrive, by the commands as they are written: ParaView's own options end at --
+repository = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
+
+
+def command(name, pattern, *arguments):
+    """What a command in a file says when its arguments are replaced."""
+    with open(os.path.join(repository, name), encoding="utf-8") as file:
+        words = re.search(pattern, file.read()).group(1).split()
+    words = [walk if word.endswith("implant_to_mould.py") else word for word in words]
+    return subprocess.run([*words, *arguments], capture_output=True, text=True, timeout=120).stderr
+
+
+arguments = ["--output", output("demo-errors"), "--ct", oriented, "--hole", "26.6", "-13", "85", "26", "--view", "0", "-1", "0"]
+for name, pattern in (("demo.sh", r"(pvpython .*) \"\$@\""),
+                      ("Plugins/Python/lacuna/demo.py", r"(pvpython .* lacuna\.demo)"),
+                      ("Documentation/UserGuide/cranioplasty.md", r"    (pvpython .*\.py)"),
+                      ("Documentation/Examples/06-implant-to-mould/implant_to_mould.py", r"    (pvpython .*\.py)")):
+    only = ["--only", "implant"] if "demo" in name else []
+    said = command(name, pattern, *only, *arguments)
+    assert "oriented.mha is oriented" in said, (name, said)
 
 uncalibrated = file_with("uncalibrated.igs.mha", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
                          "ElementType = MET_UCHAR\nSeq_Frame0000_ProbeToTrackerTransform = 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"

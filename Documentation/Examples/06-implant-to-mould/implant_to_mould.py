@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """From the CT of a skull with a hole to a plate, a model to fit it in, a mould and the program that mills it.
 
-    pvpython implant_to_mould.py [--output FOLDER] [--ct CT --hole X Y Z R [--view X Y Z]]
+    pvpython -- implant_to_mould.py [--output FOLDER] [--ct CT --hole X Y Z R [--view X Y Z]]
+
+The -- keeps ParaView from turning numbers such as -13 into --13.
 
 --ct is a folder of DICOM files or a volume in Hounsfield units (.vti, .mha); --hole a point in the hole and a radius
 around it, mm: what lies in this cylinder along the view is replaced. Without --ct it is the Skull Phantom. Where the

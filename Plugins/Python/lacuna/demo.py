@@ -3,7 +3,8 @@
 implant surface for the hole in a skull. Without arguments it works on built-in phantoms
 whose truth is known; with --sweep and --ct on your own files. It writes pictures, the
 volume (.vti), the closed surface (.stl), the filled depth map (.vti), the implant surface
-(.igs) and report.md with the numbers."""
+(.igs) and report.md with the numbers. Without demo.sh: pvpython -- -m lacuna.demo, where the --
+keeps ParaView from turning numbers such as -13 into --13."""
 import argparse
 import contextlib
 import math
