@@ -88,6 +88,26 @@ assert not os.path.exists(output("Coordinates.stl"))
 record = save_solid(output("Coordinates.stl"), surface, allow_mirrored=True)
 assert record["coordinates"] == "patient, DICOM LPS, mirrored"
 
+# also behind filters of ParaView that drop field data, and so the mark; in other views and on second outputs, too
+dropped = CellDatatoPointData(Input=mirror)
+without = BSplineIsoRayCaster(Input=dropped, IsoValues=[500], ViewDirection=[0.4, 0.2, -0.9])
+lost = ImplantPlate(Input=RBFHoleFiller(Input=without, Smoothing=5))
+for proxy in (dropped, lost, AppendGeometry(Input=[surface, DepthMapSurface(Input=depth)]), Elevation(Input=surface)):
+    proxy.UpdatePipeline()
+    assert coordinates.find(proxy) == coordinates.UNKNOWN + coordinates.MIRRORED, proxy.GetXMLLabel()
+assert not fetch(lost).GetFieldData().HasArray("Mirrored") and not coordinates.is_mirrored(fetch(lost))
+for name in ("Coordinates.stl", "Coordinates.3mf"):
+    try:
+        save_solid(output(name), lost)
+        raise AssertionError("a mirrored plate whose mark is lost")
+    except PipelineError as error:
+        assert "mirror image" in str(error), error
+    assert not os.path.exists(output(name))
+    assert save_solid(output(name), lost, allow_mirrored=True)["coordinates"] == "unknown, mirrored"
+# a mirror image as the pattern of a fill mirrors nothing
+pattern = BSplineIsoRayCaster(Input=mirror, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+check(RBFHoleFiller(Input=depth, Smoothing=5, PriorSurface=pattern), coordinates.PATIENT)
+
 # landmarks warp an image to where their targets are; what comes from elsewhere is unknown
 points = PointSource(NumberOfPoints=20, Radius=40)
 check(RBFImageWarp(Input=skull, Landmarks=points, Targets=points), coordinates.UNKNOWN)

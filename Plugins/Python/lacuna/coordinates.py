@@ -34,6 +34,12 @@ def find(source):
     seen in its pipeline, and the answer is "unknown"; data alone do not tell, nor do files. It is "unknown" as well
     where a filter has reset the direction of an image, or does not heed it (STRAIGHTENING).
     """
+    name = _place(source)
+    return name + MIRRORED if is_mirrored(source) else name
+
+
+def _place(source):
+    """The same without what is mirrored."""
     data = source
     if hasattr(source, "GetXMLLabel"):
         if not _keeps_points(source):
@@ -42,16 +48,35 @@ def find(source):
     if data is None or _is_reset(data):
         return UNKNOWN
     mark = data.GetFieldData().GetAbstractArray("Coordinates")
-    name = UNKNOWN
     if mark is not None and mark.IsA("vtkStringArray") and mark.GetNumberOfValues() == 1:
-        name = NAMES.get(mark.GetValue(0), UNKNOWN)
-    return name + MIRRORED if is_mirrored(data) else name
+        return NAMES.get(mark.GetValue(0), UNKNOWN)
+    return UNKNOWN
 
 
-def is_mirrored(data):
-    """Whether data (vtkDataObject) are marked as a mirror image of the patient, or of what they show."""
-    mark = data.GetFieldData().GetArray("Mirrored")
+def is_mirrored(source):
+    """Whether a proxy or data (vtkDataObject) are a mirror image of the patient, or of what they show.
+
+    Data are by their mark, which filters of ParaView may drop; proxies also behind Mirror, whatever comes after it.
+    """
+    data = source
+    if hasattr(source, "GetXMLLabel"):
+        if _is_behind_mirror(source):
+            return True
+        data = fetch(source)
+    mark = None if data is None else data.GetFieldData().GetArray("Mirrored")
     return mark is not None and mark.GetNumberOfTuples() > 0 and mark.GetComponent(0, 0) != 0
+
+
+def _is_behind_mirror(proxy):
+    """Whether Mirror's image (its first output) is in a pipeline; a PriorSurface from one is a pattern only."""
+    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0:
+        return True
+    return any(_is_behind_mirror(each) for each in _inputs(proxy))
+
+
+def _inputs(proxy):
+    inputs = proxy.GetProperty("Input")
+    return [inputs[k] for k in range(len(inputs))] if inputs is not None else []
 
 
 def _is_same(matrix, other):
@@ -114,8 +139,7 @@ def _keeps_points(proxy):
     Images are not asked: their points are where origin, spacing and direction say, unless the direction was reset.
     A Transform that does nothing moves none. Where several come together, all have to be in the same coordinates.
     """
-    inputs = proxy.GetProperty("Input")
-    inputs = [inputs[k] for k in range(len(inputs))] if inputs is not None else []
+    inputs = _inputs(proxy)
     if inputs and not proxy.GetXMLName().startswith("Lacuna"):
         label = proxy.GetXMLLabel()
         if label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):

@@ -43,8 +43,8 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         data = fetch(proxy)
         if data is None or data.GetNumberOfPoints() == 0:
             raise PipelineError(f"there is nothing to write to {path}")
-    if coordinates.is_mirrored(data) and not allow_mirrored:
-        raise PipelineError(f"{path}: this is a mirror image of the patient (field data Mirrored); check the side, "
+    if coordinates.is_mirrored(proxy) and not allow_mirrored:
+        raise PipelineError(f"{path}: this is a mirror image of the patient (made by Mirror); check the side, "
                             "and give allow_mirrored=True if the mirrored one is wanted")
     place = coordinates.find(proxy)
     steps, measures = _steps_and_measures(data)
