@@ -18,7 +18,8 @@ LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 def check(proxy, expected):
     proxy.UpdatePipeline()
     assert coordinates.find(proxy) == expected, (proxy.GetXMLLabel(), coordinates.find(proxy), expected)
-    assert views.in_patient_coordinates(proxy) == (expected == coordinates.PATIENT), proxy.GetXMLLabel()
+    patient = expected in (coordinates.PATIENT, coordinates.PATIENT + coordinates.AS_FILE)
+    assert views.in_patient_coordinates(proxy) == patient, proxy.GetXMLLabel()
 
 
 def check_files(proxy, expected, **options):
@@ -116,9 +117,19 @@ for proxy in (Wavelet(), Sphere(), PhantomSweep(Input=skull, NumberOfSlices=3)):
     check(proxy, coordinates.UNKNOWN)
 assert save_solid(output("Coordinates.stl"), Sphere())["coordinates"] == coordinates.UNKNOWN
 
-# the mark is in files of ParaView's own formats
+# the mark is in files of ParaView's own formats, and is told as theirs: nobody knows what was done before writing
 for name, proxy, expected in (("Coordinates.vti", skull, coordinates.PATIENT), ("Coordinates.vts", press, coordinates.PRESS),
                               ("Coordinates.vtp", plate, coordinates.PATIENT)):
     SaveData(output(name), proxy=proxy, DataMode="Binary")
-    check(OpenDataFile(output(name)), expected)
+    check(OpenDataFile(output(name)), expected + coordinates.AS_FILE)
+    assert coordinates.find(fetch(OpenDataFile(output(name)))) == expected
+SaveData(output("Coordinates.vtp"), proxy=turned, DataMode="Binary")
+opened = OpenDataFile(output("Coordinates.vtp"))
+for proxy in (Triangulate(Input=opened), AppendGeometry(Input=[plate, opened])):
+    check(proxy, "patient, DICOM LPS, as the file says")
+assert save_solid(output("Coordinates.stl"), Triangulate(Input=opened))["coordinates"].endswith("as the file says")
+SaveData(output("Coordinates.vtp"), proxy=surface, DataMode="Binary")
+check(OpenDataFile(output("Coordinates.vtp")), "patient, DICOM LPS, as the file says, mirrored")
+check(Transform(Input=OpenDataFile(output("Coordinates.vti"))), "patient, DICOM LPS, as the file says")
+check(Reflect(Input=OpenDataFile(output("Coordinates.vtp"))), "unknown, mirrored")
 print("ok")

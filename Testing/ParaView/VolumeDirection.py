@@ -257,7 +257,7 @@ for name in SERIES:
     error = refusal(TAKERS["ray caster"](XMLImageDataReader(FileName=[file])))
     assert ("its source recorded" in error) == turned, (name, error)
 
-    assert (coordinates.find(XMLImageDataReader(FileName=[file])) == coordinates.PATIENT) != turned, name
+    assert coordinates.is_patient(XMLImageDataReader(FileName=[file])) != turned, name
 
     # no false alarm
     for mode in ("Binary", "Ascii"):

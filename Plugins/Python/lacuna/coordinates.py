@@ -2,11 +2,14 @@
 """In which coordinates data are, as far as it is known.
 
     from lacuna import coordinates
-    coordinates.find(proxy)            # "patient, DICOM LPS", "press" or "unknown", with ", mirrored" behind it
+    coordinates.find(proxy)            # "patient, DICOM LPS", "press" or "unknown"
+
+With ", as the file says" behind it when the data were read from a file other than DICOM, and ", mirrored".
 """
 from lacuna.data import fetch
 
 PATIENT, PRESS, UNKNOWN, MIRRORED = "patient, DICOM LPS", "press", "unknown", ", mirrored"
+AS_FILE = ", as the file says"  # whose data may have been moved before they were written
 NAMES = {"Patient": PATIENT, "Press": PRESS}  # by the field data array Coordinates
 
 # ParaView's filters that leave points where they are, by their labels.
@@ -35,11 +38,20 @@ def find(source):
     where a filter has reset the direction of an image, or does not heed it (STRAIGHTENING).
     """
     name = _place(source)
+    if name != UNKNOWN and hasattr(source, "GetXMLLabel") and _is_from_file(source):
+        name += AS_FILE
     return name + MIRRORED if is_mirrored(source) else name
 
 
+def is_patient(source):
+    """Whether a proxy or data (vtkDataObject) are in patient coordinates and not mirrored, as far as it is known; files
+    are believed.
+    """
+    return _place(source) == PATIENT and not is_mirrored(source)
+
+
 def _place(source):
-    """The same without what is mirrored."""
+    """PATIENT, PRESS or UNKNOWN, without how it is known."""
     data = source
     if hasattr(source, "GetXMLLabel"):
         if not _keeps_points(source):
@@ -72,6 +84,15 @@ def _is_behind_mirror(proxy):
     if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0:
         return True
     return any(_is_behind_mirror(each) for each in _inputs(proxy))
+
+
+def _is_from_file(proxy):
+    """Whether data of a pipeline are from a file with marks, not from DICOM, where the scanner says how the patient lay."""
+    inputs = _inputs(proxy)
+    if inputs:
+        return any(_is_from_file(each) for each in inputs)
+    return not proxy.GetXMLName().startswith("Lacuna") and \
+        any(proxy.GetProperty(name) is not None for name in ("FileName", "FileNames"))
 
 
 def _inputs(proxy):
@@ -149,6 +170,6 @@ def _keeps_points(proxy):
         record = _record(proxy) if label in RESETTING else None
         if record is not None and not _is_same(record, IDENTITY):
             return False
-        if len(inputs) > 1 and len({find(each) for each in inputs}) > 1:
+        if len(inputs) > 1 and len({(_place(each), is_mirrored(each)) for each in inputs}) > 1:
             return False
     return all(_keeps_points(each) for each in inputs)

@@ -129,15 +129,15 @@ def map_letters(source, force=False):
 
 def in_patient_coordinates(source):
     """Whether a proxy or data (vtkDataObject) are known to be in patient coordinates (LPS) and not mirrored: marked by
-    the CT Series Reader or the Skull Phantom (coordinates.find). Files of other formats may be turned or mirrored
-    without telling.
+    the CT Series Reader or the Skull Phantom (coordinates.find). Files with the mark are believed; files of other
+    formats may be turned or mirrored without telling.
     """
-    return coordinates.find(source) == coordinates.PATIENT
+    return coordinates.is_patient(source)
 
 
 def _check_patient(source, name):
-    place = coordinates.find(source)
-    if place != coordinates.PATIENT:
+    if not coordinates.is_patient(source):
+        place = coordinates.find(source)
         raise ValueError(
             f"{name} is not known to be in the patient's coordinates (it is: {place}), so that letters for left and right "
             "could be wrong. Hide it or leave the letters out; force=True if you know better")
