@@ -54,8 +54,9 @@ void Check(vtkDataObject* data)
       ", but its source recorded " + lacuna::FormatValue(recorded) + " in the field data array '" +
       ArrayName +
       "': a filter in between has reset it (Median, Gradient Magnitude, Image Shrink and Resample "
-      "To Image do), and left and right may have changed places. Leave that filter out (Speckle "
-      "Filter smooths and keeps directions). Only if it has resampled the voxels along the new "
+      "To Image do), or a file that does not keep it (.pvti, legacy .vtk), and left and right may "
+      "have changed places. Leave that filter out (Speckle Filter smooths and keeps directions), "
+      "and save as .vti. Only if it has resampled the voxels along the new "
       "directions, as Resample To Image does, remove the array behind it: Pass Arrays with all "
       "field data arrays but this one");
   }

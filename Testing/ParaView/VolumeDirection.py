@@ -259,6 +259,15 @@ for name in SERIES:
 
     assert coordinates.is_patient(XMLImageDataReader(FileName=[file])) != turned, name
 
+    # files that keep the record and drop the direction
+    for ending, options in (".vti", dict(DataMode="Binary")), (".pvti", dict(DataMode="Binary")), (".vtk", {}):
+        other = os.path.join(folder, name + ending)
+        SaveData(other, proxy=scan, **options)
+        opened = OpenDataFile(other)
+        error, lost = refusal(TAKERS["ray caster"](opened)), turned and ending != ".vti"
+        assert ("a file that does not keep it (.pvti, legacy .vtk)" in error) == lost, (name, ending, error)
+        assert coordinates.is_patient(opened) != lost, (name, ending)
+
     # no false alarm
     for mode in ("Binary", "Ascii"):
         SaveData(file, proxy=scan, DataMode=mode)
