@@ -224,6 +224,8 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
     list, Text(this->SeriesUID), this->FileName, found.Folder.GetOpenedSeries());
   const std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
   lacuna::CheckSameVolume(frames);
+  const std::vector<std::string> doubts = lacuna::FindDoubtsOfPatient(frames);
+  found.Warnings.insert(found.Warnings.end(), doubts.begin(), doubts.end());
   const std::string doubt = lacuna::CheckRescaleType(frames);
   if (!doubt.empty())
   {

@@ -24,15 +24,20 @@ constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and wha
   throw std::runtime_error(frame.GetName() + ": " + what);
 }
 
-std::size_t CountPatients(const std::vector<CTSeries>& all)
+// " of 2 patients" with the tag that tells them apart; empty when there is one.
+std::string DescribePatients(const std::vector<CTSeries>& all)
 {
+  std::set<std::string> ids;
   std::set<std::pair<std::string, std::string>> patients;
   for (const CTSeries& series : all)
   {
     const CTPatient& patient = series.Frames.front().Header->Patient;
+    ids.insert(patient.Id);
     patients.emplace(patient.Id, patient.Name);
   }
-  return patients.size();
+  return patients.size() < 2 ? std::string()
+                             : " of " + std::to_string(patients.size()) + " patients " +
+      (ids.size() > 1 ? "(0010,0020)" : "(0010,0010)");
 }
 
 bool IsLocalizer(const CTFrame& frame)
@@ -175,7 +180,10 @@ void CheckSame(const CTFrame& frame, const CTFrame& first)
   }
   if (a.Patient.Id != b.Patient.Id || a.Patient.Name != b.Patient.Name)
   {
-    Fail(frame, "is of another patient (0010,0020) than " + first.GetName());
+    const bool byId = a.Patient.Id != b.Patient.Id;
+    Fail(frame,
+      std::string("is of another patient (") + (byId ? "0010,0020" : "0010,0010") + ") than " +
+        first.GetName() + (byId ? "" : ": the name differs"));
   }
   if (a.FrameOfReferenceUid != b.FrameOfReferenceUid)
   {
@@ -347,10 +355,8 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
   }
   if (wanted.empty())
   {
-    const std::size_t patients = CountPatients(list.Series);
     throw std::runtime_error(file + ": there are " + std::to_string(list.Series.size()) +
-      " CT series" +
-      (patients > 1 ? " of " + std::to_string(patients) + " patients (0010,0020)" : "") +
+      " CT series" + DescribePatients(list.Series) +
       "; set SeriesUID to one of these (0020,000E):" + list.Describe());
   }
   for (const CTSeries& series : list.Series)
@@ -398,5 +404,44 @@ void CheckSameVolume(const std::vector<CTFrame>& frames)
     CheckImage(frame);
     CheckSame(frame, frames.front());
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames)
+{
+  using Value = std::function<const std::string&(const CTFileHeader&)>;
+  const std::pair<const char*, Value> tags[] = {
+    { "Patient's Birth Date (0010,0030)",
+      [](const CTFileHeader& h) -> const std::string& { return h.Patient.BirthDate; } },
+    { "Patient's Sex (0010,0040)",
+      [](const CTFileHeader& h) -> const std::string& { return h.Patient.Sex; } },
+    { "Patient Position (0018,5100)",
+      [](const CTFileHeader& h) -> const std::string& { return h.PatientPosition; } },
+  };
+  std::vector<std::string> doubts;
+  for (const auto& [name, value] : tags)
+  {
+    const CTFrame* first = nullptr; // that has a value
+    const CTFrame* other = nullptr;
+    std::size_t count = 0;
+    for (const CTFrame& frame : frames)
+    {
+      const std::string& text = value(*frame.Header);
+      first = first || text.empty() ? first : &frame;
+      if (first && !text.empty() && text != value(*first->Header))
+      {
+        other = other ? other : &frame;
+        ++count;
+      }
+    }
+    if (other)
+    {
+      doubts.push_back(other->GetName() +
+        (count > 1 ? " and " + std::to_string(count - 1) + " more have" : std::string(" has")) +
+        " another " + name + " than " + first->GetName() +
+        ": two scans may have got into one series; compare with the hospital's viewer");
+    }
+  }
+  return doubts;
 }
 }

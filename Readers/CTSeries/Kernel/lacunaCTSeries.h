@@ -55,5 +55,9 @@ std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition);
 /// spacing, position, orientation, patient and frame of reference, as one volume has, and Patient
 /// Orientation, where it is there, agrees with Image Orientation (Patient).
 void CheckSameVolume(const std::vector<CTFrame>& frames);
+
+/// Sentences that name files and tags where images of a volume have different birth dates, sexes or
+/// positions of the patient; the values are not in them. Images that do not say are passed over.
+std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames);
 }
 #endif

@@ -259,7 +259,7 @@ std::string CheckRescaleType(const std::vector<CTFrame>& frames)
     std::string type = frame.RescaleType;
     std::transform(type.begin(), type.end(), type.begin(),
       [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-    if (type.empty() || type == "HU")
+    if (type.empty() || type == "HU" || type.rfind("HOUNSFIELD", 0) == 0) // ... units
     {
       continue;
     }

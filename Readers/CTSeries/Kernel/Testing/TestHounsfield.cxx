@@ -153,6 +153,11 @@ TEST(Hounsfield, RescaleType)
   frames[0].RescaleType = "HU";
   frames[2].RescaleType = "hu";
   EXPECT_EQ(CheckRescaleType(frames), "");
+  for (const char* written : { "Hounsfield Unit", "HOUNSFIELD", "hounsfield units" })
+  {
+    frames[1].RescaleType = written;
+    EXPECT_EQ(CheckRescaleType(frames), "");
+  }
   for (const char* open : { "US", "HU_MOD" })
   {
     frames[1].RescaleType = open;
@@ -160,7 +165,7 @@ TEST(Hounsfield, RescaleType)
                 std::string(open) + ", unspecified or modified units; its values are taken"),
       0U);
   }
-  for (const char* other : { "OD", "Z_EFF", "ED", "MGML", "PCT", "HUGE" })
+  for (const char* other : { "OD", "Z_EFF", "ED", "MGML", "PCT", "HUGE", "no Hounsfield" })
   {
     frames[2].RescaleType = other;
     try

@@ -80,7 +80,15 @@ void TestTwoPatients()
   }
   // in one series
   ExpectErrorOf(
-    Edited({ { 0x0010, 0x0010, "PN", "Other", { 4 } } }), 4, { "another patient (0010,0020)" });
+    Edited({ { 0x0010, 0x0020, "LO", "OTHER", { 4 } } }), 4, { "another patient (0010,0020)" });
+  ExpectErrorOf(Edited({ { 0x0010, 0x0010, "PN", "Other", { 4 } } }), 4,
+    { "another patient (0010,0010)", "the name differs" });
+  // of the same identification
+  ReaderOf names(Edited({}));
+  second = Edited({ { 0x0010, 0x0010, "PN", "OTHER^Name", {} } });
+  second.SeriesUid = "1.2.3.77";
+  second.Write(names.Folder + "/second");
+  names.ExpectError("there are 2 CT series of 2 patients (0010,0010); set SeriesUID");
 }
 
 void TestNoCT()

@@ -84,6 +84,30 @@ void TestDoubts()
   unsaid.ExpectGood();
   LACUNA_CHECK(unsaid.Warnings.empty());
 
+  // half of it another patient's?
+  const CTTestSeries::Edit edits[] = { { 0x0010, 0x0030, "DA", "19550505", { 3, 4, 5 } },
+    { 0x0010, 0x0040, "CS", "M", { 3, 4, 5 } }, { 0x0018, 0x5100, "CS", "FFS", { 3, 4, 5 } } };
+  const char* const tags[] = { "Patient's Birth Date (0010,0030)", "Patient's Sex (0010,0040)",
+    "Patient Position (0018,5100)" };
+  for (int i = 0; i < 3; ++i)
+  {
+    ReaderOf halves(Edited({ edits[i] }));
+    halves.ExpectGood();
+    LACUNA_CHECK_CONTAINS(
+      halves.Warnings, std::string(" and 2 more have another ") + tags[i] + " than ");
+    LACUNA_CHECK_THAT(halves.Warnings.find("1955") == std::string::npos, halves.Warnings);
+    // some that do not say are no contradiction
+    CTTestSeries::Edit silent = edits[i];
+    silent.Value = "";
+    silent.Only = { 0, 4 };
+    ReaderOf some(Edited({ silent }));
+    some.ExpectGood();
+    LACUNA_CHECK_THAT(some.Warnings.empty(), some.Warnings);
+  }
+  ReaderOf whole(Edited({ { 0x0018, 0x5100, "CS", "FFS", {} } }));
+  whole.ExpectGood();
+  LACUNA_CHECK_THAT(whole.Warnings.empty(), whole.Warnings);
+
   ReaderOf agrees(Edited({ { 0x0020, 0x0020, "CS", "L\\P", {} } }));
   agrees.ExpectGood();
   ReaderOf animal(
