@@ -11,7 +11,8 @@ cylinder has sound bone, as in a CT without a hole, the result is compared with 
 
 Files: filled.vti (the filled depth map), plate.3mf and plate.stl (to print), model.stl (the bone around the hole),
 mould.igs and mould.stl (to press a plate of 0.7 mm), mould.nc (G-code). Each can be traced to the CT by its header or
-the .json beside it. Pictures: 1-hole.png to 7-left-over.png. At the end all files are read again and checked.
+the .json beside it. Pictures: 1-hole.png to 7-left-over.png. At the end all files are read again and checked; when
+one is wrong the names of all that could be made from begin with WRONG-.
 """
 import argparse
 import math
@@ -27,13 +28,16 @@ from lacuna.data import open_volume
 from lacuna.solids import save_solid
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticPointLocator
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkImplicitPolyDataDistance
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 SHEET = 0.7  # mm, the titanium that is pressed
 TOOL = 4.0  # mm, radius of the ball end
+FINER = 4  # times: the fitted surface for the checks
+MADE = ("plate.3mf", "plate.stl", "model.stl", "mould.igs", "mould.stl", "mould.nc")
 
 
 def arguments():
@@ -115,9 +119,9 @@ def distances(points, surface):
 def depths_behind(image, points):
     """mm that points lie behind the fitted surface of a map, along the view."""
     to_world = np.array(field(image, "ImageToWorld")).reshape(4, 4)
-    fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted")).reshape(image.GetDimensions()[1::-1])
+    fitted = fine_depths(image)
     column, row, depth = ((points - to_world[:3, 3]) @ np.linalg.inv(to_world[:3, :3]).T).T
-    column, row = column - image.GetExtent()[0], row - image.GetExtent()[2]
+    column, row = FINER * (column - image.GetExtent()[0]), FINER * (row - image.GetExtent()[2])
     i, j = np.floor(column).astype(int), np.floor(row).astype(int)
     x, y = column - i, row - j
     return depth - ((1 - x) * (1 - y) * fitted[j, i] + x * (1 - y) * fitted[j, i + 1]
@@ -133,17 +137,45 @@ def is_closed(surface):
     return edges.GetOutput().GetNumberOfCells() == 0
 
 
-def fitted_surface(filled):
+def finer(rows):
+    """FINER - 1 rows between two: by the cubic polynomial through four, straight where one of the four is missing."""
+    result = np.full((FINER * (len(rows) - 1) + 1,) + rows.shape[1:], np.nan)
+    result[::FINER] = rows
+    beyond = np.full((1,) + rows.shape[1:], np.nan)
+    a, b, c, d = beyond, rows[:-1], rows[1:], beyond
+    a, d = np.concatenate([a, rows[:-2]]), np.concatenate([rows[2:], d])
+    for k in range(1, FINER):
+        t = k / FINER
+        cubic = (t * (1 - t) * ((t - 2) * a - (t + 1) * d) / 6
+                 + (t + 1) * (2 - t) * ((1 - t) * b + t * c) / 2)
+        result[k::FINER] = np.where(np.isfinite(cubic), cubic, (1 - t) * b + t * c)
+    return result
+
+
+def fine_depths(image):
+    """Fitted FINER times as fine: flat triangles between its pixels would lie up to 0.1 mm off the smooth surface where
+    that is strongly curved."""
+    fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted")).reshape(image.GetDimensions()[1::-1])
+    return finer(finer(fitted).T).T
+
+
+def fitted_surface(image):
     """The fitted surface as triangles in patient coordinates, straight from the map's numbers."""
-    image = servermanager.Fetch(filled)
-    calculator = Calculator(Input=filled, Function="Fitted", ResultArrayName="FittedDepth")
-    surface = DepthMapSurface(Input=calculator, DepthArray="FittedDepth", BreakAtDiscontinuities=0)
-    surface.UpdatePipeline()
-    triangles = vtkPolyData()
-    triangles.ShallowCopy(servermanager.Fetch(surface))
-    Delete(surface)
-    Delete(calculator)
-    return image, triangles
+    depth = fine_depths(image)
+    row, column = np.indices(depth.shape)
+    places = np.stack([image.GetExtent()[0] + column / FINER, image.GetExtent()[2] + row / FINER, depth], 2)
+    to_world = np.array(field(image, "ImageToWorld")).reshape(4, 4)
+    known = np.isfinite(depth)
+    number = np.where(known, np.cumsum(known).reshape(known.shape) - 1, -1)
+    corners = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    triangles = np.concatenate([np.stack([corners[k] for k in order], 2).reshape(-1, 3)
+                                for order in ((0, 1, 2), (0, 2, 3))])
+    points, cells, surface = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(places[known] @ to_world[:3, :3].T + to_world[:3, 3], deep=True))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles[(triangles >= 0).all(1)]).ravel(), deep=True))
+    surface.SetPoints(points)
+    surface.SetPolys(cells)
+    return surface
 
 
 def read_program(name):
@@ -166,7 +198,8 @@ def check(folder, filled, mould, path):
         if not good:
             raise AssertionError(what)
 
-    image, surface = fitted_surface(filled)
+    image = servermanager.Fetch(filled)
+    surface = fitted_surface(image)
     plate = read_stl(os.path.join(folder, "plate.stl"))
     model = read_stl(os.path.join(folder, "model.stl"))
     report("plate and model are closed", "", is_closed(plate) and is_closed(model))
@@ -209,9 +242,6 @@ def check(folder, filled, mould, path):
 
 def beside(program, planned):
     """mm from the places of a program to the nearest of a path."""
-    from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.util.numpy_support import numpy_to_vtk
     points = vtkPoints()
     points.SetData(numpy_to_vtk(planned.astype(float), deep=True))
     cloud = vtkPolyData()
@@ -221,6 +251,14 @@ def beside(program, planned):
     locator.BuildLocator()
     nearest = planned[[locator.FindClosestPoint(p) for p in program]]
     return np.linalg.norm(nearest - program, axis=1).max()
+
+
+def set_aside(folder):
+    """Nothing shall be made of files that are wrong: their names say so."""
+    for name in MADE:
+        for file in (name, name + ".json"):
+            if os.path.exists(os.path.join(folder, file)):
+                os.replace(os.path.join(folder, file), os.path.join(folder, "WRONG-" + file))
 
 
 # ---------------------------------------------------------------------------- pictures
@@ -336,8 +374,13 @@ def main():
     print(f"mould: {field(grid, 'Depth'):.1f} mm deep, walls up to {field(grid, 'DraftAngle'):.0f} degrees, block "
           + " x ".join(f"{x:.0f}" for x in field(grid, "BlockSize")) + " mm")
     print(f"milling: {field(tool, 'PathLength')[0] / 1000:.1f} m of cuts, {field(tool, 'MachiningTime') / 60:.0f} min")
-    check(options.output, filled, mould, path)
+    try:
+        check(options.output, filled, mould, path)
+    except AssertionError:
+        set_aside(options.output)
+        raise
     make_pictures(options.output, view, filled, plate, model, mould, path, has_truth)
 
 
-main()
+if __name__ == "__main__":
+    main()
