@@ -14,6 +14,14 @@ namespace lacuna
 {
 namespace
 {
+constexpr double Pi = 3.14159265358979323846;
+
+// Above it an edge is steep (SteepEdges).
+double SteepSlope()
+{
+  return std::tan(DiscontinuityLimits().MaximumAngle * (Pi / 180));
+}
+
 // Share of the edge of a defect without support from which on a fit is said to extrapolate.
 constexpr double WarnedShare = 0.25;
 
@@ -121,9 +129,14 @@ private:
   SlopeRule Rule;
 };
 
-void LeaveOutNearSteps(
-  Execution& execution, const MarkedMap& map, double margin, SupportSelection& selection)
+// The pixels within margin of a steep edge or of a pixel without a depth; none if margin is 0.
+MapMask FindNearSteps(
+  Execution& execution, const MarkedMap& map, double margin, const MapMask& candidates)
 {
+  if (!(margin > 0))
+  {
+    return MapMask(candidates.size(), 0);
+  }
   MapMask steps(map.Valid.size());
   std::transform(
     map.Valid.begin(), map.Valid.end(), steps.begin(), [](unsigned char v) { return v ? 0 : 1; });
@@ -133,7 +146,41 @@ void LeaveOutNearSteps(
       steps[pixel] = 1;
       steps[next] = 1;
     });
-  const MapMask near = SelectWithin(execution, map.Grid, steps, margin, selection.Support);
+  return SelectWithin(execution, map.Grid, steps, margin, candidates);
+}
+
+// Before those near steps: what the margin takes makes a gap of a step, over which the depths of
+// both sides look like those of one surface.
+void LeaveOutBeyondSteps(
+  const MarkedMap& map, double maximumSlope, const MapMask& near, SupportSelection& selection)
+{
+  const MapMask before = selection.Support;
+  const StepReport steps = RemoveBeyondSteps(map.Grid, map.Depth, maximumSlope, selection.Support);
+  std::size_t count = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < before.size(); ++pixel)
+  {
+    // What is near the step, too, was asked to be left out.
+    if (before[pixel] && !selection.Support[pixel] && !near[pixel])
+    {
+      selection.Use[pixel] = SupportUse::BeyondStep;
+      first = count++ == 0 ? pixel : first;
+    }
+  }
+  if (count > 0)
+  {
+    std::ostringstream message;
+    message << count << " pixels around the defect, " << Locate(map.Grid, first)
+            << ", lie beyond a depth step of up to " << steps.LargestStep
+            << " mm from the rest and were not used for the fit: a part that "
+            << "is seen through the hole, or the far side of an edge. Mark them as defect if they "
+            << "shall be replaced, or choose a view in which the surface is not so steep";
+    selection.Warnings.push_back(message.str());
+  }
+}
+
+void LeaveOutNearSteps(double margin, const MapMask& near, SupportSelection& selection)
+{
   for (std::size_t pixel = 0; pixel < near.size(); ++pixel)
   {
     if (near[pixel])
@@ -150,30 +197,6 @@ void LeaveOutNearSteps(
             << " mm of a depth step or of pixels without a depth; lower SupportStepMargin, or "
             << "raise SupportMargin";
     throw std::invalid_argument(message.str());
-  }
-}
-
-void LeaveOutBeyondSteps(const MarkedMap& map, SupportSelection& selection)
-{
-  const MapMask before = selection.Support;
-  const StepReport steps =
-    RemoveBeyondSteps(map.Grid, map.Depth, MaximumSupportSlope, selection.Support);
-  for (std::size_t pixel = 0; pixel < before.size(); ++pixel)
-  {
-    if (before[pixel] && !selection.Support[pixel])
-    {
-      selection.Use[pixel] = SupportUse::BeyondStep;
-    }
-  }
-  if (steps.RemovedPixels > 0)
-  {
-    std::ostringstream message;
-    message << steps.RemovedPixels << " pixels around the defect, "
-            << Locate(map.Grid, steps.FirstPixel) << ", lie beyond a depth step of up to "
-            << steps.LargestStep << " mm from the rest and were not used for the fit: a part that "
-            << "is seen through the hole, or the far side of an edge. Mark them as defect if they "
-            << "shall be replaced, or choose a view in which the surface is not so steep";
-    selection.Warnings.push_back(message.str());
   }
 }
 
@@ -252,11 +275,9 @@ SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
   selection.Support = FindCandidates(execution, map, margins.Defect);
   selection.Use.assign(selection.Support.size(), SupportUse::None);
   LeaveOutWithoutPrior(map, prior, selection);
-  if (margins.Step > 0)
-  {
-    LeaveOutNearSteps(execution, map, margins.Step, selection);
-  }
-  LeaveOutBeyondSteps(map, selection);
+  const MapMask near = FindNearSteps(execution, map, margins.Step, selection.Support);
+  LeaveOutBeyondSteps(map, margins.Step > 0 ? SteepSlope() : MaximumSupportSlope, near, selection);
+  LeaveOutNearSteps(margins.Step, near, selection);
   for (std::size_t pixel = 0; pixel < selection.Use.size(); ++pixel)
   {
     if (selection.Support[pixel])

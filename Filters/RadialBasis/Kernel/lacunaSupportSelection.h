@@ -44,7 +44,8 @@ struct SupportMargins
 {
   double Defect = 12; ///< how far from the defect the surface is used, mm, > 0
   /// Not used is what lies within this distance of a pixel without a depth or of one that differs
-  /// from an edge neighbour by more than 65 degrees of slope, mm, >= 0; 0: this is not looked at.
+  /// from an edge neighbour by more than 65 degrees of slope, mm, >= 0; and 65 degrees divide the
+  /// surface then instead of MaximumSupportSlope. 0: this is not looked at.
   double Step = 0;
 };
 
@@ -56,8 +57,8 @@ struct SupportSelection
 };
 
 /// The painted pixels, or those within margins.Defect of the defect, that are valid, outside of the
-/// defect, on the prior (NaN where there is none; empty: no prior), farther than margins.Step from
-/// steps and holes, and not beyond a depth step (RemoveBeyondSteps). Steps and holes count in the
+/// defect, on the prior (NaN where there is none; empty: no prior), not beyond a depth step
+/// (RemoveBeyondSteps), and of what is left farther than margins.Step from steps and holes. Steps and holes count in the
 /// defect, too: its rim is rounded by the partial volume effect wherever it was marked. Warns of what
 /// was left out unless margins.Step asked for it, of steep pixels, of a defect at the border of
 /// the map and of one that has no support along a quarter of its edge or more. Throws

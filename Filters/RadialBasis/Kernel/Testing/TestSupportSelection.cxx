@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
@@ -51,6 +52,89 @@ double GetDistance(std::size_t a, std::size_t b)
   { return static_cast<double>(m) - static_cast<double>(n); };
   return std::hypot(1.5 * difference(a % 60, b % 60), difference(a / 60, b / 60));
 }
+
+// A plane inclined by 17 degrees with a hole as defect, from which the bone falls to a far side:
+// fall(x, y) is by how much, mm, NaN: no depth. x and y are mm from the centre of the hole.
+template <class Fall>
+MarkedMap MakeFall(const Fall& fall)
+{
+  MarkedMap map;
+  map.Grid.Width = 80;
+  map.Grid.Height = 60;
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    const double x = static_cast<double>(pixel % 80) - 35;
+    const std::size_t row = pixel / 80;
+    const double y = static_cast<double>(row) - 30;
+    const double depth = 20 + 0.3 * x + fall(x, y);
+    map.Defect.push_back(std::hypot(x, y) <= 15);
+    map.Valid.push_back(!map.Defect.back() && std::isfinite(depth));
+    map.Depth.push_back(depth);
+  }
+  return map;
+}
+
+// Nothing that has fallen carries the fit, the user hears of it, and the bone beside it stays.
+template <class Fall>
+void ExpectDivided(const Fall& fall, double stepMargin)
+{
+  const MarkedMap map = MakeFall(fall);
+  const lacuna::SupportSelection selection = Select(map, stepMargin);
+  std::size_t beyond = 0;
+  std::size_t used = 0;
+  for (std::size_t pixel = 0; pixel < map.Grid.GetSize(); ++pixel)
+  {
+    const double fallen = map.Depth[pixel] - 20 - 0.3 * (static_cast<double>(pixel % 80) - 35);
+    beyond += selection.Use[pixel] == SupportUse::BeyondStep;
+    used += selection.Support[pixel] && fallen == 0;
+    EXPECT_FALSE(selection.Support[pixel] && fallen > 1) << pixel % 80 << " " << pixel / 80;
+  }
+  EXPECT_GT(beyond, 0U);
+  EXPECT_GT(used, 200U);
+  ASSERT_FALSE(selection.Warnings.empty());
+  EXPECT_EQ(
+    selection.Warnings[0].find(std::to_string(beyond) + " pixels around the defect, first"), 0U)
+    << selection.Warnings[0];
+  EXPECT_NE(selection.Warnings[0].find("beyond a depth step"), std::string::npos);
+}
+}
+
+TEST(SupportSelection, LeavesOutAFarSideWiderThanTheMargin)
+{
+  for (const double depth : { 10.0, 30.0, 34.0, 60.0 })
+  {
+    SCOPED_TRACE(depth);
+    const auto island = [depth](double x, double y)
+    { return std::hypot(x - 22, y) < 7 ? depth : 0; };
+    ExpectDivided(island, 0);
+    ExpectDivided(island, 3);
+    const auto ledge = [depth](double x, double) { return x > 19 ? depth : 0; };
+    ExpectDivided(ledge, 0);
+    ExpectDivided(ledge, 3);
+    const auto ringed = [depth](double x, double y)
+    {
+      const double radius = std::hypot(x - 22, y);
+      return radius < 5.5 ? 6 * depth : radius < 7 ? NAN : 0;
+    };
+    ExpectDivided(ringed, 0);
+    ExpectDivided(ringed, 3);
+  }
+}
+
+TEST(SupportSelection, LeavesOutTheFootOfARampWithTheMargin)
+{
+  // 73 and 77 degrees: steps to the margin, though not without it
+  for (const auto& [depth, width] : { std::pair{ 9.0, 3.0 }, { 16.0, 4.0 } })
+  {
+    SCOPED_TRACE(depth);
+    const auto ramp = [depth = depth, width = width](double x, double) {
+      return x < 18 ? 0.0 : x < 18 + width ? (x - 18) / width * depth : depth;
+    };
+    ExpectDivided(ramp, 3);
+    const lacuna::SupportSelection without = Select(MakeFall(ramp), 0);
+    ASSERT_EQ(without.Warnings.size(), 1U);
+    EXPECT_NE(without.Warnings[0].find("steeper than 65 degrees"), std::string::npos);
+  }
 }
 
 TEST(SupportSelection, LeavesOutWhatIsNearStepsAndHoles)
