@@ -311,10 +311,10 @@ MapMask FindHoles(Execution& execution, const MapGrid& grid, const std::vector<d
 
 //------------------------------------------------------------------------------
 StepReport RemoveBeyondSteps(
-  const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support)
+  const MapGrid& grid, const std::vector<double>& depth, const StepSlopes& slopes, MapMask& support)
 {
   std::vector<std::int64_t> labels;
-  const std::vector<std::size_t> sizes = LabelSmooth(grid, depth, maximumSlope, support, labels);
+  const std::vector<std::size_t> sizes = LabelSmooth(grid, depth, slopes.Touching, support, labels);
 
   std::vector<std::int64_t> order(sizes.size());
   for (std::size_t i = 0; i < order.size(); ++i)
@@ -360,7 +360,7 @@ StepReport RemoveBeyondSteps(
     {
       support[pixel] = labels[pixel] != None && kept[labels[pixel]];
     }
-    changed = remove(FindStepsOverGaps(grid, depth, maximumSlope, labels, support));
+    changed = remove(FindStepsOverGaps(grid, depth, slopes.OverGap, labels, support));
   }
   bool first = true;
   for (std::size_t pixel = 0; pixel < support.size(); ++pixel)

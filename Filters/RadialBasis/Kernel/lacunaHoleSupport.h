@@ -71,14 +71,23 @@ struct StepReport
   std::size_t FirstPixel = 0; ///< the first removed one
 };
 
+/// From which difference of depths, times the distance in the map, two pixels of the support are
+/// taken to lie on different surfaces.
+struct StepSlopes
+{
+  double Touching = 0; ///< of edge neighbours
+  double OverGap = 0;  ///< of pixels that face each other over others that are not support
+};
+
 /// Removes from support what lies beyond a depth step. A step is between two edge neighbours of
-/// support whose depths differ by more than maximumSlope times their distance. Steps divide the
+/// support whose depths differ by more than slopes.Touching times their distance. Steps divide the
 /// support into connected pieces (over edges without a step). Taken from the largest piece to the
 /// smallest (of equal ones the one with the first pixel), a piece is removed when a step divides it
 /// from one that was kept. Then the same with pieces that do not touch but face each other over
-/// pixels that are not support: the step is between the two pixels where they are nearest.
-StepReport RemoveBeyondSteps(
-  const MapGrid& grid, const std::vector<double>& depth, double maximumSlope, MapMask& support);
+/// pixels that are not support: the step is between the two pixels where they are nearest, and
+/// steeper than slopes.OverGap.
+StepReport RemoveBeyondSteps(const MapGrid& grid, const std::vector<double>& depth,
+  const StepSlopes& slopes, MapMask& support);
 
 /// Thins support to a lattice of nodeSpacing mm through x = y = 0: for each lattice point the
 /// nearest pixel of support is kept, the first one of equals, if one lies in the square of that

@@ -152,10 +152,10 @@ MapMask FindNearSteps(
 // Before those near steps: what the margin takes makes a gap of a step, over which the depths of
 // both sides look like those of one surface.
 void LeaveOutBeyondSteps(
-  const MarkedMap& map, double maximumSlope, const MapMask& near, SupportSelection& selection)
+  const MarkedMap& map, const StepSlopes& slopes, const MapMask& near, SupportSelection& selection)
 {
   const MapMask before = selection.Support;
-  const StepReport steps = RemoveBeyondSteps(map.Grid, map.Depth, maximumSlope, selection.Support);
+  const StepReport steps = RemoveBeyondSteps(map.Grid, map.Depth, slopes, selection.Support);
   std::size_t count = 0;
   std::size_t first = 0;
   for (std::size_t pixel = 0; pixel < before.size(); ++pixel)
@@ -276,7 +276,10 @@ SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
   selection.Use.assign(selection.Support.size(), SupportUse::None);
   LeaveOutWithoutPrior(map, prior, selection);
   const MapMask near = FindNearSteps(execution, map, margins.Step, selection.Support);
-  LeaveOutBeyondSteps(map, margins.Step > 0 ? SteepSlope() : MaximumSupportSlope, near, selection);
+  // Over a gap nothing shows that a steep surface goes on.
+  const double overGap = SteepSlope();
+  LeaveOutBeyondSteps(
+    map, { margins.Step > 0 ? overGap : MaximumSupportSlope, overGap }, near, selection);
   LeaveOutNearSteps(margins.Step, near, selection);
   for (std::size_t pixel = 0; pixel < selection.Use.size(); ++pixel)
   {

@@ -15,7 +15,8 @@ class Execution;
 
 /// Two edge neighbours of the support whose depths differ by more than this times their distance
 /// are taken to lie on different surfaces: 79 degrees, where Gordon's weights (Carr 1996,
-/// section 3.3.2.1) also stop trusting a difference.
+/// section 3.3.2.1) also stop trusting a difference. Over pixels that are not support 65 degrees do:
+/// no pixel between them shows that the surface goes on.
 constexpr double MaximumSupportSlope = 5;
 
 /// What became of a pixel near the defect.

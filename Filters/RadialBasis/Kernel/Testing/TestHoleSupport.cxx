@@ -152,7 +152,7 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStep)
   {
     expected[i] = support[i] && depth[i] != 40;
   }
-  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(Grid(map), depth, 5, support);
+  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(Grid(map), depth, { 5, 5 }, support);
   EXPECT_EQ(support, expected);
   EXPECT_EQ(report.RemovedPixels, 4u);
   EXPECT_EQ(report.LargestStep, 30);
@@ -188,7 +188,7 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStepWithAGap)
   }
   lacuna::MapGrid grid = Grid(map);
   lacuna::MapMask once = support;
-  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(grid, depth, 5, once);
+  const lacuna::StepReport report = lacuna::RemoveBeyondSteps(grid, depth, { 5, 5 }, once);
   EXPECT_EQ(once, expected);
   EXPECT_EQ(report.RemovedPixels, 11U);
   EXPECT_EQ(report.FirstPixel, 2U * 18 + 4);
@@ -196,7 +196,7 @@ TEST(HoleSupport, RemovesWhatLiesBeyondAStepWithAGap)
   // Nothing is a step where the same depths lie far apart.
   grid.Spacing = { 60, 60 };
   once = support;
-  EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, 5, once).RemovedPixels, 0U);
+  EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, { 5, 5 }, once).RemovedPixels, 0U);
 }
 
 TEST(HoleSupport, FindsHolesThatShowTheFarSide)
@@ -263,9 +263,9 @@ TEST(HoleSupport, KeepsASteepSlope)
       depth.push_back(4 * spacing * static_cast<double>(i % 20));
     }
     lacuna::MapMask support(grid.GetSize(), 1);
-    EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, 5, support).RemovedPixels, 0u);
+    EXPECT_EQ(lacuna::RemoveBeyondSteps(grid, depth, { 5, 5 }, support).RemovedPixels, 0u);
     EXPECT_EQ(support, lacuna::MapMask(grid.GetSize(), 1));
-    EXPECT_GT(lacuna::RemoveBeyondSteps(grid, depth, 3.9, support).RemovedPixels, 0u);
+    EXPECT_GT(lacuna::RemoveBeyondSteps(grid, depth, { 3.9, 3.9 }, support).RemovedPixels, 0u);
   }
 }
 

@@ -121,6 +121,27 @@ TEST(SupportSelection, LeavesOutAFarSideWiderThanTheMargin)
   }
 }
 
+TEST(SupportSelection, LeavesOutWhatASteepGapDivides)
+{
+  // 68 to 76 degrees over pixels without a depth
+  for (const auto& [depth, gap] : { std::pair{ 10.0, 2.5 }, { 15.0, 3.0 }, { 20.0, 4.0 } })
+  {
+    SCOPED_TRACE(depth);
+    const auto island = [depth = depth, gap = gap](double x, double y)
+    {
+      const double radius = std::hypot(x - 22, y);
+      return radius < 4 ? depth : radius < 4 + gap ? NAN : 0;
+    };
+    ExpectDivided(island, 0);
+    ExpectDivided(island, 0.5);
+  }
+  // 45 degrees: a saw cut beside a flap that has sunk
+  const auto flap = [](double x, double) { return x < 19 ? 0 : x < 22 ? NAN : 4.0; };
+  const lacuna::SupportSelection selection = Select(MakeFall(flap), 0);
+  EXPECT_TRUE(selection.Warnings.empty());
+  EXPECT_TRUE(selection.Support[30 * 80 + 35 + 24]);
+}
+
 TEST(SupportSelection, LeavesOutTheFootOfARampWithTheMargin)
 {
   // 73 and 77 degrees: steps to the margin, though not without it
