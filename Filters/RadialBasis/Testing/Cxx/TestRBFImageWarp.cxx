@@ -352,38 +352,53 @@ void CheckMaskAlone()
   LACUNA_CHECK(messages->HasError("active scalars are its vtkValidPointMask"));
 }
 
-// Two landmarks that change places fold the image.
+// A landmark that is off by some voxels folds the image beside it; two that change places fold so much
+// of it that it is refused.
 void CheckFolds()
 {
   const vtkSmartPointer<vtkImageData> image = MakeImage(12);
   vtkNew<vtkPolyData> landmarks;
   vtkNew<vtkPolyData> targets;
   MakeLandmarks(image, 25, landmarks, targets);
-  targets->GetPoints()->SetPoint(4, landmarks->GetPoint(7));
-  targets->GetPoints()->SetPoint(7, landmarks->GetPoint(4));
   vtkNew<vtkLacunaRBFImageWarp> warp;
   vtkNew<lacunaCheck::Messages> messages;
   messages->Watch(warp);
+  messages->Watch(warp->GetExecutive());
+  warp->SetKernel(vtkLacunaRBFImageWarp::Linear);
   warp->SetInputData(0, image);
   warp->SetInputData(1, landmarks);
   warp->SetInputData(2, targets);
+  double x[3];
+  targets->GetPoint(4, x);
+  targets->GetPoints()->SetPoint(4, x[0] + 20, x[1], x[2]);
   warp->Update();
   LACUNA_CHECK(messages->Warnings.find("folds") != std::string::npos);
-  LACUNA_CHECK(
-    warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction")->GetComponent(0, 0) > 0);
+  LACUNA_CHECK(messages->Errors.empty());
+  vtkDataArray* folded = warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction");
+  LACUNA_CHECK(folded && folded->GetComponent(0, 0) > 0 && folded->GetComponent(0, 0) < 0.05);
+
+  warp->SetKernel(vtkLacunaRBFImageWarp::ThinPlate);
+  targets->GetPoints()->SetPoint(4, landmarks->GetPoint(7));
+  targets->GetPoints()->SetPoint(7, landmarks->GetPoint(4));
+  targets->GetPoints()->Modified();
+  targets->Modified();
+  warp->Update();
+  LACUNA_CHECK(messages->HasError(" % of the image: left would be right"));
+  LACUNA_CHECK(warp->GetOutput()->GetNumberOfPoints() == 0);
 }
 
 // Landmarks, and targets where linear (3 x 3, row by row) takes their places about the middle of
-// the image. Returns the errors; warnings are none.
-std::string Turn(int layers, const double* linear, bool frame)
+// the image, and the corners of a box frame times as large as the image, which stay where they are.
+// Returns the errors; warnings are none.
+std::string Turn(int layers, const double* linear, int count = 25, double frame = 0)
 {
   const vtkSmartPointer<vtkImageData> image = MakeImage(layers);
   vtkNew<vtkPolyData> landmarks;
   vtkNew<vtkPolyData> targets;
-  MakeLandmarks(image, 25, landmarks, targets);
+  MakeLandmarks(image, count, landmarks, targets);
   double middle[3];
   image->GetCenter(middle);
-  for (vtkIdType i = 0; i < 25; ++i)
+  for (vtkIdType i = 0; i < count; ++i)
   {
     double x[3];
     landmarks->GetPoint(i, x);
@@ -395,10 +410,17 @@ std::string Turn(int layers, const double* linear, bool frame)
     }
     targets->GetPoints()->SetPoint(i, y);
   }
-  for (int corner = 0; frame && corner < 8; ++corner)
+  for (int corner = 0; frame > 0 && corner < 8; ++corner)
   {
-    const double x[3] = { corner & 1 ? 900. : -900., corner & 2 ? 800. : -800.,
-      corner & 4 ? 700. : -700. };
+    double index[3];
+    for (int c = 0; c < 3; ++c)
+    {
+      const double first = image->GetExtent()[2 * c];
+      const double last = image->GetExtent()[2 * c + 1];
+      index[c] = (first + last) / 2 + (corner >> c & 1 ? 0.5 : -0.5) * frame * (last - first);
+    }
+    double x[3];
+    image->TransformContinuousIndexToPhysicalPoint(index, x);
     landmarks->GetPoints()->InsertNextPoint(x);
     targets->GetPoints()->InsertNextPoint(x);
   }
@@ -427,16 +449,21 @@ void CheckHandedness()
   const double point[9] = { -1, 0, 0, 0, -1, 0, 0, 0, -1 };
   for (const double* linear : { turnX, turnZ, exchange })
   {
-    LACUNA_CHECK(Turn(12, linear, false).empty());
+    LACUNA_CHECK(Turn(12, linear).empty());
   }
-  LACUNA_CHECK(Turn(1, turnZ, false).empty());
+  LACUNA_CHECK(Turn(1, turnZ).empty());
   for (const double* linear : { flipX, flipZ, point })
   {
-    LACUNA_CHECK(Turn(12, linear, false).find("mirror the image") != std::string::npos);
+    LACUNA_CHECK(Turn(12, linear).find("mirror the image") != std::string::npos);
   }
-  LACUNA_CHECK(Turn(1, flipX, false).find("mirror the image") != std::string::npos);
-  // far landmarks stay where they are, so that the affine map that fits best is no reflection
-  LACUNA_CHECK(Turn(12, flipX, true).find("mirror the image") != std::string::npos);
+  LACUNA_CHECK(Turn(1, flipX).find("mirror the image") != std::string::npos);
+  // other landmarks stay where they are, so that the affine map that fits best is no reflection:
+  // most of the image is mirrored, or, within its own corners, the middle of it
+  LACUNA_CHECK(Turn(12, flipX, 25, 30).find("mirror 90 % of the image") != std::string::npos);
+  for (const int count : { 6, 10 })
+  {
+    LACUNA_CHECK(Turn(12, flipX, count, 1).find(" % of the image: left") != std::string::npos);
+  }
 }
 }
 
