@@ -289,7 +289,8 @@ SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
     }
   }
   FindSteep(map, selection);
-  WarnOfOpenEdges(execution, map, 0.5 * margins.Defect, selection);
+  // Half of the rim: where a hole is the defect, the rim begins at the step margin.
+  WarnOfOpenEdges(execution, map, 0.5 * (margins.Step + margins.Defect), selection);
   return selection;
 }
 }

@@ -224,6 +224,26 @@ TEST(SupportSelection, StepsInTheDefectCountForItsRim)
   }
 }
 
+TEST(SupportSelection, WarnsOfNoSurfaceOnlyWhereNoneIs)
+{
+  // A hole in sound bone, and one that has bone on one side only: the step margin leaves half of the
+  // rim, more or less.
+  for (const auto& [margin, step] :
+    { std::pair{ 12.0, 0.0 }, { 12.0, 3.0 }, { 12.0, 7.0 }, { 8.0, 4.0 }, { 5.0, 3.0 } })
+  {
+    SCOPED_TRACE(step);
+    lacuna::ThreadExecution execution(2);
+    const auto all = [](double, double) { return 0.0; };
+    EXPECT_TRUE(
+      lacuna::SelectSupport(execution, MakeFall(all), { margin, step }, {}).Warnings.empty());
+    const auto half = [](double x, double) { return x > 0 ? NAN : 0.0; };
+    const lacuna::SupportSelection open =
+      lacuna::SelectSupport(execution, MakeFall(half), { margin, step }, {});
+    ASSERT_EQ(open.Warnings.size(), 1U);
+    EXPECT_NE(open.Warnings[0].find("the defect has no surface to fit"), std::string::npos);
+  }
+}
+
 TEST(SupportSelection, HoldsForPaintedBone)
 {
   MarkedMap map = MakeMap();
