@@ -140,7 +140,7 @@ double FastRadialSum<Dimension>::Apply(
   {
     std::ostringstream message;
     message << "a fast sum cannot be sure of an error below " << tolerance << ", only of one below "
-            << bound << "; raise the tolerance";
+            << bound << "; raise Accuracy";
     throw std::runtime_error(message.str());
   }
   execution.SetStage(0.1, 1);

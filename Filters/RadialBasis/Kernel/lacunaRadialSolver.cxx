@@ -110,8 +110,10 @@ public:
     {
       std::ostringstream message;
       message << "the interpolation equations could only be solved to " << norm << ", not to "
-              << this->Tolerance << "; raise the tolerance, add smoothing"
-              << (IsRadialShaped(this->System.Kernel) ? ", or make the kernel narrower" : "");
+              << this->Tolerance << "; raise Accuracy, "
+              << (this->System.IsSmoothed() ? "change Smoothing or CutoffWavelength"
+                                            : "add Smoothing")
+              << (IsRadialShaped(this->System.Kernel) ? ", or lower KernelLength" : "");
       throw std::runtime_error(message.str());
     }
     found.Residual = std::max(found.Residual, norm);

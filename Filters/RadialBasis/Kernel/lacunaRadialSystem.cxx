@@ -57,6 +57,21 @@ SquareMatrix MakeMatrix(Execution& execution, const RadialSystem<Dimension>& sys
   return matrix;
 }
 
+// What the user can do against singular equations.
+template <int Dimension>
+std::string GetRemedy(const RadialSystem<Dimension>& system)
+{
+  const bool isShaped = IsRadialShaped(system.Kernel);
+  if (system.IsSmoothed())
+  {
+    return std::string("lower Smoothing or CutoffWavelength") +
+      (isShaped ? ", or change KernelLength" : "");
+  }
+  return isShaped
+    ? "change KernelLength to about the distance of nodes, use fewer nodes, or add Smoothing"
+    : "nodes lie too close together for their extent, use fewer or add Smoothing";
+}
+
 template <int Dimension>
 class DirectEquations : public RadialEquations<Dimension>
 {
@@ -68,8 +83,9 @@ public:
     execution.Report(1);
     if (!(this->Factorization.GetConditionEstimate() < ConditionLimit))
     {
-      throw std::runtime_error(
-        "its condition number is " + std::to_string(this->Factorization.GetConditionEstimate()));
+      std::ostringstream message;
+      message << "their condition number is " << this->Factorization.GetConditionEstimate();
+      throw std::runtime_error(message.str());
     }
   }
 
@@ -108,6 +124,13 @@ private:
   const RadialSystem<Dimension>& System;
   SymmetricFactorization Factorization;
 };
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+bool RadialSystem<Dimension>::IsSmoothed() const
+{
+  return std::any_of(this->Diagonal.begin(), this->Diagonal.end(), [](double d) { return d > 0; });
 }
 
 //------------------------------------------------------------------------------
@@ -197,7 +220,7 @@ std::unique_ptr<RadialEquations<Dimension>> PrepareDirectly(
   catch (const std::runtime_error& e)
   {
     throw std::runtime_error(std::string("the interpolation equations cannot be solved: ") +
-      e.what() + "; nodes lie too close together for their extent, use fewer or add smoothing");
+      e.what() + "; " + GetRemedy(system));
   }
 }
 

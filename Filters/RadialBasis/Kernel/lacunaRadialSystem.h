@@ -61,6 +61,7 @@ struct RadialSystem
   std::vector<std::vector<double>> Values;         ///< one for each right-hand side
 
   std::size_t GetSize() const { return this->Nodes.size(); }
+  bool IsSmoothed() const; ///< whether any node has a diagonal above 0
   Coordinates<Dimension> GetCoordinates(std::size_t first = 0) const;
   /// (A + diagonal) a + P c at the nodes, less the values; by direct sums.
   std::vector<double> GetResidual(Execution& execution, const std::vector<double>& values,

@@ -365,6 +365,28 @@ TEST(RadialBasis, RefusesNodesThatAreTooClose)
   ExpectContains(ErrorOf([&] { Fit<2>(nodes, values); }), "too close together");
 }
 
+TEST(RadialBasis, SaysWhatHelpsAgainstSingularEquations)
+{
+  const std::vector<Point2> nodes = Scatter2(120);
+  const std::vector<double> values(nodes.size(), 1.5);
+  const auto error = [&](RadialKernel kernel, double shape, double smoothing)
+  {
+    lacuna::RadialBasisOptions options;
+    options.Kernel = kernel;
+    options.Shape = shape;
+    options.Smoothing = smoothing;
+    return ErrorOf([&] { Fit<2>(nodes, values, options); });
+  };
+  const std::string smooth = error(RadialKernel::ThinPlate, 0, 1e30);
+  ExpectContains(smooth, "lower Smoothing or CutoffWavelength");
+  EXPECT_EQ(smooth.find("too close"), std::string::npos) << smooth;
+  EXPECT_EQ(smooth.find("000000"), std::string::npos) << smooth;
+  ExpectContains(error(RadialKernel::Gaussian, 1e6, 0), "change KernelLength");
+  const std::string narrow = error(RadialKernel::Multiquadric, 1e-9, 0);
+  ExpectContains(narrow, "change KernelLength");
+  EXPECT_EQ(narrow.find("too close"), std::string::npos) << narrow;
+}
+
 TEST(RadialBasis, RefusesAMatrixAboveTheLimit)
 {
   const std::vector<Point2> nodes = Scatter2(97);

@@ -369,13 +369,14 @@ TEST(RadialSolver, SaysWhatItCannotDo)
   { return ErrorOf([&] { const RadialBasis<2> s(execution, nodes, values, options); }); };
   const auto expect = [](const std::string& text, const std::string& part)
   { EXPECT_NE(text.find(part), std::string::npos) << text; };
-  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Fast, 1e-16)), "raise the tolerance");
+  expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Fast, 1e-16)),
+    "raise Accuracy, add Smoothing");
   expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Fast, 0)), "accuracy above 0");
   expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, -1)), "accuracy must be");
   expect(fit(Options(RadialKernel::ThinPlate, RadialSolver::Auto, 2)), "accuracy must be");
   RadialBasisOptions wide = Options(RadialKernel::Gaussian, RadialSolver::Fast, 1e-6);
   wide.Shape = 500;
-  expect(fit(wide), "make the kernel narrower");
+  expect(fit(wide), "lower KernelLength");
   wide.Shape = -1;
   expect(fit(wide), "length of the kernel");
   wide.Shape = std::numeric_limits<double>::quiet_NaN();
