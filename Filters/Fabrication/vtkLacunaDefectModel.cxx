@@ -15,6 +15,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
+#include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -123,6 +124,7 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
   }
   output->SetPoints(points);
   output->GetPointData()->SetScalars(faces);
+  vtkLacunaPressPosition::Record(output);
 }
 }
 

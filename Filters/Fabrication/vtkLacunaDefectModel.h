@@ -16,7 +16,8 @@
  * Output 1: vtkStructuredGrid of n x m x 1 points, one per pixel, the upper side for a mill, in the
  * press coordinates of vtkLacunaPressOrientation: mm, right-handed, x (fastest) and y in the plane, 0
  * in the middle of the block, z towards the mill, which looks along -z; z = 0 is the highest point of
- * the bone. Single-valued. Point data: ModelFace (0 bone, 1 floor).
+ * the bone. Single-valued. Point data: ModelFace (0 bone, 1 floor),
+ * PressPosition (as of vtkLacunaPressOrientation).
  *
  * Field data of both (doubles):
  * | array          | components | meaning                                                       |

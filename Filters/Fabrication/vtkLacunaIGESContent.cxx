@@ -14,6 +14,7 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMirrored.h"
+#include "vtkLacunaPressPosition.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
@@ -364,6 +365,14 @@ void vtkLacunaIGESContent::Unsupported(const std::string& what)
 //------------------------------------------------------------------------------
 void vtkLacunaIGESContent::AddItem(const Item& item, lacuna::Execution& execution)
 {
+  if (const std::string moved = vtkLacunaPressPosition::Check(item.Data); !moved.empty())
+  {
+    if (this->Settings.Frame != AsGiven) // PressToPatient would be used
+    {
+      throw std::runtime_error(moved + ", or write it where it is (Coordinates AsGiven)");
+    }
+    this->Warnings.push_back((item.Name.empty() ? "" : "block '" + item.Name + "': ") + moved);
+  }
   if (vtkImageData::SafeDownCast(item.Data))
   {
     this->AddMap(item, execution);

@@ -16,6 +16,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGridLayer.h"
 #include "vtkLacunaMirrored.h"
+#include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -338,6 +339,10 @@ int vtkLacunaMillingToolPath::RequestData(
   {
     this->CheckProperties();
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
+    if (const std::string moved = vtkLacunaPressPosition::Check(grid); !moved.empty())
+    {
+      vtkWarningMacro(<< moved);
+    }
     if (vtkLacunaMirrored::IsMarked(grid))
     {
       vtkWarningMacro(

@@ -37,8 +37,9 @@
  * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
  * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
  *
- * Warns where the tool does not fit, and where a border that slopes down needs Overrun. Errors:
- * holes, folded surfaces, options out of range.
+ * Warns where the tool does not fit, where a border that slopes down needs Overrun, and when the
+ * surface has been moved since it was made (PressPosition). Errors: holes, folded surfaces, surfaces
+ * that have been mirrored or stretched since, options out of range.
  *
  * Source: Carr 1996, ch. 6, ends at the surface for CAM; paths are beyond it.
  * @sa lacuna::MakeToolPath lacuna::MapLeftOver vtkLacunaGCodeWriter

@@ -14,6 +14,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
+#include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
@@ -228,6 +229,7 @@ void SetNodes(vtkStructuredGrid* output, const lacuna::PressSurface& surface, in
   output->GetPointData()->SetScalars(regions);
   output->GetPointData()->AddArray(defect);
   output->GetPointData()->AddArray(angles);
+  vtkLacunaPressPosition::Record(output);
 }
 
 void SetText(vtkDataObject* output, const char* name, const char* text)

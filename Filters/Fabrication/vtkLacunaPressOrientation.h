@@ -28,11 +28,14 @@
  * FlangeWidth / 8 above (male: below) plate and margin.
  *
  * Point data:
- * | array       | type          | meaning                                                          |
- * |-------------|---------------|------------------------------------------------------------------|
- * | PressRegion | unsigned char | 0 press plane, 1 flange, 2 plate (the true surface)              |
- * | DefectMask  | char          | 1 where the filled defect is                                     |
- * | WallAngle   | double        | degrees between the mould's surface and the press plane          |
+ * | array         | type          | meaning                                                        |
+ * |---------------|---------------|----------------------------------------------------------------|
+ * | PressRegion   | unsigned char | 0 press plane, 1 flange, 2 plate (the true surface)            |
+ * | DefectMask    | char          | 1 where the filled defect is                                   |
+ * | WallAngle     | double        | degrees between the mould's surface and the press plane        |
+ * | PressPosition | double x 4    | x, y, z where the node was made, and 1: by it                  |
+ * |               |               | vtkLacunaMillingToolPath and vtkLacunaIGESWriter see that it   |
+ * |               |               | has been moved since                                           |
  *
  * Field data (doubles unless stated):
  * | array                  | components | meaning                                               |

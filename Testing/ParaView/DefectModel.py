@@ -8,7 +8,7 @@ from lacuna.errors import PipelineError, raising
 from lacuna.solids import save_solid
 from lacuna_test import output
 from paraview import servermanager
-from paraview.simple import LoadPlugin, OpenDataFile, SaveData
+from paraview.simple import LoadPlugin, OpenDataFile, SaveData, Transform
 from solid_files import MILLIMETER, judge_3mf, read_3mf
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties
@@ -112,6 +112,15 @@ with raising():
 with open(surface, encoding="ascii") as file:
     text = "".join(line[:72] for line in file.readlines()[:60])
 assert "vtkLacunaDefectModel" in text
+mirror = Transform(Input=servermanager.OutputPort(model, 1))
+mirror.Transform.Scale = [-1, 1, 1]
+os.remove(surface)
+try:
+    with raising():
+        SaveData(surface, mirror, Tolerance=0.2)
+    raise AssertionError("mirrored")
+except PipelineError as error:
+    assert "it is mirrored" in str(error) and not os.path.exists(surface), error
 
 model.DefectDepth = 0
 try:

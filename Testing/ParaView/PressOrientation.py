@@ -4,11 +4,12 @@ import os
 
 import lacuna
 import numpy as np
-from lacuna.errors import raising
+from lacuna.errors import PipelineError, raising
 from lacuna.solids import save_solid
 from lacuna_test import output
 from paraview import servermanager
-from paraview.simple import ExtractSurface, LoadPlugin, OpenDataFile, SaveData
+from paraview.simple import (Calculator, ExtractSubset, ExtractSurface, LoadPlugin, OpenDataFile, PassArrays, SaveData,
+                             Transform)
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
@@ -113,6 +114,47 @@ again = OpenDataFile(output("mould.vts"))
 kept, wrapped, fields = fetch(again)
 assert np.abs(np.asarray(wrapped.Points) - points).max() == 0
 assert np.abs(fields["PressToPatient"].reshape(4, 4) - moulds["Male", "Inlay"]).max() < 1e-12
+
+# What has been moved since is known: nothing is milled or written from a mirrored or stretched mould.
+def judge(proxy, **options):
+    """What is said of a mould by Milling Tool Path and by the writer: refused (text) or warned of (list)."""
+    answers = []
+    file = output("moved.igs")
+    if os.path.exists(file):
+        os.remove(file)
+    path = MillingToolPath(Input=proxy, StepOver=4, RoughingStep=8)
+    for run in (path.UpdatePipeline, lambda: SaveData(file, proxy, **options)):
+        warnings = []
+        try:
+            with raising(warnings):
+                run()
+            answers.append([text for text in warnings if "since it was made" in text])
+        except PipelineError as error:
+            answers.append(str(error))
+    assert os.path.exists(file) == isinstance(answers[1], list)
+    return answers
+
+
+def transformed(proxy, **change):
+    transform = Transform(Input=proxy)
+    for name, value in change.items():
+        setattr(transform.Transform, name, value)
+    return transform
+
+
+press.OutputSpacing = 1
+part = ExtractSubset(Input=press, VOI=[10, 60, 5, 50, 0, 0], SampleRateI=2)
+for proxy in (press, part, PassArrays(Input=press), transformed(press), Calculator(Input=press, Function="coordsX")):
+    assert judge(proxy, Coordinates="Patient") == [[], []]
+for proxy, change, words in ((press, {"Scale": [-1, 1, 1]}, "it is mirrored"), (part, {"Scale": [1, 1, -1]}, "it is mirrored"),
+                             (press, {"Scale": [1.01] * 3}, "distances in it"), (press, {"Scale": [1 / 25.4] * 3}, "distances in it")):
+    for text in judge(transformed(proxy, **change)):
+        assert isinstance(text, str) and words in text, (change, text)
+for change, words in (({"Rotate": [10, 0, 0]}, "tilted by 10 degrees"), ({"Translate": [0, 0, 5]}, "lies up to 5 mm elsewhere")):
+    for [text] in judge(transformed(press, **change)):
+        assert words in text, (change, text)
+    milled, text = judge(transformed(press, **change), Coordinates="Patient")
+    assert len(milled) == 1 and isinstance(text, str) and "AsGiven" in text, text
 
 # No mould, but the way out, which works.
 hurt = SkullPhantom(DefectRadius=40)

@@ -371,6 +371,55 @@ void TestMoved(const std::string& file)
 }
 
 //------------------------------------------------------------------------------
+// What it does to a mould is seen by the filter.
+void TestMovedMould()
+{
+  using lacuna::Matrix4;
+  const auto mill = [](const std::function<double(double, double)>& height, const Matrix4& move,
+                      double weight, const std::string& error, const std::string& warning)
+  {
+    const auto mould = Mould(height);
+    vtkNew<vtkDoubleArray> made;
+    made->SetName("PressPosition");
+    made->SetNumberOfComponents(4);
+    vtkNew<vtkPoints> points; // single precision
+    for (vtkIdType k = 0; k < mould->GetNumberOfPoints(); ++k)
+    {
+      lacuna::Vec3 p;
+      mould->GetPoint(k, p.data());
+      // some are filled in by filters
+      k % 7 == 1 ? made->InsertNextTuple4(0, 0, 0, 0)
+                 : made->InsertNextTuple4(p[0], p[1], p[2], weight);
+      points->InsertNextPoint(move.Point(p).data());
+    }
+    mould->SetPoints(points);
+    mould->GetPointData()->AddArray(made);
+    vtkNew<vtkLacunaMillingToolPath> filter;
+    filter->SetInputData(mould);
+    filter->SetRoughingStep(2);
+    const auto messages = lacunaCheck::Watch(filter);
+    filter->Update();
+    LACUNA_CHECK_CONTAINS(messages->Errors, error);
+    LACUNA_CHECK(messages->Errors.empty() == error.empty());
+    LACUNA_CHECK_CONTAINS(messages->Warnings, warning);
+    LACUNA_CHECK((messages->Warnings.find("since it was made") == std::string::npos) ==
+      (warning.empty() || !error.empty()));
+    LACUNA_CHECK((filter->GetOutput()->GetNumberOfPoints() == 0) == !error.empty());
+  };
+  const auto flat = [](double, double) { return -1.0; };
+  mill(Height, {}, 1, "", "");
+  mill(flat, {}, 1, "", "");
+  mill(Height, Matrix4::Scaling({ -1, 1, 1 }), 1, "it is mirrored", "");
+  mill(Height, Matrix4::Scaling({ -1, 1, 1 }), 0, "", ""); // no telling
+  mill(
+    Height, Matrix4::Scaling({ 1, 1.01, 1 }), 1, "distances in it are other ones by up to 0.", "");
+  mill(flat, Matrix4::Scaling({ 1.01, 1, 1 }), 1, "distances in it", "");
+  mill(Height, Matrix4::Translation({ 3, 4, 0 }), 1, "", "lies up to 5 mm elsewhere, and Press");
+  mill(flat, Matrix4::Translation({ 0, 0, -0.5 }), 1, "", "lies up to 0.5 mm elsewhere");
+  mill(Height, Matrix4::Rotation({ 1, 0, 0 }, 0.1), 1, "", "tilted by 5.73 degrees");
+}
+
+//------------------------------------------------------------------------------
 void TestProgram(const std::string& file)
 {
   vtkNew<vtkLacunaMillingToolPath> filter;
@@ -512,6 +561,7 @@ int TestMillingToolPath(int argc, char* argv[])
   TestWarnsAndRefuses();
   TestProgram(folder + "/TestMillingToolPath.nc");
   TestMirrored(folder + "/TestMillingToolPathMirrored.nc");
+  TestMovedMould();
   TestMoved(folder + "/TestMillingToolPathMoved.nc");
   return lacunaCheck::Result();
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the points of a surface for the press were made, by which those who use it see that it has
+/// been moved since (by ParaView's Transform, say), so that PressToPatient no longer leads from it to
+/// the patient.
+#ifndef vtkLacunaPressPosition_h
+#define vtkLacunaPressPosition_h
+
+#include <string>
+
+class vtkDataObject;
+class vtkPointSet;
+
+namespace vtkLacunaPressPosition
+{
+/// Point data, double x 4: x, y, z in mm, and 1. Not 3, since filters that move points turn vectors,
+/// too. Subsets keep it, contours and slices interpolate it, and so it stays true; where a filter fills
+/// it with 0 the last number tells.
+constexpr const char* ArrayName = "PressPosition";
+
+/// Adds the array to data that lie where they were made.
+void Record(vtkPointSet* data);
+
+/// Throws std::runtime_error, in words for the user, when data have been mirrored or stretched by more
+/// than 2 um since Record; returns what to say when they lie elsewhere. Empty when they are where they
+/// were, or without a valid array, since then there is no telling.
+std::string Check(vtkDataObject* data);
+}
+#endif
