@@ -307,6 +307,10 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
     vtkWarningMacro(<< this->FileName
                     << ": the path is over a mirror image of the patient; the file says so, too");
   }
+  for (const std::string& warning : program.Warnings)
+  {
+    vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
   if (!moved.empty())
   {
     vtkWarningMacro(<< this->FileName << ": " << moved);

@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 from gcode_files import read_gcode
+from lacuna.errors import raising
 from lacuna_test import output
 from paraview import servermanager
 from paraview.simple import *
@@ -120,11 +121,14 @@ for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineN
 assert list(writer.Envelope) == list(plain.GetEnvelope()) and not writer.Header and not writer.Footer
 writer.LineNumbers = 1
 writer.Header = "G21 G90 (MINE)\nT{TOOL} M06\nS{SPEED} M03"
-writer.UpdatePipeline()
+warnings = []
+with raising(warnings):
+    writer.UpdatePipeline()
+assert len(warnings) == 1 and "Header has no G43" in warnings[0], warnings
 writer.UpdatePropertyInformation()
 assert writer.GetPropertyValue("FileSize") == os.path.getsize(output("Options.nc"))
 with open(output("Options.nc"), encoding="ascii") as file:
-    assert "\nN10 G21 G17 G40 G49 G80 G90\nN20 G21 G90 (MINE)\nN30 T01 M06\n" in file.read()
+    assert "\nN10 G21 G17 G40 G49 G80 G90 G94\nN20 G21 G90 (MINE)\nN30 T01 M06\n" in file.read()
 
 # Motions joined to arcs: a shorter program
 file = output("Arcs.nc")

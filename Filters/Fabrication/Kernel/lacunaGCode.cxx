@@ -21,8 +21,8 @@ constexpr std::size_t CommentLength = 64;
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
 constexpr const char* AxisNames = "XYZ";
 // What the path's numbers mean: mm, in the plane of x and y, no compensation, no length, no cycle,
-// absolute. Before the header, which cannot change it.
-constexpr const char* SafeStart = "G21 G17 G40 G49 G80 G90";
+// absolute, mm/min. Before the header, which cannot change it.
+constexpr const char* SafeStart = "G21 G17 G40 G49 G80 G90 G94";
 
 using Units = Micrometres;
 
@@ -359,12 +359,18 @@ GCodeProgram MakeGCode(
   };
   const Units last = Round(moves.back().To, moves.size(), options);
   const auto z = [](const Units& units) { return static_cast<double>(units[2]) / 1000; };
-  const std::vector<std::string> header =
+  const FilledTemplate header =
     FillInTemplate({ "Header", options.Header, false, z(first) }, values, options);
-  const std::vector<std::string> footer =
+  const FilledTemplate footer =
     FillInTemplate({ "Footer", options.Footer, true, z(last) }, values, options);
 
   GCodeProgram program;
+  if (!header.HasToolLength)
+  {
+    program.Warnings.emplace_back(
+      "Header has no G43 with a number, so there is no tool's length: Z is "
+      "the spindle nose's, not the tip's. Write G43 H{TOOL} Z{Z}");
+  }
   program.Text = "%\nO" + values[0].second + "\n";
   for (const std::string& comment : options.Comments)
   {
@@ -372,7 +378,7 @@ GCodeProgram MakeGCode(
   }
   BlockWriter writer(program, options.LineNumbers);
   writer.Add(SafeStart);
-  for (const std::string& line : header)
+  for (const std::string& line : header.Lines)
   {
     writer.Add(line);
   }
@@ -380,7 +386,7 @@ GCodeProgram MakeGCode(
   writer.Move(true, first, 0, 2, 3);
   AddMoves(writer, GetPoints(first, moves, options), moves, options);
   writer.SetPlane(17);
-  for (const std::string& line : footer)
+  for (const std::string& line : footer.Lines)
   {
     writer.Add(line);
   }

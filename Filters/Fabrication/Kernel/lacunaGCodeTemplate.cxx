@@ -20,7 +20,10 @@ constexpr std::string_view AxisNames = "XYZ";
 constexpr std::string_view Lengths = "XYZABC"; // words that need a decimal point
 constexpr std::string_view Letters = "GMTSHFPXYZABC";
 constexpr double Dwell = 4;
+constexpr double ToReference[] = { 28, 30 };
 constexpr double MachineCoordinates = 53;
+constexpr double ToolLength = 43;
+constexpr double NoToolLength = 49;
 // What leaves the path alone: rapid, straight, dwell, exact stop, no polar coordinates, XY plane, mm,
 // ways to the reference points, no compensation, tool length, none, no scale, no mirror, machine
 // coordinates, exact stop mode, cutting mode, no turn, no cycle, absolute, mm/min, levels of cycles.
@@ -31,6 +34,7 @@ constexpr const char* HarmlessNames =
   "G80, G90, G94, G98 and G99";
 constexpr double Subprograms[] = { 96, 97, 98, 99, 198 };
 constexpr double Ends[] = { 2, 30 };
+constexpr double Mirrors[] = { 21, 22 }; // of many machines with this control: x, y
 
 struct Word
 {
@@ -113,7 +117,7 @@ public:
     return words;
   }
 
-  void Judge(const std::vector<Word>& words) const
+  void Judge(const std::vector<Word>& words)
   {
     const auto isG = [&words](double number)
     {
@@ -122,6 +126,8 @@ public:
     };
     const bool dwells = isG(Dwell);
     const bool ofMachine = isG(MachineCoordinates);
+    const bool toReference = isG(ToReference[0]) || isG(ToReference[1]);
+    this->JudgeToolLength(words, isG(ToolLength), isG(NoToolLength));
     for (const Word& word : words)
     {
       switch (word.Letter)
@@ -136,6 +142,23 @@ public:
               (Has(Ends, word.Number) ? "not be run"
                                       : "depend on what the control does elsewhere"));
           }
+          if (Has(Mirrors, word.Number))
+          {
+            this->Throw("has " + word.Text + ", which mirrors the path on many machines");
+          }
+          break;
+        case 'P':
+          this->JudgeP(words, word, dwells || toReference);
+          break;
+        case 'A':
+        case 'B':
+        case 'C':
+          if (!ofMachine && !toReference)
+          {
+            this->Throw("has " + word.Text +
+              ", which turns the part against the path; there may be "
+              "A, B and C in blocks with G28, G30 or G53 only");
+          }
           break;
         default:
           if (!ofMachine && !(dwells && word.Letter == 'X') && // X: seconds
@@ -146,6 +169,9 @@ public:
       }
     }
   }
+
+  // Whether the tool's length is in force behind the lines so far.
+  bool HasToolLength() const { return this->Length; }
 
 private:
   [[noreturn]] void Throw(const std::string& what) const
@@ -193,6 +219,45 @@ private:
     }
   }
 
+  // P is the time of a dwell, the number of a reference point, or the builder's with an M word; with
+  // G54 it chooses one of 48 other zeros.
+  void JudgeP(const std::vector<Word>& words, const Word& p, bool isOwn) const
+  {
+    const bool offset = std::any_of(words.begin(), words.end(),
+      [](const Word& word)
+      { return word.Letter == 'G' && word.Number >= 54 && word.Number <= 59; });
+    const bool ofBuilder =
+      std::any_of(words.begin(), words.end(), [](const Word& word) { return word.Letter == 'M'; });
+    if (offset || !(isOwn || ofBuilder))
+    {
+      this->Throw("has " + p.Text +
+        (offset ? " with a work offset, which takes another zero than WorkOffset (G54 P1 to P48)"
+                : ", which means nothing there; P may stand with G04, G28, G30 or an M word"));
+    }
+  }
+
+  // G43 with its number, which G49 or the number 0 takes away.
+  void JudgeToolLength(const std::vector<Word>& words, bool on, bool off)
+  {
+    for (const Word& word : words)
+    {
+      if (word.Letter == 'H' && (!on || !(word.Number > 0)))
+      {
+        this->Throw("has " + word.Text +
+          (on ? " with G43, which is no tool's length"
+              : " without G43, whose number it would change"));
+      }
+      this->Length = this->Length || (on && word.Letter == 'H');
+    }
+    this->Cancelled = (this->Cancelled || off) && !on;
+    if (off && (on || this->Length) && !this->Source.IsLast)
+    {
+      this->Throw(
+        "has G49 with or after G43, which takes the tool's length away again: the spindle "
+        "nose would go where the tip should. Leave it out");
+    }
+  }
+
   void JudgePlace(const Word& word) const
   {
     const std::size_t axis = AxisNames.find(word.Letter);
@@ -201,6 +266,13 @@ private:
     {
       this->Throw("has " + word.Text + ", which leaves the envelope (" + word.Letter + " " +
         FormatNumber(range[0]) + " to " + FormatNumber(range[1]) + " mm)");
+    }
+    if (word.Letter == 'Z' && this->Source.IsLast && this->Cancelled)
+    {
+      this->Throw("has " + word.Text +
+        " with or after G49: that is where the spindle nose goes, and the tip into the part. Write "
+        "it "
+        "before G49, or with G53 in machine coordinates");
     }
     if (word.Letter == 'Z' && !(word.Number >= this->Source.LeastZ))
     {
@@ -212,16 +284,18 @@ private:
 
   const GCodeTemplate& Source;
   const GCodeOptions& Options;
+  bool Length = false;    // G43 H
+  bool Cancelled = false; // G49 in the footer
 };
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> FillInTemplate(const GCodeTemplate& source,
+FilledTemplate FillInTemplate(const GCodeTemplate& source,
   const std::vector<std::pair<std::string, std::string>>& values, const GCodeOptions& options)
 {
-  const Reader reader(source, options);
+  Reader reader(source, options);
   std::istringstream text(reader.FillIn(values));
-  std::vector<std::string> lines;
+  FilledTemplate filled;
   std::string line;
   while (std::getline(text, line))
   {
@@ -229,9 +303,10 @@ std::vector<std::string> FillInTemplate(const GCodeTemplate& source,
     if (!line.empty())
     {
       reader.Judge(reader.Split(line));
-      lines.push_back(line);
+      filled.Lines.push_back(line);
     }
   }
-  return lines;
+  filled.HasToolLength = reader.HasToolLength();
+  return filled;
 }
 }

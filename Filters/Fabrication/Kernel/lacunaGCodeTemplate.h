@@ -21,16 +21,26 @@ struct GCodeTemplate
   double LeastZ; ///< mm, where the path starts or ends: the tool must not go below that
 };
 
+struct FilledTemplate
+{
+  std::vector<std::string> Lines;
+  bool HasToolLength = false; ///< G43 with a number: coordinates behind it are those of the tip
+};
+
 /// The template's lines in upper case without empty ones, placeholders filled in: values are names and
 /// what they stand for. Throws std::invalid_argument that quotes the word for
 /// - an unknown placeholder, characters that controls do not know, comments without end, macros;
 /// - a G word that is not of a few that leave the meaning of the path's coordinates and feeds alone
 ///   (so no inches, increments, other planes, offsets of the tool, scales, mirrors, turns, shifts of
 ///   the zero, arcs or cycles), a work offset other than options.WorkOffset, a subprogram, the end of
-///   the program in the header;
+///   the program in the header, M21 and M22, which mirror on many machines (other M words are the
+///   machine builder's and not judged);
+/// - P with a work offset (G54 P2 is another one) or where it means nothing; A, B or C outside of
+///   blocks with G28, G30 or G53; H without G43 or 0, in the header G49 with or behind G43, in
+///   the footer Z behind G49;
 /// - a coordinate without a decimal point, which the control would read as micrometres;
 /// - X, Y or Z outside of options.Envelope, Z below LeastZ. Not those with G53, which are the machine's.
-std::vector<std::string> FillInTemplate(const GCodeTemplate& source,
+FilledTemplate FillInTemplate(const GCodeTemplate& source,
   const std::vector<std::pair<std::string, std::string>>& values, const GCodeOptions& options);
 }
 #endif

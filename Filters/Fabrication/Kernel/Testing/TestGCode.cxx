@@ -61,7 +61,7 @@ TEST(GCode, WholeProgram)
   options.Comments = { "Lacuna 0.1 (a_b)" };
   const GCodeProgram program = MakeGCode(Start, Path(), options);
   EXPECT_EQ(program.Text,
-    "%\nO0012\n(LACUNA 0.1 [A-B])\nG21 G17 G40 G49 G80 G90\nG54\nT01 M06\nS6000 M03\n"
+    "%\nO0012\n(LACUNA 0.1 [A-B])\nG21 G17 G40 G49 G80 G90 G94\nG54\nT01 M06\nS6000 M03\n"
     "G00 X1.5 Y-2.25\nG43 H01 Z10.\nG00 X1.5 Y-2.25\nZ10.\nX3. Y4.\nG01 Z-1. F200.\n"
     "Y4.001 F800.\nX0. Y-12.5 Z0.\nG00 Z10.\nM05\nM30\n%\n");
   EXPECT_EQ(program.Blocks, 15);
@@ -135,7 +135,7 @@ TEST(GCode, Templates)
   options.Header = "(my mill)\r\nG21 G90\n\nT{TOOL} M06\nS{SPEED} M03\n";
   options.Footer = "G00 Z50.\nM30";
   const std::string text = MakeGCode(Start, Path(), options).Text;
-  EXPECT_EQ(text.find("%\nO0001\nG21 G17 G40 G49 G80 G90\n(MY MILL)\nG21 G90\nT01 M06\nS6000 "
+  EXPECT_EQ(text.find("%\nO0001\nG21 G17 G40 G49 G80 G90 G94\n(MY MILL)\nG21 G90\nT01 M06\nS6000 "
                       "M03\nG00 X1.5 Y-2.25\n"),
     0u);
   EXPECT_NE(text.find("G00 Z50.\nM30\n%\n"), std::string::npos);
@@ -345,6 +345,55 @@ TEST(GCode, TemplatesThatChangeTheMeaningOfThePathAreRefused)
   options.Header = "S{SPEED} M03\n";
   const GCodeParser parser(MakeGCode(Start, Path(), options).Text); // which asks for G21 and G90
   EXPECT_EQ(parser.Steps.back().To[2], 10);
+}
+
+// Neither the zero nor the side nor the tool's length.
+TEST(GCode, TemplatesThatMoveThePathAreRefused)
+{
+  const auto header = [](const std::string& h, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Header = h; }, words); };
+  const auto footer = [](const std::string& f, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Footer = f; }, words); };
+  header("G54 P2", "has P2 with a work offset");
+  header("P2 G54", "has P2 with a work offset");
+  header("{OFFSET} G04 P2", "has P2 with a work offset");
+  header("{OFFSET} M19 P2", "has P2 with a work offset");
+  header("G54\nP2", "has P2, which means nothing there");
+  header("G04 P500\nG54\nM19 P90\nG43 H1", "no error");
+  footer("G30 P2 Z50.\nG28 P3\nM30", "no error");
+  for (const char* m : { "M21", "M22", "m021" })
+  {
+    header(m, "mirrors the path");
+    footer(m, "mirrors the path");
+  }
+  header("M08\nM23\nM211", "no error");
+  header("G00 A180.", "has A180., which turns the part");
+  footer("B90.", "has B90., which turns the part");
+  header("C0.", "has C0.");
+  header("G53 A0.\nG28 B0.\nG30 C0.", "no error");
+  header("G43 H1 Z20.\nG49", "has G49 with or after G43");
+  header("G43 H1 G49", "has G49 with or after G43");
+  header("G49\nG43 H1", "no error");
+  header("G43 H00", "has H00 with G43");
+  header("G43 H1\nH0", "has H0 without G43");
+  footer("G49\nG28 Z20.", "has Z20. with or after G49");
+  footer("G49 G28 Z20.", "has Z20. with or after G49");
+  footer("G28 Z20.\nG49\nG53 Z0.\nM30", "no error");
+
+  const auto warnings = [](const std::string& h)
+  {
+    GCodeOptions options;
+    options.Header = h;
+    return MakeGCode(Start, Path(), options).Warnings;
+  };
+  EXPECT_TRUE(MakeGCode(Start, Path(), {}).Warnings.empty());
+  EXPECT_TRUE(warnings("G21 g43 z50. h 1").empty());
+  for (const char* h : { "S100 M03", "(G43 H1)", "G43 Z50." })
+  {
+    const std::vector<std::string> told = warnings(h);
+    ASSERT_EQ(told.size(), 1u) << h;
+    EXPECT_NE(told[0].find("Z is the spindle nose's"), std::string::npos);
+  }
 }
 
 TEST(GCode, TemplatesStayAboveThePathAndInTheEnvelope)

@@ -139,6 +139,9 @@ private:
         case 90:
           this->Absolute = true;
           break;
+        case 94:
+          this->PerMinute = true;
+          break;
         case 43:
           length = true;
           break;
@@ -185,7 +188,8 @@ private:
     if (moved)
     {
       Require(this->Metric && this->Absolute && this->Mode >= 0, "G21, G90 and G00 to G03", line);
-      Require(this->Mode == 0 || (this->Spindle && this->Feed > 0), "cuts turn and feed", line);
+      Require(this->Mode == 0 || (this->Spindle && this->Feed > 0 && this->PerMinute),
+        "cuts turn and feed", line);
       if (this->Mode > 1)
       {
         this->RunArc(start, words, line);
@@ -250,6 +254,7 @@ private:
   int Mode = -1;
   bool Metric = false;
   bool Absolute = false;
+  bool PerMinute = false;
   bool Spindle = false;
   double Feed = 0;
   std::array<double, 3> At{ NAN, NAN, NAN };
