@@ -412,6 +412,13 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
         false },
       level, options);
   }
+  if (const double depth = std::min(options.RoughingStep, path.StockTop - deepest);
+      depth > options.Tool.Radius)
+  {
+    path.Warnings.push_back("a level of roughing takes off up to " +
+      FormatNumber(std::round(100 * depth) / 100) +
+      " mm at once, more than the tool's radius: it may break. Make RoughingStep smaller");
+  }
   if (path.Levels == 0)
   {
     path.Warnings.emplace_back("there is nothing to rough: StockTop is not higher than the surface "

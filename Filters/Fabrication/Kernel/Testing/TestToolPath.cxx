@@ -582,6 +582,25 @@ TEST(ToolPath, WarnsOfDeepCutsWithoutRoughing)
     warnings(4, [](auto& o) { o.StockTop = 3; }).find("(from StockTop, z 3,"), std::string::npos);
   EXPECT_EQ(warnings(4, [](auto& o) { o.StockTop = 0.1; }), "");
   EXPECT_NE(warnings(4, [](auto& o) { o.Tool.Radius = 2; }), "");
+  // roughing in levels that are too deep
+  const auto rough = [&](double step, double radius)
+  {
+    return warnings(18,
+      [=](ToolPathOptions& o)
+      {
+        o.RoughingStep = step;
+        o.Tool.Radius = radius;
+      });
+  };
+  EXPECT_EQ(rough(4, 4), "");
+  EXPECT_NE(
+    rough(4.1, 4).find("a level of roughing takes off up to 4.1 mm at once"), std::string::npos);
+  EXPECT_NE(rough(6, 2).find("a level of roughing takes off up to 6 mm"), std::string::npos);
+  // all of it in one
+  const std::string all = rough(100, 4);
+  EXPECT_NE(all.find("a level of roughing takes off up to 1"), std::string::npos) << all;
+  EXPECT_EQ(all.find("100"), std::string::npos) << all;
+  EXPECT_EQ(warnings(4, [](auto& o) { o.RoughingStep = 100; }), "");
   EXPECT_EQ(warnings(18, [](auto& o) { o.RoughingStep = 2; }), "");
   EXPECT_EQ(warnings(18,
               [](auto& o)
