@@ -133,6 +133,8 @@ std::string CheckPlace(vtkPolyData* path)
     }
   }
   const lacuna::LandmarkMove move = lacuna::CompareLandmarks(before, after);
+  const auto thousandths = [](double value)
+  { return lacuna::FormatNumber(std::round(1000 * value) / 1000); };
   const std::string since = "the path has been changed since Milling Tool Path made it (by "
                             "Transform?): ";
   if (move.Mirrored)
@@ -143,21 +145,30 @@ std::string CheckPlace(vtkPolyData* path)
   if (!(move.Stretch <= PlaceTolerance))
   {
     throw std::runtime_error(since + "distances in it are other ones by up to " +
-      lacuna::FormatNumber(std::round(1000 * move.Stretch) / 1000) +
-      " mm. The program is in mm; write the path as it was made");
+      thousandths(move.Stretch) + " mm. The program is in mm; write the path as it was made");
   }
   if (!(move.Tilt <= TiltTolerance))
   {
-    throw std::runtime_error(since + "it is tilted by " +
-      lacuna::FormatNumber(std::round(1000 * move.Tilt) / 1000) +
+    throw std::runtime_error(since + "it is tilted by " + thousandths(move.Tilt) +
       " degrees, and the mill goes along z only. Turn the part with Press Orientation instead");
   }
-  return move.Way <= PlaceTolerance
-    ? std::string()
-    : since + "it lies up to " + lacuna::FormatNumber(std::round(1000 * move.Way) / 1000) +
-      " mm elsewhere. The program's zero is no longer that of the press, and PressToPatient does "
-      "not "
-      "lead from it to the patient; better set the zero on the machine (WorkOffset)";
+  if (move.Rise < -PlaceTolerance)
+  {
+    throw std::runtime_error(since + "it lies " + thousandths(-move.Rise) +
+      " mm lower, so the tool would go that much deeper into the stock. Write the path as it was "
+      "made; set the zero's height on the machine (WorkOffset)");
+  }
+  if (move.Way <= PlaceTolerance)
+  {
+    return {};
+  }
+  return since + "it lies up to " + thousandths(move.Way) + " mm elsewhere. " +
+    (move.Rise > PlaceTolerance ? "All of it is " + thousandths(move.Rise) +
+          " mm higher, so that much more stays on the part. "
+                                : "") +
+    "The program's zero is no longer that of the press, and PressToPatient does not lead from it "
+    "to "
+    "the patient; better set the zero on the machine (WorkOffset)";
 }
 
 //------------------------------------------------------------------------------

@@ -61,6 +61,7 @@ LandmarkMove CompareLandmarks(const std::array<Vec3, 4>& before, const std::arra
   for (std::size_t a = 0; a < 4; ++a)
   {
     move.Way = std::max(move.Way, Norm(after[a] - before[a]));
+    move.Rise += (after[a][2] - before[a][2]) / 4;
     for (std::size_t b = 0; b < a; ++b)
     {
       move.Stretch =

@@ -24,6 +24,7 @@ struct LandmarkMove
   bool Mirrored = false; ///< a left hand has become a right hand
   double Tilt = 0;       ///< degrees between the z axes before and after
   double Way = 0;        ///< mm, of the one that has moved most
+  double Rise = 0;       ///< mm, mean change of z
 };
 LandmarkMove CompareLandmarks(const std::array<Vec3, 4>& before, const std::array<Vec3, 4>& after);
 }

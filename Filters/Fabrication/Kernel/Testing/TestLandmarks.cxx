@@ -85,11 +85,13 @@ TEST(Landmarks, TellMotionsApart)
 
   const LandmarkMove shift = MoveOf(Matrix4::Translation({ 3, -4, 12 }));
   EXPECT_NEAR(shift.Way, 13, 1e-12);
+  EXPECT_NEAR(shift.Rise, 12, 1e-12);
   EXPECT_NEAR(shift.Stretch, 0, 1e-12);
   EXPECT_NEAR(shift.Tilt, 0, 1e-9);
 
   const LandmarkMove turn = MoveOf(Matrix4::Rotation({ 0, 0, 1 }, 0.4));
   EXPECT_GT(turn.Way, 1);
+  EXPECT_NEAR(turn.Rise, 0, 1e-12);
   EXPECT_NEAR(turn.Stretch, 0, 1e-12);
   EXPECT_NEAR(turn.Tilt, 0, 1e-9);
   EXPECT_FALSE(turn.Mirrored);

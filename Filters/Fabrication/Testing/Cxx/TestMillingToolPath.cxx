@@ -351,7 +351,12 @@ void TestMoved(const std::string& file)
   write(Matrix4::Scaling({ 1 / 25.4, 1 / 25.4, 1 / 25.4 }), false, "distances in it", false);
   write(Matrix4::Scaling({ 1, 1, 1.01 }), true, "distances in it", false);
   write(Matrix4::Rotation({ 1, 0, 0 }, 0.001), false, "it is tilted by 0.057 degrees", false);
-  write(Matrix4::Translation({ 5, 0, 0 }), true, "it lies up to 5 mm elsewhere", true);
+  write(
+    Matrix4::Translation({ 5, 0, 0 }), true, "it lies up to 5 mm elsewhere. The program's", true);
+  write(Matrix4::Translation({ 3, 0, 4 }), false, "up to 5 mm elsewhere. All of it is 4 mm higher",
+    true);
+  write(Matrix4::Translation({ 0, 0, -0.01 }), true, "it lies 0.01 mm lower", false);
+  write(Matrix4::Translation({ 20, 0, -20 }), false, "it lies 20 mm lower", false);
   write(Matrix4::Rotation({ 0, 0, 1 }, 0.001), false, "PressToPatient does not lead", true);
 
   // a piece of the path
