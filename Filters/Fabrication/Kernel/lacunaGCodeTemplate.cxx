@@ -22,6 +22,8 @@ constexpr std::string_view Letters = "GMTSHFPXYZABC";
 constexpr double Dwell = 4;
 constexpr double ToReference[] = { 28, 30 };
 constexpr double MachineCoordinates = 53;
+constexpr double Absolute = 90;
+constexpr double Incremental = 91;
 constexpr double ToolLength = 43;
 constexpr double NoToolLength = 49;
 // What leaves the path alone: rapid, straight, dwell, exact stop, no polar coordinates, XY plane, mm,
@@ -127,6 +129,8 @@ public:
     const bool dwells = isG(Dwell);
     const bool ofMachine = isG(MachineCoordinates);
     const bool toReference = isG(ToReference[0]) || isG(ToReference[1]);
+    this->JudgeIncrements(
+      words, isG(Absolute), isG(Incremental), toReference && !ofMachine, dwells);
     this->JudgeToolLength(words, isG(ToolLength), isG(NoToolLength));
     for (const Word& word : words)
     {
@@ -161,7 +165,7 @@ public:
           }
           break;
         default:
-          if (!ofMachine && !(dwells && word.Letter == 'X') && // X: seconds
+          if (!ofMachine && !this->Increments && !(dwells && word.Letter == 'X') && // X: seconds
             AxisNames.find(word.Letter) != std::string_view::npos)
           {
             this->JudgePlace(word);
@@ -204,7 +208,7 @@ private:
 
   void JudgeG(const Word& word) const
   {
-    if (!Has(Harmless, word.Number))
+    if (!Has(Harmless, word.Number) && !(word.Number == Incremental && this->Increments))
     {
       this->Throw("has " + word.Text +
         ", which may give the path's coordinates or feeds another meaning; of G words there may "
@@ -233,6 +237,32 @@ private:
       this->Throw("has " + p.Text +
         (offset ? " with a work offset, which takes another zero than WorkOffset (G54 P1 to P48)"
                 : ", which means nothing there; P may stand with G04, G28, G30 or an M word"));
+    }
+  }
+
+  // G91 leads nowhere but to the reference point, from where the tool is (G91 G28 Z0.).
+  void JudgeIncrements(
+    const std::vector<Word>& words, bool absolute, bool incremental, bool toReference, bool dwells)
+  {
+    const Word* axis = nullptr; // one that says more than 0, if there is one
+    for (const Word& word : words)
+    {
+      if (Lengths.find(word.Letter) != std::string_view::npos && !(dwells && word.Letter == 'X') &&
+        (!axis || axis->Number == 0))
+      {
+        axis = &word;
+      }
+    }
+    const bool home = axis && axis->Number == 0 && toReference;
+    if (incremental)
+    {
+      this->Increments = home && !absolute && this->Source.IsLast; // else JudgeG refuses it
+      return;
+    }
+    this->Increments = this->Increments && !absolute;
+    if (this->Increments && axis && !home)
+    {
+      this->Throw("has " + axis->Text + " behind G91; write G90 before it");
     }
   }
 
@@ -284,8 +314,9 @@ private:
 
   const GCodeTemplate& Source;
   const GCodeOptions& Options;
-  bool Length = false;    // G43 H
-  bool Cancelled = false; // G49 in the footer
+  bool Increments = false; // G91 in the footer
+  bool Length = false;     // G43 H
+  bool Cancelled = false;  // G49 in the footer
 };
 }
 
@@ -300,6 +331,8 @@ FilledTemplate FillInTemplate(const GCodeTemplate& source,
   while (std::getline(text, line))
   {
     line.erase(std::remove(line.begin(), line.end(), '\r'), line.end());
+    std::replace(line.begin(), line.end(), '\t', ' ');
+    line.erase(0, line.find_first_not_of(' '));
     if (!line.empty())
     {
       reader.Judge(reader.Split(line));

@@ -27,12 +27,12 @@ struct FilledTemplate
   bool HasToolLength = false; ///< G43 with a number: coordinates behind it are those of the tip
 };
 
-/// The template's lines in upper case without empty ones, placeholders filled in: values are names and
+/// The template's lines in upper case without empty ones, tabs as blanks, placeholders filled in: values are names and
 /// what they stand for. Throws std::invalid_argument that quotes the word for
 /// - an unknown placeholder, characters that controls do not know, comments without end, macros;
 /// - a G word that is not of a few that leave the meaning of the path's coordinates and feeds alone
 ///   (so no inches, increments, other planes, offsets of the tool, scales, mirrors, turns, shifts of
-///   the zero, arcs or cycles), a work offset other than options.WorkOffset, a subprogram, the end of
+///   the zero, arcs or cycles; G91 only in the footer, to the reference point from where the tool is), a work offset other than options.WorkOffset, a subprogram, the end of
 ///   the program in the header, M21 and M22, which mirror on many machines (other M words are the
 ///   machine builder's and not judged);
 /// - P with a work offset (G54 P2 is another one) or where it means nothing; A, B or C outside of

@@ -396,6 +396,42 @@ TEST(GCode, TemplatesThatMoveThePathAreRefused)
   }
 }
 
+TEST(GCode, IncrementsLeadToTheReferencePointOnly)
+{
+  const auto footer = [](const std::string& f, const std::string& words)
+  { ExpectError([&](auto&, auto& o) { o.Footer = f; }, words); };
+  footer("G91 G28 Z0.\nG90\nM30", "no error");
+  footer("G49\nG91 G28 X0. Y0. Z0.\nG30 P2 Z0.\nG04 X1.5\nG90 G00 X5.\nM30", "no error");
+  footer("G91 G28 Z0.\nG00 Z-5.", "has Z-5. behind G91");
+  footer("G91 G28 Z0.\nX0.", "has X0. behind G91");
+  footer("G91 G28 Z0.\nG53 Z0.", "has Z0. behind G91");
+  footer("G91 G28 Z0.\nG28 X0. Y-5.", "has Y-5. behind G91");
+  footer("G91 G28 Z0.\nG90 G28 Z0.", "has Z0., below where the path ends");
+  footer("G91 G28 Z0.\nG91 Z0.", "has G91, which may give");
+  footer("G91 G28 Z-1.", "has G91, which may give");
+  footer("G91 G90 G28 Z0.", "has G91, which may give");
+  footer("G91 G53 G28 Z0.", "has G91, which may give");
+  footer("G91 Z0.", "has G91, which may give");
+  footer("G91\nG28 Z0.", "has G91, which may give");
+  ExpectError([](auto&, auto& o) { o.Header = "G91 G28 Z0.\nG90"; }, "has G91, which may give");
+}
+
+TEST(GCode, BlanksAndTabs)
+{
+  GCodeOptions options;
+  options.Header = " \n\t\n\tG21\tG90\n  (a\tb)\nG43\tH1\n";
+  options.LineNumbers = true;
+  const GCodeProgram program = MakeGCode(Start, Path(), options);
+  EXPECT_EQ(program.Text.find("%\nO0001\nN10 G21 G17 G40 G49 G80 G90 G94\nN20 G21 G90\n(A B)\n"
+                              "N30 G43 H1\nN40 G00 X1.5"),
+    0u)
+    << program.Text.substr(0, 200);
+  EXPECT_TRUE(program.Warnings.empty());
+  const std::int64_t blocks = program.Blocks;
+  options.Header = "G21 G90\n(A)\nG43 H1";
+  EXPECT_EQ(MakeGCode(Start, Path(), options).Blocks, blocks);
+}
+
 TEST(GCode, TemplatesStayAboveThePathAndInTheEnvelope)
 {
   const auto expect =
