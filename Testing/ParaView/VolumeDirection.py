@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 
+import lacuna
 import lacuna_test
 import numpy as np
 from paraview import servermanager
@@ -321,3 +322,48 @@ for name in SERIES:
 
 skull = SkullPhantom(Spacing=[5, 5, 5])
 assert np.array_equal(*directions(skull))
+
+# the closed surface of an image that is turned or mirrored lies around its object, outsides outside
+from lacuna import occlusion
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+
+letter = np.zeros((18, 24, 44), np.float32)  # z, y, x: no mirror image of it is a turned one of it
+letter[6:10, 7:17, 10:14] = 1
+letter[6:9, 7:10, 14:30] = 1
+letter[10:13, 7:10, 10:13] = 1
+flat = letter[6:7]
+c, s = np.cos(0.5), np.sin(0.5)
+measured = {}
+for direction in (np.eye(3), np.diag([-1, 1, 1]), np.diag([-1, -1, 1]), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+                  np.array([[0, 0, 1], [c, -s, 0], [s, c, 0]]), np.array([[0, 1, 0], [1, 0, 0], [0, 0, 1]])):
+    for values in letter, flat:
+        image = vtkImageData()
+        image.SetDimensions(values.shape[::-1])
+        image.SetOrigin(3, -5, 7)
+        image.SetSpacing(1, 1.25, 0.75)
+        image.SetDirectionMatrix(direction.astype(float).ravel())
+        image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
+        angle = lacuna.vtkLacunaOccludedAngle()
+        angle.SetMode(angle.BINARY)
+        angle.SetNumberOfDirections(100)
+        angle.SetThresholdsOverPi(0, 3.0 if values is letter else 1.5)
+        angle.SetInputData(image)
+        surface = occlusion.closed_surface(angle)
+        index = np.argwhere(vtk_to_numpy(angle.GetOutput().GetPointData().GetArray("Object")).reshape(values.shape))
+        places = (index[:, ::-1] * image.GetSpacing()) @ direction.T + image.GetOrigin()
+        points = vtk_to_numpy(surface.data.GetPoints().GetData())
+        low, high = places.min(axis=0), places.max(axis=0)
+        assert np.abs(points.min(axis=0) - low).max() < 1 and np.abs(points.max(axis=0) - high).max() < 1, direction
+        # the corner that only this letter has: every voxel's centre is near or within, none of the points is far off
+        far = np.array([np.linalg.norm(places - p, axis=1).min() for p in points[::7]])
+        assert far.max() < 1.5, (direction, far.max())
+        first = measured.setdefault(values is letter, surface)
+        assert abs(surface.volume / first.volume - 1) < 1e-5 and abs(surface.area / first.area - 1) < 1e-5
+        if values is letter:
+            corners = vtk_to_numpy(surface.data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            p, q, r = (points[corners[:, i]].astype(float) - points.mean(axis=0) for i in range(3))
+            volume = np.sum(p * np.cross(q, r)) / 6000
+            assert abs(volume / surface.volume - 1) < 1e-3, (direction, volume, surface.volume)
+            normals = vtk_to_numpy(surface.data.GetPointData().GetNormals())
+            assert np.mean(np.sum(np.cross(q - p, r - p) * normals[corners[:, 0]], axis=1) > 0) > 0.95, direction

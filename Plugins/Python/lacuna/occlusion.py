@@ -16,7 +16,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkFlyingEdges2D, vtkFlyingEdges3D, vtkMassProperties,
-                                       vtkPolyDataConnectivityFilter, vtkPolyDataNormals, vtkStripper)
+                                       vtkPolyDataConnectivityFilter, vtkPolyDataNormals, vtkReverseSense, vtkStripper)
 from vtkmodules.vtkImagingCore import vtkImageConstantPad
 
 import lacuna
@@ -63,6 +63,7 @@ def _solid_angle(image, directions):
     """Occluded angle of the array Object taken as solid and opaque."""
     data = vtkImageData()
     data.CopyStructure(image)
+    data.SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1)  # vtkImageConstantPad would drop it: _turn puts it back
     data.GetPointData().SetScalars(image.GetPointData().GetArray("Object"))
     angle = lacuna.vtkLacunaOccludedAngle()
     angle.SetInputData(data)
@@ -112,6 +113,28 @@ def _shrink(surface, distance):
     points = vtk_to_numpy(moved.GetPoints().GetData())
     points -= (distance * vtk_to_numpy(moved.GetPointData().GetNormals())).astype(points.dtype)
     return moved
+
+
+def _turn(surface, image):
+    """Turns points from along the axes of an image to where the image is; polygons keep their outsides outside."""
+    matrix = image.GetDirectionMatrix()
+    direction = np.array([[matrix.GetElement(i, j) for j in range(3)] for i in range(3)])
+    if np.array_equal(direction, np.eye(3)):
+        return
+    points = vtk_to_numpy(surface.GetPoints().GetData())
+    origin = np.array(image.GetOrigin())
+    points[:] = (points - origin) @ direction.T + origin
+    normals = surface.GetPointData().GetNormals()
+    if normals:
+        vectors = vtk_to_numpy(normals)
+        vectors[:] = vectors @ direction.T
+    if np.linalg.det(direction) < 0 and surface.GetNumberOfPolys():
+        reverse = vtkReverseSense()
+        reverse.SetInputData(surface)
+        reverse.ReverseCellsOn()
+        reverse.Update()
+        surface.ShallowCopy(reverse.GetOutput())
+    surface.Modified()
 
 
 def data_points(source):
@@ -186,12 +209,14 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
         curve.AllocateEstimate(len(loops), 100)
         for ids in loops:
             curve.InsertNextCell(4, len(ids) + 1, ids + ids[:1])  # VTK_POLY_LINE
+        _turn(curve, image)
         return Surface(curve, area, length)
     if shift:
         surface = _shrink(surface, shift)
     mass = vtkMassProperties()
     mass.SetInputData(surface)
     mass.Update()
+    _turn(surface, image)
     return Surface(surface, mass.GetVolume() / 1000, mass.GetSurfaceArea())
 
 
