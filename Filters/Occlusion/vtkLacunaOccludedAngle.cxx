@@ -293,9 +293,7 @@ int vtkLacunaOccludedAngle::RequestInformation(
 {
   vtkInformation* info = outputVector->GetInformationObject(0);
   vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
-  info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
-  info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
-  if (this->KeepIterations)
+  if (this->KeepIterations) // instead of the input's time
   {
     std::vector<double> steps(this->ThresholdsOverPi.size());
     for (std::size_t i = 0; i < steps.size(); ++i)
@@ -314,11 +312,25 @@ int vtkLacunaOccludedAngle::RequestInformation(
 int vtkLacunaOccludedAngle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
   for (int port : { 0, 1 })
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
-      vtkLacunaRequest::Whole(inputVector[port]->GetInformationObject(i));
+      vtkInformation* info = inputVector[port]->GetInformationObject(i);
+      vtkLacunaRequest::Whole(info);
+      if (this->KeepIterations) // the time asked for is an iteration, not the input's time
+      {
+        info->Remove(Pipeline::UPDATE_TIME_STEP());
+        if (info->Has(Pipeline::TIME_STEPS()) && info->Length(Pipeline::TIME_STEPS()) > 0)
+        {
+          info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS())[0]);
+        }
+        else if (info->Has(Pipeline::TIME_RANGE()))
+        {
+          info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_RANGE())[0]);
+        }
+      }
     }
   }
   return 1;
@@ -364,6 +376,11 @@ int vtkLacunaOccludedAngle::RequestData(
       {
         output->GetInformation()->Set(
           vtkDataObject::DATA_TIME_STEP(), static_cast<double>(chosen) + 1);
+      }
+      else if (input->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+      {
+        output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(),
+          input->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()));
       }
       int extent[6];
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);

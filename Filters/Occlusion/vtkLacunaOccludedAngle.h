@@ -148,8 +148,9 @@ public:
   ///@}
 
   ///@{
-  /// Keep the result of each iteration: the output then has time steps 1...n. Costs 5 bytes per
-  /// voxel and iteration. Default off.
+  /// Keep the result of each iteration: the output then has time steps 1...n, all of the first
+  /// time step of the input; off: the time steps of the input. Costs 5 bytes per voxel and
+  /// iteration. Default off.
   vtkSetMacro(KeepIterations, bool);
   vtkGetMacro(KeepIterations, bool);
   vtkBooleanMacro(KeepIterations, bool);

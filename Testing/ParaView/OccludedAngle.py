@@ -85,3 +85,46 @@ print("sphere:", surface.volume, "ml, truth", truth)
 whole = OccludedAngle(Input=ball, NumberOfDirections=40, ThresholdsOverPi=[0.01])
 surface = occlusion.closed_surface(whole, compensate=False)
 assert abs(surface.volume / (65 ** 3 / 1000) - 1) < 0.03, surface.volume
+
+# Of an input with time steps of its own every step is its own shape; kept iterations are those of the first step.
+def frames(a, b):
+    return ProgrammableSource(OutputDataSetType="vtkImageData", ScriptRequestInformation=f"""
+information, executive = self.GetExecutive().GetOutputInformation(0), self.GetExecutive()
+information.Set(executive.WHOLE_EXTENT(), [0, 24, 0, 24, 0, 0], 6)
+information.Set(executive.TIME_STEPS(), [{a}, {b}], 2)
+information.Set(executive.TIME_RANGE(), [{a}, {b}], 2)
+""", Script="""
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk
+information, executive = self.GetExecutive().GetOutputInformation(0), self.GetExecutive()
+time = information.Get(executive.UPDATE_TIME_STEP()) if information.Has(executive.UPDATE_TIME_STEP()) else -1
+values, k = np.zeros((25, 25), np.float32), 4 if time < 0 else int(time)
+values[k:-k, k] = values[k:-k, -k - 1] = values[k, k:-k] = values[-k - 1, k:-k] = 1
+output = self.GetOutput()
+output.SetExtent(0, 24, 0, 24, 0, 0)
+output.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
+output.GetInformation().Set(output.DATA_TIME_STEP(), time)
+""")
+
+
+def voxels_at(proxy, time, iteration=0):
+    proxy.UpdatePipeline(time)
+    return servermanager.Fetch(proxy).GetFieldData().GetArray("ObjectVoxels").GetValue(iteration)
+
+
+# (the script's imports come into this name space)
+moving = frames(5, 8)
+following = OccludedAngle(Input=moving, NumberOfDirections=60, Mode="Binary", ThresholdsOverPi=[1.3, 1.3])
+following.UpdatePipelineInformation()
+assert list(following.TimestepValues) == [5, 8]
+sizes = [voxels_at(following, time) for time in (5, 8, 5, 8)]
+assert sizes == [15 ** 2, 9 ** 2, 15 ** 2, 9 ** 2], sizes
+assert servermanager.Fetch(following).GetInformation().Get(servermanager.Fetch(following).DATA_TIME_STEP()) == 8
+following.KeepIterations = 1
+following.UpdatePipelineInformation()
+assert list(following.TimestepValues) == [1, 2]
+sizes = [voxels_at(following, time) for time in (1, 2, 1, 8)]
+assert sizes == [15 ** 2] * 4, sizes
+following.KeepIterations = 0
+following.UpdatePipelineInformation()
+assert list(following.TimestepValues) == [5, 8] and voxels_at(following, 8) == 9 ** 2
