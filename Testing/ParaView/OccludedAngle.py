@@ -8,7 +8,8 @@ import numpy as np
 from lacuna import occlusion
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
@@ -85,6 +86,30 @@ print("sphere:", surface.volume, "ml, truth", truth)
 whole = OccludedAngle(Input=ball, NumberOfDirections=40, ThresholdsOverPi=[0.01])
 surface = occlusion.closed_surface(whole, compensate=False)
 assert abs(surface.volume / (65 ** 3 / 1000) - 1) < 0.03, surface.volume
+
+# Voxels that are not cubes: the closed surface runs through the centres of the outermost ones along each axis.
+for spacing in ((1, 1, 1), (0.5, 1, 3)):
+    for depth in (20, 1):
+        values = np.zeros((depth, 30, 50), np.float32)
+        block = (slice(5, 15) if depth > 1 else 0, slice(8, 20), slice(12, 36))
+        values[block] = 1
+        image = vtkImageData()
+        image.SetDimensions(values.shape[::-1])
+        image.SetSpacing(spacing)
+        image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
+        filter = lacuna.vtkLacunaOccludedAngle()
+        filter.SetInputData(image)
+        filter.SetMode(filter.BINARY)
+        filter.SetNumberOfDirections(100)
+        filter.SetThresholdsOverPi(0, 3.8 if depth > 1 else 1.9)
+        points = vtk_to_numpy(occlusion.closed_surface(filter).data.GetPoints().GetData())
+        index = np.argwhere(values)[:, ::-1]
+        for axis in range(3 if depth > 1 else 2):
+            # the middle of the faces: edges and corners are rounded
+            low, high = index[:, axis].min() * spacing[axis], index[:, axis].max() * spacing[axis]
+            ends = points[:, axis].min(), points[:, axis].max()
+            assert abs(ends[0] - low) < 0.25 * spacing[axis] and abs(ends[1] - high) < 0.25 * spacing[axis], (
+                spacing, depth, axis, ends, low, high)
 
 # Of an input with time steps of its own every step is its own shape; kept iterations are those of the first step.
 def frames(a, b):

@@ -100,8 +100,8 @@ def _contour(image, level, largest):
     return clean.GetOutput()
 
 
-def _shrink(surface, distance):
-    """Moves the points inwards along the normals."""
+def _shrink(surface, spacing):
+    """Moves the points inwards along the normals by half a voxel as wide as it is in that direction."""
     normals = vtkPolyDataNormals()
     normals.SetInputData(surface)
     normals.SplittingOff()
@@ -111,7 +111,8 @@ def _shrink(surface, distance):
     moved = vtkPolyData()
     moved.DeepCopy(normals.GetOutput())
     points = vtk_to_numpy(moved.GetPoints().GetData())
-    points -= (distance * vtk_to_numpy(moved.GetPointData().GetNormals())).astype(points.dtype)
+    normal = vtk_to_numpy(moved.GetPointData().GetNormals())
+    points -= 0.5 * np.linalg.norm(normal * spacing, axis=1, keepdims=True) * normal
     return moved
 
 
@@ -162,18 +163,18 @@ def _loops(curve):
             for c in range(output.GetNumberOfCells())]
 
 
-def _inward(loop, distance):
-    """A closed loop moved to the side of its inside, and its area and length."""
+def _inward(loop, spacing):
+    """A closed loop moved to the side of its inside by half a voxel, and its area and length."""
     loop = loop[:-1] if np.allclose(loop[0], loop[-1]) else loop
     a = int(np.argmin(np.ptp(loop, axis=0)))
     x, y = [c for c in range(3) if c != a]
     tangent = np.roll(loop, -1, 0) - np.roll(loop, 1, 0)
     signed = 0.5 * np.sum(loop[:, x] * np.roll(loop[:, y], -1) - np.roll(loop[:, x], -1) * loop[:, y])
     length = np.hypot(tangent[:, x], tangent[:, y])
-    moved = loop.copy()
     keep = length > 0
-    moved[keep, x] -= math.copysign(distance, signed) * tangent[keep, y] / length[keep]
-    moved[keep, y] += math.copysign(distance, signed) * tangent[keep, x] / length[keep]
+    normal = np.stack((tangent[keep, y], -tangent[keep, x]), 1) / length[keep, None] * math.copysign(1, signed)
+    moved = loop.copy()
+    moved[np.ix_(keep, (x, y))] -= 0.5 * np.linalg.norm(normal * spacing[[x, y]], axis=1, keepdims=True) * normal
     area = 0.5 * abs(np.sum(moved[:, x] * np.roll(moved[:, y], -1) - np.roll(moved[:, x], -1) * moved[:, y]))
     step = moved - np.roll(moved, 1, 0)
     return moved, area, float(np.sum(np.sqrt((step ** 2).sum(1))))
@@ -183,9 +184,10 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     """The closed surface of the array Object of Occluded Angle.
 
     The object is taken as solid, seen within four voxels; just outside of a flat face its angle is half the full one,
-    inside it is the full one, so the contour at three quarters runs along the voxels' faces, smoothed by the angle. Opaque voxels mark the
-    surface at their centres: with compensate the contour is moved inwards by half a voxel (Carr 1996 does not; it
-    makes a sphere of radius 20 by 7.7 % too large).
+    inside it is the full one, so the contour at three quarters runs along the voxels' faces, smoothed by the angle.
+    Opaque voxels mark the surface at their centres: with compensate the contour is moved inwards by half a voxel, that
+    is |n * spacing| / 2 where n is its normal along the image's axes (Carr 1996 does not; it makes a sphere of radius
+    20 by 7.7 % too large).
 
     largest: the largest region only, without what outliers made. Returns a Surface; raises ValueError when there is no object.
     """
@@ -195,13 +197,12 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     surface = _contour(angle, 0.75 * full, largest)
     if surface.GetNumberOfPoints() == 0:
         raise ValueError("no voxel reached the last threshold: there is no object to take the surface of")
-    edges = [s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1]
-    shift = 0.5 * (math.prod(edges) ** (1 / len(edges))) if compensate else 0
+    spacing = np.array(image.GetSpacing()) * bool(compensate)
     if _flat(image):
         area = length = 0
         points, loops = vtkPoints(), []
         for loop in _loops(surface):
-            moved, a, l = _inward(loop, shift)
+            moved, a, l = _inward(loop, spacing)
             loops.append([points.InsertNextPoint(p) for p in moved])
             area, length = area + a, length + l
         curve = vtkPolyData()
@@ -211,8 +212,8 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
             curve.InsertNextCell(4, len(ids) + 1, ids + ids[:1])  # VTK_POLY_LINE
         _turn(curve, image)
         return Surface(curve, area, length)
-    if shift:
-        surface = _shrink(surface, shift)
+    if compensate:
+        surface = _shrink(surface, spacing)
     mass = vtkMassProperties()
     mass.SetInputData(surface)
     mass.Update()
