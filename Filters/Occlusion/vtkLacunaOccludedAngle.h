@@ -67,7 +67,8 @@ public:
 
   ///@{
   /// CONTINUOUS: a ray is hidden by 1 - exp(-attenuation along it). BINARY: by the first voxel it
-  /// meets that is at least half opaque; such voxels are hidden themselves. Default CONTINUOUS.
+  /// meets that takes half of a ray or more (opacity from ln 2 / ln 20 = 0.23); such voxels are
+  /// hidden themselves. Default CONTINUOUS.
   vtkSetClampMacro(Mode, int, CONTINUOUS, BINARY);
   vtkGetMacro(Mode, int);
   ///@}
@@ -127,7 +128,8 @@ public:
   ///@}
 
   ///@{
-  /// Keep data voxels that are at least half opaque as object in every iteration. Default off.
+  /// Keep data voxels that take half of a ray or more (opacity from 0.23) as object in every
+  /// iteration. Default off.
   vtkSetMacro(KeepData, bool);
   vtkGetMacro(KeepData, bool);
   vtkBooleanMacro(KeepData, bool);

@@ -41,7 +41,7 @@ struct Conversion
 {
   int Attenuation;                ///< vtkLacunaOccludedAngle::Attenuations
   vtkPiecewiseFunction* Function; ///< for OPACITY_FUNCTION
-  bool Binary;                    ///< to 1 where at least half opaque, else to 0
+  bool Binary;                    ///< to 1 where half of a ray is taken, else to 0
 };
 
 /// Throws std::runtime_error, with the voxel, for what is no attenuation; for equal grey levels and

@@ -51,7 +51,7 @@ Array* FindArray(vtkImageData* angle, const char* name)
   return array;
 }
 
-// 1 where the data are at least half opaque.
+// 1 where the data take half of a ray or more.
 std::vector<unsigned char> FindData(vtkImageData* image, const vtkLacunaOcclusionInput::Grid& grid,
   const std::string& name, lacuna::Execution& execution)
 {

@@ -111,6 +111,24 @@ for spacing in ((1, 1, 1), (0.5, 1, 3)):
             assert abs(ends[0] - low) < 0.25 * spacing[axis] and abs(ends[1] - high) < 0.25 * spacing[axis], (
                 spacing, depth, axis, ends, low, high)
 
+# Half of a ray is taken, and so Binary and KeepData begin, at ln 2 / ln 20 = 0.231 of the range.
+for level, kept in ((0.22, 0), (0.24, 1)):
+    values = np.zeros((30, 30), np.float32)
+    values[15, 15], values[5, 5] = 1, level
+    image = vtkImageData()
+    image.SetDimensions(30, 30, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(values.ravel(), deep=1))
+    for mode, keep in ((0, 1), (1, 0)):
+        filter = lacuna.vtkLacunaOccludedAngle()
+        filter.SetInputData(image)
+        filter.SetMode(mode)
+        filter.SetKeepData(bool(keep))
+        filter.SetNumberOfDirections(20)
+        filter.SetThresholdsOverPi(0, 1.9)
+        filter.Update()
+        found = vtk_to_numpy(filter.GetOutput().GetPointData().GetArray("Object")).reshape(30, 30)
+        assert found[15, 15] == 1 and found[5, 5] == kept, (level, mode)
+
 # Of an input with time steps of its own every step is its own shape; kept iterations are those of the first step.
 def frames(a, b):
     return ProgrammableSource(OutputDataSetType="vtkImageData", ScriptRequestInformation=f"""
