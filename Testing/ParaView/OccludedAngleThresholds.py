@@ -49,6 +49,17 @@ for name, data, schedule, most, most_suggested in CASES:
     print(f"{name}: schedule {error:+.1f} %, suggested {suggestion:.2f} pi {alone:+.1f} %")
     assert abs(error) < most and abs(alone) < most_suggested, name
 
+# Complete data: half the angle makes one more layer object, which the guide says with these figures.
+for data, threshold, layer in ((dict(Shape="Sphere", Dimensions=[65] * 3), 2.69, 9.0),
+                               (dict(Shape="Cube", Dimensions=[44] * 3), 2.69, 21.0),
+                               (dict(Dimensions=FLAT), 1.3, 1.8)):
+    source = IncompleteShape(**data)
+    truth = servermanager.Fetch(source).GetFieldData().GetArray("CompleteVolume").GetValue(0)
+    errors = [100 * (occlusion.closed_surface(OccludedAngle(
+        Input=source, NumberOfDirections=200, ThresholdsOverPi=[last])).volume / truth - 1) for last in (0, threshold)]
+    print(data, errors)
+    assert abs(errors[0] - layer) < 0.5 and abs(errors[1]) < 2, (data, errors)
+
 # How stable the answer is: volumes fall with the threshold; the plot can be saved.
 thresholds, volumes = occlusion.volume_against_threshold(shape)
 assert len(thresholds) == 79 and np.all(np.diff(volumes) <= 0) and volumes[0] > volumes[-1]
