@@ -9,9 +9,12 @@
 #include "lacunaHounsfield.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
+#include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -27,20 +30,24 @@
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <iomanip>
 #include <new>
+#include <optional>
 #include <sstream>
 
 namespace
 {
 constexpr const char* ScalarsName = "HounsfieldUnits";
+constexpr int SecondsShown = 5; // in which an error is not shown again
 
 std::string Text(const char* s)
 {
@@ -124,6 +131,22 @@ bool IsSameImage(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
   lacuna::ReadDicomPixels(b, second);
   return first.Format.Signed == second.Format.Signed && first.Bytes == second.Bytes;
 }
+
+// An error that is on the screen already: tells only who listens.
+void RepeatError(vtkAlgorithm* algorithm, const std::string& text)
+{
+  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
+    ? static_cast<vtkObject*>(algorithm)
+    : vtkOutputWindow::GetInstance();
+  std::string copy = text;
+  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
+  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
+  vtkNew<vtkCallbackCommand> once;
+  once->SetClientData(once);
+  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
+    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
+}
 }
 
 struct vtkLacunaCTSeriesReader::Content
@@ -134,7 +157,8 @@ struct vtkLacunaCTSeriesReader::Content
   bool Opened = false;
   std::string Error; // why it is not
   unsigned long ErrorCode = vtkErrorCode::NoError;
-  bool Warned = false; // of what follows
+  std::optional<std::chrono::steady_clock::time_point> Shown; // when Error was
+  bool Warned = false;                                        // of what follows
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
   lacuna::ScalarType Type = lacuna::ScalarType::Int16;
@@ -247,6 +271,7 @@ int vtkLacunaCTSeriesReader::RequestInformation(
 {
   Content& found = *this->Found;
   found.Opened = false;
+  found.Shown.reset();
   found.Warned = false;
   found.SeriesList->Reset();
   found.Notes->Reset();
@@ -368,13 +393,27 @@ int vtkLacunaCTSeriesReader::RequestData(
     }
   }
   found.Warned = true;
+  if (!found.Opened)
+  {
+    // Of an empty extent VTK takes empty data for up to date, and would not ask again. So each who
+    // asks gets the error; ParaView asks several times for one command.
+    outputs->GetInformationObject(0)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+    const auto now = std::chrono::steady_clock::now();
+    if (found.Shown && now - *found.Shown < std::chrono::seconds(SecondsShown))
+    {
+      vtkImageData::GetData(outputs, 0)->Initialize();
+      outputs->GetInformationObject(0)->Remove(
+        vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
+      RepeatError(this, found.Error);
+      return 0;
+    }
+    found.Shown = now;
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
       if (!found.Opened)
       {
-        // Of an empty extent VTK takes empty data for up to date, and would not ask again.
-        outputs->GetInformationObject(0)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
         throw std::runtime_error(found.Error);
       }
       vtkInformation* info = outputs->GetInformationObject(0);

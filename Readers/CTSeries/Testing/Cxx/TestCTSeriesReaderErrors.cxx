@@ -5,8 +5,13 @@
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkLogger.h"
+#include "vtkObjectFactory.h"
+#include "vtkOutputWindow.h"
 #include "vtkPointData.h"
+#include "vtkSmartPointer.h"
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -192,6 +197,68 @@ void TestInformation()
   test.ExpectError("1 slice is missing"); // again, not an empty volume in silence
   test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
   test.ExpectGood();
+}
+
+// Counts what is shown, and what those hear who listen.
+class CountingWindow : public vtkOutputWindow
+{
+public:
+  static CountingWindow* New();
+  vtkTypeMacro(CountingWindow, vtkOutputWindow);
+  int Shown = 0;
+  int Heard = 0;
+
+  void DisplayErrorText(const char* text) override
+  {
+    ++this->Shown;
+    this->InvokeEvent(vtkCommand::ErrorEvent, const_cast<char*>(text));
+  }
+
+protected:
+  CountingWindow() { this->AddObserver(vtkCommand::ErrorEvent, this, &CountingWindow::Hear); }
+
+private:
+  void Hear(vtkObject*, unsigned long, void* text)
+  {
+    this->Heard +=
+      std::string(static_cast<const char*>(text)).find("1 slice is missing") != std::string::npos;
+  }
+};
+vtkStandardNewMacro(CountingWindow);
+
+// ParaView asks again and again: the error is shown once, and each time to those who listen.
+void TestShownOnce()
+{
+  CTTestSeries series;
+  series.Places = { 0, 1, 2, 4, 5, 6 };
+  const ReaderOf test(series);
+  const vtkSmartPointer<vtkOutputWindow> before = vtkOutputWindow::GetInstance();
+  vtkNew<CountingWindow> window;
+  vtkOutputWindow::SetInstance(window);
+  vtkLogger::SetStderrVerbosity(
+    vtkLogger::VERBOSITY_OFF); // CTest takes errors in the log for failures
+  vtkNew<vtkLacunaCTSeriesReader> reader;
+  reader->SetFileName(test.Folder.c_str());
+  const auto start = std::chrono::steady_clock::now();
+  const auto update = [&](int shown, int heard)
+  {
+    window->Shown = window->Heard = 0;
+    reader->Update();
+    LACUNA_CHECK(window->Heard == heard);
+    // on a machine that takes seconds for this it may be shown again
+    const bool fast = std::chrono::steady_clock::now() - start < std::chrono::seconds(4);
+    LACUNA_CHECK(!fast || window->Shown == shown);
+    LACUNA_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
+  };
+  update(2, 1); // with what the executive adds
+  update(0, 1);
+  update(0, 1);
+  reader->Modified(); // another try
+  update(2, 1);
+  update(0, 1);
+  LACUNA_CHECK(!reader->GetExecutive()->HasObserver(vtkCommand::ErrorEvent));
+  vtkOutputWindow::SetInstance(before);
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_INFO);
 }
 
 void TestLeftOut()
@@ -467,6 +534,7 @@ int TestCTSeriesReaderErrors(int, char*[])
 {
   TestTags();
   TestDoubts();
+  TestShownOnce();
   TestProperties();
   TestGapOfLeftOut();
   TestInformation();
