@@ -28,6 +28,20 @@ namespace
 {
 using lacuna::MapMask;
 
+// Pairs of edge neighbours that are both in mask.
+std::size_t CountNeighbours(const lacuna::MapGrid& grid, const MapMask& mask)
+{
+  const std::size_t width = grid.Width;
+  std::size_t count = 0;
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    const bool right = (pixel + 1) % width != 0 && mask[pixel + 1];
+    const bool below = pixel + width < mask.size() && mask[pixel + width];
+    count += mask[pixel] ? (right ? 1 : 0) + (below ? 1 : 0) : 0;
+  }
+  return count;
+}
+
 // Pixels whose surface point is in region, or is hidden by it from the viewer.
 class RegionMarker
 {
@@ -264,6 +278,23 @@ std::vector<int> GetExtent(const lacuna::MapGrid& grid, const MapMask& mask)
     }
   }
   return extent;
+}
+
+//------------------------------------------------------------------------------
+bool MayBeOfSurface(const lacuna::MapGrid& grid, const MapMask& valid, const MapMask& selected)
+{
+  MapMask other(selected.size(), 0);
+  std::size_t point = 0;
+  for (std::size_t pixel = 0; pixel < valid.size(); ++pixel)
+  {
+    if (valid[pixel])
+    {
+      other[pixel] = selected[point++];
+    }
+  }
+  const auto beyond = selected.begin() + static_cast<std::ptrdiff_t>(point);
+  return std::find(beyond, selected.end(), 1) == selected.end() && other != selected &&
+    CountNeighbours(grid, other) >= CountNeighbours(grid, selected);
 }
 
 //------------------------------------------------------------------------------

@@ -46,6 +46,12 @@ std::string DescribeRuns(const lacuna::MapMask& mask);
 /// First and last column, first and last row of what is marked; empty when nothing is.
 std::vector<int> GetExtent(const lacuna::MapGrid& grid, const lacuna::MapMask& mask);
 
+/// Whether a selection that was read as the map's own points, selected, may have been made on its Depth
+/// Map Surface, whose points are the valid pixels one after the other: whether read so it marks other
+/// pixels and these hang together at least as well.
+bool MayBeOfSurface(
+  const lacuna::MapGrid& grid, const lacuna::MapMask& valid, const lacuna::MapMask& selected);
+
 void Merge(lacuna::MapMask& mask, const lacuna::MapMask& other);
 }
 #endif

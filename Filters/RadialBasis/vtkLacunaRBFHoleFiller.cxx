@@ -339,16 +339,16 @@ void vtkLacunaRBFHoleFiller::MarkDefect(vtkLacunaExecution& execution, vtkImageD
     vtkLacunaDefectMarks::Merge(
       marked.Defect, vtkLacunaDefectMarks::FromArray(map, this->DefectArray, "DefectArray"));
   }
-  if (selection && !surface)
-  {
-    vtkWarningMacro("Selection is read as points of the depth map; if it was made on a Depth Map "
-                    "Surface, whose points have other numbers, set Surface to that");
-  }
   if (surface || selection)
   {
     const MapMask selected =
       vtkLacunaDefectMarks::FromSelection(map, marked.Grid, surface, selection);
     where.Add("SelectedPixels", vtkLacunaDefectMarks::DescribeRuns(selected));
+    if (!surface && vtkLacunaDefectMarks::MayBeOfSurface(marked.Grid, marked.Valid, selected))
+    {
+      vtkWarningMacro("Selection is read as points of the depth map; if it was made on a Depth Map "
+                      "Surface, whose points have other numbers, set Surface to that");
+    }
     vtkLacunaDefectMarks::Merge(marked.Defect, selected);
   }
   else if (!this->DefectRegion && this->DefectArray.empty())

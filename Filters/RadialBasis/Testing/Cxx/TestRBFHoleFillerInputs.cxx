@@ -174,6 +174,16 @@ void TestSelections()
     Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, patch));
   filler->Update();
   CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 3); });
+  LACUNA_CHECK(messages->Warnings.empty());
+
+  // numbers of the points in the order of Depth Map Surface, which is forgotten: they shear the ring
+  for (vtkIdType& number : numbers)
+  {
+    number = surface->GetNumberOfPoints() - 1 - number;
+  }
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, numbers));
+  filler->Update();
   LACUNA_CHECK(messages->HasWarning("read as points of the depth map"));
 
   // nothing selected: nothing filled, and the automatic search does not step in
