@@ -175,8 +175,12 @@ private:
     {
       this->WayOut += " " + lacuna::FormatNumber(x);
     }
-    this->WayOut += std::string(" (field data SuggestedViewDirection), which faces the defect") +
-      (this->OwnPlane ? ", and set PlaneMethod to LeastSquares" : "") + "; if that does not do, " +
+    // without a margin Fitted may reach too little there
+    this->WayOut +=
+      " (field data SuggestedViewDirection), which faces the defect, and OutputMargin of "
+      "RBF Hole Filler of at least " +
+      lacuna::FormatNumber(std::ceil(this->Options.PlateMargin)) +
+      (this->OwnPlane ? "; set PlaneMethod to LeastSquares" : "") + "; if that does not do, " +
       smaller;
   }
 

@@ -185,12 +185,27 @@ for kernel, method in (("Cubic", "Fit"), ("Triharmonic", "LeastSquares"), ("Trih
     else:
         suggested = np.asarray(fields["SuggestedViewDirection"]).ravel()
         assert abs(np.linalg.norm(suggested) - 1) < 1e-14 and suggested @ view > 0
+        assert "OutputMargin of RBF Hole Filler of at least 5" in text, text
         assert "SuggestedViewDirection" in text and ("PlaneMethod" in text) == (method == "Fit"), text
         wide.ViewDirection = list(suggested)
     press.PlaneMethod = "LeastSquares"
     fields = fetch(press)[2]
     print(kernel, method, "from", list(wide.ViewDirection), "walls of", fields["DraftAngle"].item(), flush=True)
     assert fields["SingleValued"].item() == 1 and "SuggestedViewDirection" not in fields
+
+# With a wide margin Fitted reaches too little from the new view, unless the advice is followed.
+wide.ViewDirection, filled.Kernel, press.PlateMargin = [-0.1, -0.1, -0.9], "Triharmonic", 9.5
+fields, text = undercut()
+wide.ViewDirection = list(np.asarray(fields["SuggestedViewDirection"]).ravel())
+assert "OutputMargin of RBF Hole Filler of at least 10" in text, text
+try:
+    fetch(press)
+    raise AssertionError("without a margin")
+except PipelineError as error:
+    assert "the fitted surface reaches only" in str(error), error
+filled.OutputMargin = 10
+assert fetch(press)[2]["SingleValued"].item() == 1
+filled.OutputMargin, press.PlateMargin = 0, 5
 
 # From the side there is nothing to tell a better view from.
 filled.Input = BSplineIsoRayCaster(Input=phantom, IsoValues=[500], ViewDirection=[0.5, -0.6, -0.62])
