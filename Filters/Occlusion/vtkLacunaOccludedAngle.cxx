@@ -90,6 +90,16 @@ public:
     lacuna::GrowShape(
       field, options, angle->GetPointer(0), object->GetPointer(0), observe, execution);
     images.push_back(this->MakeImage(angle, object, options, all));
+    const auto empty = std::find_if(all.begin(), all.end(),
+      [](const lacuna::GrowthStatistics& statistics) { return statistics.ObjectVoxels == 0; });
+    if (empty != all.end())
+    {
+      vtkWarningWithObjectMacro(
+        this->Self, << "iteration " << empty - all.begin() + 1 << " has no object"
+                    << (empty + 1 == all.end() ? "" : ", so the following ones have none either")
+                    << ": lower its threshold of "
+                    << options.Steps[empty - all.begin()].Threshold / Pi << " pi");
+    }
     return images;
   }
 

@@ -241,6 +241,27 @@ void TestSpace()
   LACUNA_CHECK(vtkLacunaProvenance::Get(b->GetOutput()).size() == 1);
 }
 
+// An iteration that leaves nothing is said, once, the first of them; others are not.
+void TestEmptyIteration()
+{
+  vtkNew<vtkImageData> circle;
+  MakeCircle(circle, 2);
+  vtkNew<vtkLacunaOccludedAngle> filter;
+  filter->SetInputData(circle);
+  filter->SetNumberOfDirections(40);
+  filter->SetThresholdsOverPi(0, 2);
+  filter->SetThresholdsOverPi(1, 1);
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("iteration 1 has no object"));
+  LACUNA_CHECK(!messages->HasWarning("iteration 2") && messages->Errors.empty());
+  messages->Warnings.clear();
+  filter->SetThresholdsOverPi(0, 1.3);
+  filter->Update();
+  LACUNA_CHECK(messages->Warnings.empty());
+}
+
 void TestPieces()
 {
   vtkNew<vtkImageData> circle;
@@ -329,6 +350,7 @@ int TestOccludedAngle(int, char*[])
   TestTimeSteps();
   TestAttenuations();
   TestSpace();
+  TestEmptyIteration();
   TestPieces();
   TestPieceOfSource();
   TestAbort();
