@@ -129,6 +129,28 @@ for level, kept in ((0.22, 0), (0.24, 1)):
         found = vtk_to_numpy(filter.GetOutput().GetPointData().GetArray("Object")).reshape(30, 30)
         assert found[15, 15] == 1 and found[5, 5] == kept, (level, mode)
 
+# Everything object is closed at the edge of the image; nothing object and other images are said to be so.
+image = vtkImageData()
+image.SetDimensions(12, 12, 12)
+image.GetPointData().SetScalars(numpy_to_vtk(np.full(12 ** 3, 5.0), deep=1))
+filter = lacuna.vtkLacunaOccludedAngle()
+filter.SetInputData(image)
+filter.SetAttenuation(filter.ARRAY)
+filter.SetNumberOfDirections(40)
+surface = occlusion.closed_surface(filter, compensate=False)
+assert abs(surface.volume / (11.5 ** 3 / 1000) - 1) < 0.02, surface.volume  # a quarter of a voxel around the centres
+empty = vtkImageData()
+empty.CopyStructure(image)
+array = numpy_to_vtk(np.zeros(12 ** 3, np.uint8), deep=1)
+array.SetName("Object")
+empty.GetPointData().AddArray(array)
+for what, message in ((empty, "no voxel reached"), (image, "give the output of Occluded Angle")):
+    try:
+        occlusion.closed_surface(what)
+        assert False, message
+    except ValueError as error:
+        assert message in str(error), error
+
 # Of an input with time steps of its own every step is its own shape; kept iterations are those of the first step.
 def frames(a, b):
     return ProgrammableSource(OutputDataSetType="vtkImageData", ScriptRequestInformation=f"""

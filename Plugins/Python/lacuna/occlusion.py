@@ -14,7 +14,7 @@ import math
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction, vtkPolyData
 from vtkmodules.vtkFiltersCore import (vtkCleanPolyData, vtkFlyingEdges2D, vtkFlyingEdges3D, vtkMassProperties,
                                        vtkPolyDataConnectivityFilter, vtkPolyDataNormals, vtkReverseSense, vtkStripper)
 from vtkmodules.vtkImagingCore import vtkImageConstantPad
@@ -59,15 +59,30 @@ def _flat(image):
     return min(image.GetDimensions()) == 1
 
 
+def _array(image, name):
+    """A point array of Occluded Angle as numpy; of other inputs a ValueError that says so."""
+    array = image.GetPointData().GetArray(name) if isinstance(image, vtkImageData) else None
+    if array is None:
+        raise ValueError(f"the source has no point array '{name}'; give the output of Occluded Angle")
+    return vtk_to_numpy(array)
+
+
 def _solid_angle(image, directions):
     """Occluded angle of the array Object taken as solid and opaque."""
+    if not _array(image, "Object").any():
+        raise ValueError("no voxel reached the last threshold: there is no object to take the surface of")
     data = vtkImageData()
     data.CopyStructure(image)
     data.SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1)  # vtkImageConstantPad would drop it: _turn puts it back
     data.GetPointData().SetScalars(image.GetPointData().GetArray("Object"))
+    opaque = vtkPiecewiseFunction()  # not Linear in Range: all voxels may be object
+    opaque.AddPoint(0, 0)
+    opaque.AddPoint(1, 1)
     angle = lacuna.vtkLacunaOccludedAngle()
     angle.SetInputData(data)
     angle.SetMode(angle.BINARY)
+    angle.SetAttenuation(angle.OPACITY_FUNCTION)
+    angle.SetOpacityFunction(opaque)
     angle.SetNumberOfDirections(directions)
     # Near by only, so that bays wider than that stay open.
     angle.SetLocalRadii(0, 4 * max(s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1))
@@ -196,7 +211,7 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     full = 2 * math.pi if _flat(image) else 4 * math.pi
     surface = _contour(angle, 0.75 * full, largest)
     if surface.GetNumberOfPoints() == 0:
-        raise ValueError("no voxel reached the last threshold: there is no object to take the surface of")
+        raise ValueError("the object is too small to take the surface of: fewer than a few voxels hang together")
     spacing = np.array(image.GetSpacing()) * bool(compensate)
     if _flat(image):
         area = length = 0
