@@ -64,6 +64,18 @@ for step in (1, 2, 3):
     counts.append(servermanager.Fetch(angle).GetFieldData().GetArray("ObjectVoxels").GetValue(step - 1))
 assert counts[0] < counts[2], counts
 
+# The suggestion for the data is the first iteration's.
+suggestions = servermanager.Fetch(angle).GetFieldData().GetArray("SuggestedThresholdOverPi")
+suggestions = [suggestions.GetValue(i) for i in range(3)]
+assert len(set(suggestions)) > 1 and occlusion.suggested_threshold(angle) == suggestions[0], suggestions
+assert [occlusion.suggested_threshold(angle, i) for i in (0, 1, 2, -1)] == suggestions + suggestions[2:]
+for what, iteration, message in ((angle, 3, "no iteration 3"), (source, 0, "give the output of Occluded Angle")):
+    try:
+        occlusion.suggested_threshold(what, iteration)
+        assert False, message
+    except ValueError as error:
+        assert message in str(error), error
+
 # A reconstruction space, an opacity function.
 space = OccludedAngle(Input=source, NumberOfDirections=60, ThresholdsOverPi=[1.0], ReconstructionSpace="Sphere")
 space.ReconstructionSpace.Radius = 50

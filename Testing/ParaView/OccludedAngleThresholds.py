@@ -41,8 +41,7 @@ for name, data, schedule, most, most_suggested in CASES:
     truth = servermanager.Fetch(source).GetFieldData().GetArray("CompleteVolume").GetValue(0)
     shape = OccludedAngle(Input=source, **schedule)
     error = 100 * (occlusion.closed_surface(shape).volume / truth - 1)
-    suggestion = servermanager.Fetch(shape).GetFieldData().GetArray("SuggestedThresholdOverPi").GetValue(0)
-    # of the first iteration, taken as the only one
+    suggestion = occlusion.suggested_threshold(shape)  # of the first iteration, taken as the only one
     shape.ThresholdsOverPi = [suggestion]
     shape.LocalRadii = list(shape.LocalRadii)[:1]
     alone = 100 * (occlusion.closed_surface(shape).volume / truth - 1)

@@ -41,7 +41,7 @@ def show(name, title, angle):
     pictures.look(view, (0, 0, -1), (0, 1, 0), 1.3)
     pictures.save(view, os.path.join(folder, name + ".png"))
     suggestion = occlusion.suggested_threshold(angle)
-    print(f"{name}: area {surface.volume:.0f} mm2, suggested threshold {suggestion:.2f} pi", flush=True)
+    print(f"{name}: area {surface.volume:.0f} mm2, threshold suggested for one iteration {suggestion:.2f} pi", flush=True)
     Delete(view)
 
 

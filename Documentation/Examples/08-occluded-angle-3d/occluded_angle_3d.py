@@ -36,7 +36,7 @@ def show(name, title, data, schedule, direction):
     pictures.save(view, os.path.join(folder, name + ".png"))
     truth = servermanager.Fetch(data).GetFieldData().GetArray("CompleteVolume").GetValue(0)
     print(f"{name}: {surface.volume:.2f} ml, truth {truth:.2f} ml ({100 * (surface.volume / truth - 1):+.1f} %), "
-          f"suggested threshold {occlusion.suggested_threshold(angle):.2f} pi", flush=True)
+          f"threshold suggested for one iteration {occlusion.suggested_threshold(angle):.2f} pi", flush=True)
     occlusion.plot_volume(angle, os.path.join(folder, name + "-volume.png"))
     Delete(view)
 

@@ -204,7 +204,8 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     is |n * spacing| / 2 where n is its normal along the image's axes (Carr 1996 does not; it makes a sphere of radius
     20 by 7.7 % too large).
 
-    largest: the largest region only, without what outliers made. Returns a Surface; raises ValueError when there is no object.
+    largest: the largest region only, without what outliers made. Returns a Surface; raises ValueError when there is no
+    object.
     """
     image = _image(source)
     angle = _solid_angle(image, directions)
@@ -253,10 +254,19 @@ def volume_against_threshold(source, thresholds_over_pi=None):
     return np.asarray(thresholds_over_pi, float), unit * counts
 
 
-def suggested_threshold(source):
-    """The threshold over pi that Occluded Angle suggests after its last iteration; 0 if none."""
-    return _image(source).GetFieldData().GetArray("SuggestedThresholdOverPi").GetValue(
-        _image(source).GetFieldData().GetArray("SuggestedThresholdOverPi").GetNumberOfTuples() - 1)
+def suggested_threshold(source, iteration=0):
+    """The threshold over pi that Occluded Angle suggests after an iteration; 0 if none.
+
+    iteration: counted from 0, the one that sees the data themselves. Later ones (-1: the last) are of the shape before
+    and do not say which threshold suits the data.
+    """
+    array = _image(source).GetFieldData().GetArray("SuggestedThresholdOverPi")
+    if array is None:
+        raise ValueError("the source has no field array 'SuggestedThresholdOverPi'; give the output of Occluded Angle")
+    count = array.GetNumberOfTuples()
+    if not -count <= iteration < count:
+        raise ValueError(f"there is no iteration {iteration}: the source has {count}, counted from 0")
+    return array.GetValue(iteration % count)
 
 
 def plot_volume(source, file_name=None, **options):
