@@ -5,8 +5,11 @@
 #include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkBox.h"
+#include "vtkCylinder.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
+#include "vtkHomogeneousTransform.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
@@ -17,10 +20,12 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
+#include "vtkSphere.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -34,6 +39,46 @@ vtkStandardNewMacro(vtkLacunaOccludedAngle);
 namespace
 {
 const double Pi = 3.14159265358979323846;
+
+// Grey level, opacity, midpoint and sharpness of each node.
+std::vector<double> GetNodes(vtkPiecewiseFunction* function)
+{
+  std::vector<double> nodes(4 * static_cast<std::size_t>(function->GetSize()));
+  for (int i = 0; i < function->GetSize(); ++i)
+  {
+    function->GetNodeValue(i, nodes.data() + 4 * static_cast<std::size_t>(i));
+  }
+  return nodes;
+}
+
+// The class of an implicit function and, of those offered in ParaView, its numbers.
+void AddFunction(lacuna::ParameterText& text, vtkImplicitFunction* function)
+{
+  text.Add("ReconstructionSpace", function->GetClassName());
+  const auto add = [&text](const char* name, const double* values, int count)
+  { text.Add(name, std::vector<double>(values, values + count)); };
+  if (auto* sphere = vtkSphere::SafeDownCast(function))
+  {
+    add("Center", sphere->GetCenter(), 3);
+    text.Add("Radius", sphere->GetRadius());
+  }
+  else if (auto* cylinder = vtkCylinder::SafeDownCast(function))
+  {
+    add("Center", cylinder->GetCenter(), 3);
+    add("Axis", cylinder->GetAxis(), 3);
+    text.Add("Radius", cylinder->GetRadius());
+  }
+  else if (auto* box = vtkBox::SafeDownCast(function))
+  {
+    double bounds[6];
+    box->GetBounds(bounds);
+    add("Bounds", bounds, 6);
+  }
+  if (auto* transform = vtkHomogeneousTransform::SafeDownCast(function->GetTransform()))
+  {
+    add("Transform", transform->GetMatrix()->GetData(), 16);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -406,6 +451,14 @@ int vtkLacunaOccludedAngle::RequestData(
         .Add("Dilation", this->Dilation)
         .Add("KeepData", this->KeepData)
         .Add("MedianKernel", this->MedianKernel);
+      if (this->Attenuation == OPACITY_FUNCTION)
+      {
+        parameters.Add("OpacityFunction", GetNodes(this->OpacityFunction));
+      }
+      if (this->ReconstructionSpace)
+      {
+        AddFunction(parameters, this->ReconstructionSpace);
+      }
       std::vector<vtkDataObject*> inputs{ input };
       if (space)
       {

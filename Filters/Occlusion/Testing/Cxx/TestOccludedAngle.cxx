@@ -194,6 +194,9 @@ void TestAttenuations()
     LACUNA_CHECK_NEAR(
       array->GetOutput()->GetPointData()->GetScalars()->GetComponent(i, 0), truth, 1e-5);
   }
+  LACUNA_CHECK(vtkLacunaProvenance::Get(function->GetOutput())
+                 .back()
+                 .find("OpacityFunction=10,0,0.5,0,200,1,0.5,0") != std::string::npos);
   // a changed function is a changed filter
   ramp->RemoveAllPoints();
   ramp->AddPoint(10, 0);
@@ -239,6 +242,10 @@ void TestSpace()
     LACUNA_CHECK(first->GetComponent(i, 0) == second->GetComponent(i, 0));
   }
   LACUNA_CHECK(vtkLacunaProvenance::Get(b->GetOutput()).size() == 1);
+  LACUNA_CHECK(
+    vtkLacunaProvenance::Get(a->GetOutput())
+      .back()
+      .find("ReconstructionSpace=vtkSphere Center=5,5,12 Radius=25.3") != std::string::npos);
 }
 
 // An iteration that leaves nothing is said, once, the first of them; others are not.
