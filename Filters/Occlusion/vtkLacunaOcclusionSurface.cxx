@@ -29,6 +29,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -264,6 +265,16 @@ int vtkLacunaOcclusionSurface::RequestData(
       }
       vtkLacunaVolumeDirection::Remove(output);
       const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
+      const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
+      if (report.Residual > 0.6 * edge || report.Outliers > report.DataVoxels)
+      {
+        vtkWarningMacro(<< "the surface may be wrong: " << report.Outliers << " of "
+                        << report.Outliers + report.DataVoxels
+                        << " data voxels are outliers, the others are " << report.Residual / edge
+                        << " voxel edges from it (root mean square; 0.3 is usual). Data must be "
+                           "voxels of the surface, not of the body's inside: use "
+                           "lacuna.occlusion.closed_surface for these");
+      }
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
       set("SurfaceVolume", measures.Volume / 1000);

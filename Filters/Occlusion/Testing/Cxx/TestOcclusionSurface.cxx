@@ -78,7 +78,7 @@ void CheckEllipsoid()
   vtkNew<lacunaCheck::Messages> messages;
   messages->Watch(filter);
   filter->Update();
-  LACUNA_CHECK(messages->Errors.empty());
+  LACUNA_CHECK(messages->Errors.empty() && messages->Warnings.empty());
   vtkPolyData* surface = filter->GetOutput();
   LACUNA_CHECK(surface->GetNumberOfPoints() > 1000);
   const double volume = 4 * Pi / 3 * 14 * 11 * 8 / 8 / 1000; // ml
@@ -114,6 +114,29 @@ void CheckEllipsoid()
   LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
 }
 
+// A body filled with echoes: most data are not on its surface, which is said.
+void CheckFilled()
+{
+  vtkNew<vtkImageData> angle;
+  vtkNew<vtkImageData> data;
+  MakeImages(angle, data);
+  vtkDataArray* object = angle->GetPointData()->GetArray("Object");
+  for (vtkIdType i = 0; i < object->GetNumberOfTuples(); ++i)
+  {
+    if (i % 4 == 0 && object->GetComponent(i, 0) > 0)
+    {
+      data->GetPointData()->GetScalars()->SetComponent(i, 0, 1);
+    }
+  }
+  vtkNew<vtkLacunaOcclusionSurface> filter;
+  filter->SetInputData(0, angle);
+  filter->SetInputData(1, data);
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->Errors.empty() && messages->HasWarning("the surface may be wrong"));
+}
+
 void Expect(const std::string& message,
   const std::function<void(vtkLacunaOcclusionSurface*, vtkImageData*, vtkImageData*)>& change)
 {
@@ -142,6 +165,7 @@ int TestOcclusionSurface(int, char*[])
 {
   using Filter = vtkLacunaOcclusionSurface;
   CheckEllipsoid();
+  CheckFilled();
   Expect("no point array 'Object'",
     [](Filter*, vtkImageData* angle, vtkImageData*)
     { angle->GetPointData()->RemoveArray("Object"); });
