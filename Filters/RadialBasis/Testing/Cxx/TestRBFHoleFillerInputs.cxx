@@ -166,15 +166,18 @@ void TestSelections()
   filler->SetDefectArray("");
   filler->SetInputDataObject(Filler::SurfacePort, nullptr);
   filler->SetInputDataObject(
-    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, { 82, 80, 81, 1604, 1605 }));
-  filler->Update();
-  LACUNA_CHECK_CONTAINS(GetStep(filler), " SelectedPixels=\"80-82,1604-1605\" DefectPixels=5 ");
-  LACUNA_CHECK_CONTAINS(GetStep(filler), " DefectExtent=10,15,21,40 ");
-  filler->SetInputDataObject(
     Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, patch));
   filler->Update();
   CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 3); });
   LACUNA_CHECK(messages->Warnings.empty());
+
+  // loose pixels, which could be a surface's: the provenance names them
+  filler->SetInputDataObject(
+    Filler::SelectionPort, MakeSelection(vtkSelectionNode::INDICES, { 82, 80, 81, 1604, 1605 }));
+  filler->Update();
+  LACUNA_CHECK_CONTAINS(GetStep(filler), " SelectedPixels=\"80-82,1604-1605\" DefectPixels=5 ");
+  LACUNA_CHECK_CONTAINS(GetStep(filler), " DefectExtent=10,15,21,40 ");
+  messages->Warnings.clear();
 
   // numbers of the points in the order of Depth Map Surface, which is forgotten: they shear the ring
   for (vtkIdType& number : numbers)
