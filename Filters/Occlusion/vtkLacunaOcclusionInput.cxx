@@ -245,7 +245,7 @@ void CutSpace(lacuna::AttenuationField& field, vtkImageData* image, vtkImageData
   bool any = false;
   for (vtkIdType i = 0; i < field.GetNumberOfVoxels(); ++i)
   {
-    bool kept = !inside || inside->GetComponent(i, 0) != 0;
+    bool kept = !inside || std::abs(inside->GetComponent(i, 0)) > 0; // not where it is NaN
     if (kept && function)
     {
       double point[3];

@@ -22,7 +22,7 @@ SIZE = [200, 200, 200]
 def show(name, title, angle):
     """The angle in grey, the data in blue, the closed outline in red."""
     surface = occlusion.closed_surface(angle)
-    view = pictures.new_view((700, 700))
+    view = pictures.new_view((900, 700))
     display = Show(angle, view)
     display.SetRepresentationType("Slice")
     pictures.color_by(display, view, "OccludedAngle", "angle / rad", (0, 2 * math.pi), "Grayscale")

@@ -240,11 +240,12 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
 def volume_against_threshold(source, thresholds_over_pi=None):
     """How much the answer depends on the last threshold: arrays (threshold / pi, volume in ml or area in mm2).
 
-    Counts the voxels of OccludedAngle (and of the shape so far) at or above each threshold. A flat stretch means
-    that the shape does not depend on the choice.
+    Counts the voxels whose OccludedAngle is at or above each threshold. A flat stretch means that the shape does not
+    depend on the choice; how large it is says closed_surface: counted voxels are half a voxel too large all round, and
+    data that KeepData adds to the shape are not in the count.
     """
     image = _image(source)
-    angle = vtk_to_numpy(image.GetPointData().GetArray("OccludedAngle")) / math.pi
+    angle = _array(image, "OccludedAngle") / math.pi
     if thresholds_over_pi is None:
         thresholds_over_pi = np.linspace(0.1, 1.99 if _flat(image) else 3.99, 79)
     voxel = math.prod(s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1)
@@ -273,6 +274,7 @@ def plot_volume(source, file_name=None, **options):
     """Shows the volume against the threshold in a ParaView line chart; file_name: saves it as PNG. Returns the view."""
     import paraview.simple as pv
     from vtkmodules.vtkCommonDataModel import vtkTable
+    from lacuna import pictures
     thresholds, volumes = volume_against_threshold(source, **options)
     table = vtkTable()
     for name, values in (("Threshold / pi", thresholds), ("Volume", volumes)):
@@ -282,11 +284,8 @@ def plot_volume(source, file_name=None, **options):
     producer = pv.TrivialProducer()
     producer.GetClientSideObject().SetOutput(table)
     producer.UpdatePipeline()
-    view = pv.CreateView("XYChartView")
-    view.ViewSize = [900, 600]
     flat = _flat(_image(source))
-    view.BottomAxisTitle = "last threshold / pi"
-    view.LeftAxisTitle = "area / mm2" if flat else "volume / ml"
+    view = pictures.new_chart("last threshold / pi", "area of voxels / mm2" if flat else "volume of voxels / ml")
     display = pv.Show(producer, view)
     display.UseIndexForXAxis = 0
     display.XArrayName = "Threshold / pi"

@@ -6,7 +6,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
-import vtkmodules.vtkRenderingFreeType  # noqa: F401 (renders text)
+from vtkmodules.vtkRenderingFreeType import vtkFreeTypeTools
 
 from lacuna.data import fetch
 from lacuna.views import annotations, map_letters
@@ -28,6 +28,16 @@ def new_view(size=(1200, 900)):
     view.CenterAxesVisibility = 0
     view.KeyLightElevation, view.KeyLightAzimuth = 25, -20
     view.KeyLightWarmth, view.KeyLightIntensity = 0.55, 0.72
+    return view
+
+
+def new_chart(bottom, left, size=(900, 600)):
+    """A line chart with the titles of its axes."""
+    # Texts of render views turn this off, and then VTK 9.2 draws the labels of charts one and a half times.
+    vtkFreeTypeTools.GetInstance().SetScaleToPowerTwo(True)
+    view = pv.CreateView("XYChartView")
+    view.ViewSize = list(size)
+    view.BottomAxisTitle, view.LeftAxisTitle = bottom, left
     return view
 
 

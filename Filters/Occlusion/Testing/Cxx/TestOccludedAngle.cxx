@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace
@@ -207,7 +208,7 @@ void TestAttenuations()
   LACUNA_CHECK(function->GetOutput()->GetPointData()->GetScalars()->GetComponent(id, 0) < 1);
 }
 
-// A mask and a function that say the same; voxels outside get 0.
+// A mask and a function that say the same; voxels outside get 0, also where the mask is NaN.
 void TestSpace()
 {
   vtkNew<vtkImageData> circle;
@@ -217,12 +218,14 @@ void TestSpace()
   sphere->SetRadius(25.3);
   vtkNew<vtkImageData> mask;
   mask->CopyStructure(circle);
-  mask->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  mask->AllocateScalars(VTK_FLOAT, 1);
   for (vtkIdType i = 0; i < circle->GetNumberOfPoints(); ++i)
   {
     double x[3];
     circle->GetPoint(i, x);
-    mask->GetPointData()->GetScalars()->SetComponent(i, 0, sphere->FunctionValue(x) < 0);
+    const double outside = i % 2 == 0 ? 0 : std::numeric_limits<double>::quiet_NaN();
+    mask->GetPointData()->GetScalars()->SetComponent(
+      i, 0, sphere->FunctionValue(x) < 0 ? 1 : outside);
   }
   vtkNew<vtkLacunaOccludedAngle> a;
   a->SetInputData(circle);
