@@ -4,6 +4,7 @@
 #include "lacunaCalibrationAdvice.h"
 #include "lacunaCalibrationModel.h"
 #include "lacunaCalibrationStart.h"
+#include "lacunaRigidPose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,39 +27,14 @@ constexpr double SingularRatio = 1e-10; // of the normal matrix's eigenvalues
 constexpr double WeakError = 1;         // mm
 constexpr double WeakRatio = 3;
 
-void CheckPose(const Matrix4& pose, std::size_t pick)
-{
-  const auto fail = [pick](const char* what)
-  { throw std::invalid_argument("pick " + std::to_string(pick) + ": ProbeToTracker " + what); };
-  if (!pose.IsFinite())
-  {
-    fail("has numbers that are not finite");
-  }
-  if (!pose.IsAffine())
-  {
-    fail("has a last row other than 0 0 0 1");
-  }
-  for (int a = 0; a < 3; ++a)
-  {
-    for (int b = a; b < 3; ++b)
-    {
-      if (std::abs(Dot(pose.Column(a), pose.Column(b)) - (a == b)) > 1e-3)
-      {
-        fail("is not a rotation and a translation");
-      }
-    }
-  }
-  if (pose.Determinant3() < 0)
-  {
-    fail("mirrors");
-  }
-}
-
 void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOptions& options)
 {
   for (std::size_t pick = 0; pick < picks.size(); ++pick)
   {
-    CheckPose(picks[pick].ProbeToTracker, pick);
+    if (const std::string problem = DescribeNotRigid(picks[pick].ProbeToTracker); !problem.empty())
+    {
+      throw std::invalid_argument("pick " + std::to_string(pick) + ": ProbeToTracker " + problem);
+    }
     if (!std::isfinite(picks[pick].Pixel[0]) || !std::isfinite(picks[pick].Pixel[1]))
     {
       throw std::invalid_argument("pick " + std::to_string(pick) + ": its pixel is not finite");
