@@ -64,6 +64,30 @@ Picks FindWallPicks(
   return picks;
 }
 
+// Far outside of the pictures is a slip: too far to be told from the others as an outlier. The
+// slices may be a part of those that were picked in, and poses without pictures have any pixels.
+void CheckPlaces(const Picks& picks, vtkImageData* slices)
+{
+  constexpr double smallestPicture = 16; // pixels
+  double bounds[6];
+  slices->GetBounds(bounds);
+  for (std::size_t i = 0; i < picks.size(); ++i)
+  {
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const double low = bounds[2 * axis], high = bounds[2 * axis + 1];
+      const double pixel = picks[i].Pick.Pixel[static_cast<std::size_t>(axis)];
+      const double size = high - low + 1;
+      if (size >= smallestPicture && (pixel < low - size || pixel > high + size))
+      {
+        throw std::runtime_error("row " + std::to_string(i) + " of the table of picks has " +
+          lacuna::FormatNumber(pixel) + (axis == 0 ? " as Column" : " as Row") +
+          "; the slices have " + lacuna::FormatNumber(low) + " to " + lacuna::FormatNumber(high));
+      }
+    }
+  }
+}
+
 // Of what a pick should lie on, mm.
 double GetError(const lacuna::Vec3& point, lacuna::CalibrationTarget target)
 {
@@ -330,6 +354,7 @@ int vtkLacunaProbeCalibration::RequestData(
       }
       const Picks picks = table ? vtkLacunaCalibrationPicks::Read(table, poses, target)
                                 : FindWallPicks(execution, slices, poses);
+      CheckPlaces(picks, slices);
       if (!table && picks.empty())
       {
         throw std::runtime_error(
