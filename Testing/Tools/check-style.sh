@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Rules that a tool can check: format, license tags, kernels without VTK, links of the pages. With --tidy also
+# Rules that a tool can check: format, license tags, kernels without VTK, links of the pages, and
+# that the pages say what the plugin's XML says. With --tidy also
 # clang-tidy on every source (needs build/release).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -25,6 +26,7 @@ bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
 
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
+python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"
 
 if [ "${1:-}" = --tidy ]; then
   cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the plugin's XML says of its sources, readers, filters and writers: the one truth behind the parameter tables.
+
+Used by the site (stage.py) and by the test that compares the handwritten pages with it (Testing/Tools/check-parameters.py).
+"""
+import glob
+import os
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+NOT_GIVEN = "1e299"  # a length that cannot be meant: the filter takes its own
+
+
+@dataclass
+class Property:
+    name: str
+    kind: str  # Double, Int, String, IdType, Input, Proxy, or empty for a button
+    help: str
+    advanced: bool
+    hidden: bool
+    information: bool
+    default: list  # texts, as in the XML
+    entries: dict  # of an enumeration: value to text
+    boolean: bool
+    low: list
+    high: list
+    choices: list  # of a proxy property: names of what it can be
+    optional: bool
+    group: str = ""
+
+    def default_text(self):
+        """As a person reads it: on and off, names of choices, empty."""
+        if self.kind == "Input":
+            return "none" if self.optional else ""
+        if self.kind == "Proxy":
+            return spaced(self.choices[0]) if self.choices else ""
+        if self.boolean:
+            return "on" if self.default == ["1"] else "off"
+        if self.entries:
+            return " ".join(self.entries[value] for value in self.default)
+        if not self.default:
+            return "empty" if self.kind == "String" else ""
+        if self.default[0] == NOT_GIVEN:
+            return "not given"
+        return " ".join(self.default)
+
+    def values_text(self):
+        """What it can be, as far as the XML tells."""
+        if self.kind == "Proxy":
+            return ", ".join(map(spaced, self.choices))
+        if self.entries:
+            return ", ".join(self.entries.values())
+        low, high = single(self.low), single(self.high)
+        if low and high:
+            return f"{low} to {high}"
+        return f"{low} or more" if low else f"at most {high}" if high else ""
+
+
+@dataclass
+class Proxy:
+    name: str
+    cls: str
+    label: str
+    short_help: str
+    kind: str  # source, reader, filter, writer, or the name of another group
+    extensions: str
+    properties: list = field(default_factory=list)
+
+    @property
+    def page(self):
+        """The user guide's page, its file name without .md."""
+        return re.sub(r"[^a-z0-9]+", "-", self.label.lower())
+
+    @property
+    def constructor(self):
+        """The name in Python, which ParaView makes of the label."""
+        return re.sub(r"\W", "", self.label)
+
+
+def spaced(name):
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.removeprefix("Lacuna"))
+
+
+def single(numbers):
+    """'0' of ['0', '0', '0']; all of them where they differ."""
+    return numbers[0] if len(set(numbers)) == 1 else " ".join(numbers)
+
+
+def words(text):
+    return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", (text or "").strip()))
+
+
+def read_property(element):
+    def find(tag):
+        return element.find(tag) if element.find(tag) is not None else ET.Element(tag)
+
+    ranges = [domain for tag in ("DoubleRangeDomain", "IntRangeDomain") for domain in element.findall(tag)]
+    domain = ranges[0] if ranges else ET.Element("none")
+    return Property(
+        name=element.get("name"), kind=re.sub(r"(Vector)?Property$", "", element.tag), help=words(find("Documentation").text),
+        advanced=element.get("panel_visibility") == "advanced", hidden=element.get("panel_visibility") == "never",
+        information=element.get("information_only") == "1", default=element.get("default_values", "").split(),
+        entries={entry.get("value"): entry.get("text") for entry in find("EnumerationDomain")},
+        boolean=element.find("BooleanDomain") is not None,
+        low=domain.get("min", "").split(), high=domain.get("max", "").split(),
+        choices=[choice.get("name") for choice in find("ProxyListDomain")],
+        optional=element.find("Hints/Optional") is not None)
+
+
+def read_proxy(element, group):
+    documentation = element.find("Documentation")
+    factory = element.find("Hints/ReaderFactory[@extensions]")
+    if factory is None:
+        factory = element.find("Hints/WriterFactory")
+    kind = "reader" if element.find("Hints/ReaderFactory") is not None else group.removesuffix("s")
+    proxy = Proxy(name=element.get("name"), cls=element.get("class"), label=element.get("label"),
+                  short_help=documentation.get("short_help"), kind=kind,
+                  extensions="" if factory is None else " ".join(dict.fromkeys(factory.get("extensions").lower().split())),
+                  properties=[read_property(child) for child in element if child.tag.endswith("Property")])
+    for panel in element.findall("PropertyGroup"):
+        members = [member.get("name") for member in panel]
+        for own in proxy.properties:
+            if own.name in members:
+                own.group = panel.get("label", "")
+    return proxy
+
+
+def read_proxies(root=ROOT):
+    """All proxies of Plugins/Lacuna, by label."""
+    proxies = [read_proxy(element, group.get("name"))
+               for path in glob.glob(os.path.join(root, "Plugins", "Lacuna", "*", "*.xml"))
+               for group in ET.parse(path).getroot().findall("ProxyGroup") for element in group
+               if element.get("label")]
+    return sorted(proxies, key=lambda proxy: proxy.label.lower())
