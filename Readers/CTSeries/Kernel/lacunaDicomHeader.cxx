@@ -6,6 +6,7 @@
 #include "lacunaFileBytes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace lacuna
@@ -50,7 +51,36 @@ public:
     return this->File;
   }
 
+  /// Throws where a group says otherwise than the file itself, which may be the right one.
+  std::optional<std::vector<double>> GetNumbers(
+    DicomTag group, DicomTag tag, std::size_t count, const char* name) const
+  {
+    const DicomDataSet& values = this->Get(group);
+    const auto numbers = values.GetNumbers(tag, count);
+    const auto others = this->File.GetNumbers(tag, count);
+    if (!numbers || !others || this->IsOfOneOfSeveral(group))
+    {
+      return numbers;
+    }
+    const auto close = [](double a, double b) {
+      return std::abs(a - b) <= 1e-4 * std::max({ 1.0, std::abs(a), std::abs(b) });
+    };
+    if (!std::equal(numbers->begin(), numbers->end(), others->begin(), close))
+    {
+      throw std::runtime_error(std::string(name) + " is " + values.GetText(tag) +
+        " in a functional group and " + this->File.GetText(tag) + " in the file itself");
+    }
+    return numbers;
+  }
+
 private:
+  // A frame may differ from what the file says of all of them, such as the position of the first.
+  bool IsOfOneOfSeveral(DicomTag group) const
+  {
+    return this->Own && !this->Own->GetItems(group).empty() &&
+      this->File.GetItems(FrameGroups).size() > 1;
+  }
+
   const DicomDataSet& File;
   const DicomDataSet* Own;
   const DicomDataSet* Shared;
@@ -283,41 +313,48 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
 }
 
 CTFrame ReadFrame(
-  const DicomDataSet& data, const std::shared_ptr<const CTFileHeader>& header, int number)
+  const DicomDataSet& data, const std::shared_ptr<const CTFileHeader>& header, int index)
 {
-  const FrameValues values(data, static_cast<std::size_t>(number));
+  const FrameValues values(data, static_cast<std::size_t>(index));
   CTFrame frame;
   frame.Header = header;
-  frame.Number = number;
+  frame.Number = index;
   const DicomDataSet& type = values.Get(0x00189329);
   frame.ImageType = SplitDicomValues(type.GetText(0x00089007));
   if (frame.ImageType.empty())
   {
     frame.ImageType = SplitDicomValues(data.GetText(0x00080008));
   }
-  if (const auto p = values.Get(0x00209113).GetNumbers(0x00200032, 3))
+  constexpr DicomTag Measures = 0x00289110;
+  constexpr DicomTag Rescale = 0x00289145;
+  const auto number = [&](DicomTag group, DicomTag tag, const char* name)
+  {
+    const auto one = values.GetNumbers(group, tag, 1, name);
+    return one ? std::optional<double>(one->front()) : std::nullopt;
+  };
+  if (const auto p =
+        values.GetNumbers(0x00209113, 0x00200032, 3, "Image Position (Patient) (0020,0032)"))
   {
     frame.Position = Vec3{ (*p)[0], (*p)[1], (*p)[2] };
   }
-  if (const auto a = values.Get(0x00209116).GetNumbers(0x00200037, 6))
+  if (const auto a =
+        values.GetNumbers(0x00209116, 0x00200037, 6, "Image Orientation (Patient) (0020,0037)"))
   {
     frame.Axes = { (*a)[0], (*a)[1], (*a)[2], (*a)[3], (*a)[4], (*a)[5] };
   }
-  const DicomDataSet& measures = values.Get(0x00289110);
-  if (const auto s = measures.GetNumbers(0x00280030, 2))
+  if (const auto s = values.GetNumbers(Measures, 0x00280030, 2, "Pixel Spacing (0028,0030)"))
   {
     frame.Spacing = { (*s)[0], (*s)[1] };
   }
-  frame.Thickness = measures.GetNumber(0x00180050);
-  const DicomDataSet& rescale = values.Get(0x00289145);
-  frame.RescaleSlope = rescale.GetNumber(0x00281053);
-  frame.RescaleIntercept = rescale.GetNumber(0x00281052);
-  frame.RescaleType = rescale.GetText(0x00281054);
+  frame.Thickness = number(Measures, 0x00180050, "Slice Thickness (0018,0050)");
+  frame.RescaleSlope = number(Rescale, 0x00281053, "Rescale Slope (0028,1053)");
+  frame.RescaleIntercept = number(Rescale, 0x00281052, "Rescale Intercept (0028,1052)");
+  frame.RescaleType = values.Get(Rescale).GetText(0x00281054);
   const DicomDataSet& content = values.Get(0x00209111);
   const auto acquisition = content.GetBinary(0x00209156, false);
   frame.Acquisition =
     acquisition ? std::optional<int>(static_cast<int>(*acquisition)) : data.GetInteger(0x00200012);
-  frame.Instance = header->Frames > 1 ? number + 1 : data.GetInteger(0x00200013);
+  frame.Instance = header->Frames > 1 ? index + 1 : data.GetInteger(0x00200013);
   return frame;
 }
 }
@@ -332,7 +369,14 @@ std::vector<CTFrame> ReadDicomFrames(const std::string& path)
   const int count = header->PixelError.empty() ? header->Frames : 1;
   for (int i = 0; i < count; ++i)
   {
-    frames.push_back(ReadFrame(file.Data, header, i));
+    try
+    {
+      frames.push_back(ReadFrame(file.Data, header, i));
+    }
+    catch (const std::runtime_error& error)
+    {
+      throw std::runtime_error(path + ": " + error.what());
+    }
   }
   return frames;
 }

@@ -41,6 +41,59 @@ TEST(DicomDataSet, ReadsImplicit)
   EXPECT_EQ(Pixels(frames[0]), "xy");
 }
 
+// What all frames share and what the file itself says is the same, or one of them is wrong.
+TEST(DicomDataSet, RefusesGroupsThatContradictTheFile)
+{
+  const Temporary folder;
+  const auto read = [&](const std::string& own, const std::string& group, const std::string& shared)
+  {
+    const std::string groups = Long(0x52009229, "SQ",
+      Implicit(
+        0xFFFEE000, Long(std::stoul(group, nullptr, 16), "SQ", Implicit(0xFFFEE000, shared))));
+    const std::string file = Head("1.2.840.10008.1.2.1") + Short(0x00080060, "CS", "CT") + own +
+      Short(0x00280010, "US", Number(1, 2)) + Short(0x00280011, "US", Number(2, 2)) + Format(8) +
+      groups + Long(0x7FE00010, "OB", "xy");
+    return ReadDicomFrames(folder.Write(file)).at(0);
+  };
+  const auto error = [&](
+                       const std::string& own, const std::string& group, const std::string& shared)
+  {
+    try
+    {
+      read(own, group, shared);
+    }
+    catch (const std::exception& exception)
+    {
+      return std::string(exception.what());
+    }
+    return std::string();
+  };
+  const std::string axes = "1\\0\\0\\0\\1\\0";
+  EXPECT_NE(
+    error(Short(0x00200037, "DS", "-1\\0\\0\\0\\-1\\0"), "209116", Short(0x00200037, "DS", axes))
+      .find("file: Image Orientation (Patient) (0020,0037) is 1\\0\\0\\0\\1\\0 in a "
+            "functional group and -1\\0\\0\\0\\-1\\0 in the file itself"),
+    std::string::npos);
+  EXPECT_NE(error(Short(0x00200032, "DS", "1\\2\\3"), "209113", Short(0x00200032, "DS", "1\\2\\-3"))
+              .find("(0020,0032)"),
+    std::string::npos);
+  EXPECT_NE(error(Short(0x00181050, "DS", "1") + Short(0x00280030, "DS", "1\\1"), "289110",
+              Short(0x00280030, "DS", "2\\2"))
+              .find("(0028,0030)"),
+    std::string::npos);
+  EXPECT_NE(error(Short(0x00281052, "DS", "-1024"), "289145", Short(0x00281052, "DS", "0"))
+              .find("(0028,1052)"),
+    std::string::npos);
+  EXPECT_NE(
+    error(Short(0x00281053, "DS", "1"), "289145", Short(0x00281053, "DS", "2")).find("(0028,1053)"),
+    std::string::npos);
+  // the same in other words
+  const CTFrame frame = read(
+    Short(0x00200037, "DS", "1.0\\0\\0\\0\\1\\-0.00001"), "209116", Short(0x00200037, "DS", axes));
+  ASSERT_TRUE(frame.Axes);
+  EXPECT_EQ((*frame.Axes)[0], 1);
+}
+
 TEST(DicomDataSet, CutOffAnywhere)
 {
   const Temporary folder;
