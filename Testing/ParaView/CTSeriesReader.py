@@ -8,6 +8,7 @@ import sys
 
 import lacuna
 import lacuna_test
+from lacuna.data import open_volume
 from lacuna.errors import PipelineError, raising
 from paraview import servermanager
 from paraview.simple import *
@@ -50,6 +51,13 @@ for path in (resonance, os.path.join(case("names"), "text.dcm"), case("MR")):
 opened = OpenDataFile(case("axial"))
 assert opened.SMProxy.GetXMLName() == "LacunaCTSeriesReader"
 Delete(opened)
+opened = open_volume(sorted(glob.glob(case("body feet first/*")))[0])  # by default that would be another reader
+whole = CTSeriesReader(FileName=case("body feet first"))
+whole.UpdatePipeline()
+assert opened.SMProxy.GetXMLName() == "LacunaCTSeriesReader"
+assert opened.GetDataInformation().GetBounds() == whole.GetDataInformation().GetBounds()
+Delete(opened)
+Delete(whole)
 
 # Defaults in the XML are those of the class.
 reader = CTSeriesReader()

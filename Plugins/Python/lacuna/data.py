@@ -2,7 +2,7 @@
 """Data of ParaView's proxies, and volumes in files.
 
     from lacuna.data import fetch, open_volume
-    volume = open_volume("head.vti")   # an error if ParaView would drop its direction
+    volume = open_volume("head.mha")   # an error if ParaView would drop how it lies
     top = fetch(OutputPort(model, 1))
 """
 import os
@@ -15,41 +15,25 @@ def fetch(source):
 
 
 def open_volume(path):
-    """The reader (a ParaView proxy) of a volume: of a folder with a DICOM series, or of a file that ParaView reads.
+    """The reader (a ParaView proxy) of a volume: of a folder with a DICOM series or a file of one, or of an image in a file.
 
-    Raises ValueError for MetaImages whose orientation ParaView's reader would drop, and for what is no volume.
+    Raises ValueError for files whose orientation or unit ParaView's reader would drop, for formats of which that is not
+    known (lacuna.volume_files), and for what is no volume; PipelineError with what the reader says.
     """
     import lacuna.plugin
     import paraview.simple as pv
+    from lacuna import volume_files
+    from lacuna.errors import raising
     lacuna.plugin.load()
-    if os.path.isdir(path):
+    if os.path.isdir(path) or volume_files.check(path) == volume_files.DICOM:
         reader = pv.CTSeriesReader(FileName=path)
     else:
-        refuse_orientation(path)
         reader = pv.OpenDataFile(path)
     if reader is None:
         raise ValueError(f"ParaView has no reader for {path}")
-    reader.UpdatePipeline()
+    with raising():
+        reader.UpdatePipeline()
     kind = reader.GetDataInformation().GetDataSetTypeAsString()
-    if kind != "vtkImageData":
+    if kind != "vtkImageData" or reader.GetDataInformation().GetNumberOfPoints() == 0:
         raise ValueError(f"{path} is not a regular volume but {kind}")
     return reader
-
-
-def refuse_orientation(name):
-    """Raises ValueError for an oriented MetaImage: ParaView's reader drops TransformMatrix, and a patient could come out
-    turned or mirrored. Files of other formats pass.
-    """
-    if not name.lower().endswith((".mha", ".mhd")):
-        return
-    with open(name, "rb") as file:
-        head = file.read(10000)
-    for line in head.split(b"\n"):
-        key, _, value = line.partition(b"=")
-        if key.strip() in (b"TransformMatrix", b"Rotation", b"Orientation"):
-            if [float(x) for x in value.split()] != [1, 0, 0, 0, 1, 0, 0, 0, 1]:
-                raise ValueError(
-                    f"{name} is oriented ({key.strip().decode()} = {value.strip().decode()}), which ParaView's "
-                    "reader ignores: the result could be turned or mirrored. Keep oriented images in .vti")
-        if key.strip() == b"ElementDataFile":
-            return
