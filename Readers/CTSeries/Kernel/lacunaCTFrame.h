@@ -97,6 +97,8 @@ struct CTFrame
 
   /// The file's name without its folder, with the number of the frame where there are several.
   std::string GetName() const;
+  /// The same with the folder in front when the other file, in another folder, has the same name.
+  std::string GetNameBeside(const CTFrame& other) const;
   /// Bytes of its pixels once decoded.
   std::int64_t GetSize() const
   {

@@ -156,40 +156,39 @@ void CheckSame(const CTFrame& frame, const CTFrame& first)
 {
   const CTFileHeader& a = *frame.Header;
   const CTFileHeader& b = *first.Header;
+  const auto fail = [&](const std::string& what)
+  { throw std::runtime_error(frame.GetNameBeside(first) + ": " + what); };
   if (a.Columns != b.Columns || a.Rows != b.Rows)
   {
     std::ostringstream what;
     what << "has " << a.Columns << " x " << a.Rows
-         << " pixels (Columns (0028,0011) x Rows (0028,0010)), but " << first.GetName() << " has "
-         << b.Columns << " x " << b.Rows;
-    Fail(frame, what.str());
+         << " pixels (Columns (0028,0011) x Rows (0028,0010)), but " << first.GetNameBeside(frame)
+         << " has " << b.Columns << " x " << b.Rows;
+    fail(what.str());
   }
   if (Difference(frame.Spacing, first.Spacing) > 1e-4 * (*first.Spacing)[0])
   {
     std::ostringstream what;
     what << "has Pixel Spacing (0028,0030) " << (*frame.Spacing)[0] << " x " << (*frame.Spacing)[1]
-         << " mm, but " << first.GetName() << " has " << (*first.Spacing)[0] << " x "
+         << " mm, but " << first.GetNameBeside(frame) << " has " << (*first.Spacing)[0] << " x "
          << (*first.Spacing)[1] << " mm";
-    Fail(frame, what.str());
+    fail(what.str());
   }
   if (Difference(frame.Axes, first.Axes) > 1e-4)
   {
-    Fail(frame,
-      "has another Image Orientation (Patient) (0020,0037) than " + first.GetName() +
-        "; the images of a volume are parallel");
+    fail("has another Image Orientation (Patient) (0020,0037) than " + first.GetNameBeside(frame) +
+      "; the images of a volume are parallel");
   }
   if (a.Patient.Id != b.Patient.Id || a.Patient.Name != b.Patient.Name)
   {
     const bool byId = a.Patient.Id != b.Patient.Id;
-    Fail(frame,
-      std::string("is of another patient (") + (byId ? "0010,0020" : "0010,0010") + ") than " +
-        first.GetName() + (byId ? "" : ": the name differs"));
+    fail(std::string("is of another patient (") + (byId ? "0010,0020" : "0010,0010") + ") than " +
+      first.GetNameBeside(frame) + (byId ? "" : ": the name differs"));
   }
   if (a.FrameOfReferenceUid != b.FrameOfReferenceUid)
   {
-    Fail(frame,
-      "has another Frame of Reference UID (0020,0052) than " + first.GetName() +
-        "; their positions cannot be compared");
+    fail("has another Frame of Reference UID (0020,0052) than " + first.GetNameBeside(frame) +
+      "; their positions cannot be compared");
   }
 }
 }
@@ -204,6 +203,15 @@ std::string CTFrame::GetName() const
     name += " frame " + std::to_string(this->Number + 1);
   }
   return name;
+}
+
+//------------------------------------------------------------------------------
+std::string CTFrame::GetNameBeside(const CTFrame& other) const
+{
+  const std::string name = this->GetName();
+  const std::string& path = this->Header->File;
+  const bool same = name == other.GetName() && path != other.Header->File;
+  return same ? path.substr(0, path.find_last_of('/') + 1) + name : name;
 }
 
 //------------------------------------------------------------------------------
@@ -436,9 +444,9 @@ std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames)
     }
     if (other)
     {
-      doubts.push_back(other->GetName() +
+      doubts.push_back(other->GetNameBeside(*first) +
         (count > 1 ? " and " + std::to_string(count - 1) + " more have" : std::string(" has")) +
-        " another " + name + " than " + first->GetName() +
+        " another " + name + " than " + first->GetNameBeside(*other) +
         ": two scans may have got into one series; compare with the hospital's viewer");
     }
   }

@@ -85,3 +85,24 @@ TEST(CTSeries, PatientOrientationUnknown)
   }
   EXPECT_EQ(ErrorOf({ 0, 0, 0, 0, 0, 0 }, { "R", "P" }), "");
 }
+
+// Files of the same name in two folders are told apart.
+TEST(CTSeries, NamesOfTwoFolders)
+{
+  std::vector<CTFrame> frames = MakeFrames({ { 0, 0, 0 }, { 0, 0, 2 } });
+  auto header = std::make_shared<CTFileHeader>(*frames[1].Header);
+  header->File = "/other/IM0";
+  frames[1].Header = header;
+  frames[1].Axes = Axes{ 0, 1, 0, 0, 0, -1 };
+  try
+  {
+    CheckSameVolume(frames);
+    FAIL() << "directions that differ were taken";
+  }
+  catch (const std::runtime_error& e)
+  {
+    EXPECT_STREQ(e.what(),
+      "/other/IM0: has another Image Orientation (Patient) (0020,0037) than /scan/IM0; the images "
+      "of a volume are parallel");
+  }
+}
