@@ -69,10 +69,26 @@ except PipelineError as error:
 # moved by a filter of ParaView, which passes the field data on
 turned = Transform(Input=plate)
 turned.Transform.Rotate = [0, 0, 1]
-for proxy in (turned, Triangulate(Input=turned), Reflect(Input=plate), GroupDatasets(Input=[plate, turned]),
+for proxy in (turned, Triangulate(Input=turned), GroupDatasets(Input=[plate, turned]),
               AppendGeometry(Input=[plate, Triangulate(Input=mould)]), AppendGeometry(Input=[plate, Sphere()])):
     check(proxy, coordinates.UNKNOWN)
 check_files(turned, coordinates.UNKNOWN)
+record = save_solid(output("Coordinates.stl"), turned)
+assert record["measures"] == {} and save_solid(output("Coordinates.stl"), plate)["measures"]["Volume"] > 0
+
+# mirrored by one: refused like what Mirror makes
+back = Transform(Input=plate)
+back.Transform.Scale = [1, -1, 1]
+grown = Transform(Input=plate)
+grown.Transform.Scale = [2, -1, -1]
+check(grown, coordinates.UNKNOWN)
+for proxy in (Reflect(Input=plate), back, Triangulate(Input=back)):
+    check(proxy, coordinates.UNKNOWN + coordinates.MIRRORED)
+    try:
+        save_solid(output("Coordinates.stl"), proxy)
+        raise AssertionError("a mirrored plate")
+    except PipelineError as error:
+        assert "mirror image" in str(error), error
 
 # mirrored: refused, or named
 mirror = Mirror(Input=skull, PlaneMethod="Given", Normal=[1, 0, 0])

@@ -3,6 +3,8 @@
 import json
 import math
 import os
+import resource
+import signal
 
 import numpy as np
 from lacuna.errors import PipelineError
@@ -15,6 +17,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 
@@ -140,4 +143,25 @@ refused(name, surface(corners[:3] + [(0, math.nan, 1)], faces), "point 3", "not 
 split = [corners[k] for face in faces for k in face]  # as Generate Surface Normals leaves edges
 refused(name, surface(split, np.arange(12).reshape(4, 3).tolist()), "Clean")
 save_solid(name, Clean(Input=surface(split, np.arange(12).reshape(4, 3).tolist())))
+
+# What no format holds, in any of them.
+for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf"):
+    name = output("SaveSolid." + ending)
+    save_solid(name, solid)
+    refused(name, surface(corners[:3] + [(0, math.inf, 1)], faces), "point 3", "not finite")
+    refused(name, Line(), "no polygon")
+refused(output("SaveSolid.stl"), Threshold(Input=Wavelet(), LowerThreshold=1e4, UpperThreshold=2e4), "nothing to write")
+
+# A full disk: no file is left that looks whole, at whatever byte it is full.
+fine = Sphere(ThetaResolution=40, PhiResolution=40)
+for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf"):
+    name = output("SaveSolidFull." + ending)
+    save_solid(name, fine)
+    size = os.path.getsize(name)
+    for room in (0, 100, size // 2, size - 1):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room, resource.RLIM_INFINITY))
+        try:
+            refused(name, fine)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
 print("ok")

@@ -6,6 +6,8 @@
 
 With ", as the file says" behind it when the data were read from a file other than DICOM, and ", mirrored".
 """
+import math
+
 from lacuna.data import fetch
 
 PATIENT, PRESS, UNKNOWN, MIRRORED = "patient, DICOM LPS", "press", "unknown", ", mirrored"
@@ -54,7 +56,7 @@ def _place(source):
     """PATIENT, PRESS or UNKNOWN, without how it is known."""
     data = source
     if hasattr(source, "GetXMLLabel"):
-        if not _keeps_points(source):
+        if not keeps_points(source):
             return UNKNOWN
         data = fetch(source)
     if data is None or _is_reset(data):
@@ -68,22 +70,28 @@ def _place(source):
 def is_mirrored(source):
     """Whether a proxy or data (vtkDataObject) are a mirror image of the patient, or of what they show.
 
-    Data are by their mark, which filters of ParaView may drop; proxies also behind Mirror, whatever comes after it.
+    Data are by their mark, which filters of ParaView may drop; proxies also behind Mirror, Reflect and a Transform with
+    a negative Scale, whatever comes after it.
     """
     data = source
     if hasattr(source, "GetXMLLabel"):
-        if _is_behind_mirror(source):
+        if _is_behind_reflection(source):
             return True
         data = fetch(source)
     mark = None if data is None else data.GetFieldData().GetArray("Mirrored")
     return mark is not None and mark.GetNumberOfTuples() > 0 and mark.GetComponent(0, 0) != 0
 
 
-def _is_behind_mirror(proxy):
-    """Whether Mirror's image (its first output) is in a pipeline; a PriorSurface from one is a pattern only."""
-    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0:
+def _is_behind_reflection(proxy):
+    """Whether Mirror's image (its first output), a Reflect or a mirroring Transform is in a pipeline; a PriorSurface from
+    one is a pattern only.
+    """
+    label = proxy.GetXMLLabel()
+    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0 or label == "Reflect":
         return True
-    return any(_is_behind_mirror(each) for each in _inputs(proxy))
+    if label == "Transform" and proxy.Transform.GetXMLLabel() == "Transform" and math.prod(proxy.Transform.Scale) < 0:
+        return True
+    return any(_is_behind_reflection(each) for each in _inputs(proxy))
 
 
 def _is_from_file(proxy):
@@ -154,7 +162,7 @@ def _is_turned(source):
                for each in leaves if each is not None)
 
 
-def _keeps_points(proxy):
+def keeps_points(proxy):
     """Whether points come to a proxy from their source without having been moved by a filter of ParaView.
 
     Images are not asked: their points are where origin, spacing and direction say, unless the direction was reset.
@@ -172,4 +180,4 @@ def _keeps_points(proxy):
             return False
         if len(inputs) > 1 and len({(_place(each), is_mirrored(each)) for each in inputs}) > 1:
             return False
-    return all(_keeps_points(each) for each in inputs)
+    return all(keeps_points(each) for each in inputs)

@@ -16,6 +16,7 @@ NOTICE = "Research software, not a medical device."
 TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
 # What ParaView writes into one file. It knows its writers by endings in lower case only.
 SINGLE_FILES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+ROOM = 1 << 16  # bytes that a disk must have left
 
 
 def save_solid(path, proxy, allow_mirrored=False, **options):
@@ -23,11 +24,13 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
 
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
-    a few numbers; null where there is none) and the SHA-256 of the file: formats such as STL have no
-    room for them. 3MF has, and its unit is the millimetre; it holds closed surfaces of triangles that
-    face outwards. In which coordinates the surface is stands there, too, as lacuna.coordinates.find
-    knows it: "unknown" if it does not. Raises PipelineError when a filter or the writer fails, and
-    for a mirror image of the patient unless allow_mirrored; neither of the two files is there then.
+    a few numbers; null where there is none; none behind filters of ParaView that move points, such as
+    Transform) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has, and
+    its unit is the millimetre; it holds closed surfaces of triangles that face outwards. In which
+    coordinates the surface is stands there, too, as lacuna.coordinates.find knows it: "unknown" if it
+    does not. Raises PipelineError when a filter or the writer fails (also when the disk has no room
+    left), when there is no polygon or a point is not finite, and for a mirror image of the patient
+    (lacuna.coordinates) unless allow_mirrored; neither of the two files is there then.
     options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
     from lacuna import __version__, coordinates
@@ -43,11 +46,14 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         data = fetch(proxy)
         if data is None or data.GetNumberOfPoints() == 0:
             raise PipelineError(f"there is nothing to write to {path}")
+    _check_surface(path, data)
     if coordinates.is_mirrored(proxy) and not allow_mirrored:
-        raise PipelineError(f"{path}: this is a mirror image of the patient (made by Mirror); check the side, "
-                            "and give allow_mirrored=True if the mirrored one is wanted")
+        raise PipelineError(f"{path}: this is a mirror image of the patient (by Mirror, Reflect or a negative Scale of "
+                            "Transform); check the side, and give allow_mirrored=True if the mirrored one is wanted")
     place = coordinates.find(proxy)
     steps, measures = _steps_and_measures(data)
+    if not coordinates.keeps_points(proxy):
+        measures = {}  # of the surface before it was moved or scaled
     if os.path.splitext(path)[1].lower() == ".3mf":
         _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
     else:
@@ -60,9 +66,30 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
         "notice": NOTICE,
     })
-    with open(beside, "w", encoding="utf-8") as file:
-        file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
+    try:
+        with open(beside, "w", encoding="utf-8") as file:
+            file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
+    except OSError as error:
+        for each in (path, beside):
+            if os.path.exists(each):
+                os.remove(each)
+        raise PipelineError(f"{beside} cannot be written: {error.strerror}") from error
     return record
+
+
+def _check_surface(path, data):
+    """Raises PipelineError for what has no surface, or one with points that are nowhere; composite data are not looked at."""
+    import numpy as np
+    from lacuna.errors import PipelineError
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if not data.IsA("vtkPointSet"):
+        return
+    if data.IsA("vtkPolyData") and data.GetNumberOfPolys() + data.GetNumberOfStrips() == 0:
+        raise PipelineError(f"{path}: there is no polygon to write, only points or lines")
+    bad = np.flatnonzero(~np.isfinite(vtk_to_numpy(data.GetPoints().GetData())).all(axis=1))
+    if bad.size:
+        raise PipelineError(f"{path}: point {bad[0]} of the surface is not finite")
 
 
 def _steps_and_measures(data):
@@ -91,23 +118,38 @@ def _without_nan(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
+def _require_room(name):
+    """Raises OSError when a disk has no room for more than the file: its writer did not notice and may have cut it."""
+    size = os.path.getsize(name)
+    with open(name, "r+b") as file:
+        file.seek(size)
+        file.write(bytes(ROOM))
+        file.flush()
+        os.fsync(file.fileno())
+        file.truncate(size)
+
+
 def _write_by_paraview(path, proxy, options):
+    """Under another name first, so that there is none under the final one when it is not whole."""
     from lacuna.errors import PipelineError, raising
     from paraview.simple import SaveData
 
     root, ending = os.path.splitext(path)
     lower = ending.lower()
-    name = f"{root}.part{lower}" if lower != ending and lower in SINGLE_FILES else path
+    name = f"{root}.part{lower}" if lower in SINGLE_FILES else path
     try:
         with raising():
             SaveData(name, proxy, **options)
         if not os.path.exists(name):
             raise PipelineError(f"{path} was not written")
+        _require_room(name)
         if name != path:
             os.replace(name, path)
-    except Exception:
+    except Exception as error:
         if os.path.exists(name):
             os.remove(name)
+        if isinstance(error, OSError):
+            raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
         raise
 
 
@@ -116,9 +158,6 @@ def _check_closed(path, points, triangles):
     import numpy as np
     from lacuna.errors import PipelineError
 
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if bad.size:
-        raise PipelineError(f"{path}: point {bad[0]} of the surface is not finite")
     count = len(points)
     starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     flat = np.flatnonzero(starts == ends)
