@@ -55,6 +55,21 @@ assert walk.distances(center + RADIUS * direction, surface).max() < 0.002
 assert abs(walk.distances(center + (RADIUS - 0.7) * direction, surface) - 0.7).max() < 0.002
 behind = walk.depths_behind(image, center + RADIUS * direction + 0.25 * turn[:, 2])
 assert abs(behind - 0.25).max() < 0.002, (behind.min(), behind.max())
+# A hole that was marked too narrowly: beside what is filled there is nothing, or what is seen through it.
+def add(name, values):
+    array = numpy_to_vtk(values.ravel(), deep=True)
+    array.SetName(name)
+    image.GetPointData().AddArray(array)
+
+
+distance = x ** 2 + y ** 2
+add("FilledMask", (distance < 25).astype(np.uint8))
+add("Depth", depth + 0.4 * (x > 0))
+assert abs(walk.gap_beside(image) - 0.4) < 1e-12
+for beyond, expected in (depth + 40, 40), (np.full_like(depth, np.nan), np.inf):
+    add("Depth", np.where((distance < 30) & (y > 0), beyond, depth))
+    assert walk.gap_beside(image) == expected or abs(walk.gap_beside(image) - expected) < 1e-12
+
 # Polynomials of degree 3 to rounding, straight lines beside what is missing.
 cubic = (np.arange(9) / 4.0)[:, None] ** 3
 values = walk.finer(cubic)

@@ -25,6 +25,7 @@ import numpy as np
 lacuna.plugin.load()
 from lacuna import pictures, views
 from lacuna.data import open_volume
+from lacuna.errors import PipelineError, raising
 from lacuna.solids import save_solid
 from paraview import servermanager
 from paraview.simple import *
@@ -159,6 +160,17 @@ def fine_depths(image):
     return finer(finer(fitted).T).T
 
 
+def gap_beside(image):
+    """mm of depth between the fitted surface and what is measured right beside the filled pixels; infinite if nothing
+    is: then the hole, or what is seen through it, goes on beyond what was filled."""
+    filled, depth, fitted = (vtk_to_numpy(image.GetPointData().GetArray(name)).reshape(image.GetDimensions()[1::-1])
+                             for name in ("FilledMask", "Depth", "Fitted"))
+    inside = np.pad(filled > 0, 1)
+    beside = (inside[:-2, 1:-1] | inside[2:, 1:-1] | inside[1:-1, :-2] | inside[1:-1, 2:]) & ~inside[1:-1, 1:-1]
+    gaps = np.abs(depth - fitted)[beside]
+    return gaps.max() if np.isfinite(gaps).all() else math.inf
+
+
 def fitted_surface(image):
     """The fitted surface as triangles in patient coordinates, straight from the map's numbers."""
     depth = fine_depths(image)
@@ -202,6 +214,8 @@ def check(folder, filled, mould, path):
     surface = fitted_surface(image)
     plate = read_stl(os.path.join(folder, "plate.stl"))
     model = read_stl(os.path.join(folder, "model.stl"))
+    gap = gap_beside(image)
+    report("bone beside the filled hole lies at the fitted surface, mm at most", f"{gap:.2f}", gap < 3)
     report("plate and model are closed", "", is_closed(plate) and is_closed(model))
 
     # the plate's outer face is the fitted surface: of the points read from the file many lie on it, none is above it
@@ -348,8 +362,12 @@ def main():
     os.makedirs(options.output, exist_ok=True)
     ct, hole, radius, view = open_ct(options)
     depth, filled = fill(ct, hole, radius, view)
-    filled.UpdatePipeline()
+    with raising():
+        filled.UpdatePipeline()
     image = servermanager.Fetch(filled)
+    if not vtk_to_numpy(image.GetPointData().GetArray("FilledMask")).any():
+        raise PipelineError(f"nothing is filled: the cylinder around {hole} along {view} marks no bone of the map and no "
+                            "hole in it; --hole and --view are in mm and directions of the CT's coordinates")
     print(f"hole {field(image, 'DefectArea'):.0f} mm2, {field(image, 'NodeCount'):.0f} nodes")
     has_truth = bool(options.ct)
     if has_truth:
