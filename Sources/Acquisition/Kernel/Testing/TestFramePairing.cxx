@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFramePairing.h"
+
+#include <gtest/gtest.h>
+
+using namespace lacuna;
+
+namespace
+{
+PairedFrame MakeFrame(std::int64_t number, double instant)
+{
+  PairedFrame frame;
+  frame.Number = number;
+  frame.Instant = instant;
+  frame.Wanted = true;
+  return frame;
+}
+
+TrackedPose MakePose(double time, double x)
+{
+  TrackedPose pose;
+  pose.Time = time;
+  pose.ReceiverToTransmitter = Matrix4::Translation({ x, 0, 0 });
+  return pose;
+}
+}
+
+TEST(FramePairing, AFrameGetsThePoseOfItsInstantAndWaitsForIt)
+{
+  FramePairing pairing;
+  pairing.AddPose(MakePose(1.00, 10));
+  pairing.AddFrame(MakeFrame(0, 1.01), 1.02);
+  pairing.AddFrame(MakeFrame(1, 1.03), 1.03);
+  EXPECT_TRUE(pairing.Take(1.03).empty()); // nothing is extrapolated
+  EXPECT_TRUE(pairing.HasWanted());
+  pairing.AddPose(MakePose(1.02, 12));
+  std::vector<PairedFrame> ready = pairing.Take(1.04);
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_EQ(ready[0].Number, 0);
+  ASSERT_TRUE(ready[0].Pose);
+  EXPECT_NEAR(ready[0].Pose->ReceiverToTransmitter(0, 3), 11, 1e-9);
+  EXPECT_NEAR(ready[0].Pose->Gap, 0.02, 1e-12);
+  EXPECT_NEAR(ready[0].Pose->Nearest, 0.01, 1e-12);
+  pairing.AddPose(MakePose(1.04, 14));
+  ready = pairing.Take(1.05);
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_NEAR(ready[0].Pose->ReceiverToTransmitter(0, 3), 13, 1e-9);
+  EXPECT_FALSE(pairing.HasWanted());
+}
+
+TEST(FramePairing, OneWhosePoseDoesNotComeIsLetGoAndKeepsItsPlace)
+{
+  FramePairing pairing(0.5);
+  pairing.AddFrame(MakeFrame(0, 1), 1); // before the first measurement
+  pairing.AddFrame(MakeFrame(1, 3), 3);
+  EXPECT_TRUE(pairing.Take(1.49).empty());
+  ASSERT_EQ(pairing.Take(1.5).size(), 1u);
+  pairing.AddPose(MakePose(2.9, 0));
+  pairing.AddPose(MakePose(3.2, 0)); // bridges more than a quarter of a second
+  std::vector<PairedFrame> ready = pairing.Take(3.2);
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_FALSE(ready[0].Pose);
+  pairing.AddFrame(MakeFrame(2, 3.3), 3.3);
+  TrackedPose unusable = MakePose(3.31, 0);
+  unusable.Usable = false;
+  pairing.AddPose(unusable);
+  EXPECT_TRUE(pairing.Take(3.32).empty());
+  pairing.Abandon();
+  ready = pairing.Take(3.32);
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_FALSE(ready[0].Pose);
+}
+
+TEST(FramePairing, PatienceBeginsAtTheInstant)
+{
+  FramePairing pairing(0.5);
+  pairing.AddFrame(MakeFrame(0, 1.4), 1); // TimeOffset 0.4 s
+  EXPECT_TRUE(pairing.Take(1.89).empty());
+  EXPECT_EQ(pairing.Take(1.9).size(), 1u);
+}

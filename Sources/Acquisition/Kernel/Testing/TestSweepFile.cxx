@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "WrittenSequence.h"
+#include "lacunaOutputFile.h"
+#include "lacunaSweep.h"
+#include "lacunaSweepFile.h"
+#include "lacunaTestRoom.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+using namespace lacuna;
+using namespace lacunaTest;
+
+namespace
+{
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+AcquiredSlice MakeSlice(int number)
+{
+  AcquiredSlice slice;
+  const std::string pixels = MakePixels(number);
+  slice.Pixels = std::make_shared<std::vector<std::uint8_t>>(pixels.begin(), pixels.end());
+  slice.FrameNumber = 3 * number;
+  slice.Timestamp = 0.04 * number;
+  slice.ProbeToTracker = lacunaTest::Sweep(slice.Timestamp, 1);
+  slice.Residual = 0.001;
+  slice.Speed = number == 0 ? NaN : 12.5;
+  return slice;
+}
+
+SweepFrame MakeFrame(bool calibrated)
+{
+  SweepFrame frame;
+  frame.Window = { 7, 9, 5, 4 };
+  frame.Calibrated = calibrated;
+  frame.ImageToProbe = Matrix4::Translation({ 1, 2, 3 }) * Matrix4::Scaling({ 0.1, 0.2, 1 });
+  frame.TrackerToReference = Matrix4::Translation({ 0, 0, 50 });
+  return frame;
+}
+
+lacuna::Sweep ReadSweep(const std::string& path)
+{
+  return BuildSweep(ReadSequenceHeader(path), {});
+}
+}
+
+TEST(SweepFile, IsReadAsItWasTaken)
+{
+  const TemporaryFolder folder;
+  for (const bool calibrated : { true, false })
+  {
+    const std::string path = folder / (calibrated ? "a.igs.mhd" : "b.nhdr");
+    SweepFile file(path, 0);
+    AcquiredSlice lost = MakeSlice(1);
+    lost.Status = lacuna::Sweep::PoseInvalid;
+    lost.ProbeToTracker(0, 0) = NaN;
+    AcquiredSlice fast = MakeSlice(2);
+    fast.Status = lacuna::Sweep::TooFast | lacuna::Sweep::ImageInvalid;
+    const SweepFrame frame = MakeFrame(calibrated);
+    file.Add(MakeSlice(0), frame);
+    file.Add(lost, frame);
+    file.Add(fast, frame);
+    file.Finish();
+    EXPECT_EQ(file.GetState().FileName, path);
+    EXPECT_EQ(file.GetState().Synced, 3);
+    const ReadBack pixels(path);
+    const lacuna::Sweep sweep = ReadSweep(path);
+    ASSERT_EQ(sweep.Status.size(), 3u);
+    EXPECT_EQ(sweep.Status[0], 0);
+    // only with a calibration a missing pose makes a slice useless
+    EXPECT_EQ(sweep.Status[1], lacuna::Sweep::PoseInvalid);
+    EXPECT_EQ(sweep.Status[2], lacuna::Sweep::TooFast | lacuna::Sweep::ImageInvalid);
+    EXPECT_EQ(sweep.FrameNumbers, (std::vector<int>{ 0, 3, 6 }));
+    EXPECT_NEAR(sweep.Timestamps[2], 0.08, 1e-12);
+    EXPECT_EQ(sweep.TextFields.at("Residual")[0], "0.001");
+    for (int i = 0; i < 3; ++i)
+    {
+      EXPECT_EQ(pixels.Frames[i], MakePixels(i));
+    }
+    EXPECT_LT(
+      Distance(sweep.Transforms.at("ProbeToTracker")[2], lacunaTest::Sweep(0.08, 1)), 1e-12);
+    ASSERT_EQ(sweep.ImageToReference.size(), calibrated ? 3u : 0u);
+    if (calibrated)
+    {
+      // the file's pixel (0, 0) is the frame's (7, 9)
+      const Vec3 place = sweep.ImageToReference[0].Point({ 0, 0, 0 });
+      const Vec3 expected = (frame.TrackerToReference * MakeSlice(0).ProbeToTracker)
+                              .Point(frame.ImageToProbe.Point({ 7, 9, 0 }));
+      EXPECT_LT(Norm(place - expected), 1e-9);
+      EXPECT_TRUE(std::isnan(sweep.ImageToReference[1](0, 0)));
+    }
+  }
+}
+
+TEST(SweepFile, NeverWritesOverAnother)
+{
+  const TemporaryFolder folder;
+  EXPECT_EQ(FindFreeSweepName(folder / "sweep.igs.mhd", 0), folder / "sweep.igs.mhd");
+  std::ofstream(folder / "sweep.igs.raw") << "pixels of something";
+  EXPECT_EQ(FindFreeSweepName(folder / "sweep.igs.mhd", 0), folder / "sweep-2.igs.mhd");
+  EXPECT_EQ(FindFreeSweepName(folder / "sweep.igs.mhd", 6), folder / "sweep.igs.mhd");
+  std::ofstream(folder / "sweep-2.igs.mhd") << "header of something";
+  EXPECT_EQ(FindFreeSweepName(folder / "sweep.igs.mhd", 0), folder / "sweep-3.igs.mhd");
+  for (int i = 0; i < 2; ++i)
+  {
+    SweepFile file(folder / "again.mhd", 0);
+    file.Add(MakeSlice(i), MakeFrame(false));
+    file.Finish();
+    const std::string name = folder / (i == 0 ? "again.mhd" : "again-2.mhd");
+    EXPECT_EQ(file.GetState().FileName, name);
+    EXPECT_EQ(ReadBack(name).Frames.at(0), MakePixels(i));
+  }
+}
+
+TEST(SweepFile, RefusesNamesOfFilesThatCannotGrow)
+{
+  EXPECT_THROW(SweepFile("sweep.mha", 0), std::invalid_argument);
+  EXPECT_THROW(SweepFile("sweep.nrrd", 0), std::invalid_argument);
+  EXPECT_THROW(SweepFile("sweep", 0), std::invalid_argument);
+}
+
+TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "missing/sweep.mhd";
+  SweepFile file(path, 0);
+  for (int i = 0; i < 4; ++i)
+  {
+    file.Add(MakeSlice(i), MakeFrame(true));
+  }
+  EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
+  EXPECT_NE(file.GetState().Trouble.find("missing"), std::string::npos);
+  EXPECT_THROW(file.Finish(), FileError);
+  EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
+  std::filesystem::create_directory(folder / "missing");
+  file.Retry(); // not before a second has passed
+  file.Finish();
+  EXPECT_EQ(file.GetState().WaitingBytes, 0);
+  EXPECT_EQ(file.GetState().Trouble, "");
+  const ReadBack read(path);
+  ASSERT_EQ(read.Frames.size(), 4u);
+  EXPECT_EQ(read.Frames[3], MakePixels(3));
+}
+
+TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)
+{
+  const TemporaryFolder folder;
+  Room room;
+  AcquisitionDevices devices;
+  devices.Frames = room.MakeVideo();
+  devices.Poses = room.MakeTracker();
+  AcquisitionRules rules;
+  rules.Mode = CaptureMode::EveryFrame;
+  rules.SpeedLimit = 0;
+  rules.RecordFileName = folder / "none/sweep.mhd";
+  SweepAcquisition acquisition(devices, rules, room);
+  acquisition.Start();
+  room.RunTo(20);
+  EXPECT_THROW(acquisition.BeginSweep(), FileError); // it would be lost
+  EXPECT_EQ(acquisition.TakeSlices().size(), 20u);
+  const std::vector<std::string> messages = acquisition.GetState().Messages;
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("none/sweep"), std::string::npos) << messages[0];
+  acquisition.BeginSweep(true);
+  rules.RecordFileName = folder / "sweep.mhd";
+  acquisition.SetRules(rules);
+  for (int sweep = 1; sweep <= 2; ++sweep)
+  {
+    acquisition.Start();
+    room.RunTo(20 + 30 * sweep);
+    acquisition.Stop();
+    const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+    EXPECT_EQ(slices.size(), 30u);
+    const std::string name = acquisition.GetState().File.FileName;
+    EXPECT_EQ(name, folder / (sweep == 1 ? "sweep.mhd" : "sweep-2.mhd"));
+    acquisition.BeginSweep();
+    const ReadBack read(name);
+    const lacuna::Sweep poses = ReadSweep(name);
+    ASSERT_EQ(read.Frames.size(), 30u);
+    for (std::size_t i = 0; i < 30; ++i)
+    {
+      EXPECT_EQ(read.Frames[i], std::string(slices[i].Pixels->begin(), slices[i].Pixels->end()));
+      EXPECT_LT(
+        Distance(poses.Transforms.at("ProbeToTracker")[i], slices[i].ProbeToTracker), 1e-12);
+    }
+  }
+}

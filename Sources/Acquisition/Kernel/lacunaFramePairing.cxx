@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFramePairing.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lacuna
+{
+FramePairing::FramePairing(double patience)
+  : Patience(patience)
+{
+}
+
+void FramePairing::AddFrame(PairedFrame frame, double now)
+{
+  const double deadline = std::max(now, frame.Instant) + this->Patience;
+  this->Frames.push_back({ std::move(frame), deadline });
+}
+
+void FramePairing::Abandon()
+{
+  for (Waiting& waiting : this->Frames)
+  {
+    waiting.Deadline = 0;
+  }
+}
+
+std::vector<PairedFrame> FramePairing::Take(double now)
+{
+  std::vector<PairedFrame> ready;
+  while (!this->Frames.empty())
+  {
+    Waiting& first = this->Frames.front();
+    if (this->Track.IsAhead(first.Frame.Instant) && now < first.Deadline)
+    {
+      break;
+    }
+    first.Frame.Pose = this->Track.At(first.Frame.Instant);
+    ready.push_back(std::move(first.Frame));
+    this->Frames.pop_front();
+  }
+  return ready;
+}
+
+bool FramePairing::HasWanted() const
+{
+  return std::any_of(this->Frames.begin(), this->Frames.end(),
+    [](const Waiting& waiting) { return waiting.Frame.Wanted; });
+}
+}

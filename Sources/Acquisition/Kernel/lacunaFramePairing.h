@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Gives each video frame the pose of its instant.
+#ifndef lacunaFramePairing_h
+#define lacunaFramePairing_h
+
+#include "lacunaPoseTrack.h"
+#include "lacunaVideoSource.h"
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace lacuna
+{
+using FramePointer = std::shared_ptr<const VideoFrame>;
+
+struct PairedFrame
+{
+  FramePointer Frame;
+  std::int64_t Number = 0; ///< of the video's frames
+  double Instant = 0;      ///< s of the clock: when the probe saw it
+  bool Wanted = false;     ///< it came during a capture
+  std::optional<PoseAtInstant> Pose;
+};
+
+/// Frames wait until a measurement later than their instant has come, so that they get a pose
+/// between two; nothing is extrapolated. One whose pose does not come within the patience gets none.
+/// Frames leave in the order in which they came.
+class FramePairing
+{
+public:
+  /// patience: s after its instant, or its coming, until a frame is let go without a pose.
+  explicit FramePairing(double patience = 0.5);
+
+  /// Takes a frame at a time of the clock.
+  void AddFrame(PairedFrame frame, double now);
+  void AddPose(const TrackedPose& pose) { this->Track.Add(pose); }
+  /// No poses will come for the frames there are: all may leave.
+  void Abandon();
+  /// The frames that have their pose or are let go.
+  std::vector<PairedFrame> Take(double now);
+  bool HasWanted() const;
+
+private:
+  struct Waiting
+  {
+    PairedFrame Frame;
+    double Deadline;
+  };
+  double Patience;
+  PoseTrack Track;
+  std::deque<Waiting> Frames;
+};
+}
+#endif

@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweepAcquisition.h"
+
+#include "lacunaDeviceThread.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double LongestSilence = 3;                        // s of a tracker that worked
+constexpr std::chrono::milliseconds LongestSettling{ 800 }; // of the last frames of a capture
+
+PoseCounts Sum(const PoseCounts& a, const PoseCounts& b)
+{
+  return { a.Poses + b.Poses, a.Missing + b.Missing, a.Damaged + b.Damaged,
+    a.Implausible + b.Implausible, a.Flipped + b.Flipped };
+}
+
+VideoSource::Counts Sum(const VideoSource::Counts& a, const VideoSource::Counts& b)
+{
+  VideoSource::Counts sum;
+  sum.Frames = a.Frames + b.Frames;
+  sum.Damaged = a.Damaged + b.Damaged;
+  sum.Undecodable = a.Undecodable + b.Undecodable;
+  sum.Missing = a.Missing + b.Missing;
+  return sum;
+}
+}
+
+// Shared with the threads, which may outlive the acquisition. TakeMutex before Mutex.
+struct SweepAcquisition::Core
+{
+  Core(const AcquisitionDevices& devices, const AcquisitionRules& rules, const Clock& clock)
+    : Devices(devices)
+    , Time(clock)
+    , Epoch(clock.Now())
+    , Taking(devices.Crop, rules, this->Epoch)
+    , Rules(rules)
+    , Pairing(devices.Patience)
+  {
+  }
+
+  void TrackPoses(DeviceThread::Control& control);
+  void ReadFrames(DeviceThread::Control& control);
+  void AddPoses(const std::vector<TrackedPose>& poses, const PoseDevice& device);
+  void HeedButton(const TrackedPose& pose);
+  void LosePoses();
+  void AddFrame(FramePointer frame, double latency, const VideoSource::Counts& counts);
+  void Process();
+  void Publish(std::int64_t processed, std::vector<AcquiredSlice> slices);
+  std::vector<std::string> DescribePoses() const;
+
+  const AcquisitionDevices Devices;
+  const Clock& Time;
+  const double Epoch;
+
+  std::mutex TakeMutex; // keeps frames in order; guards
+  SweepTaking Taking;
+
+  mutable std::mutex Mutex; // held for moments only; guards all below
+  std::condition_variable Settled;
+  AcquisitionRules Rules;
+  FramePairing Pairing;
+  bool Capturing = false;
+  bool PosesCome = false; // a tracker is connected
+  bool ButtonDown = false;
+  bool ButtonBefore = false; // what the last record said
+  std::int64_t NextNumber = 0;
+  std::int64_t Pending = 0;
+  std::int64_t Missing = 0;
+  PoseCounts EarlierPoses; // of connections that ended
+  PoseCounts NewestPoses;
+  VideoSource::Counts EarlierVideo;
+  VideoSource::Counts NewestVideo;
+  std::string TrackerWarning;
+  std::optional<LiveFrame> Live;
+  std::vector<AcquiredSlice> Slices;
+  AcquisitionState State; // of what Taking knows
+  std::optional<SweepFrame> Sweep;
+};
+
+void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
+{
+  const auto device = this->Devices.Poses([&control] { return control.IsStopped(); });
+  device->SetUp();
+  control.SetWorking();
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->PosesCome = true;
+  }
+  try
+  {
+    double last = this->Time.Now();
+    std::vector<TrackedPose> poses;
+    while (!control.IsStopped())
+    {
+      poses.clear();
+      const bool came = device->Poll(poses);
+      this->AddPoses(poses, *device);
+      last = came ? this->Time.Now() : last;
+      if (this->Time.Now() - last > LongestSilence)
+      {
+        throw std::runtime_error("The tracker sends nothing any more: is it switched on and its "
+                                 "cable plugged in?");
+      }
+    }
+  }
+  catch (...)
+  {
+    this->LosePoses();
+    throw;
+  }
+  this->LosePoses();
+}
+
+void SweepAcquisition::Core::AddPoses(
+  const std::vector<TrackedPose>& poses, const PoseDevice& device)
+{
+  const PoseCounts counts = device.GetCounts();
+  std::string warning = device.GetWarning();
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->NewestPoses = counts;
+    this->TrackerWarning = std::move(warning);
+    for (const TrackedPose& pose : poses)
+    {
+      if (pose.Station == this->Devices.Station)
+      {
+        this->HeedButton(pose);
+        this->Pairing.AddPose(pose);
+      }
+    }
+  }
+  this->Process();
+}
+
+void SweepAcquisition::Core::HeedButton(const TrackedPose& pose)
+{
+  if (!pose.Button)
+  {
+    return;
+  }
+  // two records must agree: a damaged one presses nothing
+  if (*pose.Button == this->ButtonBefore && *pose.Button != this->ButtonDown)
+  {
+    this->ButtonDown = *pose.Button;
+    this->Capturing = this->Capturing != (this->ButtonDown && this->Rules.ButtonStarts);
+  }
+  this->ButtonBefore = *pose.Button;
+}
+
+void SweepAcquisition::Core::LosePoses()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->EarlierPoses = Sum(this->EarlierPoses, this->NewestPoses);
+    this->NewestPoses = {};
+    this->TrackerWarning.clear();
+    this->PosesCome = false;
+    this->ButtonDown = this->ButtonBefore = false;
+    this->Pairing.Abandon();
+  }
+  this->Process();
+}
+
+void SweepAcquisition::Core::ReadFrames(DeviceThread::Control& control)
+{
+  const auto device = this->Devices.Frames([&control] { return control.IsStopped(); });
+  const double latency = this->Devices.VideoLatency.value_or(device->GetLatency());
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->EarlierVideo = Sum(this->EarlierVideo, this->NewestVideo);
+    this->NewestVideo = {};
+  }
+  while (!control.IsStopped())
+  {
+    auto frame = std::make_shared<VideoFrame>();
+    if (device->Read(*frame) == VideoEvent::End)
+    {
+      const std::string text = "The video has ended";
+      if (this->Devices.ReopenEndedVideo)
+      {
+        throw std::runtime_error(
+          text + ": does its sender still run? It is opened again when it does");
+      }
+      throw DeviceEnded(text + ": no more frames come");
+    }
+    control.SetWorking();
+    this->AddFrame(std::move(frame), latency, device->GetCounts());
+  }
+}
+
+void SweepAcquisition::Core::AddFrame(
+  FramePointer frame, double latency, const VideoSource::Counts& counts)
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    PairedFrame paired;
+    paired.Instant = frame->Arrival - latency + this->Rules.TimeOffset;
+    paired.Frame = std::move(frame);
+    paired.Number = this->NextNumber++;
+    paired.Wanted = this->Capturing;
+    if (this->Capturing)
+    {
+      ++this->Pending;
+      this->Missing += static_cast<std::int64_t>(counts.Missing - this->NewestVideo.Missing +
+        counts.Undecodable - this->NewestVideo.Undecodable);
+    }
+    this->NewestVideo = counts;
+    this->Pairing.AddFrame(std::move(paired), this->Time.Now());
+    if (!this->PosesCome)
+    {
+      this->Pairing.Abandon();
+    }
+  }
+  this->Process();
+}
+
+void SweepAcquisition::Core::Process()
+{
+  const std::lock_guard<std::mutex> taking(this->TakeMutex);
+  std::vector<PairedFrame> ready;
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    ready = this->Pairing.Take(this->Time.Now());
+  }
+  if (ready.empty())
+  {
+    return;
+  }
+  std::vector<AcquiredSlice> slices;
+  std::int64_t processed = 0;
+  for (const PairedFrame& frame : ready)
+  {
+    this->Taking.Add(frame, this->Time.Now(), slices);
+    processed += frame.Wanted ? 1 : 0;
+  }
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (const auto window = this->Taking.GetWindow(*ready.back().Frame))
+  {
+    this->Live = LiveFrame{ std::move(ready.back()), *window };
+  }
+  this->Publish(processed, std::move(slices));
+}
+
+// With both locks.
+void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<AcquiredSlice> slices)
+{
+  this->Slices.insert(this->Slices.end(), std::make_move_iterator(slices.begin()),
+    std::make_move_iterator(slices.end()));
+  this->Pending -= processed;
+  this->Capturing = this->Capturing && !this->Taking.IsFull();
+  this->State.Counts = this->Taking.GetCounts();
+  this->State.Speed = this->Taking.GetSpeed();
+  this->State.LargestResidual = this->Taking.GetLargestResidual();
+  this->State.File = this->Taking.GetFile();
+  this->State.Messages = this->Taking.GetMessages();
+  this->Sweep = this->Taking.GetSweep();
+  this->Settled.notify_all();
+}
+
+std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
+{
+  std::vector<std::string> messages;
+  if (!this->TrackerWarning.empty())
+  {
+    messages.push_back(this->TrackerWarning);
+  }
+  const std::uint64_t flipped = this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
+  if (flipped > 0)
+  {
+    messages.push_back("The receiver was in the other half of space (" + std::to_string(flipped) +
+      " records), and the signs of its position were set right. Keep it on the side of the "
+      "transmitter that Hemisphere points to");
+  }
+  return messages;
+}
+
+SweepAcquisition::SweepAcquisition(
+  const AcquisitionDevices& devices, const AcquisitionRules& rules, const Clock& clock)
+{
+  CheckRules(rules);
+  this->Work = std::make_shared<Core>(devices, rules, clock);
+  const std::shared_ptr<Core> core = this->Work;
+  this->Tracker = std::make_unique<DeviceThread>(
+    [core](DeviceThread::Control& control) { core->TrackPoses(control); }, devices.RetryTime);
+  this->Video = std::make_unique<DeviceThread>(
+    [core](DeviceThread::Control& control) { core->ReadFrames(control); }, devices.RetryTime);
+}
+
+SweepAcquisition::~SweepAcquisition()
+{
+  this->Tracker->Stop(); // both before either is waited for
+  this->Video->Stop();
+}
+
+void SweepAcquisition::SetRules(const AcquisitionRules& rules)
+{
+  CheckRules(rules);
+  const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+  this->Work->Taking.SetRules(rules);
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  this->Work->Rules = rules;
+}
+
+void SweepAcquisition::Start()
+{
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  this->Work->Capturing = true;
+}
+
+void SweepAcquisition::Stop()
+{
+  std::unique_lock<std::mutex> lock(this->Work->Mutex);
+  this->Work->Capturing = false;
+  this->Work->Settled.wait_for(lock, LongestSettling, [this] { return this->Work->Pending == 0; });
+}
+
+void SweepAcquisition::BeginSweep(bool discard)
+{
+  this->Stop();
+  const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+  this->Work->Taking.BeginSweep(discard);
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  this->Work->Slices.clear();
+  this->Work->Missing = 0;
+  this->Work->Publish(0, {});
+  this->Work->Sweep.reset();
+}
+
+std::vector<AcquiredSlice> SweepAcquisition::TakeSlices()
+{
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  return std::exchange(this->Work->Slices, {});
+}
+
+std::optional<SweepFrame> SweepAcquisition::GetSweep() const
+{
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  return this->Work->Sweep;
+}
+
+std::optional<LiveFrame> SweepAcquisition::GetLive() const
+{
+  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+  return this->Work->Live;
+}
+
+AcquisitionState SweepAcquisition::GetState() const
+{
+  const DeviceThread::Health tracker = this->Tracker->GetHealth();
+  const DeviceThread::Health video = this->Video->GetHealth();
+  Core& core = *this->Work;
+  // the disk goes on when no frames come
+  std::unique_lock<std::mutex> taking(core.TakeMutex, std::try_to_lock);
+  const std::lock_guard<std::mutex> lock(core.Mutex);
+  if (taking.owns_lock())
+  {
+    core.Publish(0, {});
+  }
+  AcquisitionState state = core.State;
+  state.Capturing = core.Capturing;
+  state.TrackerWorks = tracker.Working;
+  state.VideoWorks = video.Working;
+  state.Pending = core.Pending;
+  state.Missing = core.Missing;
+  state.Counts.Frames += core.Pending;
+  state.Poses = Sum(core.EarlierPoses, core.NewestPoses);
+  state.Video = Sum(core.EarlierVideo, core.NewestVideo);
+  std::vector<std::string> messages;
+  const auto describe = [&](const DeviceThread::Health& health, const char* waiting)
+  {
+    if (!health.Working)
+    {
+      messages.push_back(health.Failures > 0 ? health.Trouble : waiting);
+    }
+  };
+  describe(tracker, "The tracker is being set up");
+  describe(video, "The video is being opened");
+  for (std::string& message : core.DescribePoses())
+  {
+    messages.push_back(std::move(message));
+  }
+  state.Messages.insert(state.Messages.begin(), messages.begin(), messages.end());
+  return state;
+}
+}

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweepFile.h"
+
+#include "lacunaOutputFile.h"
+#include "lacunaParameterText.h"
+#include "lacunaSequenceText.h"
+#include "lacunaSweep.h"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double RetryInterval = 1; // s
+
+bool Exists(const std::string& path)
+{
+  std::error_code none;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, none));
+}
+
+SequenceKind MakeKind(const std::string& fileName, int compressionLevel)
+{
+  SequenceKind kind(fileName, compressionLevel > 0);
+  if (!kind.IsDetached())
+  {
+    throw std::invalid_argument(
+      "A sweep is recorded to a file of its header and another one of its "
+      "pixels, which can grow: name it .mhd or .nhdr, not '" +
+      fileName + "'");
+  }
+  return kind;
+}
+
+void AddTransform(
+  SequenceFields& fields, const std::string& name, const Matrix4& matrix, bool valid)
+{
+  fields.emplace_back(name + "Transform", FormatMatrix(valid ? matrix : Matrix4()));
+  fields.emplace_back(name + "TransformStatus", valid ? "OK" : "INVALID");
+}
+
+void AddNumber(SequenceFields& fields, const std::string& name, double value)
+{
+  if (std::isfinite(value))
+  {
+    fields.emplace_back(name, FormatNumber(value));
+  }
+}
+}
+
+std::string FindFreeSweepName(const std::string& fileName, int compressionLevel)
+{
+  const std::filesystem::path path(fileName);
+  // sweep.igs.mhd becomes sweep-2.igs.mhd
+  const std::string name = path.filename().string();
+  const std::size_t dot = name.find('.', 1);
+  std::string candidate = fileName;
+  for (int i = 2;; ++i)
+  {
+    if (!Exists(candidate) && !Exists(MakeKind(candidate, compressionLevel).GetDataFileName()))
+    {
+      return candidate;
+    }
+    candidate =
+      (path.parent_path() / (name.substr(0, dot) + "-" + std::to_string(i) + name.substr(dot)))
+        .string();
+  }
+}
+
+SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame)
+{
+  SequenceFields fields;
+  AddTransform(
+    fields, "ProbeToTracker", slice.ProbeToTracker, (slice.Status & Sweep::PoseInvalid) == 0);
+  AddTransform(fields, "TrackerToReference", frame.TrackerToReference, true);
+  if (frame.Calibrated)
+  {
+    const Vec3 corner{ double(frame.Window[0]), double(frame.Window[1]), 0 };
+    AddTransform(fields, "ImageToProbe", frame.ImageToProbe * Matrix4::Translation(corner), true);
+  }
+  AddNumber(fields, "Timestamp", slice.Timestamp);
+  AddNumber(fields, "Residual", slice.Residual);
+  AddNumber(fields, "Speed", slice.Speed);
+  fields.emplace_back("FrameNumber", std::to_string(slice.FrameNumber));
+  fields.emplace_back("SliceStatus", std::to_string(int(slice.Status)));
+  fields.emplace_back("ImageStatus", (slice.Status & Sweep::ImageInvalid) == 0 ? "OK" : "INVALID");
+  return fields;
+}
+
+SweepFile::SweepFile(const std::string& fileName, int compressionLevel)
+  : FileName(fileName)
+  , CompressionLevel(compressionLevel)
+{
+  MakeKind(fileName, compressionLevel);
+}
+
+void SweepFile::Retry()
+{
+  if (this->Recorder || this->Unopened.empty() || this->Clock.Now() < this->RetryTime)
+  {
+    return;
+  }
+  try
+  {
+    const std::string name = FindFreeSweepName(this->FileName, this->CompressionLevel);
+    this->Recorder =
+      std::make_unique<SweepRecorder>(name, this->Description, this->CompressionLevel);
+    this->Now.FileName = name;
+    this->Now.Trouble.clear();
+    for (Entry& entry : this->Unopened)
+    {
+      this->Recorder->Add(std::move(entry.Pixels), std::move(entry.Fields));
+    }
+    this->Unopened.clear();
+  }
+  catch (const FileError& e)
+  {
+    this->Now.Trouble = e.what() +
+      std::string(". The capture goes on, its slices wait in memory: mend that, then they are "
+                  "written; or save the sweep elsewhere");
+    this->RetryTime = this->Clock.Now() + RetryInterval;
+  }
+}
+
+void SweepFile::Add(const AcquiredSlice& slice, const SweepFrame& frame)
+{
+  SequenceFields fields = MakeSliceFields(slice, frame);
+  if (this->Recorder)
+  {
+    this->Recorder->Add(slice.Pixels, std::move(fields));
+    return;
+  }
+  this->Description.Columns = frame.Window[2];
+  this->Description.Rows = frame.Window[3];
+  this->Description.CustomFields = { { "FirstColumn", std::to_string(frame.Window[0]) },
+    { "FirstRow", std::to_string(frame.Window[1]) } };
+  this->Unopened.push_back({ slice.Pixels, std::move(fields) });
+  this->Retry();
+}
+
+SweepFile::State SweepFile::GetState() const
+{
+  State state = this->Now;
+  if (this->Recorder)
+  {
+    const SweepRecorder::State recorded = this->Recorder->GetState();
+    state.Synced = recorded.Synced;
+    state.WaitingBytes = recorded.WaitingBytes;
+    state.Trouble = recorded.Trouble;
+  }
+  for (const Entry& entry : this->Unopened)
+  {
+    state.WaitingBytes += static_cast<std::int64_t>(entry.Pixels->size());
+  }
+  return state;
+}
+
+void SweepFile::Finish()
+{
+  this->RetryTime = 0;
+  this->Retry();
+  if (!this->Unopened.empty())
+  {
+    throw FileError(FileError::Kind::CannotOpen, this->Now.Trouble);
+  }
+  if (this->Recorder)
+  {
+    this->Recorder->Finish();
+  }
+}
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The recording of a sweep that is being taken, whatever the disk does.
+#ifndef lacunaSweepFile_h
+#define lacunaSweepFile_h
+
+#include "lacunaAcquiredSlice.h"
+#include "lacunaClock.h"
+#include "lacunaSequenceFormat.h"
+#include "lacunaSweepRecorder.h"
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lacuna
+{
+/// "sweep.mhd", or "sweep-2.mhd", "sweep-3.mhd" ... when there is one already: the first name for
+/// which neither the header nor the pixels exist.
+std::string FindFreeSweepName(const std::string& fileName, int compressionLevel);
+
+/// The fields with which a slice is stored: poses by their names with the states that readers ask
+/// for, ImageToProbe for the pixels of the file, Timestamp, FrameNumber, SliceStatus, Residual and
+/// Speed.
+SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame);
+
+/// Opens its file by a free name with the first slice, since only then the size is known. While that
+/// fails, slices wait in memory and it is tried again every second.
+class SweepFile
+{
+public:
+  struct State
+  {
+    std::string FileName;          ///< empty until it is open
+    std::int64_t Synced = 0;       ///< slices on the disk
+    std::int64_t WaitingBytes = 0; ///< of pixels that are not written
+    std::string Trouble; ///< why nothing is written now, and what to do; empty: all is well
+  };
+
+  /// Throws std::invalid_argument for a name by which no sweep can be recorded.
+  SweepFile(const std::string& fileName, int compressionLevel);
+
+  /// Takes a slice of the frame's window.
+  void Add(const AcquiredSlice& slice, const SweepFrame& frame);
+  /// Tries again to open the file, when there is something to write and it is time.
+  void Retry();
+  State GetState() const;
+  /// Tries to write all that waits and ends the file. Throws FileError; the slices still wait.
+  void Finish();
+
+private:
+  struct Entry
+  {
+    SweepRecorder::Pixels Pixels;
+    SequenceFields Fields;
+  };
+
+  std::string FileName;
+  int CompressionLevel;
+  SteadyClock Clock;
+  SequenceDescription Description;
+  std::deque<Entry> Unopened; ///< slices while there is no file
+  double RetryTime = 0;
+  State Now;
+  std::unique_ptr<SweepRecorder> Recorder;
+};
+}
+#endif

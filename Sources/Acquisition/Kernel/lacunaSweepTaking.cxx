@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSweepTaking.h"
+
+#include "lacunaSweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double LargestOffset = 1; // s
+
+std::string SizeText(int columns, int rows)
+{
+  return std::to_string(columns) + " x " + std::to_string(rows);
+}
+
+Matrix4 NoPose()
+{
+  std::array<double, 16> elements{};
+  elements.fill(NaN);
+  return Matrix4(elements);
+}
+
+CaptureRule MakeRule(const AcquisitionRules& rules, const std::array<int, 4>& window)
+{
+  return CaptureRule(rules.Mode, rules.MovementThreshold, rules.SpeedLimit,
+    rules.ImageToProbe ? GetViewCorners(*rules.ImageToProbe, window) : GetReceiverPoints());
+}
+}
+
+void CheckRules(const AcquisitionRules& rules)
+{
+  const auto require = [](bool right, const char* text)
+  {
+    if (!right)
+    {
+      throw std::invalid_argument(text);
+    }
+  };
+  require(std::isfinite(rules.MovementThreshold) && rules.MovementThreshold >= 0,
+    "MovementThreshold is a distance in mm, 0 or more");
+  require(std::isfinite(rules.SpeedLimit) && rules.SpeedLimit >= 0,
+    "SpeedLimit is a speed in mm/s, or 0 for none");
+  require(std::abs(rules.TimeOffset) <= LargestOffset,
+    "TimeOffset is s from -1 to 1: a video that is later than that is no live image");
+  require(rules.MemoryLimit >= 0, "MemoryLimit is a size, or 0 for none");
+  require(rules.RecordCompressionLevel >= 0 && rules.RecordCompressionLevel <= 9,
+    "The compression level is 0 (none) to 9 (most)");
+  const auto isAffine = [](const Matrix4& matrix)
+  { return matrix.IsFinite() && matrix.IsAffine(); };
+  require(!rules.ImageToProbe || isAffine(*rules.ImageToProbe),
+    "ImageToProbe must be an affine matrix of finite numbers");
+  require(isAffine(rules.TrackerToReference),
+    "TrackerToReference must be an affine matrix of finite numbers");
+  if (!rules.RecordFileName.empty())
+  {
+    SweepFile(rules.RecordFileName, rules.RecordCompressionLevel);
+  }
+}
+
+SweepTaking::SweepTaking(
+  const std::array<int, 4>& crop, const AcquisitionRules& rules, double epoch)
+  : Crop(crop)
+  , Rules(rules)
+  , Epoch(epoch)
+  , Rule(MakeRule(rules, crop))
+{
+  if (*std::min_element(crop.begin(), crop.end()) < 0)
+  {
+    throw std::invalid_argument(
+      "The crop is first column, first row, columns and rows, none of them "
+      "negative");
+  }
+}
+
+void SweepTaking::SetRules(const AcquisitionRules& rules)
+{
+  this->Rules = rules;
+  this->Rule = MakeRule(rules, this->RuleWindow);
+  this->Full = false; // unless the next slice finds it so
+}
+
+void SweepTaking::BeginSweep(bool discard)
+{
+  if (this->File && !discard)
+  {
+    this->File->Finish();
+  }
+  this->File.reset();
+  this->Counts = {};
+  this->Sweep.reset();
+  this->LargestResidual = 0;
+  this->Full = false;
+  this->Rule.BeginSweep();
+}
+
+std::optional<SweepFrame> SweepTaking::GetWindow(const VideoFrame& frame) const
+{
+  SweepFrame window;
+  window.Window = this->Crop;
+  auto& [column, row, columns, rows] = window.Window;
+  columns = columns > 0 ? columns : frame.Columns - column;
+  rows = rows > 0 ? rows : frame.Rows - row;
+  if (columns <= 0 || rows <= 0 || columns > frame.Columns - column || rows > frame.Rows - row)
+  {
+    return std::nullopt;
+  }
+  window.Calibrated = this->Rules.ImageToProbe.has_value();
+  window.ImageToProbe = this->Rules.ImageToProbe.value_or(Matrix4());
+  window.TrackerToReference = this->Rules.TrackerToReference;
+  return window;
+}
+
+bool SweepTaking::Fits(const VideoFrame& frame, const SweepFrame& window)
+{
+  if (this->Counts.Slices > 0 &&
+    (this->FrameSize[0] != frame.Columns || this->FrameSize[1] != frame.Rows))
+  {
+    this->SizeTrouble = "The video is now " + SizeText(frame.Columns, frame.Rows) +
+      " pixels and was " + SizeText(this->FrameSize[0], this->FrameSize[1]) +
+      " when the sweep began: its frames are left out. Set the scanner back, or begin a new sweep";
+    return false;
+  }
+  this->FrameSize = { frame.Columns, frame.Rows };
+  this->SliceBytes = std::int64_t{ window.Window[2] } * window.Window[3];
+  this->Sweep = window;
+  return true;
+}
+
+bool SweepTaking::HasRoom()
+{
+  const std::int64_t waiting = this->File ? this->File->GetState().WaitingBytes : 0;
+  this->Full = this->Rules.MemoryLimit > 0 &&
+    (this->Counts.Slices + 1) * this->SliceBytes + waiting > this->Rules.MemoryLimit;
+  return !this->Full;
+}
+
+AcquiredSlice SweepTaking::MakeSlice(
+  const PairedFrame& frame, const SweepFrame& window, const CaptureRule::Verdict& verdict) const
+{
+  const VideoFrame& video = *frame.Frame;
+  const auto [column, row, columns, rows] = window.Window;
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  pixels->reserve(static_cast<std::size_t>(this->SliceBytes));
+  for (int i = row; i < row + rows; ++i)
+  {
+    const auto line =
+      video.Grey.begin() + static_cast<std::ptrdiff_t>(std::int64_t{ i } * video.Columns + column);
+    pixels->insert(pixels->end(), line, line + columns);
+  }
+  AcquiredSlice slice;
+  slice.Pixels = std::move(pixels);
+  slice.FrameNumber = frame.Number;
+  slice.Timestamp = frame.Instant - this->Epoch;
+  slice.ProbeToTracker = frame.Pose ? frame.Pose->ReceiverToTransmitter : NoPose();
+  slice.Status = static_cast<unsigned char>((frame.Pose ? 0 : Sweep::PoseInvalid) |
+    (video.Damaged ? Sweep::ImageInvalid : 0) | (verdict.TooFast ? Sweep::TooFast : 0));
+  slice.Residual = frame.Pose ? frame.Pose->Nearest : NaN;
+  slice.Gap = frame.Pose ? frame.Pose->Gap : NaN;
+  slice.Speed = verdict.Speed.value_or(NaN);
+  return slice;
+}
+
+void SweepTaking::Record(const AcquiredSlice& slice, const SweepFrame& window)
+{
+  if (!this->File && this->Counts.Slices == 1 && !this->Rules.RecordFileName.empty())
+  {
+    this->File =
+      std::make_unique<SweepFile>(this->Rules.RecordFileName, this->Rules.RecordCompressionLevel);
+  }
+  if (this->File)
+  {
+    this->File->Add(slice, window);
+  }
+}
+
+void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<AcquiredSlice>& slices)
+{
+  if (this->File)
+  {
+    this->File->Retry();
+  }
+  this->SizeTrouble.clear();
+  this->PoseMissing = !frame.Pose;
+  this->ImageDamaged = frame.Frame->Damaged;
+  this->Counts.Frames += frame.Wanted ? 1 : 0;
+  const std::optional<SweepFrame> window = this->GetWindow(*frame.Frame);
+  if (!window)
+  {
+    this->SizeTrouble = "The crop does not fit the video's " +
+      SizeText(frame.Frame->Columns, frame.Frame->Rows) + " pixels: no frame is taken";
+    this->Counts.WrongSize += frame.Wanted ? 1 : 0;
+    return;
+  }
+  if (this->RuleWindow != window->Window)
+  {
+    this->RuleWindow = window->Window;
+    this->Rule = MakeRule(this->Rules, this->RuleWindow);
+  }
+  CaptureRule::Verdict verdict;
+  verdict.Take = this->Rules.Mode == CaptureMode::EveryFrame;
+  if (frame.Pose)
+  {
+    verdict = this->Rule.Judge(frame.Pose->ReceiverToTransmitter, frame.Instant);
+  }
+  this->Speed = verdict.Speed;
+  if (!frame.Wanted)
+  {
+    return;
+  }
+  if (!this->Fits(*frame.Frame, *window))
+  {
+    ++this->Counts.WrongSize;
+    return;
+  }
+  this->Counts.WithoutPose += frame.Pose ? 0 : 1;
+  if (!verdict.Take)
+  {
+    this->Counts.Still += frame.Pose ? 1 : 0;
+    return;
+  }
+  if (!this->HasRoom())
+  {
+    ++this->Counts.PastLimit;
+    return;
+  }
+  if (frame.Pose)
+  {
+    this->Rule.Take();
+  }
+  slices.push_back(this->MakeSlice(frame, *window, verdict));
+  AcquiredSlice& slice = slices.back();
+  slice.Delay = now - frame.Frame->Arrival;
+  ++this->Counts.Slices;
+  this->Counts.TooFast += verdict.TooFast ? 1 : 0;
+  this->Counts.Damaged += frame.Frame->Damaged ? 1 : 0;
+  this->LargestResidual = std::fmax(this->LargestResidual, slice.Residual);
+  this->Record(slice, *window);
+}
+
+SweepFile::State SweepTaking::GetFile() const
+{
+  return this->File ? this->File->GetState() : SweepFile::State();
+}
+
+std::vector<std::string> SweepTaking::GetMessages() const
+{
+  std::vector<std::string> messages;
+  if (this->Full)
+  {
+    messages.push_back("The capture has ended at MemoryLimit; all " +
+      std::to_string(this->Counts.Slices) +
+      " slices are kept. Save them and begin a new sweep, or set a higher limit and start again");
+  }
+  if (!this->SizeTrouble.empty())
+  {
+    messages.push_back(this->SizeTrouble);
+  }
+  if (this->Speed && this->Rules.SpeedLimit > 0 && *this->Speed > this->Rules.SpeedLimit)
+  {
+    messages.push_back("Too fast: the image moves at " +
+      std::to_string(static_cast<int>(std::lround(*this->Speed))) +
+      " mm/s, more than SpeedLimit (" +
+      std::to_string(static_cast<int>(std::lround(this->Rules.SpeedLimit))) +
+      "): such slices are flagged");
+  }
+  if (this->ImageDamaged)
+  {
+    messages.push_back("The video comes damaged: look at its cable or network; such slices are "
+                       "flagged");
+  }
+  if (this->PoseMissing)
+  {
+    messages.push_back("The newest frame has no pose: no two measurements of the tracker, at most "
+                       "0.25 s apart, are around its instant");
+  }
+  const std::string trouble = this->GetFile().Trouble;
+  if (!trouble.empty())
+  {
+    messages.push_back(trouble);
+  }
+  return messages;
+}
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Makes slices of the frames of a capture.
+#ifndef lacunaSweepTaking_h
+#define lacunaSweepTaking_h
+
+#include "lacunaAcquiredSlice.h"
+#include "lacunaCaptureRule.h"
+#include "lacunaFramePairing.h"
+#include "lacunaSweepFile.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lacuna
+{
+/// What may change while an acquisition runs.
+struct AcquisitionRules
+{
+  CaptureMode Mode = CaptureMode::Movement;
+  double MovementThreshold = 0.5; ///< mm
+  double SpeedLimit = 23;         ///< mm/s (Carr 1996, ch. 2); 0: none
+  double TimeOffset = 0;          ///< s, from temporal calibration; negative when the video is late
+  std::optional<Matrix4> ImageToProbe; ///< (column, row, 0, 1) of the whole frame to mm
+  Matrix4 TrackerToReference;
+  bool ButtonStarts = false;      ///< a press of the stylus's button starts or stops the capture
+  std::int64_t MemoryLimit = 0;   ///< bytes of pixels, taken or waiting for the disk; 0: none
+  std::string RecordFileName;     ///< .mhd or .nhdr; empty: none. Used from the next sweep on
+  int RecordCompressionLevel = 0; ///< 0 (none) to 9
+};
+
+/// Throws std::invalid_argument for rules that cannot be.
+void CheckRules(const AcquisitionRules& rules);
+
+/// What became of the frames of a sweep: Frames = Slices + Still + WrongSize + PastLimit and, by
+/// movement, + WithoutPose.
+struct CaptureCounts
+{
+  std::int64_t Frames = 0;
+  std::int64_t Slices = 0;
+  std::int64_t Still = 0;       ///< not taken as nothing had moved
+  std::int64_t WithoutPose = 0; ///< not taken by movement; of every frame taken and flagged
+  std::int64_t WrongSize = 0;   ///< another size than the sweep's, or than the crop needs
+  std::int64_t PastLimit = 0;   ///< came when the memory was full
+  std::int64_t TooFast = 0;     ///< taken and flagged
+  std::int64_t Damaged = 0;     ///< taken and flagged
+};
+
+/// Not for more than one thread at a time.
+class SweepTaking
+{
+public:
+  /// crop: see AcquisitionDevices. epoch: the clock's time of Timestamp 0.
+  SweepTaking(const std::array<int, 4>& crop, const AcquisitionRules& rules, double epoch);
+
+  void SetRules(const AcquisitionRules& rules);
+  /// See SweepAcquisition.
+  void BeginSweep(bool discard);
+  /// The next frame in time, wanted or not; now: the clock's time. Adds its slice, if it becomes
+  /// one.
+  void Add(const PairedFrame& frame, double now, std::vector<AcquiredSlice>& slices);
+
+  const CaptureCounts& GetCounts() const { return this->Counts; }
+  /// Of the newest frame that was wanted.
+  const std::optional<SweepFrame>& GetSweep() const { return this->Sweep; }
+  /// The window that would be taken of a frame; nothing when the crop does not fit it.
+  std::optional<SweepFrame> GetWindow(const VideoFrame& frame) const;
+  bool IsFull() const { return this->Full; }
+  double GetLargestResidual() const { return this->LargestResidual; }
+  std::optional<double> GetSpeed() const { return this->Speed; }
+  SweepFile::State GetFile() const;
+  /// What is wrong with the newest frame or the sweep, and what to do.
+  std::vector<std::string> GetMessages() const;
+
+private:
+  bool Fits(const VideoFrame& frame, const SweepFrame& window);
+  bool HasRoom();
+  AcquiredSlice MakeSlice(
+    const PairedFrame& frame, const SweepFrame& window, const CaptureRule::Verdict& verdict) const;
+  void Record(const AcquiredSlice& slice, const SweepFrame& window);
+
+  std::array<int, 4> Crop;
+  AcquisitionRules Rules;
+  double Epoch;
+  CaptureRule Rule;
+  std::array<int, 4> RuleWindow{ 0, 0, 0, 0 }; ///< whose corners Rule watches
+  CaptureCounts Counts;
+  std::optional<SweepFrame> Sweep;
+  std::array<int, 2> FrameSize{ 0, 0 }; ///< of the sweep's whole frames
+  std::int64_t SliceBytes = 0;
+  double LargestResidual = 0;
+  std::optional<double> Speed;
+  std::unique_ptr<SweepFile> File;
+  bool Full = false;
+  std::string SizeTrouble; ///< of the newest frame
+  bool PoseMissing = false;
+  bool ImageDamaged = false;
+};
+}
+#endif
