@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tracker as an acquisition sees it.
+#include "lacunaDeviceChoice.h"
 #include "lacunaEmulatedChannel.h"
 #include "lacunaFastrakDevice.h"
+#include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 
 #include <gtest/gtest.h>
@@ -49,4 +51,26 @@ TEST(FastrakDevice, AsksForWhatTheLineCarries)
   EXPECT_EQ(ChooseFastrakLayout(19200, false).GetLength(true), 27u); // 46 a second and more
   EXPECT_EQ(ChooseFastrakLayout(115200, false).GetLength(true), 51u);
   EXPECT_EQ(ChooseFastrakLayout(115200, true).GetItems().back(), FastrakItem::Button);
+}
+
+TEST(DeviceChoice, SaysWhatToSetWhenNothingIs)
+{
+  const SteadyClock clock;
+  const auto error = [](const auto& factory)
+  {
+    try
+    {
+      factory({});
+    }
+    catch (const std::invalid_argument& e)
+    {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_HAS(error(ChoosePoseDevice({}, clock)), "TrackerConnection is not set");
+  TrackerChoice other;
+  other.Connection = "usb://1";
+  EXPECT_HAS(error(ChoosePoseDevice(other, clock)), "'usb://1'");
+  EXPECT_HAS(error(ChooseFrameDevice({}, clock)), "VideoURL is not set");
 }

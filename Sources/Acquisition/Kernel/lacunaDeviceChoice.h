@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The devices of an acquisition by what users call them.
+#ifndef lacunaDeviceChoice_h
+#define lacunaDeviceChoice_h
+
+#include "lacunaClock.h"
+#include "lacunaFrameDevice.h"
+#include "lacunaPoseDevice.h"
+#include "lacunaVector.h"
+
+#include <string>
+
+namespace lacuna
+{
+struct TrackerChoice
+{
+  std::string Connection; ///< a serial port, "/dev/ttyUSB0"
+  int BaudRate = 115200;
+  int Station = 1;
+  Vec3 Hemisphere{ 1, 0, 0 }; ///< zenith, in the transmitter's coordinates
+  bool FiltersOff = false;
+  bool WithButton = false; ///< the records tell the stylus's button
+};
+
+/// Opens the tracker of that connection. What is none is said by the factory, as std::invalid_argument
+/// that lists the ports there are. The clock must live longer; it is the computer's.
+PoseDeviceFactory ChoosePoseDevice(const TrackerChoice& choice, const Clock& clock);
+
+/// Opens the video of that address; as above.
+FrameDeviceFactory ChooseFrameDevice(const VideoSettings& settings, const Clock& clock);
+}
+#endif
