@@ -80,7 +80,8 @@ struct SweepAcquisition::Core
   VideoSource::Counts EarlierVideo;
   VideoSource::Counts NewestVideo;
   std::string TrackerWarning;
-  std::optional<LiveFrame> Live;
+  std::optional<std::pair<PairedFrame, SweepFrame>> Live;
+  bool PoseMissing = false; // of the newest frame
   std::vector<AcquiredSlice> Slices;
   AcquisitionState State; // of what Taking knows
   std::optional<SweepFrame> Sweep;
@@ -245,7 +246,7 @@ void SweepAcquisition::Core::Process()
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (const auto window = this->Taking.GetWindow(*ready.back().Frame))
   {
-    this->Live = LiveFrame{ std::move(ready.back()), *window };
+    this->Live = std::pair(std::move(ready.back()), *window);
   }
   this->Publish(processed, std::move(slices));
 }
@@ -261,6 +262,7 @@ void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<Acquire
   this->State.Speed = this->Taking.GetSpeed();
   this->State.LargestResidual = this->Taking.GetLargestResidual();
   this->State.File = this->Taking.GetFile();
+  this->PoseMissing = this->Taking.IsPoseMissing();
   this->State.Messages = this->Taking.GetMessages();
   this->Sweep = this->Taking.GetSweep();
   this->Settled.notify_all();
@@ -272,6 +274,11 @@ std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
   if (!this->TrackerWarning.empty())
   {
     messages.push_back(this->TrackerWarning);
+  }
+  if (this->PoseMissing && this->PosesCome)
+  {
+    messages.push_back("The newest frame has no pose: no two measurements of the tracker, at most "
+                       "0.25 s apart, are around its instant");
   }
   const std::uint64_t flipped = this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
   if (flipped > 0)
@@ -349,8 +356,14 @@ std::optional<SweepFrame> SweepAcquisition::GetSweep() const
 
 std::optional<LiveFrame> SweepAcquisition::GetLive() const
 {
-  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
-  return this->Work->Live;
+  std::unique_lock<std::mutex> lock(this->Work->Mutex);
+  const auto live = this->Work->Live;
+  lock.unlock();
+  if (!live)
+  {
+    return std::nullopt;
+  }
+  return LiveFrame{ MakeSlice(live->first, live->second, this->Work->Epoch), live->second };
 }
 
 AcquisitionState SweepAcquisition::GetState() const

@@ -53,10 +53,10 @@ struct AcquisitionState
   std::vector<std::string> Messages;
 };
 
-/// The newest frame that has passed the pairing; dormant display.
+/// The newest frame that has passed the pairing, as a slice; for a dormant display.
 struct LiveFrame
 {
-  PairedFrame Frame;
+  AcquiredSlice Slice;
   SweepFrame Sweep; ///< with the window that would be taken of it
 };
 

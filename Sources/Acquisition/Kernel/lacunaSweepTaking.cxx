@@ -64,6 +64,31 @@ void CheckRules(const AcquisitionRules& rules)
   }
 }
 
+AcquiredSlice MakeSlice(const PairedFrame& frame, const SweepFrame& window, double epoch)
+{
+  const VideoFrame& video = *frame.Frame;
+  const auto [column, row, columns, rows] = window.Window;
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>();
+  pixels->reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (int i = row; i < row + rows; ++i)
+  {
+    const auto line =
+      video.Grey.begin() + static_cast<std::ptrdiff_t>(std::int64_t{ i } * video.Columns + column);
+    pixels->insert(pixels->end(), line, line + columns);
+  }
+  AcquiredSlice slice;
+  slice.Pixels = std::move(pixels);
+  slice.FrameNumber = frame.Number;
+  slice.Timestamp = frame.Instant - epoch;
+  slice.ProbeToTracker = frame.Pose ? frame.Pose->ReceiverToTransmitter : NoPose();
+  slice.Status = static_cast<unsigned char>(
+    (frame.Pose ? 0 : Sweep::PoseInvalid) | (video.Damaged ? Sweep::ImageInvalid : 0));
+  slice.Residual = frame.Pose ? frame.Pose->Nearest : NaN;
+  slice.Gap = frame.Pose ? frame.Pose->Gap : NaN;
+  slice.Speed = NaN;
+  return slice;
+}
+
 SweepTaking::SweepTaking(
   const std::array<int, 4>& crop, const AcquisitionRules& rules, double epoch)
   : Crop(crop)
@@ -141,32 +166,6 @@ bool SweepTaking::HasRoom()
   return !this->Full;
 }
 
-AcquiredSlice SweepTaking::MakeSlice(
-  const PairedFrame& frame, const SweepFrame& window, const CaptureRule::Verdict& verdict) const
-{
-  const VideoFrame& video = *frame.Frame;
-  const auto [column, row, columns, rows] = window.Window;
-  auto pixels = std::make_shared<std::vector<std::uint8_t>>();
-  pixels->reserve(static_cast<std::size_t>(this->SliceBytes));
-  for (int i = row; i < row + rows; ++i)
-  {
-    const auto line =
-      video.Grey.begin() + static_cast<std::ptrdiff_t>(std::int64_t{ i } * video.Columns + column);
-    pixels->insert(pixels->end(), line, line + columns);
-  }
-  AcquiredSlice slice;
-  slice.Pixels = std::move(pixels);
-  slice.FrameNumber = frame.Number;
-  slice.Timestamp = frame.Instant - this->Epoch;
-  slice.ProbeToTracker = frame.Pose ? frame.Pose->ReceiverToTransmitter : NoPose();
-  slice.Status = static_cast<unsigned char>((frame.Pose ? 0 : Sweep::PoseInvalid) |
-    (video.Damaged ? Sweep::ImageInvalid : 0) | (verdict.TooFast ? Sweep::TooFast : 0));
-  slice.Residual = frame.Pose ? frame.Pose->Nearest : NaN;
-  slice.Gap = frame.Pose ? frame.Pose->Gap : NaN;
-  slice.Speed = verdict.Speed.value_or(NaN);
-  return slice;
-}
-
 void SweepTaking::Record(const AcquiredSlice& slice, const SweepFrame& window)
 {
   if (!this->File && this->Counts.Slices == 1 && !this->Rules.RecordFileName.empty())
@@ -234,8 +233,10 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   {
     this->Rule.Take();
   }
-  slices.push_back(this->MakeSlice(frame, *window, verdict));
+  slices.push_back(MakeSlice(frame, *window, this->Epoch));
   AcquiredSlice& slice = slices.back();
+  slice.Speed = verdict.Speed.value_or(NaN);
+  slice.Status |= verdict.TooFast ? Sweep::TooFast : 0;
   slice.Delay = now - frame.Frame->Arrival;
   ++this->Counts.Slices;
   this->Counts.TooFast += verdict.TooFast ? 1 : 0;
@@ -274,11 +275,6 @@ std::vector<std::string> SweepTaking::GetMessages() const
   {
     messages.push_back("The video comes damaged: look at its cable or network; such slices are "
                        "flagged");
-  }
-  if (this->PoseMissing)
-  {
-    messages.push_back("The newest frame has no pose: no two measurements of the tracker, at most "
-                       "0.25 s apart, are around its instant");
   }
   const std::string trouble = this->GetFile().Trouble;
   if (!trouble.empty())

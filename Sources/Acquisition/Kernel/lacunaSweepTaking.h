@@ -35,6 +35,10 @@ struct AcquisitionRules
 /// Throws std::invalid_argument for rules that cannot be.
 void CheckRules(const AcquisitionRules& rules);
 
+/// The slice of a frame: its window's pixels, its pose and flags. epoch: the clock's time of Timestamp
+/// 0. Its speed is not known, and its Delay 0.
+AcquiredSlice MakeSlice(const PairedFrame& frame, const SweepFrame& window, double epoch);
+
 /// What became of the frames of a sweep: Frames = Slices + Still + WrongSize + PastLimit and, by
 /// movement, + WithoutPose.
 struct CaptureCounts
@@ -72,14 +76,14 @@ public:
   double GetLargestResidual() const { return this->LargestResidual; }
   std::optional<double> GetSpeed() const { return this->Speed; }
   SweepFile::State GetFile() const;
-  /// What is wrong with the newest frame or the sweep, and what to do.
+  /// Whether the newest frame has no pose.
+  bool IsPoseMissing() const { return this->PoseMissing; }
+  /// What else is wrong with the newest frame or the sweep, and what to do.
   std::vector<std::string> GetMessages() const;
 
 private:
   bool Fits(const VideoFrame& frame, const SweepFrame& window);
   bool HasRoom();
-  AcquiredSlice MakeSlice(
-    const PairedFrame& frame, const SweepFrame& window, const CaptureRule::Verdict& verdict) const;
   void Record(const AcquiredSlice& slice, const SweepFrame& window);
 
   std::array<int, 4> Crop;

@@ -2,10 +2,10 @@
 // The real libserialport, over a pseudo-terminal to the emulator, in real time.
 #include "lacunaClock.h"
 #include "lacunaFastrakTracker.h"
-#include "lacunaPseudoTerminal.h"
 #include "lacunaSerialPort.h"
 #include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
+#include "lacunaTestUnit.h"
 
 #include <gtest/gtest.h>
 
@@ -32,32 +32,14 @@ Matrix4 Pose(double time, int station)
     FastrakRotation(Vec3{ 10 * std::sin(time), 20, 30 });
 }
 
-// The library takes names only that begin with /dev/ and are links beside /sys/class/tty.
-std::string GetPort(const std::string& link)
-{
-  return "/dev/../../.." + link;
-}
-
-// An emulated unit that is plugged in, and unplugged when it is destroyed.
-struct Unit
+// An emulated unit that is plugged in.
+struct Unit : public EmulatedUnit
 {
   explicit Unit(const std::string& link, const FastrakEmulatorOptions& options = {},
     FastrakEmulator::PoseScript script = Pose)
-    : Terminal(link)
-    , Emulator(std::move(script), options)
-    , Thread(
-        [this] { this->Terminal.Serve(this->Emulator, [this] { return this->Ended.load(); }); })
+    : EmulatedUnit(link, options, std::move(script))
   {
   }
-  ~Unit()
-  {
-    this->Ended = true;
-    this->Thread.join();
-  }
-  PseudoTerminal Terminal;
-  FastrakEmulator Emulator;
-  std::atomic<bool> Ended{ false };
-  std::thread Thread;
 };
 
 FastrakEmulatorOptions Baud(int baud)

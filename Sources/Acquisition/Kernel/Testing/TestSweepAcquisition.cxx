@@ -82,7 +82,7 @@ TEST(SweepAcquisition, EveryFrameBecomesASliceWithThePoseOfItsInstant)
   scene.Place.RunTo(20);
   EXPECT_TRUE(acquisition.TakeSlices().empty()); // dormant
   ASSERT_TRUE(acquisition.GetLive());
-  EXPECT_TRUE(acquisition.GetLive()->Frame.Pose);
+  EXPECT_EQ(acquisition.GetLive()->Slice.Status, 0);
   EXPECT_FALSE(acquisition.GetState().Capturing);
   acquisition.Start();
   scene.Place.RunTo(1000);
@@ -273,10 +273,10 @@ TEST(SweepAcquisition, ASilentTrackerIsOpenedAgain)
   SweepAcquisition& acquisition = scene.Open();
   scene.Place.RunTo(120);
   EXPECT_EQ(opened, 1);
-  EXPECT_FALSE(acquisition.GetLive()->Frame.Pose);
+  EXPECT_EQ(acquisition.GetLive()->Slice.Status, lacuna::Sweep::PoseInvalid);
   scene.Place.RunTo(200);
   EXPECT_EQ(opened, 2);
-  EXPECT_TRUE(acquisition.GetLive()->Frame.Pose);
+  EXPECT_EQ(acquisition.GetLive()->Slice.Status, 0);
 }
 
 TEST(SweepAcquisition, AnEndedVideoIsOpenedAgainOnlyIfItIsAStream)

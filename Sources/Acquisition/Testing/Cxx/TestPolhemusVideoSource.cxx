@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An emulated FASTRAK behind the real libserialport, and a test signal of FFmpeg.
+#include "lacunaCheck.h"
+#include "lacunaClock.h"
+#include "lacunaTestUnit.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaPolhemusVideoSource.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaTrackedSliceReader.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkPointData.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+
+using namespace lacunaTest;
+
+namespace
+{
+const lacuna::Matrix4 Still = lacuna::Matrix4::Translation({ 120, 30, -40 }) *
+  lacuna::FastrakRotation(lacuna::Vec3{ 10, 20, 30 });
+
+std::string MakeFolder()
+{
+  std::string path = (std::filesystem::temp_directory_path() / "lacuna-source-XXXXXX").string();
+  LACUNA_CHECK(mkdtemp(path.data()) != nullptr);
+  return path;
+}
+
+struct Bench
+{
+  explicit Bench(lacuna::FastrakEmulator::PoseScript script)
+    : Folder(MakeFolder())
+    , Unit(this->Folder + "/tracker", MakeOptions(), std::move(script))
+    , Messages(lacunaCheck::Watch(this->Source))
+  {
+    this->Source->SetTrackerConnection(GetPort(this->Folder + "/tracker").c_str());
+    this->Source->SetVideoURL("lavfi:testsrc2=size=64x48:rate=25");
+    this->Source->SetCaptureMode(vtkLacunaPolhemusVideoSource::EveryFrame);
+  }
+  ~Bench()
+  {
+    this->Source->Disconnect();
+    std::filesystem::remove_all(this->Folder);
+  }
+  static lacuna::FastrakEmulatorOptions MakeOptions()
+  {
+    lacuna::FastrakEmulatorOptions options;
+    options.Baud = 115200;
+    return options;
+  }
+  // Polls until something is so, for at most a minute.
+  bool PollUntil(const std::function<bool()>& condition) const
+  {
+    for (int i = 0; i < 6000 && !condition(); ++i)
+    {
+      this->Source->Poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    if (!condition())
+    {
+      std::cerr << this->Source->GetMessage() << "\n";
+      return false;
+    }
+    return true;
+  }
+  bool PollFor(vtkIdType slices) const
+  {
+    return this->PollUntil([&] { return this->Source->GetSliceCount() >= slices; });
+  }
+  bool IsConnected() const
+  {
+    return this->PollUntil(
+      [&] { return this->Source->GetTrackerWorks() && this->Source->GetVideoWorks(); });
+  }
+  std::string WriteCalibration(const lacuna::Matrix4& imageToProbe) const
+  {
+    const std::string path = this->Folder + "/calibration.xml";
+    std::ofstream file(path);
+    file << "<PlusConfiguration><CoordinateDefinitions><Transform From=\"Image\" To=\"Probe\" "
+            "Matrix=\"";
+    for (int i = 0; i < 16; ++i)
+    {
+      file << imageToProbe.Data()[i] << " ";
+    }
+    file << "\"/></CoordinateDefinitions></PlusConfiguration>";
+    return path;
+  }
+
+  std::string Folder;
+  EmulatedUnit Unit;
+  vtkNew<vtkLacunaPolhemusVideoSource> Source;
+  vtkSmartPointer<lacunaCheck::Messages> Messages;
+};
+
+double Distance(const lacuna::Matrix4& a, const lacuna::Matrix4& b)
+{
+  double largest = 0;
+  for (int i = 0; i < 16; ++i)
+  {
+    largest = std::max(largest, std::abs(a.Data()[i] - b.Data()[i]));
+  }
+  return largest;
+}
+
+void TestSlices()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetCropRectangle(10, 20, 0, 16);
+  source->SetRecordFileName((bench.Folder + "/sweep.mhd").c_str());
+  source->Connect();
+  LACUNA_CHECK(bench.IsConnected());
+  LACUNA_CHECK(bench.PollUntil(
+    [&]
+    {
+      source->Update(); // dormant display
+      return source->GetOutput(1)->GetNumberOfPoints() > 0;
+    }));
+  LACUNA_CHECK(source->GetOutput(0)->GetNumberOfPoints() == 0);
+  LACUNA_CHECK(source->GetOutput(1)->GetDimensions()[0] == 54);
+
+  source->Start();
+  LACUNA_CHECK(source->GetCapturing());
+  LACUNA_CHECK(bench.PollFor(5));
+  source->Update();
+  vtkImageData* output = source->GetOutput(0);
+  vtkNew<vtkImageData> early;
+  early->ShallowCopy(output);
+  const void* memory = output->GetScalarPointer();
+  const int before = output->GetDimensions()[2];
+  LACUNA_CHECK(output->GetFieldData()->GetArray("ImageToReference") == nullptr);
+  LACUNA_CHECK(bench.Messages->HasWarning("not calibrated"));
+
+  // while it goes on the probe is calibrated, and what was taken is too
+  const lacuna::Matrix4 imageToProbe =
+    lacuna::Matrix4::Translation({ 3, 5, 7 }) * lacuna::Matrix4::Scaling({ 0.25, 0.5, 0.35 });
+  source->SetCalibrationFileName(bench.WriteCalibration(imageToProbe).c_str());
+  LACUNA_CHECK(bench.PollFor(before + 10));
+  source->Update();
+  LACUNA_CHECK(bench.PollFor(before + 20));
+  const lacuna::SteadyClock clock;
+  const double begin = clock.Now();
+  source->Stop();
+  std::cout << "stopped after " << clock.Now() - begin << " s\n";
+  LACUNA_CHECK(!source->GetCapturing());
+  source->Update();
+  const int count = output->GetDimensions()[2];
+  LACUNA_CHECK(count == source->GetSliceCount() && count >= before + 20);
+  LACUNA_CHECK(output->GetScalarPointer() == memory); // nothing was copied
+  LACUNA_CHECK(early->GetDimensions()[2] == before);
+  LACUNA_CHECK(output->GetDimensions()[0] == 54 && output->GetDimensions()[1] == 16);
+  LACUNA_CHECK(output->GetOrigin()[0] == 10 && output->GetOrigin()[1] == 20);
+  LACUNA_CHECK(source->GetFrameCount() == count);
+
+  const vtkLacunaTrackedSlices slices(output);
+  vtkDataArray* probe = vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count);
+  vtkDataArray* frames = vtkLacunaFieldData::Get(output, "FrameNumber", 1, count);
+  vtkDataArray* residuals = vtkLacunaFieldData::Get(output, "Residual", 1, count);
+  vtkLacunaFieldData::Get(output, "Speed", 1, count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    // a busy computer may make slices without a pose, but never wrong ones
+    const bool valid = slices.IsUsable(i);
+    const lacuna::Matrix4 pose = vtkLacunaFieldData::GetMatrix(probe, i);
+    LACUNA_CHECK(valid == pose.IsFinite());
+    LACUNA_CHECK(!valid || Distance(pose, Still) < 1e-3);
+    LACUNA_CHECK(!valid || Distance(slices.GetImageToReference(i), pose * imageToProbe) < 1e-9);
+    LACUNA_CHECK(
+      !valid || (residuals->GetComponent(i, 0) >= 0 && residuals->GetComponent(i, 0) < 0.126));
+    LACUNA_CHECK(i == 0 || frames->GetComponent(i, 0) == frames->GetComponent(i - 1, 0) + 1);
+    LACUNA_CHECK(i == 0 || slices.GetTimestamp(i) > slices.GetTimestamp(i - 1));
+  }
+  LACUNA_CHECK(Distance(vtkLacunaFieldData::GetMatrix(
+                          vtkLacunaFieldData::Get(output, "ImageToProbe", 16, 1), 0),
+                 imageToProbe) < 1e-12);
+  const std::vector<std::string> provenance = vtkLacunaProvenance::Get(output);
+  LACUNA_CHECK(provenance.size() == 1);
+  LACUNA_CHECK_CONTAINS(provenance[0], "VideoURL=\"lavfi:testsrc2=size=64x48:rate=25\"");
+
+  // what is on the disk is the same
+  LACUNA_CHECK(bench.PollUntil([&] { return source->GetRecordedSlices() == count; }));
+  vtkNew<vtkLacunaTrackedSliceReader> reader;
+  LACUNA_CHECK(std::string(source->GetRecordedFileName()) == bench.Folder + "/sweep.mhd");
+  reader->SetFileName(source->GetRecordedFileName());
+  reader->SetCalibrationFileName(source->GetCalibrationFileName());
+  reader->Update();
+  vtkImageData* read = reader->GetOutput();
+  LACUNA_CHECK(read->GetNumberOfPoints() == output->GetNumberOfPoints());
+  LACUNA_CHECK(std::memcmp(read->GetScalarPointer(), output->GetScalarPointer(),
+                 static_cast<std::size_t>(output->GetNumberOfPoints())) == 0);
+  const vtkLacunaTrackedSlices again(read);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    LACUNA_CHECK(again.GetStatus(i) == slices.GetStatus(i));
+    LACUNA_CHECK(again.GetTimestamp(i) == slices.GetTimestamp(i));
+    LACUNA_CHECK(!slices.IsUsable(i) ||
+      Distance(vtkLacunaFieldData::GetMatrix(read->GetFieldData()->GetArray("ProbeToTracker"), i),
+        vtkLacunaFieldData::GetMatrix(probe, i)) < 1e-12);
+  }
+
+  source->Clear();
+  source->Update();
+  LACUNA_CHECK(source->GetSliceCount() == 0 && source->GetOutput(0)->GetNumberOfPoints() == 0);
+  LACUNA_CHECK(early->GetPointData()->GetScalars()->GetNumberOfTuples() == before * 54 * 16);
+  LACUNA_CHECK(bench.Messages->Errors.empty());
+}
+
+void TestDevicesThatChange()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->Start(); // opens them too
+  LACUNA_CHECK(bench.PollFor(3));
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  source->Update();
+  LACUNA_CHECK(bench.Messages->HasWarning("after Stop"));
+  LACUNA_CHECK(source->GetCapturing());
+  source->Stop();
+  source->Update();
+  LACUNA_CHECK(bench.IsConnected());
+  const vtkIdType count = source->GetSliceCount();
+  LACUNA_CHECK(count >= 3);
+  source->Start();
+  LACUNA_CHECK(bench.Messages->HasError("save them"));
+  LACUNA_CHECK(!source->GetCapturing());
+  LACUNA_CHECK(source->GetSliceCount() == count);
+  source->Clear();
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[0] == 32);
+  source->Disconnect();
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[2] >= 3);
+}
+
+void TestMovement()
+{
+  // rests for a while, then goes 10 mm
+  const lacuna::SteadyClock clock;
+  const double begin = clock.Now();
+  Bench bench(
+    [begin](double time, int)
+    {
+      const double way = std::min(std::max(time - begin - 6, 0.0), 1.0) * 10;
+      return lacuna::Matrix4::Translation({ 200 + way, 0, 0 });
+    });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetCaptureMode(vtkLacunaPolhemusVideoSource::Movement);
+  source->SetMovementThreshold(1);
+  source->SetSpeedLimit(5);
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(2));
+  LACUNA_CHECK(clock.Now() > begin + 6);
+  bool warned = false;
+  LACUNA_CHECK(bench.PollUntil(
+    [&]
+    {
+      warned = warned || std::string(source->GetMessage()).find("Too fast") != std::string::npos;
+      return clock.Now() > begin + 8;
+    }));
+  source->Stop();
+  LACUNA_CHECK(source->GetSliceCount() >= 3 && source->GetSliceCount() <= 11);
+  LACUNA_CHECK(source->GetStillFrames() > 10);
+  LACUNA_CHECK(source->GetTooFastSlices() >= 1 && warned);
+  LACUNA_CHECK(bench.Messages->HasWarning("SpeedLimit"));
+}
+}
+
+int TestPolhemusVideoSource(int, char*[])
+{
+  TestSlices();
+  TestDevicesThatChange();
+  TestMovement();
+  return lacunaCheck::Result();
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The state of a live source.
+#ifndef vtkLacunaLiveSweep_h
+#define vtkLacunaLiveSweep_h
+
+#include "lacunaSweepAcquisition.h"
+#include "vtkLacunaSliceStack.h"
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+
+/// What vtkLacunaPolhemusVideoSource has while it is live.
+struct vtkLacunaLiveSweep
+{
+  lacuna::AcquisitionState GetState() const
+  {
+    return this->Acquisition ? this->Acquisition->GetState() : lacuna::AcquisitionState();
+  }
+
+  std::unique_ptr<lacuna::SweepAcquisition> Acquisition; // null while not connected
+  std::string Devices;                                   // as they were opened
+  std::string Tried;                                     // what was configured last, rightly or not
+  std::string Trouble;                                   // why it could not be
+  std::int64_t LimitBytes = 0;
+  std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
+  bool StackIsOfOthers = false;               // of devices that are not these
+  bool MayDiscard = false;                    // Clear was called and failed
+  std::unique_ptr<vtkLacunaSliceStack> Newest;
+  std::int64_t NewestNumber = -1;
+  std::set<std::string> Subjects; // of the messages there are
+  std::string Messages;           // what the getter has returned
+  std::string FileName;
+};
+#endif

@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaPolhemusVideoSource.h"
+
+#include "lacunaDeviceChoice.h"
+#include "lacunaMemory.h"
+#include "lacunaParameterText.h"
+#include "lacunaProbeFrames.h"
+#include "vtkDataObject.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaLiveSweep.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+std::string Text(const char* s)
+{
+  return s ? s : "";
+}
+
+// Threads that a call of the system holds may need it to the end of the program.
+const lacuna::Clock& GetClock()
+{
+  static const auto* clock = new lacuna::SteadyClock;
+  return *clock;
+}
+
+// What a message is about, without its numbers.
+std::string GetSubject(std::string message)
+{
+  message.erase(std::remove_if(message.begin(), message.end(),
+                  [](unsigned char c) { return std::isdigit(c) != 0; }),
+    message.end());
+  return message;
+}
+
+void Announce(vtkInformation* info, const std::array<int, 4>& window, int slices)
+{
+  const int extent[6] = { 0, window[2] - 1, 0, window[3] - 1, 0, slices - 1 };
+  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+  const double origin[3] = { static_cast<double>(window[0]), static_cast<double>(window[1]), 0 };
+  const double spacing[3] = { 1, 1, 1 };
+  info->Set(SDDP::WHOLE_EXTENT(), slices > 0 ? extent : nothing, 6);
+  info->Set(vtkDataObject::ORIGIN(), origin, 3);
+  info->Set(vtkDataObject::SPACING(), spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
+}
+}
+
+vtkStandardNewMacro(vtkLacunaPolhemusVideoSource);
+
+//------------------------------------------------------------------------------
+vtkLacunaPolhemusVideoSource::vtkLacunaPolhemusVideoSource()
+  : Now(std::make_unique<vtkLacunaLiveSweep>())
+{
+  this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaPolhemusVideoSource::~vtkLacunaPolhemusVideoSource()
+{
+  this->SetTrackerConnection(nullptr);
+  this->SetVideoURL(nullptr);
+  this->SetVideoOptions(nullptr);
+  this->SetCalibrationFileName(nullptr);
+  this->SetRecordFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPolhemusVideoSource::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPolhemusVideoSource::DescribeDevices() const
+{
+  return lacuna::ParameterText()
+    .Add("TrackerConnection", this->TrackerConnection)
+    .Add("BaudRate", this->BaudRate)
+    .Add("Station", this->Station)
+    .Add("Hemisphere", this->Hemisphere)
+    .Add("FiltersOff", this->FiltersOff)
+    .Add("ButtonStarts", this->ButtonStarts) // the records have it then
+    .Add("VideoURL", this->VideoURL)
+    .Add("VideoOptions", this->VideoOptions)
+    .Add("Field", this->Field)
+    .Add("VideoLatency", this->VideoLatency)
+    .Add("CropRectangle", this->CropRectangle)
+    .Get();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
+{
+  return lacuna::ParameterText()
+    .Add("CalibrationFileName", this->CalibrationFileName)
+    .Add("PixelSpacing", this->PixelSpacing)
+    .Add("TimeOffset", this->TimeOffset)
+    .Add("CaptureMode", this->CaptureMode)
+    .Add("MovementThreshold", this->MovementThreshold)
+    .Add("SpeedLimit", this->SpeedLimit)
+    .Add("MemoryLimit", this->MemoryLimit)
+    .Add("RecordFileName", this->RecordFileName)
+    .Add("RecordCompression", this->RecordCompression)
+    .Get();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Open()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  now.Acquisition.reset(); // ports are free for the next
+  now.StackIsOfOthers = now.Stack != nullptr;
+  lacuna::TrackerChoice tracker;
+  tracker.Connection = Text(this->TrackerConnection);
+  tracker.BaudRate = this->BaudRate;
+  tracker.Station = this->Station;
+  tracker.Hemisphere = { this->Hemisphere[0], this->Hemisphere[1], this->Hemisphere[2] };
+  tracker.FiltersOff = this->FiltersOff;
+  tracker.WithButton = this->ButtonStarts;
+  lacuna::VideoSettings video;
+  video.URL = Text(this->VideoURL);
+  video.Options = Text(this->VideoOptions);
+  video.Field = static_cast<lacuna::VideoField>(this->Field);
+  lacuna::AcquisitionDevices devices;
+  devices.Poses = lacuna::ChoosePoseDevice(tracker, GetClock());
+  devices.Frames = lacuna::ChooseFrameDevice(video, GetClock());
+  devices.Station = this->Station;
+  if (this->VideoLatency >= 0)
+  {
+    devices.VideoLatency = this->VideoLatency;
+  }
+  std::copy_n(this->CropRectangle, 4, devices.Crop.begin());
+  devices.ReopenEndedVideo = video.URL.find("://") != std::string::npos;
+  now.Acquisition =
+    std::make_unique<lacuna::SweepAcquisition>(devices, lacuna::AcquisitionRules(), GetClock());
+  now.Devices = this->DescribeDevices();
+}
+
+//------------------------------------------------------------------------------
+// Makes the acquisition what the properties say; an error says why it cannot be, once.
+void vtkLacunaPolhemusVideoSource::Configure()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  const std::string devices = this->DescribeDevices();
+  const bool reopen = !now.Acquisition || devices != now.Devices;
+  if (now.Acquisition && reopen && now.Acquisition->GetState().Capturing)
+  {
+    if (now.Subjects.insert("devices").second)
+    {
+      vtkWarningMacro("The devices are changed at the next update after Stop");
+    }
+    return;
+  }
+  const std::string calibration = Text(this->CalibrationFileName);
+  const std::string tried = devices + this->DescribeRules() +
+    (calibration.empty() ? "" : std::to_string(vtksys::SystemTools::ModifiedTime(calibration)));
+  if (tried == now.Tried && (now.Acquisition || !now.Trouble.empty()))
+  {
+    return;
+  }
+  now.Tried = tried;
+  try
+  {
+    lacuna::AcquisitionRules rules;
+    if (!calibration.empty())
+    {
+      const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
+      rules.ImageToProbe = frames.ImageToProbe;
+      rules.TrackerToReference = frames.TrackerToReference;
+    }
+    rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
+    rules.MovementThreshold = this->MovementThreshold;
+    rules.SpeedLimit = this->SpeedLimit;
+    rules.TimeOffset = this->TimeOffset;
+    rules.ButtonStarts =
+      this->ButtonStarts && !(reopen ? now.Stack != nullptr : now.StackIsOfOthers);
+    rules.RecordFileName = Text(this->RecordFileName);
+    rules.RecordCompressionLevel = this->RecordCompression;
+    constexpr std::int64_t mebibyte = 1024 * 1024;
+    rules.MemoryLimit = this->MemoryLimit > 0
+      ? this->MemoryLimit * mebibyte
+      : std::max<std::int64_t>(
+          static_cast<std::int64_t>(lacuna::GetAvailableMemory() / 2), 64 * mebibyte);
+    lacuna::CheckRules(rules);
+    if (reopen)
+    {
+      this->Open();
+    }
+    now.Acquisition->SetRules(rules);
+    now.LimitBytes = rules.MemoryLimit;
+    if (now.Stack)
+    {
+      lacuna::SweepFrame frame;
+      frame.Calibrated = rules.ImageToProbe.has_value();
+      frame.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
+      frame.TrackerToReference = rules.TrackerToReference;
+      now.Stack->Calibrate(frame);
+    }
+    if (calibration.empty())
+    {
+      vtkWarningMacro("The probe is not calibrated: slices have no ImageToReference. Set "
+                      "CalibrationFileName, also later");
+    }
+    now.Trouble.clear();
+  }
+  catch (const std::exception& e)
+  {
+    now.Trouble = e.what();
+    vtkErrorMacro(<< now.Trouble);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Connect()
+{
+  this->Now->Tried.clear(); // asked for: tries again what failed
+  this->Configure();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Disconnect()
+{
+  if (this->Now->Acquisition)
+  {
+    this->Stop();
+    this->Now->Acquisition.reset();
+    this->Now->StackIsOfOthers = this->Now->Stack != nullptr;
+    this->Now->Subjects.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Start()
+{
+  if (!this->Now->Acquisition)
+  {
+    this->Connect();
+  }
+  this->Configure();
+  if (!this->Now->Acquisition || !this->Now->Trouble.empty())
+  {
+    return; // it was said why
+  }
+  if (this->Now->StackIsOfOthers)
+  {
+    vtkErrorMacro("The devices were opened anew and there are " << this->GetSliceCount()
+                                                                << " slices of before: save them, "
+                                                                   "Clear, then Start");
+    return;
+  }
+  this->Now->Acquisition->Start();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Stop()
+{
+  if (this->Now->Acquisition)
+  {
+    this->Now->Acquisition->Stop();
+    this->GetNeedsUpdate();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::Clear()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  try
+  {
+    if (now.Acquisition)
+    {
+      now.Acquisition->BeginSweep(now.MayDiscard);
+    }
+    now.MayDiscard = false;
+    now.Stack.reset();
+    now.StackIsOfOthers = false;
+    now.Subjects.clear();
+    now.Tried.clear(); // the button may start again
+  }
+  catch (const std::exception& e)
+  {
+    now.MayDiscard = true;
+    vtkErrorMacro(<< e.what() << ". Clear again to drop these slices");
+  }
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+// Slices and the newest frame; returns whether there are new ones.
+bool vtkLacunaPolhemusVideoSource::TakeOver()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  const std::vector<lacuna::AcquiredSlice> slices = now.Acquisition->TakeSlices();
+  if (!slices.empty() && !now.Stack)
+  {
+    const auto sweep = now.Acquisition->GetSweep();
+    const auto size = static_cast<std::int64_t>(slices.front().Pixels->size());
+    now.Stack = std::make_unique<vtkLacunaSliceStack>(
+      *sweep, std::max(now.LimitBytes / size, std::int64_t{ 1 }) * size);
+  }
+  for (const lacuna::AcquiredSlice& slice : slices)
+  {
+    now.Stack->Append(slice);
+  }
+  const auto live = now.Acquisition->GetLive();
+  if (!live || live->Slice.FrameNumber == now.NewestNumber)
+  {
+    return !slices.empty();
+  }
+  now.NewestNumber = live->Slice.FrameNumber;
+  now.Newest = std::make_unique<vtkLacunaSliceStack>(live->Sweep, 0);
+  now.Newest->Append(live->Slice);
+  return this->LiveDisplay || !slices.empty();
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
+{
+  if (!this->Now->Acquisition)
+  {
+    return false;
+  }
+  bool changed = false;
+  try
+  {
+    changed = this->TakeOver();
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->Now->Acquisition->Stop();
+    vtkErrorMacro("There is no memory for the slices; the capture has ended. Set a lower "
+                  "MemoryLimit");
+  }
+  this->WarnOfNews();
+  if (changed)
+  {
+    this->Modified();
+  }
+  return changed;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::WarnOfNews()
+{
+  std::set<std::string> subjects;
+  for (const std::string& message : this->Now->Acquisition->GetState().Messages)
+  {
+    const std::string subject = GetSubject(message);
+    subjects.insert(subject);
+    if (this->Now->Subjects.count(subject) == 0)
+    {
+      vtkWarningMacro(<< message);
+    }
+  }
+  this->Now->Subjects = std::move(subjects);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPolhemusVideoSource::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  if (now.Acquisition)
+  {
+    this->Configure();
+  }
+  const auto set = [&](int port, const vtkLacunaSliceStack* stack)
+  {
+    Announce(outputs->GetInformationObject(port), stack ? stack->GetWindow() : std::array<int, 4>{},
+      stack ? static_cast<int>(stack->GetNumberOfSlices()) : 0);
+  };
+  set(0, now.Stack.get());
+  set(1, now.Newest.get());
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaPolhemusVideoSource::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::Run(this, outputs,
+    [&](vtkLacunaExecution&)
+    {
+      const vtkLacunaLiveSweep& now = *this->Now;
+      for (int port = 0; port < 2; ++port)
+      {
+        vtkInformation* info = outputs->GetInformationObject(port);
+        if (info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) > 1)
+        {
+          throw std::runtime_error(
+            "Devices are driven by one process only, not by each of several: "
+            "run a server without MPI where they are plugged in");
+        }
+        const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
+        if (stack)
+        {
+          vtkImageData* output = vtkImageData::GetData(outputs, port);
+          stack->Fill(output);
+          vtkLacunaProvenance::Record(
+            output, this, {}, this->DescribeDevices() + " " + this->DescribeRules());
+        }
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetSliceCount() const
+{
+  return this->Now->Stack ? this->Now->Stack->GetNumberOfSlices() : 0;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkLacunaPolhemusVideoSource::GetMessage()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  std::string text = now.Trouble;
+  const auto add = [&text](const std::string& line)
+  { text += (text.empty() || line.empty() ? "" : "\n") + line; };
+  if (now.Acquisition)
+  {
+    for (const std::string& message : now.Acquisition->GetState().Messages)
+    {
+      add(message);
+    }
+  }
+  else
+  {
+    add("The devices are not open: Connect, or Start");
+  }
+  now.Messages = std::move(text);
+  return now.Messages.c_str();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPolhemusVideoSource::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << this->DescribeDevices() << "\n";
+  os << indent << this->DescribeRules() << "\n";
+  os << indent << "LiveDisplay: " << (this->LiveDisplay ? "on" : "off") << "\n";
+  os << indent << "SliceCount: " << this->GetSliceCount() << "\n";
+}

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaPolhemusVideoSource
+ * @brief a Polhemus FASTRAK and a video signal become tracked slices, live
+ *
+ * The tracker (through libserialport) and the video (through FFmpeg) are driven by threads of their
+ * own, which come back by themselves when a device was unplugged; see lacunaSweepAcquisition.h for
+ * the clock model, lacunaCaptureRule.h for what is taken (Carr 1996, ch. 2). Nothing in this class
+ * waits for a device.
+ *
+ * Connect opens the devices, Start takes slices, Stop ends that; Start goes on with the sweep, Clear
+ * begins a new one. Opening a state file or setting properties opens nothing. Poll, or GetNeedsUpdate
+ * which ParaView calls for a live source, takes over what has come and marks this algorithm as
+ * modified; an update gives it. Changed properties are heeded at the next update: those of the
+ * devices reopen them, but not during a capture.
+ *
+ * Output port 0: tracked slices (vtkLacunaTrackedSlices.h) of the sweep, unsigned char, empty before
+ * the first slice. Field data, one tuple a slice: ImageToReference (absent while there is no
+ * calibration), ProbeToTracker and TrackerToReference (double, 16), Timestamp (s since Connect),
+ * SliceStatus, FrameNumber (of the video's frames since Connect), Residual (s from the slice's
+ * instant to the nearest measurement) and Speed (mm/s); one tuple: ImageToProbe. The stack's origin
+ * is the corner of CropRectangle, so that its coordinates are those of the whole frame. Making it
+ * costs the same however many slices there are.
+ *
+ * Output port 1: the newest frame as a stack of one slice, also while nothing is captured.
+ *
+ * What is wrong and what to do is in Message, and a warning when it is new. One process only.
+ */
+#ifndef vtkLacunaPolhemusVideoSource_h
+#define vtkLacunaPolhemusVideoSource_h
+
+#include "vtkImageAlgorithm.h"
+#include "vtkLacunaSourcesAcquisitionModule.h" // for export macro
+
+#include <memory> // for std::unique_ptr
+#include <string> // for std::string
+
+struct vtkLacunaLiveSweep;
+
+class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaPolhemusVideoSource : public vtkImageAlgorithm
+{
+public:
+  static vtkLacunaPolhemusVideoSource* New();
+  vtkTypeMacro(vtkLacunaPolhemusVideoSource, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum CaptureModes
+  {
+    Movement = 0,
+    EveryFrame = 1
+  };
+  enum Fields
+  {
+    Both = 0,
+    Top = 1,
+    Bottom = 2
+  };
+
+  ///@{
+  /// Serial port of the tracker, "/dev/ttyUSB0". Default: none.
+  vtkSetStringMacro(TrackerConnection);
+  vtkGetStringMacro(TrackerConnection);
+  ///@}
+  ///@{
+  /// That of the switches at the tracker's rear. Default: 115200.
+  vtkSetMacro(BaudRate, int);
+  vtkGetMacro(BaudRate, int);
+  ///@}
+  ///@{
+  /// The receiver on the probe, 1 to 4. Default: 1.
+  vtkSetMacro(Station, int);
+  vtkGetMacro(Station, int);
+  ///@}
+  ///@{
+  /// Direction from the transmitter to the middle of the half of space that the receiver is in, in
+  /// the transmitter's coordinates. Default: 1 0 0.
+  vtkSetVector3Macro(Hemisphere, double);
+  vtkGetVector3Macro(Hemisphere, double);
+  ///@}
+  ///@{
+  /// Whether the tracker shall not smooth its measurements, which delays them. Default: off (as it is
+  /// set).
+  vtkSetMacro(FiltersOff, bool);
+  vtkGetMacro(FiltersOff, bool);
+  vtkBooleanMacro(FiltersOff, bool);
+  ///@}
+  ///@{
+  /// Whether a press of the stylus's button, or of a foot switch in its place, starts or stops the
+  /// capture. Default: off.
+  vtkSetMacro(ButtonStarts, bool);
+  vtkGetMacro(ButtonStarts, bool);
+  vtkBooleanMacro(ButtonStarts, bool);
+  ///@}
+
+  ///@{
+  /// "/dev/video0", a file, the address of a stream ("rtsp://...") or a test signal
+  /// ("lavfi:testsrc2=size=768x576:rate=25"). Default: none.
+  vtkSetStringMacro(VideoURL);
+  vtkGetStringMacro(VideoURL);
+  ///@}
+  ///@{
+  /// For FFmpeg, "standard=PAL:channel=1:video_size=768x576". Default: none.
+  vtkSetStringMacro(VideoOptions);
+  vtkGetStringMacro(VideoOptions);
+  ///@}
+  ///@{
+  /// What is used of interlaced frames, whose fields are of two instants. Default: Both.
+  vtkSetClampMacro(Field, int, Both, Bottom);
+  vtkGetMacro(Field, int);
+  ///@}
+  ///@{
+  /// s from the instant that a frame shows to its arrival; below 0: one frame's time for a frame
+  /// grabber (/dev/...), 0 for others. Default: -1.
+  vtkSetMacro(VideoLatency, double);
+  vtkGetMacro(VideoLatency, double);
+  ///@}
+  ///@{
+  /// First column, first row, columns and rows that are kept of a frame; 0 columns or rows: to its
+  /// end. Default: 0 0 0 0.
+  vtkSetVector4Macro(CropRectangle, int);
+  vtkGetVector4Macro(CropRectangle, int);
+  ///@}
+
+  ///@{
+  /// The XML file that Probe Calibration writes, with a transform from Image to Probe. Default:
+  /// none: the slices have no ImageToReference.
+  vtkSetFilePathMacro(CalibrationFileName);
+  vtkGetFilePathMacro(CalibrationFileName);
+  ///@}
+  ///@{
+  /// mm from pixel to pixel, for a calibration that does not have it. Default: 0: it has.
+  vtkSetMacro(PixelSpacing, double);
+  vtkGetMacro(PixelSpacing, double);
+  ///@}
+  ///@{
+  /// s to add to the frames' times, from Temporal Calibration. Default: 0.
+  vtkSetMacro(TimeOffset, double);
+  vtkGetMacro(TimeOffset, double);
+  ///@}
+
+  ///@{
+  /// What becomes a slice. Default: Movement.
+  vtkSetClampMacro(CaptureMode, int, Movement, EveryFrame);
+  vtkGetMacro(CaptureMode, int);
+  ///@}
+  ///@{
+  /// mm that a corner of the image must have moved since the last slice. Default: 0.5.
+  vtkSetMacro(MovementThreshold, double);
+  vtkGetMacro(MovementThreshold, double);
+  ///@}
+  ///@{
+  /// mm/s above which slices are flagged as too fast; 0: none are. Default: 23.
+  vtkSetMacro(SpeedLimit, double);
+  vtkGetMacro(SpeedLimit, double);
+  ///@}
+  ///@{
+  /// Most memory for pixels, in MiB; the capture stops there and keeps what it has. Default: 0, half
+  /// of the memory that is free when the devices are opened.
+  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkGetMacro(MemoryLimit, int);
+  ///@}
+  ///@{
+  /// Sequence file (.mhd or .nhdr) to which slices are written while they are taken. When it exists
+  /// the next free of sweep-2.mhd, sweep-3.mhd ... is taken. Default: none.
+  vtkSetFilePathMacro(RecordFileName);
+  vtkGetFilePathMacro(RecordFileName);
+  ///@}
+  ///@{
+  /// 0 (raw) to 9. Default: 0.
+  vtkSetClampMacro(RecordCompression, int, 0, 9);
+  vtkGetMacro(RecordCompression, int);
+  ///@}
+  ///@{
+  /// Whether every new frame of the video is a reason for an update, also when no slice was taken.
+  /// Default: on.
+  vtkSetMacro(LiveDisplay, bool);
+  vtkGetMacro(LiveDisplay, bool);
+  vtkBooleanMacro(LiveDisplay, bool);
+  ///@}
+
+  /// Begins to open the devices.
+  void Connect();
+  /// Ends the capture and closes them, within a second. The slices stay.
+  void Disconnect();
+  /// Takes slices from now on, after Connect if need be.
+  void Start();
+  /// Ends the capture, within a second.
+  void Stop();
+  /// Begins a new sweep without slices. When slices could not be recorded that is an error at first;
+  /// a second call drops them.
+  void Clear();
+  /// Takes over what has come.
+  void Poll() { this->GetNeedsUpdate(); }
+  /// The same; whether there is something new.
+  bool GetNeedsUpdate();
+
+  /// Slices of the output.
+  vtkIdType GetSliceCount() const;
+  bool GetCapturing() const;
+  bool GetTrackerWorks() const;
+  bool GetVideoWorks() const;
+  /// What became of the sweep's frames, see lacuna::CaptureCounts.
+  vtkIdType GetFrameCount() const;
+  vtkIdType GetStillFrames() const;
+  vtkIdType GetFramesWithoutPose() const;
+  vtkIdType GetFramesOfWrongSize() const;
+  vtkIdType GetFramesPastLimit() const;
+  /// Frames that did not come, or could not be decoded, during captures.
+  vtkIdType GetMissingFrames() const;
+  /// Slices that are flagged as too fast.
+  vtkIdType GetTooFastSlices() const;
+  /// mm/s, of the fastest corner of the image, now; NaN when it is not known.
+  double GetSpeed() const;
+  /// s, the largest of the sweep.
+  double GetLargestResidual() const;
+  /// Slices that are on the disk, and the file they are in.
+  vtkIdType GetRecordedSlices() const;
+  const char* GetRecordedFileName();
+  /// What is wrong now and what to do, a line each; empty: all is well.
+  const char* GetMessage();
+
+protected:
+  vtkLacunaPolhemusVideoSource();
+  ~vtkLacunaPolhemusVideoSource() override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkLacunaPolhemusVideoSource(const vtkLacunaPolhemusVideoSource&) = delete;
+  void operator=(const vtkLacunaPolhemusVideoSource&) = delete;
+
+  std::string DescribeDevices() const;
+  std::string DescribeRules() const;
+  void Open();
+  void Configure();
+  bool TakeOver();
+  void WarnOfNews();
+
+  char* TrackerConnection = nullptr;
+  int BaudRate = 115200;
+  int Station = 1;
+  double Hemisphere[3] = { 1, 0, 0 };
+  bool FiltersOff = false;
+  bool ButtonStarts = false;
+  char* VideoURL = nullptr;
+  char* VideoOptions = nullptr;
+  int Field = Both;
+  double VideoLatency = -1;
+  int CropRectangle[4] = { 0, 0, 0, 0 };
+  char* CalibrationFileName = nullptr;
+  double PixelSpacing = 0;
+  double TimeOffset = 0;
+  int CaptureMode = Movement;
+  double MovementThreshold = 0.5;
+  double SpeedLimit = 23;
+  int MemoryLimit = 0;
+  char* RecordFileName = nullptr;
+  int RecordCompression = 0;
+  bool LiveDisplay = true;
+  std::unique_ptr<vtkLacunaLiveSweep> Now;
+};
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSliceStack.h"
+
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkPointData.h"
+
+#include <cmath>
+#include <initializer_list>
+
+namespace
+{
+constexpr const char* TrackerToReferenceName = "TrackerToReference";
+
+std::unique_ptr<vtkLacunaGrowingArray> MakeMatrices(const char* name)
+{
+  return std::make_unique<vtkLacunaGrowingArray>(name, VTK_DOUBLE, 16);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceStack::vtkLacunaSliceStack()
+  : vtkLacunaSliceStack(lacuna::SweepFrame(), 0)
+{
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceStack::vtkLacunaSliceStack(const lacuna::SweepFrame& frame, std::int64_t bytes)
+  : Frame(frame)
+  , Pixels(std::make_unique<vtkLacunaGrowingArray>("Intensity", VTK_UNSIGNED_CHAR, 1))
+  , ProbeToTracker("ProbeToTracker", VTK_DOUBLE, 16)
+  , Timestamps(vtkLacunaTrackedSlices::TimestampName, VTK_DOUBLE, 1)
+  , Status(vtkLacunaTrackedSlices::SliceStatusName, VTK_UNSIGNED_CHAR, 1)
+  , FrameNumbers(vtkLacunaTrackedSlices::FrameNumberName, VTK_INT, 1)
+  , Residuals("Residual", VTK_DOUBLE, 1)
+  , Speeds("Speed", VTK_DOUBLE, 1)
+{
+  this->Pixels->Reserve(bytes);
+  this->Calibrate(frame);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceStack::Append(const lacuna::AcquiredSlice& slice)
+{
+  const int number = static_cast<int>(slice.FrameNumber);
+  this->Pixels->Append(slice.Pixels->data(), static_cast<vtkIdType>(slice.Pixels->size()));
+  this->ProbeToTracker.Append(slice.ProbeToTracker.Data());
+  this->AppendPose(slice.ProbeToTracker);
+  this->Timestamps.Append(&slice.Timestamp);
+  this->FrameNumbers.Append(&number);
+  this->Residuals.Append(&slice.Residual);
+  this->Speeds.Append(&slice.Speed);
+  this->Status.Append(&slice.Status);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceStack::AppendPose(const lacuna::Matrix4& probeToTracker)
+{
+  this->TrackerToReference->Append(this->Frame.TrackerToReference.Data());
+  if (this->ImageToReference)
+  {
+    // NaN stays NaN in all elements
+    const lacuna::Matrix4 pose = std::isnan(probeToTracker(0, 0))
+      ? probeToTracker
+      : this->Frame.TrackerToReference * probeToTracker * this->Frame.ImageToProbe;
+    this->ImageToReference->Append(pose.Data());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceStack::Calibrate(const lacuna::SweepFrame& frame)
+{
+  const std::array<int, 4> window = this->Frame.Window;
+  this->Frame = frame;
+  this->Frame.Window = window;
+  // outputs that were made keep the old ones
+  this->TrackerToReference = MakeMatrices(TrackerToReferenceName);
+  this->ImageToReference =
+    frame.Calibrated ? MakeMatrices(vtkLacunaTrackedSlices::ImageToReferenceName) : nullptr;
+  for (vtkIdType i = 0; i < this->GetNumberOfSlices(); ++i)
+  {
+    this->AppendPose(lacuna::Matrix4(static_cast<const double*>(this->ProbeToTracker.GetTuple(i))));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceStack::Fill(vtkImageData* output) const
+{
+  const auto [column, row, columns, rows] = this->Frame.Window;
+  const int slices = static_cast<int>(this->GetNumberOfSlices());
+  output->SetOrigin(column, row, 0);
+  output->SetSpacing(1, 1, 1);
+  output->SetExtent(0, columns - 1, 0, rows - 1, 0, slices - 1);
+  output->GetPointData()->SetScalars(this->Pixels->MakeView());
+  vtkFieldData* fields = output->GetFieldData();
+  using Array = const vtkLacunaGrowingArray*;
+  for (const Array array : std::initializer_list<Array>{ this->ImageToReference.get(),
+         this->TrackerToReference.get(), &this->ProbeToTracker, &this->Timestamps, &this->Status,
+         &this->FrameNumbers, &this->Residuals, &this->Speeds })
+  {
+    if (array)
+    {
+      fields->AddArray(array->MakeView());
+    }
+  }
+  if (this->Frame.Calibrated)
+  {
+    vtkLacunaFieldData::SetMatrices(
+      output, vtkLacunaTrackedSlices::ImageToProbeName, { this->Frame.ImageToProbe });
+  }
+}

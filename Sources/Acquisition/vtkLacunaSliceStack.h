@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A sweep that grows, as tracked slices (see vtkLacunaTrackedSlices.h).
+#ifndef vtkLacunaSliceStack_h
+#define vtkLacunaSliceStack_h
+
+#include "lacunaAcquiredSlice.h"
+#include "vtkLacunaGrowingArray.h"
+
+#include <cstdint>
+#include <memory>
+
+class vtkImageData;
+
+/// Making an output costs the same however many slices there are: it shares their memory.
+class vtkLacunaSliceStack
+{
+public:
+  vtkLacunaSliceStack();
+
+  /// Slices of this frame follow, in at most so many bytes of pixels, for which room is reserved.
+  /// Throws std::bad_alloc.
+  vtkLacunaSliceStack(const lacuna::SweepFrame& frame, std::int64_t bytes);
+
+  void Append(const lacuna::AcquiredSlice& slice);
+  /// Takes the calibration of a frame for all slices, those that are there too.
+  void Calibrate(const lacuna::SweepFrame& frame);
+
+  vtkIdType GetNumberOfSlices() const { return this->Status.GetNumberOfTuples(); }
+  const lacuna::SweepFrame& GetFrame() const { return this->Frame; }
+  /// Columns and rows, and where they begin in the whole frame: the stack's origin.
+  const std::array<int, 4>& GetWindow() const { return this->Frame.Window; }
+  /// Sets the output's geometry, scalars and field data.
+  void Fill(vtkImageData* output) const;
+
+private:
+  void AppendPose(const lacuna::Matrix4& probeToTracker);
+
+  lacuna::SweepFrame Frame;
+  std::unique_ptr<vtkLacunaGrowingArray> Pixels;
+  std::unique_ptr<vtkLacunaGrowingArray> ImageToReference; ///< null while not calibrated
+  std::unique_ptr<vtkLacunaGrowingArray> TrackerToReference;
+  vtkLacunaGrowingArray ProbeToTracker;
+  vtkLacunaGrowingArray Timestamps;
+  vtkLacunaGrowingArray Status;
+  vtkLacunaGrowingArray FrameNumbers;
+  vtkLacunaGrowingArray Residuals;
+  vtkLacunaGrowingArray Speeds;
+};
+#endif
