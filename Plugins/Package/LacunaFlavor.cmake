@@ -66,3 +66,10 @@ lacuna_find_libraries(SERIALPORT "trackers on serial ports cannot be opened" ser
 # FFmpeg reads the scanner's video.
 find_path(LACUNA_FFMPEG_INCLUDE_DIR libavdevice/avdevice.h PATH_SUFFIXES ffmpeg)
 lacuna_find_libraries(FFMPEG "video cannot be read" avdevice avformat avcodec swscale avutil)
+
+# libopenigtlink knows the messages of trackers and scanners of the network. Not through its CMake
+# package: Debian's stops with an error under CMake 2.8 and newer when its settings are used.
+find_path(LACUNA_OPENIGTLINK_INCLUDE_DIR igtl_header.h
+  PATH_SUFFIXES openigtlink igtl OpenIGTLink/igtl openigtlink/igtlutil)
+lacuna_find_libraries(OPENIGTLINK "trackers and scanners behind OpenIGTLink cannot be used"
+  OpenIGTLink)

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaOpenIGTLinkClock.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Step = 0.5; // s that a clock must jump to be another
+constexpr int NumberOfParts = 20;
+}
+
+OpenIGTLinkClock::OpenIGTLinkClock(double window)
+  : Window(window)
+{
+}
+
+double OpenIGTLinkClock::Estimate::GetSmallest() const
+{
+  return std::min_element(this->Parts.begin(), this->Parts.end(),
+    [](const Part& a, const Part& b) { return a.Smallest < b.Smallest; })
+    ->Smallest;
+}
+
+double OpenIGTLinkClock::Estimate::GetLargest() const
+{
+  return std::max_element(this->Parts.begin(), this->Parts.end(),
+    [](const Part& a, const Part& b) { return a.Largest < b.Largest; })
+    ->Largest;
+}
+
+double OpenIGTLinkClock::ToLocal(const std::string& device, double stamp, double arrival)
+{
+  Estimate& own = this->Devices[device];
+  const double difference = arrival - stamp;
+  // stamps that go back, or that would be of the future
+  if (!own.Parts.empty() &&
+    (stamp < own.NewestStamp - Step || difference < own.GetSmallest() - Step))
+  {
+    own.Parts.clear();
+    own.NewestStamp = stamp;
+    ++this->Steps;
+  }
+  own.NewestStamp = own.Parts.empty() ? stamp : std::max(own.NewestStamp, stamp);
+  while (!own.Parts.empty() && own.Parts.front().Begin < arrival - this->Window)
+  {
+    own.Parts.pop_front();
+  }
+  if (own.Parts.empty() || arrival >= own.Parts.back().Begin + this->Window / NumberOfParts)
+  {
+    own.Parts.push_back({ arrival, difference, difference });
+  }
+  else
+  {
+    own.Parts.back().Smallest = std::min(own.Parts.back().Smallest, difference);
+    own.Parts.back().Largest = std::max(own.Parts.back().Largest, difference);
+  }
+  return std::min(stamp + this->GetOffset(own), arrival); // but for rounding it is never later
+}
+
+double OpenIGTLinkClock::GetOffset(const Estimate& own) const
+{
+  const double smallest = own.GetSmallest();
+  double offset = smallest;
+  for (const auto& [device, other] : this->Devices)
+  {
+    const double theirs = other.GetSmallest();
+    const bool silent = other.Parts.back().Begin < own.Parts.back().Begin - this->Window;
+    if (!silent && std::abs(theirs - smallest) < Step)
+    {
+      offset = std::min(offset, theirs);
+    }
+  }
+  return offset;
+}
+
+std::optional<double> OpenIGTLinkClock::GetOffset(const std::string& device) const
+{
+  const auto found = this->Devices.find(device);
+  return found == this->Devices.end() ? std::nullopt
+                                      : std::optional<double>(this->GetOffset(found->second));
+}
+
+double OpenIGTLinkClock::GetJitter(const std::string& device) const
+{
+  const auto found = this->Devices.find(device);
+  return found == this->Devices.end() ? 0
+                                      : found->second.GetLargest() - found->second.GetSmallest();
+}
+}

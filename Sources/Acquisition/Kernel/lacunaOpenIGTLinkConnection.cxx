@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaOpenIGTLinkConnection.h"
+
+#include "lacunaExecution.h"
+#include "lacunaTcpChannel.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr std::chrono::duration<double> Interval(0.05); // between looks at whether to stop
+constexpr double Patience = 5;                          // s for the rest of a message
+constexpr std::uint64_t LargestWanted = std::uint64_t{ 128 } << 20;
+constexpr std::size_t Piece = std::size_t{ 1 } << 20;
+constexpr std::size_t MostDevices = 64;
+constexpr double ConnectTime = 5; // s
+
+void CheckStopped(const std::function<bool()>& stopped)
+{
+  if (stopped && stopped())
+  {
+    throw Aborted();
+  }
+}
+
+std::string GetKey(const OpenIGTLinkHeader& header)
+{
+  return header.Type + " " + header.Device;
+}
+}
+
+OpenIGTLinkInbox::OpenIGTLinkInbox(Filter filter)
+  : Matches(std::move(filter))
+{
+}
+
+std::shared_ptr<const OpenIGTLinkArrival> OpenIGTLinkInbox::Wait(
+  double seconds, const std::function<bool()>& stopped)
+{
+  std::unique_lock<std::mutex> lock(this->Mutex);
+  for (double waited = 0; this->Messages.empty() && !this->Reason && waited < seconds;
+       waited += Interval.count())
+  {
+    lock.unlock();
+    CheckStopped(stopped);
+    lock.lock();
+    this->Changed.wait_for(
+      lock, Interval, [this] { return !this->Messages.empty() || this->Reason; });
+  }
+  if (!this->Messages.empty())
+  {
+    std::shared_ptr<const OpenIGTLinkArrival> first = std::move(this->Messages.front());
+    this->Messages.pop_front();
+    this->Bytes -= first->Message.Body.size();
+    return first;
+  }
+  if (this->Reason)
+  {
+    std::rethrow_exception(this->Reason);
+  }
+  return nullptr;
+}
+
+OpenIGTLinkCounts OpenIGTLinkInbox::GetCounts() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Counts;
+}
+
+std::string OpenIGTLinkInbox::GetFault() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Fault;
+}
+
+void OpenIGTLinkInbox::Put(std::shared_ptr<const OpenIGTLinkArrival> arrival)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  ++this->Counts.Messages;
+  this->Bytes += arrival->Message.Body.size();
+  this->Messages.push_back(std::move(arrival));
+  while (this->Bytes > MaximumBytes && this->Messages.size() > 1)
+  {
+    this->Bytes -= this->Messages.front()->Message.Body.size();
+    this->Messages.pop_front();
+    ++this->Counts.Dropped;
+  }
+  this->Changed.notify_all();
+}
+
+void OpenIGTLinkInbox::NoteDamage(const std::string& fault)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  ++this->Counts.Damaged;
+  this->Fault = fault;
+}
+
+void OpenIGTLinkInbox::Break(std::exception_ptr reason)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Reason = std::move(reason);
+  this->Changed.notify_all();
+}
+
+OpenIGTLinkConnection::OpenIGTLinkConnection(
+  std::unique_ptr<ByteChannel> channel, const Clock& clock)
+  : Channel(std::move(channel))
+  , Time(clock)
+  , Reader([this] { this->Run(); })
+{
+}
+
+OpenIGTLinkConnection::~OpenIGTLinkConnection()
+{
+  this->Stop = true;
+  this->Reader.join();
+}
+
+void OpenIGTLinkConnection::Attach(OpenIGTLinkInbox& inbox)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Inboxes.push_back(&inbox);
+  if (this->Reason)
+  {
+    inbox.Break(this->Reason);
+  }
+}
+
+void OpenIGTLinkConnection::Detach(OpenIGTLinkInbox& inbox)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Inboxes.erase(
+    std::remove(this->Inboxes.begin(), this->Inboxes.end(), &inbox), this->Inboxes.end());
+}
+
+std::string OpenIGTLinkConnection::GetDevices() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  std::string text;
+  for (const std::string& device : this->Devices)
+  {
+    text += (text.empty() ? "" : ", ") + device;
+  }
+  return text;
+}
+
+OpenIGTLinkClockState OpenIGTLinkConnection::GetClock(const OpenIGTLinkHeader& header) const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return { this->Clocks.GetOffset(GetKey(header)), this->Clocks.GetJitter(GetKey(header)),
+    this->Clocks.GetNumberOfSteps() };
+}
+
+void OpenIGTLinkConnection::Run()
+{
+  try
+  {
+    while (this->ReadMessage())
+    {
+    }
+  }
+  catch (...)
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->Reason = std::current_exception();
+    this->Broken = true;
+    for (OpenIGTLinkInbox* inbox : this->Inboxes)
+    {
+      inbox->Break(this->Reason);
+    }
+  }
+}
+
+// False when told to stop. Once the first byte is there, patience is the longest silence, s; 0: any.
+bool OpenIGTLinkConnection::Receive(char* bytes, std::size_t size, double patience)
+{
+  std::size_t count = 0;
+  double last = this->Time.Now();
+  while (count < size)
+  {
+    if (this->Stop)
+    {
+      return false;
+    }
+    const std::size_t more = this->Channel->Read(bytes + count, size - count, Interval.count());
+    const double now = this->Time.Now();
+    if (more > 0)
+    {
+      patience = Patience;
+      last = now;
+    }
+    else if (patience > 0 && now - last > patience)
+    {
+      throw ChannelError(ChannelError::Kind::Other,
+        "The server " + this->GetName() +
+          " stopped in the middle of a message, or sends what is "
+          "not OpenIGTLink: restart it, or check the port");
+    }
+    count += more;
+  }
+  return true;
+}
+
+// Whether somebody wants its messages.
+bool OpenIGTLinkConnection::NoteDevice(const OpenIGTLinkHeader& header)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (this->Devices.size() < MostDevices)
+  {
+    this->Devices.insert(header.Type + " '" + header.Device + "'");
+  }
+  return std::any_of(this->Inboxes.begin(), this->Inboxes.end(),
+    [&](const OpenIGTLinkInbox* inbox) { return inbox->Wants(header); });
+}
+
+void OpenIGTLinkConnection::NoteDamage(const OpenIGTLinkHeader& header, const std::string& fault)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  for (OpenIGTLinkInbox* inbox : this->Inboxes)
+  {
+    if (inbox->Wants(header))
+    {
+      inbox->NoteDamage(fault);
+    }
+  }
+}
+
+bool OpenIGTLinkConnection::Skip(std::uint64_t size)
+{
+  std::vector<char> scrap(static_cast<std::size_t>(std::min<std::uint64_t>(size, Piece)));
+  for (; size > 0; size -= std::min<std::uint64_t>(size, Piece))
+  {
+    const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(size, Piece));
+    if (!this->Receive(scrap.data(), piece, Patience))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Takes no more memory than twice what came.
+bool OpenIGTLinkConnection::ReadBody(std::uint64_t size, std::vector<char>& body)
+{
+  while (body.size() < size)
+  {
+    const std::size_t begin = body.size();
+    const auto piece = static_cast<std::size_t>(std::min<std::uint64_t>(size - begin, Piece));
+    body.resize(begin + piece);
+    if (!this->Receive(body.data() + begin, piece, Patience))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void OpenIGTLinkConnection::Deliver(
+  const OpenIGTLinkHeader& header, std::vector<char>&& body, double arrival)
+{
+  const auto delivery = std::make_shared<OpenIGTLinkArrival>();
+  delivery->Message = MakeOpenIGTLinkMessage(header, std::move(body));
+  delivery->Arrival = arrival;
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  delivery->Time =
+    header.Stamp ? this->Clocks.ToLocal(GetKey(header), *header.Stamp, arrival) : arrival;
+  for (OpenIGTLinkInbox* inbox : this->Inboxes)
+  {
+    if (inbox->Wants(header))
+    {
+      inbox->Put(delivery);
+    }
+  }
+}
+
+// False when told to stop.
+bool OpenIGTLinkConnection::ReadMessage()
+{
+  std::array<char, OpenIGTLinkHeader::Size> bytes{};
+  if (!this->Receive(bytes.data(), bytes.size(), 0))
+  {
+    return false;
+  }
+  OpenIGTLinkHeader header;
+  try
+  {
+    header = ReadOpenIGTLinkHeader(bytes.data());
+  }
+  catch (const OpenIGTLinkError& e)
+  {
+    throw ChannelError(
+      ChannelError::Kind::Other, "From the server " + this->GetName() + ": " + e.what());
+  }
+  const bool wanted = this->NoteDevice(header);
+  if (wanted && header.BodySize > LargestWanted)
+  {
+    this->NoteDamage(header,
+      "The " + header.Type + " message of '" + header.Device + "' has " +
+        std::to_string(header.BodySize) + " bytes, more than 128 MiB");
+  }
+  if (!wanted || header.BodySize > LargestWanted)
+  {
+    return this->Skip(header.BodySize);
+  }
+  std::vector<char> body;
+  if (!this->ReadBody(header.BodySize, body))
+  {
+    return false;
+  }
+  try
+  {
+    this->Deliver(header, std::move(body), this->Time.Now());
+  }
+  catch (const OpenIGTLinkError& e)
+  {
+    this->NoteDamage(header, e.what());
+  }
+  return true;
+}
+
+std::shared_ptr<OpenIGTLinkConnection> OpenIGTLinkConnections::Get(
+  const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped)
+{
+  std::unique_lock<std::timed_mutex> lock(this->Mutex, std::defer_lock);
+  while (!lock.try_lock_for(Interval))
+  {
+    CheckStopped(stopped);
+  }
+  std::shared_ptr<OpenIGTLinkConnection> connection = this->Connection.lock();
+  if (!connection || connection->IsBroken())
+  {
+    connection = std::make_shared<OpenIGTLinkConnection>(
+      std::make_unique<TcpChannel>(
+        address.Host, address.Port, address.GetServer(), ConnectTime, stopped),
+      clock);
+    this->Connection = connection;
+  }
+  return connection;
+}
+}

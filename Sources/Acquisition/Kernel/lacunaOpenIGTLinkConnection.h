@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A connection to an OpenIGTLink server, shared by those who want its messages.
+#ifndef lacunaOpenIGTLinkConnection_h
+#define lacunaOpenIGTLinkConnection_h
+
+#include "lacunaByteChannel.h"
+#include "lacunaClock.h"
+#include "lacunaOpenIGTLinkAddress.h"
+#include "lacunaOpenIGTLinkClock.h"
+#include "lacunaOpenIGTLinkMessage.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace lacuna
+{
+/// A message that came. Times are s of the acquisition's clock.
+struct OpenIGTLinkArrival
+{
+  OpenIGTLinkMessage Message;
+  double Arrival = 0; ///< when its last byte was there
+  double Time = 0;    ///< the instant of its stamp (see OpenIGTLinkClock); without one, the arrival
+};
+
+struct OpenIGTLinkCounts
+{
+  std::uint64_t Messages = 0; ///< wanted ones that came whole
+  std::uint64_t Damaged = 0;  ///< wanted ones that were not, or are larger than 128 MiB
+  std::uint64_t Dropped = 0;  ///< wanted ones that nobody took in time
+};
+
+/// What is known of the clock of a device that stamps its messages: see OpenIGTLinkClock.
+struct OpenIGTLinkClockState
+{
+  std::optional<double> Offset; ///< s, our time minus its own
+  double Jitter = 0;            ///< s
+  int Steps = 0;                ///< how often a clock of the server was set
+};
+
+/// Waits for messages that match on behalf of one device. Used by one thread, filled by another.
+class OpenIGTLinkInbox
+{
+public:
+  using Filter = std::function<bool(const OpenIGTLinkHeader&)>;
+  /// The filter is asked on the other thread.
+  explicit OpenIGTLinkInbox(Filter filter);
+
+  /// The next message; null when none comes in so many seconds. Throws Aborted when stopped,
+  /// which is asked every 50 ms, and what broke the connection.
+  std::shared_ptr<const OpenIGTLinkArrival> Wait(
+    double seconds, const std::function<bool()>& stopped);
+  OpenIGTLinkCounts GetCounts() const;
+  /// What is wrong with the last message that was not whole; empty: none was.
+  std::string GetFault() const;
+
+  bool Wants(const OpenIGTLinkHeader& header) const { return this->Matches(header); }
+  void Put(std::shared_ptr<const OpenIGTLinkArrival> arrival);
+  void NoteDamage(const std::string& fault);
+  void Break(std::exception_ptr reason);
+
+private:
+  static constexpr std::size_t MaximumBytes = std::size_t{ 64 } << 20;
+
+  Filter Matches;
+  mutable std::mutex Mutex;
+  std::condition_variable Changed;
+  std::deque<std::shared_ptr<const OpenIGTLinkArrival>> Messages;
+  std::size_t Bytes = 0;
+  OpenIGTLinkCounts Counts;
+  std::string Fault;
+  std::exception_ptr Reason;
+};
+
+/// Reads messages on a thread of its own, until the line breaks or garbage comes.
+class OpenIGTLinkConnection
+{
+public:
+  /// The clock must live longer, and have the channel's time.
+  OpenIGTLinkConnection(std::unique_ptr<ByteChannel> channel, const Clock& clock);
+  ~OpenIGTLinkConnection();
+  OpenIGTLinkConnection(const OpenIGTLinkConnection&) = delete;
+  OpenIGTLinkConnection& operator=(const OpenIGTLinkConnection&) = delete;
+
+  /// From then on the inbox gets messages, until it is detached.
+  void Attach(OpenIGTLinkInbox& inbox);
+  void Detach(OpenIGTLinkInbox& inbox);
+  void Send(const std::string& bytes) { this->Channel->Write(bytes); }
+  bool IsBroken() const { return this->Broken; }
+  std::string GetName() const { return this->Channel->GetName(); }
+
+  /// What the server sends, "TRANSFORM ProbeToTracker, IMAGE Image_Reference", for messages.
+  std::string GetDevices() const;
+  OpenIGTLinkClockState GetClock(const OpenIGTLinkHeader& header) const;
+
+private:
+  void Run();
+  bool Receive(char* bytes, std::size_t size, double patience);
+  bool ReadMessage();
+  bool Skip(std::uint64_t size);
+  bool ReadBody(std::uint64_t size, std::vector<char>& body);
+  bool NoteDevice(const OpenIGTLinkHeader& header);
+  void Deliver(const OpenIGTLinkHeader& header, std::vector<char>&& body, double arrival);
+  void NoteDamage(const OpenIGTLinkHeader& header, const std::string& fault);
+
+  std::unique_ptr<ByteChannel> Channel;
+  const Clock& Time;
+  mutable std::mutex Mutex; ///< of what follows, up to the thread
+  std::vector<OpenIGTLinkInbox*> Inboxes;
+  std::set<std::string> Devices;
+  OpenIGTLinkClock Clocks;
+  std::exception_ptr Reason;
+  std::atomic<bool> Broken{ false };
+  std::atomic<bool> Stop{ false };
+  std::thread Reader;
+};
+
+/// Gives all devices of one server the same connection: 3D Slicer serves only one at a time, and the
+/// stamps of one sender are best compared together. Thread-safe.
+class OpenIGTLinkConnections
+{
+public:
+  /// The one that is open, or a new one; throws ChannelError, and Aborted when stopped, which is
+  /// asked every 50 ms.
+  std::shared_ptr<OpenIGTLinkConnection> Get(
+    const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped);
+
+private:
+  std::timed_mutex Mutex;
+  std::weak_ptr<OpenIGTLinkConnection> Connection;
+};
+}
+#endif

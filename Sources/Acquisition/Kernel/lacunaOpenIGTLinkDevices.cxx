@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaOpenIGTLinkDevices.h"
+
+#include "lacunaOpenIGTLinkConnection.h"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double PollTime = 1;      // s
+constexpr double FrameTime = 3;     // s without an image after which there is none
+constexpr double WorstJitter = 0.1; // s
+constexpr double TroubleTime = 10;  // s that a complaint is shown
+
+bool IsPoseType(const std::string& type)
+{
+  return type == "TRANSFORM" || type == "POSITION" || type == "QTRANS";
+}
+
+OpenIGTLinkInbox::Filter MakePoseFilter(const std::string& wanted)
+{
+  return [wanted](const OpenIGTLinkHeader& header)
+  {
+    const std::string& type = header.Type;
+    const bool named = !wanted.empty() && IsOpenIGTLinkName(header.Device, wanted);
+    return type == "STATUS" || type == "TDATA" || type == "QTDATA" ||
+      (IsPoseType(type) && (wanted.empty() || named)) || (type == "IMAGE" && named);
+  };
+}
+
+OpenIGTLinkInbox::Filter MakeImageFilter(const std::string& wanted)
+{
+  return [wanted](const OpenIGTLinkHeader& header)
+  {
+    return header.Type == "STATUS" ||
+      (header.Type == "IMAGE" && (wanted.empty() || IsOpenIGTLinkName(header.Device, wanted)));
+  };
+}
+
+std::string FormatTenths(double value)
+{
+  const auto tenths = static_cast<long>(std::floor(10 * value + 0.5));
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
+}
+
+// What the server sends instead of a device that was asked for.
+std::string DescribeDevices(const OpenIGTLinkConnection& connection)
+{
+  const std::string devices = connection.GetDevices();
+  return devices.empty() ? "; it sends nothing at all: is it an OpenIGTLink server, is its device "
+                           "connected, and does it serve only one client, another one?"
+                         : "; it sends " + devices;
+}
+
+// The first device that comes is the one, unless another comes too.
+void Choose(const std::string& name, const std::string& option, const std::string& server,
+  std::string& chosen)
+{
+  if (!chosen.empty() && name != chosen)
+  {
+    throw std::invalid_argument("The server " + server + " sends the " + option + "s '" + chosen +
+      "' and '" + name + "': choose one, as " + server + "?" + option + "=" + chosen);
+  }
+  chosen = name;
+}
+}
+
+OpenIGTLinkPoseDevice::OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address,
+  std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped)
+  : Address(address)
+  , Connection(std::move(connection))
+  , Inbox(std::make_unique<OpenIGTLinkInbox>(MakePoseFilter(address.Transform)))
+  , Stopped(std::move(stopped))
+{
+}
+
+OpenIGTLinkPoseDevice::~OpenIGTLinkPoseDevice()
+{
+  this->Connection->Detach(*this->Inbox);
+}
+
+void OpenIGTLinkPoseDevice::SetUp()
+{
+  this->Connection->Attach(*this->Inbox);
+  if (this->Address.StartTrackingData)
+  {
+    this->Connection->Send(MakeOpenIGTLinkTrackingRequest());
+  }
+}
+
+bool OpenIGTLinkPoseDevice::Poll(std::vector<TrackedPose>& poses)
+{
+  using Clock = std::chrono::steady_clock;
+  const std::size_t before = poses.size();
+  const auto begin = Clock::now();
+  for (double left = PollTime; left > 0 && poses.size() == before;)
+  {
+    auto arrival = this->Inbox->Wait(left, this->Stopped);
+    for (; arrival; arrival = this->Inbox->Wait(0, this->Stopped))
+    {
+      this->Take(*arrival, poses);
+    }
+    left = PollTime - std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  const bool any = poses.size() > before;
+  this->Silence = any ? 0 : this->Silence + 1;
+  this->Warning = this->FindWarning();
+  return any;
+}
+
+void OpenIGTLinkPoseDevice::Take(const OpenIGTLinkArrival& arrival, std::vector<TrackedPose>& poses)
+{
+  const OpenIGTLinkMessage& message = arrival.Message;
+  if (!this->Trouble.empty() && arrival.Arrival > this->TroubleTime + TroubleTime)
+  {
+    this->Trouble.clear();
+  }
+  try
+  {
+    if (message.Header.Type == "STATUS")
+    {
+      this->Trouble = ReadOpenIGTLinkStatus(message);
+      this->TroubleTime = arrival.Arrival;
+    }
+    else if (message.Header.Type == "IMAGE")
+    {
+      this->TakePose(ReadOpenIGTLinkImage(message).Plane, arrival, poses);
+    }
+    for (const OpenIGTLinkPose& pose : ReadOpenIGTLinkPoses(message))
+    {
+      if (this->Address.Transform.empty() || IsOpenIGTLinkName(pose.Name, this->Address.Transform))
+      {
+        this->TakePose(pose, arrival, poses);
+      }
+    }
+  }
+  catch (const OpenIGTLinkError& e)
+  {
+    ++this->Damaged;
+    this->Trouble = e.what();
+    this->TroubleTime = arrival.Arrival;
+  }
+}
+
+void OpenIGTLinkPoseDevice::TakePose(
+  const OpenIGTLinkPose& pose, const OpenIGTLinkArrival& arrival, std::vector<TrackedPose>& poses)
+{
+  const std::string server = this->Connection->GetName();
+  Choose(pose.Name, "transform", server, this->Name);
+  if (!pose.Fault.empty())
+  {
+    throw std::runtime_error(
+      "The pose of '" + pose.Name + "' from " + server + " cannot be used: " + pose.Fault);
+  }
+  const OpenIGTLinkHeader& header = arrival.Message.Header;
+  const bool first = this->Poses == 0;
+  if (!first &&
+    ((header.Stamp && header.Stamp == this->LastStamp) || arrival.Time <= this->LastTime))
+  {
+    return; // servers repeat the last one when there is none newer
+  }
+  this->LastStamp = header.Stamp;
+  this->LastTime = arrival.Time;
+  this->WatchClock(arrival);
+  this->Status = pose.Status;
+  this->Usable = pose.Usable;
+  TrackedPose tracked;
+  tracked.Request = arrival.Time;
+  tracked.Arrival = arrival.Arrival;
+  tracked.Time = arrival.Time;
+  tracked.ReceiverToTransmitter = pose.Pose;
+  tracked.Usable = pose.Usable;
+  tracked.Error = pose.Usable ? ' ' : 'I';
+  tracked.Button = pose.Button;
+  poses.push_back(tracked);
+  ++this->Poses;
+}
+
+void OpenIGTLinkPoseDevice::WatchClock(const OpenIGTLinkArrival& arrival)
+{
+  const OpenIGTLinkClockState clock = this->Connection->GetClock(arrival.Message.Header);
+  if (this->ClockOffset && clock.Offset && clock.Steps != this->ClockSteps)
+  {
+    this->Trouble = "The clock of " + this->Connection->GetName() + " was set by " +
+      FormatTenths(std::abs(*this->ClockOffset - *clock.Offset)) +
+      " s: poses and frames of that moment may not fit together";
+    this->TroubleTime = arrival.Arrival;
+  }
+  this->ClockOffset = clock.Offset;
+  this->ClockSteps = clock.Steps;
+  this->Jitter = clock.Jitter;
+}
+
+PoseCounts OpenIGTLinkPoseDevice::GetCounts() const
+{
+  const OpenIGTLinkCounts counts = this->Inbox->GetCounts();
+  PoseCounts result;
+  result.Poses = this->Poses;
+  result.Missing = counts.Dropped;
+  result.Damaged = counts.Damaged + this->Damaged;
+  return result;
+}
+
+std::string OpenIGTLinkPoseDevice::FindWarning() const
+{
+  const std::string server = this->Connection->GetName();
+  const std::string fault = this->Inbox->GetFault();
+  if (this->Silence > 0)
+  {
+    return "No pose " +
+      (this->Address.Transform.empty() ? "" : "of '" + this->Address.Transform + "' ") +
+      "has come from " + server + " for " + std::to_string(this->Silence) + " s" +
+      DescribeDevices(*this->Connection) + (this->Trouble.empty() ? "" : ". " + this->Trouble) +
+      (fault.empty() ? "" : ". " + fault);
+  }
+  if (!this->Trouble.empty())
+  {
+    return this->Trouble;
+  }
+  if (!this->Usable)
+  {
+    return "The tracker of " + server + " does not see '" + this->Name + "' (" +
+      (this->Status.empty() ? "it sends no number, or the identity" : this->Status) +
+      "): bring it into its field";
+  }
+  if (!this->LastStamp)
+  {
+    return "The poses of '" + this->Name + "' have no time stamps: the time of arrival is taken, " +
+      "with all delays of the network";
+  }
+  if (this->Jitter > WorstJitter)
+  {
+    return "Messages of " + server + " come up to " + FormatTenths(this->Jitter) +
+      " s late; their stamps make up for it, the display lags: use a cable, not a wireless network";
+  }
+  return {};
+}
+
+OpenIGTLinkFrameDevice::OpenIGTLinkFrameDevice(const OpenIGTLinkAddress& address,
+  std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped)
+  : Address(address)
+  , Connection(std::move(connection))
+  , Inbox(std::make_unique<OpenIGTLinkInbox>(MakeImageFilter(address.Image)))
+  , Stopped(std::move(stopped))
+{
+  this->Connection->Attach(*this->Inbox);
+}
+
+OpenIGTLinkFrameDevice::~OpenIGTLinkFrameDevice()
+{
+  this->Connection->Detach(*this->Inbox);
+}
+
+VideoEvent OpenIGTLinkFrameDevice::Read(VideoFrame& frame)
+{
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  for (double left = FrameTime; left > 0;)
+  {
+    const auto arrival = this->Inbox->Wait(left, this->Stopped);
+    if (arrival && this->Take(*arrival, frame))
+    {
+      const bool other =
+        this->Frames > 0 && (frame.Columns != this->Columns || frame.Rows != this->Rows);
+      this->Columns = frame.Columns;
+      this->Rows = frame.Rows;
+      ++this->Frames;
+      return other ? VideoEvent::NewSize : VideoEvent::Frame;
+    }
+    left = FrameTime - std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  this->ThrowSilent();
+}
+
+// False when it is no new image.
+bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame& frame)
+{
+  const OpenIGTLinkMessage& message = arrival.Message;
+  const std::string server = this->Connection->GetName();
+  try
+  {
+    if (message.Header.Type == "STATUS")
+    {
+      this->Trouble = ReadOpenIGTLinkStatus(message);
+      return false;
+    }
+    Choose(message.GetDevice(), "image", server, this->Name);
+    if (message.Header.Stamp && message.Header.Stamp == this->LastStamp)
+    {
+      return false;
+    }
+    OpenIGTLinkImage image = ReadOpenIGTLinkImage(message);
+    this->LastStamp = message.Header.Stamp;
+    frame.Columns = image.Columns;
+    frame.Rows = image.Rows;
+    frame.Grey = std::move(image.Grey);
+    frame.PixelSpacing = image.PixelSpacing;
+    frame.PixelAspect =
+      image.PixelSpacing ? (*image.PixelSpacing)[0] / (*image.PixelSpacing)[1] : 1;
+    frame.Arrival = arrival.Time;
+    frame.StreamTime = message.Header.Stamp;
+    frame.Damaged = false;
+    return true;
+  }
+  catch (const OpenIGTLinkError& e)
+  {
+    throw VideoError(
+      VideoError::Kind::Unsupported, "The images from " + server + " cannot be used: " + e.what());
+  }
+}
+
+void OpenIGTLinkFrameDevice::ThrowSilent() const
+{
+  const std::string fault = this->Inbox->GetFault();
+  throw VideoError(VideoError::Kind::Silent,
+    "No new image " + (this->Address.Image.empty() ? "" : "of '" + this->Address.Image + "' ") +
+      "has come from " + this->Connection->GetName() + " for 3 s" +
+      DescribeDevices(*this->Connection) + (this->Trouble.empty() ? "" : ". " + this->Trouble) +
+      (fault.empty() ? "" : ". " + fault));
+}
+
+VideoSource::Counts OpenIGTLinkFrameDevice::GetCounts() const
+{
+  const OpenIGTLinkCounts counts = this->Inbox->GetCounts();
+  VideoSource::Counts result;
+  result.Frames = this->Frames;
+  result.Undecodable = counts.Damaged;
+  result.Missing = counts.Dropped;
+  return result;
+}
+
+OpenIGTLinkFactories MakeOpenIGTLinkFactories(
+  const std::string& tracker, const std::string& video, const Clock& clock)
+{
+  OpenIGTLinkFactories factories;
+  auto connections = std::make_shared<OpenIGTLinkConnections>();
+  std::string server;
+  if (IsOpenIGTLinkAddress(tracker))
+  {
+    const OpenIGTLinkAddress address = ParseOpenIGTLinkAddress(tracker);
+    server = address.GetServer();
+    factories.Poses = [address, connections, &clock](const std::function<bool()>& stopped)
+    {
+      return std::make_unique<OpenIGTLinkPoseDevice>(
+        address, connections->Get(address, clock, stopped), stopped);
+    };
+  }
+  if (IsOpenIGTLinkAddress(video))
+  {
+    const OpenIGTLinkAddress address = ParseOpenIGTLinkAddress(video);
+    if (address.GetServer() != server)
+    {
+      connections = std::make_shared<OpenIGTLinkConnections>();
+    }
+    factories.Frames = [address, connections, &clock](const std::function<bool()>& stopped)
+    {
+      return std::make_unique<OpenIGTLinkFrameDevice>(
+        address, connections->Get(address, clock, stopped), stopped);
+    };
+  }
+  return factories;
+}
+}

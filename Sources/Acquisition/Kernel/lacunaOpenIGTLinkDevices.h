@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Trackers and scanners behind an OpenIGTLink server as an acquisition's sources.
+#ifndef lacunaOpenIGTLinkDevices_h
+#define lacunaOpenIGTLinkDevices_h
+
+#include "lacunaClock.h"
+#include "lacunaFrameDevice.h"
+#include "lacunaOpenIGTLinkAddress.h"
+#include "lacunaPoseDevice.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace lacuna
+{
+class OpenIGTLinkConnection;
+class OpenIGTLinkInbox;
+struct OpenIGTLinkArrival;
+struct OpenIGTLinkPose;
+
+/// The poses of one TRANSFORM, POSITION or QTRANS device, of one element of TDATA or QTDATA, or of
+/// one IMAGE device's plane. A pose is as the server gives it: mm, probe to tracker where the device
+/// is ProbeToTracker. Time is that of the message's stamp. Repeated stamps are left out.
+class OpenIGTLinkPoseDevice : public PoseDevice
+{
+public:
+  OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address,
+    std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped);
+  ~OpenIGTLinkPoseDevice() override;
+
+  void SetUp() override;
+  /// Throws std::runtime_error when the pose scales or mirrors, and std::invalid_argument when the
+  /// server sends poses of several devices and the address names none.
+  bool Poll(std::vector<TrackedPose>& poses) override;
+  PoseCounts GetCounts() const override;
+  std::string GetWarning() const override { return this->Warning; }
+
+private:
+  void Take(const OpenIGTLinkArrival& arrival, std::vector<TrackedPose>& poses);
+  void TakePose(const OpenIGTLinkPose& pose, const OpenIGTLinkArrival& arrival,
+    std::vector<TrackedPose>& poses);
+  void WatchClock(const OpenIGTLinkArrival& arrival);
+  std::string FindWarning() const;
+
+  OpenIGTLinkAddress Address;
+  std::shared_ptr<OpenIGTLinkConnection> Connection;
+  std::unique_ptr<OpenIGTLinkInbox> Inbox;
+  std::function<bool()> Stopped;
+  std::string Name; ///< the device that is taken; empty: none came yet
+  std::optional<double> LastStamp;
+  double LastTime = 0;
+  int Silence = 0;    ///< s without a pose
+  bool Usable = true; ///< of the last pose
+  std::optional<double> ClockOffset;
+  int ClockSteps = 0;
+  double Jitter = 0;
+  std::string Status;  ///< what the sender said of the last pose
+  std::string Trouble; ///< what a STATUS message complained of, and the like
+  double TroubleTime = 0;
+  std::string Warning;
+  std::uint64_t Poses = 0;
+  std::uint64_t Damaged = 0; ///< messages whose content cannot be
+};
+
+/// The images of one IMAGE device. Arrival is the instant of the message's stamp, in the
+/// acquisition's time; where it has none, when it came. StreamTime is the stamp.
+class OpenIGTLinkFrameDevice : public FrameDevice
+{
+public:
+  OpenIGTLinkFrameDevice(const OpenIGTLinkAddress& address,
+    std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped);
+  ~OpenIGTLinkFrameDevice() override;
+
+  /// Throws VideoError when no image comes for 3 s, or it cannot be used, and std::invalid_argument
+  /// when the server sends images of several devices and the address names none.
+  VideoEvent Read(VideoFrame& frame) override;
+  /// 0: a stamp is of the instant.
+  double GetLatency() const override { return 0; }
+  VideoSource::Counts GetCounts() const override;
+
+private:
+  bool Take(const OpenIGTLinkArrival& arrival, VideoFrame& frame);
+  [[noreturn]] void ThrowSilent() const;
+
+  OpenIGTLinkAddress Address;
+  std::shared_ptr<OpenIGTLinkConnection> Connection;
+  std::unique_ptr<OpenIGTLinkInbox> Inbox;
+  std::function<bool()> Stopped;
+  std::string Name;
+  std::string Trouble;
+  std::optional<double> LastStamp;
+  int Columns = 0;
+  int Rows = 0;
+  std::uint64_t Frames = 0;
+};
+
+struct OpenIGTLinkFactories
+{
+  PoseDeviceFactory Poses;   ///< empty when the tracker is no OpenIGTLink address
+  FrameDeviceFactory Frames; ///< empty when the video is none
+};
+
+/// Of the addresses that begin with igtl:// . The clock must live longer; it is the computer's. Both
+/// devices share one connection when they are of the same server. Throws std::invalid_argument for
+/// a wrong address. In a build without libopenigtlink (LACUNA_WITH_OPENIGTLINK) the factories throw.
+OpenIGTLinkFactories MakeOpenIGTLinkFactories(
+  const std::string& tracker, const std::string& video, const Clock& clock);
+}
+#endif

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaOpenIGTLinkMessage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <igtl_header.h>
+#include <igtl_position.h>
+#include <igtl_qtdata.h>
+#include <igtl_tdata.h>
+#include <igtl_transform.h>
+#include <igtl_util.h>
+
+namespace lacuna
+{
+namespace
+{
+constexpr int NewestVersion = 3;
+constexpr std::size_t NameSize = IGTL_HEADER_NAME_SIZE;
+constexpr std::size_t ExtendedHeaderSize = 12;
+constexpr std::uint64_t LargestBody = std::uint64_t{ 1 } << 32; // of any message that makes sense
+// A float32 matrix or a tracker's own rounding; more is 0.3 mm at 300 mm from the receiver.
+constexpr double RigidTolerance = 1e-3;
+
+// Big endian, as all of a message but the pixels is.
+std::uint64_t ReadNumber(std::string_view bytes, std::size_t position, std::size_t size)
+{
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < size; ++i)
+  {
+    number = number << 8 | static_cast<unsigned char>(bytes[position + i]);
+  }
+  return number;
+}
+
+// Up to the first null.
+std::string ReadText(const char* bytes, std::size_t size)
+{
+  return { bytes, std::find(bytes, bytes + size, '\0') };
+}
+
+std::string Describe(const OpenIGTLinkHeader& header)
+{
+  return "The " + header.Type + " message of '" + header.Device + "' ";
+}
+
+[[noreturn]] void ThrowSize(const OpenIGTLinkMessage& message)
+{
+  throw OpenIGTLinkError(Describe(message.Header) + "is damaged: its content of " +
+    std::to_string(message.ContentSize) + " bytes cannot be");
+}
+
+void ReadMetaData(std::string_view index, std::string_view texts, OpenIGTLinkMessage& message)
+{
+  constexpr std::size_t entry = 8;
+  const std::size_t count = index.size() < 2 ? 0 : ReadNumber(index, 0, 2);
+  if (2 + count * entry > std::max<std::size_t>(index.size(), 2))
+  {
+    throw OpenIGTLinkError(
+      Describe(message.Header) + "is damaged: its list of meta data is cut off");
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t key = ReadNumber(index, 2 + i * entry, 2);
+    const std::size_t value = ReadNumber(index, 2 + i * entry + 4, 4);
+    if (key + value > texts.size())
+    {
+      throw OpenIGTLinkError(Describe(message.Header) + "is damaged: its meta data are cut off");
+    }
+    message.MetaData[std::string(texts.substr(0, key))] = texts.substr(key, value);
+    texts.remove_prefix(key + value);
+  }
+}
+
+Matrix4 MakeMatrix(const void* numbers)
+{
+  std::array<float, 12> n{};
+  std::memcpy(n.data(), numbers, sizeof(n));
+  return Matrix4::FromColumns(
+    { n[0], n[1], n[2] }, { n[3], n[4], n[5] }, { n[6], n[7], n[8] }, { n[9], n[10], n[11] });
+}
+
+// Of position and unit quaternion x y z w; another one has a fault.
+void SetPose(const void* position, const void* quaternion, OpenIGTLinkPose& pose)
+{
+  std::array<float, 3> p{};
+  std::array<float, 4> q{};
+  std::memcpy(p.data(), position, sizeof(p));
+  std::memcpy(q.data(), quaternion, sizeof(q));
+  const Vec3 axis{ q[0], q[1], q[2] };
+  const double sine = Norm(axis);
+  const double norm = std::hypot(sine, q[3]);
+  if (std::abs(norm - 1) > RigidTolerance)
+  {
+    pose.Fault = "its quaternion has the length " + std::to_string(norm) + " instead of 1";
+    return;
+  }
+  pose.Pose = Matrix4::Translation({ p[0], p[1], p[2] }) *
+    (sine == 0 ? Matrix4() : Matrix4::Rotation(axis, 2 * std::atan2(sine, q[3])));
+}
+
+void SetStatus(const std::string& status, OpenIGTLinkPose& pose)
+{
+  pose.Status = status;
+  const bool pressed = status.rfind("SWITCH", 0) == 0;
+  pose.Button = pressed;
+  pose.Usable = pressed || status == "OK";
+}
+
+void AddElements(const OpenIGTLinkMessage& message, std::vector<OpenIGTLinkPose>& poses)
+{
+  const bool quaternions = message.Header.Type == "QTDATA";
+  const std::size_t size = quaternions ? IGTL_QTDATA_ELEMENT_SIZE : IGTL_TDATA_ELEMENT_SIZE;
+  if (message.ContentSize % size != 0)
+  {
+    ThrowSize(message);
+  }
+  for (std::size_t begin = 0; begin < message.ContentSize; begin += size)
+  {
+    const char* bytes = message.GetContent().data() + begin;
+    OpenIGTLinkPose pose;
+    pose.Name = ReadText(bytes, NameSize);
+    const int type = bytes[NameSize];
+    if (quaternions)
+    {
+      igtl_qtdata_element element = {};
+      std::memcpy(&element, bytes, size);
+      igtl_qtdata_convert_byte_order(&element, 1);
+      SetPose(element.position, element.quaternion, pose);
+    }
+    else
+    {
+      igtl_tdata_element element = {};
+      std::memcpy(&element, bytes, size);
+      igtl_tdata_convert_byte_order(&element, 1);
+      pose.Pose = MakeMatrix(element.transform);
+    }
+    if (type == IGTL_TDATA_TYPE_3D || type == IGTL_TDATA_TYPE_5D)
+    {
+      pose.Fault = "the tracker follows this tool's tip and not its whole orientation";
+    }
+    // PLUS names the status by the name in full
+    for (const auto& [key, value] : message.MetaData)
+    {
+      const std::string ending = "Status";
+      const std::size_t stem = key.size() - std::min(key.size(), ending.size());
+      if (key.substr(stem) == ending && IsOpenIGTLinkName(pose.Name, key.substr(0, stem)))
+      {
+        pose.Name = key.substr(0, stem);
+        SetStatus(value, pose);
+        break;
+      }
+    }
+    CheckOpenIGTLinkPose(pose);
+    poses.push_back(pose);
+  }
+}
+}
+
+OpenIGTLinkHeader ReadOpenIGTLinkHeader(const char* bytes)
+{
+  igtl_header fields = {};
+  std::memcpy(&fields, bytes, sizeof(fields));
+  igtl_header_convert_byte_order(&fields);
+  OpenIGTLinkHeader header;
+  header.Version = static_cast<int>(ReadNumber({ bytes, 2 }, 0, 2)); // a field of changing name
+  header.Type = ReadText(fields.name, sizeof(fields.name));
+  header.Device = ReadText(fields.device_name, sizeof(fields.device_name));
+  const bool letters =
+    std::all_of(header.Type.begin(), header.Type.end(), [](char c) { return c > ' ' && c < 127; });
+  header.BodySize = fields.body_size;
+  header.Crc = fields.crc;
+  if (header.Version < 1 || header.Version > NewestVersion || header.Type.empty() || !letters ||
+    header.BodySize > LargestBody)
+  {
+    throw OpenIGTLinkError(
+      "what comes is not OpenIGTLink, or bytes of it were lost: check the port of the server");
+  }
+  for (char& c : header.Device)
+  {
+    c = c >= ' ' && c < 127 ? c : '?'; // goes into messages
+  }
+  if (fields.timestamp != 0)
+  {
+    header.Stamp = std::ldexp(static_cast<double>(fields.timestamp), -32);
+  }
+  return header;
+}
+
+std::string OpenIGTLinkMessage::GetDevice() const
+{
+  const auto found = this->MetaData.find("IGTL_DEVICE_NAME");
+  return found == this->MetaData.end() ? this->Header.Device : found->second;
+}
+
+OpenIGTLinkMessage MakeOpenIGTLinkMessage(const OpenIGTLinkHeader& header, std::vector<char>&& body)
+{
+  OpenIGTLinkMessage message;
+  message.Header = header;
+  message.Body = std::move(body);
+  if (crc64(reinterpret_cast<unsigned char*>(message.Body.data()), message.Body.size(), 0) !=
+    header.Crc)
+  {
+    throw OpenIGTLinkError(Describe(header) + "is damaged: its checksum is wrong");
+  }
+  message.ContentSize = message.Body.size();
+  if (header.Version < 2)
+  {
+    return message;
+  }
+  const std::string_view bytes(message.Body.data(), message.Body.size());
+  const std::size_t extended = bytes.size() < ExtendedHeaderSize ? 0 : ReadNumber(bytes, 0, 2);
+  const std::size_t index = extended == 0 ? 0 : ReadNumber(bytes, 2, 2);
+  const std::size_t texts = extended == 0 ? 0 : ReadNumber(bytes, 4, 4);
+  if (extended < ExtendedHeaderSize || extended + index + texts > bytes.size())
+  {
+    throw OpenIGTLinkError(
+      Describe(header) + "is damaged: the sizes of its parts are more than all");
+  }
+  message.ContentBegin = extended;
+  message.ContentSize = bytes.size() - extended - index - texts;
+  ReadMetaData(
+    bytes.substr(bytes.size() - index - texts, index), bytes.substr(bytes.size() - texts), message);
+  return message;
+}
+
+bool IsOpenIGTLinkName(const std::string& name, const std::string& wanted)
+{
+  return name == wanted || (name.size() == NameSize && name == wanted.substr(0, NameSize));
+}
+
+void CheckOpenIGTLinkPose(OpenIGTLinkPose& pose)
+{
+  if (!pose.Fault.empty())
+  {
+    return;
+  }
+  bool identity = true;
+  for (int i = 0; i < 16; ++i)
+  {
+    identity = identity && pose.Pose.Data()[i] == (i % 5 == 0 ? 1 : 0);
+  }
+  if (!pose.Pose.IsFinite() || (identity && pose.Status.empty()))
+  {
+    pose.Usable = false;
+    return;
+  }
+  const Vec3 x = pose.Pose.Column(0);
+  const Vec3 y = pose.Pose.Column(1);
+  const Vec3 z = pose.Pose.Column(2);
+  const double lengths[3] = { Norm(x), Norm(y), Norm(z) };
+  if (std::any_of(
+        lengths, lengths + 3, [](double length) { return std::abs(length - 1) > RigidTolerance; }))
+  {
+    pose.Fault = "it scales, by " + std::to_string(lengths[0]) + ", " + std::to_string(lengths[1]) +
+      " and " + std::to_string(lengths[2]) +
+      ": have the sender give the pose of the probe (ProbeToTracker), not of the image's pixels";
+  }
+  else if (std::max({ std::abs(Dot(x, y)), std::abs(Dot(y, z)), std::abs(Dot(z, x)) }) >
+    RigidTolerance)
+  {
+    pose.Fault = "it shears: only a rotation and a translation are the pose of a tracker";
+  }
+  else if (pose.Pose.Determinant3() < 0)
+  {
+    pose.Fault = "it mirrors: right-handed axes are needed on both sides";
+  }
+}
+
+std::vector<OpenIGTLinkPose> ReadOpenIGTLinkPoses(const OpenIGTLinkMessage& message)
+{
+  const std::string& type = message.Header.Type;
+  const std::string_view content = message.GetContent();
+  std::vector<OpenIGTLinkPose> poses;
+  if (type == "TDATA" || type == "QTDATA")
+  {
+    AddElements(message, poses);
+    return poses;
+  }
+  OpenIGTLinkPose pose;
+  pose.Name = message.GetDevice();
+  if (type == "TRANSFORM")
+  {
+    std::array<igtl_float32, 12> numbers{};
+    if (content.size() != sizeof(numbers))
+    {
+      ThrowSize(message);
+    }
+    std::memcpy(numbers.data(), content.data(), sizeof(numbers));
+    igtl_transform_convert_byte_order(numbers.data());
+    pose.Pose = MakeMatrix(numbers.data());
+  }
+  else if (type == "POSITION" || type == "QTRANS")
+  {
+    igtl_position fields = {};
+    if (content.size() != IGTL_POSITION_MESSAGE_DEFAULT_SIZE &&
+      content.size() != IGTL_POSITION_MESSAGE_WITH_QUATERNION3_SIZE &&
+      content.size() != IGTL_POSITION_MESSAGE_POSITON_ONLY_SIZE)
+    {
+      ThrowSize(message);
+    }
+    std::memcpy(&fields, content.data(), content.size());
+    igtl_position_convert_byte_order(&fields);
+    if (content.size() == IGTL_POSITION_MESSAGE_WITH_QUATERNION3_SIZE)
+    {
+      const double vector = fields.quaternion[0] * fields.quaternion[0] +
+        fields.quaternion[1] * fields.quaternion[1] + fields.quaternion[2] * fields.quaternion[2];
+      fields.quaternion[3] = static_cast<float>(std::sqrt(std::max(0.0, 1 - vector)));
+    }
+    if (content.size() == IGTL_POSITION_MESSAGE_POSITON_ONLY_SIZE)
+    {
+      pose.Fault = "it has no orientation: have the sender give it, or TRANSFORM messages";
+    }
+    else
+    {
+      SetPose(fields.position, fields.quaternion, pose);
+    }
+  }
+  else
+  {
+    return poses;
+  }
+  const auto status = message.MetaData.find("TransformStatus");
+  if (status != message.MetaData.end())
+  {
+    SetStatus(status->second, pose);
+  }
+  CheckOpenIGTLinkPose(pose);
+  poses.push_back(pose);
+  return poses;
+}
+
+std::string ReadOpenIGTLinkStatus(const OpenIGTLinkMessage& message)
+{
+  constexpr std::size_t nameBegin = 10; // after the code and the sub-code
+  constexpr std::size_t textBegin = nameBegin + NameSize;
+  constexpr std::size_t longest = 500;
+  const std::string_view content = message.GetContent();
+  if (content.size() < textBegin)
+  {
+    ThrowSize(message);
+  }
+  const std::uint64_t code = ReadNumber(content, 0, 2);
+  if (code == 1)
+  {
+    return {};
+  }
+  std::string text = ReadText(content.data() + nameBegin, NameSize);
+  const std::string_view rest = content.substr(textBegin);
+  const std::string more = ReadText(rest.data(), std::min(rest.size(), longest));
+  text += (text.empty() || more.empty() ? "" : ": ") + more;
+  for (char& c : text)
+  {
+    c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return "The sender's device '" + message.Header.Device + "' reports status " +
+    std::to_string(code) + (text.empty() ? "" : " (" + text + ")");
+}
+
+std::string MakeOpenIGTLinkTrackingRequest()
+{
+  igtl_header fields = {};
+  std::string body(IGTL_STT_TDATA_SIZE, '\0'); // no shortest interval, no name of coordinates
+  std::memcpy(fields.name, "STT_TDATA", 9);
+  fields.body_size = body.size();
+  fields.crc = crc64(reinterpret_cast<unsigned char*>(body.data()), body.size(), 0);
+  igtl_header_convert_byte_order(&fields);
+  std::string bytes(sizeof(fields), '\0');
+  std::memcpy(bytes.data(), &fields, sizeof(fields));
+  bytes[1] = 1; // the version
+  return bytes + body;
+}
+}
