@@ -22,18 +22,13 @@ auto MakeFactory(const std::string& text)
 }
 }
 
-OpenIGTLinkFactories MakeOpenIGTLinkFactories(
-  const std::string& tracker, const std::string& video, const Clock&)
+PoseDeviceFactory MakeOpenIGTLinkPoseFactory(const std::string& address, int, const Clock&)
 {
-  OpenIGTLinkFactories factories;
-  if (IsOpenIGTLinkAddress(tracker))
-  {
-    factories.Poses = MakeFactory<PoseDevice>(tracker);
-  }
-  if (IsOpenIGTLinkAddress(video))
-  {
-    factories.Frames = MakeFactory<FrameDevice>(video);
-  }
-  return factories;
+  return MakeFactory<PoseDevice>(address);
+}
+
+FrameDeviceFactory MakeOpenIGTLinkFrameFactory(const std::string& address, const Clock&)
+{
+  return MakeFactory<FrameDevice>(address);
 }
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <map>
 #include <utility>
 
 namespace lacuna
@@ -32,6 +33,47 @@ std::string GetKey(const OpenIGTLinkHeader& header)
 {
   return header.Type + " " + header.Device;
 }
+
+// Connections of one server that share a clock; locked while one is made.
+struct Shared
+{
+  std::timed_mutex Mutex;
+  std::weak_ptr<OpenIGTLinkConnection> Connection;
+};
+
+std::shared_ptr<Shared> FindShared(const std::string& server, const Clock& clock)
+{
+  static std::mutex mutex;
+  static std::map<std::pair<std::string, const Clock*>, std::shared_ptr<Shared>> all;
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::shared_ptr<Shared>& shared = all[{ server, &clock }];
+  if (!shared)
+  {
+    shared = std::make_shared<Shared>();
+  }
+  return shared;
+}
+}
+
+std::shared_ptr<OpenIGTLinkConnection> OpenIGTLinkConnection::Open(
+  const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped)
+{
+  const std::shared_ptr<Shared> shared = FindShared(address.GetServer(), clock);
+  std::unique_lock<std::timed_mutex> lock(shared->Mutex, std::defer_lock);
+  while (!lock.try_lock_for(Interval))
+  {
+    CheckStopped(stopped);
+  }
+  std::shared_ptr<OpenIGTLinkConnection> connection = shared->Connection.lock();
+  if (!connection || connection->IsBroken())
+  {
+    connection = std::make_shared<OpenIGTLinkConnection>(
+      std::make_unique<TcpChannel>(
+        address.Host, address.Port, address.GetServer(), ConnectTime, stopped),
+      clock);
+    shared->Connection = connection;
+  }
+  return connection;
 }
 
 OpenIGTLinkInbox::OpenIGTLinkInbox(Filter filter)
@@ -321,25 +363,5 @@ bool OpenIGTLinkConnection::ReadMessage()
     this->NoteDamage(header, e.what());
   }
   return true;
-}
-
-std::shared_ptr<OpenIGTLinkConnection> OpenIGTLinkConnections::Get(
-  const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped)
-{
-  std::unique_lock<std::timed_mutex> lock(this->Mutex, std::defer_lock);
-  while (!lock.try_lock_for(Interval))
-  {
-    CheckStopped(stopped);
-  }
-  std::shared_ptr<OpenIGTLinkConnection> connection = this->Connection.lock();
-  if (!connection || connection->IsBroken())
-  {
-    connection = std::make_shared<OpenIGTLinkConnection>(
-      std::make_unique<TcpChannel>(
-        address.Host, address.Port, address.GetServer(), ConnectTime, stopped),
-      clock);
-    this->Connection = connection;
-  }
-  return connection;
 }
 }

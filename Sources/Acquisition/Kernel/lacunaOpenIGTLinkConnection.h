@@ -87,6 +87,13 @@ private:
 class OpenIGTLinkConnection
 {
 public:
+  /// The one to this server that is open in this program, or a new one: 3D Slicer serves only one at
+  /// a time, and the stamps of one sender are best compared together. The clock must live longer; it
+  /// is the computer's. Throws ChannelError, and Aborted when stopped, which is asked every 50 ms.
+  /// Thread-safe.
+  static std::shared_ptr<OpenIGTLinkConnection> Open(
+    const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped);
+
   /// The clock must live longer, and have the channel's time.
   OpenIGTLinkConnection(std::unique_ptr<ByteChannel> channel, const Clock& clock);
   ~OpenIGTLinkConnection();
@@ -124,21 +131,6 @@ private:
   std::atomic<bool> Broken{ false };
   std::atomic<bool> Stop{ false };
   std::thread Reader;
-};
-
-/// Gives all devices of one server the same connection: 3D Slicer serves only one at a time, and the
-/// stamps of one sender are best compared together. Thread-safe.
-class OpenIGTLinkConnections
-{
-public:
-  /// The one that is open, or a new one; throws ChannelError, and Aborted when stopped, which is
-  /// asked every 50 ms.
-  std::shared_ptr<OpenIGTLinkConnection> Get(
-    const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped);
-
-private:
-  std::timed_mutex Mutex;
-  std::weak_ptr<OpenIGTLinkConnection> Connection;
 };
 }
 #endif

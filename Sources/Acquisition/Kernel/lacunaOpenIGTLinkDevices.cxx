@@ -70,9 +70,10 @@ void Choose(const std::string& name, const std::string& option, const std::strin
 }
 }
 
-OpenIGTLinkPoseDevice::OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address,
+OpenIGTLinkPoseDevice::OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address, int station,
   std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped)
   : Address(address)
+  , Station(station)
   , Connection(std::move(connection))
   , Inbox(std::make_unique<OpenIGTLinkInbox>(MakePoseFilter(address.Transform)))
   , Stopped(std::move(stopped))
@@ -173,6 +174,7 @@ void OpenIGTLinkPoseDevice::TakePose(
   tracked.Request = arrival.Time;
   tracked.Arrival = arrival.Arrival;
   tracked.Time = arrival.Time;
+  tracked.Station = this->Station;
   tracked.ReceiverToTransmitter = pose.Pose;
   tracked.Usable = pose.Usable;
   tracked.Error = pose.Usable ? ' ' : 'I';
@@ -334,35 +336,24 @@ VideoSource::Counts OpenIGTLinkFrameDevice::GetCounts() const
   return result;
 }
 
-OpenIGTLinkFactories MakeOpenIGTLinkFactories(
-  const std::string& tracker, const std::string& video, const Clock& clock)
+PoseDeviceFactory MakeOpenIGTLinkPoseFactory(
+  const std::string& address, int station, const Clock& clock)
 {
-  OpenIGTLinkFactories factories;
-  auto connections = std::make_shared<OpenIGTLinkConnections>();
-  std::string server;
-  if (IsOpenIGTLinkAddress(tracker))
+  const OpenIGTLinkAddress parts = ParseOpenIGTLinkAddress(address);
+  return [parts, station, &clock](const std::function<bool()>& stopped)
   {
-    const OpenIGTLinkAddress address = ParseOpenIGTLinkAddress(tracker);
-    server = address.GetServer();
-    factories.Poses = [address, connections, &clock](const std::function<bool()>& stopped)
-    {
-      return std::make_unique<OpenIGTLinkPoseDevice>(
-        address, connections->Get(address, clock, stopped), stopped);
-    };
-  }
-  if (IsOpenIGTLinkAddress(video))
+    return std::make_unique<OpenIGTLinkPoseDevice>(
+      parts, station, OpenIGTLinkConnection::Open(parts, clock, stopped), stopped);
+  };
+}
+
+FrameDeviceFactory MakeOpenIGTLinkFrameFactory(const std::string& address, const Clock& clock)
+{
+  const OpenIGTLinkAddress parts = ParseOpenIGTLinkAddress(address);
+  return [parts, &clock](const std::function<bool()>& stopped)
   {
-    const OpenIGTLinkAddress address = ParseOpenIGTLinkAddress(video);
-    if (address.GetServer() != server)
-    {
-      connections = std::make_shared<OpenIGTLinkConnections>();
-    }
-    factories.Frames = [address, connections, &clock](const std::function<bool()>& stopped)
-    {
-      return std::make_unique<OpenIGTLinkFrameDevice>(
-        address, connections->Get(address, clock, stopped), stopped);
-    };
-  }
-  return factories;
+    return std::make_unique<OpenIGTLinkFrameDevice>(
+      parts, OpenIGTLinkConnection::Open(parts, clock, stopped), stopped);
+  };
 }
 }

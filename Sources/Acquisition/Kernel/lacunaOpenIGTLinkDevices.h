@@ -27,7 +27,7 @@ struct OpenIGTLinkPose;
 class OpenIGTLinkPoseDevice : public PoseDevice
 {
 public:
-  OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address,
+  OpenIGTLinkPoseDevice(const OpenIGTLinkAddress& address, int station,
     std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped);
   ~OpenIGTLinkPoseDevice() override;
 
@@ -46,6 +46,7 @@ private:
   std::string FindWarning() const;
 
   OpenIGTLinkAddress Address;
+  int Station;
   std::shared_ptr<OpenIGTLinkConnection> Connection;
   std::unique_ptr<OpenIGTLinkInbox> Inbox;
   std::function<bool()> Stopped;
@@ -97,16 +98,14 @@ private:
   std::uint64_t Frames = 0;
 };
 
-struct OpenIGTLinkFactories
-{
-  PoseDeviceFactory Poses;   ///< empty when the tracker is no OpenIGTLink address
-  FrameDeviceFactory Frames; ///< empty when the video is none
-};
+/// Opens the tracker of an OpenIGTLink address; station is what its poses carry. The clock must live
+/// longer; it is the computer's. All devices of one server share a connection while any is open.
+/// Throws std::invalid_argument for a wrong address. In a build without libopenigtlink
+/// (LACUNA_WITH_OPENIGTLINK) the factory throws.
+PoseDeviceFactory MakeOpenIGTLinkPoseFactory(
+  const std::string& address, int station, const Clock& clock);
 
-/// Of the addresses that begin with igtl:// . The clock must live longer; it is the computer's. Both
-/// devices share one connection when they are of the same server. Throws std::invalid_argument for
-/// a wrong address. In a build without libopenigtlink (LACUNA_WITH_OPENIGTLINK) the factories throw.
-OpenIGTLinkFactories MakeOpenIGTLinkFactories(
-  const std::string& tracker, const std::string& video, const Clock& clock);
+/// Opens the images of an OpenIGTLink address; as above.
+FrameDeviceFactory MakeOpenIGTLinkFrameFactory(const std::string& address, const Clock& clock);
 }
 #endif

@@ -28,16 +28,27 @@ const auto Always = [] { return false; };
 constexpr double Single = 2e-5;       // mm
 constexpr double SenderAhead = 1.7e9; // s of the server's clock before ours
 
+struct Factories
+{
+  explicit Factories(const std::string& address)
+    : Poses(MakeOpenIGTLinkPoseFactory(address, 3, TheClock))
+    , Frames(MakeOpenIGTLinkFrameFactory(address, TheClock))
+  {
+  }
+  PoseDeviceFactory Poses;
+  FrameDeviceFactory Frames;
+};
+
 std::unique_ptr<PoseDevice> OpenPoses(const std::string& address)
 {
-  auto device = MakeOpenIGTLinkFactories(address, "", TheClock).Poses(Always);
+  auto device = MakeOpenIGTLinkPoseFactory(address, 1, TheClock)(Always);
   device->SetUp();
   return device;
 }
 
 std::unique_ptr<FrameDevice> OpenFrames(const std::string& address)
 {
-  return MakeOpenIGTLinkFactories("", address, TheClock).Frames(Always);
+  return MakeOpenIGTLinkFrameFactory(address, TheClock)(Always);
 }
 
 template <class Error, class Call>
@@ -117,7 +128,7 @@ TEST(OpenIGTLinkDevices, DevicesOfOneServerShareItsConnection)
 {
   Server server;
   const std::string address = server.GetAddress("?transform=ProbeToTracker&image=Image_Reference");
-  const OpenIGTLinkFactories factories = MakeOpenIGTLinkFactories(address, address, TheClock);
+  const Factories factories(address);
   const auto tracker = factories.Poses(Always);
   tracker->SetUp();
   ASSERT_TRUE(server.Accept());
@@ -129,7 +140,7 @@ TEST(OpenIGTLinkDevices, ThePoseOfAFrameIsThatOfItsInstant)
 {
   Server server;
   const std::string address = server.GetAddress("?transform=ProbeToTracker&image=Image_Reference");
-  const OpenIGTLinkFactories factories = MakeOpenIGTLinkFactories(address, address, TheClock);
+  const Factories factories(address);
   const auto tracker = factories.Poses(Always);
   tracker->SetUp();
   const auto scanner = factories.Frames(Always);
@@ -162,6 +173,7 @@ TEST(OpenIGTLinkDevices, ThePoseOfAFrameIsThatOfItsInstant)
                   pose.ReceiverToTransmitter, AsymmetricPose(0.02 * static_cast<double>(taken))),
         Single);
       EXPECT_TRUE(pose.Usable);
+      EXPECT_EQ(pose.Station, 3);
       EXPECT_LE(pose.Time, pose.Arrival);
       track.Add(pose);
       ++taken;
@@ -318,7 +330,7 @@ TEST(OpenIGTLinkDevices, UnknownDamagedAndGiantMessagesArePassedOver)
 {
   Server server;
   const std::string address = server.GetAddress("?transform=Probe&image=Image");
-  const OpenIGTLinkFactories factories = MakeOpenIGTLinkFactories(address, address, TheClock);
+  const Factories factories(address);
   const auto device = factories.Poses(Always);
   device->SetUp();
   const auto scanner = factories.Frames(Always);
@@ -415,7 +427,7 @@ TEST(OpenIGTLinkDevices, LostConnectionAndReturn)
 {
   Server server;
   const std::string address = server.GetAddress();
-  const OpenIGTLinkFactories factories = MakeOpenIGTLinkFactories(address, address, TheClock);
+  const Factories factories(address);
   auto device = factories.Poses(Always);
   device->SetUp();
   auto scanner = factories.Frames(Always);
@@ -474,10 +486,8 @@ TEST(OpenIGTLinkDevices, HostsThatAreNotThere)
   EXPECT_HAS(Complaint<ChannelError>(ChannelError::Kind::NotFound,
                [] { OpenPoses("igtl://no-such-host.invalid:18944"); }),
     "There is no host 'no-such-host.invalid'");
-  EXPECT_THROW(MakeOpenIGTLinkFactories("igtl://", "", TheClock), std::invalid_argument);
-  EXPECT_THROW(MakeOpenIGTLinkFactories("", "igtl://x:y", TheClock), std::invalid_argument);
-  EXPECT_FALSE(MakeOpenIGTLinkFactories("/dev/ttyUSB0", "", TheClock).Poses);
-  EXPECT_FALSE(MakeOpenIGTLinkFactories("", "/dev/video0", TheClock).Frames);
+  EXPECT_THROW(MakeOpenIGTLinkPoseFactory("igtl://", 1, TheClock), std::invalid_argument);
+  EXPECT_THROW(MakeOpenIGTLinkFrameFactory("igtl://x:y", TheClock), std::invalid_argument);
 }
 
 TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
@@ -500,7 +510,7 @@ TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
   };
   const BlackHole hole;
   const std::string nowhere = "igtl://127.0.0.1:" + std::to_string(hole.Port);
-  const OpenIGTLinkFactories factories = MakeOpenIGTLinkFactories(nowhere, nowhere, TheClock);
+  const Factories factories(nowhere);
   during([&] { factories.Poses(stopped); });
   during(
     [&]
@@ -514,7 +524,7 @@ TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
   stop = false;
   Server server;
   const std::string address = server.GetAddress();
-  const OpenIGTLinkFactories silent = MakeOpenIGTLinkFactories(address, address, TheClock);
+  const Factories silent(address);
   const auto device = silent.Poses(stopped);
   device->SetUp();
   std::vector<TrackedPose> poses;
