@@ -23,19 +23,6 @@ double Round(double value, double unit)
 {
   return std::round(value / unit) * unit;
 }
-
-// Cuts a slice's window to columns and rows of it.
-void Cut(lacuna::SliceImage& slice, int column, int row, int width, int height)
-{
-  if (slice.Pixels)
-  {
-    slice.Pixels = static_cast<const unsigned char*>(slice.Pixels) +
-      (slice.RowStride * row + column) *
-        static_cast<std::int64_t>(lacuna::GetScalarSize(slice.Type));
-  }
-  slice.Width = width;
-  slice.Height = height;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -156,7 +143,7 @@ vtkLacunaSliceFan::Window vtkLacunaSliceFan::Apply(
   std::shared_ptr<const lacuna::FanMask> mask;
   for (lacuna::SliceImage* slice : slices)
   {
-    Cut(*slice, begin[0], begin[1], width, height);
+    lacuna::CutSlice(*slice, begin[0], begin[1], width, height);
     if (this->HasSector())
     {
       const lacuna::Vec2 spacing = GetPixelSpacing(*slice);

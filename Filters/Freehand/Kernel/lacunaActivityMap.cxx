@@ -2,6 +2,8 @@
 #include "lacunaActivityMap.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -108,6 +110,62 @@ std::int64_t LabelPart(
   }
   return size;
 }
+// At most MostSlices of them, evenly spread.
+template <class Function>
+void ForEachSlice(const std::vector<SliceImage>& slices, const Function& f)
+{
+  const std::size_t count = std::min(MostSlices, slices.size());
+  for (std::size_t n = 0; n < count; ++n)
+  {
+    f(slices[count > 1 ? n * (slices.size() - 1) / (count - 1) : 0]);
+  }
+}
+
+template <class Function>
+void ForEachLevel(const SliceImage& slice, const Function& f)
+{
+  DispatchScalars(slice.Type, slice.Pixels,
+    [&](const auto* pixels)
+    {
+      for (int row = 0; row < slice.Height; ++row)
+      {
+        for (int column = 0; column < slice.Width; ++column)
+        {
+          f(static_cast<float>(pixels[slice.RowStride * row + column]));
+        }
+      }
+    });
+}
+
+// The most frequent grey level, in 256 steps.
+float GetBackground(const SliceImage& slice)
+{
+  constexpr std::size_t steps = 256;
+  float low = std::numeric_limits<float>::infinity();
+  float high = -low;
+  ForEachLevel(slice,
+    [&](float level)
+    {
+      low = std::isfinite(level) ? std::min(low, level) : low;
+      high = std::isfinite(level) ? std::max(high, level) : high;
+    });
+  if (!(high > low))
+  {
+    return low;
+  }
+  const double step = (double(high) - double(low)) / (steps - 1);
+  std::array<std::int64_t, steps> counts{};
+  ForEachLevel(slice,
+    [&](float level)
+    {
+      if (std::isfinite(level))
+      {
+        ++counts[static_cast<std::size_t>(std::lround((double(level) - double(low)) / step))];
+      }
+    });
+  const auto most = std::max_element(counts.begin(), counts.end()) - counts.begin();
+  return static_cast<float>(double(low) + step * static_cast<double>(most));
+}
 }
 
 std::int64_t PixelSet::GetSize() const
@@ -132,28 +190,17 @@ PixelSet PixelSet::Flipped() const
 }
 
 ActivityMap::ActivityMap(const std::vector<SliceImage>& slices)
-  : Width(slices.front().Width)
-  , Height(slices.front().Height)
+  : ActivityMap(slices.front().Width, slices.front().Height)
 {
   const std::size_t count = std::min(MostSlices, slices.size());
   std::vector<Extremes> extremes(
     static_cast<std::size_t>(this->Width) * static_cast<std::size_t>(this->Height));
-  for (std::size_t n = 0; n < count; ++n)
-  {
-    const SliceImage& slice = slices[count > 1 ? n * (slices.size() - 1) / (count - 1) : 0];
-    DispatchScalars(slice.Type, slice.Pixels,
-      [&](const auto* pixels)
-      {
-        auto extreme = extremes.begin();
-        for (int row = 0; row < this->Height; ++row)
-        {
-          for (int column = 0; column < this->Width; ++column)
-          {
-            (extreme++)->Put(static_cast<float>(pixels[slice.RowStride * row + column]));
-          }
-        }
-      });
-  }
+  ForEachSlice(slices,
+    [&](const SliceImage& slice)
+    {
+      auto extreme = extremes.begin();
+      ForEachLevel(slice, [&](float level) { (extreme++)->Put(level); });
+    });
   this->Changes.reserve(extremes.size());
   for (const Extremes& e : extremes)
   {
@@ -163,7 +210,29 @@ ActivityMap::ActivityMap(const std::vector<SliceImage>& slices)
   }
 }
 
-PixelSet ActivityMap::GetLargestPart(double threshold) const
+ActivityMap ActivityMap::OfContrast(const std::vector<SliceImage>& slices)
+{
+  ActivityMap map(slices.front().Width, slices.front().Height);
+  std::vector<Extremes> extremes(
+    static_cast<std::size_t>(map.Width) * static_cast<std::size_t>(map.Height));
+  ForEachSlice(slices,
+    [&](const SliceImage& slice)
+    {
+      const float background = GetBackground(slice);
+      auto extreme = extremes.begin();
+      ForEachLevel(slice, [&](float level) { (extreme++)->Put(std::abs(level - background)); });
+    });
+  map.Changes.reserve(extremes.size());
+  for (const Extremes& e : extremes)
+  {
+    const float contrast = slices.size() < 4 ? e.Highest : e.SecondHighest;
+    map.Changes.push_back(std::isfinite(contrast) ? contrast : 0);
+    map.Largest = std::max<double>(map.Largest, map.Changes.back());
+  }
+  return map;
+}
+
+PixelSet ActivityMap::GetLargestPart(double threshold, std::size_t rank) const
 {
   const auto index = [&](int x, int y)
   { return static_cast<std::size_t>(y) * static_cast<std::size_t>(this->Width) + x; };
@@ -180,25 +249,21 @@ PixelSet ActivityMap::GetLargestPart(double threshold) const
       }
     }
   }
-  int parts = 0;
-  int largest = 0;
-  std::int64_t largestSize = 0;
+  std::vector<std::pair<std::int64_t, int>> parts; // minus size, label
   for (int row = 0; row < this->Height; ++row)
   {
     for (int column = 0; column < this->Width; ++column)
     {
       if (labels[index(column, row)] == 0)
       {
-        ++parts;
-        const std::int64_t size = LabelPart(labels, this->Width, this->Height, column, row, parts);
-        if (size > largestSize)
-        {
-          largestSize = size;
-          largest = parts;
-        }
+        const int label = static_cast<int>(parts.size()) + 1;
+        parts.emplace_back(
+          -LabelPart(labels, this->Width, this->Height, column, row, label), label);
       }
     }
   }
+  std::sort(parts.begin(), parts.end());
+  const int largest = rank < parts.size() ? parts[rank].second : 0;
   const auto isInside = [&](int x, int y) { return labels[index(x, y)] == largest ? 1 : 0; };
   SumTable inside(this->Width, this->Height, isInside);
   PixelSet part(this->Width, this->Height);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Where the images of a sweep change from slice to slice: in what the probe sees, not around it.
+/// Of a few images, or still ones: where they differ from what is around.
 #ifndef lacunaActivityMap_h
 #define lacunaActivityMap_h
 
@@ -49,14 +50,25 @@ public:
   /// not count, so that single errors (shot noise) do not.
   explicit ActivityMap(const std::vector<SliceImage>& slices);
 
+  /// The same of how much pixels differ from the background, which is the most frequent grey level;
+  /// 1 image will do. Of several a pixel's largest difference counts (from 4 on the second largest).
+  static ActivityMap OfContrast(const std::vector<SliceImage>& slices);
+
+  int GetWidth() const { return this->Width; }
+  int GetHeight() const { return this->Height; }
   double GetLargestChange() const { return this->Largest; }
 
   /// The largest connected part that is dense with pixels that change by more than threshold: more
   /// than half of a neighbourhood of 9 x 9 do. Letters, rulers and noise are too thin or too sparse
-  /// for that. It may be empty.
-  PixelSet GetLargestPart(double threshold) const;
+  /// for that. rank: 1 for the second largest one and so on. It may be empty.
+  PixelSet GetLargestPart(double threshold, std::size_t rank = 0) const;
 
 private:
+  ActivityMap(int width, int height)
+    : Width(width)
+    , Height(height)
+  {
+  }
   int Width, Height;
   std::vector<float> Changes;
   double Largest = 0;

@@ -89,7 +89,8 @@ std::string Percent(double fraction)
 
 // Fraction of the part inside of a shape (grown by the tolerance), and of the shape in the part.
 template <class Inside, class NearlyInside>
-std::string CompareAreas(const PixelSet& part, const Inside& inside, const NearlyInside& nearly)
+std::string CompareAreas(
+  const PixelSet& part, const std::string& verb, const Inside& inside, const NearlyInside& nearly)
 {
   std::int64_t both = 0, shape = 0, partNear = 0, partAll = 0;
   for (int row = 0; row < part.GetHeight(); ++row)
@@ -108,16 +109,16 @@ std::string CompareAreas(const PixelSet& part, const Inside& inside, const Nearl
   const double covered = static_cast<double>(both) / std::max(1.0, double(shape));
   if (insideFraction < LeastInside)
   {
-    return "only " + Percent(insideFraction) + " of what changes lie in it";
+    return "only " + Percent(insideFraction) + " of the pixels that " + verb + " lie in it";
   }
   if (covered < LeastCovered)
   {
-    return "only " + Percent(covered) + " of it change";
+    return "only " + Percent(covered) + " of its pixels " + verb;
   }
   return {};
 }
 
-Trial TryRectangle(const PixelSet& part, const Outline& outline)
+Trial TryRectangle(const PixelSet& part, const Outline& outline, const std::string& verb)
 {
   std::vector<double> left, right, top, bottom;
   for (const Outline::Row& row : outline.Rows)
@@ -142,8 +143,10 @@ Trial TryRectangle(const PixelSet& part, const Outline& outline)
   const int first[2] = { round(sides[0].Value), round(sides[2].Value) };
   const int last[2] = { round(sides[1].Value), round(sides[3].Value) };
   trial.Fan.Rectangle = { first[0], first[1], last[0] - first[0] + 1, last[1] - first[1] + 1 };
+  trial.Fan.Support = 1;
   for (std::size_t s = 0; s < 4 && trial.Doubt.empty(); ++s)
   {
+    trial.Fan.Support = std::min(trial.Fan.Support, sides[s].Support);
     if (sides[s].Support < LeastSupportOfRectangles)
     {
       trial.Doubt = std::string("the ") + names[s] + " side of a rectangle is confirmed by only " +
@@ -158,7 +161,7 @@ Trial TryRectangle(const PixelSet& part, const Outline& outline)
         row >= first[1] - margin && row <= last[1] + margin;
     };
     trial.Doubt = CompareAreas(
-      part, [&](int x, int y) { return within(x, y, 0); },
+      part, verb, [&](int x, int y) { return within(x, y, 0); },
       [&](int x, int y) { return within(x, y, 2); });
     trial.Doubt = trial.Doubt.empty() ? "" : "of a rectangle: " + trial.Doubt;
   }
@@ -252,7 +255,8 @@ PolarOutline MakePolarOutline(
 }
 
 // A sector that opens downwards.
-Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelSpacing)
+Trial TrySector(
+  const PixelSet& part, const Outline& outline, const Vec2& pixelSpacing, const std::string& verb)
 {
   const double aspect = pixelSpacing[1] / pixelSpacing[0];
   const double tolerance = Tolerance * std::max(1.0, aspect);
@@ -284,6 +288,7 @@ Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelS
     trial.Doubt = "its sides do not open like those of a sector";
     return trial;
   }
+  trial.Fan.Support = std::min(left.Support, right.Support);
   left.Offset -= HalfPixel * std::sqrt(1 + left.Slope * left.Slope);
   right.Offset += HalfPixel * std::sqrt(1 + right.Slope * right.Slope);
   const double y = (left.Offset - right.Offset) / (right.Slope - left.Slope);
@@ -312,6 +317,10 @@ Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelS
     }
     radii[0] = GetQuantile(nearPolar.Nearest, 0.1) - HalfPixel;
   }
+  else if (nearArc > TipWidth)
+  {
+    trial.Fan.Support = std::min(trial.Fan.Support, inner.Support);
+  }
   if (radii[0] < 2 * tolerance) // a phased probe: the beams begin in one point
   {
     radii[0] = 0;
@@ -321,6 +330,10 @@ Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelS
     trial.Doubt =
       "the far arc of a sector is confirmed by only " + Percent(outer.Support) + " of its length";
     return trial;
+  }
+  if (!polar.IsCutFar)
+  {
+    trial.Fan.Support = std::min(trial.Fan.Support, outer.Support);
   }
   const double mm = pixelSpacing[0];
   trial.Fan.IsSector = true;
@@ -345,7 +358,7 @@ Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelS
   grown.Radii[1] += back;
   const FanMask nearly(grown, part.GetWidth(), part.GetHeight(), pixelSpacing);
   trial.Doubt = CompareAreas(
-    part, [&](int c, int r) { return mask.Contains(c, r); },
+    part, verb, [&](int c, int r) { return mask.Contains(c, r); },
     [&](int c, int r) { return nearly.Contains(c, r); });
   trial.Doubt = trial.Doubt.empty() ? "" : "of a sector: " + trial.Doubt;
 
@@ -364,10 +377,10 @@ Trial TrySector(const PixelSet& part, const Outline& outline, const Vec2& pixelS
   return trial;
 }
 
-Trial TryFlippedSector(const PixelSet& part, const Vec2& pixelSpacing)
+Trial TryFlippedSector(const PixelSet& part, const Vec2& pixelSpacing, const std::string& verb)
 {
   const PixelSet flipped = part.Flipped();
-  Trial trial = TrySector(flipped, Outline(flipped), pixelSpacing);
+  Trial trial = TrySector(flipped, Outline(flipped), pixelSpacing, verb);
   Fan& sector = trial.Fan.Sector;
   sector.Origin[1] = part.GetHeight() - 1 - sector.Origin[1];
   sector.Angles = { 180 - sector.Angles[1], 180 - sector.Angles[0] };
@@ -383,29 +396,42 @@ DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSp
     throw std::runtime_error("the fan cannot be found in " + std::to_string(slices.size()) +
       " slices: at least 3 are needed, what changes between them is taken for the fan");
   }
-  const int width = slices.front().Width;
-  const int height = slices.front().Height;
   const ActivityMap activity(slices);
   if (!(activity.GetLargestChange() > 0))
   {
     throw std::runtime_error("the fan cannot be found: nothing changes from slice to slice");
   }
+  return DetectFan(activity, pixelSpacing, "change", 1);
+}
+
+DetectedFan DetectFan(
+  const ActivityMap& activity, const Vec2& pixelSpacing, const std::string& verb, std::size_t parts)
+{
+  const int width = activity.GetWidth();
+  const int height = activity.GetHeight();
   std::string smallness;
   std::array<std::string, 3> doubts; // of a rectangle, of a sector, of one upside down
   DetectedFan whole;
   bool isWhole = false;
-  for (const double fraction : Thresholds)
+  std::size_t rank = 0;
+  for (std::size_t attempt = 0; rank < parts && !(isWhole && rank > 0);
+       rank = ++attempt / Thresholds.size())
   {
-    const PixelSet part = activity.GetLargestPart(fraction * activity.GetLargestChange());
+    const double fraction = Thresholds[attempt % Thresholds.size()];
+    const PixelSet part = activity.GetLargestPart(fraction * activity.GetLargestChange(), rank);
     const double size = static_cast<double>(part.GetSize()) / (static_cast<double>(width) * height);
     if (size < SmallestPart)
     {
-      smallness = "; what changes covers only " + Percent(size) + " of the image";
-      break;
+      if (rank == 0)
+      {
+        smallness = "; the pixels that " + verb + " cover only " + Percent(size) + " of the image";
+      }
+      attempt = (rank + 1) * Thresholds.size() - 1; // the next part
+      continue;
     }
     const Outline outline(part);
-    const std::array<Trial, 3> trials{ TryRectangle(part, outline),
-      TrySector(part, outline, pixelSpacing), TryFlippedSector(part, pixelSpacing) };
+    const std::array<Trial, 3> trials{ TryRectangle(part, outline, verb),
+      TrySector(part, outline, pixelSpacing, verb), TryFlippedSector(part, pixelSpacing, verb) };
     for (std::size_t n = 0; n < trials.size(); ++n)
     {
       const Trial& trial = trials[n];
@@ -413,7 +439,7 @@ DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSp
       const bool isWide = r[0] < EdgeWidth && r[0] + r[2] > width - EdgeWidth;
       if (!trial.Doubt.empty())
       {
-        doubts[n] = "; " + trial.Doubt;
+        doubts[n] = rank == 0 ? "; " + trial.Doubt : doubts[n];
       }
       else if (!trial.Fan.IsSector && isWide && r[1] < EdgeWidth &&
         r[1] + r[3] > height - EdgeWidth)

@@ -26,6 +26,8 @@
 #include "lacunaSliceImage.h"
 
 #include <array>
+#include <cstddef>
+#include <string>
 #include <vector>
 
 namespace lacuna
@@ -39,12 +41,22 @@ struct DetectedFan
   /// Column and row of the first pixel, and columns and rows, that hold what the probe sees: of the
   /// rectangle, or of the box around the sector.
   std::array<int, 4> Rectangle{ 0, 0, 0, 0 };
+  /// How well the image shows it, 0 to 1: the part of their length by which the least certain of the
+  /// sides and arcs is confirmed. Those at the image's edge are not asked.
+  double Support = 0;
 };
+
+class ActivityMap;
 
 /// slices: of one sweep, all with windows of one size; fans that they have are not heeded.
 /// pixelSpacing: mm from column to column and from row to row.
 /// Throws std::runtime_error, with a text for the user, when the slices are fewer than 3 or no
 /// shape can be trusted.
 DetectedFan DetectFan(const std::vector<SliceImage>& slices, const Vec2& pixelSpacing);
+
+/// The same in a map of where it is; of the largest parts the first that has the shape. verb: what
+/// the pixels in it do, in texts: "change".
+DetectedFan DetectFan(
+  const ActivityMap& map, const Vec2& pixelSpacing, const std::string& verb, std::size_t parts);
 }
 #endif

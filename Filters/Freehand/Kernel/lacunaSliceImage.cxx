@@ -46,6 +46,17 @@ void CheckSlice(const SliceImage& slice)
   }
 }
 
+void CutSlice(SliceImage& slice, int column, int row, int width, int height)
+{
+  if (slice.Pixels)
+  {
+    slice.Pixels = static_cast<const unsigned char*>(slice.Pixels) +
+      (slice.RowStride * row + column) * static_cast<std::int64_t>(GetScalarSize(slice.Type));
+  }
+  slice.Width = width;
+  slice.Height = height;
+}
+
 std::array<Vec3, 4> GetCorners(const SliceImage& slice)
 {
   const double right = slice.Width - 1;

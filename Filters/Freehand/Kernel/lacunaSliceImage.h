@@ -37,6 +37,9 @@ struct SliceImage
 /// it has one, was made for a window of its size.
 void CheckSlice(const SliceImage& slice);
 
+/// Cuts the window to columns and rows of it. The pose and the fan are still those of the old one.
+void CutSlice(SliceImage& slice, int column, int row, int width, int height);
+
 /// Centres of the four corner pixels, mm.
 std::array<Vec3, 4> GetCorners(const SliceImage& slice);
 }
