@@ -174,4 +174,17 @@ std::vector<NamedTransform> ReadCalibrationFile(const std::string& fileName)
 {
   return CalibrationFileReader(fileName).Read();
 }
+
+std::string FormatCalibration(
+  const std::vector<NamedTransform>& transforms, const std::string& comment)
+{
+  std::string text =
+    "<!-- " + comment + " -->\n<PlusConfiguration version=\"2.9\">\n  <CoordinateDefinitions>\n";
+  for (const NamedTransform& transform : transforms)
+  {
+    text += "    <Transform From=\"" + transform.From + "\" To=\"" + transform.To +
+      "\"\n      Matrix=\"" + FormatMatrix(transform.Matrix) + "\"/>\n";
+  }
+  return text + "  </CoordinateDefinitions>\n</PlusConfiguration>\n";
+}
 }

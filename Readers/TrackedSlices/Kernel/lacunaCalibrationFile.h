@@ -27,5 +27,9 @@ struct NamedTransform
 /// between the same two frames or along a chain of others that differs by more than a thousandth
 /// (of the element, or of 1 when it is smaller).
 std::vector<NamedTransform> ReadCalibrationFile(const std::string& fileName);
+
+/// The text of such a file. comment: its first line, without "--".
+std::string FormatCalibration(
+  const std::vector<NamedTransform>& transforms, const std::string& comment);
 }
 #endif
