@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A FASTRAK without hardware, on a pseudo-terminal.
+// A FASTRAK without hardware, on a pseudo-terminal, and the video of a scanner.
 #include "lacunaClock.h"
 #include "lacunaEmulatorSettings.h"
 #include "lacunaPseudoTerminal.h"
+#include "lacunaVideoProgram.h"
 
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -51,6 +53,11 @@ int main(int count, char** arguments)
       settings.Options);
     std::printf("FASTRAK at %d baud on %s\n", settings.Options.Baud, terminal.GetName().c_str());
     std::fflush(stdout);
+    std::unique_ptr<lacuna::VideoProgram> video;
+    if (!settings.Video.Service.Sender.URL.empty())
+    {
+      video = std::make_unique<lacuna::VideoProgram>(settings, clock, begin);
+    }
     std::size_t next = 0;
     terminal.Serve(emulator,
       [&]
@@ -60,8 +67,12 @@ int main(int count, char** arguments)
         {
           settings.Events[next].Apply(emulator, clock.Now());
         }
-        return interrupted != 0 || time >= settings.Duration;
+        return interrupted != 0 || time >= settings.Duration || (video && video->HasFailed());
       });
+    if (video)
+    {
+      video->Finish();
+    }
   }
   catch (const std::exception& e)
   {

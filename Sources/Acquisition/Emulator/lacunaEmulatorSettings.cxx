@@ -17,7 +17,9 @@ namespace lacuna
 const char* const EmulatorHelp =
   "lacuna-fastrak-emulator [option]...\n"
   "A Polhemus FASTRAK without hardware: it makes a pseudo-terminal, prints its name and answers\n"
-  "there in real time until it is interrupted.\n"
+  "there in real time until it is interrupted. With --video also the video of an ultrasound "
+  "scanner\n"
+  "whose probe carries the first receiver.\n"
   "\n"
   "  --link NAME           a name that points at the terminal, removed in the end\n"
   "  --baud RATE           2400 ... 115200 (default 19200); at another rate of the host every "
@@ -41,6 +43,22 @@ const char* const EmulatorHelp =
   "                        repeated, as --fault may\n"
   "  --seconds S           ends after a time\n"
   "  --help                prints this\n"
+  "\n"
+  "  --video URL           tcp://127.0.0.1:5004 serves one client after the other, without loss;\n"
+  "                        udp://127.0.0.1:5004 sends MPEG-2 there; else a file, .mkv or .ts\n"
+  "  --scene NAME          what is scanned: Ellipsoids (default), Kumara, Vessels, Linear (see "
+  "the\n"
+  "                        page of Phantom Sweep) or Floor (a water bath, for calibrations)\n"
+  "  --aim S               the instant of the motion at which the probe looks straight at the\n"
+  "                        scene's middle (default: half way)\n"
+  "  --calibration FILE    writes the true Image to Probe, and Scene to Tracker, as XML\n"
+  "  --depth MM            that the probe sees (default 60)\n"
+  "  --linear MM           a linear probe of this width (default: a curved one)\n"
+  "  --bare                no ruler and texts: what the probe sees fills the frame\n"
+  "  --size COLUMNS ROWS   of the frame (default 768 576)\n"
+  "  --rate HZ             frames a second (default 25)\n"
+  "  --speckle LEVEL       0 ... 1, relative to the grey level (default 0.25)\n"
+  "  --video-latency S     a frame is sent so much later than what it shows (default 0.04)\n"
   "\n"
   "Lacuna opens ports by libserialport, which refuses pseudo-terminals. Preload\n"
   "libLacunaPseudoTerminalPorts.so (LD_PRELOAD) into the program that opens the port, and give it\n"
@@ -142,10 +160,12 @@ TimedFault ReadTimedFault(const std::string& word)
   return { time, ReadFault(word.substr(colon + 1)) };
 }
 
-FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop)
+// aim: half way.
+FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop, double& aim)
 {
   if (fileName.empty())
   {
+    aim = 0.5 * EverydayPeriod;
     return EverydaySweep;
   }
   std::ifstream file(fileName);
@@ -155,6 +175,7 @@ FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop)
   }
   const PoseScript script(file, fileName);
   const double duration = script.GetDuration();
+  aim = 0.5 * duration;
   if (loop && duration > 0)
   {
     return [script, duration](double time, int station)
@@ -239,11 +260,12 @@ EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
     {
       settings.Duration = number(0, longest, "a time in s");
     }
-    else
+    else if (!ReadVideoOption(option, next, number, settings.Video))
     {
       throw std::runtime_error("There is no option '" + option + "' (see --help)");
     }
   }
+  CheckVideoOptions(settings.Video);
   const auto earlier = [](const auto& a, const auto& b) { return a.Time < b.Time; };
   std::stable_sort(faults.begin(), faults.end(), earlier);
   FastrakFaults sum;
@@ -254,7 +276,9 @@ EmulatorSettings ReadEmulatorSettings(const std::vector<std::string>& words)
       { fault.Time, [sum](FastrakEmulator& emulator, double) { emulator.SetFaults(sum); } });
   }
   std::stable_sort(settings.Events.begin(), settings.Events.end(), earlier);
-  settings.Motion = ReadMotion(poses, loop);
+  double aim = 0;
+  settings.Motion = ReadMotion(poses, loop, aim);
+  settings.Video.Aim = settings.Video.Aim.value_or(aim);
   FastrakCommand::SerialRate(options.Baud); // throws for one that the unit does not have
   return settings;
 }

@@ -5,6 +5,7 @@
 #define lacunaEmulatorSettings_h
 
 #include "lacunaFastrakEmulator.h"
+#include "lacunaVideoOptions.h"
 
 #include <functional>
 #include <limits>
@@ -24,6 +25,7 @@ struct EmulatorSettings
 {
   FastrakEmulatorOptions Options;
   FastrakEmulator::PoseScript Motion;
+  VideoOptions Video;
   std::string Link;
   std::vector<EmulatorEvent> Events; ///< in order of time
   double Duration = std::numeric_limits<double>::infinity();

@@ -112,7 +112,7 @@ Matrix4 PoseScript::operator()(double time, int station) const
 
 Matrix4 EverydaySweep(double time, int station)
 {
-  constexpr double turn = 2 * 3.14159265358979323846 / 8;
+  constexpr double turn = 2 * 3.14159265358979323846 / EverydayPeriod;
   return Matrix4::Translation({ 200 + 3 * std::sin(1.7 * time),
            40 * std::sin(turn * time) + StationDistance * (station - 1),
            -60 + 2 * std::cos(1.3 * time) }) *

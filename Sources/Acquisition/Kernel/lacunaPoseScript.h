@@ -45,5 +45,6 @@ private:
 /// A hand that sweeps to and fro by 80 mm every 8 s and wobbles by a few mm and degrees; at most
 /// 35 mm/s. Stations are 100 mm apart along y.
 Matrix4 EverydaySweep(double time, int station);
+constexpr double EverydayPeriod = 8; ///< s
 }
 #endif

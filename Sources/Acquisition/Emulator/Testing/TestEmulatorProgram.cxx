@@ -3,92 +3,19 @@
 #include "lacunaClock.h"
 #include "lacunaFastrakTracker.h"
 #include "lacunaSerialPort.h"
+#include "lacunaTestProgram.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <csignal>
-#include <sys/wait.h>
 #include <unistd.h>
 
 using namespace lacuna;
-
-namespace
-{
-// A run of the program.
-class Program
-{
-public:
-  explicit Program(std::vector<std::string> words)
-  {
-    int pipeEnds[2];
-    EXPECT_EQ(pipe(pipeEnds), 0);
-    words.insert(words.begin(), LACUNA_FASTRAK_EMULATOR);
-    std::vector<char*> arguments;
-    for (std::string& word : words)
-    {
-      arguments.push_back(word.data());
-    }
-    arguments.push_back(nullptr);
-    this->Process = fork();
-    if (this->Process == 0)
-    {
-      dup2(pipeEnds[1], STDOUT_FILENO);
-      dup2(pipeEnds[1], STDERR_FILENO);
-      close(pipeEnds[0]);
-      close(pipeEnds[1]);
-      execv(arguments[0], arguments.data());
-      _exit(127);
-    }
-    close(pipeEnds[1]);
-    this->Output = fdopen(pipeEnds[0], "r");
-  }
-  ~Program()
-  {
-    this->End();
-    std::fclose(this->Output);
-  }
-  Program(const Program&) = delete;
-  Program& operator=(const Program&) = delete;
-
-  std::string ReadLine()
-  {
-    std::array<char, 1000> line{};
-    return std::fgets(line.data(), line.size(), this->Output) ? line.data() : "";
-  }
-  int End()
-  {
-    if (this->Process > 0)
-    {
-      kill(this->Process, SIGTERM);
-    }
-    return this->Wait();
-  }
-  int Wait()
-  {
-    int status = 0;
-    if (this->Process > 0)
-    {
-      waitpid(this->Process, &status, 0);
-      this->Process = -1;
-      this->Code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    return this->Code;
-  }
-
-private:
-  pid_t Process = -1;
-  int Code = -1;
-  std::FILE* Output = nullptr;
-};
-}
+using namespace lacunaTest;
 
 TEST(EmulatorProgram, ServesTheDriver)
 {

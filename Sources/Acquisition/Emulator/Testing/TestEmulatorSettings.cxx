@@ -67,8 +67,10 @@ TEST(EmulatorSettings, TakesEveryOption)
   EXPECT_NEAR(settings.Motion(25, 4).Column(3)[1], 200, 1e-9);
   EXPECT_TRUE(ReadEmulatorSettings({ "--help" }).Help);
   const std::string help = EmulatorHelp;
-  for (const char* option : { "--link", "--baud", "--receivers", "--poses", "--loop", "--noise",
-         "--latency", "--seed", "--fault", "--button", "--seconds", "--help" })
+  for (const char* option :
+    { "--link", "--baud", "--receivers", "--poses", "--loop", "--noise", "--latency", "--seed",
+      "--fault", "--button", "--seconds", "--help", "--video", "--scene", "--aim", "--calibration",
+      "--depth", "--linear", "--bare", "--size", "--rate", "--speckle", "--video-latency" })
   {
     EXPECT_NE(help.find(std::string("  ") + option + " "), std::string::npos) << option;
   }
@@ -108,6 +110,39 @@ TEST(EmulatorSettings, FaultsAddUpInOrderOfTime)
   EXPECT_EQ(ask().size(), 47u);
 }
 
+TEST(EmulatorSettings, TakesTheVideosOptions)
+{
+  const VideoOptions none = ReadEmulatorSettings({}).Video;
+  EXPECT_EQ(none.Service.Sender.URL, "");
+  const EmulatorSettings settings =
+    ReadEmulatorSettings({ "--video", "tcp://127.0.0.1:5004", "--scene", "Vessels", "--aim", "2.5",
+      "--calibration", "c.xml", "--depth", "80", "--linear", "50", "--bare", "--size", "320", "240",
+      "--rate", "30", "--speckle", "0.1", "--video-latency", "0.12" });
+  const VideoOptions& video = settings.Video;
+  EXPECT_EQ(video.Service.Sender.URL, "tcp://127.0.0.1:5004");
+  EXPECT_EQ(video.Service.Sender.Rate, 30);
+  EXPECT_EQ(video.Service.Latency, 0.12);
+  EXPECT_EQ(video.Scene, "Vessels");
+  EXPECT_EQ(video.Calibration, "c.xml");
+  EXPECT_EQ(video.Aim, 2.5);
+  EXPECT_EQ(video.Picture.SpeckleLevel, 0.1);
+  EXPECT_EQ(video.Picture.Layout.Shape, ScannerLayout::Probe::Linear);
+  EXPECT_EQ(video.Picture.Layout.Width, 50);
+  EXPECT_EQ(video.Picture.Layout.Depth, 80);
+  EXPECT_EQ(video.Picture.Layout.Columns, 320);
+  EXPECT_EQ(video.Picture.Layout.Rows, 240);
+  EXPECT_FALSE(video.Picture.Layout.Furniture);
+  // half way
+  EXPECT_EQ(ReadEmulatorSettings({ "--video", "a.mkv" }).Video.Aim, 4);
+  const std::string poses =
+    WriteFile("lacuna-settings-aim.txt", "0 1 100 0 0 0 0 0\n10 1 200 0 0 0 0 0\n");
+  EXPECT_EQ(ReadEmulatorSettings({ "--video", "a.mkv", "--poses", poses }).Video.Aim, 5);
+  for (const char* scene : { "Ellipsoids", "Kumara", "Vessels", "Linear", "Floor" })
+  {
+    EXPECT_NE(MakeEmulatedScene(scene), nullptr);
+  }
+}
+
 TEST(EmulatorSettings, SaysWhatIsWrong)
 {
   EXPECT_NE(Complaint({ "--baud", "1200" }).find("19200"), std::string::npos);
@@ -116,6 +151,11 @@ TEST(EmulatorSettings, SaysWhatIsWrong)
   EXPECT_NE(Complaint({ "--baut", "1" }).find("'--baut'"), std::string::npos);
   EXPECT_NE(Complaint({ "--noise", "1" }).find("needs a value"), std::string::npos);
   EXPECT_NE(Complaint({ "--poses", "/nowhere" }).find("/nowhere"), std::string::npos);
+  EXPECT_NE(
+    Complaint({ "--scene", "Liver", "--video", "a.mkv" }).find("'Liver'"), std::string::npos);
+  EXPECT_NE(Complaint({ "--depth", "80" }).find("--depth belongs to --video"), std::string::npos);
+  EXPECT_NE(Complaint({ "--depth", "8000" }).find("5 to 400 mm"), std::string::npos);
+  EXPECT_NE(Complaint({ "--size", "320" }).find("needs a value"), std::string::npos);
   for (const char* list : { "", "0", "5", "1,", ",1", "12", "1 2" })
   {
     EXPECT_NE(Complaint({ "--receivers", list }).find("1 to 4"), std::string::npos) << list;

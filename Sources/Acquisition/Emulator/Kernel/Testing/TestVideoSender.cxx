@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaVideoSender.h"
+
+#include "lacunaExecution.h"
+#include "lacunaTestDevice.h"
+#include "lacunaTestPort.h"
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+using namespace lacuna;
+using namespace lacunaTest;
+
+namespace
+{
+const SteadyClock TheClock;
+constexpr int Columns = 200;
+constexpr int Rows = 150;
+
+// Different from frame to frame and on all sides.
+std::vector<std::uint8_t> MakeImage(std::int64_t number)
+{
+  std::vector<std::uint8_t> image;
+  for (int pixel = 0; pixel < Columns * Rows; ++pixel)
+  {
+    image.push_back(
+      static_cast<std::uint8_t>(pixel % Columns + pixel / Columns / 2 + 5 * (number % 10)));
+  }
+  return image;
+}
+
+VideoSenderSettings To(const std::string& url, int rate = 25)
+{
+  return { url, Columns, Rows, rate };
+}
+
+VideoSettings From(const std::string& url)
+{
+  VideoSettings settings;
+  settings.URL = url;
+  settings.InRealTime = false;
+  return settings;
+}
+
+std::string Failure(VideoError::Kind kind, const VideoSenderSettings& settings)
+{
+  return Complaint<VideoError>(kind,
+    [&]
+    {
+      VideoSender sender(settings);
+      sender.Open();
+      sender.Send(MakeImage(0).data(), 0);
+      sender.Close();
+    });
+}
+}
+
+TEST(VideoSender, ServesOneClientAfterTheOther)
+{
+  const std::string url = FreeAddress();
+  std::atomic<bool> stopped{ false };
+  VideoSender sender(To(url + "?listen"), [&] { return stopped.load(); });
+  EXPECT_TRUE(sender.IsServer());
+  std::atomic<int> streams{ 0 };
+  std::thread server(
+    [&]
+    {
+      std::int64_t number = 100;
+      try
+      {
+        while (!stopped)
+        {
+          sender.Open();
+          ++streams;
+          while (sender.Send(MakeImage(number).data(), number))
+          {
+            number += number % 7 == 3 ? 3 : 1; // leaves two out now and then
+          }
+        }
+      }
+      catch (const Aborted&)
+      {
+      }
+    });
+  for (int client = 0; client < 3; ++client)
+  {
+    VideoSource source(From(url), TheClock);
+    EXPECT_EQ(source.GetFrameRate(), 25);
+    VideoFrame frame;
+    std::int64_t first = -1;
+    std::int64_t number = 0;
+    for (int i = 0; i < 30; ++i)
+    {
+      ASSERT_EQ(source.Read(frame), VideoEvent::Frame);
+      number = std::lround(25 * frame.StreamTime.value());
+      first = first < 0 ? number : first;
+      ASSERT_EQ(frame.Grey, MakeImage(number)) << client << " " << i;
+      EXPECT_EQ(frame.PixelAspect, 1);
+    }
+    EXPECT_EQ(source.GetCounts().Frames, 30u);
+    EXPECT_EQ(source.GetCounts().Missing, static_cast<std::uint64_t>(number - first + 1 - 30));
+    EXPECT_GT(source.GetCounts().Missing, 0u);
+  }
+  stopped = true;
+  server.join();
+  EXPECT_GE(streams, 3);
+}
+
+TEST(VideoSender, WritesFiles)
+{
+  const Folder folder;
+  for (const char* name : { "a.mkv", "a.avi", "a.nut", "a.ts" })
+  {
+    const std::string path = folder / name;
+    const bool lossless = path.substr(path.size() - 2) != "ts";
+    VideoSender sender(To(path, 30));
+    EXPECT_FALSE(sender.IsServer());
+    sender.Open();
+    for (int i = 0; i < 20; ++i)
+    {
+      EXPECT_TRUE(sender.Send(MakeImage(i).data(), i));
+    }
+    sender.Close();
+    VideoSource source(From(path), TheClock);
+    EXPECT_NEAR(source.GetFrameRate(), 30, 0.01) << name;
+    VideoFrame frame;
+    for (int i = 0; i < 20; ++i)
+    {
+      ASSERT_EQ(source.Read(frame), VideoEvent::Frame) << name << " " << i;
+      const std::vector<std::uint8_t> image = MakeImage(i);
+      double sum = 0;
+      for (std::size_t pixel = 0; pixel < image.size(); ++pixel)
+      {
+        sum += std::abs(frame.Grey[pixel] - image[pixel]) / double(Columns * Rows);
+      }
+      EXPECT_LE(sum, lossless ? 0 : 1.5) << name << " " << i;
+    }
+    EXPECT_EQ(source.Read(frame), VideoEvent::End) << name;
+    EXPECT_EQ(source.GetCounts().Missing, 0u) << name;
+  }
+}
+
+TEST(VideoSender, StoppedFilesAreWhole)
+{
+  const Folder folder;
+  bool stopped = false;
+  VideoSender sender(To(folder / "a.avi"), [&] { return stopped; });
+  sender.Open();
+  EXPECT_TRUE(sender.Send(MakeImage(0).data(), 0));
+  stopped = true;
+  sender.Close();
+  VideoSource source(From(folder / "a.avi"), TheClock);
+  VideoFrame frame;
+  EXPECT_EQ(source.Read(frame), VideoEvent::Frame);
+  EXPECT_EQ(frame.Grey, MakeImage(0));
+  EXPECT_EQ(source.Read(frame), VideoEvent::End);
+}
+
+TEST(VideoSender, StopsWhateverTheClientDoes)
+{
+  const std::string url = FreeAddress();
+  const double end = TheClock.Now() + 0.3;
+  VideoSender sender(To(url), [&] { return TheClock.Now() > end; });
+  EXPECT_THROW(sender.Open(), Aborted); // nobody comes
+
+  const double later = TheClock.Now() + 0.5;
+  VideoSender other(To(FreeAddress()), [&] { return TheClock.Now() > later; });
+  EXPECT_THROW(other.Open(), Aborted);
+  EXPECT_LT(TheClock.Now(), later + 10);
+}
+
+TEST(VideoSender, SaysWhatIsWrong)
+{
+  const Folder folder;
+  const std::string url = FreeAddress();
+  const VideoSender first(To(url));
+  EXPECT_HAS(Failure(VideoError::Kind::Busy, To(url)), "take another one");
+  EXPECT_HAS(Failure(VideoError::Kind::Unsupported, To(folder / "video")), ".mkv");
+  EXPECT_HAS(Failure(VideoError::Kind::Broken, To(folder / "none/a.mkv")), "none/a.mkv");
+  EXPECT_HAS(Failure(VideoError::Kind::Broken, To(folder / "a.ts", 27)), "rate");
+  Failure(VideoError::Kind::Broken, To("tcp://nowhere"));
+}
+
+TEST(VideoSender, SendsDatagrams)
+{
+  // nobody need listen
+  const std::string url = "udp://127.0.0.1:" + FreeAddress().substr(16);
+  VideoSender sender(To(url));
+  EXPECT_FALSE(sender.IsServer());
+  std::atomic<bool> ended{ false };
+  std::thread thread(
+    [&]
+    {
+      sender.Open();
+      for (std::int64_t number = 0; !ended; ++number)
+      {
+        sender.Send(MakeImage(number).data(), number);
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+      sender.Close();
+    });
+  VideoSource source(From(url), TheClock);
+  VideoFrame frame;
+  for (int i = 0; i < 10; ++i)
+  {
+    ASSERT_EQ(source.Read(frame), VideoEvent::Frame);
+  }
+  const std::vector<std::uint8_t> image = MakeImage(std::lround(25 * frame.StreamTime.value()));
+  ended = true;
+  thread.join();
+  EXPECT_EQ(frame.Columns, Columns);
+  EXPECT_EQ(frame.Rows, Rows);
+}
