@@ -46,6 +46,16 @@ VideoProgram::VideoProgram(const EmulatorSettings& settings, const Clock& clock,
   std::printf("Video of %d x %d pixels of %.4f mm, %d Hz, on %s\n", layout.Columns, layout.Rows,
     this->Emulator.GetScreen().GetPixelSpacing(), settings.Video.Service.Sender.Rate,
     settings.Video.Service.Sender.URL.c_str());
+  const DetectedFan& region = this->Emulator.GetScreen().GetRegion();
+  std::printf("The probe sees: CropRectangle %d %d %d %d", region.Rectangle[0], region.Rectangle[1],
+    region.Rectangle[2], region.Rectangle[3]);
+  if (region.IsSector)
+  {
+    const Fan& fan = region.Sector;
+    std::printf(", FanOrigin %g %g, FanAngles %g %g, FanRadii %g %g", fan.Origin[0], fan.Origin[1],
+      fan.Angles[0], fan.Angles[1], fan.Radii[0], fan.Radii[1]);
+  }
+  std::printf("\n");
   std::fflush(stdout);
   this->Thread = std::thread(
     [this, begin]

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaScannerScreen.h"
 
-#include "lacunaFan.h"
 #include "lacunaScreenText.h"
 
 #include <algorithm>
@@ -113,9 +112,27 @@ void ScannerScreen::Place()
       this->Runs.push_back({ row, std::max(this->FaceColumn - half, 0),
         std::min(this->FaceColumn + half, layout.Columns - 1) });
     }
-    return;
   }
-  Fan fan;
+  else
+  {
+    this->PlaceSector();
+  }
+  int first = layout.Columns;
+  int last = 0;
+  for (const Run& run : this->Runs)
+  {
+    first = std::min(first, run.First);
+    last = std::max(last, run.Last);
+  }
+  const int top = this->Runs.front().Row;
+  this->Region.Rectangle = { first, top, last - first + 1, this->Runs.back().Row - top + 1 };
+}
+
+void ScannerScreen::PlaceSector()
+{
+  const ScannerLayout& layout = this->Layout;
+  this->Region.IsSector = true;
+  Fan& fan = this->Region.Sector;
   fan.Origin = { static_cast<double>(this->FaceColumn),
     this->FaceRow - layout.Radius / this->Spacing };
   fan.Angles = { -layout.HalfAngle, layout.HalfAngle };

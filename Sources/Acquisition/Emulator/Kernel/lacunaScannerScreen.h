@@ -4,6 +4,7 @@
 #ifndef lacunaScannerScreen_h
 #define lacunaScannerScreen_h
 
+#include "lacunaFanDetection.h"
 #include "lacunaMatrix4.h"
 
 #include <cstdint>
@@ -56,7 +57,9 @@ public:
   /// (column, row, 0, 1) to mm: the origin is the middle of the transducer's face, x along columns,
   /// y into the tissue, z = x cross y.
   Matrix4 GetImageToFace() const;
-  /// What the probe sees, row by row.
+  /// What the probe sees, as Swept Volume and an acquisition are told it.
+  const DetectedFan& GetRegion() const { return this->Region; }
+  /// The same, row by row.
   const std::vector<Run>& GetRuns() const { return this->Runs; }
   /// The frame without what the probe sees, which is 0 there.
   const std::vector<std::uint8_t>& GetGround() const { return this->Ground; }
@@ -65,12 +68,14 @@ public:
 
 private:
   void Place();
+  void PlaceSector();
   void DrawFurniture();
 
   ScannerLayout Layout;
   double Spacing = 0;
   int FaceColumn = 0; ///< of the middle of the face
   int FaceRow = 0;
+  DetectedFan Region;
   std::vector<Run> Runs;
   std::vector<std::uint8_t> Ground;
 };

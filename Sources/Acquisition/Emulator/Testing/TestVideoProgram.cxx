@@ -21,6 +21,7 @@ TEST(VideoProgram, ServesTheVideoBesideTheTracker)
     "30", "--seed", "3" });
   EXPECT_EQ(program.ReadLine().rfind("FASTRAK at 19200 baud on /dev/pts/", 0), 0u);
   EXPECT_HAS(program.ReadLine(), "Video of 320 x 240 pixels of ");
+  EXPECT_HAS(program.ReadLine(), "FanAngles -26 26");
   EXPECT_EQ(ReadCalibrationFile(calibration).size(), 2u);
   const SteadyClock clock;
   VideoSettings settings;
@@ -73,13 +74,13 @@ TEST(VideoProgram, SaysWhatIsWrong)
 {
   const Folder folder;
   Program none({ "--video", folder / "none/a.mkv" });
-  none.ReadLine();
-  none.ReadLine();
+  for (int line = 0; line < 3; ++line)
+  {
+    none.ReadLine();
+  }
   EXPECT_HAS(none.ReadLine(), "none/a.mkv' cannot be opened for writing");
   EXPECT_EQ(none.Wait(), 1);
   Program nameless({ "--video", folder / "video" });
-  nameless.ReadLine();
-  nameless.ReadLine();
   std::string line = nameless.ReadLine();
   while (!line.empty() && line.find("lacuna-fastrak-emulator: ") == std::string::npos)
   {

@@ -65,6 +65,23 @@ TEST(ScannerScreen, ShowsTheSectorThatTheProbeSees)
       ASSERT_TRUE(!seen[static_cast<std::size_t>(pixel)] ||
         screen.GetGround()[static_cast<std::size_t>(pixel)] == 0);
     }
+    const auto& box = screen.GetRegion().Rectangle;
+    int columns[2] = { 768, 0 };
+    int rows[2] = { 576, 0 };
+    for (int pixel = 0; pixel < 768 * 576; ++pixel)
+    {
+      if (seen[static_cast<std::size_t>(pixel)])
+      {
+        columns[0] = std::min(columns[0], pixel % 768);
+        columns[1] = std::max(columns[1], pixel % 768);
+        rows[0] = std::min(rows[0], pixel / 768);
+        rows[1] = std::max(rows[1], pixel / 768);
+      }
+    }
+    EXPECT_EQ(box,
+      (std::array<int, 4>{
+        columns[0], rows[0], columns[1] - columns[0] + 1, rows[1] - rows[0] + 1 }));
+    EXPECT_TRUE(screen.GetRegion().IsSector);
     // as large as can be
     EXPECT_LT(screen.GetPixelSpacing(), furniture ? 0.14 : 0.122);
     const double perCentimetre = 10 / screen.GetPixelSpacing();
@@ -82,6 +99,10 @@ TEST(ScannerScreen, ShowsTheRectangleOfALinearProbe)
   EXPECT_NEAR(toFace.Point({ 0, static_cast<double>(last.Row), 0 })[1], 60, 0.15);
   EXPECT_NEAR(toFace.Point({ static_cast<double>(first.First), 0, 0 })[0], -30, 0.15);
   EXPECT_NEAR(toFace.Point({ static_cast<double>(first.Last), 0, 0 })[0], 30, 0.15);
+  EXPECT_FALSE(screen.GetRegion().IsSector);
+  EXPECT_EQ(screen.GetRegion().Rectangle,
+    (std::array<int, 4>{
+      first.First, first.Row, first.Last - first.First + 1, last.Row - first.Row + 1 }));
   EXPECT_EQ(screen.GetRuns().size(), static_cast<std::size_t>(last.Row - first.Row + 1));
 }
 
