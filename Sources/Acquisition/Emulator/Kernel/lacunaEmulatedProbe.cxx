@@ -37,7 +37,7 @@ Matrix4 EmulatedProbe::ImageToScene(double time) const
 std::string EmulatedProbe::FormatCalibration() const
 {
   return lacuna::FormatCalibration({ { "Image", "Probe", this->ImageToReceiver },
-                                     { "Scene", "Tracker", this->SceneToTransmitter } },
-    "The truth of lacuna-fastrak-emulator. Image: column, row, 0; mm.");
+                                     { "Tracker", "Reference", this->TransmitterToScene } },
+    "The truth of lacuna-fastrak-emulator. Image: column, row, 0; mm. Reference: the scene.");
 }
 }

@@ -28,8 +28,8 @@ public:
   const Matrix4& GetSceneToTransmitter() const { return this->SceneToTransmitter; }
   /// (column, row, 0, 1) to mm of the scene at a time.
   Matrix4 ImageToScene(double time) const;
-  /// A calibration file, as PLUS, 3D Slicer and Tracked Slice Reader take it: Image to Probe, and
-  /// Scene to Tracker.
+  /// A calibration file, as an acquisition, PLUS, 3D Slicer and Tracked Slice Reader take it: Image
+  /// to Probe, and Tracker to Reference, which is the scene's frame.
   std::string FormatCalibration() const;
 
 private:

@@ -196,7 +196,7 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
   WriteFileAtomically(file, devices.Probe.FormatCalibration());
   const std::vector<NamedTransform> known = ReadCalibrationFile(file);
   const Matrix4 imageToProbe = known[0].Matrix;
-  const Matrix4 trackerToScene = known[1].Matrix.Inverse();
+  const Matrix4 trackerToScene = known[1].Matrix;
 
   double offset = 0;
   const std::vector<Recorded> recorded = Record(devices, 100, offset);

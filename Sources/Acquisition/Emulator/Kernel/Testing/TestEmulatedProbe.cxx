@@ -44,11 +44,11 @@ TEST(EmulatedProbe, IsWhatItsCalibrationSays)
   const std::vector<NamedTransform> transforms = ReadCalibrationFile(path);
   ASSERT_EQ(transforms.size(), 2u);
   EXPECT_EQ(transforms[0].From + transforms[0].To, "ImageProbe");
-  EXPECT_EQ(transforms[1].From + transforms[1].To, "SceneTracker");
+  EXPECT_EQ(transforms[1].From + transforms[1].To, "TrackerReference");
   for (const double time : { 0.0, 1.7, 12.3 })
   {
     ExpectEqual(probe.ImageToScene(time),
-      transforms[1].Matrix.Inverse() * EverydaySweep(time, 2) * transforms[0].Matrix);
+      transforms[1].Matrix * EverydaySweep(time, 2) * transforms[0].Matrix);
   }
   EXPECT_GT(probe.GetImageToReceiver().Determinant3(), 0); // it never mirrors
   // nothing is symmetric that could hide a mistake
