@@ -208,7 +208,7 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
   double right = 0;
   double late = 0;
   double mirrored = 0;
-  double farthest = 0;
+  std::vector<double> distances;
   int without = 0;
   for (const Recorded& each : recorded)
   {
@@ -223,7 +223,7 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
     {
       const Vec3 off = pose.Point(corner) - devices.Probe.ImageToScene(shown).Point(corner);
       const double straight = Acceleration * each.Pose->Gap * each.Pose->Gap / 8;
-      farthest = std::max(farthest, Norm(off) - straight);
+      distances.push_back(Norm(off) - straight);
     }
     const double difference = Compare(devices, each.Frame, pose);
     EXPECT_LT(difference, 4);
@@ -235,12 +235,17 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
       mirrored += Compare(devices, each.Frame, pose, true);
     }
   }
-  EXPECT_LT(farthest, 1.5); // mm; 6 without the latency
+  // a computer with too much to do answers requests late, now and then
+  std::sort(distances.begin(), distances.end());
+  const double usual = distances[distances.size() / 2];
+  EXPECT_LT(usual, 0.5); // mm; 6 without the latency
+  EXPECT_LT(distances.back(), 4);
   EXPECT_LT(without, 30);
   EXPECT_GT(seen, 40);
   EXPECT_LT(right, 0.2 * late) << right / seen << " " << late / seen;
   EXPECT_LT(right, 0.1 * mirrored) << right / seen << " " << mirrored / seen;
-  std::printf("%d frames: corners within %.2f mm; mean difference %.2f levels, with the latency "
-              "ignored %.2f, mirrored %.2f; %d frames without pose\n",
-    seen, farthest, right / seen, late / seen, mirrored / seen, without);
+  std::printf(
+    "%d frames: corners %.2f mm off (at most %.2f), mean difference %.2f levels, with the latency "
+    "ignored %.2f, mirrored %.2f; %d frames without pose\n",
+    seen, usual, distances.back(), right / seen, late / seen, mirrored / seen, without);
 }
