@@ -38,6 +38,7 @@ namespace
 constexpr double LargeRms = 1.5;      // mm; that of Carr's phantom stayed below 0.5
 constexpr double RivalRatio = 1.5;    // of the RMS of another solution
 constexpr double ManyOutliers = 0.15; // of the picks
+constexpr int MapIntervals = 60;      // of the map of expected errors along each axis
 constexpr double MinimumMargin = 5;   // mm of a wall or wire shown beyond the picks
 
 using Picks = std::vector<vtkLacunaCalibrationPick>;
@@ -274,6 +275,34 @@ void FillPicture(const Picks& picks, const lacuna::ProbeCalibration& found, vtkP
   picture->GetPointData()->SetScalars(error);
   picture->GetPointData()->AddArray(used);
 }
+
+// What to expect at pixels all over the picture, in its coordinates.
+void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map)
+{
+  double bounds[6];
+  slices->GetBounds(bounds);
+  int size[2];
+  double spacing[2];
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const double length = bounds[2 * axis + 1] - bounds[2 * axis];
+    const int intervals = length > 0 ? MapIntervals : 0;
+    size[axis] = intervals + 1;
+    spacing[axis] = intervals ? length / intervals : 1;
+  }
+  map->SetOrigin(bounds[0], bounds[2], 0);
+  map->SetSpacing(spacing[0], spacing[1], 1);
+  map->SetDimensions(size[0], size[1], 1);
+  vtkNew<vtkDoubleArray> error;
+  error->SetName("ExpectedError");
+  for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i)
+  {
+    double pixel[3];
+    map->GetPoint(i, pixel);
+    error->InsertNextValue(found.GetExpectedError({ pixel[0], pixel[1] }));
+  }
+  map->GetPointData()->SetScalars(error);
+}
 }
 
 vtkStandardNewMacro(vtkLacunaProbeCalibration);
@@ -282,7 +311,7 @@ vtkStandardNewMacro(vtkLacunaProbeCalibration);
 vtkLacunaProbeCalibration::vtkLacunaProbeCalibration()
 {
   this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(3);
+  this->SetNumberOfOutputPorts(4);
 }
 
 //------------------------------------------------------------------------------
@@ -300,7 +329,7 @@ int vtkLacunaProbeCalibration::FillInputPortInformation(int port, vtkInformation
 //------------------------------------------------------------------------------
 int vtkLacunaProbeCalibration::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  static const char* const types[] = { "vtkImageData", "vtkTable", "vtkPolyData" };
+  static const char* const types[] = { "vtkImageData", "vtkTable", "vtkPolyData", "vtkImageData" };
   info->Set(vtkDataObject::DATA_TYPE_NAME(), types[port]);
   return 1;
 }
@@ -401,6 +430,8 @@ int vtkLacunaProbeCalibration::RequestData(
       FillTable(picks, found, residuals);
       vtkPolyData* picture = vtkPolyData::GetData(outputs, 2);
       FillPicture(picks, found, picture);
+      vtkImageData* map = vtkImageData::GetData(outputs, 3);
+      FillErrorMap(slices, found, map);
 
       double expected = 0;
       for (const lacuna::Vec2& corner : GetCorners(slices))
@@ -421,7 +452,7 @@ int vtkLacunaProbeCalibration::RequestData(
         .Add("EstimateScale", this->EstimateScale)
         .Add("OutlierLimit", this->OutlierLimit);
       for (vtkDataObject* output :
-        std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture })
+        std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map })
       {
         vtkLacunaFieldData::Set(
           output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);

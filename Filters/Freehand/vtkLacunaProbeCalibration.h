@@ -25,7 +25,8 @@
  * frame is the tracker. Port 1: vtkTable of the picks with their places in the phantom (PhantomX,
  * PhantomY, PhantomZ, mm), Error (mm, from the wire, wall or point) and Used (0: an outlier). Port 2:
  * vtkPolyData in phantom coordinates (mm): the picks as vertices with Error and Used, and as lines the
- * wires, or the border of the wall.
+ * wires, or the border of the wall. Port 3: vtkImageData of 61 x 61 points all over the image, with
+ * its coordinates (column, row) and ExpectedError (mm, RMS) at each.
  *
  * All have the field data PixelSpacing (2, mm a column and a row), CalibrationRms (mm, eq. A.14),
  * CalibrationSpread (mm, standard deviation of an equation), ExpectedError (mm, RMS, largest of the

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCalibrationAdvice.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace lacuna
 {
 namespace
 {
 constexpr double Degree = 3.14159265358979323846 / 180;
+constexpr double EnoughTurn = 25; // degrees RMS, as of turns of up to 45 to either side
 
 const char* const AxisNames[3] = { "column", "row", "normal" };
 
@@ -18,7 +22,9 @@ std::string Format(const char* format, double a, double b = 0)
   return text;
 }
 
-// How far the probe was turned about each axis of the image, degrees from least to most.
+// How far the probe was turned about each axis of the image while it saw one target, degrees RMS
+// about the mean; of the targets the largest. Going from wire to wire turns it, too, but tells
+// nothing.
 Vec3 GetTurns(const std::vector<CalibrationPick>& picks, const CalibrationState& state)
 {
   const auto orientation = [&](const CalibrationPick& pick)
@@ -30,16 +36,33 @@ Vec3 GetTurns(const std::vector<CalibrationPick>& picks, const CalibrationState&
     }
     return Eigen::Matrix3d(rotation * state.ImageRotation);
   };
-  const Eigen::Matrix3d first = orientation(picks.front());
-  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
-  for (const CalibrationPick& pick : picks)
+  Vec3 turns{ 0, 0, 0 };
+  for (int target = 0; target <= static_cast<int>(CalibrationTarget::Point); ++target)
   {
-    const Eigen::AngleAxisd turn(first.transpose() * orientation(pick));
-    const Eigen::Vector3d vector = turn.angle() / Degree * turn.axis();
-    low = low.cwiseMin(vector);
-    high = high.cwiseMax(vector);
+    std::optional<Eigen::Matrix3d> first;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum;
+    int count = 0;
+    for (const CalibrationPick& pick : picks)
+    {
+      if (static_cast<int>(pick.Target) == target)
+      {
+        const Eigen::Matrix3d own = orientation(pick);
+        first = first.value_or(own);
+        const Eigen::AngleAxisd turn(first->transpose() * own);
+        const Eigen::Vector3d vector = turn.angle() / Degree * turn.axis();
+        sum += vector;
+        squares += vector.cwiseAbs2();
+        ++count;
+      }
+    }
+    for (int axis = 0; axis < 3 && count > 0; ++axis)
+    {
+      const double mean = sum[axis] / count;
+      turns[axis] =
+        std::max(turns[axis], std::sqrt(std::max(0.0, squares[axis] / count - mean * mean)));
+    }
   }
-  return { high[0] - low[0], high[1] - low[1], high[2] - low[2] };
+  return turns;
 }
 }
 
@@ -74,14 +97,17 @@ std::string DescribeCalibrationWeakness(const std::vector<int>& unknowns,
   }
   if (largest >= CalibrationModel::ImageShift)
   {
+    const double least = std::min(turns[across[0]], turns[across[1]]);
     return std::string("where the image lies along its ") + AxisNames[axis] +
       " direction: turn the probe more about its " + AxisNames[across[0]] + " and " +
       AxisNames[across[1]] + " directions" +
-      Format(
-        " (so far %.0f and %.0f degrees, better 60 and more)", turns[across[0]], turns[across[1]]);
+      Format(" (so far by %.0f and %.0f degrees RMS", turns[across[0]], turns[across[1]]) +
+      (least < EnoughTurn ? Format(", better %.0f and more)", EnoughTurn)
+                          : std::string("; in more slices, or more still)"));
   }
   return std::string("how the image is turned about its ") + AxisNames[axis] +
     " direction: let the targets appear all over the image, near and far, left and right" +
-    Format(", and turn the probe about that direction, too (so far %.0f degrees)", turns[axis]);
+    Format(
+      ", and turn the probe about that direction, too (so far by %.0f degrees RMS)", turns[axis]);
 }
 }

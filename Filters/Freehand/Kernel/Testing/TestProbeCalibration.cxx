@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 using namespace lacunaCalibrationStudy;
 
@@ -198,6 +199,27 @@ TEST(ProbeCalibration, SaysWhichMotionIsMissing)
     well.PickWall(0.5);
   }
   EXPECT_TRUE(ProbeCalibration::Solve(well.Picks, well.Options()).Weaknesses.empty());
+}
+
+TEST(ProbeCalibration, TurnsFromWireToWireAreNoTurns)
+{
+  // Each wire is seen from one side only, the sides being at right angles.
+  Scene scene(14);
+  const Matrix4 sides[3] = { Matrix4::Rotation({ 0, 1, 0 }, 90 * Degree),
+    Matrix4::Rotation({ 1, 0, 0 }, 90 * Degree), Matrix4() };
+  for (int i = 0; i < 30; ++i)
+  {
+    Vec3 point{ 0, 0, 0 };
+    point[i % 3] = scene.Uniform(-60, 60);
+    scene.Pick(Wires[i % 3], point, scene.Turn(3) * sides[i % 3],
+      { scene.Uniform(-1, 1), scene.Uniform(-1, 1) });
+  }
+  const ProbeCalibration found = ProbeCalibration::Solve(scene.Picks, scene.Options());
+  ASSERT_FALSE(found.Weaknesses.empty());
+  EXPECT_NE(found.Weaknesses[0].Motion.find("turn the probe more"), std::string::npos);
+  const std::size_t so = found.Weaknesses[0].Motion.find("(so far by ");
+  ASSERT_NE(so, std::string::npos) << found.Weaknesses[0].Motion;
+  EXPECT_LT(std::stod(found.Weaknesses[0].Motion.substr(so + 11)), 10);
 }
 
 TEST(ProbeCalibration, RefusesWhatCannotBe)

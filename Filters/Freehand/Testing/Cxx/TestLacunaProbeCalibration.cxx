@@ -107,6 +107,7 @@ struct Calibrated
   vtkSmartPointer<vtkImageData> Slices;
   vtkSmartPointer<vtkTable> Residuals;
   vtkSmartPointer<vtkPolyData> Picture;
+  vtkSmartPointer<vtkImageData> Map;
   std::string Errors, Warnings;
 
   double GetFigure(const char* name) const
@@ -140,12 +141,14 @@ Calibrated Calibrate(vtkImageData* slices, vtkTable* picks, const Settings& conf
   result.Slices = filter->GetOutput();
   result.Residuals = vtkTable::SafeDownCast(filter->GetOutputDataObject(1));
   result.Picture = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(2));
+  result.Map = vtkImageData::SafeDownCast(filter->GetOutputDataObject(3));
   result.Errors = messages->Errors;
   result.Warnings = messages->Warnings;
   if (!result.Errors.empty())
   {
     LACUNA_CHECK_THAT(result.Slices->GetNumberOfPoints() == 0 &&
-        result.Residuals->GetNumberOfRows() == 0 && result.Picture->GetNumberOfPoints() == 0,
+        result.Residuals->GetNumberOfRows() == 0 && result.Picture->GetNumberOfPoints() == 0 &&
+        result.Map->GetNumberOfPoints() == 0,
       "no half result after: " + result.Errors);
   }
   return result;
@@ -259,6 +262,13 @@ void TestFloor()
       [&] { other = Calibrate(slices, nullptr, wall); });
     LACUNA_CHECK(LargestDifference(other.GetImageToProbe(), matrix) == 0);
   }
+  // the map's largest error is the one reported, at a corner of the picture
+  double range[2];
+  found.Map->GetPointData()->GetArray("ExpectedError")->GetRange(range);
+  LACUNA_CHECK_NEAR(range[1], found.GetFigure("ExpectedError"), 1e-12);
+  LACUNA_CHECK(range[0] > 0 && range[0] < 0.95 * range[1]);
+  LACUNA_CHECK_NEAR(found.Map->GetBounds()[1], Width - 1, 1e-9);
+  LACUNA_CHECK_NEAR(found.Map->GetBounds()[3], Height - 1, 1e-9);
   // slices without a pose are left out
   const auto part = Spoilt(slices.Get(),
     [](vtkImageData* s)
