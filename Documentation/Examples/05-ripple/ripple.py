@@ -18,17 +18,11 @@ import lacuna.plugin
 import numpy as np
 
 lacuna.plugin.load()
-from lacuna.pictures import color_bar, mark_pixels, side_by_side, write_pixels
+from lacuna.pictures import chart_pixels, color_bar, mark_pixels, side_by_side, write_pixels
 from lacuna.views import in_patient_coordinates, map_letters
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkChartsCore import vtkChart, vtkChartXY
-from vtkmodules.vtkCommonDataModel import vtkTable
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
-from vtkmodules.vtkViewsContext2D import vtkContextView
-import vtkmodules.vtkRenderingContextOpenGL2
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 INTERPOLATIONS = ("Trilinear", "BSpline", "InterpolatingBSpline")
 VIEWS = {"left": [-1, 0, 0], "right": [1, 0, 0], "front": [0, -1, 0], "back": [0, 1, 0]}
@@ -128,36 +122,13 @@ def make_row(comparison, cut, title, measure, limit):
 def write_histograms(name, comparison):
     """Of the differences, as parts of the pixels."""
     edges = np.linspace(-0.6, 1, 81)
-    table = vtkTable()
-    columns = [("difference (mm)", 0.5 * (edges[1:] + edges[:-1]))]
-    for interpolation, difference in comparison.differences.items():
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    curves = []
+    for (interpolation, difference), color in zip(comparison.differences.items(), ((200, 60, 40), (40, 90, 200), (40, 150, 60))):
         counts, _ = np.histogram(difference[comparison.inner], edges)
-        columns.append((interpolation, 100.0 * counts / comparison.inner.sum()))
-    for title, values in columns:
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=1)
-        array.SetName(title)
-        table.AddColumn(array)
-    view = vtkContextView()
-    view.GetRenderer().SetBackground(1, 1, 1)
-    view.GetRenderWindow().SetOffScreenRendering(1)
-    view.GetRenderWindow().SetSize(800, 420)
-    chart = vtkChartXY()
-    view.GetScene().AddItem(chart)
-    for column, color in ((1, (200, 60, 40)), (2, (40, 90, 200)), (3, (40, 150, 60))):
-        line = chart.AddPlot(vtkChart.LINE)
-        line.SetInputData(table, 0, column)
-        line.SetColor(*color, 255)
-        line.SetWidth(2)
-    chart.SetShowLegend(True)
-    chart.GetAxis(0).SetTitle("% of the pixels in 0.02 mm")
-    chart.GetAxis(1).SetTitle("difference from all slices along the normal (mm)")
-    view.GetRenderWindow().Render()
-    picture = vtkWindowToImageFilter()
-    picture.SetInput(view.GetRenderWindow())
-    writer = vtkPNGWriter()
-    writer.SetFileName(name)
-    writer.SetInputConnection(picture.GetOutputPort())
-    writer.Write()
+        curves.append((interpolation, middles, 100.0 * counts / comparison.inner.sum(), color, "line"))
+    titles = "difference from all slices along the normal (mm)", "% of the pixels in 0.02 mm"
+    write_pixels(name, chart_pixels(curves, titles, (800, 420)))
 
 
 def main(folder, head=None):

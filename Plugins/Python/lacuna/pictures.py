@@ -3,10 +3,13 @@
 import numpy as np
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkChartsCore import vtkAxis, vtkChart, vtkChartLegend, vtkChartXY
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
 from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
+from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer, vtkWindowToImageFilter
 from vtkmodules.vtkRenderingFreeType import vtkFreeTypeTools
+from vtkmodules.vtkViewsContext2D import vtkContextView
+import vtkmodules.vtkRenderingContextOpenGL2  # noqa: F401 (draws charts)
 
 from lacuna.data import fetch
 from lacuna.views import annotations, map_letters
@@ -259,8 +262,8 @@ def side_by_side(panels, gap=6):
     return np.concatenate(parts, axis=1)[:, :-gap]
 
 
-def color_bar(to_colors, low, high, unit, height, ticks=5):
-    """A scale of that height: to_colors makes (rows, columns, red green blue) of an array of values."""
+def color_bar(to_colors, low, high, unit, height, ticks=5, sign="+"):
+    """A scale of that height: to_colors makes (rows, columns, red green blue) of an array of values. sign: before numbers above 0."""
     margin = 8
     bar = np.full((height, 95, 3), 255, dtype=np.uint8)
     length = height - 2 * margin
@@ -269,7 +272,7 @@ def color_bar(to_colors, low, high, unit, height, ticks=5):
     for value in np.linspace(low, high, ticks):
         row = margin + int(round((high - value) / (high - low) * (length - 1)))
         bar[row, 24:28] = 60
-        label = text_pixels(f"{value:+.2f} {unit}" if value else f"0 {unit}", 11)
+        label = text_pixels(f"{value:{sign}.2f} {unit}" if value else f"0 {unit}", 11)
         put_pixels(bar, label, row - label.shape[0] // 2, 31)
     return bar
 
@@ -281,3 +284,60 @@ def save_shaded(proxy, name, marks=False):
     """
     pixels = shaded_pixels(proxy)
     write_pixels(name, mark_pixels(pixels, map_letters(proxy)) if marks else pixels)
+
+
+def chart_pixels(curves, titles, size=(760, 460), bounds=None, legend=True):
+    """A chart as (rows, columns, red green blue), row 0 on top.
+
+    curves: of (label, x, y, colour, style); colour is red, green, blue from 0 to 255, style "line", "dashes" or "points".
+    Charts come before render views: beside one, Mesa leaves traces of text in them. titles: of the axes, below and on the left.
+    bounds: of both axes ((x0, x1), (y0, y1)), default: what the curves need.
+    """
+    view = vtkContextView()
+    view.GetRenderer().SetBackground(1, 1, 1)
+    window = view.GetRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    window.SetSize(*size)
+    chart = vtkChartXY()
+    view.GetScene().AddItem(chart)
+    tables = []  # charts do not keep them
+    for label, x, y, color, style in curves:
+        table = vtkTable()
+        for name, values in (("x", x), (label, y)):
+            array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=1)
+            array.SetName(name)
+            table.AddColumn(array)
+        plot = chart.AddPlot(vtkChart.POINTS if style == "points" else vtkChart.LINE)
+        plot.SetInputData(table, 0, 1)
+        plot.SetColor(*color, 255)
+        plot.SetWidth(2.5)
+        if style == "dashes":
+            plot.GetPen().SetLineType(2)
+        if style == "points":
+            plot.SetMarkerStyle(4)  # circles
+            plot.SetMarkerSize(8)
+        tables.append(table)
+    for place, title in ((vtkAxis.BOTTOM, titles[0]), (vtkAxis.LEFT, titles[1])):
+        axis = chart.GetAxis(place)
+        axis.SetTitle(title)
+        axis.GetGridPen().SetColor(225, 229, 233, 255)
+        for text in (axis.GetTitleProperties(), axis.GetLabelProperties()):
+            text.SetFontSize(15)
+            text.SetBold(False)
+            text.SetColor(0.15, 0.15, 0.15)
+        if bounds:
+            axis.SetBehavior(vtkAxis.FIXED)
+            axis.SetRange(*bounds[0 if place == vtkAxis.BOTTOM else 1])
+    chart.SetShowLegend(legend)
+    chart.GetLegend().GetLabelProperties().SetFontSize(14)
+    chart.GetLegend().SetHorizontalAlignment(vtkChartLegend.LEFT)
+    chart.GetLegend().SetVerticalAlignment(vtkChartLegend.TOP)
+    window.Render()
+    picture = vtkWindowToImageFilter()
+    picture.SetInput(window)
+    picture.ShouldRerenderOff()
+    picture.Update()
+    image = picture.GetOutput()
+    width, height, _ = image.GetDimensions()
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[::-1, :, :3].copy()
