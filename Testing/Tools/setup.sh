@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Shared by demo.sh and test.sh (sourced from the top folder): installs what is missing, configures
+# Shared by demo.sh, test.sh and build-site.sh (sourced from the top folder): installs what is missing, configures
 # and builds. Each function says what failed and returns non-zero.
 
 lacuna_fail() {
@@ -7,10 +7,10 @@ lacuna_fail() {
   return 1
 }
 
-# Debian packages of packages-debian.txt that are not there yet.
+# Debian packages of a list beside this file (default: packages-debian.txt) that are not there yet.
 lacuna_install_packages() {
   local wanted missing="" package as_root=""
-  wanted=$(grep -v '^#' Testing/Tools/packages-debian.txt)
+  wanted=$(grep -v '^#' "Testing/Tools/${1:-packages-debian.txt}")
   for package in $wanted; do
     dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
       missing="$missing $package"

@@ -15,8 +15,8 @@ std::string FormatNumber(double value);
 std::string FormatNumber(float value);
 
 /// A word as it is; in double quotes when it is empty or has a blank, a comma, an equals sign, a
-/// quote, a backslash or a control character. Within quotes \" \\ \n \r \t stand for these
-/// characters.
+/// quote, a backslash or a control character. Within quotes, `\"`, `\\`, `\n`, `\r` and `\t`
+/// stand for these characters.
 std::string QuoteWord(std::string_view word);
 
 /// A number as FormatNumber writes it, true and false as on and off, a text (null is an empty one)

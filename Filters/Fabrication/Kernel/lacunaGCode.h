@@ -26,7 +26,7 @@ struct GCodeOptions
   int ToolNumber = 1;         ///< 1..99, also of its length offset
   int WorkOffset = 54;        ///< 54..59
   double SpindleSpeed = 6000; ///< turns per minute, rounded
-  bool LineNumbers = false;   ///< N10, N20, .., N9990, N10, ..
+  bool LineNumbers = false;   ///< N10, N20 to N9990, then N10 again
   /// Lines before and after the motions, see DefaultHeader. {PROGRAM}, {TOOL} (two digits),
   /// {OFFSET} (G54), {SPEED} and {X}, {Y}, {Z} (where the path starts) are filled in. See
   /// FillInTemplate for what they may contain.

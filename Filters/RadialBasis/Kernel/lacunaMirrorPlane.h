@@ -51,8 +51,9 @@ Sum SumOverBlocks(Execution& execution, std::int64_t count, std::int64_t block, 
   return sum;
 }
 
-/// Lin's concordance correlation coefficient of pairs (a, b): 1 - <(a - b)^2> / (var a + var b +
-/// (<a> - <b>)^2). 1: all pairs are equal, 0: they have nothing to do with one another, -1: a = -b.
+/// Lin's concordance correlation coefficient of pairs (a, b): 1 - mean (a - b)^2 / (var a + var b +
+/// (mean a - mean b)^2). 1: all pairs are equal, 0: they have nothing to do with one another, -1:
+/// a = -b.
 /// Lin, A concordance correlation coefficient to evaluate reproducibility, Biometrics 45, 1989.
 class Concordance
 {

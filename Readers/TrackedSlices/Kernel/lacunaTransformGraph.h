@@ -13,8 +13,8 @@
 
 namespace lacuna
 {
-/// The ways in which name can be read as <From>To<To>: both sides have letters, and the To is
-/// followed by anything but a lower-case letter (so 'ToolToTracker' has one reading).
+/// The ways in which name can be read as one frame to another, as in ProbeToReference: both
+/// sides have letters, and the To is followed by anything but a lower-case letter (so 'ToolToTracker' has one reading).
 std::vector<std::pair<std::string, std::string>> ReadTransformName(std::string_view name);
 
 class TransformGraph
