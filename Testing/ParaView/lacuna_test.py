@@ -24,20 +24,28 @@ def output(name):
     return os.path.join(folder, name)
 
 
-def run_ranks(ranks, script, *arguments):
-    """Runs a script in pvbatch with so many MPI ranks, or leaves the test as skipped."""
-    mpirun = shutil.which("mpirun")
-    pvbatch = shutil.which("pvbatch")
-    if not mpirun or not pvbatch:
-        print("skipped: no mpirun or pvbatch", flush=True)
+def program(name):
+    """The program's path, or leaves the test as skipped."""
+    path = shutil.which(name)
+    if not path:
+        print(f"skipped: no {name}", flush=True)
         sys.exit(SKIPPED)
-    # pvpython has started MPI for itself; its traces would confuse mpirun
+    return path
+
+
+def mpi_environment():
+    """For mpirun: pvpython has started MPI for itself; its traces would confuse it."""
     environment = {key: value for key, value in os.environ.items()
                    if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
     environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                        OMPI_MCA_rmaps_base_oversubscribe="1")
-    subprocess.run([mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering",
-                    os.path.abspath(script), *arguments], env=environment, check=True, timeout=300)
+    return environment
+
+
+def run_ranks(ranks, script, *arguments):
+    """Runs a script in pvbatch with so many MPI ranks, or leaves the test as skipped."""
+    subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering",
+                    os.path.abspath(script), *arguments], env=mpi_environment(), check=True, timeout=300)
 
 
 def check_defaults(proxy, own, names, enumerations=None):

@@ -17,12 +17,13 @@ def load():
     """Loads the plugin into the current ParaView session, unless ParaView has done so when it started.
 
     Call it before `from paraview.simple import *`: then SweptVolume() and the others are there. Connected to a
-    server, the plugin is loaded there as well; it must be at the same place.
+    server, the plugin is loaded there as well, from the same place, unless the server has loaded its own.
     """
     import paraview.simple
     from paraview import servermanager
     remote = servermanager.ActiveConnection is not None and servermanager.ActiveConnection.IsRemote()
-    if not remote and hasattr(paraview.simple, "SweptVolume"):
-        return
-    for on_server in (False, True) if remote else (False,):
-        paraview.simple.LoadPlugin(path(), remote=on_server, ns=vars(paraview.simple))
+    known = hasattr(paraview.simple, "SweptVolume")  # to the server, when there is one
+    if remote or not known:
+        paraview.simple.LoadPlugin(path(), remote=False, ns=vars(paraview.simple))
+    if remote and not known:  # ParaView fails to load what is loaded there
+        paraview.simple.LoadPlugin(path(), remote=True, ns=vars(paraview.simple))

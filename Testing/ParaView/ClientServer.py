@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Client and server: both pipelines give on a pvserver, also on one of two ranks, what they give alone, whichever of the two sides has loaded the plugin when it started; fetched images lie as they do there.
+
+With the name of pvpython it is the test; with the port of a server, or 0 for none, it is the client and prints what it got.
+"""
+import os
+import socket
+import subprocess
+import sys
+import time
+
+from lacuna_test import mpi_environment, output, program
+
+PLUGINS = os.path.join(os.path.dirname(os.path.dirname(os.environ["LACUNA_PLUGIN"])), "lacuna.plugins.xml")
+
+
+def client(port):
+    import paraview.simple
+    if port:
+        paraview.simple.Connect("localhost", port)
+    import lacuna.plugin
+    lacuna.plugin.load()
+    lacuna.plugin.load()  # once more does no harm
+    from lacuna import coordinates
+    from lacuna.data import fetch
+    from lacuna.errors import raising
+    from paraview.simple import BSplineIsoRayCaster, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom, SweptVolume
+    for view, up in (((0, 1, 0), (0, 0, 1)), ((0.4, 0.3, -0.8), (0, 1, 0))):
+        depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500], ViewDirection=view, ViewUp=up)
+        matrix, record = fetch(depth).GetDirectionMatrix(), depth.FieldData.GetArray("ImageToWorld")
+        for row in range(3):  # the map lies on the client as it does on the server
+            for column in range(3):
+                own = record.GetRange(4 * row + column)[0] / (depth.PixelSpacing or 3, depth.PixelSpacing or 3, 1)[column]
+                assert abs(matrix.GetElement(row, column) - own) < 1e-6, (row, column, matrix, own)
+    with raising():
+        volume = SweptVolume(Input=PhantomSweep(NumberOfSlices=20))
+        volume.UpdatePipeline()
+        filled = RBFHoleFiller(Input=BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500]))
+        filled.UpdatePipeline()
+        iges = output(f"ClientServer-{port}.igs")
+        SaveData(iges, proxy=filled)
+    print("result", volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
+          filled.PointData["Deviation"].GetRange(), coordinates.find(filled), os.path.getsize(iges))
+    os.remove(iges)
+
+
+def listening(port):
+    """Without connecting: a server takes the first who knocks for its client."""
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        with open(table, encoding="ascii") as file:
+            if any(fields[1].endswith(f":{port:04X}") and fields[3] == "0A" for fields in map(str.split, file)):
+                return True
+    return False
+
+
+def start(server, environment):
+    with socket.socket() as free:
+        free.bind(("", 0))
+        port = free.getsockname()[1]
+    process = subprocess.Popen([*server, "--force-offscreen-rendering", f"--server-port={port}"], env=environment)
+    for _ in range(600):
+        if listening(port):
+            return process, port
+        assert process.poll() is None, "the server ended"
+        time.sleep(0.1)
+    process.kill()
+    raise TimeoutError(f"{server} does not listen")
+
+
+def run(server=(), on_server=False, on_client=False):
+    """What the client prints. on_server, on_client: that side loads the plugin when it starts."""
+    plain = mpi_environment()
+    plain.pop("PV_PLUGIN_CONFIG_FILE", None)
+    loading = dict(plain, PV_PLUGIN_CONFIG_FILE=PLUGINS)
+    process, port = start(server, loading if on_server else plain) if server else (None, 0)
+    try:
+        done = subprocess.run([sys.argv[1], "--force-offscreen-rendering", os.path.abspath(__file__), str(port)], check=False, text=True,
+                              timeout=300, env=loading if on_client else plain, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        errors = [line for line in done.stdout.splitlines() if "ERR|" in line
+                  and "vtkStructuredPointsRead" not in line]  # a false alarm of ParaView, see remote-servers.md
+        results = [line for line in done.stdout.splitlines() if line.startswith("result")]
+        assert done.returncode == 0 and len(results) == 1 and not errors, done.stdout
+        if process:
+            process.wait(30)  # it leaves with its client
+    finally:
+        if process:
+            process.kill()
+    print(results[0], flush=True)
+    return results[0]
+
+
+def main():
+    pvserver = program("pvserver")
+    alone = run()
+    assert run([pvserver]) == alone
+    assert run([pvserver], on_server=True) == alone
+    assert run([program("mpirun"), "-n", "2", pvserver], on_server=True, on_client=True) == alone
+    assert run([pvserver], on_client=True) == alone
+
+
+if sys.argv[1].isdigit():
+    client(int(sys.argv[1]))
+else:
+    main()
