@@ -31,7 +31,7 @@ PAGE = """# Good Filter
 """
 
 
-def check(page=PAGE, xml=XML, readme="[x](good-filter.md)", name="good-filter.md"):
+def check(page=PAGE, xml=XML, readme="| [x](good-filter.md) | y |", name="good-filter.md"):
     with tempfile.TemporaryDirectory() as folder:
         for path, content in {"Plugins/Lacuna/Filters/GoodFilter.xml": xml, "Documentation/UserGuide/README.md": readme,
                               "Documentation/UserGuide/" + name: page}.items():
@@ -54,5 +54,5 @@ for old, new, complaint in (
     assert complaint in check(PAGE.replace(old, new)), (complaint, check(PAGE.replace(old, new)))
 assert "the default of Width is '2', not '0.50'" in check(xml=XML.replace('"0.5"', '"2"'))
 assert "missing, the page of Good Filter" in check(name="other.md")
-assert "does not list good-filter.md" in check(readme="")
+assert "begins with a link to good-filter.md" in check(readme="See [x](good-filter.md)")
 print("ok")

@@ -193,11 +193,12 @@ def stage(target):
 
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(os.path.join(ROOT, "Documentation"), os.path.join(target, "Documentation"), ignore=shutil.ignore_patterns("*.md", "Site", "__pycache__"))
-    for path in re.findall(r"\]\(((?!Documentation|https?:)[\w/.-]+)\)", read("README.md")):
-        if not path.endswith(".md"):  # sources that the start page links to
-            os.makedirs(os.path.dirname(os.path.join(target, path)), exist_ok=True)
-            shutil.copy(os.path.join(ROOT, path), os.path.join(target, path))
     for path, text in pages.items():
+        for link in re.findall(r"\]\(([\w/.-]+)\)", text):  # to other files of the project
+            linked = os.path.normpath(os.path.join(os.path.dirname(path), link))
+            if not linked.startswith("Documentation") and not linked.endswith(".md"):
+                os.makedirs(os.path.dirname(os.path.join(target, linked)), exist_ok=True)
+                shutil.copy(os.path.join(ROOT, linked), os.path.join(target, linked))
         if not path.startswith(EXAMPLES):  # a script's page shows it
             text = re.sub(r"(\]\([./\w]*Examples/[\w-]+/)[\w.-]+\.(py|md|cxx)\)", r"\1index.md)", text)
         text = re.sub(r"(\]\((\.\./)*)README\.md\)", lambda match: match.group(0) if path.startswith(GUIDE) and "../" not in match.group(0) else match.group(1) + "index.md)", text)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The user guide's tables of properties agree with the plugin's XML: every proxy has its page; every name in a table is a property with that default; every property and every choice is named on the page; the guide's README lists every page.
+"""The user guide's tables of properties agree with the plugin's XML: every proxy has its page; every name in a table is a property with that default; every property and every choice is named on the page; the tables of the guide's README list every page.
 
 check-parameters.py [folder]    the project's folder; default: this one
 """
@@ -79,8 +79,8 @@ for proxy in proxies:
     elif not any(proxy.label in text for text in pages.values()):
         problems.append(f"{GUIDE}: no page speaks of {proxy.label}")
 for page in pages:
-    if page != "README.md" and f"]({page})" not in pages["README.md"]:
-        problems.append(f"{GUIDE}/README.md: does not list {page}")
+    if page != "README.md" and not re.search(rf"^\| *\[[^]]*\]\({page}\)", pages["README.md"], re.MULTILINE):
+        problems.append(f"{GUIDE}/README.md: no row of a table begins with a link to {page}, from which the site's navigation is made")
 if not proxies:
     problems.append(f"{ROOT} has no proxies")
 for problem in problems:

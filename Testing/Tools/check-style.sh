@@ -25,6 +25,8 @@ bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
 bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
 
+version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+grep -qx "version: $version" CITATION.cff || complain "CITATION.cff is not of version $version"
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
 python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"
 
