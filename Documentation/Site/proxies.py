@@ -53,6 +53,8 @@ class Property:
         if self.entries:
             return ", ".join(self.entries.values())
         low, high = single(self.low), single(self.high)
+        if low == "0" and re.search(r"[(,] ?above 0\b", self.help):
+            return f"above 0, to {high}" if high else "above 0"
         if low and high:
             return f"{low} to {high}"
         return f"{low} or more" if low else f"at most {high}" if high else ""

@@ -58,10 +58,11 @@ def definition(each):
 
 
 def parameters(proxy):
-    groups = {"In the panel": [], "Advanced": [], "Results to read": []}
+    groups = {"In the panel": [], "Advanced": [], "Set by ParaView's menus": [], "Results to read": []}
     for each in proxy.properties:
         if each.name != "TimestepValues":
-            groups["Results to read" if each.information else "Advanced" if each.advanced else "In the panel"].append(definition(each))
+            groups["Results to read" if each.information else "Set by ParaView's menus" if each.hidden else
+                   "Advanced" if each.advanced else "In the panel"].append(definition(each))
     files = f" Files: {', '.join('.' + extension for extension in proxy.extensions.split())}." if proxy.extensions else ""
     python = f"In Python `{proxy.constructor}()`" if proxy.kind != "writer" else "In Python `SaveData(...)` with these names"
     text = (f"\n## All parameters of {proxy.label}\n{python}, in C++ "
@@ -159,11 +160,11 @@ def navigation():
 
 
 def classes(proxies):
-    rows = "".join(f'| {proxy.label} | <a href="../../cpp/class{proxy.cls}.html"><code>{proxy.cls}</code></a> | {proxy.short_help} |\n'
+    rows = "".join(f'<a href="../../cpp/class{proxy.cls}.html"><code>{proxy.cls}</code></a>\n: {proxy.label}\n\n  {proxy.short_help}\n\n'
                    for proxy in proxies)
     return ("# C++ reference\n\nThe classes behind the plugin, usable with VTK alone ([how](architecture.md)). "
             'All headers, also those of the kernels: <a href="../../cpp/annotated.html">classes</a>, '
-            '<a href="../../cpp/files.html">files</a>.\n\n| in ParaView | class | |\n|---|---|---|\n' + rows)
+            '<a href="../../cpp/files.html">files</a>.\n\n' + rows)
 
 
 def stage(target):
