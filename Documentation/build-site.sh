@@ -12,9 +12,6 @@ version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 mkdir -p "$site"
 python3 -B Documentation/Site/stage.py "$site/source"
 sphinx-build -q -W --keep-going -j auto -c Documentation/Site -D "release=$version" -d "$site/doctrees" "$site/source" "$site/html"
-# Debian's theme takes this file from the root of a web server: here it comes along.
-cp /usr/share/javascript/normalize.css/normalize.css "$site/html/_static/styles/"
-sed -i 's|url(/javascript/normalize.css/|url(|' "$site/html/_static/styles/furo.css"
 (cat Documentation/Site/Doxyfile; printf 'OUTPUT_DIRECTORY = "%s/html"\nPROJECT_NUMBER = %s\n' "$site" "$version") | doxygen -
 python3 Testing/Tools/check-site.py "$site/html"
 echo "$site/html/index.html"
