@@ -3,7 +3,6 @@
 
 #include "lacunaAtomicFile.h"
 #include "lacunaGCode.h"
-#include "lacunaLandmarks.h"
 #include "lacunaParameterText.h"
 #include "lacunaToolPath.h"
 #include "vtkCellArray.h"
@@ -14,6 +13,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
 #include "vtkLacunaMirrored.h"
+#include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
@@ -25,8 +25,8 @@
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -95,44 +95,16 @@ std::vector<lacuna::GCodeMove> GetMoves(vtkPolyData* path, lacuna::Vec3& start)
 }
 
 //------------------------------------------------------------------------------
-// Whether the path is where Milling Tool Path made it, by its landmarks. Throws when it has another
-// shape now or lies aslant; returns a warning when it lies elsewhere or there is no telling.
+// Whether the path is where Milling Tool Path made it. Throws when it has another shape now or lies
+// aslant; returns a warning when it lies elsewhere.
 std::string CheckPlace(vtkPolyData* path)
 {
-  vtkDataArray* marks =
-    vtkLacunaFieldData::Find(path, vtkLacunaMillingToolPath::LandmarksName, 4, 4);
-  if (!marks)
+  const std::optional<lacuna::LandmarkMove> found = vtkLacunaPressPosition::FindMove(path);
+  if (!found)
   {
     return {};
   }
-  vtkDataArray* times = GetArray(path, vtkLacunaMillingToolPath::TimeName);
-  std::array<lacuna::Vec3, 4> before;
-  std::array<lacuna::Vec3, 4> after;
-  for (int k = 0; k < 4; ++k)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      before[k][c] = marks->GetComponent(k, c + 1);
-    }
-    const double time = marks->GetComponent(k, 0);
-    double least = 1e-6 * (1 + std::abs(time)); // single precision may have come between
-    bool found = false;
-    for (vtkIdType id = 0; id < times->GetNumberOfTuples(); ++id)
-    {
-      if (const double off = std::abs(times->GetComponent(id, 0) - time); off <= least)
-      {
-        least = off;
-        found = true;
-        path->GetPoint(id, after[k].data());
-      }
-    }
-    if (!found)
-    {
-      return "a part of the path has been cut out, so there is no telling whether it lies where "
-             "Milling Tool Path made it";
-    }
-  }
-  const lacuna::LandmarkMove move = lacuna::CompareLandmarks(before, after);
+  const lacuna::LandmarkMove& move = *found;
   const auto thousandths = [](double value)
   { return lacuna::FormatNumber(std::round(1000 * value) / 1000); };
   const std::string since = "the path has been changed since Milling Tool Path made it (by "
@@ -183,6 +155,18 @@ double GetNumber(vtkPolyData* path, const char* name)
       lacuna::FormatNumber(value) + "; write the output of Milling Tool Path");
   }
   return value;
+}
+
+// Where the program's coordinates are. changed: the path lies elsewhere than it was made.
+std::string DescribePlace(vtkPolyData* path, bool changed)
+{
+  const bool before = vtkLacunaFieldData::Find(path, vtkLacunaPressPosition::MovedName, 1, 1);
+  if (!changed && !before)
+  {
+    return "mm, press coordinates, tool tip";
+  }
+  return std::string("mm, tool tip. ") + (changed ? "The path" : "The mould") +
+    " was MOVED since it was made: no press coordinates, the way to the patient is not known";
 }
 
 std::string DescribeTool(vtkPolyData* path, int number)
@@ -288,7 +272,7 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   }
   const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
   options.Comments = { version + " G-Code Writer",
-    vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), "mm, press coordinates, tool tip",
+    vtksys::SystemTools::GetCurrentDateTime("%Y-%m-%d %H:%M"), DescribePlace(path, !moved.empty()),
     DescribeTool(path, this->ToolNumber) };
   if (this->ArcTolerance > 0)
   {

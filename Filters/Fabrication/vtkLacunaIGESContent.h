@@ -79,10 +79,13 @@ private:
     vtkDataObject* Data;
     std::string Name; ///< of the block; empty when the input is no collection
     std::optional<lacuna::Matrix4> PressToPatient;
-    lacuna::Matrix4 ToFile;
-    bool IsPatient()
-      const; ///< the input, before it was laid into a press, is marked as the patient's
+    std::string Lost; ///< of what lies in a press: why nothing leads to the patient; empty: it does
+    lacuna::Matrix4 ToFile = {};
+    /// The input, before it was laid into a press, is marked as the patient's.
+    bool IsPatient() const;
   };
+  std::string FindLost(vtkDataObject* data, const std::string& prefix, bool hasMatrix);
+
   void Collect(vtkDataObject* data, const std::string& name, bool nested);
   void PlaceItems();
   void DescribeFrame(const Item* press);

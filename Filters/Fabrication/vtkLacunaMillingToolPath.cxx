@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMillingToolPath.h"
 
-#include "lacunaLandmarks.h"
 #include "lacunaMaterialRemoval.h"
 #include "lacunaParameterText.h"
 #include "lacunaToolPath.h"
@@ -12,6 +11,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGridLayer.h"
@@ -29,7 +29,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -122,22 +121,13 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
   return totals;
 }
 
-//------------------------------------------------------------------------------
-void SetLandmarks(vtkPolyData* output, const std::vector<lacuna::Vec3>& points)
+// Says in an output that its input had been moved by so many mm, so that there is no way from it to the
+// patient.
+void MarkMoved(vtkPolyData* output, double way)
 {
-  std::array<std::size_t, 4> indices{};
-  if (!lacuna::FindLandmarks(points, indices))
-  {
-    return; // of a path in a plane
-  }
-  vtkDataArray* times = output->GetPointData()->GetArray(vtkLacunaMillingToolPath::TimeName);
-  std::vector<double> values;
-  for (const std::size_t k : indices)
-  {
-    values.push_back(times->GetComponent(static_cast<vtkIdType>(k), 0));
-    values.insert(values.end(), points[k].data(), points[k].data() + 3);
-  }
-  vtkLacunaFieldData::Set(output, vtkLacunaMillingToolPath::LandmarksName, values, 4);
+  output->GetFieldData()->RemoveArray(PressToPatientName);
+  vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Press); // without that before the press
+  vtkLacunaFieldData::Set(output, vtkLacunaPressPosition::MovedName, { way }, 1);
 }
 
 //------------------------------------------------------------------------------
@@ -339,9 +329,11 @@ int vtkLacunaMillingToolPath::RequestData(
   {
     this->CheckProperties();
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
-    if (const std::string moved = vtkLacunaPressPosition::Check(grid); !moved.empty())
+    const std::string elsewhere = vtkLacunaPressPosition::Check(grid);
+    const bool moved = !elsewhere.empty();
+    if (moved)
     {
-      vtkWarningMacro(<< moved);
+      vtkWarningMacro(<< elsewhere);
     }
     if (vtkLacunaMirrored::IsMarked(grid))
     {
@@ -419,9 +411,10 @@ int vtkLacunaMillingToolPath::RequestData(
       set("MachiningTime", { totals.Time });
       set("LargestLeftOver", { map.LargestLeftOver });
       set("LargestGouge", { map.LargestGouge });
-      if (output == lines)
+      vtkLacunaPressPosition::Record(output);
+      if (moved)
       {
-        SetLandmarks(output, path.Points);
+        MarkMoved(output, vtkLacunaPressPosition::FindMove(grid)->Way);
       }
       vtkLacunaProvenance::Record(output, this, { grid }, parameters);
     }

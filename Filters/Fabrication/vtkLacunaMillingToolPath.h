@@ -17,6 +17,9 @@
  * what a tool of this shape leaves however dense the path, as it does not fit). Exact for the
  * motions as they are, but for Unreachable, see lacuna::FindUnreachable.
  *
+ * Both have the point data PressPosition (double x 4: where the point was made, and 1), by which the
+ * writers see that they have been moved.
+ *
  * Both carry the input's field data (PressToPatient) and
  * | array           | meaning                                                                    |
  * |-----------------|----------------------------------------------------------------------------|
@@ -31,8 +34,8 @@
  * | MachiningTime   | s, without acceleration                                                    |
  * | LargestLeftOver | mm, on the map                                                             |
  * | LargestGouge    | mm, depth of the deepest point of the map within the swept tool            |
- * | Landmarks       | four points of the path that are not in a plane: Time, x, y, z of each (of |
- * |                 | output 0), by which vtkLacunaGCodeWriter sees that the path has been moved |
+ * | MovedSincePress | mm by which the surface had been moved since it was made for the press;    |
+ * |                 | only then, and without PressToPatient, which would lead elsewhere          |
  *
  * A surface that is marked as a mirror image (vtkLacunaMirrored) gives marked outputs and a warning;
  * vtkLacunaGCodeWriter refuses them unless AllowMirrored is on.
@@ -63,7 +66,6 @@ public:
   static constexpr const char* PassName = "Pass";
   static constexpr const char* FeedRateName = "FeedRate";
   static constexpr const char* TimeName = "Time";
-  static constexpr const char* LandmarksName = "Landmarks";
 
   enum ToolShapeType
   {

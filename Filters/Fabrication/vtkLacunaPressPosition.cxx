@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPressPosition.h"
 
-#include "lacunaLandmarks.h"
 #include "lacunaParameterText.h"
 #include "vtkDoubleArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPolyData.h"
 
 #include <array>
 #include <cmath>
@@ -48,13 +48,13 @@ void vtkLacunaPressPosition::Record(vtkPointSet* data)
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaPressPosition::Check(vtkDataObject* object)
+std::optional<lacuna::LandmarkMove> vtkLacunaPressPosition::FindMove(vtkDataObject* object)
 {
   auto* data = vtkPointSet::SafeDownCast(object);
   vtkDataArray* positions = data ? data->GetPointData()->GetArray(ArrayName) : nullptr;
   if (!positions || positions->GetNumberOfComponents() != 4)
   {
-    return {};
+    return std::nullopt;
   }
   std::vector<lacuna::Vec3> made;
   std::vector<vtkIdType> ids;
@@ -70,7 +70,7 @@ std::string vtkLacunaPressPosition::Check(vtkDataObject* object)
   }
   if (made.size() < 3)
   {
-    return {};
+    return std::nullopt;
   }
   std::array<std::size_t, 4> indices{};
   const bool spans = lacuna::FindLandmarks(made, indices);
@@ -86,14 +86,27 @@ std::string vtkLacunaPressPosition::Check(vtkDataObject* object)
     const lacuna::Vec3 across = lacuna::Cross(before[1] - before[0], before[2] - before[0]);
     if (!(lacuna::Norm(across) > PlaceTolerance))
     {
-      return {}; // on a line
+      return std::nullopt; // on a line
     }
     before[3] = LeavePlane(before);
     after[3] = LeavePlane(after);
   }
-  const lacuna::LandmarkMove move = lacuna::CompareLandmarks(before, after);
-  const std::string since = "the surface has been changed since it was made for the press (by "
-                            "Transform?): ";
+  return lacuna::CompareLandmarks(before, after);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaPressPosition::Check(vtkDataObject* object)
+{
+  const std::optional<lacuna::LandmarkMove> found = FindMove(object);
+  if (!found)
+  {
+    return {};
+  }
+  const lacuna::LandmarkMove& move = *found;
+  const std::string what = vtkPolyData::SafeDownCast(object) ? "the path or curve" : "the surface";
+  const std::string since = what +
+    " has been changed since it was made for the press (by "
+    "Transform?): ";
   const std::string advice = ". Use it as it was made, without Transform";
   if (move.Mirrored)
   {

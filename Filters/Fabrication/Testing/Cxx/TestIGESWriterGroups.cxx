@@ -216,6 +216,95 @@ void TestWhose()
   LACUNA_CHECK(lacuna::Norm(Vec(curve.Corners.at(3)) - Corners[3]) < 0.0002);
 }
 
+// What has been moved since it was made for the press is not at the place that its matrix leads from,
+// and the file says so; what was made of it, and a path that is mirrored or scaled, is known, too.
+void TestMoved()
+{
+  using lacuna::Matrix4;
+  const auto start = [](const Outcome& outcome)
+  {
+    std::string text;
+    for (const std::string& line : IGESParser(outcome.Text).Start)
+    {
+      text += line + ' ';
+    }
+    return text;
+  };
+  std::vector<lacuna::Vec3> points;
+  vtkNew<vtkImageData> patient;
+  vtkLacunaCoordinates::Mark(patient, vtkLacunaCoordinates::Patient);
+  const auto press = [&](vtkPointSet* data, const Matrix4& move)
+  {
+    SetPress(data, Matrix4::Translation({ 10, -20, 30 }));
+    vtkLacunaCoordinates::MarkPress(patient, data);
+    TestSurfaces::RecordAndMove(data, move);
+  };
+  const auto frame = [](int which)
+  { return [which](vtkLacunaIGESWriter* w) { w->SetCoordinates(which); }; };
+  auto mould = TestSurfaces::Grid(2, points);
+  press(mould, {});
+  LACUNA_CHECK_CONTAINS(start(Write(mould)), "To patient coordinates (DICOM LPS) by a matrix");
+  auto moved = TestSurfaces::Grid(2, points);
+  press(moved, Matrix4::Translation({ 50, 0, 0 }) * Matrix4::Rotation({ 0, 0, 1 }, 0.3));
+  const Outcome outcome = Write(moved);
+  LACUNA_CHECK_CONTAINS(outcome.Warning, "mm elsewhere, and PressToPatient does not lead");
+  const std::string text = start(outcome);
+  LACUNA_CHECK_CONTAINS(text, "The way to the patient is NOT KNOWN: it was MOVED since");
+  for (const char* words :
+    { "LPS", "matrix", "Coordinates of the press", "Coordinates of the pat" })
+  {
+    LACUNA_CHECK_THAT(text.find(words) == std::string::npos, words + (": " + text));
+  }
+  const auto first = [](const Outcome& written)
+  {
+    const IGESParser file(written.Text);
+    return Vec(IGESPoint(IGESSurface(*OfType(file, 128).at(0)), 0, 0));
+  };
+  double p[3];
+  moved->GetPoint(0, p);
+  LACUNA_CHECK_THAT(
+    lacuna::Norm(first(outcome) - lacuna::Vec3{ p[0], p[1], p[2] }) < 0.001, "where it is");
+  for (const int which : { 1, 2 })
+  {
+    Refuses(moved, "it lies up to", frame(which));
+  }
+  // beside one that is where it was made
+  const std::string both = start(Write(Group({ { "Moved", moved }, { "Mould", mould } })));
+  LACUNA_CHECK_CONTAINS(both, "NOT KNOWN for 'Moved': it was MOVED");
+  LACUNA_CHECK_CONTAINS(both, "To patient coordinates (DICOM LPS) by a matrix");
+  auto outline = Lines(Corners, { { 0, 1, 2, 3 } });
+  Refuses(Group({ { "Moved", moved }, { "Outline", outline } }), "nothing brings them together");
+
+  // a path over a mould that had been moved
+  auto path = Lines(Corners, { { 0, 1, 2, 3 } });
+  vtkLacunaCoordinates::Mark(path, vtkLacunaCoordinates::Press);
+  vtkLacunaFieldData::Set(path, "MovedSincePress", { 50 }, 1);
+  LACUNA_CHECK_CONTAINS(start(Write(path)), "NOT KNOWN: what it is made of was MOVED since");
+  for (const int which : { 1, 2 })
+  {
+    Refuses(path, "nothing says where the patient is: what it is made of was MOVED", frame(which));
+  }
+
+  // paths and curves that have been changed themselves
+  const auto curve = [&](const Matrix4& move)
+  {
+    auto lines = Lines(Corners, { { 0, 1, 2, 3 } });
+    press(lines, move);
+    return lines;
+  };
+  for (const int which : { 0, 1, 2 })
+  {
+    LACUNA_CHECK(Write(curve({}), frame(which)).Curves == 1);
+    Refuses(curve(Matrix4::Scaling({ -1, 1, 1 })), "the path or curve has been changed since",
+      frame(which));
+    Refuses(Group({ { "Path", curve(Matrix4::Scaling({ 1 / 25.4, 1 / 25.4, 1 / 25.4 })) } }),
+      "block 'Path': the path or curve has been changed since", frame(which));
+  }
+  LACUNA_CHECK_CONTAINS(
+    start(Write(curve(Matrix4::Translation({ 5, 0, 0 })))), "NOT KNOWN: it was MOVED");
+  Refuses(curve(Matrix4::Translation({ 5, 0, 0 })), "up to 5 mm elsewhere", frame(1));
+}
+
 void TestMirrored()
 {
   auto map = DefectMap();
@@ -258,6 +347,7 @@ int TestIGESWriterGroups(int argc, char* argv[])
       TestGroups();
       TestFrames();
       TestWhose();
+      TestMoved();
       TestMirrored();
       TestPrivacy();
       vtkNew<vtkLacunaIGESWriter> writer;

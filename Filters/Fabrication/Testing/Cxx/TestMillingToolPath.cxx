@@ -7,6 +7,8 @@
 #include "vtkDoubleArray.h"
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaCoordinates.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaGCodeWriter.h"
 #include "vtkLacunaMillingToolPath.h"
@@ -339,6 +341,12 @@ void TestMoved(const std::string& file)
     LACUNA_CHECK(vtksys::SystemTools::FileExists(file) == written);
     LACUNA_CHECK_CONTAINS((written ? messages->Warnings : messages->Errors), words);
     LACUNA_CHECK((written ? messages->Errors : messages->Warnings).empty());
+    if (written)
+    {
+      const bool moved = Read(file).find("THE PATH WAS MOVED SINCE") != std::string::npos;
+      LACUNA_CHECK(moved != (Read(file).find("PRESS COORDINATES, TOOL TIP") != std::string::npos));
+      LACUNA_CHECK_THAT(moved == !words.empty(), "the file says so, too");
+    }
     return messages->Warnings.empty();
   };
   using lacuna::Matrix4;
@@ -358,32 +366,21 @@ void TestMoved(const std::string& file)
   write(Matrix4::Translation({ 0, 0, -0.01 }), true, "it lies 0.01 mm lower", false);
   write(Matrix4::Translation({ 20, 0, -20 }), false, "it lies 20 mm lower", false);
   write(Matrix4::Rotation({ 0, 0, 1 }, 0.001), false, "PressToPatient does not lead", true);
-
-  // a piece of the path
-  vtkNew<vtkPolyData> piece;
-  piece->ShallowCopy(filter->GetOutput());
-  vtkNew<vtkDoubleArray> times;
-  times->DeepCopy(piece->GetPointData()->GetArray("Time"));
-  times->FillComponent(0, -1);
-  times->SetName("Time");
-  piece->GetPointData()->AddArray(times);
-  vtkNew<vtkLacunaGCodeWriter> writer;
-  writer->SetInputData(piece);
-  writer->SetFileName(file.c_str());
-  const auto messages = lacunaCheck::Watch(writer);
-  LACUNA_CHECK(writer->Write() == 1);
-  LACUNA_CHECK_CONTAINS(messages->Warnings, "no telling");
 }
 
 //------------------------------------------------------------------------------
 // What it does to a mould is seen by the filter.
-void TestMovedMould()
+void TestMovedMould(const std::string& file)
 {
   using lacuna::Matrix4;
-  const auto mill = [](const std::function<double(double, double)>& height, const Matrix4& move,
-                      double weight, const std::string& error, const std::string& warning)
+  const auto mill = [&file](const std::function<double(double, double)>& height,
+                      const Matrix4& move, double weight, const std::string& error,
+                      const std::string& warning)
   {
     const auto mould = Mould(height);
+    vtkNew<vtkImageData> patient;
+    vtkLacunaCoordinates::Mark(patient, vtkLacunaCoordinates::Patient);
+    vtkLacunaCoordinates::MarkPress(patient, mould);
     vtkNew<vtkDoubleArray> made;
     made->SetName("PressPosition");
     made->SetNumberOfComponents(4);
@@ -410,6 +407,26 @@ void TestMovedMould()
     LACUNA_CHECK((messages->Warnings.find("since it was made") == std::string::npos) ==
       (warning.empty() || !error.empty()));
     LACUNA_CHECK((filter->GetOutput()->GetNumberOfPoints() == 0) == !error.empty());
+    if (!error.empty())
+    {
+      return;
+    }
+    // where it leads is not passed on, but told
+    const bool moved = !warning.empty();
+    for (vtkDataObject* output : { filter->GetOutputDataObject(0), filter->GetOutputDataObject(1) })
+    {
+      LACUNA_CHECK(output->GetFieldData()->HasArray("PressToPatient") == !moved);
+      LACUNA_CHECK(vtkLacunaCoordinates::Get(output) == vtkLacunaCoordinates::Press);
+      LACUNA_CHECK(vtkLacunaCoordinates::GetBeforePress(output) == (moved ? "" : "Patient"));
+      LACUNA_CHECK((Field(output, "MovedSincePress") > 0.4) == moved);
+    }
+    vtkNew<vtkLacunaGCodeWriter> writer;
+    writer->SetInputData(filter->GetOutput());
+    writer->SetFileName(file.c_str());
+    LACUNA_CHECK(writer->Write() == 1);
+    LACUNA_CHECK(
+      (Read(file).find("MM, PRESS COORDINATES, TOOL TIP") == std::string::npos) == moved);
+    LACUNA_CHECK((Read(file).find("THE MOULD WAS MOVED") != std::string::npos) == moved);
   };
   const auto flat = [](double, double) { return -1.0; };
   mill(Height, {}, 1, "", "");
@@ -566,7 +583,7 @@ int TestMillingToolPath(int argc, char* argv[])
   TestWarnsAndRefuses();
   TestProgram(folder + "/TestMillingToolPath.nc");
   TestMirrored(folder + "/TestMillingToolPathMirrored.nc");
-  TestMovedMould();
+  TestMovedMould(folder + "/TestMillingToolPathMovedMould.nc");
   TestMoved(folder + "/TestMillingToolPathMoved.nc");
   return lacunaCheck::Result();
 }

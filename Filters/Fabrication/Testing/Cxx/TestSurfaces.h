@@ -143,5 +143,24 @@ inline vtkSmartPointer<vtkStructuredGrid> Grid(int flat, std::vector<lacuna::Vec
   grid->SetPoints(array);
   return grid;
 }
+
+/// Gives data PressPosition, and then does what ParaView's Transform does.
+inline void RecordAndMove(vtkPointSet* data, const lacuna::Matrix4& move)
+{
+  vtkNew<vtkDoubleArray> made;
+  made->SetName("PressPosition");
+  made->SetNumberOfComponents(4);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
+  {
+    lacuna::Vec3 p;
+    data->GetPoint(k, p.data());
+    made->InsertNextTuple4(p[0], p[1], p[2], 1);
+    points->InsertNextPoint(move.Point(p).data());
+  }
+  data->GetPointData()->AddArray(made);
+  data->SetPoints(points);
+}
 }
 #endif
