@@ -17,7 +17,8 @@ struct vtkLacunaGridLayer
   std::vector<lacuna::Vec3> Points; ///< column fastest
 
   /// Throws std::runtime_error, in words for the user, when grid has more or fewer dimensions of 1,
-  /// or blanked points or cells.
+  /// or blanked points or cells, or is the plane of a depth map's pixels (what Transform makes of one)
+  /// instead of its surface.
   explicit vtkLacunaGridLayer(vtkStructuredGrid* grid);
 };
 #endif

@@ -188,6 +188,38 @@ void TestPolyData()
   Refuses(Lines({}, {}), "no line of any length and no vertex");
 }
 
+// What Transform makes of a depth map is a grid of its pixels, without the depths.
+void TestTransformedMap()
+{
+  for (const bool perspective : { false, true })
+  {
+    const auto map = DefectMap(perspective);
+    const auto refuse = [](vtkDataObject* grid) { Refuses(grid, "plane of a depth map's pixels"); };
+    const auto make = [&](const lacuna::Matrix4& move, bool depths, double height)
+    { return TestSurfaces::PixelGrid(map, move, depths, height); };
+    const lacuna::Matrix4 move = lacuna::Matrix4::Translation({ 3, -2000, 9 }) *
+      lacuna::Matrix4::Rotation({ 1, 2, 3 }, 0.4) * lacuna::Matrix4::Scaling({ -0.5, 1, 1 });
+    refuse(make({}, false, 0));
+    refuse(make(move, false, 0));
+    // with the depths it is a surface (Warp By Scalar)
+    LACUNA_CHECK(Write(make({}, true, 0)).Surfaces == 1);
+    LACUNA_CHECK(Write(make(move, true, 0)).Surfaces == 1);
+    // depths all the same: a plane at that depth is their surface, and that of the pixels is not
+    for (const char* name : { "Fitted", "Depth" })
+    {
+      map->GetPointData()->GetArray(name)->FillComponent(0, 60);
+    }
+    refuse(make({}, false, 0));
+    LACUNA_CHECK(Write(make({}, false, 60)).Surfaces == 1);
+    map->GetPointData()->RemoveArray("Fitted");
+    refuse(make({}, false, 0));
+    // a plane that is no map's
+    const auto plane = make({}, false, 0);
+    plane->GetPointData()->RemoveArray("Depth");
+    LACUNA_CHECK(Write(plane).Surfaces == 1);
+  }
+}
+
 // The screw holes of a plate, whose triangles have no place here.
 void TestScrews()
 {
@@ -223,6 +255,7 @@ int TestIGESWriterContent(int argc, char* argv[])
       TestOutlines();
       TestPieces();
       TestPolyData();
+      TestTransformedMap();
       TestScrews();
     });
 }

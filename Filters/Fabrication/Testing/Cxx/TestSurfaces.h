@@ -6,6 +6,7 @@
 
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
@@ -141,6 +142,30 @@ inline vtkSmartPointer<vtkStructuredGrid> Grid(int flat, std::vector<lacuna::Vec
     }
   }
   grid->SetPoints(array);
+  return grid;
+}
+
+/// The pixels of a Map, without their depths or with them and height (mm along the view), as a grid
+/// with the map's data, moved as ParaView's Transform does it.
+inline vtkSmartPointer<vtkStructuredGrid> PixelGrid(
+  vtkImageData* image, const lacuna::Matrix4& move, bool depths, double height)
+{
+  const lacuna::Matrix4 matrix = vtkLacunaDepthMap(image).GetImageToWorld();
+  auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
+  grid->SetDimensions(90, 70, 1);
+  vtkNew<vtkPoints> points; // single precision
+  for (int j = -3; j <= 66; ++j)
+  {
+    for (int i = 5; i <= 94; ++i)
+    {
+      const double depth = depths ? Depth(0.5 * (i - 49), 0.75 * (j - 30)) : 0.0;
+      points->InsertNextPoint(
+        move.Point(matrix.Point({ double(i), double(j), depth + height })).data());
+    }
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->ShallowCopy(image->GetPointData());
+  grid->GetFieldData()->ShallowCopy(image->GetFieldData());
   return grid;
 }
 
