@@ -128,7 +128,7 @@ assert len(warnings) == 1 and "Header has no G43" in warnings[0], warnings
 writer.UpdatePropertyInformation()
 assert writer.GetPropertyValue("FileSize") == os.path.getsize(output("Options.nc"))
 with open(output("Options.nc"), encoding="ascii") as file:
-    assert "\nN10 G21 G17 G40 G49 G80 G90 G94\nN20 G21 G90 (MINE)\nN30 T01 M06\n" in file.read()
+    assert "\nN10 G21 G17 G40 G49 G80 G90 G94 G54\nN20 G21 G90 (MINE)\nN30 T01 M06\n" in file.read()
 
 # Motions joined to arcs: a shorter program
 file = output("Arcs.nc")

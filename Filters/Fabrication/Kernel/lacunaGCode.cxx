@@ -21,7 +21,7 @@ constexpr std::size_t CommentLength = 64;
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
 constexpr const char* AxisNames = "XYZ";
 // What the path's numbers mean: mm, in the plane of x and y, no compensation, no length, no cycle,
-// absolute, mm/min. Before the header, which cannot change it.
+// absolute, mm/min, and after these the work offset. Before the header, which cannot change it.
 constexpr const char* SafeStart = "G21 G17 G40 G49 G80 G90 G94";
 
 using Units = Micrometres;
@@ -325,7 +325,7 @@ GCodeOptions::GCodeOptions()
 
 const char* GCodeOptions::DefaultHeader()
 {
-  return "{OFFSET}\nT{TOOL} M06\nS{SPEED} M03\nG00 X{X} Y{Y}\n"
+  return "T{TOOL} M06\nS{SPEED} M03\nG00 X{X} Y{Y}\n"
          "G43 H{TOOL} Z{Z}\n";
 }
 
@@ -377,7 +377,7 @@ GCodeProgram MakeGCode(
     AddComment(program.Text, comment);
   }
   BlockWriter writer(program, options.LineNumbers);
-  writer.Add(SafeStart);
+  writer.Add(SafeStart + (" G" + std::to_string(options.WorkOffset)));
   for (const std::string& line : header.Lines)
   {
     writer.Add(line);

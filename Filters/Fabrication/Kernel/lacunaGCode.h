@@ -56,7 +56,7 @@ struct GCodeProgram
 /// coordinate has a decimal point and at most three decimals: x and y are rounded to the nearest
 /// micrometre, z up, so that rounding takes the tool no deeper into a surface than 0.71 um. Words
 /// that do not change are left out; so are motions to where the tool is. The first block, before the
-/// header, is G21 G17 G40 G49 G80 G90 G94; the first ones after the header go to start, first in x and y,
+/// header, is G21 G17 G40 G49 G80 G90 G94 and the work offset (G54); the first ones after the header go to start, first in x and y,
 /// then in z.
 ///
 /// Throws std::invalid_argument, naming the motion, when a number is not finite, beyond 99 999.999

@@ -36,6 +36,7 @@ constexpr const char* HarmlessNames =
   "G80, G90, G94, G98 and G99";
 constexpr double Subprograms[] = { 96, 97, 98, 99, 198 };
 constexpr double Ends[] = { 2, 30 };
+constexpr double ToolChange = 6;
 constexpr double Mirrors[] = { 21, 22 }; // of many machines with this control: x, y
 
 struct Word
@@ -132,6 +133,7 @@ public:
     this->JudgeIncrements(
       words, isG(Absolute), isG(Incremental), toReference && !ofMachine, dwells);
     this->JudgeToolLength(words, isG(ToolLength), isG(NoToolLength));
+    this->JudgeTool(words, isG(ToolLength));
     for (const Word& word : words)
     {
       switch (word.Letter)
@@ -277,6 +279,12 @@ private:
           (on ? " with G43, which is no tool's length"
               : " without G43, whose number it would change"));
       }
+      if (word.Letter == 'H' && word.Number != this->Options.ToolNumber)
+      {
+        this->Throw("has " + word.Text + ", and ToolNumber is " +
+          std::to_string(this->Options.ToolNumber) +
+          ": Z would be by another tool's length. Write H{TOOL} and set ToolNumber");
+      }
       this->Length = this->Length || (on && word.Letter == 'H');
     }
     this->Cancelled = (this->Cancelled || off) && !on;
@@ -288,6 +296,40 @@ private:
     }
   }
 
+  // Before the path the tool that its length is of, once; behind it any, and no Z by the wrong length.
+  void JudgeTool(const std::vector<Word>& words, bool lengthHere)
+  {
+    const std::string number = std::to_string(this->Options.ToolNumber);
+    const Word* change = nullptr;
+    for (const Word& word : words)
+    {
+      const bool changes = word.Letter == 'M' && word.Number == ToolChange;
+      change = changes ? &word : change;
+      if (this->Source.IsLast || (word.Letter != 'T' && !changes))
+      {
+        continue;
+      }
+      if (word.Letter == 'T' && word.Number != this->Options.ToolNumber)
+      {
+        this->Throw("has " + word.Text + ", and ToolNumber is " + number +
+          ": Z would be by another tool's length. Write T{TOOL} and set ToolNumber; the next tool "
+          "may be chosen in Footer");
+      }
+      if (this->Length || lengthHere)
+      {
+        this->Throw("has " + word.Text +
+          " with or after G43: the tool is changed, and its length is not. Write it before");
+      }
+      this->Chosen = this->Chosen || word.Letter == 'T';
+    }
+    if (change && !this->Source.IsLast && !this->Chosen)
+    {
+      this->Throw("has " + change->Text +
+        " without T before it, so there is no telling which tool comes. Write T{TOOL} M06");
+    }
+    this->Changed = this->Changed || change;
+  }
+
   void JudgePlace(const Word& word) const
   {
     const std::size_t axis = AxisNames.find(word.Letter);
@@ -297,12 +339,14 @@ private:
       this->Throw("has " + word.Text + ", which leaves the envelope (" + word.Letter + " " +
         FormatNumber(range[0]) + " to " + FormatNumber(range[1]) + " mm)");
     }
-    if (word.Letter == 'Z' && this->Source.IsLast && this->Cancelled)
+    if (word.Letter == 'Z' && this->Source.IsLast && (this->Cancelled || this->Changed))
     {
       this->Throw("has " + word.Text +
-        " with or after G49: that is where the spindle nose goes, and the tip into the part. Write "
-        "it "
-        "before G49, or with G53 in machine coordinates");
+        (this->Cancelled
+            ? " with or after G49: that is where the spindle nose goes, and the tip into the part. "
+              "Write it before G49"
+            : " with or after M06: that is by the length of the tool before. Write it before M06") +
+        ", or with G53 in machine coordinates");
     }
     if (word.Letter == 'Z' && !(word.Number >= this->Source.LeastZ))
     {
@@ -317,6 +361,8 @@ private:
   bool Increments = false; // G91 in the footer
   bool Length = false;     // G43 H
   bool Cancelled = false;  // G49 in the footer
+  bool Chosen = false;     // T in the header
+  bool Changed = false;    // M06
 };
 }
 

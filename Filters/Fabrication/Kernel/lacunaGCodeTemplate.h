@@ -36,8 +36,9 @@ struct FilledTemplate
 ///   the program in the header, M21 and M22, which mirror on many machines (other M words are the
 ///   machine builder's and not judged);
 /// - P with a work offset (G54 P2 is another one) or where it means nothing; A, B or C outside of
-///   blocks with G28, G30 or G53; H without G43 or 0, in the header G49 with or behind G43, in
-///   the footer Z behind G49;
+///   blocks with G28, G30 or G53; H without G43, 0 or other than options.ToolNumber, in the header
+///   T of another tool, M06 without T, G49, T or M06 with or behind G43, in the footer Z behind G49 or
+///   M06;
 /// - a coordinate without a decimal point, which the control would read as micrometres;
 /// - X, Y or Z outside of options.Envelope, Z below LeastZ. Not those with G53, which are the machine's.
 FilledTemplate FillInTemplate(const GCodeTemplate& source,

@@ -61,10 +61,10 @@ TEST(GCode, WholeProgram)
   options.Comments = { "Lacuna 0.1 (a_b)" };
   const GCodeProgram program = MakeGCode(Start, Path(), options);
   EXPECT_EQ(program.Text,
-    "%\nO0012\n(LACUNA 0.1 [A-B])\nG21 G17 G40 G49 G80 G90 G94\nG54\nT01 M06\nS6000 M03\n"
+    "%\nO0012\n(LACUNA 0.1 [A-B])\nG21 G17 G40 G49 G80 G90 G94 G54\nT01 M06\nS6000 M03\n"
     "G00 X1.5 Y-2.25\nG43 H01 Z10.\nG00 X1.5 Y-2.25\nZ10.\nX3. Y4.\nG01 Z-1. F200.\n"
     "Y4.001 F800.\nX0. Y-12.5 Z0.\nG00 Z10.\nM05\nM30\n%\n");
-  EXPECT_EQ(program.Blocks, 15);
+  EXPECT_EQ(program.Blocks, 14);
 }
 
 TEST(GCode, ReadsBackWithinAMicrometre)
@@ -135,8 +135,9 @@ TEST(GCode, Templates)
   options.Header = "(my mill)\r\nG21 G90\n\nT{TOOL} M06\nS{SPEED} M03\n";
   options.Footer = "G00 Z50.\nM30";
   const std::string text = MakeGCode(Start, Path(), options).Text;
-  EXPECT_EQ(text.find("%\nO0001\nG21 G17 G40 G49 G80 G90 G94\n(MY MILL)\nG21 G90\nT01 M06\nS6000 "
-                      "M03\nG00 X1.5 Y-2.25\n"),
+  EXPECT_EQ(
+    text.find("%\nO0001\nG21 G17 G40 G49 G80 G90 G94 G54\n(MY MILL)\nG21 G90\nT01 M06\nS6000 "
+              "M03\nG00 X1.5 Y-2.25\n"),
     0u);
   EXPECT_NE(text.find("G00 Z50.\nM30\n%\n"), std::string::npos);
   const auto header = [](const std::string& h, const std::string& words)
@@ -380,6 +381,38 @@ TEST(GCode, TemplatesThatMoveThePathAreRefused)
   footer("G49 G28 Z20.", "has Z20. with or after G49");
   footer("G28 Z20.\nG49\nG53 Z0.\nM30", "no error");
 
+  // whatever the header, the work offset is the property's
+  GCodeOptions other;
+  other.WorkOffset = 57;
+  other.Header = "G43 H1";
+  EXPECT_EQ(MakeGCode(Start, Path(), other)
+              .Text.find("%\nO0001\nG21 G17 G40 G49 G80 G90 G94 G57\nG43 H1\nG00"),
+    0u);
+
+  // the tool, whose length makes Z the tip's
+  const auto tool = [](bool first, const std::string& text, const std::string& words)
+  {
+    ExpectError(
+      [&](auto&, auto& o)
+      {
+        o.ToolNumber = 7;
+        (first ? o.Header : o.Footer) = text;
+      },
+      words);
+  };
+  tool(true, "T{TOOL} M06\nG43 H{TOOL} Z{Z}", "no error");
+  tool(true, "M06 T7\nG43 H07", "no error");
+  tool(true, "T7 M06\nG43 H1", "has H1, and ToolNumber is 7");
+  tool(true, "T9 M06\nG43 H7", "has T9, and ToolNumber is 7");
+  tool(true, "G43 H7 Z{Z}\nT7 M06", "has T7 with or after G43");
+  tool(true, "T7\nG43 H7 M06", "has M06 with or after G43");
+  tool(true, "M6", "has M6 without T before it");
+  tool(true, "T7\nM6", "no error");
+  tool(false, "G43 H2 Z50.\nM30", "has H2, and ToolNumber is 7");
+  tool(false, "G00 Z50.\nT9 M06\nG53 Z0.\nX0. Y0.\nM30", "no error");
+  tool(false, "T9 M06\nG00 Z50.\nM30", "has Z50. with or after M06");
+  tool(false, "G28 Z50. M06\nM30", "has Z50. with or after M06");
+
   const auto warnings = [](const std::string& h)
   {
     GCodeOptions options;
@@ -422,7 +455,7 @@ TEST(GCode, BlanksAndTabs)
   options.Header = " \n\t\n\tG21\tG90\n  (a\tb)\nG43\tH1\n";
   options.LineNumbers = true;
   const GCodeProgram program = MakeGCode(Start, Path(), options);
-  EXPECT_EQ(program.Text.find("%\nO0001\nN10 G21 G17 G40 G49 G80 G90 G94\nN20 G21 G90\n(A B)\n"
+  EXPECT_EQ(program.Text.find("%\nO0001\nN10 G21 G17 G40 G49 G80 G90 G94 G54\nN20 G21 G90\n(A B)\n"
                               "N30 G43 H1\nN40 G00 X1.5"),
     0u)
     << program.Text.substr(0, 200);
