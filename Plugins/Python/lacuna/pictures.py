@@ -34,10 +34,14 @@ def new_view(size=(1200, 900)):
     return view
 
 
-def new_chart(bottom, left, size=(900, 600)):
-    """A line chart with the titles of its axes."""
-    # Texts of render views turn this off, and then VTK 9.2 draws the labels of charts one and a half times.
+def _draw_labels_once():
+    """Texts of render views turn this off, and then VTK 9.2 draws the labels of charts one and a half times."""
     vtkFreeTypeTools.GetInstance().SetScaleToPowerTwo(True)
+
+
+def new_chart(bottom, left, size=(900, 600)):
+    """A chart view of ParaView's with the titles of its axes."""
+    _draw_labels_once()
     view = pv.CreateView("XYChartView")
     view.ViewSize = list(size)
     view.BottomAxisTitle, view.LeftAxisTitle = bottom, left
@@ -290,9 +294,9 @@ def chart_pixels(curves, titles, size=(760, 460), bounds=None, legend=True):
     """A chart as (rows, columns, red green blue), row 0 on top.
 
     curves: of (label, x, y, colour, style); colour is red, green, blue from 0 to 255, style "line", "dashes" or "points".
-    Charts come before render views: beside one, Mesa leaves traces of text in them. titles: of the axes, below and on the left.
-    bounds: of both axes ((x0, x1), (y0, y1)), default: what the curves need.
+    titles: of the axes, below and on the left. bounds: of both axes ((x0, x1), (y0, y1)), default: what the curves need.
     """
+    _draw_labels_once()
     view = vtkContextView()
     view.GetRenderer().SetBackground(1, 1, 1)
     window = view.GetRenderWindow()
