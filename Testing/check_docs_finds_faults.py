@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """check-docs.py finds what is wrong with pages, and nothing else."""
-import os
-import subprocess
-import sys
-import tempfile
+from checkers import complaints
 
-CHECKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Tools", "check-docs.py")
 GOOD = """# One page
 See [the other](Documentation/other.md#a-heading-of-two-words), [here](#one-page), <https://example.org>
 and [there](https://example.org/missing.md). ![picture](Documentation/a.png "title")
@@ -17,16 +13,8 @@ array[0](missing.md)
 
 
 def check(page, files=()):
-    with tempfile.TemporaryDirectory() as folder:
-        os.makedirs(os.path.join(folder, "Documentation"))
-        contents = {"page.md": page, "Documentation/other.md": "## A heading, of *two* words\n[back](../page.md)\n",
-                    "Documentation/a.png": "", **dict.fromkeys(files, "")}
-        for name, content in contents.items():
-            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-                file.write(content)
-        done = subprocess.run([sys.executable, CHECKER, folder], check=False, text=True, stderr=subprocess.PIPE)
-        assert (done.returncode == 0) == (done.stderr == ""), done.stderr
-        return done.stderr
+    return complaints("check-docs.py", {"page.md": page, "Documentation/other.md": "## A heading, of *two* words\n[back](../page.md)\n",
+                                        "Documentation/a.png": "", **dict.fromkeys(files, "")})
 
 
 assert check(GOOD) == "", check(GOOD)

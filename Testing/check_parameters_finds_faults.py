@@ -1,11 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """check-parameters.py finds where pages and the plugin's XML disagree, and nothing else."""
-import os
-import subprocess
-import sys
-import tempfile
+from checkers import complaints
 
-CHECKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Tools", "check-parameters.py")
 XML = """<ServerManagerConfiguration><ProxyGroup name="filters">
 <SourceProxy name="LacunaGoodFilter" class="vtkLacunaGoodFilter" label="Good Filter">
   <Documentation short_help="x" long_help="x">x</Documentation>
@@ -32,15 +28,8 @@ PAGE = """# Good Filter
 
 
 def check(page=PAGE, xml=XML, readme="| [x](good-filter.md) | y |", name="good-filter.md"):
-    with tempfile.TemporaryDirectory() as folder:
-        for path, content in {"Plugins/Lacuna/Filters/GoodFilter.xml": xml, "Documentation/UserGuide/README.md": readme,
-                              "Documentation/UserGuide/" + name: page}.items():
-            os.makedirs(os.path.join(folder, os.path.dirname(path)), exist_ok=True)
-            with open(os.path.join(folder, path), "w", encoding="utf-8") as file:
-                file.write(content)
-        done = subprocess.run([sys.executable, CHECKER, folder], check=False, text=True, stderr=subprocess.PIPE)
-        assert (done.returncode == 0) == (done.stderr == ""), done.stderr
-        return done.stderr
+    return complaints("check-parameters.py", {"Plugins/Lacuna/Filters/GoodFilter.xml": xml, "Documentation/UserGuide/README.md": readme,
+                                              "Documentation/UserGuide/" + name: page})
 
 
 assert check() == "", check()
