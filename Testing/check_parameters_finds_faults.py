@@ -43,5 +43,6 @@ for old, new, complaint in (
     assert complaint in check(PAGE.replace(old, new)), (complaint, check(PAGE.replace(old, new)))
 assert "the default of Width is '2', not '0.50'" in check(xml=XML.replace('"0.5"', '"2"'))
 assert "missing, the page of Good Filter" in check(name="other.md")
-assert "begins with a link to good-filter.md" in check(readme="See [x](good-filter.md)")
+assert "begin with a link to good-filter.md, not one" in check(readme="| [x](good-filter.md) | y |\n" * 2)
+assert "begin with a link to good-filter.md, not one" in check(readme="See [x](good-filter.md)")
 print("ok")

@@ -49,7 +49,9 @@ def definition(each):
     default, values = each.default_text(), each.values_text()
     facts = [f"default **{default}**" if default and default not in ("empty", "none") else f"default {default}" if default else "",
              values, each.group]
-    if each.kind == "Input":
+    if not each.kind:
+        facts = ["button"]
+    elif each.kind == "Input":
         facts = ["input", "optional" if each.optional else ""]
     if each.information:
         facts = ["to read"]
