@@ -139,7 +139,7 @@ class Example:
 
     def card(self):
         first = " ".join(re.sub(r"^#.*|!\[.*?\]\(.*?\)", "", self.text).strip().split("\n\n")[0].split())
-        picture = f"{self.topic}/{self.pictures[-1]}" if self.pictures else ""
+        picture = f"{self.topic}/{self.pictures[len(self.pictures) // 2]}" if self.pictures else ""
         image = f"[![{self.title}]({os.path.normpath(picture)})]({self.topic}/index.md)\n\n" if picture else ""
         return f":::{{container}} card\n{image}**[{self.title}]({self.topic}/index.md)**\n\n{first}\n:::\n"
 
