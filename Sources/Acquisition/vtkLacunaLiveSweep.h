@@ -8,8 +8,8 @@
 #include "vtkLacunaSliceStack.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <set>
 #include <string>
 
 /// What vtkLacunaPolhemusVideoSource has while it is live.
@@ -30,8 +30,9 @@ struct vtkLacunaLiveSweep
   bool MayDiscard = false;                    // Clear was called and failed
   std::unique_ptr<vtkLacunaSliceStack> Newest;
   std::int64_t NewestNumber = -1;
-  std::set<std::string> Subjects; // of the messages there are
-  std::string Messages;           // what the getter has returned
+  std::map<std::string, double> Subjects; // of messages, and when they were there last
+  bool ToldUncalibrated = false;
+  std::string Messages; // what the getter has returned
   std::string FileName;
 };
 #endif

@@ -160,7 +160,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
   const bool reopen = !now.Acquisition || devices != now.Devices;
   if (now.Acquisition && reopen && now.Acquisition->GetState().Capturing)
   {
-    if (now.Subjects.insert("devices").second)
+    if (now.Subjects.try_emplace("devices", 0).second)
     {
       vtkWarningMacro("The devices are changed at the next update after Stop");
     }
@@ -211,11 +211,12 @@ void vtkLacunaPolhemusVideoSource::Configure()
       frame.TrackerToReference = rules.TrackerToReference;
       now.Stack->Calibrate(frame);
     }
-    if (calibration.empty())
+    if (calibration.empty() && !now.ToldUncalibrated)
     {
       vtkWarningMacro("The probe is not calibrated: slices have no ImageToReference. Set "
                       "CalibrationFileName, also later");
     }
+    now.ToldUncalibrated = calibration.empty();
     now.Trouble.clear();
   }
   catch (const std::exception& e)
@@ -359,17 +360,17 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
 //------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::WarnOfNews()
 {
-  std::set<std::string> subjects;
+  constexpr double longAgo = 5; // s; what comes and goes is said once
+  const double time = GetClock().Now();
   for (const std::string& message : this->Now->Acquisition->GetState().Messages)
   {
-    const std::string subject = GetSubject(message);
-    subjects.insert(subject);
-    if (this->Now->Subjects.count(subject) == 0)
+    const auto [subject, fresh] = this->Now->Subjects.try_emplace(GetSubject(message), time);
+    if (fresh || time - subject->second > longAgo)
     {
       vtkWarningMacro(<< message);
     }
+    subject->second = time;
   }
-  this->Now->Subjects = std::move(subjects);
 }
 
 //------------------------------------------------------------------------------
@@ -435,10 +436,9 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   { text += (text.empty() || line.empty() ? "" : "\n") + line; };
   if (now.Acquisition)
   {
-    for (const std::string& message : now.Acquisition->GetState().Messages)
-    {
-      add(message);
-    }
+    const lacuna::AcquisitionState state = now.Acquisition->GetState();
+    std::for_each(state.Messages.begin(), state.Messages.end(), add);
+    std::for_each(state.Notes.begin(), state.Notes.end(), add);
   }
   else
   {

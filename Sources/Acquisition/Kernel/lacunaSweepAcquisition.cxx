@@ -14,6 +14,7 @@ namespace lacuna
 {
 namespace
 {
+constexpr int ManyFrames = 10;                              // without a pose: half a second
 constexpr double LongestSilence = 3;                        // s of a tracker that worked
 constexpr std::chrono::milliseconds LongestSettling{ 800 }; // of the last frames of a capture
 
@@ -81,7 +82,7 @@ struct SweepAcquisition::Core
   VideoSource::Counts NewestVideo;
   std::string TrackerWarning;
   std::optional<std::pair<PairedFrame, SweepFrame>> Live;
-  bool PoseMissing = false; // of the newest frame
+  int FramesSincePose = 0;
   std::vector<AcquiredSlice> Slices;
   AcquisitionState State; // of what Taking knows
   std::optional<SweepFrame> Sweep;
@@ -262,7 +263,7 @@ void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<Acquire
   this->State.Speed = this->Taking.GetSpeed();
   this->State.LargestResidual = this->Taking.GetLargestResidual();
   this->State.File = this->Taking.GetFile();
-  this->PoseMissing = this->Taking.IsPoseMissing();
+  this->FramesSincePose = this->Taking.GetFramesSincePose();
   this->State.Messages = this->Taking.GetMessages();
   this->Sweep = this->Taking.GetSweep();
   this->Settled.notify_all();
@@ -275,10 +276,11 @@ std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
   {
     messages.push_back(this->TrackerWarning);
   }
-  if (this->PoseMissing && this->PosesCome)
+  if (this->FramesSincePose >= ManyFrames && this->PosesCome)
   {
-    messages.push_back("The newest frame has no pose: no two measurements of the tracker, at most "
-                       "0.25 s apart, are around its instant");
+    messages.push_back(
+      "The newest frames have no pose: no two measurements of the tracker, at most "
+      "0.25 s apart, are around their instants");
   }
   const std::uint64_t flipped = this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
   if (flipped > 0)
@@ -390,9 +392,13 @@ AcquisitionState SweepAcquisition::GetState() const
   std::vector<std::string> messages;
   const auto describe = [&](const DeviceThread::Health& health, const char* waiting)
   {
-    if (!health.Working)
+    if (!health.Working && health.Failures > 0)
     {
-      messages.push_back(health.Failures > 0 ? health.Trouble : waiting);
+      messages.push_back(health.Trouble);
+    }
+    else if (!health.Working)
+    {
+      state.Notes.emplace_back(waiting);
     }
   };
   describe(tracker, "The tracker is being set up");

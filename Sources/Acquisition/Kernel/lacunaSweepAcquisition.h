@@ -49,8 +49,10 @@ struct AcquisitionState
   PoseCounts Poses;            ///< since the beginning, over all connections
   VideoSource::Counts Video;
   SweepFile::State File;
-  /// What is wrong now and what to do, the most important first; empty: all is well.
+  /// What is wrong now and what to do, the most important first; empty: nothing is.
   std::vector<std::string> Messages;
+  /// What goes on, for the user's patience; no trouble.
+  std::vector<std::string> Notes;
 };
 
 /// The newest frame that has passed the pairing, as a slice; for a dormant display.

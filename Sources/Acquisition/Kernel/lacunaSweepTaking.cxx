@@ -186,7 +186,7 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
     this->File->Retry();
   }
   this->SizeTrouble.clear();
-  this->PoseMissing = !frame.Pose;
+  this->FramesSincePose = frame.Pose ? 0 : this->FramesSincePose + 1;
   this->ImageDamaged = frame.Frame->Damaged;
   this->Counts.Frames += frame.Wanted ? 1 : 0;
   const std::optional<SweepFrame> window = this->GetWindow(*frame.Frame);

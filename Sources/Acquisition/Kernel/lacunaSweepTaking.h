@@ -76,8 +76,8 @@ public:
   double GetLargestResidual() const { return this->LargestResidual; }
   std::optional<double> GetSpeed() const { return this->Speed; }
   SweepFile::State GetFile() const;
-  /// Whether the newest frame has no pose.
-  bool IsPoseMissing() const { return this->PoseMissing; }
+  /// How many frames before and with the newest have no pose.
+  int GetFramesSincePose() const { return this->FramesSincePose; }
   /// What else is wrong with the newest frame or the sweep, and what to do.
   std::vector<std::string> GetMessages() const;
 
@@ -100,7 +100,7 @@ private:
   std::unique_ptr<SweepFile> File;
   bool Full = false;
   std::string SizeTrouble; ///< of the newest frame
-  bool PoseMissing = false;
+  int FramesSincePose = 0;
   bool ImageDamaged = false;
 };
 }

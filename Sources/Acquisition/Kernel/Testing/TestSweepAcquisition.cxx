@@ -273,6 +273,7 @@ TEST(SweepAcquisition, ASilentTrackerIsOpenedAgain)
   SweepAcquisition& acquisition = scene.Open();
   scene.Place.RunTo(120);
   EXPECT_EQ(opened, 1);
+  EXPECT_TRUE(HasMessage(acquisition.GetState(), "have no pose"));
   EXPECT_EQ(acquisition.GetLive()->Slice.Status, lacuna::Sweep::PoseInvalid);
   scene.Place.RunTo(200);
   EXPECT_EQ(opened, 2);
@@ -478,7 +479,7 @@ TEST(SweepAcquisition, ItsEndDoesNotWaitForDevicesThatHang)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     acquisition.Start();
-    EXPECT_TRUE(HasMessage(acquisition.GetState(), "tracker is being set up"));
+    EXPECT_EQ(acquisition.GetState().Notes.at(0), "The tracker is being set up");
     begin = clock.Now();
     acquisition.Stop();
   }

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Polhemus Video Source in ParaView: an emulated FASTRAK on a pseudo-terminal, a test signal of FFmpeg.
+
+argument: the emulator's program. The library LacunaPseudoTerminalPorts must be preloaded.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+import lacuna
+from lacuna import live
+from paraview import servermanager
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import lacuna_test
+
+LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+started = time.monotonic()
+folder = tempfile.mkdtemp(prefix="lacuna-live-")
+link = os.path.join(folder, "tracker")
+poses = os.path.join(folder, "poses.txt")
+with open(poses, "w") as file:
+    # rests, then goes to and fro by 40 mm at 10 mm/s
+    file.write("0 1 150 30 -40 10 20 30\n2 1 150 30 -40 10 20 30\n6 1 150 70 -40 10 20 30\n10 1 150 30 -40 10 20 30\n")
+environment = {key: value for key, value in os.environ.items() if key != "LD_PRELOAD"}
+
+
+def plug_in():
+    emulator = subprocess.Popen([sys.argv[1], "--link", link, "--baud", "115200", "--poses", poses, "--loop"],
+                                stdout=subprocess.PIPE, text=True, env=environment)
+    assert "115200 baud" in emulator.stdout.readline()
+    return emulator
+
+
+def slices_of(source, port=0):
+    data = servermanager.Fetch(source, idx=port)
+    fields = data.GetFieldData()
+    arrays = {fields.GetArrayName(i): vtk_to_numpy(fields.GetArray(i)) for i in range(fields.GetNumberOfArrays())
+              if fields.GetArray(i)}
+    return data, arrays
+
+
+def wait(source, condition, what):
+    print(f"{time.monotonic() - started:6.1f} s: {what}", flush=True)
+    assert live.poll_until(source, condition, seconds=60), (what, live.get(source, "Message"))
+
+
+try:
+    emulator = plug_in()
+    source = PolhemusVideoSource()
+    lacuna_test.check_defaults(
+        source, lacuna.vtkLacunaPolhemusVideoSource(),
+        ["BaudRate", "Station", "Hemisphere", "FiltersOff", "ButtonStarts", "CropRectangle", "VideoLatency",
+         "PixelSpacing", "TimeOffset", "MovementThreshold", "SpeedLimit", "MemoryLimit", "RecordCompression",
+         "LiveDisplay"],
+        {"Field": ["Both", "Top", "Bottom"], "CaptureMode": ["Movement", "EveryFrame"]})
+    hints = source.SMProxy.GetHints()
+    assert hints.FindNestedElementByName("LiveSource").GetAttribute("interval") == "40"
+    UpdatePipeline(proxy=source)  # opens nothing
+    source.SMProxy.UpdatePropertyInformation()
+    assert not live.get(source, "TrackerWorks") and "Connect" in live.get(source, "Message")
+
+    # a wrong port, and no video: what to do is said, at once and again and again
+    source.TrackerConnection = "/dev/ttyLacunaNone"
+    live.connect(source)
+    wait(source, lambda: "There is no port /dev/ttyLacunaNone" in live.get(source, "Message"), "wrong port")
+    wait(source, lambda: "VideoURL is not set" in live.get(source, "Message"), "no video")
+    assert not live.get(source, "TrackerWorks")
+
+    # mended, without anything else than the properties
+    source.TrackerConnection = "/dev/../../.." + link
+    source.VideoURL = "lavfi:testsrc2=size=96x64:rate=25"
+    source.CaptureMode = "EveryFrame"
+    wait(source, lambda: live.get(source, "TrackerWorks") and live.get(source, "VideoWorks"), "devices")
+    wait(source, lambda: slices_of(source, 1)[0].GetNumberOfPoints() == 96 * 64, "the newest frame")
+    assert slices_of(source)[0].GetNumberOfPoints() == 0 and live.get(source, "SliceCount") == 0  # dormant
+
+    # every frame, recorded
+    source.RecordFileName = os.path.join(folder, "sweep.mhd")
+    source.UpdatePipeline()
+    live.start(source)
+    wait(source, lambda: live.get(source, "SliceCount") >= 5, "first slices")
+    assert live.get(source, "Capturing")
+    few = live.get(source, "SliceCount")
+    planes = SlicePlanes(Input=source)  # downstream of a stack that grows
+    wait(source, lambda: live.get(source, "SliceCount") >= few + 25, "more slices")
+    begin = time.monotonic()
+    live.stop(source)
+    print(f"stopped after {time.monotonic() - begin:.3f} s", flush=True)
+    assert not live.get(source, "Capturing")
+    data, arrays = slices_of(source)
+    count = live.get(source, "SliceCount")
+    assert data.GetDimensions() == (96, 64, count) and live.get(source, "FrameCount") == count
+    assert "ImageToReference" not in arrays
+    for name in ("ProbeToTracker", "TrackerToReference", "Timestamp", "SliceStatus", "FrameNumber", "Residual", "Speed"):
+        assert len(arrays[name]) == count, name
+    assert all(arrays["FrameNumber"][1:] == arrays["FrameNumber"][:-1] + 1)
+    assert all(arrays["Timestamp"][1:] > arrays["Timestamp"][:-1])
+    valid = arrays["SliceStatus"] & 1 == 0
+    assert valid.sum() >= count - live.get(source, "FramesWithoutPose") and valid.any()
+    assert abs(arrays["ProbeToTracker"][valid][:, 3] - 150).max() < 0.01  # x
+    assert abs(arrays["ProbeToTracker"][valid][:, 7] - 50).max() < 20.01  # y: 30 to 70 mm
+    wait(source, lambda: live.get(source, "RecordedSlices") == count, "the disk")
+
+    # the recording is the same, for the reader without any setting
+    reader = TrackedSliceReader(FileName=live.get(source, "RecordedFileName"))
+    read, fields = slices_of(reader)
+    assert read.GetDimensions() == data.GetDimensions()
+    assert (vtk_to_numpy(read.GetPointData().GetScalars()) == vtk_to_numpy(data.GetPointData().GetScalars())).all()
+    for name in ("SliceStatus", "FrameNumber", "Timestamp"):
+        assert (fields[name] == arrays[name]).all(), name
+    assert abs(fields["ProbeToTracker"][valid] - arrays["ProbeToTracker"][valid]).max() < 1e-12
+
+    # calibrated afterwards, as Probe Calibration writes it
+    calibration = os.path.join(folder, "calibration.xml")
+    with open(calibration, "w") as file:
+        file.write('<PlusConfiguration version="2.9"><CoordinateDefinitions><Transform From="Image" To="Probe" '
+                   'Matrix="0.2 0 0 5 0 0.2 0 6 0 0 0.2 7 0 0 0 1"/></CoordinateDefinitions></PlusConfiguration>')
+    source.CalibrationFileName = calibration
+    source.UpdatePipeline()
+    data, arrays = slices_of(source)
+    image, probe = (arrays[name].reshape(-1, 4, 4) for name in ("ImageToReference", "ProbeToTracker"))
+    assert abs(image[valid] - probe[valid] @ arrays["ImageToProbe"].reshape(4, 4)).max() < 1e-9
+    planes.UpdatePipeline()
+    assert planes.GetDataInformation().GetNumberOfPoints() > 0
+
+    # by movement: none while it rests, evenly spaced while it goes
+    live.clear(source)
+    assert live.get(source, "SliceCount") == 0
+    source.RecordFileName = ""
+    source.CaptureMode = "Movement"
+    source.MovementThreshold = 2
+    source.SpeedLimit = 5
+    live.start(source)
+    wait(source, lambda: live.get(source, "SliceCount") >= 8, "slices by movement")
+    wait(source, lambda: live.get(source, "TooFastSlices") > 0, "speed")
+    live.stop(source)
+    data, arrays = slices_of(source)
+    assert live.get(source, "StillFrames") > live.get(source, "SliceCount")
+    counts = ("SliceCount", "StillFrames", "FramesWithoutPose", "FramesOfWrongSize", "FramesPastLimit")
+    assert live.get(source, "FrameCount") == sum(live.get(source, name) for name in counts)
+    steps = abs(arrays["ProbeToTracker"][1:, 7] - arrays["ProbeToTracker"][:-1, 7])
+    assert steps.min() > 1.99, steps
+    assert (arrays["SliceStatus"] & 4).any() and (arrays["Speed"][arrays["SliceStatus"] & 4 > 0] > 5).all()
+
+    # unplugged and plugged in again, while the capture goes on
+    live.clear(source)
+    source.CaptureMode = "EveryFrame"
+    live.start(source)
+    wait(source, lambda: live.get(source, "SliceCount") >= 3, "slices")
+    emulator.terminate()
+    emulator.wait()
+    wait(source, lambda: not live.get(source, "TrackerWorks") and "plug" in live.get(source, "Message"), "unplugged")
+    emulator = plug_in()
+    wait(source, lambda: live.get(source, "TrackerWorks"), "plugged in")
+    without = live.get(source, "FramesWithoutPose")
+    seen = live.get(source, "SliceCount")
+    wait(source, lambda: live.get(source, "SliceCount") >= seen + 10, "slices after")
+    live.stop(source)
+    arrays = slices_of(source)[1]
+    assert without > 0 and (arrays["SliceStatus"] & 1).sum() >= without
+    assert arrays["SliceStatus"][-1] & 1 == 0
+
+    live.disconnect(source)
+    assert live.get(source, "SliceCount") == len(arrays["SliceStatus"])  # they stay
+    Delete(planes)
+    Delete(reader)
+    Delete(source)
+finally:
+    emulator.terminate()
+    emulator.wait()
+    shutil.rmtree(folder, ignore_errors=True)
+print("done", flush=True)
