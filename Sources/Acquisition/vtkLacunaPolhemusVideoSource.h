@@ -3,10 +3,10 @@
  * @class vtkLacunaPolhemusVideoSource
  * @brief a Polhemus FASTRAK and a video signal become tracked slices, live
  *
- * The tracker (through libserialport) and the video (through FFmpeg) are driven by threads of their
- * own, which come back by themselves when a device was unplugged; see lacunaSweepAcquisition.h for
- * the clock model, lacunaCaptureRule.h for what is taken (Carr 1996, ch. 2). Nothing in this class
- * waits for a device.
+ * The tracker (through libserialport, or another one through OpenIGTLink) and the video (through
+ * FFmpeg or OpenIGTLink) are driven by threads of their own, which come back by themselves when a
+ * device was unplugged; see lacunaSweepAcquisition.h for the clock model, lacunaCaptureRule.h for
+ * what is taken (Carr 1996, ch. 2). Nothing in this class waits for a device.
  *
  * Connect opens the devices, Start takes slices, Stop ends that; Start goes on with the sweep, Clear
  * begins a new one. Opening a state file or setting properties opens nothing. Poll, or GetNeedsUpdate
@@ -57,7 +57,9 @@ public:
   };
 
   ///@{
-  /// Serial port of the tracker, "/dev/ttyUSB0". Default: none.
+  /// Serial port of the tracker, "/dev/ttyUSB0", or a server of poses,
+  /// "igtl://host:18944?transform=ProbeToTracker" (see lacunaOpenIGTLinkAddress.h), for which
+  /// BaudRate, Hemisphere and FiltersOff mean nothing. Default: none.
   vtkSetStringMacro(TrackerConnection);
   vtkGetStringMacro(TrackerConnection);
   ///@}
@@ -93,7 +95,8 @@ public:
   ///@}
 
   ///@{
-  /// "/dev/video0", a file, the address of a stream ("rtsp://...") or a test signal
+  /// "/dev/video0", a file, the address of a stream ("rtsp://..."), a server of images
+  /// ("igtl://host:18944?image=Image_Reference") or a test signal
   /// ("lavfi:testsrc2=size=768x576:rate=25"). Default: none.
   vtkSetStringMacro(VideoURL);
   vtkGetStringMacro(VideoURL);

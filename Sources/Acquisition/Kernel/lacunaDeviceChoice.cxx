@@ -2,6 +2,7 @@
 #include "lacunaDeviceChoice.h"
 
 #include "lacunaFastrakDevice.h"
+#include "lacunaOpenIGTLinkDevices.h"
 #include "lacunaSerialPort.h"
 #include "lacunaVideoDevice.h"
 
@@ -24,6 +25,11 @@ std::string ListPorts()
 
 PoseDeviceFactory ChoosePoseDevice(const TrackerChoice& choice, const Clock& clock)
 {
+  if (IsOpenIGTLinkAddress(choice.Connection))
+  {
+    return [choice, &clock](const std::function<bool()>& stopped)
+    { return MakeOpenIGTLinkPoseFactory(choice.Connection, choice.Station, clock)(stopped); };
+  }
   if (choice.Connection.empty() || choice.Connection.find("://") != std::string::npos)
   {
     return
@@ -32,7 +38,9 @@ PoseDeviceFactory ChoosePoseDevice(const TrackerChoice& choice, const Clock& clo
       throw std::invalid_argument((connection.empty() ? std::string("TrackerConnection is not set")
                                                       : "TrackerConnection '" + connection +
                                         "' is none that this Lacuna knows") +
-        ": give the serial port of the tracker, such as /dev/ttyUSB0" + ListPorts());
+        ": give the serial port of the tracker, such as /dev/ttyUSB0, or an OpenIGTLink server, "
+        "such as igtl://localhost:18944" +
+        ListPorts());
     };
   }
   FastrakSettings settings;
@@ -51,8 +59,13 @@ FrameDeviceFactory ChooseFrameDevice(const VideoSettings& settings, const Clock&
     {
       throw std::invalid_argument(
         "VideoURL is not set: give a frame grabber (/dev/video0), a file, the address of a stream "
-        "(rtsp://...) or a test signal (lavfi:testsrc2=size=768x576:rate=25)");
+        "(rtsp://... or igtl://...) or a test signal (lavfi:testsrc2=size=768x576:rate=25)");
     };
+  }
+  if (IsOpenIGTLinkAddress(settings.URL))
+  {
+    return [url = settings.URL, &clock](const std::function<bool()>& stopped)
+    { return MakeOpenIGTLinkFrameFactory(url, clock)(stopped); };
   }
   return MakeVideoFactory(settings, clock);
 }

@@ -15,7 +15,9 @@ namespace lacuna
 {
 struct TrackerChoice
 {
-  std::string Connection; ///< a serial port, "/dev/ttyUSB0"
+  /// A serial port, "/dev/ttyUSB0", or an OpenIGTLink server (see lacunaOpenIGTLinkAddress.h), for
+  /// which the following settings mean nothing.
+  std::string Connection;
   int BaudRate = 115200;
   int Station = 1;
   Vec3 Hemisphere{ 1, 0, 0 }; ///< zenith, in the transmitter's coordinates
@@ -24,10 +26,10 @@ struct TrackerChoice
 };
 
 /// Opens the tracker of that connection. What is none is said by the factory, as std::invalid_argument
-/// that lists the ports there are. The clock must live longer; it is the computer's.
+/// that lists the ports there are. Poses are of the station that was chosen. The clock must live longer; it is the computer's.
 PoseDeviceFactory ChoosePoseDevice(const TrackerChoice& choice, const Clock& clock);
 
-/// Opens the video of that address; as above.
+/// Opens the video of that address, of which igtl://... is an OpenIGTLink server; as above.
 FrameDeviceFactory ChooseFrameDevice(const VideoSettings& settings, const Clock& clock);
 }
 #endif

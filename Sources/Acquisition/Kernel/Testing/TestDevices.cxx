@@ -73,4 +73,9 @@ TEST(DeviceChoice, SaysWhatToSetWhenNothingIs)
   other.Connection = "usb://1";
   EXPECT_HAS(error(ChoosePoseDevice(other, clock)), "'usb://1'");
   EXPECT_HAS(error(ChooseFrameDevice({}, clock)), "VideoURL is not set");
+  other.Connection = "igtl://:1";
+  EXPECT_HAS(error(ChoosePoseDevice(other, clock)), "'igtl://:1' names no host");
+  VideoSettings video;
+  video.URL = "IGTL://host:0";
+  EXPECT_HAS(error(ChooseFrameDevice(video, clock)), "from 1 to 65535");
 }

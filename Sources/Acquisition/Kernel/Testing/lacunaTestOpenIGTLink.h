@@ -7,8 +7,6 @@
 #include "lacunaMatrix4.h"
 #include "lacunaOpenIGTLinkMessage.h"
 
-#include <gtest/gtest.h>
-
 #include <igtlImageMessage.h>
 #include <igtlPositionMessage.h>
 #include <igtlQuaternionTrackingDataMessage.h>
@@ -24,11 +22,21 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lacunaTest
 {
+/// For tests of any framework.
+inline void Require(bool right, const char* what)
+{
+  if (!right)
+  {
+    throw std::logic_error(std::string("test set-up: ") + what);
+  }
+}
+
 /// A pose that no mirror, transposition or exchange of axes leaves as it is.
 inline lacuna::Matrix4 AsymmetricPose(double time = 0)
 {
@@ -111,7 +119,7 @@ inline std::string ImageBytes(int columns, int rows, const std::vector<char>& pi
   message->SetNumComponents(channels);
   message->SetEndian(endian);
   message->AllocateScalars();
-  EXPECT_EQ(pixels.size(), static_cast<std::size_t>(message->GetImageSize()));
+  Require(pixels.size() == static_cast<std::size_t>(message->GetImageSize()), "size of pixels");
   std::memcpy(message->GetScalarPointer(), pixels.data(), pixels.size());
   const lacuna::Vec3 centre =
     plane.Point({ 0.5 * (columns - 1) * spacing[0], 0.5 * (rows - 1) * spacing[1], 0 });
@@ -180,8 +188,7 @@ public:
   Server()
     : Socket(igtl::ServerSocket::New())
   {
-    EXPECT_EQ(this->Socket->CreateServer(0), 0);
-    EXPECT_GT(this->GetPort(), 0);
+    Require(this->Socket->CreateServer(0) == 0 && this->GetPort() > 0, "a server");
   }
   ~Server()
   {
@@ -215,7 +222,8 @@ public:
   {
     std::string bytes(size, '\0');
     this->Client->SetReceiveTimeout(2000);
-    EXPECT_EQ(this->Client->Receive(bytes.data(), static_cast<int>(size)), static_cast<int>(size));
+    Require(this->Client->Receive(bytes.data(), static_cast<int>(size)) == static_cast<int>(size),
+      "bytes of the client");
     return bytes;
   }
   void Hangup()
