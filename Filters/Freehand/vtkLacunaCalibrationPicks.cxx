@@ -2,6 +2,7 @@
 #include "vtkLacunaCalibrationPicks.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaSpotTracking.h"
 #include "lacunaWallDetection.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -10,6 +11,7 @@
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaStackPixels.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkPointSet.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
@@ -19,6 +21,9 @@
 
 namespace
 {
+// Of the image's diagonal: a wire that moves farther from slice to slice is another one.
+constexpr double ReachPart = 0.25;
+
 vtkAbstractArray* GetColumn(vtkTable* table, const char* name)
 {
   vtkAbstractArray* column = table->GetColumnByName(name);
@@ -43,7 +48,7 @@ double GetNumber(vtkAbstractArray* column, vtkIdType row)
   return number;
 }
 
-lacuna::CalibrationTarget GetWire(vtkAbstractArray* column, vtkIdType row)
+lacuna::CalibrationTarget ReadWire(vtkAbstractArray* column, vtkIdType row)
 {
   const std::string text = column->GetVariantValue(row).ToString();
   const std::string wires = "XYZxyz";
@@ -51,11 +56,126 @@ lacuna::CalibrationTarget GetWire(vtkAbstractArray* column, vtkIdType row)
   if (place == std::string::npos)
   {
     throw std::runtime_error("row " + std::to_string(row) + " of the table of picks has '" + text +
-      "' as Wire; it must be X, Y or Z");
+      "' as " + column->GetName() + "; it must be X, Y or Z");
   }
   return static_cast<lacuna::CalibrationTarget>(place % 3);
 }
 
+// The picks as they are given.
+class Rows
+{
+public:
+  explicit Rows(vtkDataObject* data)
+    : Points(vtkPointSet::SafeDownCast(data))
+  {
+    if (vtkTable* table = vtkTable::SafeDownCast(data))
+    {
+      this->Columns = { GetColumn(table, "Column"), GetColumn(table, "Row"),
+        GetColumn(table, "Slice") };
+      this->Wires = table->GetColumnByName("Wire");
+      this->Wires = this->Wires ? this->Wires : table->GetColumnByName("Target");
+      this->Count = table->GetNumberOfRows();
+    }
+    else if (this->Points)
+    {
+      this->Count = this->Points->GetNumberOfPoints();
+    }
+    else
+    {
+      throw std::runtime_error("the picks are neither a table nor points");
+    }
+  }
+  vtkIdType GetCount() const { return this->Count; }
+  std::string GetName(vtkIdType row) const
+  {
+    return this->Points ? "point " + std::to_string(row) + " of the picks"
+                        : "row " + std::to_string(row) + " of the table of picks";
+  }
+  // Column, row, slice.
+  lacuna::Vec3 Get(vtkIdType row) const
+  {
+    lacuna::Vec3 values{ 0, 0, 0 };
+    if (this->Points)
+    {
+      this->Points->GetPoint(row, values.data());
+      values[2] = std::round(values[2]);
+      return values;
+    }
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      values[c] = GetNumber(this->Columns[c], row);
+    }
+    return values;
+  }
+  lacuna::CalibrationTarget GetWire(
+    vtkIdType row, vtkIdType slice, const std::vector<lacuna::WireRange>& ranges) const
+  {
+    if (this->Wires)
+    {
+      return ReadWire(this->Wires, row);
+    }
+    if (const lacuna::CalibrationTarget* wire = lacuna::FindWire(ranges, slice))
+    {
+      return *wire;
+    }
+    throw std::runtime_error(this->GetName(row) +
+      " is of no wire: give a table with the column 'Wire' (X, Y or Z), or name the wire of "
+      "slice " +
+      std::to_string(slice) + " in WireRanges");
+  }
+
+private:
+  vtkPointSet* Points;
+  std::array<vtkAbstractArray*, 3> Columns{};
+  vtkAbstractArray* Wires = nullptr;
+  vtkIdType Count = 0;
+};
+
+// Of the stack's slices, without gaps.
+class Images
+{
+public:
+  Images(vtkImageData* slices, const char* what)
+  {
+    vtkDataArray* levels = vtkLacunaStackPixels::Find(slices);
+    if (levels->GetNumberOfComponents() != 1)
+    {
+      throw std::runtime_error(
+        std::string("the slices have colours; grey levels are needed to look for ") + what);
+    }
+    slices->GetExtent(this->Extent);
+    slices->GetSpacing(this->Spacing);
+    slices->GetOrigin(this->Origin);
+    this->First.Type = vtkLacunaScalarType::Get(levels);
+    this->First.Width = this->Extent[1] - this->Extent[0] + 1;
+    this->First.Height = this->Extent[3] - this->Extent[2] + 1;
+    this->First.RowStride = this->First.Width;
+    this->First.Pixels = levels->GetVoidPointer(0);
+  }
+  std::int64_t GetCount() const { return this->Extent[5] - this->Extent[4] + 1; }
+  lacuna::GreyImage Get(std::int64_t k) const
+  {
+    lacuna::GreyImage image = this->First;
+    image.Pixels = static_cast<const char*>(image.Pixels) +
+      static_cast<std::size_t>(k * image.Width * image.Height) * lacuna::GetScalarSize(image.Type);
+    return image;
+  }
+  // Of a pixel of an image, in the sweep's.
+  lacuna::Vec2 GetPixel(lacuna::Vec2 pixel) const
+  {
+    for (std::size_t axis = 0; axis < 2; ++axis)
+    {
+      pixel[axis] =
+        this->Origin[axis] + this->Spacing[axis] * (this->Extent[2 * axis] + pixel[axis]);
+    }
+    return pixel;
+  }
+
+private:
+  int Extent[6];
+  double Spacing[3], Origin[3];
+  lacuna::GreyImage First;
+};
 }
 
 //------------------------------------------------------------------------------
@@ -72,83 +192,118 @@ vtkLacunaProbePoses::vtkLacunaProbePoses(vtkImageData* slices)
   }
   for (vtkIdType i = 0; i < status->GetNumberOfTuples(); ++i)
   {
-    this->Valid.push_back(
-      !(static_cast<int>(status->GetTuple1(i)) & vtkLacunaTrackedSlices::PoseInvalid));
+    const int flags = static_cast<int>(status->GetTuple1(i));
+    this->Valid.push_back(!(flags & vtkLacunaTrackedSlices::PoseInvalid));
+    this->Seen.push_back(!(flags & vtkLacunaTrackedSlices::ImageInvalid));
     this->Matrices.push_back(vtkLacunaFieldData::GetMatrix(matrices, i));
   }
 }
 
 //------------------------------------------------------------------------------
-std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::Read(vtkTable* table,
-  const vtkLacunaProbePoses& poses, std::optional<lacuna::CalibrationTarget> target)
+std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::Read(vtkDataObject* data,
+  const vtkLacunaProbePoses& poses, std::optional<lacuna::CalibrationTarget> target,
+  const std::vector<lacuna::WireRange>& ranges)
 {
-  vtkAbstractArray* slices = GetColumn(table, "Slice");
-  vtkAbstractArray* columns = GetColumn(table, "Column");
-  vtkAbstractArray* rows = GetColumn(table, "Row");
-  vtkAbstractArray* wires = target ? nullptr : GetColumn(table, "Wire");
+  const Rows rows(data);
   std::vector<vtkLacunaCalibrationPick> picks;
-  for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+  for (vtkIdType row = 0; row < rows.GetCount(); ++row)
   {
-    const double number = GetNumber(slices, row);
+    const lacuna::Vec3 point = rows.Get(row);
+    const double number = point[2];
     if (number != std::floor(number) || number < 0 ||
       number >= static_cast<double>(poses.GetCount()))
     {
-      throw std::runtime_error("row " + std::to_string(row) +
-        " of the table of picks is of slice " + lacuna::FormatNumber(number) +
+      throw std::runtime_error(rows.GetName(row) + " is of slice " + lacuna::FormatNumber(number) +
         "; the sweep has slices 0 to " + std::to_string(poses.GetCount() - 1));
     }
     const vtkIdType slice = static_cast<vtkIdType>(number);
     if (!poses.IsValid(slice))
     {
-      throw std::runtime_error("row " + std::to_string(row) +
-        " of the table of picks is of slice " + std::to_string(slice) +
+      throw std::runtime_error(rows.GetName(row) + " is of slice " + std::to_string(slice) +
         ", which has no pose (SliceStatus 1): remove the row");
     }
     picks.push_back({ slice,
-      { poses.Get(slice), { GetNumber(columns, row), GetNumber(rows, row) },
-        target ? *target : GetWire(wires, row) } });
+      { poses.Get(slice), { point[0], point[1] },
+        target ? *target : rows.GetWire(row, slice, ranges) } });
   }
   return picks;
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindSpots(
+  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses& poses,
+  const std::vector<lacuna::WireRange>& ranges, const std::vector<vtkLacunaCalibrationPick>& picks)
+{
+  const Images images(slices, "wires");
+  std::vector<lacuna::SpotSlice> sweep(static_cast<std::size_t>(poses.GetCount()));
+  std::vector<std::int64_t> wanted; // of the stack
+  for (std::int64_t k = 0; k < images.GetCount(); ++k)
+  {
+    const vtkIdType slice = vtkLacunaTrackedSlices::GetSliceNumber(
+      slices, slices->GetExtent()[4] + static_cast<int>(k), poses.GetCount());
+    if (poses.IsValid(slice) && poses.HasImage(slice) && lacuna::FindWire(ranges, slice))
+    {
+      wanted.push_back(k);
+    }
+  }
+  execution.For(static_cast<std::int64_t>(wanted.size()), 1,
+    [&](std::int64_t first, std::int64_t last)
+    {
+      for (std::int64_t n = first; n < last; ++n)
+      {
+        const std::int64_t k = wanted[static_cast<std::size_t>(n)];
+        const vtkIdType slice = vtkLacunaTrackedSlices::GetSliceNumber(
+          slices, slices->GetExtent()[4] + static_cast<int>(k), poses.GetCount());
+        lacuna::SpotSlice& found = sweep[static_cast<std::size_t>(slice)];
+        found.Spots = lacuna::FindSpots(images.Get(k));
+        for (lacuna::Spot& spot : found.Spots)
+        {
+          spot.Pixel = images.GetPixel(spot.Pixel);
+        }
+      }
+    });
+  for (const vtkLacunaCalibrationPick& pick : picks)
+  {
+    sweep[static_cast<std::size_t>(pick.Slice)].Known = pick.Pick.Pixel;
+  }
+  double bounds[6];
+  slices->GetBounds(bounds);
+  const double reach = ReachPart * std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2]);
+  std::vector<vtkLacunaCalibrationPick> found;
+  for (const lacuna::WireRange& range : ranges)
+  {
+    const std::vector<lacuna::SpotSlice> part(
+      sweep.begin() + range.First, sweep.begin() + range.Last + 1);
+    const std::vector<std::optional<lacuna::Spot>> track = lacuna::TrackSpots(part, reach);
+    for (std::size_t n = 0; n < track.size(); ++n)
+    {
+      if (track[n] && !part[n].Known)
+      {
+        const vtkIdType slice = range.First + static_cast<vtkIdType>(n);
+        found.push_back(
+          { slice, { poses.Get(slice), track[n]->Pixel, range.Wire }, track[n]->Score });
+      }
+    }
+  }
+  return found;
 }
 
 //------------------------------------------------------------------------------
 std::vector<std::optional<std::array<lacuna::Vec2, 2>>> vtkLacunaCalibrationPicks::FindWalls(
   vtkLacunaExecution& execution, vtkImageData* slices)
 {
-  vtkDataArray* levels = vtkLacunaStackPixels::Find(slices);
-  if (levels->GetNumberOfComponents() != 1)
-  {
-    throw std::runtime_error("the slices have colours; grey levels are needed to look for a wall");
-  }
-  int extent[6];
-  double spacing[3], origin[3];
-  slices->GetExtent(extent);
-  slices->GetSpacing(spacing);
-  slices->GetOrigin(origin);
-  const int width = extent[1] - extent[0] + 1, height = extent[3] - extent[2] + 1;
+  const Images images(slices, "a wall");
   std::vector<std::optional<std::array<lacuna::Vec2, 2>>> walls(
-    static_cast<std::size_t>(extent[5] - extent[4] + 1));
-  execution.For(static_cast<std::int64_t>(walls.size()), 1,
+    static_cast<std::size_t>(images.GetCount()));
+  execution.For(images.GetCount(), 1,
     [&](std::int64_t first, std::int64_t last)
     {
       for (std::int64_t k = first; k < last; ++k)
       {
-        lacuna::GreyImage image;
-        image.Type = vtkLacunaScalarType::Get(levels);
-        image.Pixels = levels->GetVoidPointer(static_cast<vtkIdType>(k) * width * height);
-        image.RowStride = image.Width = width;
-        image.Height = height;
-        if (const std::optional<lacuna::WallLine> wall = lacuna::FindWall(image))
+        if (const std::optional<lacuna::WallLine> wall = lacuna::FindWall(images.Get(k)))
         {
-          std::array<lacuna::Vec2, 2> points = wall->Points;
-          for (lacuna::Vec2& point : points)
-          {
-            for (std::size_t axis = 0; axis < 2; ++axis)
-            {
-              point[axis] = origin[axis] + spacing[axis] * (extent[2 * axis] + point[axis]);
-            }
-          }
-          walls[static_cast<std::size_t>(k)] = points;
+          walls[static_cast<std::size_t>(k)] = { images.GetPixel(wall->Points[0]),
+            images.GetPixel(wall->Points[1]) };
         }
       }
     });

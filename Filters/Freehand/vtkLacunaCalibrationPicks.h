@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What is picked in tracked slices to calibrate the probe. Not a part of the module's interface.
+/// What is picked, or found, in tracked slices to calibrate the probe. Not a part of the module's interface.
 #ifndef vtkLacunaCalibrationPicks_h
 #define vtkLacunaCalibrationPicks_h
 
 #include "lacunaProbeCalibration.h"
+#include "lacunaWireRanges.h"
 #include "vtkType.h"
 
 #include <optional>
 #include <vector>
 
 class vtkImageData;
+class vtkDataObject;
 class vtkLacunaExecution;
-class vtkTable;
 
 /// The poses of the probe, and which slices have none. Throws std::runtime_error when the slices
 /// have no field data array ProbeToTracker.
@@ -25,10 +26,11 @@ public:
   /// Of the sweep.
   vtkIdType GetCount() const { return static_cast<vtkIdType>(this->Valid.size()); }
   bool IsValid(vtkIdType slice) const { return this->Valid[slice]; }
+  bool HasImage(vtkIdType slice) const { return this->Seen[slice]; }
   const lacuna::Matrix4& Get(vtkIdType slice) const { return this->Matrices[slice]; }
 
 private:
-  std::vector<char> Valid;
+  std::vector<char> Valid, Seen;
   std::vector<lacuna::Matrix4> Matrices;
 };
 
@@ -37,14 +39,22 @@ struct vtkLacunaCalibrationPick
 {
   vtkIdType Slice;
   lacuna::CalibrationPick Pick;
+  double Score = 1; ///< of a spot that was found: lacunaSpotDetection.h
 };
 
 namespace vtkLacunaCalibrationPicks
 {
-/// From a table with columns Slice, Column, Row and, without a target, Wire (X, Y or Z). Throws
-/// std::runtime_error that names row and column.
-std::vector<vtkLacunaCalibrationPick> Read(vtkTable* table, const vtkLacunaProbePoses& poses,
-  std::optional<lacuna::CalibrationTarget> target);
+/// From a vtkTable with columns Slice, Column, Row and Wire (X, Y or Z), or from a vtkPointSet whose
+/// points are (column, row, slice). target: of all of them. Without one Wire says it, or else
+/// Target, or else the ranges. Throws std::runtime_error that names row and column.
+std::vector<vtkLacunaCalibrationPick> Read(vtkDataObject* data, const vtkLacunaProbePoses& poses,
+  std::optional<lacuna::CalibrationTarget> target, const std::vector<lacuna::WireRange>& ranges);
+
+/// The bright spots of wires, one at most in each slice of a range that has a pose and none of the
+/// picks, which lead: lacunaSpotTracking.h. The same for any number of threads.
+std::vector<vtkLacunaCalibrationPick> FindSpots(vtkLacunaExecution& execution, vtkImageData* slices,
+  const vtkLacunaProbePoses& poses, const std::vector<lacuna::WireRange>& ranges,
+  const std::vector<vtkLacunaCalibrationPick>& picks);
 
 /// Where the slices show a flat wall, the same for any number of threads: for each slice of the
 /// stack the line's two points (column, row), or nothing.

@@ -3,13 +3,11 @@
 
 #include "lacunaAtomicFile.h"
 #include "lacunaParameterText.h"
-#include "vtkCellArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
+#include "vtkLacunaCalibrationOutputs.h"
 #include "vtkLacunaCalibrationPicks.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -18,13 +16,10 @@
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +33,6 @@ namespace
 constexpr double LargeRms = 1.5;      // mm; that of Carr's phantom stayed below 0.5
 constexpr double RivalRatio = 1.5;    // of the RMS of another solution
 constexpr double ManyOutliers = 0.15; // of the picks
-constexpr int MapIntervals = 60;      // of the map of expected errors along each axis
-constexpr double MinimumMargin = 5;   // mm of a wall or wire shown beyond the picks
 
 using Picks = std::vector<vtkLacunaCalibrationPick>;
 
@@ -89,21 +82,24 @@ void CheckPlaces(const Picks& picks, vtkImageData* slices)
   }
 }
 
-// Of what a pick should lie on, mm.
-double GetError(const lacuna::Vec3& point, lacuna::CalibrationTarget target)
+// Spots of wires, or of a point, in slices without picks.
+Picks FindSpots(vtkLacunaExecution& execution, vtkImageData* slices,
+  const vtkLacunaProbePoses& poses, const std::vector<lacuna::WireRange>& ranges,
+  const Picks& picks, std::vector<std::string>& advice)
 {
-  double square = 0;
-  for (int axis = 0; axis < 3; ++axis)
+  Picks found = vtkLacunaCalibrationPicks::FindSpots(execution, slices, poses, ranges, picks);
+  for (const lacuna::WireRange& range : ranges)
   {
-    square += lacuna::IsZeroAt(target, axis) ? point[axis] * point[axis] : 0;
+    const auto isIn = [&range](const vtkLacunaCalibrationPick& pick)
+    { return pick.Slice >= range.First && pick.Slice <= range.Last; };
+    if (std::none_of(found.begin(), found.end(), isIn) &&
+      std::none_of(picks.begin(), picks.end(), isIn))
+    {
+      advice.push_back("no bright spot is found in slices " + std::to_string(range.First) + " to " +
+        std::to_string(range.Last));
+    }
   }
-  return std::sqrt(square);
-}
-
-const char* GetTargetName(lacuna::CalibrationTarget target)
-{
-  static const char* const names[] = { "X", "Y", "Z", "Wall", "Point" };
-  return names[static_cast<int>(target)];
+  return found;
 }
 
 // Of the pixels that the stack has or had, (column, row).
@@ -174,135 +170,6 @@ void WriteCalibration(const std::string& fileName, const lacuna::ProbeCalibratio
   text += "\"/>\n  </CoordinateDefinitions>\n</PlusConfiguration>\n";
   lacuna::WriteFileAtomically(fileName, text);
 }
-
-void FillTable(const Picks& picks, const lacuna::ProbeCalibration& found, vtkTable* table)
-{
-  vtkNew<vtkIntArray> slice;
-  vtkNew<vtkStringArray> target;
-  vtkNew<vtkUnsignedCharArray> used;
-  slice->SetName("Slice");
-  target->SetName("Target");
-  used->SetName("Used");
-  const char* const names[6] = { "Column", "Row", "PhantomX", "PhantomY", "PhantomZ", "Error" };
-  vtkNew<vtkDoubleArray> numbers[6];
-  for (int c = 0; c < 6; ++c)
-  {
-    numbers[c]->SetName(names[c]);
-  }
-  for (std::size_t i = 0; i < picks.size(); ++i)
-  {
-    const lacuna::CalibrationPick& pick = picks[i].Pick;
-    const lacuna::Vec3& point = found.PhantomPoints[i];
-    slice->InsertNextValue(static_cast<int>(picks[i].Slice));
-    target->InsertNextValue(GetTargetName(pick.Target));
-    used->InsertNextValue(found.Used[i]);
-    const double values[6] = { pick.Pixel[0], pick.Pixel[1], point[0], point[1], point[2],
-      GetError(point, pick.Target) };
-    for (int c = 0; c < 6; ++c)
-    {
-      numbers[c]->InsertNextValue(values[c]);
-    }
-  }
-  table->AddColumn(slice);
-  table->AddColumn(target);
-  for (auto& column : numbers)
-  {
-    table->AddColumn(column);
-  }
-  table->AddColumn(used);
-}
-
-// The picks in the phantom, and the phantom as far as they reach.
-void FillPicture(const Picks& picks, const lacuna::ProbeCalibration& found, vtkPolyData* picture)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkNew<vtkCellArray> vertices, lines;
-  vtkNew<vtkDoubleArray> error;
-  vtkNew<vtkUnsignedCharArray> used;
-  error->SetName("Error");
-  used->SetName("Used");
-  lacuna::Vec3 low{ 0, 0, 0 }, high{ 0, 0, 0 };
-  for (std::size_t i = 0; i < picks.size(); ++i)
-  {
-    const lacuna::Vec3& point = found.PhantomPoints[i];
-    const vtkIdType id = points->InsertNextPoint(point.data());
-    vertices->InsertNextCell(1, &id);
-    error->InsertNextValue(GetError(point, picks[i].Pick.Target));
-    used->InsertNextValue(found.Used[i]);
-    for (int axis = 0; axis < 3 && found.Used[i]; ++axis)
-    {
-      low[axis] = i == 0 ? point[axis] : std::min(low[axis], point[axis]);
-      high[axis] = i == 0 ? point[axis] : std::max(high[axis], point[axis]);
-    }
-  }
-  const auto addLine = [&](const std::vector<lacuna::Vec3>& corners)
-  {
-    lines->InsertNextCell(static_cast<int>(corners.size()));
-    for (const lacuna::Vec3& corner : corners)
-    {
-      lines->InsertCellPoint(points->InsertNextPoint(corner.data()));
-      error->InsertNextValue(0);
-      used->InsertNextValue(1);
-    }
-  };
-  const auto has = [&picks](lacuna::CalibrationTarget target)
-  {
-    return std::any_of(picks.begin(), picks.end(),
-      [target](const vtkLacunaCalibrationPick& pick) { return pick.Pick.Target == target; });
-  };
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (has(static_cast<lacuna::CalibrationTarget>(axis)))
-    {
-      lacuna::Vec3 first{ 0, 0, 0 }, last{ 0, 0, 0 };
-      first[axis] = std::min(0.0, low[axis]) - MinimumMargin;
-      last[axis] = std::max(0.0, high[axis]) + MinimumMargin;
-      addLine({ first, last });
-    }
-  }
-  if (has(lacuna::CalibrationTarget::Wall))
-  {
-    addLine({ { low[0] - MinimumMargin, low[1] - MinimumMargin, 0 },
-      { high[0] + MinimumMargin, low[1] - MinimumMargin, 0 },
-      { high[0] + MinimumMargin, high[1] + MinimumMargin, 0 },
-      { low[0] - MinimumMargin, high[1] + MinimumMargin, 0 },
-      { low[0] - MinimumMargin, low[1] - MinimumMargin, 0 } });
-  }
-  picture->SetPoints(points);
-  picture->SetVerts(vertices);
-  picture->SetLines(lines);
-  picture->GetPointData()->SetScalars(error);
-  picture->GetPointData()->AddArray(used);
-}
-
-// What to expect at pixels all over the picture, in its coordinates.
-void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map)
-{
-  double bounds[6];
-  slices->GetBounds(bounds);
-  int size[2];
-  double spacing[2];
-  for (int axis = 0; axis < 2; ++axis)
-  {
-    const double length = bounds[2 * axis + 1] - bounds[2 * axis];
-    const int intervals = length > 0 ? MapIntervals : 0;
-    size[axis] = intervals + 1;
-    spacing[axis] = intervals ? length / intervals : 1;
-  }
-  map->SetOrigin(bounds[0], bounds[2], 0);
-  map->SetSpacing(spacing[0], spacing[1], 1);
-  map->SetDimensions(size[0], size[1], 1);
-  vtkNew<vtkDoubleArray> error;
-  error->SetName("ExpectedError");
-  for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i)
-  {
-    double pixel[3];
-    map->GetPoint(i, pixel);
-    error->InsertNextValue(found.GetExpectedError({ pixel[0], pixel[1] }));
-  }
-  map->GetPointData()->SetScalars(error);
-}
 }
 
 vtkStandardNewMacro(vtkLacunaProbeCalibration);
@@ -311,7 +178,7 @@ vtkStandardNewMacro(vtkLacunaProbeCalibration);
 vtkLacunaProbeCalibration::vtkLacunaProbeCalibration()
 {
   this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(4);
+  this->SetNumberOfOutputPorts(5);
 }
 
 //------------------------------------------------------------------------------
@@ -320,6 +187,7 @@ int vtkLacunaProbeCalibration::FillInputPortInformation(int port, vtkInformation
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkTable");
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPointSet");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
     return 1;
   }
@@ -329,7 +197,8 @@ int vtkLacunaProbeCalibration::FillInputPortInformation(int port, vtkInformation
 //------------------------------------------------------------------------------
 int vtkLacunaProbeCalibration::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  static const char* const types[] = { "vtkImageData", "vtkTable", "vtkPolyData", "vtkImageData" };
+  static const char* const types[] = { "vtkImageData", "vtkTable", "vtkPolyData", "vtkImageData",
+    "vtkPolyData" };
   info->Set(vtkDataObject::DATA_TYPE_NAME(), types[port]);
   return 1;
 }
@@ -340,6 +209,16 @@ void vtkLacunaProbeCalibration::SetOutputFileName(const char* name)
   if (this->OutputFileName != (name ? name : ""))
   {
     this->OutputFileName = name ? name : "";
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaProbeCalibration::SetWireRanges(const char* ranges)
+{
+  if (this->WireRanges != (ranges ? ranges : ""))
+  {
+    this->WireRanges = ranges ? ranges : "";
     this->Modified();
   }
 }
@@ -364,7 +243,7 @@ int vtkLacunaProbeCalibration::RequestData(
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* slices = vtkImageData::GetData(inputs[0]);
-      vtkTable* table = vtkTable::GetData(inputs[1]);
+      vtkDataObject* given = vtkDataObject::GetData(inputs[1]);
       if (slices->GetNumberOfPoints() == 0)
       {
         throw std::runtime_error("the stack of slices is empty");
@@ -376,20 +255,48 @@ int vtkLacunaProbeCalibration::RequestData(
         target = this->Method == SingleWall ? lacuna::CalibrationTarget::Wall
                                             : lacuna::CalibrationTarget::Point;
       }
-      if (!table && this->Method != SingleWall)
+      std::vector<lacuna::WireRange> ranges;
+      if (this->Method == ThreeWires)
       {
-        throw std::runtime_error("there is no table of picks (second input); only a wall is looked "
-                                 "for in the slices themselves");
+        ranges = lacuna::ReadWireRanges(this->WireRanges, poses.GetCount());
       }
-      const Picks picks = table ? vtkLacunaCalibrationPicks::Read(table, poses, target)
-                                : FindWallPicks(execution, slices, poses);
-      CheckPlaces(picks, slices);
-      if (!table && picks.empty())
+      else if (this->Method == PointTarget && !given)
       {
-        throw std::runtime_error(
-          "no slice shows a flat wall: a bright line over most of the width, "
-          "dark above it. Crop rulers and texts by Extract Subset, or give a "
-          "table of picks");
+        ranges.push_back({ lacuna::CalibrationTarget::Point, 0, poses.GetCount() - 1 });
+      }
+      if (!given && this->Method == ThreeWires && ranges.empty())
+      {
+        throw std::runtime_error("neither picks (second input) nor WireRanges are given: say which "
+                                 "slices show which wire, like X 0-49, Y 50-99, Z 100-149");
+      }
+      if (!given && this->Method != SingleWall && !this->FindSpots)
+      {
+        throw std::runtime_error("there are no picks (second input), and FindSpots is off");
+      }
+      std::vector<std::string> advice;
+      Picks picks;
+      if (given)
+      {
+        picks = vtkLacunaCalibrationPicks::Read(given, poses, target, ranges);
+        CheckPlaces(picks, slices);
+      }
+      if (this->FindSpots && !ranges.empty())
+      {
+        const Picks spots = ::FindSpots(execution, slices, poses, ranges, picks, advice);
+        picks.insert(picks.end(), spots.begin(), spots.end());
+      }
+      else if (!given && this->Method == SingleWall)
+      {
+        picks = FindWallPicks(execution, slices, poses);
+      }
+      if (!given && picks.empty())
+      {
+        throw std::runtime_error(this->Method == SingleWall
+            ? "no slice shows a flat wall: a bright line over most of the width, dark above it. "
+              "Crop "
+              "rulers and texts by Extract Subset, or give a table of picks"
+            : "no slice shows a bright spot on dark. Crop rulers and texts by Extract Subset, or "
+              "give picks");
       }
       if (!this->EstimateScale && this->PixelSpacing == 0)
       {
@@ -409,7 +316,8 @@ int vtkLacunaProbeCalibration::RequestData(
         kernelPicks.push_back(pick.Pick);
       }
       const lacuna::ProbeCalibration found = lacuna::ProbeCalibration::Solve(kernelPicks, options);
-      const std::vector<std::string> advice = GetAdvice(found, picks);
+      const std::vector<std::string> more = GetAdvice(found, picks);
+      advice.insert(advice.end(), more.begin(), more.end());
       for (const std::string& sentence : advice)
       {
         vtkWarningMacro(<< sentence);
@@ -427,11 +335,13 @@ int vtkLacunaProbeCalibration::RequestData(
       vtkLacunaFieldData::SetMatrices(
         calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
       vtkTable* residuals = vtkTable::GetData(outputs, 1);
-      FillTable(picks, found, residuals);
+      vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
       vtkPolyData* picture = vtkPolyData::GetData(outputs, 2);
-      FillPicture(picks, found, picture);
+      vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
       vtkImageData* map = vtkImageData::GetData(outputs, 3);
-      FillErrorMap(slices, found, map);
+      vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
+      vtkPolyData* marks = vtkPolyData::GetData(outputs, 4);
+      vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
 
       double expected = 0;
       for (const lacuna::Vec2& corner : GetCorners(slices))
@@ -450,9 +360,11 @@ int vtkLacunaProbeCalibration::RequestData(
         .Add("PixelSpacing", this->PixelSpacing)
         .Add("RowSpacing", this->RowSpacing)
         .Add("EstimateScale", this->EstimateScale)
-        .Add("OutlierLimit", this->OutlierLimit);
+        .Add("OutlierLimit", this->OutlierLimit)
+        .Add("WireRanges", this->WireRanges)
+        .Add("FindSpots", this->FindSpots);
       for (vtkDataObject* output :
-        std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map })
+        std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map, marks })
       {
         vtkLacunaFieldData::Set(
           output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
@@ -464,9 +376,9 @@ int vtkLacunaProbeCalibration::RequestData(
         vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
         output->GetFieldData()->AddArray(sentences);
         std::vector<vtkDataObject*> sources{ slices };
-        if (table)
+        if (given)
         {
-          sources.push_back(table);
+          sources.push_back(given);
         }
         vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
       }
@@ -490,5 +402,7 @@ void vtkLacunaProbeCalibration::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RowSpacing: " << this->RowSpacing << "\n";
   os << indent << "EstimateScale: " << this->EstimateScale << "\n";
   os << indent << "OutlierLimit: " << this->OutlierLimit << "\n";
+  os << indent << "WireRanges: " << this->WireRanges << "\n";
+  os << indent << "FindSpots: " << this->FindSpots << "\n";
   os << indent << "OutputFileName: " << this->OutputFileName << "\n";
 }

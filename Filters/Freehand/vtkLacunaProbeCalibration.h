@@ -16,17 +16,22 @@
  * it more so (lacunaProbeCalibration.h).
  *
  * Input port 0: tracked slices (vtkLacunaTrackedSlices.h) with the field data array
- * ProbeToTracker; the probe need not be calibrated. Port 1: vtkTable of picks with the columns Slice
- * (number in the sweep, 0-based), Column, Row (pixels, not whole numbers only) and for ThreeWires
- * Wire (text X, Y or Z). Optional for SingleWall: without it the floor's line is looked for in each
- * slice (lacunaWallDetection.h).
+ * ProbeToTracker; the probe need not be calibrated. Port 1: the picks, a vtkTable with the columns
+ * Slice (number in the sweep, 0-based), Column, Row (pixels, not whole numbers only) and for
+ * ThreeWires Wire (text X, Y or Z; else Target, as in output port 1, else WireRanges), or a
+ * vtkPointSet whose points are (column, row, slice), as a selection of the slices' points has them.
+ * Optional: for SingleWall the floor's line is looked for in each slice (lacunaWallDetection.h), for
+ * ThreeWires the bright spot in each slice of WireRanges, for PointTarget that in all slices
+ * (lacunaSpotDetection.h, lacunaSpotTracking.h).
  *
  * Output port 0: the slices, calibrated: field data ImageToProbe and ImageToReference, whose reference
  * frame is the tracker. Port 1: vtkTable of the picks with their places in the phantom (PhantomX,
- * PhantomY, PhantomZ, mm), Error (mm, from the wire, wall or point) and Used (0: an outlier). Port 2:
+ * PhantomY, PhantomZ, mm), Error (mm, from the wire, wall or point), Score (1 of picks that were given, else how
+ * clear the spot is, 0 to 1) and Used (0: an outlier); it can be corrected and given as picks. Port 2:
  * vtkPolyData in phantom coordinates (mm): the picks as vertices with Error and Used, and as lines the
  * wires, or the border of the wall. Port 3: vtkImageData of 61 x 61 points all over the image, with
- * its coordinates (column, row) and ExpectedError (mm, RMS) at each.
+ * its coordinates (column, row) and ExpectedError (mm, RMS) at each. Port 4: vtkPolyData, the picks at
+ * (column, row, slice), to be shown on the slices, with Error, Score, Used and Target.
  *
  * All have the field data PixelSpacing (2, mm a column and a row), CalibrationRms (mm, eq. A.14),
  * CalibrationSpread (mm, standard deviation of an equation), ExpectedError (mm, RMS, largest of the
@@ -94,13 +99,28 @@ public:
   ///@}
 
   ///@{
+  /// ThreeWires: which slices show which wire, numbers of the sweep: "X 0-49, Y 50-99, Z 100-149"
+  /// (lacunaWireRanges.h). Default: empty.
+  void SetWireRanges(const char* ranges);
+  const char* GetWireRanges() const { return this->WireRanges.c_str(); }
+  ///@}
+
+  ///@{
+  /// Look for the bright spot in slices of WireRanges that have no pick (PointTarget: in all slices
+  /// when there are no picks). Default: on.
+  vtkSetMacro(FindSpots, bool);
+  vtkGetMacro(FindSpots, bool);
+  vtkBooleanMacro(FindSpots, bool);
+  ///@}
+
+  ///@{
   /// A file to write ImageToProbe to: the XML that vtkLacunaTrackedSliceReader takes as calibration,
   /// as do PLUS and 3D Slicer. It appears whole or not at all. Empty: none is written. Default: empty.
   void SetOutputFileName(const char* name);
   const char* GetOutputFileName() const { return this->OutputFileName.c_str(); }
   ///@}
 
-  /// Takes the table of input port 1 away.
+  /// Takes the picks of input port 1 away.
   void RemovePicks() { this->SetInputConnection(1, nullptr); }
 
 protected:
@@ -123,6 +143,8 @@ private:
   double RowSpacing = 0;
   bool EstimateScale = false;
   double OutlierLimit = 4;
+  std::string WireRanges;
+  bool FindSpots = true;
   std::string OutputFileName;
 };
 #endif

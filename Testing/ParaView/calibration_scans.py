@@ -61,6 +61,49 @@ def wall_picture(scan_to_phantom, random):
     return np.clip(grey, 0, 255).astype(np.uint8)
 
 
+def wire_picture(scan_to_phantom, random):
+    """A bath with the three wires: spots with tails and echoes in speckle, below the bright transducer."""
+    row, column = np.mgrid[:HEIGHT, :WIDTH]
+    grey = np.hypot(*random.normal(scale=9, size=(2, HEIGHT, WIDTH)))
+    grey = (grey + np.roll(grey, 1, axis=1)) / 2 + np.clip(140 - 25 * row, 0, None)
+    phantom_to_scan = np.linalg.inv(scan_to_phantom)
+    for wire in range(3):
+        along, place = phantom_to_scan[2, wire], phantom_to_scan[2, 3]
+        if abs(along) < 0.2:  # too flat to be a spot
+            continue
+        point = np.zeros(4)
+        point[wire], point[3] = -place / along, 1
+        spot = (phantom_to_scan @ point)[:2] / SPACING
+        if abs(point[wire]) > 60 or not (-20 < spot[0] < WIDTH + 20 and -20 < spot[1] < HEIGHT + 20):
+            continue
+        x, y = column - spot[0], row - spot[1]
+        x = x - 0.15 * y  # the beam is askew
+        lobe = np.exp(-0.5 * (y / 1.1) ** 2)
+        tail = np.where(y > 0, 0.4 * (1 - np.exp(-y)) * np.exp(-y / 14) * (0.8 + 0.2 * np.cos(1.3 * y)), 0)
+        echo = 0.3 * np.exp(-0.5 * ((y - 24) / 1.3) ** 2)
+        width = 2 + 1.5 * spot[1] / HEIGHT
+        grey += random.uniform(150, 300) * np.exp(-0.5 * (x / width) ** 2) * np.maximum(lobe, np.maximum(tail, echo))
+    return np.clip(grey, 0, 255).astype(np.uint8)
+
+
+def wire_sweep(wire, count, random):
+    """Poses (scan to phantom) of a sweep along a wire, and the pixels in which it is seen."""
+    poses, pixels = [], []
+    phase = random.uniform(0, 2 * np.pi, 6)
+    for s in np.linspace(0, 1, count):
+        place = np.zeros(3)
+        place[wire] = 8 + 38 * (2 * s) if s < 0.5 else -46 + 38 * (2 * s - 1)
+        turn = np.roll(np.eye(3), -wire - 1, axis=1)  # the image is across the wire
+        turn = rotation(np.eye(3)[wire], 70 * np.sin(5 * s + phase[0])) @ turn
+        turn = rotation(turn[:, 0], 40 * np.sin(9 * s + phase[1])) @ turn
+        turn = rotation(turn[:, 1], 35 * np.sin(7 * s + phase[2])) @ turn
+        pixel = np.array([0.5 + 0.4 * np.sin(8 * s + phase[3]), 0.55 + 0.37 * np.sin(6 * s + phase[4])])
+        pixel = pixel * [WIDTH, HEIGHT]
+        pixels.append(pixel)
+        poses.append(pose(turn, place - turn[:, :2] @ (SPACING * pixel)))
+    return poses, pixels
+
+
 def open_scan(name, pixels, poses, times=None):
     stack = tracked_slices(pixels, poses)
     fields = stack.GetFieldData()

@@ -20,27 +20,6 @@ constexpr double SmallestSupport = 0.6;
 constexpr double EndMargin = 0.1;
 constexpr double LargestBrightPart = 0.2; // of the image: more is tissue or noise
 
-std::vector<float> GetLevels(const GreyImage& image)
-{
-  std::vector<float> levels;
-  levels.reserve(static_cast<std::size_t>(image.Width) * static_cast<std::size_t>(image.Height));
-  DispatchScalarType(image.Type,
-    [&](auto zero)
-    {
-      using Scalar = decltype(zero);
-      for (int row = 0; row < image.Height; ++row)
-      {
-        const Scalar* first = static_cast<const Scalar*>(image.Pixels) + row * image.RowStride;
-        for (int column = 0; column < image.Width; ++column)
-        {
-          const float level = static_cast<float>(first[column]);
-          levels.push_back(std::isfinite(level) ? level : 0.0f);
-        }
-      }
-    });
-  return levels;
-}
-
 // Where the first strong echo of a column is brightest, between rows; negative: there is none.
 double FindEcho(const std::vector<float>& levels, int width, int height, int column, float strong)
 {

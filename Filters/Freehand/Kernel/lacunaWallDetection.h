@@ -4,25 +4,14 @@
 #ifndef lacunaWallDetection_h
 #define lacunaWallDetection_h
 
-#include "lacunaScalarType.h"
+#include "lacunaGreyImage.h"
 #include "lacunaVector.h"
 
 #include <array>
-#include <cstdint>
 #include <optional>
 
 namespace lacuna
 {
-/// A slice's grey levels; does not own them.
-struct GreyImage
-{
-  ScalarType Type = ScalarType::UInt8;
-  const void* Pixels = nullptr;
-  std::int64_t RowStride = 0; ///< pixels from one row to the next
-  int Width = 0;
-  int Height = 0;
-};
-
 struct WallLine
 {
   /// (column, row) of two points of the line, a tenth of the seen part from its ends.

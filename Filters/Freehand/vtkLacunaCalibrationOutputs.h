@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a calibration shows of its picks. Not a part of the module's interface.
+#ifndef vtkLacunaCalibrationOutputs_h
+#define vtkLacunaCalibrationOutputs_h
+
+#include "vtkLacunaCalibrationPicks.h"
+
+#include <vector>
+
+class vtkImageData;
+class vtkPolyData;
+class vtkTable;
+
+namespace vtkLacunaCalibrationOutputs
+{
+/// A row for each pick; the arrays are those of vtkLacunaProbeCalibration's port 1.
+void FillTable(const std::vector<vtkLacunaCalibrationPick>& picks,
+  const lacuna::ProbeCalibration& found, vtkTable* table);
+
+/// The picks in the phantom, and the phantom as far as they reach: port 2.
+void FillPhantom(const std::vector<vtkLacunaCalibrationPick>& picks,
+  const lacuna::ProbeCalibration& found, vtkPolyData* picture);
+
+/// What to expect all over the slices' picture, in its coordinates: port 3.
+void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map);
+
+/// The picks on the slices: port 4.
+void FillSlices(const std::vector<vtkLacunaCalibrationPick>& picks,
+  const lacuna::ProbeCalibration& found, vtkPolyData* picture);
+}
+#endif
