@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <iterator>
@@ -49,7 +50,8 @@ std::string PrintedLine(vtkObject* object, const char* dropped = "Time:")
     }
     skippedIndent = std::string::npos;
     line.erase(0, first);
-    if (line.rfind("Registered ", 0) == 0) // observers follow
+    // observers follow; the transform is told as its matrix
+    if (line.rfind("Registered ", 0) == 0 || line.rfind("Transform:", 0) == 0)
     {
       skippedIndent = first;
     }
@@ -128,10 +130,55 @@ void AddLoop(vtkImplicitSelectionLoop* loop, lacuna::ParameterText& text)
   }
 }
 
+/// ParaView's cylinder is one along y that its transform turns about its centre. Adds the cylinder as
+/// users set it, in the world. False when function is none, or something else than turned.
+bool AddTurnedCylinder(vtkImplicitFunction* function, lacuna::ParameterText& text)
+{
+  auto* cylinder = vtkCylinder::SafeDownCast(function);
+  auto* transform = vtkHomogeneousTransform::SafeDownCast(function->GetTransform());
+  if (!cylinder || !transform || std::strcmp(function->GetClassName(), "vtkPVCylinder") != 0)
+  {
+    return false;
+  }
+  transform->Update();
+  const vtkMatrix4x4* matrix = transform->GetMatrix();
+  const double* center = cylinder->GetCenter();
+  std::array<double, 3> axis{};
+  double off = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    double moved = matrix->GetElement(a, 3);
+    for (int b = 0; b < 3; ++b)
+    {
+      double product = 0; // of two columns
+      for (int i = 0; i < 3; ++i)
+      {
+        product += matrix->GetElement(i, a) * matrix->GetElement(i, b);
+      }
+      off = std::max(off, std::abs(product - (a == b ? 1 : 0)));
+      moved += matrix->GetElement(a, b) * center[b];
+      axis[a] += matrix->GetElement(b, a) * cylinder->GetAxis()[b]; // the inverse
+    }
+    off = std::max({ off, std::abs(moved - center[a]) / (1 + std::abs(center[a])),
+      std::abs(matrix->GetElement(3, a)) });
+  }
+  if (!(off <= 1e-9))
+  {
+    return false;
+  }
+  for (double& x : axis)
+  {
+    x = std::round(x * 1e15) / 1e15 + 0.0; // no 1e-17 and no -0
+  }
+  text.Add("Center", ToArray(center)).Add("Axis", axis).Add("Radius", cylinder->GetRadius());
+  return true;
+}
+
+/// Whether what AddShape adds, and the transform, are all there is to functions of this class.
 bool IsExactClass(const std::string& name)
 {
   const char* const names[] = { "vtkPlane", "vtkBox", "vtkSphere", "vtkCylinder", "vtkPlanes",
-    "vtkImplicitSelectionLoop" };
+    "vtkImplicitSelectionLoop", "vtkPVBox", "vtkPVCylinder" };
   return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
@@ -162,6 +209,10 @@ std::string vtkLacunaFunctionText::Describe(vtkImplicitFunction* function)
   }
   const std::string name = function->GetClassName();
   lacuna::ParameterText text;
+  if (AddTurnedCylinder(function, text))
+  {
+    return name + " " + text.Get();
+  }
   const bool isKnown = AddShape(function, text);
   auto* loop = vtkImplicitSelectionLoop::SafeDownCast(function);
   if (loop)

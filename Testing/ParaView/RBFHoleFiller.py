@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """RBF Hole Filler as a script sees it: properties, defaults, ways to mark the defect."""
 import os
+import re
 
 import lacuna
 import numpy as np
 from depth_map_files import fetch, write_map
+from paraview import servermanager
 from paraview.simple import LoadPlugin
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
@@ -12,6 +14,10 @@ LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 def surface(x, y):
     return 40 + 0.2 * x - 0.1 * y + 0.002 * (x - 20) ** 2
+
+
+def provenance(proxy):
+    return servermanager.Fetch(proxy).GetFieldData().GetAbstractArray("Provenance").GetValue(0)
 
 
 x, y = np.meshgrid(np.arange(70.0), np.arange(50.0))
@@ -53,6 +59,31 @@ filler.DefectRegion.Position = [3 + 10.5, 4 - 19.5, -100]
 filler.DefectRegion.Length = [12, 9, 200]
 filled = fetch(filler)[0]["FilledMask"] == 1
 assert (filled == ((x > 10.5) & (x < 22.5) & (y > 10.5) & (y < 19.5))).all()
+
+# The provenance names ParaView's cylinder as it was set, without the transform that is in it, and no dump.
+centre = np.array([3 + 12.5, 4 - 20, 5 - surface(12.5, 20)])
+filler.DefectRegion = "Cylinder"
+filler.DefectRegion.Center = list(centre)
+filler.DefectRegion.Radius = 6
+for axis in ((0, 0, -1), (0, 1, 0), (0.4, -0.2, 0.9)):
+    filler.DefectRegion.Axis = axis
+    filled = fetch(filler)[0]["FilledMask"] == 1
+    record = provenance(filler)
+    region = dict(re.findall(r"(\w+)=([-+.e\d,]+)", re.search('DefectRegion="(.*?)" ', record)[1]))
+    assert 'DefectRegion="vtkPVCylinder Center=' in record and set(region) == {"Center", "Axis", "Radius"}, record
+    told = np.array([float(value) for value in region["Axis"].split(",")])
+    assert np.abs(told - axis / np.linalg.norm(axis)).max() < 1e-15, told
+    if axis[2] != 0.9:
+        assert region["Axis"] == "%g,%g,%g" % axis, record
+    centre_told, radius = [float(value) for value in region["Center"].split(",")], float(region["Radius"])
+    away = [np.linalg.norm(np.cross(np.dstack([3 + x, 4 - y, 5 - z]) - centre_told, told), axis=2)
+            for z in surface(x, y) - np.linspace(0, 40, 801)[:, None, None]]  # towards the viewer
+    assert filled[away[0] < radius].all() and not filled[np.min(away, axis=0) > radius].any(), axis
+filler.DefectRegion = "Box"
+filler.DefectRegion.Rotation = [10, 20, 0]
+filler.DefectRegion.Position = [3 + 10.5, 4 - 19.5, -100]
+filler.DefectRegion.Length = [30, 30, 200]
+assert fetch(filler)[0]["FilledMask"].any() and "Inverse" not in provenance(filler), provenance(filler)
 
 filler.DefectRegion = "Spline Loop"  # round a corner of the hole, and above and below the surface
 assert filler.DefectRegion.Closed == 1
