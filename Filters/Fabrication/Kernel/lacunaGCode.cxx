@@ -18,6 +18,7 @@ namespace lacuna
 namespace
 {
 constexpr std::size_t CommentLength = 64;
+constexpr std::string_view CutSign = "..."; // where a comment goes on in the next one within a word
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
 constexpr const char* AxisNames = "XYZ";
 // What the path's numbers mean: mm, in the plane of x and y, no compensation, no length, no cycle,
@@ -78,11 +79,24 @@ void AddComment(std::string& program, const std::string& comment)
                      : '*';
     if (line.size() > CommentLength)
     {
-      // at a blank if there is one
+      // at a blank, or else behind a comma, so that no number is cut; what is cut says so
       const std::size_t blank = line.rfind(' ');
-      const bool words = blank != std::string::npos && blank > 0;
-      add(line.substr(0, words ? blank : CommentLength));
-      line.erase(0, words ? blank + 1 : CommentLength);
+      const std::size_t comma = line.rfind(',', CommentLength - 1);
+      if (blank != std::string::npos && blank > 0)
+      {
+        add(line.substr(0, blank));
+        line.erase(0, blank + 1);
+      }
+      else if (comma != std::string::npos && comma > 0)
+      {
+        add(line.substr(0, comma + 1));
+        line.erase(0, comma + 1);
+      }
+      else
+      {
+        add(line.substr(0, CommentLength - CutSign.size()) + std::string(CutSign));
+        line = std::string(CutSign) + line.substr(CommentLength - CutSign.size());
+      }
     }
   }
   if (!line.empty())

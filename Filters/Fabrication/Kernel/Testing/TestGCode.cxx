@@ -121,12 +121,19 @@ TEST(GCode, CommentsInTheControlsCharacters)
   GCodeOptions options;
   options.Comments = { "Gr\xc3\xb6\xc3\x9f"
                        "e 1% ;\n\t'x'",
-    std::string(150, 'a'), "" };
+    std::string(150, 'a'), "",
+    "Made by: Transform=" + std::string(30, '0') + ",-12345.678901234567,0.12345678901234567,2" };
   const GCodeParser parser(MakeGCode(Start, Path(), options).Text);
-  ASSERT_EQ(parser.Comments.size(), 4u);
+  ASSERT_EQ(parser.Comments.size(), 7u);
   EXPECT_EQ(parser.Comments[0], "GR**E 1* * **X*");
-  EXPECT_EQ(parser.Comments[1], std::string(64, 'A'));
-  EXPECT_EQ(parser.Comments[3], std::string(22, 'A'));
+  // a word that is cut says so, on both sides
+  EXPECT_EQ(parser.Comments[1], std::string(61, 'A') + "...");
+  EXPECT_EQ(parser.Comments[2], "..." + std::string(58, 'A') + "...");
+  EXPECT_EQ(parser.Comments[3], "..." + std::string(31, 'A'));
+  // numbers are whole
+  EXPECT_EQ(parser.Comments[4], "MADE BY:");
+  EXPECT_EQ(parser.Comments[5], "TRANSFORM=" + std::string(30, '0') + ",-12345.678901234567,");
+  EXPECT_EQ(parser.Comments[6], "0.12345678901234567,2");
 }
 
 TEST(GCode, Templates)
