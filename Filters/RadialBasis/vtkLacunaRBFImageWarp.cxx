@@ -31,6 +31,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -93,17 +94,26 @@ std::vector<std::array<double, 3>> GetPoints(vtkDataSet* points, const Geometry&
   return own;
 }
 
-// Share of folded voxels from which on they are no accident: noise of landmarks folds a tenth of a
-// per cent, and a third of all pairs on the wrong side 3 %; a head of which most is mirrored within a
-// frame of landmarks that stay where they are, a quarter.
+// Share of folded voxels in the box around the targets from which on they are no accident: noise of
+// landmarks folds a tenth of a per cent there, and a third of all pairs on the wrong side 3 %; a head
+// of which most is mirrored within a frame of landmarks that stay where they are, a quarter. Beyond
+// the box the smoother kernels swing, and any share may be folded.
 constexpr double FoldedLimit = 0.05;
 
-// what: "the image", or a part of it
-[[noreturn]] void ThrowMirrored(const std::string& what)
+// What of the voxels is folded.
+struct Folds
+{
+  double Image = 0; // share of all voxels
+  double Box = 0;   // share of those in the box around the targets
+};
+
+// what: "the image", or a part of it; hint: what else it may be
+[[noreturn]] void ThrowMirrored(const std::string& what, const std::string& hint = {})
 {
   throw std::runtime_error("the landmarks mirror " + what +
     ": left would be right in it. Look for pairs in the wrong order, on the wrong side or in a "
-    "coordinate system of the other handedness; landmarks nearly in one plane need some off it");
+    "coordinate system of the other handedness; landmarks nearly in one plane need some off it" +
+    hint);
 }
 
 // Whether the affine map that fits best turns the landmarks' space over (or flattens it): its
@@ -156,11 +166,17 @@ public:
     {
       const int axis = geometry.Axes[c];
       smallest = std::min(smallest, geometry.Spacing[axis]);
+      double low = std::numeric_limits<double>::infinity();
+      double high = -low;
       for (std::size_t i = 0; i < targets.size(); ++i)
       {
         nodes[i][c] = targets[i][axis];
         values[c][i] = landmarks[i][axis] - targets[i][axis];
+        low = std::min(low, targets[i][axis]);
+        high = std::max(high, targets[i][axis]);
       }
+      this->Box[2 * axis] = std::floor(low / geometry.Spacing[axis]);
+      this->Box[2 * axis + 1] = std::ceil(high / geometry.Spacing[axis]);
       const auto range = std::minmax_element(values[c].begin(), values[c].end());
       largest = targets.empty() ? 0 : std::max(largest, *range.second - *range.first);
     }
@@ -205,6 +221,22 @@ public:
     }
   }
 
+  // Whether a voxel is in the box that encloses the targets.
+  bool IsInBox(std::int64_t voxel) const
+  {
+    std::int64_t rest = voxel;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      const auto i = static_cast<double>(rest % this->Shape.Size[axis]);
+      rest /= this->Shape.Size[axis];
+      if (i < this->Box[2 * axis] || i > this->Box[2 * axis + 1])
+      {
+        return false;
+      }
+    }
+    return true;
+  }
+
   // Whether the mapping turns the cell at a voxel inside out.
   bool IsFolded(std::int64_t voxel) const
   {
@@ -238,6 +270,7 @@ public:
 private:
   const Geometry& Shape;
   std::array<std::vector<double>, Dimension> Way;
+  std::array<double, 6> Box{}; // first and last voxel of each axis, also outside of the image
 };
 
 // Which places of the image have grey levels that count, by its vtkValidPointMask.
@@ -307,9 +340,8 @@ struct Sampling
   double OutsideValue;
 };
 
-// Returns the share of folded voxels.
 template <class Mapping>
-double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* scalars,
+Folds Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* scalars,
   const Mapping& mapping, const Sampling& sampling, vtkImageData* output)
 {
   const vtkIdType count = image->GetNumberOfPoints();
@@ -335,9 +367,15 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
   const double low = scalars->GetDataTypeMin();
   const double high = scalars->GetDataTypeMax();
   constexpr std::int64_t grain = 4096;
-  std::vector<std::int64_t> folded((count + grain - 1) / grain, 0);
+  struct Count
+  {
+    std::int64_t Folded = 0;
+    std::int64_t InBox = 0;
+    std::int64_t FoldedInBox = 0;
+  };
+  std::vector<Count> counts((count + grain - 1) / grain);
   execution.SetStage(0.6, 1);
-  execution.For(static_cast<std::int64_t>(folded.size()), 1,
+  execution.For(static_cast<std::int64_t>(counts.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       std::vector<double> tuple(components);
@@ -371,7 +409,11 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
             warped->SetComponent(i, k, value);
           }
           valid->SetValue(i, known ? 1 : 0);
-          folded[block] += mapping.IsFolded(i) ? 1 : 0;
+          const int folded = mapping.IsFolded(i) ? 1 : 0;
+          const int inBox = mapping.IsInBox(i) ? 1 : 0;
+          counts[block].Folded += folded;
+          counts[block].InBox += inBox;
+          counts[block].FoldedInBox += folded * inBox;
         }
       }
     });
@@ -379,12 +421,16 @@ double Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* 
   output->GetCellData()->Initialize();
   output->GetPointData()->SetScalars(warped);
   output->GetPointData()->AddArray(valid);
-  std::int64_t sum = 0;
-  for (const std::int64_t f : folded)
+  Count sum;
+  for (const Count& block : counts)
   {
-    sum += f;
+    sum.Folded += block.Folded;
+    sum.InBox += block.InBox;
+    sum.FoldedInBox += block.FoldedInBox;
   }
-  return static_cast<double>(sum) / static_cast<double>(count);
+  return { static_cast<double>(sum.Folded) / static_cast<double>(count),
+    static_cast<double>(sum.FoldedInBox) /
+      static_cast<double>(std::max<std::int64_t>(1, sum.InBox)) };
 }
 }
 
@@ -473,7 +519,7 @@ int vtkLacunaRBFImageWarp::RequestData(
       vtkNew<vtkImageData> whole;
       whole->ShallowCopy(image);
       const Sampling sampling{ this->Interpolation, this->OutsideValue };
-      double folded = 0;
+      Folds folded;
       lacuna::RadialBasisReport report;
       const auto run = [&](const auto& mapping)
       {
@@ -492,19 +538,35 @@ int vtkLacunaRBFImageWarp::RequestData(
           throw std::runtime_error("the image is but a row of voxels; warps are two- or "
                                    "three-dimensional");
       }
-      if (folded > FoldedLimit)
+      const bool swings = this->Kernel == Triharmonic || this->Kernel == Cubic;
+      const std::string name = this->Kernel == Cubic ? "Cubic" : "Triharmonic";
+      if (folded.Box > FoldedLimit)
       {
-        ThrowMirrored(std::to_string(std::lround(100 * folded)) + " % of the image");
+        ThrowMirrored(
+          std::to_string(std::lround(100 * folded.Box)) + " % of the box around the targets",
+          swings ? "; or " + name + " swings there: take ThinPlate or Linear, or add Smoothing"
+                 : "");
       }
-      if (folded > 0)
+      if (folded.Image > 0)
       {
-        vtkWarningMacro(<< "the mapping folds in " << 100 * folded << " % of the voxels: landmarks "
-                        << "cross or contradict one another there, and it is mirrored; check "
-                        << "the pairs, or add Smoothing");
+        std::string reasons;
+        if (folded.Box > 0)
+        {
+          reasons +=
+            "landmarks cross or contradict one another; check the pairs, or add Smoothing. ";
+        }
+        if (folded.Image > folded.Box && swings)
+        {
+          reasons += "Far from landmarks " + name +
+            " swings: take ThinPlate or Linear, add Smoothing, or crop the image. ";
+        }
+        vtkWarningMacro(<< "the mapping folds in " << 100 * folded.Image << " % of the voxels, "
+                        << 100 * folded.Box << " % of those in the box around the targets, and "
+                        << "the image is mirrored there. " << reasons);
       }
       vtkLacunaFieldData::Set(whole, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
       vtkLacunaFieldData::Set(whole, "Residual", { report.Residual }, 1);
-      vtkLacunaFieldData::Set(whole, "FoldedFraction", { folded }, 1);
+      vtkLacunaFieldData::Set(whole, "FoldedFraction", { folded.Image }, 1);
       lacuna::ParameterText parameters;
       parameters.Add("Kernel", this->Kernel)
         .Add("Smoothing", this->Smoothing)

@@ -24,9 +24,9 @@
  * |                |            | allows                                                         |
  * | FoldedFraction | 1          | share of the voxels where the mapping turns space inside out   |
  * A folded image shows some places more than once, one of them mirrored: there is a warning, since
- * landmarks cross or contradict one another then. When the affine map that fits the landmarks best
- * is a reflection, or more than 5 % of the voxels are folded, that is an error, so that no patient
- * is mirrored.
+ * landmarks cross or contradict one another then, or the kernel swings far from them. When the
+ * affine map that fits the landmarks best is a reflection, or more than 5 % of the voxels in the
+ * box around the targets are folded, that is an error, so that no patient is mirrored.
  *
  * Source: Carr 1996, section 6.1; Bookstein 1989.
  */
