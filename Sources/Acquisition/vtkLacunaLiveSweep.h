@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 /// What vtkLacunaPolhemusVideoSource has while it is live.
 struct vtkLacunaLiveSweep
@@ -31,6 +32,7 @@ struct vtkLacunaLiveSweep
   std::unique_ptr<vtkLacunaSliceStack> Newest;
   std::int64_t NewestNumber = -1;
   std::map<std::string, double> Subjects; // of messages, and when they were there last
+  std::vector<std::string> News;          // messages to warn of
   bool ToldUncalibrated = false;
   std::string Messages; // what the getter has returned
   std::string FileName;

@@ -12,13 +12,16 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
@@ -45,6 +48,32 @@ std::string GetSubject(std::string message)
   return message;
 }
 
+// What is shown before the first frame: black over a grey wedge, so that colours are chosen for all
+// levels.
+std::unique_ptr<vtkLacunaSliceStack> MakeBlank()
+{
+  constexpr int columns = 768;
+  constexpr int rows = 576;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::array<double, 16> noPose{};
+  noPose.fill(none);
+  lacuna::SweepFrame frame;
+  frame.Window = { 0, 0, columns, rows };
+  lacuna::AcquiredSlice slice;
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>(std::size_t{ columns } * rows);
+  for (int i = 0; i < 16 * columns; ++i)
+  {
+    pixels->rbegin()[i] = static_cast<std::uint8_t>(255 - i % columns * 256 / columns);
+  }
+  slice.Pixels = std::move(pixels);
+  slice.ProbeToTracker = lacuna::Matrix4(noPose);
+  slice.Status = vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::ImageInvalid;
+  slice.Residual = slice.Speed = none;
+  auto stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
+  stack->Append(slice);
+  return stack;
+}
+
 void Announce(vtkInformation* info, const std::array<int, 4>& window, int slices)
 {
   const int extent[6] = { 0, window[2] - 1, 0, window[3] - 1, 0, slices - 1 };
@@ -66,6 +95,7 @@ vtkLacunaPolhemusVideoSource::vtkLacunaPolhemusVideoSource()
 {
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
+  this->Now->Newest = MakeBlank();
 }
 
 //------------------------------------------------------------------------------
@@ -346,10 +376,12 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
   catch (const std::bad_alloc&)
   {
     this->Now->Acquisition->Stop();
-    vtkErrorMacro("There is no memory for the slices; the capture has ended. Set a lower "
-                  "MemoryLimit");
+    this->Now->Trouble = "There is no memory for the slices; the capture has ended. Set a lower "
+                         "MemoryLimit";
+    this->Now->News.push_back(this->Now->Trouble);
   }
-  this->WarnOfNews();
+  this->CollectNews();
+  changed = changed || !this->Now->News.empty();
   if (changed)
   {
     this->Modified();
@@ -358,7 +390,8 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaPolhemusVideoSource::WarnOfNews()
+// ParaView shows no warning of GetNeedsUpdate: they wait for the update that follows.
+void vtkLacunaPolhemusVideoSource::CollectNews()
 {
   constexpr double longAgo = 5; // s; what comes and goes is said once
   const double time = GetClock().Now();
@@ -367,7 +400,7 @@ void vtkLacunaPolhemusVideoSource::WarnOfNews()
     const auto [subject, fresh] = this->Now->Subjects.try_emplace(GetSubject(message), time);
     if (fresh || time - subject->second > longAgo)
     {
-      vtkWarningMacro(<< message);
+      this->Now->News.push_back(message);
     }
     subject->second = time;
   }
@@ -399,7 +432,11 @@ int vtkLacunaPolhemusVideoSource::RequestData(
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution&)
     {
-      const vtkLacunaLiveSweep& now = *this->Now;
+      vtkLacunaLiveSweep& now = *this->Now;
+      for (const std::string& message : std::exchange(now.News, {}))
+      {
+        vtkWarningMacro(<< message);
+      }
       for (int port = 0; port < 2; ++port)
       {
         vtkInformation* info = outputs->GetInformationObject(port);

@@ -22,9 +22,12 @@
  * is the corner of CropRectangle, so that its coordinates are those of the whole frame. Making it
  * costs the same however many slices there are.
  *
- * Output port 1: the newest frame as a stack of one slice, also while nothing is captured.
+ * Output port 1: the newest frame as a stack of one slice, also while nothing is captured. Before the
+ * first frame it is 768 x 576 pixels, black over a wedge of all grey levels, flagged as invalid, so
+ * that views can be made ready.
  *
- * What is wrong and what to do is in Message, and a warning when it is new. One process only.
+ * What is wrong and what to do is in Message, and a warning at the next update when it is new. One
+ * process only.
  */
 #ifndef vtkLacunaPolhemusVideoSource_h
 #define vtkLacunaPolhemusVideoSource_h
@@ -238,7 +241,7 @@ private:
   void Open();
   void Configure();
   bool TakeOver();
-  void WarnOfNews();
+  void CollectNews();
 
   char* TrackerConnection = nullptr;
   int BaudRate = 115200;

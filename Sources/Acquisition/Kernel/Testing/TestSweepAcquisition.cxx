@@ -1,77 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The threads are real, the time is simulated.
 #include "lacunaSweep.h"
-#include "lacunaTestRoom.h"
+#include "lacunaTestScene.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 
 using namespace lacuna;
 using namespace lacunaTest;
-
-namespace
-{
-// An acquisition in a room.
-struct Scene
-{
-  explicit Scene(const AcquisitionRules& rules, Room::FrameScript frames = Room::NumberedFrame,
-    Room::PoseScript poses = Room::FollowSweep)
-  {
-    this->Devices.Frames = this->Place.MakeVideo(std::move(frames));
-    this->Devices.Poses = this->Place.MakeTracker(std::move(poses));
-    this->Devices.RetryTime = 0.001;
-    this->Rules = rules;
-  }
-  SweepAcquisition& Open()
-  {
-    this->Acquisition = std::make_unique<SweepAcquisition>(this->Devices, this->Rules, this->Place);
-    return *this->Acquisition;
-  }
-  Room Place;
-  AcquisitionDevices Devices;
-  AcquisitionRules Rules;
-  std::unique_ptr<SweepAcquisition> Acquisition;
-};
-
-AcquisitionRules EveryFrame()
-{
-  AcquisitionRules rules;
-  rules.Mode = CaptureMode::EveryFrame;
-  rules.SpeedLimit = 0;
-  return rules;
-}
-
-// All frames are accounted for.
-void ExpectNoneForgotten(const AcquisitionState& state, bool movement)
-{
-  const CaptureCounts& c = state.Counts;
-  EXPECT_EQ(c.Frames,
-    c.Slices + c.Still + c.WrongSize + c.PastLimit + state.Pending +
-      (movement ? c.WithoutPose : 0));
-}
-
-// The pose of a slice is the sweep's at its instant, but for the straight line between measurements.
-double PoseError(const AcquiredSlice& slice)
-{
-  const double straight = 350 * slice.Gap * slice.Gap / 8;
-  return Norm(slice.ProbeToTracker.Column(3) - lacunaTest::Sweep(slice.Timestamp, 1).Column(3)) -
-    straight;
-}
-
-bool HasMessage(const AcquisitionState& state, const std::string& part)
-{
-  for (const std::string& message : state.Messages)
-  {
-    if (message.find(part) != std::string::npos)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-}
 
 TEST(SweepAcquisition, EveryFrameBecomesASliceWithThePoseOfItsInstant)
 {
@@ -491,60 +430,3 @@ TEST(SweepAcquisition, ItsEndDoesNotWaitForDevicesThatHang)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
-
-// The FASTRAK's protocol at its pace, one byte in a hundred damaged: every frame becomes a slice and
-// every pose is right.
-class AcquisitionSoak : public testing::TestWithParam<double>
-{
-};
-
-TEST_P(AcquisitionSoak, NoFrameIsLostOrMispaired)
-{
-  FastrakEmulatorOptions options;
-  options.Baud = 115200;
-  options.Faults.Changed = 0.01;
-  FastrakEmulator emulator(lacunaTest::Sweep, options);
-  FastrakSettings settings;
-  settings.Layout = ChooseFastrakLayout(options.Baud, false);
-  settings.Motion = { 600, 6, 0.1, 0.001 }; // the sweep's, with a margin
-  Scene scene(EveryFrame());
-  scene.Devices.Poses = scene.Place.MakeFastrak(emulator, settings);
-  SweepAcquisition& acquisition = scene.Open();
-  scene.Place.RunTo(75); // it is set up by then
-  acquisition.Start();
-  std::int64_t expected = -1;
-  double worst = 0;
-  double residual = 0;
-  double delay = 0;
-  const int frames = static_cast<int>(25 * GetParam());
-  for (int seen = 100; seen < frames;)
-  {
-    seen = std::min(seen + 1000, frames);
-    scene.Place.RunTo(seen);
-    for (const AcquiredSlice& slice : acquisition.TakeSlices())
-    {
-      expected = expected < 0 ? slice.FrameNumber : expected;
-      ASSERT_EQ(slice.FrameNumber, expected++);
-      ASSERT_EQ(Room::ReadNumber(*slice.Pixels), slice.FrameNumber);
-      ASSERT_EQ(slice.Status, 0);
-      worst = std::max(worst, PoseError(slice));
-      residual = std::max(residual, slice.Residual);
-      delay = std::max(delay, slice.Delay);
-    }
-  }
-  scene.Place.Run(); // for the last ones' poses
-  acquisition.Stop();
-  const AcquisitionState state = acquisition.GetState();
-  std::cout << state.Counts.Slices << " slices, " << state.Poses.Poses << " records, "
-            << state.Poses.Damaged << " damaged, worst pose " << worst << " mm, residual "
-            << 1000 * residual << " ms, latest slice " << 1000 * delay << " ms after its frame\n";
-  EXPECT_EQ(state.Counts.Slices, state.Counts.Frames);
-  EXPECT_GT(state.Counts.Slices, frames - 300);
-  EXPECT_EQ(state.Counts.WithoutPose, 0);
-  EXPECT_GT(state.Poses.Damaged, state.Poses.Poses / 10);
-  EXPECT_LT(worst, 0.05);
-  ExpectNoneForgotten(state, false);
-}
-
-INSTANTIATE_TEST_SUITE_P(Short, AcquisitionSoak, testing::Values(60.0));
-INSTANTIATE_TEST_SUITE_P(Soak, AcquisitionSoak, testing::Values(1800.0));

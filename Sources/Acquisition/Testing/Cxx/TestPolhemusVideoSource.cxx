@@ -63,6 +63,10 @@ struct Bench
     for (int i = 0; i < 6000 && !condition(); ++i)
     {
       this->Source->Poll();
+      if (i % 10 == 0)
+      {
+        this->Source->Update();
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     if (!condition())
@@ -123,10 +127,10 @@ void TestSlices()
     [&]
     {
       source->Update(); // dormant display
-      return source->GetOutput(1)->GetNumberOfPoints() > 0;
+      return source->GetOutput(1)->GetDimensions()[0] == 54;
     }));
   LACUNA_CHECK(source->GetOutput(0)->GetNumberOfPoints() == 0);
-  LACUNA_CHECK(source->GetOutput(1)->GetDimensions()[0] == 54);
+  LACUNA_CHECK(source->GetOutput(1)->GetOrigin()[0] == 10);
 
   source->Start();
   LACUNA_CHECK(source->GetCapturing());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is said of settings that cannot be, without any device.
 #include "lacunaCheck.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
@@ -17,6 +19,7 @@ void CheckMessage(vtkLacunaPolhemusVideoSource* source, const std::string& words
   for (int i = 0; i < 6000; ++i)
   {
     source->Poll();
+    source->Update();
     if (std::string(source->GetMessage()).find(words) != std::string::npos)
     {
       return;
@@ -32,9 +35,13 @@ void TestDormant()
   const auto messages = lacunaCheck::Watch(source);
   source->Update(); // opens nothing
   LACUNA_CHECK(source->GetOutput(0)->GetNumberOfPoints() == 0);
-  LACUNA_CHECK(source->GetOutput(1)->GetNumberOfPoints() == 0);
+  vtkImageData* newest = source->GetOutput(1); // ready to be shown
+  LACUNA_CHECK(newest->GetDimensions()[0] == 768 && newest->GetDimensions()[2] == 1);
+  LACUNA_CHECK(newest->GetScalarRange()[0] == 0 && newest->GetScalarRange()[1] == 255);
+  LACUNA_CHECK(newest->GetFieldData()->GetArray("SliceStatus")->GetComponent(0, 0) == 3);
   LACUNA_CHECK(messages->Errors.empty() && messages->Warnings.empty());
-  LACUNA_CHECK(!source->GetNeedsUpdate() && !source->GetTrackerWorks());
+  LACUNA_CHECK(!source->GetNeedsUpdate()); // nothing new
+  LACUNA_CHECK(!source->GetTrackerWorks());
   LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "Connect");
   source->Stop();
   source->Clear();
