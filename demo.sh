@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Sets up everything on a Debian 12 machine, builds, and makes both surfaces: one from freehand
-# ultrasound slices, one that fills the hole in a skull. ./demo.sh --help says all.
+# ultrasound slices, one that fills the hole in a skull; --live acquires from emulated devices.
+# ./demo.sh --help says all.
 set -euo pipefail
 top=$(cd "$(dirname "$0")" && pwd)
 for argument in "$@"; do
@@ -12,4 +13,18 @@ done
 (cd "$top" && . Testing/Tools/setup.sh && lacuna_install_packages && lacuna_build release)
 . "$top/Testing/Tools/setup.sh"
 . "$top/build/release/lacuna-env.sh"
-lacuna_display pvpython --force-offscreen-rendering -- -m lacuna.demo "$@"
+case " $* " in
+  *" --live "*) ;;
+  *)
+    lacuna_display pvpython --force-offscreen-rendering -- -m lacuna.demo "$@"
+    exit
+    ;;
+esac
+offscreen=""
+case "${DISPLAY:-none} $* " in
+  none\ * | *" --offscreen "*) offscreen=--force-offscreen-rendering ;;
+esac
+# for the emulated serial port (Documentation/UserGuide/emulated-devices.md)
+ports="$top/build/release/lib/libLacunaPseudoTerminalPorts.so"
+lacuna_display env LD_PRELOAD="$ports${LD_PRELOAD:+:$LD_PRELOAD}" \
+  pvpython $offscreen -- -m lacuna.demo "$@"

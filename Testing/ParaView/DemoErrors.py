@@ -30,6 +30,9 @@ def file_with(name, text):
     return output(name)
 
 
+message = failure("--live")
+assert "stage 'start the emulated tracker and scanner' failed" in message and "./demo.sh --live" in message, message
+
 ct = output("small-ct.vti")
 pv.SaveData(ct, proxy=pv.Wavelet(WholeExtent=[-8, 8, -8, 8, -8, 8]), DataMode="Binary")
 message = failure("--only", "implant", "--ct", ct, "--iso", "50000")

@@ -3,7 +3,8 @@
 implant surface for the hole in a skull. Without arguments it works on built-in phantoms
 whose truth is known; with --sweep and --ct on your own files. It writes pictures, the
 volume (.vti), the closed surface (.stl), the filled depth map (.vti), the implant surface
-(.igs) and report.md with the numbers. Without demo.sh: pvpython -- -m lacuna.demo, where the --
+(.igs) and report.md with the numbers. --live does something else: it acquires a sweep from an
+emulated tracker and scanner and shows the surface while it grows. Without demo.sh: pvpython -- -m lacuna.demo, where the --
 keeps ParaView from turning numbers such as -13 into --13."""
 import argparse
 import contextlib
@@ -29,6 +30,12 @@ def parse_arguments(arguments):
                        help="grey level of the surface; default: the phantom's, or Otsu's threshold")
     sweep.add_argument("--median", type=int, default=5, metavar="N", help="size of the median window, voxels (%(default)s)")
 
+    live = parser.add_argument_group("live acquisition, without hardware")
+    live.add_argument("--live", action="store_true",
+                      help="acquire from emulated devices; writes the sweep, its calibration and pictures. Ends by itself or by Ctrl-C")
+    live.add_argument("--seconds", type=float, default=20, metavar="S", help="time of the acquisition (%(default)s)")
+    live.add_argument("--offscreen", action="store_true", help="pictures only, no window")
+
     implant = parser.add_argument_group("cranial implant")
     implant.add_argument("--ct", metavar="FILE", help="CT volume in Hounsfield units; default: a phantom with a hole")
     implant.add_argument("--iso", type=float, default=500, metavar="HU", help="level of the bone surface (%(default)s)")
@@ -46,6 +53,10 @@ def parse_arguments(arguments):
         parser.error("--clip belongs to --sweep")
     if options.hole and not options.ct:
         parser.error("--hole belongs to --ct (the phantom knows its own hole)")
+    if options.live and (options.only or options.sweep or options.ct):
+        parser.error("--live works on emulated devices alone")
+    if not 4 <= options.seconds <= 3600:
+        parser.error(f"--seconds: {options.seconds:g} is not from 4 to 3600")
     for name in ("spacing", "margin", "node_spacing"):
         value = getattr(options, name)
         if not (math.isfinite(value) and value > 0):
@@ -107,15 +118,17 @@ class Report:
 def main(arguments=None):
     options = parse_arguments(arguments)
     import lacuna.plugin
-    from lacuna import demo_implant, demo_ultrasound
+    from lacuna import demo_implant, demo_live, demo_ultrasound
     report = Report()
     with report.stage("make the output folder"):
         os.makedirs(options.output, exist_ok=True)
     with report.stage("load the plugin"):
         lacuna.plugin.load()
-    if options.only != "implant":
+    if options.live:
+        demo_live.run(options, report)
+    elif options.only != "implant":
         demo_ultrasound.run(options, report)
-    if options.only != "ultrasound":
+    if options.only != "ultrasound" and not options.live:
         demo_implant.run(options, report)
     name = os.path.join(options.output, "report.md")
     report.write(name, lacuna.__version__)
