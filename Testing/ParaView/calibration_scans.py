@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scans of calibration phantoms with a probe whose image lies in a known place."""
 import csv
+import os
+import sys
 
 import numpy as np
 from paraview.simple import CSVReader, XMLImageDataReader
@@ -10,22 +12,10 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from lacuna_test import output
 from tracked_slice_files import tracked_slices
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Examples", "10-calibration"))
+from scans import looking_down, pose, rotation  # noqa: F401 (for the tests, too)
+
 WIDTH, HEIGHT, SPACING = 200, 160, 0.4  # 80 x 64 mm
-
-
-def rotation(axis, degrees):
-    axis = np.asarray(axis, float) / np.linalg.norm(axis)
-    angle = np.radians(degrees)
-    cross = np.cross(np.eye(3), -axis)
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-
-
-def pose(turn=np.eye(3), origin=(0, 0, 0)):
-    matrix = np.eye(4)
-    matrix[:3, :3] = turn
-    matrix[:3, 3] = origin
-    return matrix
-
 
 # The receiver is some way off the image and askew; nothing is symmetric.
 SCAN_TO_PROBE = pose(rotation([1, 2, -0.5], 70), [25, -60, 110])
@@ -41,14 +31,6 @@ def corner_error(matrix):
     """Largest distance in mm of the image's corners from where they are."""
     corners = np.array([[c, r, 0, 1] for c in (0, WIDTH - 1) for r in (0, HEIGHT - 1)])
     return np.linalg.norm(((matrix - IMAGE_TO_PROBE) @ corners.T)[:3], axis=0).max()
-
-
-def looking_down(random, degrees):
-    """Image axes in the phantom: rows go down, turned by up to so many degrees each way."""
-    down = np.column_stack([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
-    turns = random.uniform(-degrees, degrees, 2)
-    return (rotation([0, 0, 1], random.uniform(0, 360)) @ rotation([1, 0, 0], turns[0])
-            @ rotation([0, 1, 0], turns[1]) @ down)
 
 
 def wall_picture(scan_to_phantom, random):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaTrackerSelfTest: slices and tables in, deviations and advice out, and what cannot be.
 #include "lacunaTestStacks.h"
+#include "lacunaTestTables.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkLacunaFieldData.h"
@@ -83,17 +84,6 @@ vtkSmartPointer<vtkImageData> MakeSlices(int count)
   vtkLacunaFieldData::SetMatrices(slices, "ProbeToTracker", first);
   vtkLacunaFieldData::SetMatrices(slices, "StylusToTracker", second);
   return slices;
-}
-
-void AddColumn(vtkTable* table, const std::string& name, const std::vector<double>& values)
-{
-  vtkNew<vtkDoubleArray> column;
-  column->SetName(name.c_str());
-  for (const double value : values)
-  {
-    column->InsertNextValue(value);
-  }
-  table->AddColumn(column);
 }
 
 // Rows of a FASTRAK, in inches; station 3 in between.

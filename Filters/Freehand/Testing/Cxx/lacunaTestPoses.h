@@ -5,8 +5,8 @@
 #define lacunaTestPoses_h
 
 #include "lacunaCheck.h"
+#include "lacunaTestTables.h"
 #include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaAssembleTrackedSlices.h"
@@ -46,17 +46,6 @@ inline vtkSmartPointer<vtkImageData> MakeStack(
     }
   }
   return stack;
-}
-
-inline void AddColumn(vtkTable* table, const std::string& name, const std::vector<double>& values)
-{
-  vtkNew<vtkDoubleArray> column;
-  column->SetName(name.c_str());
-  for (const double value : values)
-  {
-    column->InsertNextValue(value);
-  }
-  table->AddColumn(column);
 }
 
 // Row i: a position (i, 2 i, 3 i) and a turn of i degrees about z.

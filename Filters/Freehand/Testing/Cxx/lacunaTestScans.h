@@ -7,7 +7,7 @@
 
 #include "lacunaCheck.h"
 #include "lacunaMatrix4.h"
-#include "vtkDoubleArray.h"
+#include "lacunaTestTables.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaFieldData.h"
@@ -97,17 +97,6 @@ inline void DrawFloor(vtkImageData* stack, int k, const Matrix4& scanToPhantom)
         static_cast<unsigned char>(std::min(255.0, noise + 225 * std::exp(-height * height)));
     }
   }
-}
-
-inline void AddColumn(vtkTable* table, const std::string& name, const std::vector<double>& values)
-{
-  vtkNew<vtkDoubleArray> column;
-  column->SetName(name.c_str());
-  for (const double value : values)
-  {
-    column->InsertNextValue(value);
-  }
-  table->AddColumn(column);
 }
 
 // A copy with something wrong.
