@@ -79,6 +79,12 @@ for name in ("SaveSolid.stl", "SaveSolid.3mf", "SaveSolid.vtp"):
     assert record["measures"] == {"Radius": None, "Thin": [None, 1.5, None], "Volume": 1}, record["measures"]
 assert step in read_3mf(output("SaveSolid.3mf"))["metadata"]["Description"]
 
+# Control characters of a foreign file's provenance have no place in XML; the rest stays.
+foreign = surface(corners, faces, {"Provenance": "a\x01\x02\tb \x1b[31m \x7f\ufffe\uffff <c> & \U0001f9b4"})
+record = save_solid(output("SaveSolid.3mf"), foreign)
+assert record["steps"][0].startswith("a\x01\x02\tb"), record["steps"]
+assert "Made by: a\tb [31m \x7f <c> & \U0001f9b4" in read_3mf(output("SaveSolid.3mf"))["metadata"]["Description"]
+
 # The same solid has the same record, though the time it took is not the same.
 depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[4, 4, 4]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
 filled = RBFHoleFiller(Input=depth, Smoothing=5)

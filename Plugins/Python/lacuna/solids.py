@@ -9,6 +9,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
@@ -16,6 +17,8 @@ NOTICE = "Research software, not a medical device."
 TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
 # What ParaView writes into one file. It knows its writers by endings in lower case only.
 SINGLE_FILES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
+# Characters that an XML file cannot have, not even escaped.
+NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 ROOM = 1 << 16  # bytes that a disk must have left
 
 
@@ -207,7 +210,7 @@ def _write_3mf(path, data, title, application, place, steps):
     lines = ['<?xml version="1.0" encoding="UTF-8"?>',
              '<model unit="millimeter" xml:lang="en-US" '
              'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">']
-    lines += [f' <metadata name="{name}">{escape(text)}</metadata>' for name, text in metadata.items()]
+    lines += [f' <metadata name="{name}">{escape(NO_XML.sub("", text))}</metadata>' for name, text in metadata.items()]
     lines += [" <resources>", f'  <object id="1" type="model" name={quoteattr(title)}>', "   <mesh>",
               "    <vertices>"]
     lines += ['     <vertex x="%.6f" y="%.6f" z="%.6f"/>' % tuple(p) for p in points.tolist()]
