@@ -19,6 +19,12 @@ with contextlib.redirect_stdout(printed):
 text = printed.getvalue()
 print(text)
 
+
+def value(words):
+    """What the script prints behind a check, before its ok."""
+    return re.search(re.escape(words) + r"[^\n]*?  +([^\n]*?) +ok\n", text)[1]
+
+
 with open(os.path.join(example, "../../UserGuide/cranioplasty.md"), encoding="utf-8") as page:
     guide = page.read()
 worst, rms = re.search(r"there: ([\d.]+) mm at most, ([\d.]+) mm RMS", text).groups()
@@ -29,7 +35,17 @@ deep, walls = re.search(r"mould: ([\d.]+) mm deep, walls up to (\d+) degrees", t
 assert f"{deep} mm deep, walls up to {walls}°" in guide, (deep, walls)
 metres, minutes = re.search(r"milling: ([\d.]+) m of cuts, (\d+) min", text).groups()
 assert f"{metres} m of cuts, {minutes} min" in guide, (metres, minutes)
-assert text.count(" ok\n") == 9 and "WRONG" not in text
+
+# the table of checks
+beside, near, far = value("bone beside the filled hole"), value("plate's points within"), value("plate's point farthest")
+beside_path = value("program's places are all on the path")
+least, most = value("mould.stl back in the patient").split(" .. ")
+for row in (f"| {beside} mm at most |", f"| {near} of its points within 0.02 mm, none before it; {far} mm |",
+            f"`PressToPatient` | {value('press to patient is a rotation')} |", f"| {least} to {most} mm of 0.7 |",
+            f"| {beside_path} mm beside it at most |",
+            f"| {value('tool within the part')} mm at most |"):
+    assert row in guide, row
+assert text.count(" ok\n") == 10 and "WRONG" not in text
 
 for name in ("2-filled", "3-plate", "4-model", "5-mould"):
     compare_with_baseline(os.path.join(folder, name + ".png"), os.path.join(example, name + ".png"), 60)

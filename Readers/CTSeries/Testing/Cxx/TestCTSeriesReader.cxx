@@ -47,7 +47,10 @@ int CheckVoxels(vtkImageData* image, double error)
 
 void TestExact()
 {
-  for (const auto& [name, series] : MakeExactCases())
+  const auto cases = MakeExactCases();
+  LACUNA_CHECK_THAT(
+    cases.size() == 24, "the user guide (cranioplasty.md) tells how many there are");
+  for (const auto& [name, series] : cases)
   {
     ReaderOf test(series);
     test.Reader->Update();
