@@ -8,6 +8,7 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -91,7 +92,16 @@ std::optional<lacuna::LandmarkMove> vtkLacunaPressPosition::FindMove(vtkDataObje
     before[3] = LeavePlane(before);
     after[3] = LeavePlane(after);
   }
-  return lacuna::CompareLandmarks(before, after);
+  lacuna::LandmarkMove move = lacuna::CompareLandmarks(before, after);
+  // the others may have been moved against them
+  const lacuna::Matrix4 map = lacuna::MapLandmarks(before, after);
+  for (std::size_t k = 0; k < made.size(); ++k)
+  {
+    lacuna::Vec3 p;
+    data->GetPoint(ids[k], p.data());
+    move.Stretch = std::max(move.Stretch, lacuna::Norm(p - map.Point(made[k])));
+  }
+  return move;
 }
 
 //------------------------------------------------------------------------------

@@ -28,7 +28,8 @@ void Record(vtkPointSet* data);
 /// the press. They have no PressToPatient.
 constexpr const char* MovedName = "MovedSincePress";
 
-/// How data lie to where they were made. Nothing without a valid array, or when all is on a line.
+/// How data lie to where they were made; Stretch is also what single points were moved against the
+/// others. Nothing without a valid array, or when all is on a line.
 std::optional<lacuna::LandmarkMove> FindMove(vtkDataObject* data);
 
 /// Throws std::runtime_error, in words for the user, when data have been mirrored or stretched by more

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaLandmarks.h"
 
-#include "lacunaMatrix4.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -68,10 +66,17 @@ LandmarkMove CompareLandmarks(const std::array<Vec3, 4>& before, const std::arra
         std::max(move.Stretch, std::abs(Norm(after[a] - after[b]) - Norm(before[a] - before[b])));
     }
   }
-  const Matrix4 map = Edges(after) * Edges(before).Inverse();
+  const Matrix4 map = MapLandmarks(before, after);
   move.Mirrored = map.Determinant3() < 0;
   const Vec3 up = map.Column(2);
   move.Tilt = Degrees * std::atan2(std::hypot(up[0], up[1]), up[2]);
   return move;
+}
+
+//------------------------------------------------------------------------------
+Matrix4 MapLandmarks(const std::array<Vec3, 4>& before, const std::array<Vec3, 4>& after)
+{
+  return Matrix4::Translation(after[0]) * Edges(after) * Edges(before).Inverse() *
+    Matrix4::Translation(-1.0 * before[0]);
 }
 }

@@ -4,6 +4,7 @@
 #ifndef lacunaLandmarks_h
 #define lacunaLandmarks_h
 
+#include "lacunaMatrix4.h"
 #include "lacunaVector.h"
 
 #include <array>
@@ -27,5 +28,8 @@ struct LandmarkMove
   double Rise = 0;       ///< mm, mean change of z
 };
 LandmarkMove CompareLandmarks(const std::array<Vec3, 4>& before, const std::array<Vec3, 4>& after);
+
+/// The affine map that takes four landmarks, not in a plane, to where they are.
+Matrix4 MapLandmarks(const std::array<Vec3, 4>& before, const std::array<Vec3, 4>& after);
 }
 #endif

@@ -75,6 +75,20 @@ TEST(Landmarks, NeedFourPointsThatAreNotInAPlane)
   EXPECT_TRUE(FindLandmarks(flat, indices));
 }
 
+TEST(Landmarks, LeadTheOtherPoints)
+{
+  const Matrix4 move = Matrix4::Translation({ 500, -2, 7 }) * Matrix4::Rotation({ 3, -1, 2 }, 1.3) *
+    Matrix4::Scaling({ 1, -2, 0.5 });
+  const std::vector<Vec3> points = Cloud();
+  std::array<std::size_t, 4> indices{};
+  ASSERT_TRUE(FindLandmarks(points, indices));
+  const Matrix4 map = MapLandmarks(Take(points, indices, {}), Take(points, indices, move));
+  for (const Vec3& p : points)
+  {
+    EXPECT_LE(Norm(map.Point(p) - move.Point(p)), 1e-10);
+  }
+}
+
 TEST(Landmarks, TellMotionsApart)
 {
   const LandmarkMove none = MoveOf({});

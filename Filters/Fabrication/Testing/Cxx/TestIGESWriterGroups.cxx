@@ -275,6 +275,13 @@ void TestMoved()
   auto outline = Lines(Corners, { { 0, 1, 2, 3 } });
   Refuses(Group({ { "Moved", moved }, { "Outline", outline } }), "nothing brings them together");
 
+  // one point of it has been moved against the others, which none of the corners tell
+  auto bent = TestSurfaces::Grid(2, points);
+  press(bent, Matrix4::Translation({ 50, 0, 0 }));
+  bent->GetPoint(517, p);
+  bent->GetPoints()->SetPoint(517, p[0], p[1], p[2] + 0.01);
+  Refuses(bent, "distances in it are other ones by up to 0.01 mm");
+
   // a path over a mould that had been moved
   auto path = Lines(Corners, { { 0, 1, 2, 3 } });
   vtkLacunaCoordinates::Mark(path, vtkLacunaCoordinates::Press);

@@ -366,6 +366,19 @@ void TestMoved(const std::string& file)
   write(Matrix4::Translation({ 0, 0, -0.01 }), true, "it lies 0.01 mm lower", false);
   write(Matrix4::Translation({ 20, 0, -20 }), false, "it lies 20 mm lower", false);
   write(Matrix4::Rotation({ 0, 0, 1 }, 0.001), false, "PressToPatient does not lead", true);
+
+  // one position deeper than the filter made it
+  vtkNew<vtkPolyData> path;
+  path->DeepCopy(filter->GetOutput());
+  double p[3];
+  path->GetPoint(500, p);
+  path->GetPoints()->SetPoint(500, p[0], p[1], p[2] - 0.01);
+  vtkNew<vtkLacunaGCodeWriter> writer;
+  writer->SetInputData(path);
+  writer->SetFileName(file.c_str());
+  const auto messages = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 0);
+  LACUNA_CHECK_CONTAINS(messages->Errors, "distances in it are other ones by up to 0.01 mm");
 }
 
 //------------------------------------------------------------------------------
