@@ -18,7 +18,38 @@
 
 namespace
 {
-constexpr double AxisLength = 10; // mm of a screw's axis that are drawn
+constexpr double AxisLength = 10;       // mm of a screw's axis that are drawn
+constexpr double HoleTolerance = 0.002; // mm; single precision may have come between
+
+// Whether the surface has a round hole about an axis: the points next to the axis lie around it, all as
+// far from it. Those of a plate that has been moved since its holes were recorded do not.
+bool HasHole(vtkPolyData* data, const lacuna::Vec3& center, const lacuna::Vec3& axis)
+{
+  std::vector<lacuna::Vec3> beside; // from the axis to points near the hole
+  double least = AxisLength;
+  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
+  {
+    lacuna::Vec3 p;
+    data->GetPoint(k, p.data());
+    p = p - center;
+    if (lacuna::Norm(p) <= AxisLength)
+    {
+      beside.push_back(p - lacuna::Dot(p, axis) * axis);
+      least = std::min(least, lacuna::Norm(beside.back()));
+    }
+  }
+  lacuna::Vec3 sum{ 0, 0, 0 };
+  int count = 0;
+  for (const lacuna::Vec3& p : beside)
+  {
+    if (lacuna::Norm(p) <= least + HoleTolerance)
+    {
+      sum = sum + p;
+      ++count;
+    }
+  }
+  return count >= 6 && lacuna::Norm(sum) <= 0.2 * count * least;
+}
 
 //------------------------------------------------------------------------------
 using Path = std::vector<vtkIdType>;
@@ -311,6 +342,13 @@ void vtkLacunaIGESContent::AddScrews(const Item& item)
         " has no finite centre (HoleCenters) or no unit axis (HoleAxes)");
     }
     const std::string number = std::to_string(k + 1);
+    if (auto* plate = vtkPolyData::SafeDownCast(item.Data);
+        plate->GetNumberOfPolys() > 0 && !HasHole(plate, center, axis))
+    {
+      throw std::runtime_error("screw hole " + number +
+        " is not where HoleCenters and HoleAxes say: the plate has been changed since it was made "
+        "(by Transform?). Use it as it was made");
+    }
     center = item.ToFile.Point(center);
     this->Points.push_back({ center, "Screw hole " + number });
     this->Lines.push_back(

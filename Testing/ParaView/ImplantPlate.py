@@ -10,8 +10,8 @@ from lacuna.solids import save_solid
 from lacuna_test import output
 from solid_files import MILLIMETER, judge_3mf, read_3mf
 from paraview import servermanager
-from paraview.simple import (CreateView, ExtractSelection, LoadPlugin, OpenDataFile, PolyLineSource,
-                             QuerySelect, Show)
+from paraview.simple import (CreateView, Delete, ExtractSelection, LoadPlugin, OpenDataFile, PolyLineSource,
+                             QuerySelect, SaveData, Show, Transform)
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties
 
@@ -136,6 +136,26 @@ with raising():
 assert np.linalg.norm(fields["HoleCenters"] - expected) < 1e-4, fields["HoleCenters"] - expected
 plate.HoleMarks = None
 plate.HolePoints = typed
+
+# Its screws as IGES; not those of a plate that has been moved, whose field data stay behind.
+screws = output("ImplantPlateScrews.igs")
+with raising():
+    SaveData(screws, plate, SkipUnsupported=1)
+with open(screws, encoding="ascii") as file:
+    assert "Screw hole 1" in file.read()
+os.remove(screws)
+for move in ({"Translate": [1, 0, 0]}, {"Scale": [-1, 1, 1]}, {"Rotate": [0, 0, 180]}):
+    moved = Transform(Input=plate)
+    for name, values in move.items():
+        setattr(moved.Transform, name, values)
+    try:
+        with raising():
+            SaveData(screws, moved, SkipUnsupported=1)
+        raise AssertionError(move)
+    except PipelineError as error:
+        assert "screw hole 1 is not where HoleCenters and HoleAxes say" in str(error), error
+    assert not os.path.exists(screws)
+    Delete(moved)
 
 # Files: ParaView's writers, in the same coordinates, and what says where they come from.
 for name in ("plate.stl", "plate.ply", "plate.vtp"):

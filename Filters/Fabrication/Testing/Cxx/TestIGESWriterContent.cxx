@@ -223,7 +223,16 @@ void TestTransformedMap()
 // The screw holes of a plate, whose triangles have no place here.
 void TestScrews()
 {
-  auto plate = Lines(Corners, {});
+  std::vector<lacuna::Vec3> rims; // of 8 points, 1 mm about the axes
+  const lacuna::Vec3 centers[2] = { { 1, 2, 3 }, { 4, 5, 6.5 } };
+  for (int k = 0; k < 16; ++k)
+  {
+    const double a = std::cos(k * std::acos(-1.0) / 4);
+    const double b = std::sin(k * std::acos(-1.0) / 4);
+    rims.push_back(
+      centers[k / 8] + (k < 8 ? lacuna::Vec3{ a, b, 0.1 * k } : lacuna::Vec3{ a, -0.3, b }));
+  }
+  auto plate = Lines(rims, {});
   vtkNew<vtkCellArray> triangles;
   triangles->InsertNextCell({ 0, 1, 2 });
   plate->SetPolys(triangles);
@@ -243,7 +252,34 @@ void TestScrews()
   LACUNA_CHECK_THAT(Coordinates(*axes[1], 3) == (lacuna::Vec3{ 4, -5, 6.5 }), "axis");
   LACUNA_CHECK_THAT(axes[1]->Level == 3 && NameOf(file, *axes[1]) == "Screw axis 2", "its name");
   vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -2, 0 }, 3);
-  Refuses(plate, "screw hole 2", skip);
+  Refuses(plate, "screw hole 2 has no finite centre (HoleCenters) or no unit axis", skip);
+  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0.6, -0.8, 0 }, 3);
+  Refuses(plate, "screw hole 2 is not where HoleCenters and HoleAxes say", skip);
+  vtkLacunaFieldData::Set(plate, "HoleAxes", { 0, 0, 1, 0, -1, 0 }, 3);
+
+  // field data stay where they were when Transform moves the plate
+  using lacuna::Matrix4;
+  const auto move = [&](const Matrix4& matrix)
+  {
+    vtkNew<vtkPoints> points; // single precision
+    for (const lacuna::Vec3& p : rims)
+    {
+      points->InsertNextPoint(matrix.Point(p).data());
+    }
+    plate->SetPoints(points);
+  };
+  move({});
+  LACUNA_CHECK(Write(plate, skip).Points == 2);
+  for (const Matrix4& matrix : { Matrix4::Translation({ 0.05, 0, 0 }),
+         Matrix4::Translation({ 0, 300, 0 }), Matrix4::Scaling({ -1, 1, 1 }),
+         Matrix4::Scaling({ 1 / 25.4, 1 / 25.4, 1 / 25.4 }), Matrix4::Rotation({ 0, 0, 1 }, 0.1) })
+  {
+    move(matrix);
+    Refuses(plate, "is not where HoleCenters and HoleAxes say", skip);
+  }
+  vtkNew<vtkCellArray> none; // without a plate there is nothing to compare with
+  plate->SetPolys(none);
+  LACUNA_CHECK(Write(plate, skip).Points == 2);
 }
 }
 
