@@ -123,6 +123,28 @@ for spacing in ((1, 1, 1), (0.5, 1, 3)):
             assert abs(ends[0] - low) < 0.25 * spacing[axis] and abs(ends[1] - high) < 0.25 * spacing[axis], (
                 spacing, depth, axis, ends, low, high)
 
+# Holes are taken away, and their surface is moved into the object, too.
+for depth in (40, 1):
+    k, j, i = np.mgrid[:depth, :40, :40] - np.reshape([0.5 * (depth - 1), 19.5, 19.5], (3, 1, 1, 1))
+    solid = np.maximum(np.maximum(abs(i), abs(j)), abs(k)) < 15
+    solid &= ~((abs(i) < 6) & (abs(j + 2) < 6) & (abs(k) < 6))
+    island = (abs(i) < 2.5) & (abs(j + 2) < 2.5) & (abs(k) < 2.5)
+    image = vtkImageData()
+    image.SetDimensions(solid.shape[::-1])
+    array = numpy_to_vtk((solid | island).astype(np.uint8).ravel(), deep=1)
+    array.SetName("Object")
+    image.GetPointData().AddArray(array)
+    surface = occlusion.closed_surface(image, largest=False)
+    # between the centres of the outermost voxels: 29 wide, the hole 13, the island in it 3
+    truth = (29 ** 3 - 13 ** 3 + 3 ** 3) / 1000 if depth > 1 else 29 ** 2 - 13 ** 2 + 3 ** 2
+    assert abs(surface.volume / truth - 1) < 0.02, (depth, surface.volume, truth)
+    points = vtk_to_numpy(surface.data.GetPoints().GetData()) - [19.5, 19.5, 19.5 if depth > 1 else 0]
+    distance = abs(points + [0, 2, 0]).max(axis=1)
+    wall = distance[(distance > 5) & (distance < 8)]
+    assert abs(wall.max() - 6.5) < 0.2, (depth, wall.min(), wall.max())
+    filled = occlusion.closed_surface(image)
+    assert abs(filled.volume / (29 ** 3 / 1000 if depth > 1 else 29 ** 2) - 1) < 0.02, (depth, filled.volume)
+
 # Half of a ray is taken, and so Binary and KeepData begin, at ln 2 / ln 20 = 0.231 of the range.
 for level, kept in ((0.22, 0), (0.24, 1)):
     values = np.zeros((30, 30), np.float32)

@@ -116,12 +116,15 @@ def _contour(image, level, largest):
 
 
 def _shrink(surface, spacing):
-    """Moves the points inwards along the normals by half a voxel as wide as it is in that direction."""
+    """Moves the points inwards along the normals by half a voxel as wide as it is in that direction.
+
+    Inwards is into the object: the contour's triangles have their outsides where the angle is lower, around holes too.
+    """
     normals = vtkPolyDataNormals()
     normals.SetInputData(surface)
     normals.SplittingOff()
-    normals.ConsistencyOn()
-    normals.AutoOrientNormalsOn()
+    normals.ConsistencyOff()
+    normals.AutoOrientNormalsOff()
     normals.Update()
     moved = vtkPolyData()
     moved.DeepCopy(normals.GetOutput())
@@ -178,21 +181,35 @@ def _loops(curve):
             for c in range(output.GetNumberOfCells())]
 
 
-def _inward(loop, spacing):
-    """A closed loop moved to the side of its inside by half a voxel, and its area and length."""
+def _are_holes(loops, x, y):
+    """Which of the loops bound holes: those within an odd number of others."""
+    loops = [loop[:-1] if np.allclose(loop[0], loop[-1]) else loop for loop in loops]
+    start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1, 0) for loop in loops])
+    owner = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
+    holes = []
+    for i, loop in enumerate(loops):
+        a, b, p = start[owner != i], end[owner != i], loop[0]
+        cross = (a[:, y] > p[y]) != (b[:, y] > p[y])  # the line through p along x
+        a, b = a[cross], b[cross]
+        beyond = a[:, x] + (p[y] - a[:, y]) / (b[:, y] - a[:, y]) * (b[:, x] - a[:, x]) > p[x]
+        holes.append(bool(beyond.sum() % 2))
+    return holes
+
+
+def _inward(loop, hole, spacing, x, y):
+    """A closed loop moved to the side of the object by half a voxel, its area (of a hole: below 0) and length."""
     loop = loop[:-1] if np.allclose(loop[0], loop[-1]) else loop
-    a = int(np.argmin(np.ptp(loop, axis=0)))
-    x, y = [c for c in range(3) if c != a]
     tangent = np.roll(loop, -1, 0) - np.roll(loop, 1, 0)
     signed = 0.5 * np.sum(loop[:, x] * np.roll(loop[:, y], -1) - np.roll(loop[:, x], -1) * loop[:, y])
+    outwards = math.copysign(1, signed) * (-1 if hole else 1)  # of the object
     length = np.hypot(tangent[:, x], tangent[:, y])
     keep = length > 0
-    normal = np.stack((tangent[keep, y], -tangent[keep, x]), 1) / length[keep, None] * math.copysign(1, signed)
+    normal = np.stack((tangent[keep, y], -tangent[keep, x]), 1) / length[keep, None] * outwards
     moved = loop.copy()
     moved[np.ix_(keep, (x, y))] -= 0.5 * np.linalg.norm(normal * spacing[[x, y]], axis=1, keepdims=True) * normal
     area = 0.5 * abs(np.sum(moved[:, x] * np.roll(moved[:, y], -1) - np.roll(moved[:, x], -1) * moved[:, y]))
     step = moved - np.roll(moved, 1, 0)
-    return moved, area, float(np.sum(np.sqrt((step ** 2).sum(1))))
+    return moved, -area if hole else area, float(np.sum(np.sqrt((step ** 2).sum(1))))
 
 
 def closed_surface(source, largest=True, compensate=True, directions=400):
@@ -204,7 +221,8 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     is |n * spacing| / 2 where n is its normal along the image's axes (Carr 1996 does not; it makes a sphere of radius
     20 by 7.7 % too large).
 
-    largest: the largest region only, without what outliers made. Returns a Surface; raises ValueError when there is no
+    largest: the largest region only, without what outliers made and with its holes filled; otherwise all regions, and
+    the volume is without holes. Returns a Surface; raises ValueError when there is no
     object.
     """
     image = _image(source)
@@ -217,8 +235,10 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     if _flat(image):
         area = length = 0
         points, loops = vtkPoints(), []
-        for loop in _loops(surface):
-            moved, a, l = _inward(loop, spacing)
+        found = _loops(surface)
+        axes = [c for c in range(3) if c != int(np.argmin(image.GetDimensions()))]
+        for loop, hole in zip(found, _are_holes(found, *axes)):
+            moved, a, l = _inward(loop, hole, spacing, *axes)
             loops.append([points.InsertNextPoint(p) for p in moved])
             area, length = area + a, length + l
         curve = vtkPolyData()
