@@ -18,7 +18,7 @@ os.makedirs(folder, exist_ok=True)
 
 def show(name, title, data, schedule, direction):
     """The data in blue, the closed surface made of them."""
-    angle = OccludedAngle(Input=data, NumberOfDirections=400, **schedule)
+    angle = OccludedAngle(Input=data, NumberOfDirections=400, **occlusion.scaled(schedule, data))
     surface = occlusion.closed_surface(angle)
     view = pictures.new_view((900, 700))
     producer = TrivialProducer()

@@ -38,7 +38,7 @@ def show(name, title, surface=None, data=None):
 data = IncompleteShape(Shape="Kumara", Dimensions=[105, 75, 53], PresentFraction=0.4, Patches=1, PatchRadii=[2, 5],
                        OutlierFraction=0.02)
 truth = servermanager.Fetch(data).GetFieldData().GetArray("CompleteVolume").GetValue(0)
-angle = OccludedAngle(Input=data, NumberOfDirections=200, **occlusion.GROW_AND_SNAP)
+angle = OccludedAngle(Input=data, NumberOfDirections=200, **occlusion.scaled(occlusion.GROW_AND_SNAP, data))
 surface = OcclusionSurface(Input=angle, Data=data)
 coarse = occlusion.closed_surface(angle)
 threshold = TrivialProducer()

@@ -2,7 +2,7 @@
 """Closed surfaces and volumes from Occluded Angle.
 
     from lacuna import occlusion
-    shape = OccludedAngle(Input=data, **occlusion.GROW_AND_SNAP)
+    shape = OccludedAngle(Input=data, **occlusion.scaled(occlusion.GROW_AND_SNAP, data))
     shape.NumberOfDirections = 400
     surface = occlusion.closed_surface(shape)
     print(surface.volume, "ml", surface.area, "mm2")
@@ -24,13 +24,12 @@ import lacuna
 # The published schedule for a cube of which up to 80 % of the surface is missing (Carr 1996, section 5.8).
 CUBE = dict(Mode="Binary", Dilation=1 / 3, ThresholdsOverPi=[2.5, 2.5, 2.0, 2.0])
 
-# The same with up to 90 % missing; radii in mm on voxels of 1 mm. For flat faces: it fills hollows.
+# The same with up to 90 % missing, its radii in voxels: see scaled(). For flat faces: it fills hollows.
 SPARSE_CUBE = dict(Mode="Continuous", KeepData=1, ThresholdsOverPi=[0.5] * 2 + [2.4] * 2 + [3.9] * 2 + [2.25] * 8,
                    LocalRadii=[2] * 2 + [0] * 2 + [3] * 2 + [0] * 8)
 
-# For surfaces of which up to 90 % is missing, at random or in patches, also with outliers, on voxels of 1 mm: grow the
-# data into a shell (two), fill it (one), shrink it again (two), grow to where the data are (nine). Scale the radii
-# with the voxels.
+# For surfaces of which up to 90 % is missing, at random or in patches, also with outliers, its radii in voxels: grow the
+# data into a shell (two), fill it (one), shrink it again (two), grow to where the data are (nine).
 GROW_AND_SNAP = dict(Mode="Continuous", KeepData=1,
                      ThresholdsOverPi=[0.32] * 2 + [2.67] + [3.92] * 2 + [2.69] * 6 + [2.52] * 3,
                      LocalRadii=[1.5] * 2 + [0] + [1.5] * 2 + [0] * 9)
@@ -53,6 +52,13 @@ def _image(source):
     from lacuna.data import fetch
     source.UpdatePipeline()
     return fetch(source)
+
+
+def scaled(schedule, source):
+    """A schedule of this module for an image: its local radii, in voxels, become mm (of the shortest edge of a voxel)."""
+    image = _image(source)
+    edge = min([s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1], default=1.0)
+    return dict(schedule, LocalRadii=[radius * edge for radius in schedule.get("LocalRadii", [0])])
 
 
 def _flat(image):
