@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One schedule for closed shapes of which most is missing: volume, mean and largest distance to the truth.
+"""A schedule for closed shapes of which most is missing, and one for denser data: volume, mean and largest distance to the truth.
 
-It holds for voxels of any size when its radii are scaled with them.
+They hold for voxels of any size when the radii are scaled with them.
 """
 import os
 
@@ -23,6 +23,10 @@ CASES = {
     "cube of 20, 90 % missing": (dict(Shape=3, Dimensions=[44] * 3, PresentFraction=0.1), 10, 0.6),
     "kumara, patches missing": (KUMARA, 5, 0.6),
     "kumara, 2 % outliers": (dict(KUMARA, OutlierFraction=0.02), 5, 0.6),
+    "dense sphere of 20, 60 % missing": (dict(Shape=4, Dimensions=[65] * 3, PresentFraction=0.4), 4, 0.4),
+    "dense kumara, 60 % missing, 10 % outliers": (
+        dict(KUMARA, Patches=False, OutlierFraction=0.1), 5, 0.4),
+    "dense kumara, complete": (dict(KUMARA, PresentFraction=1), 1, 0.3),
 }
 
 
@@ -50,8 +54,9 @@ for name, (data, most_volume, most_mean) in CASES.items():
     angle.SetMode(angle.CONTINUOUS)
     angle.KeepDataOn()
     angle.SetNumberOfDirections(200)
-    schedule = occlusion.scaled(occlusion.GROW_AND_SNAP, image)
-    for i, (threshold, radius) in enumerate(zip(schedule["ThresholdsOverPi"], schedule["LocalRadii"])):
+    schedule = occlusion.scaled(occlusion.DENSE if "dense" in name else occlusion.GROW_AND_SNAP, image)
+    radii = schedule["LocalRadii"] * (len(schedule["ThresholdsOverPi"]) // len(schedule["LocalRadii"]))
+    for i, (threshold, radius) in enumerate(zip(schedule["ThresholdsOverPi"], radii)):
         angle.SetThresholdsOverPi(i, threshold)
         angle.SetLocalRadii(i, radius)
     surface = occlusion.closed_surface(angle)
