@@ -403,11 +403,13 @@ void TestBadPicks()
   using Table = vtkTable;
   const auto set = [](const char* column, double value)
   { return [=](Table* t) { t->SetValueByName(4, column, value); }; };
-  for (const char* column : { "Slice", "Column", "Row", "Wire" })
+  for (const char* column : { "Slice", "Column", "Row" })
   {
     LACUNA_CHECK_CONTAINS(error([&](Table* t) { t->RemoveColumnByName(column); }),
       std::string("no column '") + column + "'");
   }
+  LACUNA_CHECK_CONTAINS(error([](Table* t) { t->RemoveColumnByName("Wire"); }),
+    "row 0 of the table of picks is of no wire: give a table with the column 'Wire'");
   LACUNA_CHECK_CONTAINS(error(set("Column", NoNumber)), "row 4 of the table of picks has 'nan'");
   LACUNA_CHECK_CONTAINS(
     error(set("Row", std::numeric_limits<double>::infinity())), "as Row; a number is needed");
@@ -437,7 +439,7 @@ void TestBadSettings()
   const Scan scan = ScanWires(18);
   const auto error = [&](vtkTable* picks, const Settings& configure)
   { return Calibrate(scan.Slices, picks, configure).Errors; };
-  LACUNA_CHECK_CONTAINS(error(nullptr, {}), "there is no table of picks");
+  LACUNA_CHECK_CONTAINS(error(nullptr, {}), "neither picks (second input) nor WireRanges");
   LACUNA_CHECK_CONTAINS(
     error(scan.Picks, [](auto* f) { f->SetPixelSpacing(0); }), "PixelSpacing is 0");
   for (const double wrong : { -1.0, NoNumber, std::numeric_limits<double>::infinity() })
