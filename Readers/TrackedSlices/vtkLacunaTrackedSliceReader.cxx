@@ -3,11 +3,13 @@
 
 #include "lacunaParameterText.h"
 #include "lacunaPixelSource.h"
+#include "lacunaSequenceFormat.h"
 #include "lacunaSequenceHeader.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
 #include "lacunaSweepReplay.h"
+#include "lacunaSweepTransforms.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkErrorCode.h"
@@ -159,8 +161,9 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       const lacuna::SequenceHeader& header = sequence->Header;
       const int extent[6] = { 0, static_cast<int>(header.Columns) - 1, 0,
         static_cast<int>(header.Rows) - 1, 0, sequence->Slices - 1 };
-      // z is the number of the slice in the file
-      const double origin[3] = { 0, 0, static_cast<double>(sequence->First) };
+      // (column, row) of the scanner's picture; z is the number of the slice in the file
+      const lacuna::Vec3 corner = lacuna::GetPictureOrigin(header);
+      const double origin[3] = { corner[0], corner[1], static_cast<double>(sequence->First) };
       const double spacing[3] = { 1, 1, static_cast<double>(this->FrameStride) };
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkDataObject::ORIGIN(), origin, 3);
@@ -259,7 +262,10 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
       steps.push_back(value);
       continue;
     }
-    AddStrings(output, name, { value });
+    if (name != lacuna::FirstColumnField && name != lacuna::FirstRowField) // the origin says it
+    {
+      AddStrings(output, name, { value });
+    }
   }
   for (const auto& [name, texts] : sweep.TextFields)
   {

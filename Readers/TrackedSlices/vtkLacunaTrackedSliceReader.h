@@ -28,6 +28,10 @@
  * without ImageToReference. Any other gap is an error that names the two unconnected groups of
  * frames.
  *
+ * **Parts of pictures.** Slices that are a part of the scanner's picture (header fields FirstColumn and
+ * FirstRow) have the origin there, so that their coordinates, ImageToReference and ImageToProbe are
+ * those of the whole picture, for which a calibration file holds.
+ *
  * **Invalid slices** stay in the stack, since z is the slice number and slices are equally spaced.
  * With DropInvalidSlices (the default) a slice whose pose or image is not `OK` in the file has bit
  * 1 (pose) or 2 (image) set in SliceStatus, and all Lacuna filters leave it out. Without it the

@@ -17,6 +17,11 @@
 
 namespace lacuna
 {
+/// Fields of the header by which slices that are a part of the scanner's picture say where it begins
+/// there, in whole columns and rows; see GetPictureOrigin.
+constexpr const char* FirstColumnField = "FirstColumn";
+constexpr const char* FirstRowField = "FirstRow";
+
 /// Names and texts.
 using SequenceFields = std::vector<std::pair<std::string, std::string>>;
 

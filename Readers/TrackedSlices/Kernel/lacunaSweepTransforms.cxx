@@ -2,6 +2,7 @@
 #include "lacunaSweepTransforms.h"
 
 #include "lacunaCalibrationFile.h"
+#include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
@@ -26,6 +27,26 @@ Matrix4 NoMatrix()
 }
 
 //------------------------------------------------------------------------------
+Vec3 GetPictureOrigin(const SequenceHeader& header)
+{
+  Vec3 origin{ 0, 0, 0 };
+  for (const auto& [name, text] : header.CustomFields)
+  {
+    if (name == FirstColumnField || name == FirstRowField)
+    {
+      std::int64_t value = 0;
+      if (!ParseInteger(text, value))
+      {
+        throw std::runtime_error(header.FileName + ": " + name + " is '" + text +
+          "', not the whole number of pixels at which the slices begin in the scanner's picture");
+      }
+      origin[name == FirstRowField ? 1 : 0] = static_cast<double>(value);
+    }
+  }
+  return origin;
+}
+
+//------------------------------------------------------------------------------
 bool SweepTransform::IsConstant() const
 {
   return std::all_of(this->Matrices.begin(), this->Matrices.end(),
@@ -45,6 +66,7 @@ std::string SweepTransforms::GetTransformName(const std::string& field)
 SweepTransforms::SweepTransforms(
   const SequenceHeader& header, const std::string& calibrationFileName)
   : HasCalibrationFile(!calibrationFileName.empty())
+  , PictureOrigin(GetPictureOrigin(header))
 {
   if (this->HasCalibrationFile)
   {
@@ -159,12 +181,31 @@ bool SweepTransforms::IsSame(
 }
 
 //------------------------------------------------------------------------------
+// From the file's pixels to those of the whole picture.
+void SweepTransforms::RelateToPicture(
+  SweepTransform& transform, const std::string& from, const std::string& to)
+{
+  const std::string image = "Image";
+  if (this->PictureOrigin == Vec3{ 0, 0, 0 } || (from != image && to != image))
+  {
+    return;
+  }
+  const Matrix4 pixelToImage = Matrix4::Translation(this->PictureOrigin);
+  const Matrix4 imageToPixel = pixelToImage.Inverse();
+  for (Matrix4& matrix : transform.Matrices)
+  {
+    matrix = from == image ? matrix * imageToPixel : pixelToImage * matrix;
+  }
+}
+
+//------------------------------------------------------------------------------
 bool SweepTransforms::Enter(std::size_t transform, const std::string& from, const std::string& to)
 {
   if (from == to)
   {
     return false;
   }
+  this->RelateToPicture(this->Transforms[transform], from, to);
   for (const SweepTransform& other : this->Transforms)
   {
     if (other.FromCalibration &&

@@ -34,6 +34,13 @@ struct SweepTransform
   bool IsConstant() const;
 };
 
+/// Column and row of the scanner's picture at which the slices begin: 0 0 unless the header has the
+/// fields FirstColumn and FirstRow. Coordinates in the frame Image are those of the whole picture,
+/// also in a calibration file; only in the sequence's own transforms they are those of its pixels, so
+/// that other programs understand them. Throws std::runtime_error for a field that is no whole
+/// number.
+Vec3 GetPictureOrigin(const SequenceHeader& header);
+
 class SweepTransforms
 {
 public:
@@ -70,8 +77,10 @@ private:
   static bool IsSame(
     const SweepTransform& transform, const SweepTransform& constant, bool forwards);
   bool Enter(std::size_t transform, const std::string& from, const std::string& to);
+  void RelateToPicture(SweepTransform& transform, const std::string& from, const std::string& to);
 
   bool HasCalibrationFile;
+  Vec3 PictureOrigin;
   std::vector<SweepTransform> Transforms; ///< the calibration's first: they win among equal chains
   TransformGraph Graph;
   std::vector<std::string> Warnings;

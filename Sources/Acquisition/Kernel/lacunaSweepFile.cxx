@@ -135,8 +135,8 @@ void SweepFile::Add(const AcquiredSlice& slice, const SweepFrame& frame)
   }
   this->Description.Columns = frame.Window[2];
   this->Description.Rows = frame.Window[3];
-  this->Description.CustomFields = { { "FirstColumn", std::to_string(frame.Window[0]) },
-    { "FirstRow", std::to_string(frame.Window[1]) } };
+  this->Description.CustomFields = { { FirstColumnField, std::to_string(frame.Window[0]) },
+    { FirstRowField, std::to_string(frame.Window[1]) } };
   this->Unopened.push_back({ slice.Pixels, std::move(fields) });
   this->Retry();
 }

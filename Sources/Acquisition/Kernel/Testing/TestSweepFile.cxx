@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WrittenSequence.h"
 #include "lacunaOutputFile.h"
+#include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
 #include "lacunaSweepFile.h"
+#include "lacunaSweepTransforms.h"
 #include "lacunaTestRoom.h"
 
 #include <gtest/gtest.h>
@@ -86,14 +88,69 @@ TEST(SweepFile, IsReadAsItWasTaken)
     ASSERT_EQ(sweep.ImageToReference.size(), calibrated ? 3u : 0u);
     if (calibrated)
     {
-      // the file's pixel (0, 0) is the frame's (7, 9)
-      const Vec3 place = sweep.ImageToReference[0].Point({ 0, 0, 0 });
+      // coordinates are those of the whole picture
+      EXPECT_LT(Distance(sweep.ImageToProbe.at(0), frame.ImageToProbe), 1e-12);
+      const Vec3 place = sweep.ImageToReference[0].Point({ 7, 9, 0 });
       const Vec3 expected = (frame.TrackerToReference * MakeSlice(0).ProbeToTracker)
                               .Point(frame.ImageToProbe.Point({ 7, 9, 0 }));
       EXPECT_LT(Norm(place - expected), 1e-9);
       EXPECT_TRUE(std::isnan(sweep.ImageToReference[1](0, 0)));
     }
   }
+}
+
+// Calibrated when it was taken, later, or again: the file's pixels are a part of the picture.
+TEST(SweepFile, ACalibrationOfTheWholePictureHoldsForAPartOfIt)
+{
+  const TemporaryFolder folder;
+  const SweepFrame frame = MakeFrame(true);
+  const std::string calibration = folder / "calibration.xml";
+  for (const bool backwards : { false, true })
+  {
+    const Matrix4 matrix = backwards ? frame.ImageToProbe.Inverse() : frame.ImageToProbe;
+    std::ofstream(calibration) << "<PlusConfiguration><CoordinateDefinitions><Transform From=\""
+                               << (backwards ? "Probe\" To=\"Image" : "Image\" To=\"Probe")
+                               << "\" Matrix=\"" << FormatMatrix(matrix)
+                               << "\"/></CoordinateDefinitions></PlusConfiguration>";
+    for (const bool calibrated : { true, false })
+    {
+      const std::string path = FindFreeSweepName(folder / "sweep.mhd", 0);
+      SweepFile file(path, 0);
+      file.Add(MakeSlice(1), MakeFrame(calibrated));
+      file.Finish();
+      SweepOptions options;
+      options.CalibrationFileName = calibration;
+      const lacuna::Sweep sweep = BuildSweep(ReadSequenceHeader(path), options);
+      EXPECT_LT(Norm(GetPictureOrigin(ReadSequenceHeader(path)) - Vec3{ 7, 9, 0 }), 1e-12);
+      const Vec3 expected = (frame.TrackerToReference * MakeSlice(1).ProbeToTracker)
+                              .Point(frame.ImageToProbe.Point({ 7 + 2, 9 + 3, 0 }));
+      EXPECT_LT(Norm(sweep.ImageToReference.at(0).Point({ 7 + 2, 9 + 3, 0 }) - expected), 1e-9);
+    }
+  }
+}
+
+TEST(SweepFile, OthersReadItsTransformsOfItsPixels)
+{
+  const SweepFrame frame = MakeFrame(true);
+  for (const auto& [name, text] : MakeSliceFields(MakeSlice(0), frame))
+  {
+    if (name == "ImageToProbeTransform")
+    {
+      Matrix4 matrix;
+      ASSERT_EQ(ParseMatrix(text, matrix), "");
+      const Vec3 expected = frame.ImageToProbe.Point({ 7 + 2, 9 + 3, 0 });
+      EXPECT_LT(Norm(matrix.Point({ 2, 3, 0 }) - expected), 1e-9);
+      return;
+    }
+  }
+  ADD_FAILURE() << "no ImageToProbe";
+}
+
+TEST(SweepFile, APartThatBeginsNowhereIsRefused)
+{
+  SequenceHeader header;
+  header.CustomFields = { { "FirstRow", "ten" } };
+  EXPECT_THROW(GetPictureOrigin(header), std::runtime_error);
 }
 
 TEST(SweepFile, NeverWritesOverAnother)

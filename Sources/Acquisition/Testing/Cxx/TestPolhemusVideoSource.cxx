@@ -201,11 +201,15 @@ void TestSlices()
   LACUNA_CHECK(read->GetNumberOfPoints() == output->GetNumberOfPoints());
   LACUNA_CHECK(std::memcmp(read->GetScalarPointer(), output->GetScalarPointer(),
                  static_cast<std::size_t>(output->GetNumberOfPoints())) == 0);
+  LACUNA_CHECK(read->GetOrigin()[0] == 10 && read->GetOrigin()[1] == 20);
+  LACUNA_CHECK(!read->GetFieldData()->HasArray("FirstColumn")); // would be wrong of a part of it
   const vtkLacunaTrackedSlices again(read);
   for (vtkIdType i = 0; i < count; ++i)
   {
     LACUNA_CHECK(again.GetStatus(i) == slices.GetStatus(i));
     LACUNA_CHECK(again.GetTimestamp(i) == slices.GetTimestamp(i));
+    LACUNA_CHECK(!slices.IsUsable(i) ||
+      Distance(again.GetImageToReference(i), slices.GetImageToReference(i)) < 1e-9);
     LACUNA_CHECK(!slices.IsUsable(i) ||
       Distance(vtkLacunaFieldData::GetMatrix(read->GetFieldData()->GetArray("ProbeToTracker"), i),
         vtkLacunaFieldData::GetMatrix(probe, i)) < 1e-12);
