@@ -24,7 +24,11 @@ using namespace lacunaTest;
 namespace
 {
 constexpr double Latency = 0.08; // s; at 80 mm/s and more it is millimetres
-constexpr double Aim = 2.7;      // in the middle of the recording
+constexpr double Aim = 2.7;
+// s. The emulator answers a request when this computer lets it, and the FASTRAK at once: an answer
+// that took longer may be of a later instant than the driver takes it to be. 8 ms are usual.
+constexpr double RoundTrip = 0.012;
+constexpr double MaximumGap = 0.06; // s between poses
 
 constexpr double Acceleration = 500; // mm/s^2, of the image's corners
 
@@ -122,7 +126,7 @@ private:
 std::vector<Recorded> Record(Devices& devices, std::size_t count, double& offset)
 {
   std::mutex mutex;
-  PoseTrack track(60);
+  PoseTrack track(60, MaximumGap);
   std::atomic<bool> ended{ false };
   SerialPort port("/dev/../../.." + devices.Terminal.GetName(), 115200);
   FastrakTracker tracker(port, devices.Time);
@@ -136,8 +140,13 @@ std::vector<Recorded> Record(Devices& devices, std::size_t count, double& offset
         poses.clear();
         tracker.Poll(poses);
         const std::lock_guard<std::mutex> lock(mutex);
-        std::for_each(
-          poses.begin(), poses.end(), [&](const TrackedPose& pose) { track.Add(pose); });
+        for (const TrackedPose& pose : poses)
+        {
+          if (pose.Arrival - pose.Request < RoundTrip)
+          {
+            track.Add(pose);
+          }
+        }
       }
     });
   std::this_thread::sleep_for(std::chrono::milliseconds(300)); // poses before the first frame
@@ -198,25 +207,33 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
   const Matrix4 imageToProbe = known[0].Matrix;
   const Matrix4 trackerToScene = known[1].Matrix;
 
-  double offset = 0;
-  const std::vector<Recorded> recorded = Record(devices, 100, offset);
+  std::vector<Recorded> recorded;
+  int without = 0;
+  for (int client = 0; client < 10 && recorded.size() < 70; ++client)
+  {
+    double offset = 0;
+    for (Recorded& each : Record(devices, 100, offset))
+    {
+      if (each.Pose) // else this computer had too much to do
+      {
+        recorded.push_back(std::move(each));
+      }
+      else
+      {
+        ++without;
+      }
+    }
+    EXPECT_NEAR(offset, devices.Begin, 0.02);
+  }
   devices.Stop();
-  EXPECT_GE(devices.Counts.Sent, 100);
-
-  EXPECT_NEAR(offset, devices.Begin, 0.02);
+  ASSERT_GE(recorded.size(), 70u);
   int seen = 0;
   double right = 0;
   double late = 0;
   double mirrored = 0;
   std::vector<double> distances;
-  int without = 0;
   for (const Recorded& each : recorded)
   {
-    if (!each.Pose) // polling was held up
-    {
-      ++without;
-      continue;
-    }
     const double shown = each.Frame.StreamTime.value() - Latency;
     const Matrix4 pose = trackerToScene * each.Pose->ReceiverToTransmitter * imageToProbe;
     for (const Vec3& corner : { Vec3{ 0, 0, 0 }, Vec3{ 767, 0, 0 }, Vec3{ 0, 575, 0 } })
@@ -226,7 +243,7 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
       distances.push_back(Norm(off) - straight);
     }
     const double difference = Compare(devices, each.Frame, pose);
-    EXPECT_LT(difference, 4);
+    EXPECT_LT(difference, 1.5);
     if (Compare(devices, each.Frame, Matrix4::Translation({ 500, 0, 0 })) > 4) // not tissue alone
     {
       ++seen;
@@ -235,15 +252,13 @@ TEST(EmulatedAcquisition, SlicesAreOfThePlaceThatTheirPosesSay)
       mirrored += Compare(devices, each.Frame, pose, true);
     }
   }
-  // a computer with too much to do answers requests late, now and then
   std::sort(distances.begin(), distances.end());
   const double usual = distances[distances.size() / 2];
-  EXPECT_LT(usual, 0.5); // mm; 6 without the latency
-  EXPECT_LT(distances.back(), 4);
-  EXPECT_LT(without, 30);
-  EXPECT_GT(seen, 40);
-  EXPECT_LT(right, 0.2 * late) << right / seen << " " << late / seen;
-  EXPECT_LT(right, 0.1 * mirrored) << right / seen << " " << mirrored / seen;
+  EXPECT_LT(usual, 0.2); // mm; 6 without the latency
+  EXPECT_LT(distances.back(), 0.6);
+  EXPECT_GT(seen, 20);
+  EXPECT_LT(right, 0.1 * late) << right / seen << " " << late / seen;
+  EXPECT_LT(right, 0.02 * mirrored) << right / seen << " " << mirrored / seen;
   std::printf(
     "%d frames: corners %.2f mm off (at most %.2f), mean difference %.2f levels, with the latency "
     "ignored %.2f, mirrored %.2f; %d frames without pose\n",
