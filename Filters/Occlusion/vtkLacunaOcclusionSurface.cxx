@@ -266,7 +266,7 @@ int vtkLacunaOcclusionSurface::RequestData(
       vtkLacunaVolumeDirection::Remove(output);
       const lacuna::OcclusionSurfaceReport& report = fit.GetReport();
       const double edge = std::cbrt(grid.Spacing[0] * grid.Spacing[1] * grid.Spacing[2]);
-      if (report.Residual > 0.6 * edge || report.Outliers > report.DataVoxels)
+      if (report.Residual > 0.45 * edge || report.Outliers > report.DataVoxels)
       {
         vtkWarningMacro(<< "the surface may be wrong: " << report.Outliers << " of "
                         << report.Outliers + report.DataVoxels
