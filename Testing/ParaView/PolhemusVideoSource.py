@@ -29,8 +29,8 @@ with open(poses, "w") as file:
 environment = {key: value for key, value in os.environ.items() if key != "LD_PRELOAD"}
 
 
-def plug_in():
-    emulator = subprocess.Popen([sys.argv[1], "--link", link, "--baud", "115200", "--poses", poses, "--loop"],
+def plug_in(*options):
+    emulator = subprocess.Popen([sys.argv[1], "--link", link, "--baud", "115200", "--poses", poses, "--loop", *options],
                                 stdout=subprocess.PIPE, text=True, env=environment)
     assert "115200 baud" in emulator.stdout.readline()
     return emulator
@@ -164,6 +164,19 @@ try:
     arrays = slices_of(source)[1]
     assert without > 0 and (arrays["SliceStatus"] & 1).sum() >= without
     assert arrays["SliceStatus"][-1] & 1 == 0
+
+    # the stylus's button, or a foot switch in its place
+    live.clear(source)
+    source.ButtonStarts = True
+    emulator.terminate()
+    emulator.wait()
+    emulator = plug_in("--button", "4", "--button", "6")
+    wait(source, lambda: live.get(source, "Capturing"), "the button starts")
+    wait(source, lambda: not live.get(source, "Capturing"), "the button stops")
+    live.poll(source)
+    arrays = slices_of(source)[1]
+    print(f"{live.get(source, 'SliceCount')} slices between two presses", flush=True)
+    assert live.get(source, "SliceCount") > 10
 
     live.disconnect(source)
     assert live.get(source, "SliceCount") == len(arrays["SliceStatus"])  # they stay
