@@ -343,8 +343,15 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
   {
     const auto sweep = now.Acquisition->GetSweep();
     const auto size = static_cast<std::int64_t>(slices.front().Pixels->size());
-    now.Stack = std::make_unique<vtkLacunaSliceStack>(
-      *sweep, std::max(now.LimitBytes / size, std::int64_t{ 1 }) * size);
+    const std::int64_t most = std::max<std::int64_t>(now.LimitBytes / size, 1);
+    try
+    {
+      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, most * size);
+    }
+    catch (const std::bad_alloc&) // a system that gives no memory in advance
+    {
+      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, size);
+    }
   }
   for (const lacuna::AcquiredSlice& slice : slices)
   {

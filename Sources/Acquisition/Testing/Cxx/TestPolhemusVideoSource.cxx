@@ -119,6 +119,7 @@ void TestSlices()
 {
   Bench bench([](double, int) { return Still; });
   vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetMemoryLimit(64);
   source->SetCropRectangle(10, 20, 0, 16);
   source->SetRecordFileName((bench.Folder + "/sweep.mhd").c_str());
   source->Connect();
