@@ -70,6 +70,6 @@ lacuna_find_libraries(FFMPEG "video cannot be read" avdevice avformat avcodec sw
 # libopenigtlink knows the messages of trackers and scanners of the network. Not through its CMake
 # package: Debian's stops with an error under CMake 2.8 and newer when its settings are used.
 find_path(LACUNA_OPENIGTLINK_INCLUDE_DIR igtl_header.h
-  PATH_SUFFIXES openigtlink igtl OpenIGTLink/igtl openigtlink/igtlutil)
+  PATH_SUFFIXES openigtlink)
 lacuna_find_libraries(OPENIGTLINK "trackers and scanners behind OpenIGTLink cannot be used"
   OpenIGTLink)

@@ -37,7 +37,7 @@ std::string GetKey(const OpenIGTLinkHeader& header)
 // Connections of one server that share a clock; locked while one is made.
 struct Shared
 {
-  std::timed_mutex Mutex;
+  std::mutex Mutex;
   std::weak_ptr<OpenIGTLinkConnection> Connection;
 };
 
@@ -59,10 +59,11 @@ std::shared_ptr<OpenIGTLinkConnection> OpenIGTLinkConnection::Open(
   const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped)
 {
   const std::shared_ptr<Shared> shared = FindShared(address.GetServer(), clock);
-  std::unique_lock<std::timed_mutex> lock(shared->Mutex, std::defer_lock);
-  while (!lock.try_lock_for(Interval))
+  std::unique_lock<std::mutex> lock(shared->Mutex, std::defer_lock);
+  while (!lock.try_lock())
   {
     CheckStopped(stopped);
+    std::this_thread::sleep_for(Interval);
   }
   std::shared_ptr<OpenIGTLinkConnection> connection = shared->Connection.lock();
   if (!connection || connection->IsBroken())

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <future>
 #include <thread>
 
 #include <netinet/in.h>
@@ -147,7 +148,7 @@ TEST(OpenIGTLinkDevices, ThePoseOfAFrameIsThatOfItsInstant)
   ASSERT_TRUE(server.Accept());
   // poses every 20 ms, frames between them, both later than they were taken, and unevenly
   const double begin = TheClock.Now() + SenderAhead - 0.1;
-  std::thread sender(
+  const auto sender = std::async(std::launch::async,
     [&]
     {
       for (int i = 0; i < 20; ++i)
@@ -200,7 +201,7 @@ TEST(OpenIGTLinkDevices, ThePoseOfAFrameIsThatOfItsInstant)
         LargestDifference(pose->ReceiverToTransmitter, AsymmetricPose(0.02 * i - 0.007)), 1e-3);
     }
   }
-  sender.join();
+  sender.wait();
   EXPECT_EQ(tracker->GetCounts().Poses, 20u);
   EXPECT_EQ(scanner->GetCounts().Frames, 20u);
   EXPECT_EQ(scanner->GetLatency(), 0);
@@ -344,7 +345,7 @@ TEST(OpenIGTLinkDevices, UnknownDamagedAndGiantMessagesArePassedOver)
   // of a size that cannot be, though its checksum is right
   const std::string odd = TransformBytes(AsymmetricPose(), "Probe", 1);
   server.Send(WithBody(odd, odd.substr(58, 47)));
-  std::thread sender(
+  const auto sender = std::async(std::launch::async,
     [&]
     {
       // an image of 160 MiB is passed over; so is one of any size that is not wanted
@@ -368,7 +369,7 @@ TEST(OpenIGTLinkDevices, UnknownDamagedAndGiantMessagesArePassedOver)
   for (int i = 0; i < 20 && !device->Poll(poses); ++i)
   {
   }
-  sender.join();
+  sender.wait();
   ASSERT_EQ(poses.size(), 1u);
   EXPECT_EQ(device->GetCounts().Damaged, 2u);
   VideoFrame frame;
@@ -497,7 +498,7 @@ TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
   const auto during = [&](const std::function<void()>& call)
   {
     stop = false;
-    std::thread later(
+    const auto later = std::async(std::launch::async,
       [&]
       {
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -506,7 +507,7 @@ TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
     const Timer timer;
     EXPECT_THROW(call(), Aborted);
     EXPECT_LT(timer.GetSeconds(), 1);
-    later.join();
+    later.wait();
   };
   const BlackHole hole;
   const std::string nowhere = "igtl://127.0.0.1:" + std::to_string(hole.Port);
@@ -515,10 +516,11 @@ TEST(OpenIGTLinkDevices, StopsWithinASecondWhateverItDoes)
   during(
     [&]
     {
-      std::thread other([&] { EXPECT_THROW(factories.Poses(stopped), Aborted); });
+      const auto other =
+        std::async(std::launch::async, [&] { EXPECT_THROW(factories.Poses(stopped), Aborted); });
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       EXPECT_THROW(factories.Frames(stopped), Aborted); // waits for the other to connect
-      other.join();
+      other.wait();
       throw Aborted();
     });
   stop = false;
