@@ -133,7 +133,7 @@ std::vector<double> FindStrokes(
     }
   }
   std::vector<double> strokes;
-  if (outside.size() < static_cast<std::size_t>(LeastSpan * (high - low)))
+  if (outside.empty() || static_cast<double>(outside.size()) < LeastSpan * (high - low))
   {
     return strokes;
   }
@@ -254,7 +254,7 @@ std::optional<Comb> FindComb(const Screen& screen, int column, int low, int high
       }
       Comb comb = Follow(strokes, i, j);
       comb.Others = all - comb.Rows.size();
-      if (!best || comb.Rows.size() > best->Rows.size())
+      if ((!best || comb.Rows.size() > best->Rows.size()) && IsRuler(comb, low, high))
       {
         comb.First = comb.Last = column;
         comb.Contrast = contrast;
@@ -263,7 +263,7 @@ std::optional<Comb> FindComb(const Screen& screen, int column, int low, int high
       }
     }
   }
-  return best && IsRuler(*best, low, high) ? best : std::nullopt;
+  return best;
 }
 
 // Whether two combs have the same ticks.

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaGreyImage.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacuna
 {
+namespace
+{
+constexpr float Largest = 1e30f; // sums and differences of a few stay numbers
+}
+
 std::vector<float> GetLevels(const GreyImage& image)
 {
   std::vector<float> levels;
@@ -19,7 +25,7 @@ std::vector<float> GetLevels(const GreyImage& image)
         for (int column = 0; column < image.Width; ++column)
         {
           const float level = static_cast<float>(first[column]);
-          levels.push_back(std::isfinite(level) ? level : 0.0f);
+          levels.push_back(std::isfinite(level) ? std::clamp(level, -Largest, Largest) : 0.0f);
         }
       }
     });

@@ -21,7 +21,8 @@ struct GreyImage
   int Height = 0;
 };
 
-/// All levels, row by row without gaps; 0 for what is not finite.
+/// All levels, row by row without gaps; 0 for what is not finite, and at most 1e30
+/// either way.
 std::vector<float> GetLevels(const GreyImage& image);
 }
 #endif

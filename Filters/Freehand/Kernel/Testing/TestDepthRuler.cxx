@@ -150,6 +150,21 @@ TEST(DepthRuler, TextsAndSpeckleAreNoRuler)
   }
 }
 
+TEST(DepthRuler, ThingsBetweenTheTicksMakeThemDoubtful)
+{
+  TestScreen screen = GetScreen();
+  screen.Depth.HasAxis = false;
+  screen.Depth.LongEvery = 0;
+  TestFrames frames(screen, 1);
+  EXPECT_TRUE(FindDepthRuler(frames.Frames, Linear, { 1, 1 }).Depth.IsFound);
+  for (int k = 0; k < 12; ++k) // a dotted picture, rather
+  {
+    const int row = int(52.3 + k * 23.41) + 6 + 7 * k % 11;
+    std::fill_n(frames.Pixels[0].begin() + row * screen.Width + 600, 6, std::uint8_t(180));
+  }
+  EXPECT_FALSE(FindDepthRuler(frames.Frames, Linear, { 1, 1 }).Depth.IsFound);
+}
+
 TEST(DepthRuler, NothingAroundTheRegion)
 {
   TestScreen screen = GetScreen();

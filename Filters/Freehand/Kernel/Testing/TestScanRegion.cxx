@@ -2,6 +2,7 @@
 /// The scan region is found on the screens of made-up scanners, in one frame and in several.
 #include "lacunaScanRegion.h"
 
+#include "lacunaDepthRuler.h"
 #include "lacunaTestScreen.h"
 
 #include <gtest/gtest.h>
@@ -237,4 +238,57 @@ TEST(ScanRegion, WrongFrames)
   EXPECT_THROW(FindScanRegion(frames.Frames, { 1, 1 }), std::invalid_argument);
   frames.Frames[0].Height = 8;
   EXPECT_THROW(FindScanRegion({ frames.Frames[0] }, { 1, 1 }), std::invalid_argument);
+}
+
+// Blocks of noise, of one grey and of what is no number, in all sizes: an answer, whichever.
+TEST(ScanRegion, AnyFramesHaveAnAnswer)
+{
+  std::mt19937 random(11);
+  for (int n = 0; n < 150; ++n)
+  {
+    const int width = 16 + int(random() % 60), height = 16 + int(random() % 60);
+    const std::size_t count = 1 + random() % 5;
+    std::vector<std::vector<float>> pixels(
+      count, std::vector<float>(std::size_t(width * height), float(random() % 3)));
+    std::vector<SliceImage> frames;
+    for (std::vector<float>& frame : pixels)
+    {
+      for (int block = int(random() % 4); block >= 0; --block)
+      {
+        const int left = int(random() % unsigned(width)), top = int(random() % unsigned(height));
+        const int kind = int(random() % 5);
+        for (int y = top; y < std::min(height, top + int(random() % 60)); ++y)
+        {
+          for (int x = left; x < std::min(width, left + 40); ++x)
+          {
+            frame[std::size_t(y * width + x)] = kind == 0 ? std::numeric_limits<float>::quiet_NaN()
+              : kind == 1                                 ? std::numeric_limits<float>::infinity()
+              : kind == 2                                 ? 3e38F * (random() % 2 ? 1 : -1)
+                                                          : float(random() % 200);
+          }
+        }
+      }
+      SliceImage slice;
+      slice.Type = ScalarType::Float32;
+      slice.Pixels = frame.data();
+      slice.RowStride = slice.Width = width;
+      slice.Height = height;
+      frames.push_back(slice);
+    }
+    const ScanRegion region = FindScanRegion(frames, { 1, 1 });
+    EXPECT_FALSE(region.Text.empty());
+    DetectedFan fan = region.Fan;
+    if (region.IsFound)
+    {
+      EXPECT_TRUE(region.Confidence >= 0 && region.Confidence <= 1);
+      EXPECT_GE(fan.Rectangle[0], 0);
+      EXPECT_LE(fan.Rectangle[0] + fan.Rectangle[2], width);
+      EXPECT_LE(fan.Rectangle[1] + fan.Rectangle[3], height);
+    }
+    else
+    {
+      fan.Rectangle = { int(random() % 10), 2, 5, height };
+    }
+    EXPECT_FALSE(FindDepthRuler(frames, fan, { 1, 1 }).Depth.Text.empty());
+  }
 }

@@ -216,6 +216,47 @@ TEST(SpotDetection, NothingWhereThereIsNone)
   EXPECT_TRUE(FindSpots(image).empty());
 }
 
+TEST(SpotDetection, WideThingsAreNoSpots)
+{
+  for (const Vec2& size : { Vec2{ 45, 2 }, Vec2{ 2, 30 }, Vec2{ 40, 30 } })
+  {
+    std::vector<unsigned char> pixels;
+    for (int row = 0; row < 300; ++row)
+    {
+      for (int column = 0; column < 400; ++column)
+      {
+        const double x = (column - 200) / size[0], y = (row - 150) / size[1];
+        pixels.push_back(static_cast<unsigned char>(220 * std::exp(-0.5 * (x * x + y * y))));
+      }
+    }
+    EXPECT_TRUE(FindSpots({ ScalarType::UInt8, pixels.data(), 400, 400, 300 }).empty())
+      << size[0] << " " << size[1];
+  }
+}
+
+TEST(SpotDetection, AnyImageHasAnAnswer)
+{
+  std::mt19937 random(4);
+  const float numbers[6] = { std::numeric_limits<float>::quiet_NaN(),
+    -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::max(),
+    std::numeric_limits<float>::lowest(), 1e-40F, 100 };
+  for (int n = 0; n < 200; ++n)
+  {
+    const int width = 16 + int(random() % 50), height = 16 + int(random() % 50);
+    std::vector<float> pixels(std::size_t(width * height), 0);
+    for (std::size_t k = random() % pixels.size(); k > 0; --k)
+    {
+      pixels[random() % pixels.size()] = numbers[random() % 6];
+    }
+    for (const Spot& spot : FindSpots({ ScalarType::Float32, pixels.data(), width, width, height }))
+    {
+      EXPECT_TRUE(spot.Score > 0 && spot.Score <= 1) << spot.Score;
+      EXPECT_TRUE(spot.Pixel[0] >= 0 && spot.Pixel[0] <= width - 1) << spot.Pixel[0];
+      EXPECT_TRUE(spot.Pixel[1] >= 0 && spot.Pixel[1] <= height - 1) << spot.Pixel[1];
+    }
+  }
+}
+
 // A sweep along a wire: out of sight at times, with specks.
 TEST(SpotTracking, FollowsTheWireAndLeavesOutSlicesWithout)
 {
@@ -324,6 +365,26 @@ TEST(SpotTracking, KnownPlacesLead)
   track = TrackSpots(slices, 120);
   EXPECT_TRUE(track[10]);
   EXPECT_FALSE(track[9]);
+}
+
+TEST(SpotTracking, AfterALongTimeOutOfSightItMayBeAnywhere)
+{
+  std::vector<SpotSlice> slices(40);
+  for (std::size_t n = 0; n < 40; ++n)
+  {
+    if (n < 10 || n >= 25)
+    {
+      const double column = n < 10 ? 40 : 360;
+      slices[n].Spots = { { { column, 100.0 + double(n) }, 200, 0.9 } };
+    }
+  }
+  const std::vector<std::optional<Spot>> track = TrackSpots(slices, 60);
+  int found = 0;
+  for (const std::optional<Spot>& spot : track)
+  {
+    found += spot ? 1 : 0;
+  }
+  EXPECT_EQ(found, 25);
 }
 
 TEST(SpotTracking, WeakSpotsAndEmptySweeps)
