@@ -34,6 +34,10 @@ for name in ("live.png", "live-calibration.xml", "report.md"):
 reader = pv.TrackedSliceReader(FileName=os.path.join(folder, "live-sweep.mhd"))
 reader.UpdatePipeline()
 sweep = fetch(reader)
+calibrated = pv.TrackedSliceReader(FileName=os.path.join(folder, "live-sweep.mhd"),
+                                   CalibrationFileName=os.path.join(folder, "live-calibration.xml"))
+again = vtk_to_numpy(fetch(calibrated).GetFieldData().GetArray("ImageToReference"))
+assert np.allclose(again, vtk_to_numpy(sweep.GetFieldData().GetArray("ImageToReference")), atol=1e-6, equal_nan=True)
 columns, rows, count = sweep.GetDimensions()
 assert count == slices, (count, slices)
 grey = vtk_to_numpy(sweep.GetPointData().GetScalars()).reshape(count, rows, columns)

@@ -274,6 +274,7 @@ def finish(source, picture, options, report):
     if count >= 2:
         picture.update()
         picture.show_middle()
+    if count >= 2 and picture.surface.GetDataInformation().GetNumberOfCells() > 0:
         largest = pv.Connectivity(Input=picture.surface, ExtractionMode="Extract Largest Region", ColorRegions=0)
         millilitres, open_edges = demo_ultrasound.measure(pv.ExtractSurface(Input=largest))
         report.add("enclosed volume, ml", f"{millilitres:.3f}")
