@@ -8,7 +8,11 @@
  * if ArcTolerance asks for them), coordinates with a decimal point and at most three decimals (x and y to the nearest, z up), modal
  * words left out when they do not change. See lacuna::MakeGCode for what it refuses.
  *
- * Comments at the top name Lacuna's version, the tool, the steps of the provenance and the day.
+ * A path that has been mirrored, scaled, bent, tilted or lowered since it was made (PressPosition) is
+ * refused. One that lies elsewhere is written with a warning.
+ *
+ * Comments at the top name Lacuna's version, the tool, the steps of the provenance and the day, and
+ * say of a path that lies elsewhere, or was made over a mould that did, that it was moved.
  * There is never a number in the file that is not finite.
  *
  * The file is written beside its final name and renamed when it is complete. On failure Write()

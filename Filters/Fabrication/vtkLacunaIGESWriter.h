@@ -33,6 +33,12 @@
  * Outlines come from FilledMask: its half-way contour, freed of the staircase of pixels, as closed
  * C2 cubics that lie on the surface within Tolerance.
  *
+ * What has been mirrored, scaled or bent since it was made for the press (PressPosition) is refused, and
+ * so are screw holes of a plate that lies elsewhere than they, and the plane of a depth map's pixels
+ * (a map behind Transform). What only lies elsewhere, and what is made of such (MovedSincePress), is
+ * written AsGiven only, with a warning, and the start section says that its way to the patient is not
+ * known.
+ *
  * The file is written beside its final name and renamed when it is complete. On failure Write()
  * returns 0, GetErrorCode() says why (vtkErrorCode), and what was at FileName stays. In parallel
  * each process has a writer, with its number as Piece; all bring the whole input up to date, and
