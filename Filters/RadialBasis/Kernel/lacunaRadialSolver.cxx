@@ -28,6 +28,9 @@ constexpr int MaximumCycles = 8;
 constexpr double ProductAccuracy = 1.0;
 // Error bound of the sums that the true residual is made of, relative to the tolerance.
 constexpr double ResidualAccuracy = 0.1;
+// Of the residual at its start: farther down a cycle does not go, since what it thinks is left is
+// not what is; the next one begins with the true residual.
+constexpr double CycleReduction = 1e-7;
 
 double Dot(const std::vector<double>& a, const std::vector<double>& b)
 {
@@ -103,6 +106,7 @@ public:
       norm = MaximumNorm(residual) + bound;
       if (norm > 0.5 * before)
       {
+        norm = std::min(norm, before);
         break; // round-off stands in the way
       }
     }
@@ -212,7 +216,7 @@ private:
       }
       const double norm = MaximumNorm(residual);
       this->ReportProgress(norm / start, start);
-      if (norm <= 0.6 * this->Tolerance)
+      if (norm <= std::max(0.6 * this->Tolerance, CycleReduction * start))
       {
         break;
       }
