@@ -80,13 +80,21 @@ def _array(image, name):
 
 
 def _solid_angle(image, directions):
-    """Occluded angle of the array Object taken as solid and opaque."""
-    if not _array(image, "Object").any():
+    """Occluded angle of the array Object taken as solid and opaque, over the full angle; it goes on beyond the border."""
+    size = image.GetDimensions()
+    solid = _array(image, "Object").reshape(size[::-1])
+    if not solid.any():
         raise ValueError("no voxel reached the last threshold: there is no object to take the surface of")
+    axes = [c for c in range(3) if size[c] > 1]
+    # Near by only, so that bays wider than that stay open.
+    radius = 4 * max(image.GetSpacing()[c] for c in axes)
+    cut = any(solid.take(end, 2 - c).any() for c in axes for end in (0, -1))
+    pad = [math.ceil(radius / image.GetSpacing()[c]) + 1 if cut and c in axes else 0 for c in range(3)]
+    padded = np.ascontiguousarray(np.pad(solid, [(n, n) for n in pad[::-1]], mode="edge"))
     data = vtkImageData()
-    data.CopyStructure(image)
-    data.SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1)  # vtkImageConstantPad would drop it: _turn puts it back
-    data.GetPointData().SetScalars(image.GetPointData().GetArray("Object"))
+    data.SetDimensions(*padded.shape[::-1])
+    data.SetSpacing(image.GetSpacing())
+    data.GetPointData().SetScalars(numpy_to_vtk(padded.ravel(), deep=1))
     opaque = vtkPiecewiseFunction()  # not Linear in Range: all voxels may be object
     opaque.AddPoint(0, 0)
     opaque.AddPoint(1, 1)
@@ -96,15 +104,21 @@ def _solid_angle(image, directions):
     angle.SetAttenuation(angle.OPACITY_FUNCTION)
     angle.SetOpacityFunction(opaque)
     angle.SetNumberOfDirections(directions)
-    # Near by only, so that bays wider than that stay open.
-    angle.SetLocalRadii(0, 4 * max(s for s, n in zip(image.GetSpacing(), image.GetDimensions()) if n > 1))
+    angle.SetLocalRadii(0, radius)
     angle.Update()
-    return angle.GetOutput()
+    values = _array(angle.GetOutput(), "OccludedAngle").reshape(padded.shape)
+    values = values[tuple(slice(n, n + size[c]) for c, n in reversed(list(enumerate(pad))))]
+    result = vtkImageData()
+    result.CopyStructure(image)
+    result.SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1)  # vtkImageConstantPad would drop it: _turn puts it back
+    result.GetPointData().SetScalars(numpy_to_vtk(values.ravel() / ((2 if _flat(image) else 4) * math.pi), deep=1))
+    return result
 
 
 def _contour(image, level, largest):
-    pad = vtkImageConstantPad()  # an object at the edge of the image is closed there
+    pad = vtkImageConstantPad()  # an object at the edge of the image is closed there, as behind a flat face
     pad.SetInputData(image)
+    pad.SetConstant(0.5)
     extent = image.GetExtent()
     pad.SetOutputWholeExtent([e + (2 * (i % 2) - 1) * (extent[i // 2 * 2] < extent[i // 2 * 2 + 1])
                               for i, e in enumerate(extent)])
@@ -233,14 +247,15 @@ def closed_surface(source, largest=True, compensate=True, directions=400):
     is |n * spacing| / 2 where n is its normal along the image's axes (Carr 1996 does not; it makes a sphere of radius
     20 by 7.7 % too large).
 
+    An object that the image's border cuts goes on beyond it for that and is closed there by a flat face.
+
     largest: the largest region only, without what outliers made and with its holes filled; otherwise all regions, and
     the volume is without holes. Returns a Surface; raises ValueError when there is no
     object.
     """
     image = _image(source)
     angle = _solid_angle(image, directions)
-    full = 2 * math.pi if _flat(image) else 4 * math.pi
-    surface = _contour(angle, 0.75 * full, largest)
+    surface = _contour(angle, 0.75, largest)
     if surface.GetNumberOfPoints() == 0:
         raise ValueError("the object is too small to take the surface of: fewer than a few voxels hang together")
     spacing = np.array(image.GetSpacing()) * bool(compensate)
