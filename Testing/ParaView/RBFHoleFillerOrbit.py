@@ -71,4 +71,4 @@ assert largest > 3 and rms > 1.5
 filler.SetSupportStepMargin(3)
 counts, largest, rms = fill()
 assert counts[5] > 500 and counts[3] == 0 and not any("steeper than 65 degrees" in w for w in warnings)
-assert largest < 1.2 and rms < 0.6
+assert abs(largest - 0.88) < 0.03 and abs(rms - 0.41) < 0.02  # as the guide says
