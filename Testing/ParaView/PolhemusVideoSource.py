@@ -70,6 +70,8 @@ try:
     wait(source, lambda: "There is no port /dev/ttyLacunaNone" in live.get(source, "Message"), "wrong port")
     wait(source, lambda: "VideoURL is not set" in live.get(source, "Message"), "no video")
     assert not live.get(source, "TrackerWorks")
+    source.TrackerConnection = "igtl://127.0.0.1:1?transform=ProbeToTracker"  # nobody listens there
+    wait(source, lambda: "igtl://127.0.0.1:1 " in live.get(source, "Message"), "no OpenIGTLink server")
 
     # mended, without anything else than the properties
     source.TrackerConnection = "/dev/../../.." + link
