@@ -216,11 +216,12 @@ for name in ("axial", "feet first", "oblique"):  # the grey level is a formula o
                 held = make(group(scan))
                 held.UpdatePipeline()
                 assert is_true(held, scan) == true and coordinates.find(held) == place, (name, what, variant)
-    for change, values in ("Translate", [1, 0, 0]), ("Rotate", [0, 0, 1]), ("Scale", [-1, 1, 1]):
+    for change, values, mirrored in (("Translate", [1, 0, 0], ""), ("Rotate", [0, 0, 1], ""), ("Scale", [2, 2, 2], ""),
+                                     ("Scale", [-1, 1, 1], coordinates.MIRRORED)):
         moved = Transform(Input=scan)
         setattr(moved.Transform, change, values)
         moved.UpdatePipeline()
-        assert coordinates.find(moved) == coordinates.UNKNOWN, change
+        assert coordinates.find(moved) == coordinates.UNKNOWN + mirrored, (change, values)
 
 print("drop the mark:", sorted(what for what, known in marked.items() if not known))
 assert sum(marked.values()) > len(marked) - 4, marked
