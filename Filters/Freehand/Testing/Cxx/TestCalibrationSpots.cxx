@@ -121,7 +121,7 @@ void TestSpots()
     LACUNA_CHECK_NEAR(Get(table, "Error", row), 0, 0.3);
     LACUNA_CHECK(Get(table, "Score", row) > 0.5 && Get(table, "Score", row) <= 1);
   }
-  auto* marks = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(3));
+  auto* marks = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(4));
   LACUNA_CHECK(marks->GetNumberOfVerts() == Slices);
   LACUNA_CHECK_NEAR(marks->GetPoint(7)[2], 7, 0);
   LACUNA_CHECK_NEAR(marks->GetPoint(7)[0], GetPixel(7)[0], 0.25);
