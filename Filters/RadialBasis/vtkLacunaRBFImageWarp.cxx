@@ -3,7 +3,6 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "lacunaRadialBasis.h"
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
@@ -16,10 +15,10 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaLandmarkWarp.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
-#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -31,7 +30,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -42,57 +40,6 @@ namespace
 {
 // Of a voxel: so near to one a place is on it, and its neighbours have no say.
 constexpr double RoundOff = 1e-9;
-
-// Positions in mm along the image's own axes, from its first voxel: there its grid is regular
-// whatever its direction matrix.
-class Geometry
-{
-public:
-  explicit Geometry(vtkImageData* image)
-    : Image(image)
-  {
-    image->GetDimensions(this->Size);
-    image->GetSpacing(this->Spacing);
-    image->GetExtent(this->Extent);
-    for (int c = 0; c < 3; ++c)
-    {
-      if (this->Size[c] > 1)
-      {
-        this->Axes.push_back(c);
-      }
-    }
-  }
-
-  std::array<double, 3> ToOwn(const double* world) const
-  {
-    double index[3];
-    this->Image->TransformPhysicalPointToContinuousIndex(world, index);
-    std::array<double, 3> own;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      own[c] = (index[c] - this->Extent[2 * c]) * this->Spacing[c];
-    }
-    return own;
-  }
-
-  vtkImageData* Image;
-  int Size[3];
-  double Spacing[3];
-  int Extent[6];
-  std::vector<int> Axes; // with more than one voxel
-};
-
-std::vector<std::array<double, 3>> GetPoints(vtkDataSet* points, const Geometry& geometry)
-{
-  std::vector<std::array<double, 3>> own;
-  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    points->GetPoint(i, x);
-    own.push_back(geometry.ToOwn(x));
-  }
-  return own;
-}
 
 // Share of folded voxels in the box around the targets from which on they are no accident: noise of
 // landmarks folds a tenth of a per cent there, and a third of all pairs on the wrong side 3 %; a head
@@ -115,163 +62,6 @@ struct Folds
     "coordinate system of the other handedness; landmarks nearly in one plane need some off it" +
     hint);
 }
-
-// Whether the affine map that fits best turns the landmarks' space over (or flattens it): its
-// determinant has the sign of that of the covariance of targets and landmarks.
-bool IsMirrored(const std::vector<int>& axes, const std::vector<std::array<double, 3>>& landmarks,
-  const std::vector<std::array<double, 3>>& targets)
-{
-  const double weight = 1.0 / static_cast<double>(targets.size());
-  std::array<double, 3> from{};
-  std::array<double, 3> to{};
-  for (std::size_t i = 0; i < targets.size(); ++i)
-  {
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      from[c] += weight * landmarks[i][c];
-      to[c] += weight * targets[i][c];
-    }
-  }
-  double covariance[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-  for (std::size_t r = 0; r < axes.size(); ++r)
-  {
-    for (std::size_t c = 0; c < axes.size(); ++c)
-    {
-      covariance[r][c] = 0;
-      for (std::size_t i = 0; i < targets.size(); ++i)
-      {
-        covariance[r][c] +=
-          weight * (landmarks[i][axes[r]] - from[axes[r]]) * (targets[i][axes[c]] - to[axes[c]]);
-      }
-    }
-  }
-  return vtkMatrix3x3::Determinant(&covariance[0][0]) <= 0;
-}
-
-template <int Dimension>
-class Warp
-{
-public:
-  Warp(vtkLacunaExecution& execution, const Geometry& geometry,
-    const std::vector<std::array<double, 3>>& landmarks,
-    const std::vector<std::array<double, 3>>& targets, lacuna::RadialBasisOptions options,
-    double accuracy)
-    : Shape(geometry)
-  {
-    std::vector<std::array<double, Dimension>> nodes(targets.size());
-    std::vector<std::vector<double>> values(Dimension, std::vector<double>(targets.size()));
-    double smallest = geometry.Spacing[geometry.Axes[0]];
-    double largest = 0;
-    for (int c = 0; c < Dimension; ++c)
-    {
-      const int axis = geometry.Axes[c];
-      smallest = std::min(smallest, geometry.Spacing[axis]);
-      double low = std::numeric_limits<double>::infinity();
-      double high = -low;
-      for (std::size_t i = 0; i < targets.size(); ++i)
-      {
-        nodes[i][c] = targets[i][axis];
-        values[c][i] = landmarks[i][axis] - targets[i][axis];
-        low = std::min(low, targets[i][axis]);
-        high = std::max(high, targets[i][axis]);
-      }
-      this->Box[2 * axis] = std::floor(low / geometry.Spacing[axis]);
-      this->Box[2 * axis + 1] = std::ceil(high / geometry.Spacing[axis]);
-      const auto range = std::minmax_element(values[c].begin(), values[c].end());
-      largest = targets.empty() ? 0 : std::max(largest, *range.second - *range.first);
-    }
-    // of each component, so that positions keep it
-    const double wanted = accuracy * smallest / std::sqrt(Dimension);
-    options.Accuracy = largest > 0 ? std::min(0.5, wanted / largest) : 0.5;
-    execution.SetStage(0, 0.3);
-    const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
-    this->Report = function.GetReport();
-    if (IsMirrored(geometry.Axes, landmarks, targets))
-    {
-      ThrowMirrored("the image");
-    }
-
-    lacuna::RegularGrid<Dimension> grid;
-    for (int c = 0; c < Dimension; ++c)
-    {
-      grid.Spacing[c] = geometry.Spacing[geometry.Axes[c]];
-      grid.Size[c] = geometry.Size[geometry.Axes[c]];
-    }
-    for (int c = 0; c < Dimension; ++c)
-    {
-      execution.SetStage(0.3 + 0.3 * c / Dimension, 0.3 + 0.3 * (c + 1) / Dimension);
-      this->Way[c].resize(grid.GetNumberOfPoints());
-      function.EvaluateGrid(execution, grid, this->Way[c].data(), c);
-    }
-  }
-
-  // The voxel's place in the input, as an index of the image.
-  void GetIndex(std::int64_t voxel, double* index) const
-  {
-    std::int64_t rest = voxel;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      index[c] = static_cast<double>(this->Shape.Extent[2 * c] + rest % this->Shape.Size[c]);
-      rest /= this->Shape.Size[c];
-    }
-    for (int c = 0; c < Dimension; ++c)
-    {
-      const int axis = this->Shape.Axes[c];
-      index[axis] += this->Way[c][voxel] / this->Shape.Spacing[axis];
-    }
-  }
-
-  // Whether a voxel is in the box that encloses the targets.
-  bool IsInBox(std::int64_t voxel) const
-  {
-    std::int64_t rest = voxel;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      const auto i = static_cast<double>(rest % this->Shape.Size[axis]);
-      rest /= this->Shape.Size[axis];
-      if (i < this->Box[2 * axis] || i > this->Box[2 * axis + 1])
-      {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  // Whether the mapping turns the cell at a voxel inside out.
-  bool IsFolded(std::int64_t voxel) const
-  {
-    // derivatives by forward differences, backward at the last voxel
-    double jacobian[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-    std::int64_t stride = 1;
-    std::int64_t rest = voxel;
-    int d = 0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const std::int64_t size = this->Shape.Size[axis];
-      const std::int64_t i = rest % size;
-      rest /= size;
-      if (size > 1)
-      {
-        const std::int64_t from = i + 1 < size ? voxel : voxel - stride;
-        for (int c = 0; c < Dimension; ++c)
-        {
-          jacobian[c][d] +=
-            (this->Way[c][from + stride] - this->Way[c][from]) / this->Shape.Spacing[axis];
-        }
-        ++d;
-      }
-      stride *= size;
-    }
-    return vtkMatrix3x3::Determinant(&jacobian[0][0]) <= 0;
-  }
-
-  lacuna::RadialBasisReport Report;
-
-private:
-  const Geometry& Shape;
-  std::array<std::vector<double>, Dimension> Way;
-  std::array<double, 6> Box{}; // first and last voxel of each axis, also outside of the image
-};
 
 // Which places of the image have grey levels that count, by its vtkValidPointMask.
 class ValidPlaces
@@ -507,11 +297,11 @@ int vtkLacunaRBFImageWarp::RequestData(
       {
         throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
       }
-      const Geometry geometry(image);
+      const vtkLacunaVoxelSpace space(image);
       lacuna::RequireMemory(
         "the warped image", static_cast<double>(image->GetNumberOfPoints()) * 8 * 5);
-      const std::vector<std::array<double, 3>> from = GetPoints(landmarks, geometry);
-      const std::vector<std::array<double, 3>> to = GetPoints(targets, geometry);
+      const std::vector<std::array<double, 3>> from = space.GetPoints(landmarks);
+      const std::vector<std::array<double, 3>> to = space.GetPoints(targets);
       lacuna::RadialBasisOptions options;
       options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
       options.Smoothing = this->Smoothing;
@@ -523,16 +313,20 @@ int vtkLacunaRBFImageWarp::RequestData(
       lacuna::RadialBasisReport report;
       const auto run = [&](const auto& mapping)
       {
-        report = mapping.Report;
+        if (mapping.IsMirrored())
+        {
+          ThrowMirrored("the image");
+        }
+        report = mapping.GetReport();
         folded = Sample(execution, image, scalars, mapping, sampling, whole);
       };
-      switch (geometry.Axes.size())
+      switch (space.Axes.size())
       {
         case 3:
-          run(Warp<3>(execution, geometry, from, to, options, this->Accuracy));
+          run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
           break;
         case 2:
-          run(Warp<2>(execution, geometry, from, to, options, this->Accuracy));
+          run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
           break;
         default:
           throw std::runtime_error("the image is but a row of voxels; warps are two- or "
