@@ -19,6 +19,7 @@ constexpr int Attempts = 6;          // of each step of the set-up
 constexpr int RecordAttempts = 12;
 constexpr int DoubtfulFailures = 12; // in a row, after which the unit's state is asked for
 constexpr double CommandTime = 0.1;  // s of silence after which no complaint comes
+constexpr double WarningTime = 5;    // s that a warning stays when nothing is wrong any more
 
 std::string BaudText(const ByteChannel& channel)
 {
@@ -104,12 +105,18 @@ void FastrakTracker::Settle(double quiet, double longest)
   this->Parser.EndOfTransmission();
 }
 
+void FastrakTracker::Warn(const std::string& text)
+{
+  this->Warning = text;
+  this->WarnedAt = this->Time.Now();
+}
+
 void FastrakTracker::NoteReply(const FastrakReply& reply)
 {
   if (const auto complaint = ReadFastrakComplaint(reply))
   {
     this->LastComplaint = DescribeFastrakComplaint(*complaint);
-    this->Warning = "The FASTRAK " + this->LastComplaint;
+    this->Warn("The FASTRAK " + this->LastComplaint);
   }
 }
 
@@ -362,12 +369,16 @@ bool FastrakTracker::Poll(std::vector<TrackedPose>& poses)
     return false;
   }
   this->Failures = 0;
+  if (this->Time.Now() - this->WarnedAt > WarningTime)
+  {
+    this->Warning.clear();
+  }
   for (const TrackedPose& pose : measured)
   {
     if (!pose.Usable)
     {
-      this->Warning = "The FASTRAK reports for station " + std::to_string(pose.Station) + ": " +
-        DescribeFastrakError(pose.Error);
+      this->Warn("The FASTRAK reports for station " + std::to_string(pose.Station) + ": " +
+        DescribeFastrakError(pose.Error));
     }
     this->Motions[pose.Station - 1].Judge(pose, poses);
   }
@@ -385,7 +396,7 @@ bool FastrakTracker::MakeSure()
   if (!this->Status.Binary || !this->Status.Centimetres || this->Status.Continuous)
   {
     this->SetUp();
-    this->Warning = "The FASTRAK had been restarted and was set up again";
+    this->Warn("The FASTRAK had been restarted and was set up again");
   }
   return true;
 }

@@ -93,7 +93,7 @@ public:
   /// Of the unit, once set up.
   const FastrakStatus& GetStatus() const { return this->Status; }
   Counts GetCounts() const;
-  /// The last complaint or error code of the unit in words; empty: none.
+  /// The last complaint or error code of the unit in words; empty: none for 5 s.
   const std::string& GetWarning() const { return this->Warning; }
 
 private:
@@ -114,6 +114,7 @@ private:
   Outcome Request(std::vector<TrackedPose>& measured);
   TrackedPose MakePose(const FastrakRecord& record, double request, double arrival) const;
   void NoteReply(const FastrakReply& reply);
+  void Warn(const std::string& text);
 
   ByteChannel& Channel;
   const Clock& Time;
@@ -124,6 +125,7 @@ private:
   Counts Count;
   std::array<MotionCheck, FastrakStations> Motions;
   std::string Warning;
+  double WarnedAt = 0;
   std::string LastComplaint;
   int Failures = 0;              ///< requests in a row
   std::size_t ReceivedBytes = 0; ///< since the unit was asked for its status

@@ -109,8 +109,10 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
       last = came ? this->Time.Now() : last;
       if (this->Time.Now() - last > LongestSilence)
       {
-        throw std::runtime_error("The tracker sends nothing any more: is it switched on and its "
-                                 "cable plugged in?");
+        const std::string why = device->GetWarning();
+        throw std::runtime_error(!why.empty()
+            ? why
+            : "The tracker sends nothing any more: is it switched on and its cable plugged in?");
       }
     }
   }

@@ -160,6 +160,14 @@ TEST(FastrakTracker, ErrorCodesMakePosesUnusable)
   }
   EXPECT_EQ(poses.size(), 3u);
   EXPECT_TRUE(poses[0].Usable);
+  // what was wrong is to be read for a while, and not for ever
+  EXPECT_NE(bench.Tracker.GetWarning(), "");
+  const double begin = bench.Channel.Now();
+  while (bench.Channel.Now() < begin + 6)
+  {
+    ASSERT_TRUE(bench.Tracker.Poll(poses));
+  }
+  EXPECT_EQ(bench.Tracker.GetWarning(), "");
 }
 
 TEST(FastrakTracker, SetsARestartedUnitUpAgain)
