@@ -295,6 +295,8 @@ VideoSender::VideoSender(const VideoSenderSettings& settings, std::function<bool
     }
     AVDictionary* options = nullptr;
     av_dict_set(&options, "listen", "2", 0); // for one client after the other
+    // Else the end of a frame waits until the client has acknowledged its beginning: up to 40 ms.
+    av_dict_set(&options, "tcp_nodelay", "1", 0);
     const int result =
       avio_open2(&output.Server, url.c_str(), AVIO_FLAG_WRITE, &output.Callback, &options);
     av_dict_free(&options);
