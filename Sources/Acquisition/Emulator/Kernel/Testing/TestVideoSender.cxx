@@ -5,9 +5,14 @@
 #include "lacunaTestDevice.h"
 #include "lacunaTestPort.h"
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <thread>
+
+#include <netinet/tcp.h>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -41,6 +46,86 @@ VideoSettings From(const std::string& url)
   settings.URL = url;
   settings.InRealTime = false;
   return settings;
+}
+
+// Whether the end of a frame may wait until its beginning is acknowledged, which takes up to 40 ms
+// with some clients. Of a server of this process that has a client.
+bool MayDelay(const std::string& url)
+{
+  const int port = std::stoi(url.substr(16));
+  int found = 0;
+  int prompt = 0;
+  for (int line = 3; line < 1024; ++line)
+  {
+    sockaddr_in address{};
+    sockaddr_in peer{};
+    socklen_t size = sizeof(address);
+    socklen_t peerSize = sizeof(peer);
+    if (getsockname(line, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+      getpeername(line, reinterpret_cast<sockaddr*>(&peer), &peerSize) == 0 &&
+      address.sin_family == AF_INET && ntohs(address.sin_port) == port)
+    {
+      int value = 0;
+      socklen_t length = sizeof(value);
+      EXPECT_EQ(getsockopt(line, IPPROTO_TCP, TCP_NODELAY, &value, &length), 0);
+      ++found;
+      prompt += value != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(found, 1);
+  return prompt < found;
+}
+
+// How long after it was handed over, in frames, a frame comes: of most of them, 25 a second of
+// columns x rows pixels.
+double FindDelay(const std::string& url, int columns, int rows)
+{
+  constexpr int count = 100;
+  std::array<std::atomic<double>, count> sent{};
+  std::atomic<bool> stopped{ false };
+  VideoSender sender({ url, columns, rows, 25 }, [&] { return stopped.load(); });
+  std::thread server(
+    [&]
+    {
+      const std::vector<std::uint8_t> image(static_cast<std::size_t>(columns * rows), 99);
+      try
+      {
+        sender.Open();
+        const auto begin = std::chrono::steady_clock::now();
+        for (int i = 0; i < count && !stopped; ++i)
+        {
+          std::this_thread::sleep_until(begin + i * std::chrono::milliseconds(40));
+          sent[static_cast<std::size_t>(i)] = TheClock.Now();
+          if (!sender.Send(image.data(), i))
+          {
+            break;
+          }
+        }
+      }
+      catch (const Aborted&)
+      {
+      }
+    });
+  std::vector<double> delays;
+  {
+    VideoSource source(From(url), TheClock);
+    EXPECT_FALSE(url[0] == 't' && MayDelay(url));
+    VideoFrame frame;
+    for (int i = 0; i < 50; ++i)
+    {
+      EXPECT_EQ(source.Read(frame), VideoEvent::Frame);
+      const auto number = std::lround(25 * frame.StreamTime.value());
+      if (number >= 0 && number < count && i >= 10) // those of the beginning have waited
+      {
+        delays.push_back(frame.Arrival - sent[static_cast<std::size_t>(number)]);
+      }
+    }
+  }
+  stopped = true;
+  server.join();
+  EXPECT_GE(delays.size(), 30u);
+  std::sort(delays.begin(), delays.end());
+  return 25 * delays.at(delays.size() * 8 / 10);
 }
 
 std::string Failure(VideoError::Kind kind, const VideoSenderSettings& settings)
@@ -105,6 +190,17 @@ TEST(VideoSender, ServesOneClientAfterTheOther)
   stopped = true;
   server.join();
   EXPECT_GE(streams, 3);
+}
+
+TEST(VideoSender, FramesComeInTheirTurn)
+{
+  for (const auto& [columns, rows] :
+    { std::pair(160, 160), std::pair(320, 320), std::pair(768, 576) })
+  {
+    const double delay = FindDelay(FreeAddress(), columns, rows);
+    std::cout << columns << " x " << rows << ": " << delay << " frames late\n";
+    EXPECT_LT(delay, 0.25);
+  }
 }
 
 TEST(VideoSender, WritesFiles)
