@@ -56,6 +56,10 @@ struct SweepAcquisition::Core
   void AddFrame(FramePointer frame, double latency, const VideoSource::Counts& counts);
   void Process();
   void Publish(std::int64_t processed, std::vector<AcquiredSlice> slices);
+  std::uint64_t CountFlipped() const
+  {
+    return this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
+  }
   std::vector<std::string> DescribePoses() const;
 
   const AcquisitionDevices Devices;
@@ -78,6 +82,7 @@ struct SweepAcquisition::Core
   std::int64_t Missing = 0;
   PoseCounts EarlierPoses; // of connections that ended
   PoseCounts NewestPoses;
+  std::uint64_t FlippedBefore = 0; // the sweep
   VideoSource::Counts EarlierVideo;
   VideoSource::Counts NewestVideo;
   std::string TrackerWarning;
@@ -284,7 +289,7 @@ std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
       "The newest frames have no pose: no two measurements of the tracker, at most "
       "0.25 s apart, are around their instants");
   }
-  const std::uint64_t flipped = this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
+  const std::uint64_t flipped = this->CountFlipped() - this->FlippedBefore;
   if (flipped > 0)
   {
     messages.push_back("The receiver was in the other half of space (" + std::to_string(flipped) +
@@ -342,6 +347,7 @@ void SweepAcquisition::BeginSweep(bool discard)
   const std::lock_guard<std::mutex> lock(this->Work->Mutex);
   this->Work->Slices.clear();
   this->Work->Missing = 0;
+  this->Work->FlippedBefore = this->Work->CountFlipped();
   this->Work->Publish(0, {});
   this->Work->Sweep.reset();
 }

@@ -87,6 +87,8 @@ TEST(AcquisitionTracker, AReceiverInTheOtherHalfOfSpaceIsFollowedAndSaid)
     least = std::min(least, slice.ProbeToTracker(0, 3));
   }
   EXPECT_LT(least, -90);
+  acquisition.BeginSweep(); // to whose slices it did not happen
+  EXPECT_FALSE(HasMessage(acquisition.GetState(), "other half of space"));
 }
 
 // The FASTRAK's protocol at its pace, one byte in a hundred damaged: every frame becomes a slice and
