@@ -23,6 +23,7 @@ constexpr std::size_t ExtendedHeaderSize = 12;
 constexpr std::uint64_t LargestBody = std::uint64_t{ 1 } << 32; // of any message that makes sense
 // A float32 matrix or a tracker's own rounding; more is 0.3 mm at 300 mm from the receiver.
 constexpr double RigidTolerance = 1e-3;
+constexpr double Kilometre = 1e6; // mm
 
 // Big endian, as all of a message but the pixels is.
 std::uint64_t ReadNumber(std::string_view bytes, std::size_t position, std::size_t size)
@@ -266,6 +267,10 @@ void CheckOpenIGTLinkPose(OpenIGTLinkPose& pose)
   else if (pose.Pose.Determinant3() < 0)
   {
     pose.Fault = "it mirrors: right-handed axes are needed on both sides";
+  }
+  else if (Norm(pose.Pose.Column(3)) > Kilometre)
+  {
+    pose.Fault = "it is more than a kilometre away: check the unit of length, which is mm";
   }
 }
 

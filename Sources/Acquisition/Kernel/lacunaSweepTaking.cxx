@@ -20,6 +20,12 @@ std::string SizeText(int columns, int rows)
   return std::to_string(columns) + " x " + std::to_string(rows);
 }
 
+std::string SpeedText(double speed)
+{
+  constexpr double most = 1e9; // any pose's speed is written
+  return std::to_string(std::lround(std::fmin(speed, most)));
+}
+
 Matrix4 NoPose()
 {
   std::array<double, 16> elements{};
@@ -265,10 +271,8 @@ std::vector<std::string> SweepTaking::GetMessages() const
   }
   if (this->Speed && this->Rules.SpeedLimit > 0 && *this->Speed > this->Rules.SpeedLimit)
   {
-    messages.push_back("Too fast: the image moves at " +
-      std::to_string(static_cast<int>(std::lround(*this->Speed))) +
-      " mm/s, more than SpeedLimit (" +
-      std::to_string(static_cast<int>(std::lround(this->Rules.SpeedLimit))) +
+    messages.push_back("Too fast: the image moves at " + SpeedText(*this->Speed) +
+      " mm/s, more than SpeedLimit (" + SpeedText(this->Rules.SpeedLimit) +
       "): such slices are flagged");
   }
   if (this->ImageDamaged)

@@ -213,6 +213,9 @@ TEST(OpenIGTLinkMessage, OnlyRotationAndTranslationIsAPose)
                  { 1, 0, 0 }, { std::sin(angle), std::cos(angle), 0 }, { 0, 0, 1 }, { 0, 0, 0 })),
     "shears");
   EXPECT_HAS(FaultOf(Matrix4::Scaling({ 0, 0, 0 })), "scales");
+  EXPECT_EQ(FaultOf(Matrix4::Translation({ 0, -9e5, 0 }) * pose), "");
+  EXPECT_HAS(FaultOf(Matrix4::Translation({ 0, -1.1e6, 0 }) * pose), "unit of length");
+  EXPECT_HAS(FaultOf(Matrix4::Translation({ 1e30, 0, 0 }) * pose), "unit of length");
   Matrix4 nothing = pose;
   nothing(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ReadPose(TransformBytes(nothing, "ProbeToTracker")).Usable);

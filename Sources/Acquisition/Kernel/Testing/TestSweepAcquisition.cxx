@@ -127,6 +127,21 @@ TEST(SweepAcquisition, SaysThatItIsTooFastWhileItIs)
   EXPECT_NEAR(acquisition.GetState().Speed.value(), 50, 1e-6);
 }
 
+TEST(SweepAcquisition, SpeedsBeyondAnyNumberAreWritten)
+{
+  AcquisitionRules rules;
+  Scene scene(rules, Room::NumberedFrame,
+    [](double time, std::vector<TrackedPose>& poses)
+    {
+      TrackedPose pose = Room::MakePose(time);
+      pose.ReceiverToTransmitter = Matrix4::Translation({ 1e30 * time, 0, 0 });
+      poses.push_back(pose);
+    });
+  SweepAcquisition& acquisition = scene.Open();
+  scene.Place.RunTo(50);
+  EXPECT_TRUE(HasMessage(acquisition.GetState(), "moves at 1000000000 mm/s"));
+}
+
 TEST(SweepAcquisition, ATrackerThatIsUnpluggedComesBack)
 {
   std::atomic<int> opened{ 0 };
