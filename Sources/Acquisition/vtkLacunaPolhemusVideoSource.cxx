@@ -32,6 +32,8 @@ std::string Text(const char* s)
   return s ? s : "";
 }
 
+constexpr const char* WaitingText = "The devices are changed at the next update after Stop";
+
 // Threads that a call of the system holds may need it to the end of the program.
 const lacuna::Clock& GetClock()
 {
@@ -182,20 +184,26 @@ void vtkLacunaPolhemusVideoSource::Open()
 }
 
 //------------------------------------------------------------------------------
+// Whether others were chosen, which a capture does not change.
+bool vtkLacunaPolhemusVideoSource::DevicesWait() const
+{
+  const vtkLacunaLiveSweep& now = *this->Now;
+  return now.Acquisition && this->DescribeDevices() != now.Devices &&
+    now.Acquisition->GetState().Capturing;
+}
+
+//------------------------------------------------------------------------------
 // Makes the acquisition what the properties say; an error says why it cannot be, once.
 void vtkLacunaPolhemusVideoSource::Configure()
 {
   vtkLacunaLiveSweep& now = *this->Now;
-  const std::string devices = this->DescribeDevices();
-  const bool reopen = !now.Acquisition || devices != now.Devices;
-  if (now.Acquisition && reopen && now.Acquisition->GetState().Capturing)
+  const bool wait = this->DevicesWait();
+  if (wait && now.Subjects.try_emplace("devices", 0).second)
   {
-    if (now.Subjects.try_emplace("devices", 0).second)
-    {
-      vtkWarningMacro("The devices are changed at the next update after Stop");
-    }
-    return;
+    vtkWarningMacro(<< WaitingText);
   }
+  const std::string devices = wait ? now.Devices : this->DescribeDevices();
+  const bool reopen = !now.Acquisition || devices != now.Devices;
   const std::string calibration = Text(this->CalibrationFileName);
   const std::string tried = devices + this->DescribeRules() +
     (calibration.empty() ? "" : std::to_string(vtksys::SystemTools::ModifiedTime(calibration)));
@@ -481,6 +489,7 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   if (now.Acquisition)
   {
     const lacuna::AcquisitionState state = now.Acquisition->GetState();
+    add(this->DevicesWait() ? WaitingText : "");
     std::for_each(state.Messages.begin(), state.Messages.end(), add);
     std::for_each(state.Notes.begin(), state.Notes.end(), add);
   }

@@ -238,6 +238,7 @@ private:
 
   std::string DescribeDevices() const;
   std::string DescribeRules() const;
+  bool DevicesWait() const;
   void Open();
   void Configure();
   bool TakeOver();

@@ -233,10 +233,20 @@ void TestDevicesThatChange()
   source->Start(); // opens them too
   LACUNA_CHECK(bench.PollFor(3));
   source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  source->SetTimeOffset(3); // rules do not wait with them
   source->Update();
   LACUNA_CHECK(bench.Messages->HasWarning("after Stop"));
+  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "after Stop");
+  LACUNA_CHECK(bench.Messages->HasError("TimeOffset"));
+  bench.Messages->Errors.clear();
+  source->SetTimeOffset(0);
+  source->SetCalibrationFileName(
+    bench.WriteCalibration(lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 })).c_str());
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetFieldData()->HasArray("ImageToReference"));
   LACUNA_CHECK(source->GetCapturing());
   source->Stop();
+  LACUNA_CHECK(std::string(source->GetMessage()).find("after Stop") == std::string::npos);
   source->Update();
   LACUNA_CHECK(bench.IsConnected());
   const vtkIdType count = source->GetSliceCount();
