@@ -163,8 +163,10 @@ void OpenIGTLinkPoseDevice::TakePose(
   if (!first &&
     ((header.Stamp && header.Stamp == this->LastStamp) || arrival.Time <= this->LastTime))
   {
+    this->Repeats = true;
     return; // servers repeat the last one when there is none newer
   }
+  this->Repeats = false;
   this->LastStamp = header.Stamp;
   this->LastTime = arrival.Time;
   this->WatchClock(arrival);
@@ -217,8 +219,10 @@ std::string OpenIGTLinkPoseDevice::FindWarning() const
     return "No pose " +
       (this->Address.Transform.empty() ? "" : "of '" + this->Address.Transform + "' ") +
       "has come from " + server + " for " + std::to_string(this->Silence) + " s" +
-      DescribeDevices(*this->Connection) + (this->Trouble.empty() ? "" : ". " + this->Trouble) +
-      (fault.empty() ? "" : ". " + fault);
+      DescribeDevices(*this->Connection) +
+      (this->Repeats ? ". The pose's time stamp stands still: does its tracker still measure?"
+                     : "") +
+      (this->Trouble.empty() ? "" : ". " + this->Trouble) + (fault.empty() ? "" : ". " + fault);
   }
   if (!this->Trouble.empty())
   {

@@ -53,8 +53,9 @@ private:
   std::string Name; ///< the device that is taken; empty: none came yet
   std::optional<double> LastStamp;
   double LastTime = 0;
-  int Silence = 0;    ///< s without a pose
-  bool Usable = true; ///< of the last pose
+  int Silence = 0;      ///< s without a pose
+  bool Usable = true;   ///< of the last pose
+  bool Repeats = false; ///< the last message was as old as the one before
   std::optional<double> ClockOffset;
   int ClockSteps = 0;
   double Jitter = 0;

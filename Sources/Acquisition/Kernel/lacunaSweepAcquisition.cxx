@@ -50,7 +50,7 @@ struct SweepAcquisition::Core
 
   void TrackPoses(DeviceThread::Control& control);
   void ReadFrames(DeviceThread::Control& control);
-  void AddPoses(const std::vector<TrackedPose>& poses, const PoseDevice& device);
+  void AddPoses(const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device);
   void HeedButton(const TrackedPose& pose);
   void LosePoses();
   void AddFrame(FramePointer frame, double latency, const VideoSource::Counts& counts);
@@ -74,7 +74,7 @@ struct SweepAcquisition::Core
   AcquisitionRules Rules;
   FramePairing Pairing;
   bool Capturing = false;
-  bool PosesCome = false; // a tracker is connected
+  bool PosesCome = false; // a tracker is connected and has measured
   bool ButtonDown = false;
   bool ButtonBefore = false; // what the last record said
   std::int64_t NextNumber = 0;
@@ -97,11 +97,6 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
 {
   const auto device = this->Devices.Poses([&control] { return control.IsStopped(); });
   device->SetUp();
-  control.SetWorking();
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->PosesCome = true;
-  }
   try
   {
     double last = this->Time.Now();
@@ -110,8 +105,12 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
     {
       poses.clear();
       const bool came = device->Poll(poses);
-      this->AddPoses(poses, *device);
-      last = came ? this->Time.Now() : last;
+      this->AddPoses(poses, came, *device);
+      if (came)
+      {
+        control.SetWorking();
+        last = this->Time.Now();
+      }
       if (this->Time.Now() - last > LongestSilence)
       {
         const std::string why = device->GetWarning();
@@ -130,7 +129,7 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
 }
 
 void SweepAcquisition::Core::AddPoses(
-  const std::vector<TrackedPose>& poses, const PoseDevice& device)
+  const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device)
 {
   const PoseCounts counts = device.GetCounts();
   std::string warning = device.GetWarning();
@@ -138,6 +137,7 @@ void SweepAcquisition::Core::AddPoses(
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->NewestPoses = counts;
     this->TrackerWarning = std::move(warning);
+    this->PosesCome = this->PosesCome || came;
     for (const TrackedPose& pose : poses)
     {
       if (pose.Station == this->Devices.Station)
@@ -409,7 +409,10 @@ AcquisitionState SweepAcquisition::GetState() const
       state.Notes.emplace_back(waiting);
     }
   };
-  describe(tracker, "The tracker is being set up");
+  if (tracker.Working || core.TrackerWarning.empty()) // else the newer reason is told below
+  {
+    describe(tracker, "The tracker is being set up");
+  }
   describe(video, "The video is being opened");
   for (std::string& message : core.DescribePoses())
   {

@@ -325,6 +325,9 @@ TEST(OpenIGTLinkDevices, WhatIsWrongIsWarnedOf)
   server.Send(TransformBytes(AsymmetricPose(3), "Probe", 101));
   ASSERT_TRUE(device->Poll(poses));
   EXPECT_HAS(device->GetWarning(), "The clock of " + server.GetAddress() + " was set by 100.0 s");
+  server.Send(TransformBytes(AsymmetricPose(4), "Probe", 101));
+  EXPECT_FALSE(device->Poll(poses));
+  EXPECT_HAS(device->GetWarning(), "time stamp stands still");
 }
 
 TEST(OpenIGTLinkDevices, UnknownDamagedAndGiantMessagesArePassedOver)

@@ -234,6 +234,45 @@ TEST(SweepAcquisition, ASilentTrackerIsOpenedAgain)
   EXPECT_EQ(acquisition.GetLive()->Slice.Status, 0);
 }
 
+TEST(SweepAcquisition, ATrackerThatSendsNothingTellsItsReasonAndNeverWorks)
+{
+  for (const bool gives : { false, true })
+  {
+    std::atomic<int> opened{ 0 };
+    Scene scene(EveryFrame());
+    const PoseDeviceFactory silent =
+      scene.Place.MakeTracker([](double, std::vector<TrackedPose>&) {}, gives ? "No 'Probe'" : "");
+    scene.Devices.Poses = [&](const Room::Stopped& stopped)
+    {
+      ++opened;
+      return silent(stopped);
+    };
+    SweepAcquisition& acquisition = scene.Open();
+    bool worked = false;
+    int reasons = 0;
+    int cables = 0;
+    for (int frame = 1; frame < 250; ++frame) // 3 s until it is opened again, three times
+    {
+      scene.Place.RunTo(frame);
+      const AcquisitionState state = acquisition.GetState();
+      worked = worked || state.TrackerWorks;
+      int said = 0;
+      for (const std::string& message : state.Messages)
+      {
+        said += message == "No 'Probe'" ? 1 : 0;
+      }
+      EXPECT_LE(said, 1);
+      reasons += said;
+      cables += HasMessage(state, "cable plugged in") ? 1 : 0;
+      EXPECT_FALSE(HasMessage(state, "have no pose")); // it is known why
+    }
+    EXPECT_FALSE(worked);
+    EXPECT_GE(opened, 3);
+    EXPECT_EQ(gives, reasons > 200);
+    EXPECT_EQ(cables > 0, !gives);
+  }
+}
+
 TEST(SweepAcquisition, AnEndedVideoIsOpenedAgainOnlyIfItIsAStream)
 {
   for (const bool stream : { false, true })

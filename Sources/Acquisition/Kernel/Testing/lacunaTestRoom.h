@@ -20,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -66,11 +67,12 @@ public:
     return [this, script](const Stopped& stopped)
     { return std::make_unique<Video>(*this, script, stopped); };
   }
-  /// A tracker that measures 50 times a second.
-  lacuna::PoseDeviceFactory MakeTracker(PoseScript script = FollowSweep)
+  /// A tracker that measures 50 times a second, and what it warns of.
+  lacuna::PoseDeviceFactory MakeTracker(
+    PoseScript script = FollowSweep, const std::string& warning = {})
   {
-    return [this, script](const Stopped& stopped)
-    { return std::make_unique<Tracker>(*this, script, stopped); };
+    return [this, script, warning](const Stopped& stopped)
+    { return std::make_unique<Tracker>(*this, script, warning, stopped); };
   }
   /// One that cannot be opened.
   lacuna::PoseDeviceFactory MakeBrokenTracker(const std::string& reason)
@@ -147,9 +149,10 @@ private:
   };
   struct Tracker : public lacuna::PoseDevice
   {
-    Tracker(Room& room, PoseScript script, Stopped stopped)
+    Tracker(Room& room, PoseScript script, std::string warning, Stopped stopped)
       : Place(room)
       , Script(std::move(script))
+      , Warning(std::move(warning))
       , IsStopped(std::move(stopped))
     {
     }
@@ -162,9 +165,10 @@ private:
       return !poses.empty();
     }
     lacuna::PoseCounts GetCounts() const override { return this->Count; }
-    std::string GetWarning() const override { return {}; }
+    std::string GetWarning() const override { return this->Warning; }
     Room& Place;
     PoseScript Script;
+    std::string Warning;
     Stopped IsStopped;
     lacuna::PoseCounts Count;
   };
