@@ -31,7 +31,15 @@ void CheckStopped(const std::function<bool()>& stopped)
 
 std::string GetKey(const OpenIGTLinkHeader& header)
 {
-  return header.Type + " " + header.Device;
+  return header.Type + " '" + header.Device + "'";
+}
+
+// Of the types whose stamps are instants of measurements.
+bool IsMeasured(const OpenIGTLinkHeader& header)
+{
+  const std::array<const char*, 6> types{ "TRANSFORM", "POSITION", "QTRANS", "TDATA", "QTDATA",
+    "IMAGE" };
+  return header.Stamp && std::find(types.begin(), types.end(), header.Type) != types.end();
 }
 
 // Connections of one server that share a clock; locked while one is made.
@@ -255,10 +263,20 @@ bool OpenIGTLinkConnection::NoteDevice(const OpenIGTLinkHeader& header)
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (this->Devices.size() < MostDevices)
   {
-    this->Devices.insert(header.Type + " '" + header.Device + "'");
+    this->Devices.insert(GetKey(header));
   }
   return std::any_of(this->Inboxes.begin(), this->Inboxes.end(),
     [&](const OpenIGTLinkInbox* inbox) { return inbox->Wants(header); });
+}
+
+// Of a message that nobody wants yet: the clock is known when somebody does.
+void OpenIGTLinkConnection::NoteStamp(const OpenIGTLinkHeader& header)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  if (IsMeasured(header) && this->Devices.count(GetKey(header)) > 0)
+  {
+    this->Clocks.ToLocal(GetKey(header), *header.Stamp, this->Time.Now());
+  }
 }
 
 void OpenIGTLinkConnection::NoteDamage(const OpenIGTLinkHeader& header, const std::string& fault)
@@ -311,7 +329,7 @@ void OpenIGTLinkConnection::Deliver(
   delivery->Arrival = arrival;
   const std::lock_guard<std::mutex> lock(this->Mutex);
   delivery->Time =
-    header.Stamp ? this->Clocks.ToLocal(GetKey(header), *header.Stamp, arrival) : arrival;
+    IsMeasured(header) ? this->Clocks.ToLocal(GetKey(header), *header.Stamp, arrival) : arrival;
   for (OpenIGTLinkInbox* inbox : this->Inboxes)
   {
     if (inbox->Wants(header))
@@ -348,6 +366,7 @@ bool OpenIGTLinkConnection::ReadMessage()
   }
   if (!wanted || header.BodySize > LargestWanted)
   {
+    this->NoteStamp(header);
     return this->Skip(header.BodySize);
   }
   std::vector<char> body;

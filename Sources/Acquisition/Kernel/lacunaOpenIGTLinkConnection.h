@@ -118,6 +118,7 @@ private:
   bool Skip(std::uint64_t size);
   bool ReadBody(std::uint64_t size, std::vector<char>& body);
   bool NoteDevice(const OpenIGTLinkHeader& header);
+  void NoteStamp(const OpenIGTLinkHeader& header);
   void Deliver(const OpenIGTLinkHeader& header, std::vector<char>&& body, double arrival);
   void NoteDamage(const OpenIGTLinkHeader& header, const std::string& fault);
 

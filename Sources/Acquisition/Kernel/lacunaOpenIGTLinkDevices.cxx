@@ -302,6 +302,12 @@ bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame&
     }
     OpenIGTLinkImage image = ReadOpenIGTLinkImage(message);
     this->LastStamp = message.Header.Stamp;
+    if (this->LastTime && arrival.Time <= *this->LastTime)
+    {
+      ++this->Backward; // its clock became known better; times that go back serve nobody
+      return false;
+    }
+    this->LastTime = arrival.Time;
     frame.Columns = image.Columns;
     frame.Rows = image.Rows;
     frame.Grey = std::move(image.Grey);
@@ -336,7 +342,7 @@ VideoSource::Counts OpenIGTLinkFrameDevice::GetCounts() const
   VideoSource::Counts result;
   result.Frames = this->Frames;
   result.Undecodable = counts.Damaged;
-  result.Missing = counts.Dropped;
+  result.Missing = counts.Dropped + this->Backward;
   return result;
 }
 

@@ -68,7 +68,9 @@ private:
 };
 
 /// The images of one IMAGE device. Arrival is the instant of the message's stamp, in the
-/// acquisition's time; where it has none, when it came. StreamTime is the stamp.
+/// acquisition's time; where it has none, when it came. StreamTime is the stamp. Arrivals ascend:
+/// images that are not later than the one before, as long as the server's clock is hardly known, count
+/// as missing.
 class OpenIGTLinkFrameDevice : public FrameDevice
 {
 public:
@@ -94,6 +96,8 @@ private:
   std::string Name;
   std::string Trouble;
   std::optional<double> LastStamp;
+  std::optional<double> LastTime;
+  std::uint64_t Backward = 0; ///< images that are not later than the one before
   int Columns = 0;
   int Rows = 0;
   std::uint64_t Frames = 0;

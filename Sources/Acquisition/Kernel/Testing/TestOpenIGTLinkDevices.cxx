@@ -208,6 +208,46 @@ TEST(OpenIGTLinkDevices, ThePoseOfAFrameIsThatOfItsInstant)
   EXPECT_EQ(tracker->GetCounts().Damaged + scanner->GetCounts().Undecodable, 0u);
 }
 
+TEST(OpenIGTLinkDevices, TimesOfImagesAscendWhileTheClockBecomesKnown)
+{
+  Server server;
+  const auto scanner = OpenFrames(server.GetAddress("?image=Image"));
+  ASSERT_TRUE(server.Accept());
+  // images 0.2 s after they were taken; that they are is known from the second on, when a pose came
+  const double begin = TheClock.Now() + SenderAhead;
+  const auto image = [&](double time) { return Grey(3, 2, "Image", begin + time - 0.2); };
+  server.Send(image(0) + TransformBytes(AsymmetricPose(), "Probe", begin) + image(0.02));
+  server.Send(image(0.1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  server.Send(image(0.25));
+  VideoFrame first;
+  VideoFrame second;
+  EXPECT_EQ(scanner->Read(first), VideoEvent::Frame);
+  EXPECT_EQ(scanner->Read(second), VideoEvent::Frame);
+  EXPECT_GT(second.Arrival, first.Arrival);
+  EXPECT_NEAR(*second.StreamTime, begin + 0.05, 1e-6);
+  EXPECT_EQ(scanner->GetCounts().Frames, 2u);
+  EXPECT_EQ(scanner->GetCounts().Missing, 2u);
+}
+
+TEST(OpenIGTLinkDevices, TheClockIsKnownFromMessagesThatNobodyWanted)
+{
+  Server server;
+  const auto scanner = OpenFrames(server.GetAddress("?image=Image"));
+  ASSERT_TRUE(server.Accept());
+  const double begin = TheClock.Now() + SenderAhead;
+  // statuses have stamps of no measurement
+  const auto status = igtl::StatusMessage::New();
+  status->SetCode(1);
+  server.Send(Pack(*status, "Server", begin + 0.2) +
+    TransformBytes(AsymmetricPose(), "Probe", begin) + Grey(3, 2, "Image", begin - 0.2));
+  VideoFrame frame;
+  EXPECT_EQ(scanner->Read(frame), VideoEvent::Frame);
+  const double latest = TheClock.Now();
+  EXPECT_LE(frame.Arrival, latest - 0.2);
+  EXPECT_GE(frame.Arrival, begin - SenderAhead - 0.2 - 1e-6);
+}
+
 TEST(OpenIGTLinkDevices, ThePlaneOfAnImageIsAPoseToo)
 {
   Server server;
