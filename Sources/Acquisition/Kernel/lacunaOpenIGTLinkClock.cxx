@@ -76,6 +76,18 @@ double OpenIGTLinkClock::GetOffset(const Estimate& own) const
   return offset;
 }
 
+double OpenIGTLinkClock::GetStep(const std::string& a, const std::string& b) const
+{
+  const auto one = this->Devices.find(a);
+  const auto other = this->Devices.find(b);
+  if (one == this->Devices.end() || other == this->Devices.end())
+  {
+    return 0;
+  }
+  const double difference = std::abs(one->second.GetSmallest() - other->second.GetSmallest());
+  return difference < Step ? 0 : difference;
+}
+
 std::optional<double> OpenIGTLinkClock::GetOffset(const std::string& device) const
 {
   const auto found = this->Devices.find(device);

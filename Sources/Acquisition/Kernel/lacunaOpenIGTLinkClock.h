@@ -28,6 +28,9 @@ public:
   double ToLocal(const std::string& device, double stamp, double arrival);
   /// Our time minus the device's; nothing before its first stamp.
   std::optional<double> GetOffset(const std::string& device) const;
+  /// How far the stamps of two devices are apart when that is so much, half a second, that they are
+  /// taken for those of two clocks and the estimates are not one; else 0.
+  double GetStep(const std::string& a, const std::string& b) const;
   /// The longest time in the window that a device's message was on its way beyond the shortest.
   double GetJitter(const std::string& device) const;
   /// How often a device's clock was set or began anew.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <map>
 #include <utility>
 
 namespace lacuna
@@ -193,9 +192,9 @@ std::string OpenIGTLinkConnection::GetDevices() const
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   std::string text;
-  for (const std::string& device : this->Devices)
+  for (const auto& device : this->Devices)
   {
-    text += (text.empty() ? "" : ", ") + device;
+    text += (text.empty() ? "" : ", ") + device.first;
   }
   return text;
 }
@@ -203,8 +202,21 @@ std::string OpenIGTLinkConnection::GetDevices() const
 OpenIGTLinkClockState OpenIGTLinkConnection::GetClock(const OpenIGTLinkHeader& header) const
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  return { this->Clocks.GetOffset(GetKey(header)), this->Clocks.GetJitter(GetKey(header)),
-    this->Clocks.GetNumberOfSteps() };
+  const std::string own = GetKey(header);
+  OpenIGTLinkClockState state;
+  state.Offset = this->Clocks.GetOffset(own);
+  state.Jitter = this->Clocks.GetJitter(own);
+  state.Steps = this->Clocks.GetNumberOfSteps();
+  for (const auto& [key, other] : this->Devices)
+  {
+    const double step = this->Clocks.GetStep(own, key);
+    if (other.Type == "IMAGE" && step > state.OtherStep && this->IsWanted(other))
+    {
+      state.Other = other.Device;
+      state.OtherStep = step;
+    }
+  }
+  return state;
 }
 
 void OpenIGTLinkConnection::Run()
@@ -257,16 +269,22 @@ bool OpenIGTLinkConnection::Receive(char* bytes, std::size_t size, double patien
   return true;
 }
 
+// With the lock.
+bool OpenIGTLinkConnection::IsWanted(const OpenIGTLinkHeader& header) const
+{
+  return std::any_of(this->Inboxes.begin(), this->Inboxes.end(),
+    [&](const OpenIGTLinkInbox* inbox) { return inbox->Wants(header); });
+}
+
 // Whether somebody wants its messages.
 bool OpenIGTLinkConnection::NoteDevice(const OpenIGTLinkHeader& header)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (this->Devices.size() < MostDevices)
   {
-    this->Devices.insert(GetKey(header));
+    this->Devices.emplace(GetKey(header), header);
   }
-  return std::any_of(this->Inboxes.begin(), this->Inboxes.end(),
-    [&](const OpenIGTLinkInbox* inbox) { return inbox->Wants(header); });
+  return this->IsWanted(header);
 }
 
 // Of a message that nobody wants yet: the clock is known when somebody does.

@@ -16,10 +16,10 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,6 +47,8 @@ struct OpenIGTLinkClockState
   std::optional<double> Offset; ///< s, our time minus its own
   double Jitter = 0;            ///< s
   int Steps = 0;                ///< how often a clock of the server was set
+  std::string Other;            ///< an image device that somebody wants and whose clock is another
+  double OtherStep = 0;         ///< s that its stamps are apart from the device's
 };
 
 /// Waits for messages that match on behalf of one device. Used by one thread, filled by another.
@@ -117,6 +119,7 @@ private:
   bool ReadMessage();
   bool Skip(std::uint64_t size);
   bool ReadBody(std::uint64_t size, std::vector<char>& body);
+  bool IsWanted(const OpenIGTLinkHeader& header) const;
   bool NoteDevice(const OpenIGTLinkHeader& header);
   void NoteStamp(const OpenIGTLinkHeader& header);
   void Deliver(const OpenIGTLinkHeader& header, std::vector<char>&& body, double arrival);
@@ -126,7 +129,7 @@ private:
   const Clock& Time;
   mutable std::mutex Mutex; ///< of what follows, up to the thread
   std::vector<OpenIGTLinkInbox*> Inboxes;
-  std::set<std::string> Devices;
+  std::map<std::string, OpenIGTLinkHeader> Devices; ///< by key, the first message of each
   OpenIGTLinkClock Clocks;
   std::exception_ptr Reason;
   std::atomic<bool> Broken{ false };

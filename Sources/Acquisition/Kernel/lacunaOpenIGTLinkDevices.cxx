@@ -198,6 +198,8 @@ void OpenIGTLinkPoseDevice::WatchClock(const OpenIGTLinkArrival& arrival)
   this->ClockOffset = clock.Offset;
   this->ClockSteps = clock.Steps;
   this->Jitter = clock.Jitter;
+  this->OtherClock = clock.Other;
+  this->OtherStep = clock.OtherStep;
 }
 
 PoseCounts OpenIGTLinkPoseDevice::GetCounts() const
@@ -238,6 +240,13 @@ std::string OpenIGTLinkPoseDevice::FindWarning() const
   {
     return "The poses of '" + this->Name + "' have no time stamps: the time of arrival is taken, " +
       "with all delays of the network";
+  }
+  if (this->OtherStep > 0)
+  {
+    return "The clocks of '" + this->Name + "' and '" + this->OtherClock + "' from " + server +
+      " differ by " + FormatTenths(this->OtherStep) +
+      " s: images get the poses of when they arrived, not of their stamps. Let one clock stamp "
+      "both; if the images are that old, give VideoLatency their age";
   }
   if (this->Jitter > WorstJitter)
   {

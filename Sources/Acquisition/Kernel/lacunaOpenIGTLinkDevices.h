@@ -58,6 +58,8 @@ private:
   bool Repeats = false; ///< the last message was as old as the one before
   std::optional<double> ClockOffset;
   int ClockSteps = 0;
+  std::string OtherClock; ///< the images whose stamps are of another clock
+  double OtherStep = 0;   ///< s
   double Jitter = 0;
   std::string Status;  ///< what the sender said of the last pose
   std::string Trouble; ///< what a STATUS message complained of, and the like

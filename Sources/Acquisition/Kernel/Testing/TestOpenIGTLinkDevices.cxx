@@ -248,6 +248,33 @@ TEST(OpenIGTLinkDevices, TheClockIsKnownFromMessagesThatNobodyWanted)
   EXPECT_GE(frame.Arrival, begin - SenderAhead - 0.2 - 1e-6);
 }
 
+TEST(OpenIGTLinkDevices, ImagesOfAnotherClockThanThePosesAreWarnedOf)
+{
+  Server server;
+  const Factories factories(server.GetAddress("?transform=Probe&image=Image"));
+  const auto tracker = factories.Poses(Always);
+  tracker->SetUp();
+  auto scanner = factories.Frames(Always);
+  ASSERT_TRUE(server.Accept());
+  std::vector<TrackedPose> poses;
+  // images that nobody takes may be of any time
+  const auto send = [&](double lag)
+  {
+    const double stamp = TheClock.Now() + SenderAhead;
+    server.Send(Grey(3, 2, "Image", stamp - lag) + Grey(3, 2, "Other", stamp - 50) +
+      TransformBytes(AsymmetricPose(), "Probe", stamp));
+    EXPECT_TRUE(tracker->Poll(poses));
+    return tracker->GetWarning();
+  };
+  EXPECT_HAS(send(0.7), "The clocks of 'Probe' and 'Image' from " + server.GetAddress());
+  EXPECT_HAS(send(0.7), "differ by 0.7 s");
+  scanner.reset();
+  EXPECT_EQ(send(0.7), "");
+  scanner = factories.Frames(Always);
+  EXPECT_HAS(send(0.7), "The clocks");
+  EXPECT_EQ(send(0.2), ""); // the images came late before, not their clock
+}
+
 TEST(OpenIGTLinkDevices, ThePlaneOfAnImageIsAPoseToo)
 {
   Server server;
