@@ -16,6 +16,7 @@ constexpr double PollTime = 1;      // s
 constexpr double FrameTime = 3;     // s without an image after which there is none
 constexpr double WorstJitter = 0.1; // s
 constexpr double TroubleTime = 10;  // s that a complaint is shown
+constexpr int ManyFaults = 5;       // in a row: no accidents
 
 bool IsPoseType(const std::string& type)
 {
@@ -153,11 +154,6 @@ void OpenIGTLinkPoseDevice::TakePose(
 {
   const std::string server = this->Connection->GetName();
   Choose(pose.Name, "transform", server, this->Name);
-  if (!pose.Fault.empty())
-  {
-    throw std::runtime_error(
-      "The pose of '" + pose.Name + "' from " + server + " cannot be used: " + pose.Fault);
-  }
   const OpenIGTLinkHeader& header = arrival.Message.Header;
   const bool first = this->Poses == 0;
   if (!first &&
@@ -169,6 +165,17 @@ void OpenIGTLinkPoseDevice::TakePose(
   this->Repeats = false;
   this->LastStamp = header.Stamp;
   this->LastTime = arrival.Time;
+  if (!pose.Fault.empty())
+  {
+    const std::string text =
+      "The pose of '" + pose.Name + "' from " + server + " cannot be used: " + pose.Fault;
+    if (++this->Faults >= ManyFaults || this->Poses == 0)
+    {
+      throw std::runtime_error(text);
+    }
+    throw OpenIGTLinkError(text);
+  }
+  this->Faults = 0;
   this->WatchClock(arrival);
   this->Status = pose.Status;
   this->Usable = pose.Usable;
@@ -309,8 +316,9 @@ bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame&
     {
       return false;
     }
-    OpenIGTLinkImage image = ReadOpenIGTLinkImage(message);
     this->LastStamp = message.Header.Stamp;
+    OpenIGTLinkImage image = ReadOpenIGTLinkImage(message);
+    this->Faults = 0;
     if (this->LastTime && arrival.Time <= *this->LastTime)
     {
       ++this->Backward; // its clock became known better; times that go back serve nobody
@@ -330,8 +338,14 @@ bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame&
   }
   catch (const OpenIGTLinkError& e)
   {
-    throw VideoError(
-      VideoError::Kind::Unsupported, "The images from " + server + " cannot be used: " + e.what());
+    if (++this->Faults >= ManyFaults || this->Frames == 0)
+    {
+      throw VideoError(VideoError::Kind::Unsupported,
+        "The images from " + server + " cannot be used: " + e.what());
+    }
+    this->Trouble = e.what();
+    ++this->Damaged;
+    return false;
   }
 }
 
@@ -350,7 +364,7 @@ VideoSource::Counts OpenIGTLinkFrameDevice::GetCounts() const
   const OpenIGTLinkCounts counts = this->Inbox->GetCounts();
   VideoSource::Counts result;
   result.Frames = this->Frames;
-  result.Undecodable = counts.Damaged;
+  result.Undecodable = counts.Damaged + this->Damaged;
   result.Missing = counts.Dropped + this->Backward;
   return result;
 }

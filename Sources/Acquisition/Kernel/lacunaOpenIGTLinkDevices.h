@@ -32,8 +32,9 @@ public:
   ~OpenIGTLinkPoseDevice() override;
 
   void SetUp() override;
-  /// Throws std::runtime_error when the pose scales or mirrors, and std::invalid_argument when the
-  /// server sends poses of several devices and the address names none.
+  /// Throws std::runtime_error when the first pose scales or mirrors, or five in a row do (fewer count
+  /// as damaged), and std::invalid_argument when the server sends poses of several devices and the
+  /// address names none.
   bool Poll(std::vector<TrackedPose>& poses) override;
   PoseCounts GetCounts() const override;
   std::string GetWarning() const override { return this->Warning; }
@@ -66,7 +67,8 @@ private:
   double TroubleTime = 0;
   std::string Warning;
   std::uint64_t Poses = 0;
-  std::uint64_t Damaged = 0; ///< messages whose content cannot be
+  std::uint64_t Damaged = 0; ///< messages whose content cannot be, or cannot be used
+  int Faults = 0;            ///< poses in a row that cannot be used
 };
 
 /// The images of one IMAGE device. Arrival is the instant of the message's stamp, in the
@@ -80,8 +82,9 @@ public:
     std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped);
   ~OpenIGTLinkFrameDevice() override;
 
-  /// Throws VideoError when no image comes for 3 s, or it cannot be used, and std::invalid_argument
-  /// when the server sends images of several devices and the address names none.
+  /// Throws VideoError when no image comes for 3 s, when the first one cannot be used or five in a row
+  /// cannot (fewer count as undecodable), and std::invalid_argument when the server sends images of
+  /// several devices and the address names none.
   VideoEvent Read(VideoFrame& frame) override;
   /// 0: a stamp is of the instant.
   double GetLatency() const override { return 0; }
@@ -103,6 +106,8 @@ private:
   int Columns = 0;
   int Rows = 0;
   std::uint64_t Frames = 0;
+  std::uint64_t Damaged = 0; ///< images that cannot be used
+  int Faults = 0;            ///< of them in a row
 };
 
 /// Opens the tracker of an OpenIGTLink address; station is what its poses carry. The clock must live

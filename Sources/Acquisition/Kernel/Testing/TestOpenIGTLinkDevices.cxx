@@ -324,6 +324,64 @@ TEST(OpenIGTLinkDevices, ScaledAndMirroredPosesAreRefused)
   }
 }
 
+TEST(OpenIGTLinkDevices, SinglePosesAndImagesThatCannotBeUsedAreDamage)
+{
+  Server server;
+  const Factories factories(server.GetAddress("?transform=Probe&image=Image"));
+  const auto tracker = factories.Poses(Always);
+  tracker->SetUp();
+  const auto scanner = factories.Frames(Always);
+  ASSERT_TRUE(server.Accept());
+  double stamp = TheClock.Now() + SenderAhead - 10;
+  const auto send = [&](int good, int bad)
+  {
+    std::string bytes;
+    for (int i = 0; i < good + bad; ++i)
+    {
+      stamp += 0.02;
+      const Matrix4 scale = Matrix4::Scaling({ 1, i < good ? 1.0 : 2.0, 1 });
+      // servers repeat the last pose
+      const std::string pose = TransformBytes(AsymmetricPose() * scale, "Probe", stamp);
+      bytes += pose + pose;
+      bytes += i < good ? Grey(3, 2, "Image", stamp)
+                        : ImageBytes(1, 1, std::vector<char>(4, 1), "Image", stamp,
+                            igtl::ImageMessage::TYPE_FLOAT32);
+    }
+    server.Send(bytes);
+  };
+  std::vector<TrackedPose> poses;
+  VideoFrame frame;
+  for (const auto& [good, bad] : { std::pair(1, 1), { 2, 4 }, { 1, 4 }, { 1, 0 } })
+  {
+    send(good, bad);
+    for (int i = 0; i < good; ++i)
+    {
+      EXPECT_EQ(scanner->Read(frame), VideoEvent::Frame);
+    }
+  }
+  while (poses.size() < 5)
+  {
+    ASSERT_TRUE(tracker->Poll(poses));
+  }
+  EXPECT_EQ(tracker->GetCounts().Poses, 5u);
+  EXPECT_EQ(tracker->GetCounts().Damaged, 9u);
+  EXPECT_EQ(scanner->GetCounts().Frames, 5u);
+  EXPECT_EQ(scanner->GetCounts().Undecodable, 9u);
+  EXPECT_HAS(tracker->GetWarning(), "The pose of 'Probe' from " + server.GetAddress());
+  EXPECT_HAS(tracker->GetWarning(), "it scales");
+  send(1, 5);
+  EXPECT_EQ(scanner->Read(frame), VideoEvent::Frame);
+  EXPECT_HAS(Complaint<VideoError>(VideoError::Kind::Unsupported, [&] { scanner->Read(frame); }),
+    "integers of 8 or 16 bits");
+  EXPECT_HAS(WhatOf<std::runtime_error>(
+               [&]
+               {
+                 tracker->Poll(poses);
+                 tracker->Poll(poses);
+               }),
+    "it scales");
+}
+
 TEST(OpenIGTLinkDevices, TrackingDataAreAskedForAndTheElementChosen)
 {
   Server server;
