@@ -41,7 +41,7 @@ double OpenIGTLinkClock::ToLocal(const std::string& device, double stamp, double
   {
     own.Parts.clear();
     own.NewestStamp = stamp;
-    ++this->Steps;
+    ++own.Steps;
   }
   own.NewestStamp = own.Parts.empty() ? stamp : std::max(own.NewestStamp, stamp);
   while (!own.Parts.empty() && own.Parts.front().Begin < arrival - this->Window)
@@ -93,6 +93,12 @@ std::optional<double> OpenIGTLinkClock::GetOffset(const std::string& device) con
   const auto found = this->Devices.find(device);
   return found == this->Devices.end() ? std::nullopt
                                       : std::optional<double>(this->GetOffset(found->second));
+}
+
+int OpenIGTLinkClock::GetNumberOfSteps(const std::string& device) const
+{
+  const auto found = this->Devices.find(device);
+  return found == this->Devices.end() ? 0 : found->second.Steps;
 }
 
 double OpenIGTLinkClock::GetJitter(const std::string& device) const

@@ -34,7 +34,7 @@ public:
   /// The longest time in the window that a device's message was on its way beyond the shortest.
   double GetJitter(const std::string& device) const;
   /// How often a device's clock was set or began anew.
-  int GetNumberOfSteps() const { return this->Steps; }
+  int GetNumberOfSteps(const std::string& device) const;
 
 private:
   struct Part ///< of the window
@@ -47,6 +47,7 @@ private:
   {
     std::deque<Part> Parts;
     double NewestStamp = 0;
+    int Steps = 0;
     double GetSmallest() const;
     double GetLargest() const;
   };
@@ -54,7 +55,6 @@ private:
 
   double Window;
   std::map<std::string, Estimate> Devices;
-  int Steps = 0;
 };
 }
 #endif

@@ -206,7 +206,7 @@ OpenIGTLinkClockState OpenIGTLinkConnection::GetClock(const OpenIGTLinkHeader& h
   OpenIGTLinkClockState state;
   state.Offset = this->Clocks.GetOffset(own);
   state.Jitter = this->Clocks.GetJitter(own);
-  state.Steps = this->Clocks.GetNumberOfSteps();
+  state.Steps = this->Clocks.GetNumberOfSteps(own);
   for (const auto& [key, other] : this->Devices)
   {
     const double step = this->Clocks.GetStep(own, key);

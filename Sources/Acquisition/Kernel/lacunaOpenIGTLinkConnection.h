@@ -46,7 +46,7 @@ struct OpenIGTLinkClockState
 {
   std::optional<double> Offset; ///< s, our time minus its own
   double Jitter = 0;            ///< s
-  int Steps = 0;                ///< how often a clock of the server was set
+  int Steps = 0;                ///< how often the device's clock was set
   std::string Other;            ///< an image device that somebody wants and whose clock is another
   double OtherStep = 0;         ///< s that its stamps are apart from the device's
 };

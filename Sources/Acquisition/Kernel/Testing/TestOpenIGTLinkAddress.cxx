@@ -94,7 +94,7 @@ TEST(OpenIGTLinkClock, FindsTheOffsetBehindTheJitter)
   EXPECT_LT(clock.GetJitter("Probe"), 0.15);
   EXPECT_NEAR(*clock.GetOffset("Probe"), offset, 0.1);
   EXPECT_FALSE(clock.GetOffset("Image"));
-  EXPECT_EQ(clock.GetNumberOfSteps(), 0);
+  EXPECT_EQ(clock.GetNumberOfSteps("Probe"), 0);
 }
 
 TEST(OpenIGTLinkClock, DevicesOfOneClockShareItsOffset)
@@ -123,13 +123,13 @@ TEST(OpenIGTLinkClock, AClockThatIsSetStartsAnew)
     clock.ToLocal("Probe", 700 + 0.02 * i, 10.005 + 0.02 * i);
   }
   EXPECT_NEAR(clock.ToLocal("Probe", 400, 12.005), 12.005, 1e-9); // back
-  EXPECT_EQ(clock.GetNumberOfSteps(), 1);
+  EXPECT_EQ(clock.GetNumberOfSteps("Probe"), 1);
   EXPECT_NEAR(clock.ToLocal("Probe", 400.02, 12.03), 12.025, 1e-9);
   EXPECT_NEAR(clock.ToLocal("Probe", 5000, 12.05), 12.05, 1e-9); // ahead, once
   EXPECT_NEAR(clock.ToLocal("Probe", 400.06, 12.07), 12.07, 1e-9);
-  EXPECT_EQ(clock.GetNumberOfSteps(), 3);
+  EXPECT_EQ(clock.GetNumberOfSteps("Probe"), 3);
   // a network that stands for two seconds is no such thing
   EXPECT_NEAR(clock.ToLocal("Probe", 400.08, 14.07), 12.09, 1e-9);
   EXPECT_NEAR(clock.ToLocal("Probe", 402.08, 14.09), 14.09, 1e-9);
-  EXPECT_EQ(clock.GetNumberOfSteps(), 3);
+  EXPECT_EQ(clock.GetNumberOfSteps("Probe"), 3);
 }

@@ -272,7 +272,24 @@ TEST(OpenIGTLinkDevices, ImagesOfAnotherClockThanThePosesAreWarnedOf)
   EXPECT_EQ(send(0.7), "");
   scanner = factories.Frames(Always);
   EXPECT_HAS(send(0.7), "The clocks");
-  EXPECT_EQ(send(0.2), ""); // the images came late before, not their clock
+  EXPECT_EQ(send(0.3), ""); // the images came late before, not their clock
+}
+
+TEST(OpenIGTLinkDevices, StampsOfDevicesThatNobodyWantsMayBeAny)
+{
+  Server server;
+  const auto device = OpenPoses(server.GetAddress("?transform=Probe"));
+  ASSERT_TRUE(server.Accept());
+  std::vector<TrackedPose> poses;
+  const double begin = TheClock.Now() + SenderAhead;
+  for (const int i : { 1, 200, 3, 100, 5 })
+  {
+    server.Send(TransformBytes(AsymmetricPose(), "Other", i) +
+      TransformBytes(AsymmetricPose(), "Probe", TheClock.Now() + SenderAhead));
+    ASSERT_TRUE(device->Poll(poses));
+    EXPECT_EQ(device->GetWarning(), "");
+    EXPECT_GE(poses.back().Time, begin - SenderAhead);
+  }
 }
 
 TEST(OpenIGTLinkDevices, ThePlaneOfAnImageIsAPoseToo)
