@@ -36,6 +36,16 @@ std::uint64_t ReadNumber(std::string_view bytes, std::size_t position, std::size
   return number;
 }
 
+// Names and texts are of any bytes, and go into messages, which are UTF-8 and of one line.
+std::string MakePrintable(std::string text)
+{
+  for (char& c : text)
+  {
+    c = c >= ' ' && c < 127 ? c : '?';
+  }
+  return text;
+}
+
 // Up to the first null.
 std::string ReadText(const char* bytes, std::size_t size)
 {
@@ -70,7 +80,8 @@ void ReadMetaData(std::string_view index, std::string_view texts, OpenIGTLinkMes
     {
       throw OpenIGTLinkError(Describe(message.Header) + "is damaged: its meta data are cut off");
     }
-    message.MetaData[std::string(texts.substr(0, key))] = texts.substr(key, value);
+    message.MetaData[MakePrintable(std::string(texts.substr(0, key)))] =
+      MakePrintable(std::string(texts.substr(key, value)));
     texts.remove_prefix(key + value);
   }
 }
@@ -122,7 +133,7 @@ void AddElements(const OpenIGTLinkMessage& message, std::vector<OpenIGTLinkPose>
   {
     const char* bytes = message.GetContent().data() + begin;
     OpenIGTLinkPose pose;
-    pose.Name = ReadText(bytes, NameSize);
+    pose.Name = MakePrintable(ReadText(bytes, NameSize));
     const int type = bytes[NameSize];
     if (quaternions)
     {
@@ -168,7 +179,7 @@ OpenIGTLinkHeader ReadOpenIGTLinkHeader(const char* bytes)
   OpenIGTLinkHeader header;
   header.Version = static_cast<int>(ReadNumber({ bytes, 2 }, 0, 2)); // a field of changing name
   header.Type = ReadText(fields.name, sizeof(fields.name));
-  header.Device = ReadText(fields.device_name, sizeof(fields.device_name));
+  header.Device = MakePrintable(ReadText(fields.device_name, sizeof(fields.device_name)));
   const bool letters =
     std::all_of(header.Type.begin(), header.Type.end(), [](char c) { return c > ' ' && c < 127; });
   header.BodySize = fields.body_size;
@@ -178,10 +189,6 @@ OpenIGTLinkHeader ReadOpenIGTLinkHeader(const char* bytes)
   {
     throw OpenIGTLinkError(
       "what comes is not OpenIGTLink, or bytes of it were lost: check the port of the server");
-  }
-  for (char& c : header.Device)
-  {
-    c = c >= ' ' && c < 127 ? c : '?'; // goes into messages
   }
   if (fields.timestamp != 0)
   {
@@ -229,7 +236,8 @@ OpenIGTLinkMessage MakeOpenIGTLinkMessage(const OpenIGTLinkHeader& header, std::
 
 bool IsOpenIGTLinkName(const std::string& name, const std::string& wanted)
 {
-  return name == wanted || (name.size() == NameSize && name == wanted.substr(0, NameSize));
+  const std::string printable = MakePrintable(wanted);
+  return name == printable || (name.size() == NameSize && name == printable.substr(0, NameSize));
 }
 
 void CheckOpenIGTLinkPose(OpenIGTLinkPose& pose)
@@ -356,10 +364,9 @@ std::string ReadOpenIGTLinkStatus(const OpenIGTLinkMessage& message)
   const std::string_view rest = content.substr(textBegin);
   const std::string more = ReadText(rest.data(), std::min(rest.size(), longest));
   text += (text.empty() || more.empty() ? "" : ": ") + more;
-  for (char& c : text)
-  {
-    c = static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
+  std::replace_if(
+    text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  text = MakePrintable(text);
   return "The sender's device '" + message.Header.Device + "' reports status " +
     std::to_string(code) + (text.empty() ? "" : " (" + text + ")");
 }

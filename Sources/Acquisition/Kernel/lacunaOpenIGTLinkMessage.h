@@ -60,7 +60,8 @@ OpenIGTLinkMessage MakeOpenIGTLinkMessage(
   const OpenIGTLinkHeader& header, std::vector<char>&& body);
 
 /// Whether a device of this name is the one that was asked for; names may have been cut to the 20
-/// characters that a header has.
+/// bytes that a header has. Names, meta data and statuses have '?' for each byte that is no printable
+/// ASCII, as their encoding is not told; those asked for are compared so.
 bool IsOpenIGTLinkName(const std::string& name, const std::string& wanted);
 
 /// One of the poses in a message.

@@ -336,6 +336,28 @@ TEST(OpenIGTLinkMessage, StatusIsTold)
   EXPECT_THROW(ReadOpenIGTLinkStatus(Read(WithBody(cut, cut.substr(58, 29)))), OpenIGTLinkError);
 }
 
+// Latin 1, which is no UTF-8, and line feeds.
+TEST(OpenIGTLinkMessage, TextsOfAnyBytesBecomePrintable)
+{
+  const std::string odd = "P\xE9\xFF\n";
+  EXPECT_EQ(ReadPose(TransformBytes(AsymmetricPose(), odd)).Name, "P???");
+  EXPECT_EQ(ReadPose(TrackingBytes({ { odd, AsymmetricPose() } })).Name, "P???");
+  const OpenIGTLinkMessage message = Read(WithMetaData(TransformBytes(AsymmetricPose(), "Probe"),
+    { { "IGTL_DEVICE_NAME", odd }, { odd, "1" }, { "TransformStatus", odd } }));
+  EXPECT_EQ(message.GetDevice(), "P???");
+  EXPECT_EQ(message.MetaData.count("P???"), 1u);
+  EXPECT_EQ(ReadOpenIGTLinkPoses(message)[0].Status, "P???");
+  EXPECT_EQ(ReadOpenIGTLinkStatus(Read(StatusBytes(18, odd, odd))),
+    "The sender's device 'Tracker' reports status 18 (P?? : P?? )");
+  // a device that is asked for in UTF-8, and one that is cut within a character
+  const std::string sonde = "Ultraschallsonde-Gr\xC3\xBC\x6E";
+  for (const std::string& name : { sonde.substr(0, 20), std::string("P\xC3\xA9") })
+  {
+    EXPECT_TRUE(IsOpenIGTLinkName(
+      ReadPose(TransformBytes(AsymmetricPose(), name)).Name, name.size() == 20 ? sonde : name));
+  }
+}
+
 TEST(OpenIGTLinkMessage, EveryDamagedBitOfTheBodyIsSeen)
 {
   const std::string right =
