@@ -298,7 +298,7 @@ def picture(name, shown, direction, upwards, letters, scale_bar=50):
     Delete(view)
 
 
-def make_pictures(folder, view, filled, plate, model, mould, path, has_truth):
+def make_pictures(folder, ct, hole, view, filled, plate, model, mould, path, has_truth):
     def name(file):
         return os.path.join(folder, file)
 
@@ -309,6 +309,16 @@ def make_pictures(folder, view, filled, plate, model, mould, path, has_truth):
     right = np.cross(view, upwards)
     right /= np.linalg.norm(right)
     oblique = view + 0.9 * right + 0.45 * np.cross(right, view)
+
+    def show_ct(v):
+        cut = Slice(Input=ct, SliceType="Plane")
+        cut.SliceType.Origin, cut.SliceType.Normal = list(hole), list(across)
+        cut.UpdatePipeline()
+        display = Show(cut, v)
+        display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+        pictures.color_by(display, v, cut.PointData[0].Name, "Hounsfield units", (-200, 1800), "Grayscale")
+    across = np.cross(view, right)
+    picture(name("0-ct.png"), show_ct, across, -view, letters)
 
     picture(name("1-hole.png"), lambda v: pictures.show_surface(bone, v, pictures.BONE), view, upwards, letters)
 
@@ -397,7 +407,7 @@ def main():
     except AssertionError:
         set_aside(options.output)
         raise
-    make_pictures(options.output, view, filled, plate, model, mould, path, has_truth)
+    make_pictures(options.output, ct, hole, view, filled, plate, model, mould, path, has_truth)
 
 
 if __name__ == "__main__":
