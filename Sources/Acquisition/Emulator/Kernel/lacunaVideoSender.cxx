@@ -10,6 +10,7 @@
 #include <new>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 extern "C"
 {
@@ -27,6 +28,8 @@ constexpr std::string_view Udp = "udp://";
 constexpr std::string_view Listen = "?listen";
 constexpr int BestQuality = 2; // of MPEG-2, of 1 ... 31, 1 being refused for large frames
 constexpr int NoColour = 128;
+constexpr std::array<std::uint8_t, 4> SequenceEnd{ 0, 0, 1, 0xB7 }; // of MPEG-2
+constexpr std::size_t LargestPiece = 60000;                         // bytes, of 16 bits
 
 bool BeginsWith(const std::string& text, std::string_view begin)
 {
@@ -86,6 +89,8 @@ struct VideoSender::Stream
   void Begin();
   void OpenEncoder(const AVOutputFormat& container);
   void Encode(const std::uint8_t* pixels, std::int64_t number);
+  int WritePacket();
+  int WritePieces();
   int WritePackets();
   int End();
 
@@ -93,6 +98,7 @@ struct VideoSender::Stream
   std::function<bool()> Stopped;
   AVIOInterruptCB Callback;
   bool IsTcp = false;
+  bool IsUdp = false;
   bool MustFinish = false; ///< a file shall be whole, stopped or not
   AVIOContext* Server = nullptr;
   AVFormatContext* Format = nullptr;
@@ -126,7 +132,7 @@ void VideoSender::Stream::OpenEncoder(const AVOutputFormat& container)
   if (!raw && !lossless)
   {
     encoder.gop_size = 0; // each picture for itself
-    encoder.flags |= AV_CODEC_FLAG_QSCALE;
+    encoder.flags |= AV_CODEC_FLAG_QSCALE | AV_CODEC_FLAG_LOW_DELAY;
     encoder.global_quality = BestQuality * FF_QP2LAMBDA;
   }
   if (container.flags & AVFMT_GLOBALHEADER)
@@ -149,8 +155,7 @@ void VideoSender::Stream::OpenEncoder(const AVOutputFormat& container)
 void VideoSender::Stream::Begin()
 {
   const std::string& url = this->Settings.URL;
-  const bool udp = BeginsWith(url, Udp);
-  const char* name = this->IsTcp ? "matroska" : udp ? "mpegts" : nullptr;
+  const char* name = this->IsTcp ? "matroska" : this->IsUdp ? "mpegts" : nullptr;
   if (avformat_alloc_output_context2(&this->Format, nullptr, name, url.c_str()) < 0)
   {
     throw VideoError(VideoError::Kind::Unsupported,
@@ -180,7 +185,7 @@ void VideoSender::Stream::Begin()
   {
     // packets of a transport stream fit into one of the network
     const std::string target =
-      udp && url.find('?') == std::string::npos ? url + "?pkt_size=1316" : url;
+      this->IsUdp && url.find('?') == std::string::npos ? url + "?pkt_size=1316" : url;
     this->Check(
       avio_open2(&this->Format->pb, target.c_str(), AVIO_FLAG_WRITE, &this->Callback, nullptr),
       "cannot be opened for writing");
@@ -189,6 +194,10 @@ void VideoSender::Stream::Begin()
   if (this->IsTcp)
   {
     av_dict_set(&options, "live", "1", 0);
+  }
+  if (this->IsUdp)
+  {
+    av_dict_set(&options, "omit_video_pes_length", "0", 0);
   }
   const int result = avformat_write_header(this->Format, &options);
   av_dict_free(&options);
@@ -231,6 +240,44 @@ void VideoSender::Stream::Encode(const std::uint8_t* pixels, std::int64_t number
   this->Check(avcodec_send_frame(this->Encoder, &picture), "cannot be encoded");
 }
 
+// The packet as it is, and empties it.
+int VideoSender::Stream::WritePacket()
+{
+  int result = av_write_frame(this->Format, this->Packet);
+  av_packet_unref(this->Packet);
+  if (result >= 0 && this->IsTcp)
+  {
+    result = av_write_frame(this->Format, nullptr); // else Matroska waits for the next one
+  }
+  // errors of earlier writes are the stream's
+  return result >= 0 && this->Format->pb->error < 0 ? this->Format->pb->error : result;
+}
+
+// The picture so that a client of a transport stream has it at once. The end of a packet it knows by
+// the packet's size, of which few bytes tell, else only by the next one; and that of a picture by the
+// end of the sequence, which each one is here, else only by the next one.
+int VideoSender::Stream::WritePieces()
+{
+  std::vector<std::uint8_t> picture(this->Packet->data, this->Packet->data + this->Packet->size);
+  picture.insert(picture.end(), SequenceEnd.begin(), SequenceEnd.end());
+  const std::int64_t time = this->Packet->pts;
+  av_packet_unref(this->Packet);
+  int result = 0;
+  for (std::size_t begin = 0; result >= 0 && begin < picture.size(); begin += LargestPiece)
+  {
+    const std::size_t size = std::min(LargestPiece, picture.size() - begin);
+    result = av_new_packet(this->Packet, static_cast<int>(size));
+    if (result >= 0)
+    {
+      std::memcpy(this->Packet->data, picture.data() + begin, size);
+      this->Packet->pts = this->Packet->dts =
+        time + static_cast<std::int64_t>(begin / LargestPiece); // must ascend
+      result = this->WritePacket();
+    }
+  }
+  return result;
+}
+
 int VideoSender::Stream::WritePackets()
 {
   AVStream& stream = *this->Format->streams[0];
@@ -238,14 +285,7 @@ int VideoSender::Stream::WritePackets()
   {
     av_packet_rescale_ts(this->Packet, this->Encoder->time_base, stream.time_base);
     this->Packet->duration = av_rescale_q(1, this->Encoder->time_base, stream.time_base);
-    int result = av_write_frame(this->Format, this->Packet);
-    av_packet_unref(this->Packet);
-    if (result >= 0 && this->IsTcp)
-    {
-      result = av_write_frame(this->Format, nullptr); // else Matroska waits for the next one
-    }
-    // errors of earlier writes are the stream's
-    result = result >= 0 && this->Format->pb->error < 0 ? this->Format->pb->error : result;
+    const int result = this->IsUdp ? this->WritePieces() : this->WritePacket();
     if (result < 0)
     {
       return result;
@@ -286,6 +326,7 @@ VideoSender::VideoSender(const VideoSenderSettings& settings, std::function<bool
   Stream& output = *this->Output;
   avformat_network_init();
   output.IsTcp = BeginsWith(settings.URL, Tcp);
+  output.IsUdp = BeginsWith(settings.URL, Udp);
   if (output.IsTcp)
   {
     std::string url = settings.URL;
