@@ -59,9 +59,10 @@ def main(folder):
     lags, fits = (vtk_to_numpy(table.GetColumnByName(name)) for name in ("Lag", "Correlation"))
     right = pictures.chart_pixels(
         [("correlation", 1000 * lags, fits, GREY, "line"),
-         (f"best: {1000 * found:.1f} ms", [1000 * found], [scans.figure(table, "Correlation")], RED, "points")],
-        ("lag (ms)", "correlation"), (500, 400), ((-500, 500), (0, 1.3)))
-    pictures.write_pixels(os.path.join(folder, "temporal.png"), pictures.side_by_side([("as recorded", left), ("at each lag", right)], gap=14))
+         ("best", [1000 * found], [scans.figure(table, "Correlation")], RED, "points")],
+        ("lag (ms)", "correlation"), (500, 400), ((-500, 500), (0, 1.05)), legend=False)
+    titled = [("as recorded", left), (f"how well they fit at each lag; best at {1000 * found:.1f} ms", right)]
+    pictures.write_pixels(os.path.join(folder, "temporal.png"), pictures.side_by_side(titled, gap=14))
 
 
 if __name__ == "__main__":

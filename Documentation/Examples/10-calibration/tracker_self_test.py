@@ -66,14 +66,16 @@ def main(folder):
     change = scans.fetch(test, 2)
     start, end, differs = (vtk_to_numpy(change.GetColumnByName(key)) for key in ("From", "To", "PositionChange"))
     chart = pictures.chart_pixels([("RMS difference of two places", 0.5 * (start + end), differs, (40, 90, 190), "line"),
-                                   ("RMS of all", [0, 700], [figures["PositionRms"]] * 2, (110, 120, 130), "dashes")],
-                                  ("distance between the places (mm)", "difference (mm)"), (480, 400), ((0, 700), (0, 6)))
+                                   ("RMS of all", [0, 800], [figures["PositionRms"]] * 2, (110, 120, 130), "dashes")],
+                                  ("distance between the places (mm)", "difference (mm)"), (480, 400), ((0, 800), (0, 10)))
     view = pictures.new_view((700, 560))
     view.OrientationAxesVisibility = 0
     balls = Glyph(Input=test, GlyphType="Sphere", ScaleFactor=17, GlyphMode="All Points", ScaleArray=["POINTS", "No scale array"])
     display = pictures.show_surface(balls, view, (1, 1, 1))
     pictures.color_by(display, view, "PositionError", "off by (mm)", (0, 8), "Viridis (matplotlib)")
-    GetScalarBar(display.LookupTable, view).LabelFormat = "%.0f"
+    bar = GetScalarBar(display.LookupTable, view)
+    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
+    bar.WindowLocation = "Lower Left Corner"  # right is the trolley
     pictures.show_surface(Box(XLength=53, YLength=53, ZLength=58), view, (0.25, 0.3, 0.38))
     trolley = Box(Center=list(TROLLEY + [60, 20, -70]), XLength=90, YLength=160, ZLength=120)
     pictures.show_surface(trolley, view, (0.72, 0.3, 0.22))

@@ -325,6 +325,8 @@ def chart_pixels(curves, titles, size=(760, 460), bounds=None, legend=True):
     for place, title in ((vtkAxis.BOTTOM, titles[0]), (vtkAxis.LEFT, titles[1])):
         axis = chart.GetAxis(place)
         axis.SetTitle(title)
+        axis.SetNotation(vtkAxis.PRINTF_NOTATION)
+        axis.SetLabelFormat(" %g ")  # else the last column of a label stands before it too
         axis.GetGridPen().SetColor(225, 229, 233, 255)
         for text in (axis.GetTitleProperties(), axis.GetLabelProperties()):
             text.SetFontSize(15)
