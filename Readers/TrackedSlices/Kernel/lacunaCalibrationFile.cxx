@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -178,13 +180,20 @@ std::vector<NamedTransform> ReadCalibrationFile(const std::string& fileName)
 std::string FormatCalibration(
   const std::vector<NamedTransform>& transforms, const std::string& comment)
 {
-  std::string text =
-    "<!-- " + comment + " -->\n<PlusConfiguration version=\"2.9\">\n  <CoordinateDefinitions>\n";
+  pugi::xml_document document;
+  document.append_child(pugi::node_comment).set_value((" " + comment + " ").c_str());
+  pugi::xml_node configuration = document.append_child("PlusConfiguration");
+  configuration.append_attribute("version") = "2.9";
+  pugi::xml_node definitions = configuration.append_child("CoordinateDefinitions");
   for (const NamedTransform& transform : transforms)
   {
-    text += "    <Transform From=\"" + transform.From + "\" To=\"" + transform.To +
-      "\"\n      Matrix=\"" + FormatMatrix(transform.Matrix) + "\"/>\n";
+    pugi::xml_node element = definitions.append_child("Transform");
+    element.append_attribute("From") = transform.From.c_str();
+    element.append_attribute("To") = transform.To.c_str();
+    element.append_attribute("Matrix") = FormatMatrix(transform.Matrix).c_str();
   }
-  return text + "  </CoordinateDefinitions>\n</PlusConfiguration>\n";
+  std::ostringstream text;
+  document.save(text, "  ", pugi::format_default | pugi::format_no_declaration);
+  return text.str();
 }
 }

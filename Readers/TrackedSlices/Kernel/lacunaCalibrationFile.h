@@ -28,7 +28,7 @@ struct NamedTransform
 /// (of the element, or of 1 when it is smaller).
 std::vector<NamedTransform> ReadCalibrationFile(const std::string& fileName);
 
-/// The text of such a file. comment: its first line, without "--".
+/// The text of such a file. comment: its first line.
 std::string FormatCalibration(
   const std::vector<NamedTransform>& transforms, const std::string& comment);
 }

@@ -109,3 +109,23 @@ TEST(CalibrationFile, DeepNestingIsNoProblem)
   }
   ExpectError(open + close, { "no CoordinateDefinitions" });
 }
+
+TEST(CalibrationFile, WritesWhatItReads)
+{
+  std::array<double, 16> numbers{ 0.1, 1.0 / 3, -0.7, 5e-17, 0, 0.2, 1e-30, -6, 0.25, 0, 0.1, 5, 0,
+    0, 0, 1 };
+  const std::vector<NamedTransform> written{ { "Im&age <1>", "Pro\"be'", Matrix4(numbers) },
+    { "Tracker", "Reference", Matrix4() } };
+  const TemporaryFile file("written.xml", FormatCalibration(written, "of 3 -- 4 wires -->"));
+  const std::vector<NamedTransform> read = ReadCalibrationFile(file.GetPath());
+  ASSERT_EQ(read.size(), 2u);
+  for (std::size_t i = 0; i < read.size(); ++i)
+  {
+    EXPECT_EQ(read[i].From, written[i].From);
+    EXPECT_EQ(read[i].To, written[i].To);
+    for (int k = 0; k < 16; ++k)
+    {
+      EXPECT_EQ(read[i].Matrix.Data()[k], written[i].Matrix.Data()[k]);
+    }
+  }
+}
