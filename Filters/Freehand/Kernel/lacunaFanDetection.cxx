@@ -21,7 +21,6 @@ constexpr double LeastInside = 0.98;
 constexpr double LeastCovered = 0.5;
 // Fractions of the largest change below which a pixel counts as unchanged.
 constexpr std::array<double, 6> Thresholds{ 0, 1.0 / 256, 1.0 / 128, 1.0 / 64, 1.0 / 32, 1.0 / 16 };
-constexpr double VerticalSlope = 0.02;
 constexpr double SmallestOpening = 6; // degrees
 constexpr int MostDirections = 240;
 constexpr int FewestDirections = 16;

@@ -13,6 +13,8 @@ namespace
 {
 using Quaternion = std::array<double, 4>; // x y z w
 
+constexpr double Kilometre = 1e6; // mm
+
 bool IsPoseOfImage(const PoseTableOptions& options)
 {
   return options.Transform == PoseTransform::ImageToReference ||
@@ -227,6 +229,12 @@ Matrix4 Convert(Matrix4 pose, const PoseTableOptions& options, std::string& what
     {
       pose(r, c) *= mm;
     }
+  }
+  const Vec3 position = pose.Column(3);
+  if (what.empty() && !(Norm(position) <= Kilometre))
+  {
+    what = "it is more than a kilometre away, at " + Join(position) +
+      " mm: check the position and its unit";
   }
   return pose;
 }

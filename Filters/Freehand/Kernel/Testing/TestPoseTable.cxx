@@ -234,6 +234,9 @@ TEST(PoseTable, WhatIsNoPoseIsRefused)
   expect(Matrix4::FromColumns({ 1, 0, 0 }, { 1, 0, 0 }, { 0, 0, 1 }, {}), "singular");
   expect(Matrix4({ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1 }), "transposed");
   expect(Matrix4({ 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2 }), "0 0 0 2, not 0 0 0 1");
+  expect(Matrix4::Translation({ 0, 1.1e6, 0 }), "more than a kilometre away");
+  expect(Matrix4::Translation({ 1e308, 1e308, 1e308 }), "more than a kilometre away");
+  EXPECT_NO_THROW(ReadOne(ToRow(Matrix4::Translation({ 0, 9e5, 0 })), PoseTableOptions()));
   EXPECT_NO_THROW(ReadOne(ToRow(Matrix4::Scaling({ 1.005, 1, 1 })), PoseTableOptions()));
 
   for (const double length : { 0.98, 1.02, 2.0 })
