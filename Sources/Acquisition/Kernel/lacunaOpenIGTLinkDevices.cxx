@@ -15,7 +15,7 @@ namespace
 constexpr double PollTime = 1;      // s
 constexpr double FrameTime = 3;     // s without an image after which there is none
 constexpr double WorstJitter = 0.1; // s
-constexpr double TroubleTime = 10;  // s that a complaint is shown
+constexpr double TroubleLasts = 10; // s that a complaint is shown
 constexpr int ManyFaults = 5;       // in a row: no accidents
 
 bool IsPoseType(const std::string& type)
@@ -118,7 +118,7 @@ bool OpenIGTLinkPoseDevice::Poll(std::vector<TrackedPose>& poses)
 void OpenIGTLinkPoseDevice::Take(const OpenIGTLinkArrival& arrival, std::vector<TrackedPose>& poses)
 {
   const OpenIGTLinkMessage& message = arrival.Message;
-  if (!this->Trouble.empty() && arrival.Arrival > this->TroubleTime + TroubleTime)
+  if (!this->Trouble.empty() && arrival.Arrival > this->TroubleTime + TroubleLasts)
   {
     this->Trouble.clear();
   }
