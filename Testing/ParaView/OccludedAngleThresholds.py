@@ -49,15 +49,15 @@ for name, data, schedule, most, most_suggested in CASES:
     assert abs(error) < most and abs(alone) < most_suggested, name
 
 # Complete data: half the angle makes one more layer object, which the guide says with these figures.
-for data, threshold, layer in ((dict(Shape="Sphere", Dimensions=[65] * 3), 2.69, 9.0),
-                               (dict(Shape="Cube", Dimensions=[44] * 3), 2.69, 21.0),
+for data, threshold, layer in ((dict(Shape="Sphere", Dimensions=[65] * 3), 2.69, 8.8),
+                               (dict(Shape="Cube", Dimensions=[44] * 3), 2.69, 22.1),
                                (dict(Dimensions=FLAT), 1.3, 1.8)):
     source = IncompleteShape(**data)
     truth = servermanager.Fetch(source).GetFieldData().GetArray("CompleteVolume").GetValue(0)
     errors = [100 * (occlusion.closed_surface(OccludedAngle(
         Input=source, NumberOfDirections=200, ThresholdsOverPi=[last])).volume / truth - 1) for last in (0, threshold)]
     print(data, errors)
-    assert abs(errors[0] - layer) < 0.5 and abs(errors[1]) < 2, (data, errors)
+    assert abs(errors[0] - layer) < 0.5 and abs(errors[1]) < 0.5, (data, errors)
 
 # The cube of which 90 % is missing: its error by voxels and by the closed surface, and that no suggestion solves it.
 source = IncompleteShape(Shape="Cube", Dimensions=[44] * 3, PresentFraction=0.1)
@@ -67,13 +67,17 @@ counted = servermanager.Fetch(sparse).GetFieldData().GetArray("ObjectVoxels")
 voxels = 100 * (counted.GetValue(counted.GetNumberOfTuples() - 1) / 20 ** 3 - 1)
 closed = 100 * (occlusion.closed_surface(sparse).volume / truth - 1)
 print(f"SPARSE_CUBE: {voxels:+.1f} % of the voxels, closed surface {closed:+.1f} %")
-assert abs(voxels) < 3 and -4 < closed < -2.5
-for mode, suggested, least, most in (("Continuous", 0.72, 30, 45), ("Binary", 2.29, -101, -95)):
+assert abs(voxels) < 3 and abs(closed) < 2.5
+for mode, suggested, most in (("Continuous", 0.72, 45), ("Binary", 2.29, 0)):
     angle = OccludedAngle(Input=source, NumberOfDirections=400, Mode=mode, ThresholdsOverPi=[2])
     suggestion = occlusion.suggested_threshold(angle)
     angle.ThresholdsOverPi = [suggestion]
-    error = 100 * (occlusion.closed_surface(angle).volume / truth - 1)
-    assert abs(suggestion - suggested) < 0.02 and least < error < most, (mode, suggestion, error)
+    assert abs(suggestion - suggested) < 0.02, (mode, suggestion)
+    try:
+        error = 100 * (occlusion.closed_surface(angle).volume / truth - 1)
+        assert 25 < error < most, (mode, error)
+    except ValueError as nothing:
+        assert most == 0 and "too small" in str(nothing), (mode, nothing)
 
 # How stable the answer is: volumes fall with the threshold; the plot can be saved.
 thresholds, volumes = occlusion.volume_against_threshold(shape)
