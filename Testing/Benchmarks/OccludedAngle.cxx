@@ -5,6 +5,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <vector>
 
@@ -126,6 +128,37 @@ BENCHMARK(Cube)
   ->Unit(benchmark::kMillisecond)
   ->MeasureProcessCPUTime()
   ->UseRealTime();
+
+// How much faster several threads are than one, turn by turn in the same run: the shortest time of
+// each. On a busy machine look at cpu_ratio, what the threads take together over what one takes.
+void Scaling(benchmark::State& state)
+{
+  lacuna::AttenuationField field = MakeField(192, 192, 192);
+  lacuna::OccludedAngleOptions options;
+  options.Directions = 200;
+  std::vector<float> angle(field.GetNumberOfVoxels());
+  const int threads[2] = { 1, static_cast<int>(state.range(0)) };
+  double wall[2] = { 1e9, 1e9 };
+  double cpu[2] = { 1e9, 1e9 };
+  for (auto _ : state)
+  {
+    for (int i : { 0, 1 })
+    {
+      lacuna::ThreadExecution execution(threads[i]);
+      const auto start = std::chrono::steady_clock::now();
+      cpu[i] = std::min(cpu[i],
+        ProcessorSeconds(
+          [&] { lacuna::ComputeOccludedAngle(field, options, angle.data(), execution); }));
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+      wall[i] = std::min(wall[i], taken.count());
+    }
+  }
+  state.counters["one_ms"] = 1e3 * wall[0];
+  state.counters["all_ms"] = 1e3 * wall[1];
+  state.counters["speedup"] = wall[0] / wall[1];
+  state.counters["cpu_ratio"] = cpu[1] / cpu[0];
+}
+BENCHMARK(Scaling)->Arg(2)->Iterations(10)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // The thesis's kumara: 190 x 80 x 90 voxels, two iterations of 1000 directions.
 void Kumara(benchmark::State& state)
