@@ -93,22 +93,42 @@ TEST(OccludedAngleTruth, OutsideAClosedCircle)
   EXPECT_LT(circle.GetError(80, 40), 0.06);
 }
 
-// The ends of a gap are uncertain by a pixel together: first order. Gaps of about 40 degrees (Carr
-// 1996, figure 5.13); several, since the pixels of one may happen to end where the gap does.
+// The ends of a gap are uncertain by a pixel together: first order. Where the pixels end is chance, so
+// the order is of 100 gaps of about 40 degrees (Carr 1996, figure 5.13), anywhere on the circle, with
+// what it is uncertain by: 1.01 +- 0.08.
 TEST(OccludedAngleTruth, OneGap)
 {
-  double coarse = 0;
-  double fine = 0;
-  for (int degrees = 32; degrees <= 48; degrees += 4)
+  const int gaps = 100;
+  Numbers number(5);
+  double mean[2] = { 0, 0 };
+  double square[2] = { 0, 0 };
+  for (int gap = 0; gap < gaps; ++gap)
   {
-    const double half = degrees * Pi / 360;
-    const Circle circle{ [=](double a) { return std::cos(a) < std::cos(half); },
-      [=](double x, double y) { return Radius(x, y) < 0.8 ? 2 * Pi - GetGap(half, x, y) : None; } };
-    coarse += circle.GetError(25, 800) / 5;
-    fine += circle.GetError(100, 800) / 5;
+    const double half = (16 + 8 * number()) * Pi / 180;
+    const double turn = 2 * Pi * number();
+    const double c = std::cos(turn);
+    const double s = std::sin(turn);
+    const Circle circle{ [=](double a) { return std::cos(a - turn) < std::cos(half); },
+      [=](double x, double y)
+      { return Radius(x, y) < 0.8 ? 2 * Pi - GetGap(half, c * x + s * y, c * y - s * x) : None; } };
+    for (int fine : { 0, 1 })
+    {
+      const double error = circle.GetError(fine ? 80 : 20, 800);
+      mean[fine] += error / gaps;
+      square[fine] += error * error / gaps;
+    }
   }
-  EXPECT_LT(fine, 0.025);
-  EXPECT_GT(coarse / fine, 2);
+  // the order and 1.96 of its standard errors
+  double variance = 0;
+  for (int fine : { 0, 1 })
+  {
+    variance += (square[fine] / (mean[fine] * mean[fine]) - 1) / (gaps - 1);
+  }
+  const double order = std::log(mean[0] / mean[1]) / std::log(4.0);
+  const double uncertainty = 1.96 * std::sqrt(variance) / std::log(4.0);
+  EXPECT_LT(mean[1], 0.025);
+  EXPECT_NEAR(order, 1, 0.1);
+  EXPECT_LT(uncertainty, 0.1);
 }
 
 // Along the chord the angle is pi, whatever the gap.
