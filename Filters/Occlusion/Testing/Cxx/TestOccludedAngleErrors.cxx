@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaCheck.h"
 #include "vtkDataArray.h"
-#include "vtkExecutive.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaOccludedAngle.h"
@@ -30,16 +29,9 @@ void Expect(const std::string& message,
   filter->SetNumberOfDirections(10);
   filter->SetInputData(image);
   change(filter, image);
-  vtkNew<lacunaCheck::Messages> messages;
-  messages->Watch(filter);
-  vtkNew<lacunaCheck::Messages> rest;
-  rest->Watch(filter->GetExecutive());
+  const auto messages = lacunaCheck::Watch(filter);
   filter->Update();
-  if (!messages->HasError(message))
-  {
-    lacunaCheck::Fail(
-      __FILE__, __LINE__, "expected '" + message + "', got '" + messages->Errors + "'");
-  }
+  LACUNA_CHECK_CONTAINS(messages->Errors, message);
   LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
 }
 }
