@@ -20,6 +20,10 @@ constexpr double SmallestCorrelation = 0.9;
 constexpr double StandingStill = 0.5; // mm, standard deviation of the receiver's position
 constexpr double CoarseStep = 0.005;  // s, a tenth of the period of the fastest motion of a hand
 constexpr int Refinements = 40;
+constexpr double OnePeak = 0.05; // s, lags nearer to each other are of one peak
+// The squared residuals of any other peak are larger by this. Chance does not do that with dozens of
+// frames, what both peaks have in common (the row's rounding, poses between measurements) neither.
+constexpr double SureRatio = 2;
 
 using Sample = TemporalCalibration::Sample;
 
@@ -145,6 +149,76 @@ std::string Format(const char* format, double value)
   std::snprintf(text, sizeof text, format, value);
   return text;
 }
+
+struct Peak
+{
+  double Lag = 0;
+  Fit Best;
+};
+
+// The lag between low and high at which the residuals are least.
+Peak Refine(const std::vector<Sample>& frames, const Track& track, double low, double high)
+{
+  for (int i = 0; i < Refinements; ++i)
+  {
+    const double third = (high - low) / 3;
+    if (FitAt(frames, track, low + third).ResidualSquare <
+      FitAt(frames, track, high - third).ResidualSquare)
+    {
+      high -= third;
+    }
+    else
+    {
+      low += third;
+    }
+  }
+  Peak peak;
+  peak.Lag = 0.5 * (low + high);
+  peak.Best = FitAt(frames, track, peak.Lag);
+  return peak;
+}
+
+// The best peak of the correlations. The weights may have either sign, so a regular motion fits
+// itself again after half a cycle, whatever the noise makes the best of these. Throws where another
+// peak has residuals hardly larger.
+Peak FindOnlyPeak(
+  const std::vector<Sample>& frames, const Track& track, const TemporalCalibration& curve)
+{
+  std::vector<Peak> peaks;
+  const std::vector<double>& correlations = curve.Correlations;
+  for (std::size_t i = 1; i + 1 < correlations.size(); ++i)
+  {
+    if (correlations[i] >= SmallestCorrelation && correlations[i] > correlations[i - 1] &&
+      correlations[i] >= correlations[i + 1])
+    {
+      peaks.push_back(Refine(frames, track, curve.Lags[i - 1], curve.Lags[i + 1]));
+    }
+  }
+  const auto better = [](const Peak& a, const Peak& b)
+  { return a.Best.ResidualSquare < b.Best.ResidualSquare; };
+  const Peak best = *std::min_element(peaks.begin(), peaks.end(), better);
+  for (const Peak& other : peaks)
+  {
+    const double apart = std::abs(other.Lag - best.Lag);
+    if (apart > OnePeak && other.Best.ResidualSquare <= SureRatio * best.Best.ResidualSquare)
+    {
+      const double nearer = std::min(std::abs(best.Lag), std::abs(other.Lag));
+      const double farther = std::max(std::abs(best.Lag), std::abs(other.Lag));
+      std::string advice = "move less regularly, in speed and width";
+      if (farther - nearer > OnePeak)
+      {
+        advice += Format(", or, if the lag is known to be less than %.2f s, set MaximumLag to that",
+          0.5 * (nearer + farther));
+      }
+      throw std::invalid_argument(Format("the motion is so regular that two lags fit alike, %.3f s",
+                                    std::min(best.Lag, other.Lag)) +
+        Format(
+          " and %.3f s, as after half a cycle or a whole one: ", std::max(best.Lag, other.Lag)) +
+        advice);
+    }
+  }
+  return best;
+}
 }
 
 TemporalCalibration TemporalCalibration::Solve(
@@ -207,32 +281,19 @@ TemporalCalibration TemporalCalibration::Solve(
              "move less regularly, so that one cycle cannot be taken for the next",
         result.Lags[best]));
   }
-  double low = result.Lags[best - 1], high = result.Lags[best + 1];
-  for (int i = 0; i < Refinements; ++i)
-  {
-    const double third = (high - low) / 3;
-    if (FitAt(frames, track, low + third).ResidualSquare <
-      FitAt(frames, track, high - third).ResidualSquare)
-    {
-      high -= third;
-    }
-    else
-    {
-      low += third;
-    }
-  }
-  result.Lag = 0.5 * (low + high);
-  const Fit fit = FitAt(frames, track, result.Lag);
-  result.Correlation = fit.Correlation;
+  const Peak peak = FindOnlyPeak(frames, track, result);
+  result.Lag = peak.Lag;
+  result.Correlation = peak.Best.Correlation;
   const double count = static_cast<double>(frames.size());
-  result.Amplitude = std::sqrt(fit.SignalSquare / count);
+  result.Amplitude = std::sqrt(peak.Best.SignalSquare / count);
   // The residuals' square grows by the variance of one residual within a standard deviation.
   const double away = CoarseStep;
   const double growth = 0.5 *
       (FitAt(frames, track, result.Lag - away).ResidualSquare +
         FitAt(frames, track, result.Lag + away).ResidualSquare) -
-    fit.ResidualSquare;
-  result.Spread = growth > 0 ? away * std::sqrt(fit.ResidualSquare / (count - 5) / growth) : 0;
+    peak.Best.ResidualSquare;
+  result.Spread =
+    growth > 0 ? away * std::sqrt(peak.Best.ResidualSquare / (count - 5) / growth) : 0;
   return result;
 }
 }

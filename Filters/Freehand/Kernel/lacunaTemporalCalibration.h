@@ -38,7 +38,9 @@ struct TemporalCalibration
   /// first or the last pose, or between poses more than maximumGap s apart, are not used.
   /// Throws std::invalid_argument when maximumLag is not above 0 and at most 2 s, times are not finite
   /// and ascending, fewer than 30 frames can be used at every lag, the probe or the image's signal
-  /// stands still, the correlation stays below 0.9, or is largest at the end of the range.
+  /// stands still, the correlation stays below 0.9, or is largest at the end of the range, or when a
+  /// second lag fits nearly as well: the sign of the weights is not known, so a regular motion looks the
+  /// same half a cycle later.
   static TemporalCalibration Solve(
     const std::vector<Sample>& samples, double maximumLag = 0.5, double maximumGap = 0.25);
 };

@@ -25,7 +25,8 @@ double Height(double time)
 }
 
 // Twelve seconds at 25 slices a second; what is seen is late by lag.
-std::vector<Sample> Record(double lag, double noise, unsigned seed)
+std::vector<Sample> Record(
+  double lag, double noise, unsigned seed, const std::function<double(double)>& height = Height)
 {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, 1);
@@ -34,16 +35,30 @@ std::vector<Sample> Record(double lag, double noise, unsigned seed)
   for (int i = 0; i < 300; ++i)
   {
     const double time = 7 + 0.04 * i + 0.002 * std::sin(i); // cameras are not quite regular
-    Vec3 position = Vec3{ 100, 40, -20 } + Height(time) * up;
+    Vec3 position = Vec3{ 100, 40, -20 } + height(time) * up;
     for (int axis = 0; axis < 3; ++axis)
     {
       position[axis] += 0.1 * noise * normal(random);
     }
     // 5 pixels a mm, growing as the probe goes down
-    const double row = 250 - 5 * Height(time - lag) + noise * normal(random);
+    const double row = 250 - 5 * height(time - lag) + noise * normal(random);
     samples.push_back({ time, row, Matrix4::Translation(position), true });
   }
   return samples;
+}
+
+void ExpectRefused(
+  const std::vector<Sample>& samples, const std::string& part, double maximumLag = 0.5)
+{
+  try
+  {
+    const TemporalCalibration found = TemporalCalibration::Solve(samples, maximumLag);
+    ADD_FAILURE() << "taken: " << part << ", lag " << found.Lag;
+  }
+  catch (const std::invalid_argument& error)
+  {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
 }
 }
 
@@ -79,6 +94,27 @@ TEST(TemporalCalibration, SpreadIsThatOfRepeatedMeasurements)
   EXPECT_NEAR(std::sqrt(square / expected), 1, 0.3);
 }
 
+TEST(TemporalCalibration, RegularMotionIsNotTakenForHalfACycleLater)
+{
+  for (const double frequency : { 1.0, 1.1, 1.3, 1.6 })
+  {
+    const double turn = 2 * std::acos(-1.0) * frequency;
+    for (unsigned seed = 0; seed < 5; ++seed)
+    {
+      const auto sine = [&](double time) { return 12 * std::sin(turn * time); };
+      ExpectRefused(Record(0.12, 1, seed, sine), "two lags fit alike, ");
+      const double known = 0.25 / frequency; // within a quarter of a cycle there is but one
+      EXPECT_NEAR(TemporalCalibration::Solve(Record(0.12, 1, seed, sine), known).Lag, 0.12, 0.002)
+        << frequency;
+      // as a hand moves: found, and right
+      const auto wandering = [&](double time)
+      { return (12 + 2 * std::sin(0.7 * time)) * std::sin(turn * time + 0.4 * std::sin(time)); };
+      EXPECT_NEAR(TemporalCalibration::Solve(Record(0.12, 1, seed, wandering)).Lag, 0.12, 0.002)
+        << frequency;
+    }
+  }
+}
+
 TEST(TemporalCalibration, SlicesWithoutWallOrPoseAreLeftOut)
 {
   std::vector<Sample> samples = Record(0.1, 0.5, 3);
@@ -99,15 +135,7 @@ TEST(TemporalCalibration, RefusesWhatCannotTell)
   {
     std::vector<Sample> samples = Record(0.1, 0.5, 4);
     spoil(samples);
-    try
-    {
-      TemporalCalibration::Solve(samples, maximumLag);
-      ADD_FAILURE() << "taken: " << part;
-    }
-    catch (const std::invalid_argument& error)
-    {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
+    ExpectRefused(samples, part, maximumLag);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   refused("only 0 slices", [](auto& samples) { samples.clear(); });
