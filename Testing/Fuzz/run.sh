@@ -22,7 +22,7 @@ failed=0
 for target in "${targets[@]}"; do
   corpus=build/fuzz/corpus/$target
   mkdir -p "$corpus"
-  options=(-max_total_time="$each" -timeout=5 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1)
+  options=(-max_total_time="$each" -timeout=60 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1)
   if [ -f "Testing/Fuzz/$target.dict" ]; then options+=(-dict="Testing/Fuzz/$target.dict"); fi
   if "build/fuzz/bin/Fuzz$target" "${options[@]}" -artifact_prefix="$findings/$target-" \
     "$corpus" "Testing/Fuzz/Corpus/$target" >"build/fuzz/$target.log" 2>&1; then

@@ -3,6 +3,7 @@
 
 #include "lacunaInputFile.h"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -32,6 +33,26 @@ bool HeaderLines::Fill()
   return this->Filled > 0;
 }
 
+// Skips the rest of the file if there are only zeros from so many bytes ahead on, for at most
+// LongestLine; nothing of it is needed when there are not, as the file is refused then.
+bool HeaderLines::OnlyZerosFrom(std::size_t ahead)
+{
+  std::size_t zeros = 0;
+  this->Position += ahead;
+  do
+  {
+    const auto begin = this->Buffer.begin() + static_cast<std::ptrdiff_t>(this->Position);
+    const auto end = this->Buffer.begin() + static_cast<std::ptrdiff_t>(this->Filled);
+    zeros += static_cast<std::size_t>(end - begin);
+    if (zeros > LongestLine || std::any_of(begin, end, [](char c) { return c != 0; }))
+    {
+      return false;
+    }
+    this->Position = this->Filled;
+  } while (this->Fill());
+  return true;
+}
+
 bool HeaderLines::Next(std::string& line)
 {
   line.clear();
@@ -48,9 +69,18 @@ bool HeaderLines::Next(std::string& line)
     const auto* end = static_cast<const char*>(std::memchr(begin, '\n', rest));
     ended = end != nullptr;
     const std::size_t size = ended ? static_cast<std::size_t>(end - begin) : rest;
+    const auto* zero = static_cast<const char*>(std::memchr(begin, '\0', size));
+    if (zero != nullptr && this->OnlyZerosFrom(static_cast<std::size_t>(zero - begin)))
+    {
+      line.append(begin, zero);
+      this->Terminated = false;
+      this->Offset += static_cast<std::int64_t>(line.size());
+      this->LineNumber -= line.empty() ? 1 : 0;
+      return !line.empty();
+    }
     line.append(begin, size);
     this->Position += size + (ended ? 1 : 0);
-    if (line.size() > LongestLine || std::memchr(begin, '\0', size))
+    if (line.size() > LongestLine || zero != nullptr)
     {
       this->Fail("is not text; the file has no header, or its header has no end");
     }

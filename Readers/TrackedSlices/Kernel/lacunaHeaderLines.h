@@ -20,7 +20,8 @@ public:
   explicit HeaderLines(const std::string& fileName);
 
   /// The next line without its end (LF or CRLF); false at the end of the file. Throws
-  /// std::runtime_error when the line is not text: it holds a zero byte or is over 1 MiB long.
+  /// std::runtime_error when the line is not text: it holds a zero byte or is over 1 MiB long. Zeros
+  /// that end the file end the text: a power cut can leave a file with its size but not its bytes.
   bool Next(std::string& line);
 
   /// The first bytes of the file, fewer when it is shorter. Only before the first call of Next.
@@ -42,6 +43,7 @@ public:
 
 private:
   bool Fill();
+  bool OnlyZerosFrom(std::size_t ahead);
 
   std::string FileName;
   std::ifstream Stream;
