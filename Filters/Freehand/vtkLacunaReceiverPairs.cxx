@@ -118,7 +118,9 @@ void vtkLacunaReceiverPairs::ReadTable(vtkTable* table, const vtkLacunaReceiverR
   const auto read = [&](const std::vector<std::string>& wanted, const std::vector<char>& refused)
   {
     const std::vector<int> found =
-      lacuna::FindPoseColumns(names, request.Format, request.Unit, wanted);
+      lacuna::FindPoseColumns(names, request.Format, request.Unit, wanted,
+        "rename them, or, of a table with both poses in each row, give in FirstReceiver and "
+        "SecondReceiver the texts with which their names begin");
     lacuna::PoseTable poses =
       lacuna::ReadPoseTable(columns.GetNumbers(found), found.size(), refused, options);
     this->Warnings.insert(this->Warnings.end(), poses.Warnings.begin(), poses.Warnings.end());

@@ -357,8 +357,8 @@ double GetMillimetres(LengthUnit unit)
   }
 }
 
-std::vector<int> FindPoseColumns(
-  const Names& names, PoseFormat format, LengthUnit unit, const Names& wanted)
+std::vector<int> FindPoseColumns(const Names& names, PoseFormat format, LengthUnit unit,
+  const Names& wanted, const std::string& advice)
 {
   const ColumnIndex index(names);
   std::vector<int> found;
@@ -377,10 +377,8 @@ std::vector<int> FindPoseColumns(
       message << (choices.empty() ? "the table has no columns" : "the table has several columns")
               << " for PoseFormat " << FormatNames[static_cast<std::size_t>(format)]
               << (prefix.empty() ? "" : ", beginning with '" + wanted.front() + "',")
-              << " by their usual names, " << DescribeUsual(format)
-              << "; name them in this order in PoseColumns, or the text with which all of them "
-                 "begin. The table has "
-              << Quote(names);
+              << " by their usual names, " << DescribeUsual(format) << "; " << advice
+              << ". The table has " << Quote(names);
       for (const PoseFormat other :
         { PoseFormat::Matrix, PoseFormat::Quaternion, PoseFormat::Euler })
       {

@@ -43,11 +43,14 @@ double GetMillimetres(LengthUnit unit);
 /// - matrix: any letters with two indices from 00 or from 11, with one index from 0 to 15 or from 1
 ///   to 16, or r with two indices for the rotation beside a position.
 ///
-/// Throws std::runtime_error when columns are missing or there is more than one choice (naming the
-/// columns there are and another format that would fit), and when the name of a column has a unit
+/// Throws std::runtime_error when columns are missing or there is more than one choice (with advice,
+/// naming the columns there are and another format that would fit), and when the name of a column has a unit
 /// that is not the one of positions or is not degrees.
 std::vector<int> FindPoseColumns(const std::vector<std::string>& names, PoseFormat format,
-  LengthUnit unit, const std::vector<std::string>& wanted);
+  LengthUnit unit, const std::vector<std::string>& wanted,
+  const std::string& advice =
+    "name them in this order in PoseColumns, or the text with which all of "
+    "them begin");
 
 /// Finds one column: the one named wanted or, when wanted is empty, the first of the usual names
 /// that there is, compared as above. Returns -1 when wanted is empty and there is none. Throws

@@ -63,6 +63,14 @@ std::optional<double> FindGoodRange(const TrackerSelfTest& test)
 std::vector<std::string> TrackerSelfTest::GetAdvice() const
 {
   std::vector<std::string> advice;
+  // first: with another unit nothing below holds
+  if (this->Separation < SmallSeparation || this->Separation > LargeSeparation)
+  {
+    advice.push_back(Format(
+      "the receivers are %.0f mm apart: fix them as far from each other as the image is from "
+      "the receiver, 300 mm, say, and check the unit of length",
+      this->Separation));
+  }
   const Vec3& worst = this->Samples[this->Worst].Middle;
   const bool warped = this->Rms.Position > Warped * this->Expected.Position;
   const bool wild = this->Largest.Position > Wild * this->Expected.Position;
@@ -141,13 +149,6 @@ std::vector<std::string> TrackerSelfTest::GetAdvice() const
     advice.push_back(Format("the receivers were moved within %.0f mm only: go through all of the "
                             "volume in which you scan, and turn them",
       this->Extent));
-  }
-  if (this->Separation < SmallSeparation || this->Separation > LargeSeparation)
-  {
-    advice.push_back(Format(
-      "the receivers are %.0f mm apart: fix them as far from each other as the image is from "
-      "the receiver, 300 mm, say, and check the unit of length",
-      this->Separation));
   }
   return advice;
 }

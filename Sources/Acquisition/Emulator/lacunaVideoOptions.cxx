@@ -4,6 +4,7 @@
 #include "lacunaWaterBath.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <stdexcept>
 
@@ -18,6 +19,15 @@ bool ReadVideoOption(
   const std::string& option, const NextWord& word, const NextNumber& number, VideoOptions& options)
 {
   ScannerLayout& layout = options.Picture.Layout;
+  const auto whole = [&](double least, double most, const char* what)
+  {
+    const double value = number(least, most, what);
+    if (value != std::floor(value))
+    {
+      throw std::runtime_error(option + " takes whole numbers, " + what);
+    }
+    return static_cast<int>(value);
+  };
   if (option == "--video")
   {
     options.Service.Sender.URL = word();
@@ -50,12 +60,12 @@ bool ReadVideoOption(
   }
   else if (option == "--size")
   {
-    layout.Columns = static_cast<int>(number(16, 4096, "two sizes from 16 to 4096 pixels"));
-    layout.Rows = static_cast<int>(number(16, 4096, "two sizes from 16 to 4096 pixels"));
+    layout.Columns = whole(16, 4096, "two sizes from 16 to 4096 pixels");
+    layout.Rows = whole(16, 4096, "two sizes from 16 to 4096 pixels");
   }
   else if (option == "--rate")
   {
-    options.Service.Sender.Rate = static_cast<int>(number(1, 100, "1 to 100 frames a second"));
+    options.Service.Sender.Rate = whole(1, 100, "1 to 100 frames a second");
   }
   else if (option == "--speckle")
   {

@@ -156,6 +156,8 @@ TEST(EmulatorSettings, SaysWhatIsWrong)
   EXPECT_NE(Complaint({ "--depth", "80" }).find("--depth belongs to --video"), std::string::npos);
   EXPECT_NE(Complaint({ "--depth", "8000" }).find("5 to 400 mm"), std::string::npos);
   EXPECT_NE(Complaint({ "--size", "320" }).find("needs a value"), std::string::npos);
+  EXPECT_NE(Complaint({ "--rate", "24.5" }).find("whole numbers"), std::string::npos);
+  EXPECT_NE(Complaint({ "--size", "320", "240.5" }).find("whole numbers"), std::string::npos);
   for (const char* list : { "", "0", "5", "1,", ",1", "12", "1 2" })
   {
     EXPECT_NE(Complaint({ "--receivers", list }).find("1 to 4"), std::string::npos) << list;
