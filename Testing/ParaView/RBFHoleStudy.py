@@ -11,6 +11,7 @@ import os
 import sys
 
 import numpy as np
+from depth_map_files import find_unsound
 from lacuna_test import data
 from paraview import servermanager
 from paraview.simple import LoadPlugin, OpenDataFile
@@ -44,29 +45,6 @@ OTHERS = [
     ("Cubic", 20, 3, 2, 10, "Ellipsoid"), ("ThinPlate", 30, 3, 2, 20, "Ellipsoid")]
 # interpolation of the ray caster, columns and rows by which the places are moved
 ELSEWHERE = [("Trilinear", (7, 4)), ("BSpline", (-6, 7)), ("InterpolatingBSpline", (-5, -8))]
-
-
-def spread(mask, radius):
-    """Pixels whose centres are at most so many pixels from one of mask."""
-    grown = mask.copy()
-    for i in range(-radius, radius + 1):
-        for j in range(-radius, radius + 1):
-            if i * i + j * j <= radius * radius:
-                grown |= np.roll(mask, (j, i), (0, 1))
-    return grown
-
-
-def find_unsound(depth, spacing):
-    """What the saw and the drill left: depth steps over 63 degrees, holes, 3 pixels around them."""
-    unsound = ~np.isfinite(depth)
-    filled = np.where(unsound, 1e9, depth)
-    for axis in (0, 1):
-        step = np.abs(np.diff(filled, axis=axis)) > 2 * spacing
-        before, after = [(0, 1), (0, 0)], [(1, 0), (0, 0)]
-        if axis:
-            before, after = before[::-1], after[::-1]
-        unsound |= np.pad(step, before) | np.pad(step, after)
-    return spread(unsound, 3)
 
 
 class Place:

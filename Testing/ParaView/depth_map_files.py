@@ -60,3 +60,26 @@ def fetch(proxy):
     fields = {n: np.asarray(wrapped.FieldData[n]).ravel()
               for n in wrapped.FieldData.keys() if n != "Provenance"}
     return points, fields
+
+
+def spread(mask, radius):
+    """Pixels whose centres are at most so many pixels from one of mask."""
+    grown = mask.copy()
+    for i in range(-radius, radius + 1):
+        for j in range(-radius, radius + 1):
+            if i * i + j * j <= radius * radius:
+                grown |= np.roll(mask, (j, i), (0, 1))
+    return grown
+
+
+def find_unsound(depth, spacing):
+    """What the saw and the drill left: depth steps over 63 degrees, holes, 3 pixels around them."""
+    unsound = ~np.isfinite(depth)
+    filled = np.where(unsound, 1e9, depth)
+    for axis in (0, 1):
+        step = np.abs(np.diff(filled, axis=axis)) > 2 * spacing
+        before, after = [(0, 1), (0, 0)], [(1, 0), (0, 0)]
+        if axis:
+            before, after = before[::-1], after[::-1]
+        unsound |= np.pad(step, before) | np.pad(step, after)
+    return spread(unsound, 3)
