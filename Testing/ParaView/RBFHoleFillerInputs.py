@@ -9,6 +9,7 @@ from paraview import servermanager
 from paraview.selection import SelectIDs, SelectPedigreeIDs
 from paraview.simple import (Calculator, CreateRenderView, ExtractSelection, LoadPlugin, PolyLineSource,
                              SetActiveView, Show)
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
@@ -90,15 +91,20 @@ for support in (by_hand, by_formula):
 handles = PolyLineSource()
 filler.ControlPoints = handles
 filler.Accuracy = 0
-for push in (0, 1, 2.5):
+patient = DepthMapSurface(Input=filler)
+for push in (0, 1, 2.5, -2.5):  # the last one outwards, to larger z
     handles.Points = [3 + 41, 4 - 22, 5 - (dome(41, 22) + push), 3 + 35, 4 - 20, 5 - dome(35, 20)]
     points, fields = fetch(filler)
     assert abs(points["Depth"][22, 41] - dome(41, 22) - push) < 1e-6
     assert abs(points["Depth"][20, 35] - dome(35, 20)) < 1e-6
+    patient.UpdatePipeline()
+    bone = vtk_to_numpy(servermanager.Fetch(patient).GetPoints().GetData())
+    at = bone[np.hypot(bone[:, 0] - 44, bone[:, 1] + 18) < 1e-3]
+    assert at.shape == (1, 3) and abs(at[0, 2] - (5 - dome(41, 22) - push)) < 1e-4, at
 plain = RBFHoleFiller(Input=source)
 before = fetch(plain)[0]
 moved = points["Fitted"] - before["Fitted"]
-assert np.nanmax(moved) > 2.4 and np.nanargmax(moved) == 22 * 70 + 41
+assert np.nanmin(moved) < -2.4 and np.nanargmin(moved) == 22 * 70 + 41
 assert fields["FitTime"][0] > 0
 
 # A prior of another grid and another direction of its axes: the dome itself, 5 mm too near

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Optional inputs: selections, control points, prior surfaces; output on another grid.
+// Optional inputs: selections, prior surfaces; output on another grid.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
 #include "lacunaParameterText.h"
@@ -269,64 +269,6 @@ void MarkDisc(Filler* filler, const TestMap& map, double radius)
   filler->SetDefectRegion(cylinder);
 }
 
-void TestControlPoints()
-{
-  TestMap map;
-  vtkNew<Filler> filler;
-  filler->SetInputData(map.Image);
-  filler->SetAccuracy(0);
-  MarkDisc(filler, map, 9);
-  vtkNew<vtkPolyData> control;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  control->SetPoints(points);
-  // on pixel (column 45, row 52), 41.6 mm down, pressed in by 3 mm along the view
-  points->InsertNextPoint(0, 0, 0);
-  points->InsertNextPoint(map.GetSurfacePoint(50, 42).data());
-  const vtkIdType pixel = 32 * 80 + 35;
-  filler->SetInputDataObject(Filler::ControlPointsPort, control);
-  for (const double push : { 1.0, 2.0, 3.0 })
-  {
-    const lacuna::Vec3 p = map.GetSurfacePoint(45, 41.6) + push * map.View;
-    points->SetPoint(0, p.data());
-    points->Modified();
-    control->Modified();
-    filler->Update();
-    LACUNA_CHECK(std::abs(Get(filler->GetOutput(), "Depth", pixel) -
-                   (TestMap::Depth(45, 41.6) + push)) < 1e-8);
-  }
-  vtkNew<vtkImageData> dragged;
-  dragged->DeepCopy(filler->GetOutput());
-  LACUNA_CHECK(std::abs(Get(dragged, "Depth", 32 * 80 + 40) - TestMap::Depth(50, 41.6)) < 0.2);
-  LACUNA_CHECK(
-    vtkLacunaProvenance::Get(dragged)[0].find("ControlPointsInMap=") != std::string::npos);
-
-  // a new filter gives the same bits, and one with depths instead of positions the same surface
-  vtkNew<Filler> fresh;
-  fresh->SetInputData(map.Image);
-  fresh->SetAccuracy(0);
-  fresh->SetDefectRegion(filler->GetDefectRegion());
-  fresh->SetInputDataObject(Filler::ControlPointsPort, control);
-  fresh->Update();
-  vtkDataArray* a = dragged->GetPointData()->GetArray("Fitted");
-  LACUNA_CHECK(!std::memcmp(a->GetVoidPointer(0),
-    fresh->GetOutput()->GetPointData()->GetArray("Fitted")->GetVoidPointer(0),
-    a->GetNumberOfValues() * sizeof(double)));
-  vtkNew<vtkDoubleArray> depths;
-  depths->SetName("depths");
-  depths->InsertNextValue(TestMap::Depth(45, 41.6) + 3);
-  depths->InsertNextValue(TestMap::Depth(50, 42));
-  control->GetPointData()->AddArray(depths);
-  points->SetPoint(0, map.GetSurfacePoint(45, 41.6).data());
-  fresh->SetControlDepthArray("depths");
-  fresh->Update();
-  for (vtkIdType i = 0; i < a->GetNumberOfTuples(); ++i)
-  {
-    LACUNA_CHECK(std::isnan(a->GetTuple1(i)) ||
-      std::abs(Get(fresh->GetOutput(), "Fitted", i) - a->GetTuple1(i)) < 1e-8);
-  }
-}
-
 void TestPriorOfAnotherView()
 {
   // A dome in world coordinates, the prior a map of it that is turned, shifted, finer and perspective.
@@ -492,7 +434,6 @@ int TestRBFHoleFillerInputs(int, char*[])
   TestSelections();
   TestRegionProvenance();
   TestMarksThatAreNoNumbers();
-  TestControlPoints();
   TestPriorOfAnotherView();
   TestOutputGrid();
   TestFieldData();
