@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Radial basis functions on Franke's function in the unit square (in 3-D times cos 3z): fit, and
 // evaluation on a grid, beside the direct sum that one would write first and VTK's thin plate
-// spline. CPU is processor time over all threads.
+// spline. CPU is processor time over all threads. peak_MB is the largest memory of the process in the
+// row, grown_MB how much of it the row took beyond its input (where Linux tells).
 #include "lacunaCenterReduction.h"
 #include "lacunaExecution.h"
+#include "lacunaHoleFill.h"
 #include "lacunaRadialBasis.h"
+#include "lacunaUpdatableRadialBasis.h"
 
 #include <benchmark/benchmark.h>
 
@@ -14,17 +17,63 @@
 #include "vtkThinPlateSplineTransform.h"
 #endif
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace
 {
+// The memory that a row takes.
+class Memory
+{
+public:
+  Memory()
+  {
+#ifdef __GLIBC__
+    malloc_trim(0); // what rows before have freed
+#endif
+    std::ofstream("/proc/self/clear_refs") << 5; // the peak counts from now on
+    this->Start = GetMegabytes("VmRSS:");
+  }
+  void Report(benchmark::State& state) const
+  {
+    const double peak = GetMegabytes("VmHWM:");
+    if (peak > 0)
+    {
+      state.counters["peak_MB"] = peak;
+      state.counters["grown_MB"] = std::max(0.0, peak - this->Start);
+    }
+  }
+
+private:
+  static double GetMegabytes(const std::string& key)
+  {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+    {
+      if (line.rfind(key, 0) == 0)
+      {
+        return std::strtod(line.c_str() + key.size(), nullptr) * 1024 / 1e6;
+      }
+    }
+    return 0;
+  }
+
+  double Start = 0;
+};
+
 using Point = std::array<double, 2>;
 
 double Franke(const Point& p)
@@ -81,12 +130,14 @@ void Fit(benchmark::State& state)
 {
   const Problem problem(state.range(1));
   lacuna::ThreadExecution execution;
+  const Memory memory;
   for (auto _ : state)
   {
     const lacuna::RadialBasis<2> s(
       execution, problem.Nodes, problem.Values, MakeOptions(state.range(0)));
     state.counters["condition"] = s.GetReport().ConditionEstimate;
   }
+  memory.Report(state);
 }
 
 // arguments: kernel, nodes, grid size, threads, instruction set
@@ -104,11 +155,13 @@ void Evaluate(benchmark::State& state)
   lacuna::RadialBasis<2> s(execution, problem.Nodes, problem.Values, MakeOptions(state.range(0)));
   s.SetInstructionSet(set);
   std::vector<double> values;
+  const Memory memory;
   for (auto _ : state)
   {
     s.Evaluate(execution, points, values);
     benchmark::DoNotOptimize(values.data());
   }
+  memory.Report(state);
 }
 
 // The direct sum of a thin plate as one would write it first.
@@ -135,11 +188,13 @@ void PlainSum(benchmark::State& state)
   const Problem problem(state.range(0));
   const std::vector<Point> points = MakeGrid(state.range(1));
   std::vector<double> values(points.size());
+  const Memory memory;
   for (auto _ : state)
   {
     SumPlainly(problem.Nodes, problem.Values, points, values);
     benchmark::DoNotOptimize(values.data());
   }
+  memory.Report(state);
 }
 
 // Processor time of a function in milliseconds, the least of several calls.
@@ -195,11 +250,13 @@ void ThesisCase(benchmark::State& state)
   std::vector<double> fast(points.size());
   std::vector<double> direct;
   std::vector<double> plain(points.size());
+  const Memory memory;
   for (auto _ : state)
   {
     s.EvaluateGrid(execution, grid, fast.data());
     benchmark::DoNotOptimize(fast.data());
   }
+  memory.Report(state);
   const double fastTime = GetMilliseconds([&] { s.EvaluateGrid(execution, grid, fast.data()); });
   const double directTime = GetMilliseconds([&] { s.Evaluate(execution, points, direct); });
   const double plainTime = GetMilliseconds([&] { SumPlainly(nodes, depths, points, plain); });
@@ -256,6 +313,7 @@ void FastFit(benchmark::State& state)
 {
   const Scattered<Dimension> problem(state.range(1));
   lacuna::ThreadExecution execution;
+  const Memory memory;
   for (auto _ : state)
   {
     const lacuna::RadialBasis<Dimension> s(
@@ -263,6 +321,7 @@ void FastFit(benchmark::State& state)
     state.counters["iterations"] = s.GetReport().Iterations;
     state.counters["residual"] = s.GetReport().Residual;
   }
+  memory.Report(state);
 }
 
 // The set-up of the sums included. arguments: kernel, nodes, digits of the accuracy, grid size
@@ -277,11 +336,13 @@ void FastGrid(benchmark::State& state)
   grid.Size.fill(state.range(3));
   grid.Spacing.fill(1.0 / static_cast<double>(state.range(3) - 1));
   std::vector<double> values(grid.GetNumberOfPoints());
+  const Memory memory;
   for (auto _ : state)
   {
     s.EvaluateGrid(execution, grid, values.data());
     benchmark::DoNotOptimize(values.data());
   }
+  memory.Report(state);
 }
 
 // Fewer centres for values that are missed by no more than a tolerance (1 is their range). arguments:
@@ -295,6 +356,7 @@ void Reduce(benchmark::State& state)
   const auto ends = std::minmax_element(problem.Values.begin(), problem.Values.end());
   const double tolerance = (*ends.second - *ends.first) * MakeFastOptions(state).Accuracy;
   lacuna::ThreadExecution execution;
+  const Memory memory;
   for (auto _ : state)
   {
     const lacuna::ReducedCenters<Dimension> reduced = lacuna::ReduceCenters<Dimension>(
@@ -302,6 +364,85 @@ void Reduce(benchmark::State& state)
     state.counters["centers"] = static_cast<double>(reduced.Indices.size());
     state.counters["residual/tolerance"] = reduced.Residual / tolerance;
   }
+  memory.Report(state);
+}
+
+// Handles of RBF Hole Filler: five control points in a hole of 30 mm radius, of which one moves. The
+// time is that of a fill with the point elsewhere; counter: processor time of the first fill, s. arguments: margin, mm
+void DragPoint(benchmark::State& state)
+{
+  const auto margin = static_cast<double>(state.range(0));
+  lacuna::HoleFillInput input;
+  input.Grid.Width = input.Grid.Height = 61 + 2 * static_cast<int>(state.range(0));
+  input.Grid.Spacing = { 1, 1 };
+  const double middle = 30 + margin;
+  for (std::size_t i = 0; i < input.Grid.GetSize(); ++i)
+  {
+    const double x = static_cast<double>(i % input.Grid.Width) - middle;
+    const double y = static_cast<double>(i / input.Grid.Width) - middle;
+    input.Depth.push_back(90 - 90 * std::sqrt(1 - std::pow(x / 150, 2) - std::pow(y / 130, 2)) +
+      0.5 * std::sin(x / 7) * std::cos(y / 9));
+    input.Valid.push_back(1);
+    input.Defect.push_back(std::hypot(x, y) <= 30);
+  }
+  for (int k = 0; k < 5; ++k)
+  {
+    const double angle = 2 * 3.14159265358979 * k / 5;
+    input.ControlPoints.push_back(
+      { middle + 15.3 * std::cos(angle), middle + 15.3 * std::sin(angle), 2.0 + 0.1 * k });
+  }
+  lacuna::HoleFillOptions options;
+  options.SupportMargin = margin;
+  lacuna::ThreadExecution execution;
+  lacuna::HoleFiller filler;
+  const std::clock_t start = std::clock();
+  filler.Fill(execution, input, options);
+  const double first = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const Memory memory;
+  for (auto _ : state)
+  {
+    input.ControlPoints[2][0] += 0.01;
+    input.ControlPoints[2][2] += 0.01;
+    const lacuna::HoleFillResult result = filler.Fill(execution, input, options);
+    state.counters["nodes"] = result.Fit.NodeCount;
+    if (!result.Reused)
+    {
+      state.SkipWithError("the equations were solved anew");
+    }
+  }
+  memory.Report(state);
+  state.counters["first_s"] = first;
+}
+
+// A node of UpdatableRadialBasis moves, and the function is evaluated at one point. Counter: how many
+// times as long a new fit takes. arguments: nodes
+void MoveNode(benchmark::State& state)
+{
+  const Problem problem(state.range(0));
+  lacuna::ThreadExecution execution(1);
+  lacuna::UpdatableRadialBasis<2> s(execution, problem.Nodes, problem.Values, MakeOptions(0));
+  std::vector<double> values;
+  Point p = problem.Nodes[static_cast<std::size_t>(state.range(0) / 2)];
+  const Memory memory;
+  const std::clock_t start = std::clock();
+  for (auto _ : state)
+  {
+    p[0] += 1e-6;
+    s.Move(static_cast<std::size_t>(state.range(0) / 2), p, 0.5);
+    s.Evaluate(execution, { { 0.3, 0.4 } }, values);
+    benchmark::DoNotOptimize(values.data());
+  }
+  memory.Report(state);
+  const double milliseconds = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC /
+    static_cast<double>(state.iterations());
+  state.counters["new_fit/move"] = GetMilliseconds(
+                                     [&]
+                                     {
+                                       const lacuna::RadialBasis<2> fresh(
+                                         execution, problem.Nodes, problem.Values, MakeOptions(0));
+                                       benchmark::DoNotOptimize(fresh.GetReport().Residual);
+                                     }) /
+    milliseconds;
 }
 
 // What it takes to set up a warp by landmarks in space. arguments: pairs
@@ -312,11 +453,13 @@ void WarpSetUp(benchmark::State& state)
   lacuna::RadialBasisOptions options = MakeOptions(0);
   options.Accuracy = 1e-4;
   lacuna::ThreadExecution execution;
+  const Memory memory;
   for (auto _ : state)
   {
     const lacuna::RadialBasis<3> s(execution, problem.Nodes, ways, options);
     benchmark::DoNotOptimize(s.GetReport().Residual);
   }
+  memory.Report(state);
 }
 
 #ifdef LACUNA_WITH_VTK_TRANSFORMS
@@ -335,6 +478,7 @@ void WarpSetUpVTK(benchmark::State& state)
     from->InsertNextPoint(p[0], p[1], p[2]);
     to->InsertNextPoint(p[0] + way, p[1] + way, p[2] + way);
   }
+  const Memory memory;
   for (auto _ : state)
   {
     vtkNew<vtkThinPlateSplineTransform> transform;
@@ -343,6 +487,7 @@ void WarpSetUpVTK(benchmark::State& state)
     transform->SetBasisToR2LogR();
     transform->Update();
   }
+  memory.Report(state);
 }
 #endif
 
@@ -418,6 +563,20 @@ BENCHMARK_TEMPLATE(Reduce, 3)
   ->ArgNames({ "kernel", "nodes", "digits" })
   ->ArgsProduct({ { Linear }, { 100000 }, { 1, 2, 3 } })
   ->Iterations(1)
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(DragPoint)
+  ->ArgNames({ "margin" })
+  ->Args({ 12 })
+  ->Args({ 45 })
+  ->MeasureProcessCPUTime()
+  ->UseRealTime()
+  ->Unit(benchmark::kMillisecond);
+BENCHMARK(MoveNode)
+  ->ArgNames({ "nodes" })
+  ->Args({ 700 })
+  ->Args({ 2000 })
   ->MeasureProcessCPUTime()
   ->UseRealTime()
   ->Unit(benchmark::kMillisecond);
