@@ -2,6 +2,7 @@
 #include "vtkLacunaMirror.h"
 
 #include "lacunaMapSymmetry.h"
+#include "lacunaMirroredMap.h"
 #include "lacunaMirroredVolume.h"
 #include "lacunaParameterText.h"
 #include "lacunaVolumeSymmetry.h"

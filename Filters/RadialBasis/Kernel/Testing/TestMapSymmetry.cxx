@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaMapSymmetry.h"
+#include "lacunaMirroredMap.h"
 
 #include "lacunaMirrorTest.h"
 

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Values of a function that is fitted.
+#include "lacunaExecution.h"
+#include "lacunaFastRadialSum.h"
+#include "lacunaRadialBasis.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace lacuna
+{
+namespace
+{
+// Direct sums of so many functions take less time than to set up fast ones.
+constexpr double FewEvaluations = 2e8;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+double RadialBasis<Dimension>::EvaluatePolynomial(
+  const double* coefficients, const Point& u, Point* gradient) const
+{
+  const RadialPolynomial<Dimension>& polynomial = this->GetCenters().Polynomial;
+  double monomials[RadialPolynomial<Dimension>::MaximumCount];
+  polynomial.Evaluate(u, monomials);
+  double value = 0;
+  for (int k = 0; k < polynomial.GetCount(); ++k)
+  {
+    value += coefficients[k] * monomials[k];
+  }
+  if (gradient)
+  {
+    for (int c = 0; c < Dimension; ++c)
+    {
+      (*gradient)[c] = coefficients[1 + c] / polynomial.Length;
+    }
+    const double* quadratic = coefficients + Dimension + 1;
+    const double square = polynomial.Length * polynomial.Length;
+    for (int c = 0; c < Dimension && polynomial.Degree == 2; ++c)
+    {
+      for (int d = c; d < Dimension; ++d, ++quadratic)
+      {
+        (*gradient)[c] += *quadratic * u[d] / square;
+        (*gradient)[d] += *quadratic * u[c] / square;
+      }
+    }
+  }
+  return value;
+}
+
+template <int Dimension>
+void RadialBasis<Dimension>::EvaluateBlock(
+  int component, const Point* points, std::size_t count, double* values, Point* gradients) const
+{
+  const std::size_t n = this->GetCenters().GetSize();
+  const double* coefficients = this->Coefficients[component].data();
+  alignas(64) double block[Dimension][RadialBlock] = {};
+  alignas(64) double sums[RadialBlock];
+  alignas(64) double slopes[Dimension][RadialBlock];
+  Point scaled[RadialBlock];
+  Coordinates<Dimension> at;
+  for (int k = 0; k < Dimension; ++k)
+  {
+    at.Axis[k] = block[k];
+  }
+  for (std::size_t p = 0; p < count; ++p)
+  {
+    scaled[p] = this->Frame.ToScaled(points[p]);
+    for (int k = 0; k < Dimension; ++k)
+    {
+      block[k][p] = scaled[p][k];
+    }
+  }
+  if (gradients)
+  {
+    this->Loops.SumAndGradient(
+      this->GetCenters().GetCoordinates(), coefficients, n, at, sums, slopes[0]);
+  }
+  else
+  {
+    this->Loops.Sum(this->GetCenters().GetCoordinates(), coefficients, n, at, sums);
+  }
+  for (std::size_t p = 0; p < count; ++p)
+  {
+    Point slope;
+    values[p] = sums[p] +
+      this->EvaluatePolynomial(coefficients + n, scaled[p], gradients ? &slope : nullptr) +
+      this->Means[component];
+    for (int k = 0; gradients && k < Dimension; ++k)
+    {
+      gradients[p][k] = this->Frame.Scale * (slopes[k][p] + slope[k]);
+    }
+  }
+}
+
+template <int Dimension>
+void RadialBasis<Dimension>::EvaluateBlocks(Execution& execution, int component,
+  const std::vector<Point>& points, double* values, Point* gradients) const
+{
+  constexpr auto size = static_cast<std::int64_t>(RadialBlock);
+  const auto count = static_cast<std::int64_t>(points.size());
+  execution.For((count + size - 1) / size, 4,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin * size; i < std::min(end * size, count); i += size)
+      {
+        this->EvaluateBlock(component, points.data() + i, std::min(size, count - i), values + i,
+          gradients ? gradients + i : nullptr);
+      }
+    });
+}
+
+template <int Dimension>
+void RadialBasis<Dimension>::Evaluate(Execution& execution, const std::vector<Point>& points,
+  std::vector<double>& values, int component) const
+{
+  values.resize(points.size());
+  this->EvaluateBlocks(execution, component, points, values.data(), nullptr);
+}
+
+template <int Dimension>
+void RadialBasis<Dimension>::Evaluate(Execution& execution, const std::vector<Point>& points,
+  std::vector<double>& values, std::vector<Point>& gradients, int component) const
+{
+  values.resize(points.size());
+  gradients.resize(points.size());
+  this->EvaluateBlocks(execution, component, points, values.data(), gradients.data());
+}
+
+template <int Dimension>
+double RadialBasis<Dimension>::EvaluateWithin(Execution& execution, double tolerance,
+  const std::vector<Point>& points, std::vector<double>& values, int component) const
+{
+  const std::size_t n = this->GetCenters().GetSize();
+  if (static_cast<double>(n) * static_cast<double>(points.size()) < FewEvaluations)
+  {
+    this->Evaluate(execution, points, values, component);
+    return 0;
+  }
+  std::vector<Point> scaled;
+  scaled.reserve(points.size());
+  for (const Point& p : points)
+  {
+    scaled.push_back(this->Frame.ToScaled(p));
+  }
+  values.resize(points.size());
+  const std::vector<double>& coefficients = this->Coefficients[component];
+  FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
+  const double bound = sum.Apply(execution,
+    { coefficients.begin(), coefficients.begin() + static_cast<std::ptrdiff_t>(n) }, tolerance,
+    values.data());
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    values[i] += this->Means[component] +
+      this->EvaluatePolynomial(coefficients.data() + n, scaled[i], nullptr);
+  }
+  return bound;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+void RadialBasis<Dimension>::EvaluateGrid(
+  Execution& execution, const RegularGrid<Dimension>& grid, double* values, int component) const
+{
+  const std::int64_t columns = grid.Size[0];
+  const std::int64_t rows = columns > 0 ? grid.GetNumberOfPoints() / columns : 0;
+  const auto getRowStart = [&](const RegularGrid<Dimension>& g, std::int64_t row)
+  {
+    Point p = g.Origin;
+    for (int c = 1; c < Dimension; ++c)
+    {
+      p[c] += static_cast<double>(row % g.Size[c]) * g.Spacing[c];
+      row /= g.Size[c];
+    }
+    return p;
+  };
+  if (!(this->Options.Accuracy > 0) || !(this->Ranges[component] > 0))
+  {
+    execution.For(rows, 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        Point points[RadialBlock];
+        for (std::int64_t row = begin; row < end; ++row)
+        {
+          const Point start = getRowStart(grid, row);
+          for (std::int64_t first = 0; first < columns; first += RadialBlock)
+          {
+            const auto count =
+              static_cast<std::size_t>(std::min<std::int64_t>(RadialBlock, columns - first));
+            for (std::size_t i = 0; i < count; ++i)
+            {
+              points[i] = start;
+              points[i][0] += static_cast<double>(first + i) * grid.Spacing[0];
+            }
+            this->EvaluateBlock(component, points, count, values + row * columns + first, nullptr);
+          }
+        }
+      });
+    return;
+  }
+
+  RegularGrid<Dimension> scaled = grid;
+  scaled.Origin = this->Frame.ToScaled(grid.Origin);
+  for (double& spacing : scaled.Spacing)
+  {
+    spacing *= this->Frame.Scale;
+  }
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0, 0.9);
+  const auto n = static_cast<std::ptrdiff_t>(this->GetCenters().GetSize());
+  const std::vector<double>& coefficients = this->Coefficients[component];
+  FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
+  sum.Apply(execution, { coefficients.begin(), coefficients.begin() + n },
+    this->Options.Accuracy * this->Ranges[component], values);
+  execution.SetStage(0.9, 1);
+  execution.For(rows, 16,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t row = begin; row < end; ++row)
+      {
+        Point u = getRowStart(scaled, row);
+        for (std::int64_t i = 0; i < columns; ++i)
+        {
+          u[0] = scaled.Origin[0] + static_cast<double>(i) * scaled.Spacing[0];
+          values[row * columns + i] +=
+            this->Means[component] + this->EvaluatePolynomial(coefficients.data() + n, u, nullptr);
+        }
+      }
+    });
+}
+
+template double RadialBasis<2>::EvaluatePolynomial(const double*, const Point&, Point*) const;
+template void RadialBasis<2>::Evaluate(
+  Execution&, const std::vector<Point>&, std::vector<double>&, int) const;
+template void RadialBasis<2>::Evaluate(
+  Execution&, const std::vector<Point>&, std::vector<double>&, std::vector<Point>&, int) const;
+template double RadialBasis<2>::EvaluateWithin(
+  Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
+template void RadialBasis<2>::EvaluateGrid(Execution&, const RegularGrid<2>&, double*, int) const;
+template double RadialBasis<3>::EvaluatePolynomial(const double*, const Point&, Point*) const;
+template void RadialBasis<3>::Evaluate(
+  Execution&, const std::vector<Point>&, std::vector<double>&, int) const;
+template void RadialBasis<3>::Evaluate(
+  Execution&, const std::vector<Point>&, std::vector<double>&, std::vector<Point>&, int) const;
+template double RadialBasis<3>::EvaluateWithin(
+  Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
+template void RadialBasis<3>::EvaluateGrid(Execution&, const RegularGrid<3>&, double*, int) const;
+}
