@@ -8,6 +8,7 @@
 #include <cblas.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -123,11 +124,36 @@ template <int Dimension>
 double FastRadialSum<Dimension>::Apply(
   Execution& execution, const std::vector<double>& weights, double tolerance, double* values)
 {
+  return this->ApplyWithin(MaximumOrder, execution, weights, tolerance, values);
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::ApplyOnce(
+  Execution& execution, const std::vector<double>& weights, double tolerance, double* values)
+{
+  const double evaluations =
+    static_cast<double>(weights.size()) * static_cast<double>(this->GetNumberOfPoints());
+  int order = MaximumOrder;
+  while (order > 1 && this->GetSetUpEvaluations(order) > evaluations)
+  {
+    --order;
+  }
+  return this->ApplyWithin(order, execution, weights, tolerance, values);
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::ApplyWithin(int order, Execution& execution,
+  const std::vector<double>& weights, double tolerance, double* values)
+{
   const Execution::NestedStages stages(execution);
   const SingleBlasThread single;
   this->SortWeights(weights);
   execution.SetStage(0, 0.1);
-  const double bound = this->ChooseOrder(execution, tolerance, MaximumOrder);
+  double bound = std::numeric_limits<double>::infinity();
+  if (order > 1)
+  {
+    bound = this->ChooseOrder(execution, tolerance, order);
+  }
   if (bound <= tolerance)
   {
     this->SumByInterpolants(execution, values);

@@ -49,6 +49,10 @@ public:
   /// doubles cannot give the tolerance.
   double Apply(
     Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
+  /// The same for one sum only: by direct sums (bound 0) where the interpolants that the tolerance
+  /// needs would take longer to set up.
+  double ApplyOnce(
+    Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
   /// The same with interpolants of at most some order, whatever bound they have.
   double ApplyUpTo(int order, Execution& execution, const std::vector<double>& weights,
     double tolerance, double* values);
@@ -64,6 +68,10 @@ private:
 
   void Prepare();
   const CellTree<Dimension>& GetTargets() const;
+  /// What it takes to set up interpolants of an order, in evaluations of the kernel.
+  double GetSetUpEvaluations(int order) const;
+  double ApplyWithin(int order, Execution& execution, const std::vector<double>& weights,
+    double tolerance, double* values);
   FarField<Dimension>& GetFarField(Execution& execution, int order);
   /// Returns the bound of the error.
   double ChooseOrder(Execution& execution, double tolerance, int maximum);

@@ -32,6 +32,17 @@ void FastRadialSum<Dimension>::SumMagnitudes()
 }
 
 template <int Dimension>
+double FastRadialSum<Dimension>::GetSetUpEvaluations(int order) const
+{
+  // Errors are found from a few hundred samples of each operator's matrix.
+  constexpr double perElement = 32;
+  const auto operators = static_cast<double>(FarOffsets<Dimension>().GetCanonical().size());
+  const auto levels =
+    static_cast<double>(std::count(this->Levels.begin(), this->Levels.end(), char(1)));
+  return perElement * operators * levels * std::pow(order, 2 * Dimension);
+}
+
+template <int Dimension>
 FarField<Dimension>& FastRadialSum<Dimension>::GetFarField(Execution& execution, int order)
 {
   std::unique_ptr<FarField<Dimension>>& far = this->FarFields[order];
@@ -118,6 +129,8 @@ double FastRadialSum<Dimension>::ChooseOrder(Execution& execution, double tolera
 
 template void FastRadialSum<2>::SumMagnitudes();
 template void FastRadialSum<3>::SumMagnitudes();
+template double FastRadialSum<2>::GetSetUpEvaluations(int) const;
+template double FastRadialSum<3>::GetSetUpEvaluations(int) const;
 template double FastRadialSum<2>::ChooseOrder(Execution&, double, int);
 template double FastRadialSum<3>::ChooseOrder(Execution&, double, int);
 }

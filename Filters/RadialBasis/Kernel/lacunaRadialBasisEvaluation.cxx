@@ -146,7 +146,7 @@ double RadialBasis<Dimension>::EvaluateWithin(Execution& execution, double toler
   values.resize(points.size());
   const std::vector<double>& coefficients = this->Coefficients[component];
   FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
-  const double bound = sum.Apply(execution,
+  const double bound = sum.ApplyOnce(execution,
     { coefficients.begin(), coefficients.begin() + static_cast<std::ptrdiff_t>(n) }, tolerance,
     values.data());
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -210,7 +210,7 @@ void RadialBasis<Dimension>::EvaluateGrid(
   const auto n = static_cast<std::ptrdiff_t>(this->GetCenters().GetSize());
   const std::vector<double>& coefficients = this->Coefficients[component];
   FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
-  sum.Apply(execution, { coefficients.begin(), coefficients.begin() + n },
+  sum.ApplyOnce(execution, { coefficients.begin(), coefficients.begin() + n },
     this->Options.Accuracy * this->Ranges[component], values);
   execution.SetStage(0.9, 1);
   execution.For(rows, 16,

@@ -326,3 +326,40 @@ TEST(FastRadialSum, RefusesWhatCannotBeSummed)
   EXPECT_THROW(
     sum.Apply(execution, std::vector<double>(10, 1.0), 0, values.data()), std::invalid_argument);
 }
+
+// A landmark warp of a small volume: interpolants of a high order would take seconds to set up.
+TEST(FastRadialSum, SumsOnceDirectlyWhereThatIsLessWork)
+{
+  lacuna::ThreadExecution execution(2);
+  const Points<3> nodes = Make<3>(Shape::Uniform, 40);
+  lacuna::RegularGrid<3> grid;
+  grid.Size = { 40, 30, 12 };
+  grid.Spacing = { 1.0 / 39, 1.0 / 29, 1.0 / 11 };
+  const std::vector<double> weights = Weights(nodes.size(), true);
+  std::vector<double> values(grid.GetNumberOfPoints());
+  lacuna::FastRadialSum<3> few(RadialKernel::ThinPlate, nodes, grid);
+  EXPECT_EQ(few.ApplyOnce(execution, weights, 1e-7, values.data()), 0);
+  for (std::int64_t i = 0; i < grid.GetNumberOfPoints(); i += 77)
+  {
+    const double p[3] = { static_cast<double>(i % 40) / 39, static_cast<double>(i / 40 % 30) / 29,
+      static_cast<double>(i / 1200) / 11 };
+    double expected = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+    {
+      const double r = std::hypot(p[0] - nodes[k][0], p[1] - nodes[k][1], p[2] - nodes[k][2]);
+      expected += r > 0 ? weights[k] * r * r * std::log(r) : 0;
+    }
+    EXPECT_NEAR(values[i], expected, 1e-12);
+  }
+
+  // where there is more to sum it stays fast
+  const Points<2> many = Make<2>(Shape::Uniform, 700);
+  lacuna::RegularGrid<2> picture;
+  picture.Size = { 205, 205 };
+  picture.Spacing = { 1.0 / 204, 1.0 / 204 };
+  std::vector<double> fast(picture.GetNumberOfPoints());
+  lacuna::FastRadialSum<2> sum(RadialKernel::ThinPlate, many, picture);
+  const double bound = sum.ApplyOnce(execution, Weights(many.size(), true), 1e-4, fast.data());
+  EXPECT_GT(bound, 0);
+  EXPECT_LE(bound, 1e-4);
+}
