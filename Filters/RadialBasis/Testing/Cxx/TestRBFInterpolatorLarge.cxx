@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many noisy points become an image. Some of them lie on its grid, so that the image itself shows
 // that they are met; elsewhere it stays near the function that the noise was added to. Run with a
-// number, the test takes so many points in space (a million is its soak).
+// number, the test takes so many points in space without noise (a million is its soak).
 #include "lacunaCheck.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -26,7 +26,6 @@
 namespace
 {
 constexpr double Edge = 64; // mm, of the square or cube, and of the grid
-constexpr double Noise = 0.05;
 
 double Wave(const double* x)
 {
@@ -39,11 +38,11 @@ struct Scatter
   vtkNew<vtkDoubleArray> Values;
   std::vector<vtkIdType> OnGrid; // points of the grid of 1 mm that the first points lie on
 
-  Scatter(vtkIdType count, bool flat)
+  Scatter(vtkIdType count, bool flat, double limit)
   {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> place(0, Edge);
-    std::uniform_real_distribution<double> noise(-Noise, Noise);
+    std::uniform_real_distribution<double> noise(-1, 1);
     const auto size = static_cast<vtkIdType>(Edge) + 1;
     const vtkIdType layers = flat ? 1 : size;
     // every 7th point of the grid, its corners among them, so that it has the points' bounds
@@ -69,7 +68,7 @@ struct Scatter
         x[2] = flat ? 20 : static_cast<double>(i / (size * size));
       }
       points->InsertNextPoint(x);
-      this->Values->InsertNextValue(Wave(x) + noise(random));
+      this->Values->InsertNextValue(Wave(x) + limit * noise(random));
     }
     this->Data->SetPoints(points);
     this->Data->GetPointData()->SetScalars(this->Values);
@@ -96,9 +95,9 @@ double GetField(vtkImageData* image, const char* name)
   return array ? array->GetComponent(0, 0) : std::nan("");
 }
 
-void Check(vtkIdType count, bool flat, double accuracy)
+void Check(vtkIdType count, bool flat, double accuracy, double noise)
 {
-  const Scatter scatter(count, flat);
+  const Scatter scatter(count, flat, noise);
   vtkNew<vtkLacunaRBFInterpolator> filter;
   const auto messages = lacunaCheck::Watch(filter);
   filter->SetInputData(scatter.Data);
@@ -150,8 +149,8 @@ void Check(vtkIdType count, bool flat, double accuracy)
             << worst << "; memory of the process up to " << GetPeakMemory() << " MB" << std::endl;
   // Between points it is a mean of their noise (RMS 0.58 of its limit), but two points that nearly
   // touch and differ make it steep there.
-  LACUNA_CHECK(rms < 0.7 * Noise);
-  LACUNA_CHECK(worst < 10 * Noise);
+  LACUNA_CHECK(rms < 0.7 * noise + allowed);
+  LACUNA_CHECK(worst < 10 * std::max(noise, 0.01));
 }
 }
 
@@ -159,11 +158,11 @@ int TestRBFInterpolatorLarge(int argc, char* argv[])
 {
   if (argc > 1)
   {
-    Check(std::atoll(argv[1]), false, 1e-3);
+    Check(std::atoll(argv[1]), false, 1e-3, 0);
     LACUNA_CHECK(GetPeakMemory() < 8000);
     return lacunaCheck::Result();
   }
-  Check(100000, true, 1e-4);
-  Check(100000, false, 1e-3);
+  Check(100000, true, 1e-4, 0.05);
+  Check(100000, false, 1e-3, 0.05);
   return lacunaCheck::Result();
 }
