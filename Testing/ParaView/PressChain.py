@@ -9,6 +9,7 @@ import sys
 import lacuna_test
 import numpy as np
 from lacuna.errors import raising
+from letter_block import HALF, face_axes, letter_distance
 from paraview import servermanager
 from paraview.simple import Delete, ExtractSurface, LoadPlugin, OpenDataFile, SaveData, TrivialProducer
 from vtkmodules.numpy_interface import dataset_adapter as dsa
@@ -20,23 +21,6 @@ shutil.rmtree(folder, ignore_errors=True)
 subprocess.run([sys.argv[1], folder], check=True)
 
 MICROMETRE = 1e-3
-HALF = 28.0
-BARS = np.array([[-8, -3.5, -10, 10], [-8, 8, 5.5, 10], [-8, 4, -2.5, 2]])
-
-
-def rotation(axis, angle):
-    k = np.array(axis) / np.linalg.norm(axis)
-    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-
-
-AXES = rotation([0.3, -1, 0.5], 0.35)  # as in MakeLetterBlock.cxx
-
-
-def letter_distance(a, b):
-    """Distance from the letter, 0 inside."""
-    return np.min([np.hypot(np.maximum(np.maximum(x0 - a, a - x1), 0), np.maximum(np.maximum(y0 - b, b - y1), 0))
-                   for x0, x1, y0, y1 in BARS], axis=0)
 
 
 def read_iges(path):
@@ -100,9 +84,7 @@ worst = 0
 for name in ("axial", "feet first", "sagittal", "oblique"):
     scan = CTSeriesReader(FileName=os.path.join(folder, name))
     for face in range(5):
-        axis, sign = face // 2, -1.0 if face % 2 else 1.0
-        normal = sign * AXES[:, axis]
-        along, up = sign * AXES[:, (axis + 1) % 3], AXES[:, (axis + 2) % 3]
+        along, up, normal = face_axes(face)
         view = -normal + 0.22 * along - 0.15 * up  # not along the normal: the press has to turn it
         depth = BSplineIsoRayCaster(Input=scan, IsoValues=[0], PixelSpacing=0.5, ViewDirection=list(view),
                                     ViewUp=list(up + 0.15 * along), FocalPoint=list(HALF * normal), ImageSize=[75, 75])

@@ -15,7 +15,7 @@ namespace
 {
 using lacuna::Vec3;
 
-// The block's axes, x, y, z to patient; PressChain.py has the same.
+// The block's axes, x, y, z to patient; letter_block.py has the same.
 const lacuna::Matrix4 Axes = lacuna::Matrix4::Rotation({ 0.3, -1, 0.5 }, 0.35);
 constexpr double Half = 28;
 constexpr double PitDepth = 6;
@@ -84,6 +84,16 @@ int main(int argc, char* argv[])
   oblique.Column = turn.Vector(oblique.Column);
   oblique.First = turn.Vector(oblique.First);
   oblique.Step = turn.Vector(oblique.Step);
+  // feet first, turned, and each image 0.25 mm further along its rows and -0.15 mm along its columns
+  CTTestSeries& tilted = cases["tilted"] = axial;
+  const lacuna::Matrix4 lie = lacuna::Matrix4::Rotation({ 2, 1, -3 }, 0.3);
+  tilted.Row = lie.Vector({ -1, 0, 0 });
+  tilted.Step = lie.Vector({ 0.15, 0.25, 1.1 });
+  tilted.Columns = 117;
+  tilted.Rows = 114;
+  tilted.First = lie.Vector({ 46.1, -66.5, -45 });
+  tilted.Column = lie.Vector(tilted.Column);
+  tilted.PatientPosition = "FFS";
   try
   {
     for (const auto& [name, series] : cases)
