@@ -5,6 +5,7 @@ import os
 import sys
 
 import numpy as np
+from lacuna.errors import PipelineError
 from lacuna_test import output
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -78,6 +79,21 @@ cubic[4] = np.nan
 values = walk.finer(cubic)[:, 0]
 assert np.isnan(values[13:20]).all() and np.isfinite(np.delete(values, np.s_[13:20])).all()
 assert abs(values[10] - (cubic[2, 0] + cubic[3, 0]) / 2) < 1e-15
+
+# A cylinder that misses the head, or runs past all of its bone: said, with the numbers given, and nothing is made.
+ct, nothing = output("ImplantChecks.vti"), output("ImplantChecksNothing")
+walk.SaveData(ct, proxy=walk.SkullPhantom(Spacing=[4, 4, 4]), DataMode="Binary")
+for hole in (["300", "5", "0", "10"], ["-13.5", "-400", "20", "30"]):
+    sys.argv = ["implant_to_mould.py", "--output", nothing, "--ct", ct, "--hole", *hole]
+    try:
+        walk.main()
+        raise RuntimeError("no error")
+    except PipelineError as error:
+        assert "nothing is filled" in str(error), error
+        for number in hole[:3]:
+            assert f"{float(number):g}" in str(error), (number, error)
+        assert "--hole and --view are in mm" in str(error), error
+    assert os.listdir(nothing) == []
 
 # When a check fails nothing is left under a name that one would make something from.
 folder = output("ImplantChecks")

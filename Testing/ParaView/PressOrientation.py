@@ -155,6 +155,10 @@ for change, words in (({"Rotate": [10, 0, 0]}, "tilted by 10 degrees"), ({"Trans
         assert words in text, (change, text)
     milled, text = judge(transformed(press, **change), Coordinates="Patient")
     assert len(milled) == 1 and isinstance(text, str) and "AsGiven" in text, text
+# Of a depth map Transform keeps the plane of its pixels, and not its depths: that is no surface.
+for change in ({}, {"Translate": [0, 0, 5]}, {"Rotate": [10, 0, 0]}):
+    for text in judge(transformed(filled, **change)):
+        assert isinstance(text, str) and "plane of a depth map's pixels" in text and "Take Transform out" in text, text
 
 # No mould, but the way out, which works.
 hurt = SkullPhantom(DefectRadius=40)

@@ -126,11 +126,22 @@ TEST(IGESDocument, StrictParserReadsASurfaceBack)
   IGESHeader header = Header();
   header.Start.push_back(std::string(200, 'x') + " " + std::string(50, 'y'));
   header.FileName = "J\xc3\xbcrgen.igs";
+  header.Product = "A skull";
+  header.System = "A system";
+  header.Preprocessor = "A preprocessor";
   header.MinimumResolution = 0.001;
   const IGESParser file(document.GetText(header));
 
   EXPECT_EQ(file.Start.size(), 5u);
+  EXPECT_EQ(IGESParser::String(file.Global[0]), ",");
+  EXPECT_EQ(IGESParser::String(file.Global[1]), ";");
+  // numbers of the specification, from 1: 3 and 12 the product, as sender and receiver call it, 5 and
+  // 6 what wrote it, 21 and 22 author and organisation, who are nobody
+  EXPECT_EQ(IGESParser::String(file.Global[2]), "A skull");
   EXPECT_EQ(IGESParser::String(file.Global[3]), "J__rgen.igs");
+  EXPECT_EQ(IGESParser::String(file.Global[4]), "A system");
+  EXPECT_EQ(IGESParser::String(file.Global[5]), "A preprocessor");
+  EXPECT_EQ(IGESParser::String(file.Global[11]), "A skull");
   EXPECT_EQ(IGESParser::Real(file.Global[12]), 1);
   EXPECT_EQ(IGESParser::Integer(file.Global[13]), 2);
   EXPECT_EQ(IGESParser::String(file.Global[14]), "MM");
@@ -142,6 +153,8 @@ TEST(IGESDocument, StrictParserReadsASurfaceBack)
     largest = std::max({ largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
   }
   EXPECT_GE(IGESParser::Real(file.Global[19]), largest);
+  EXPECT_EQ(IGESParser::String(file.Global[20]), "Lacuna");
+  EXPECT_EQ(IGESParser::String(file.Global[21]), "Lacuna");
   EXPECT_EQ(IGESParser::Integer(file.Global[22]), 11);
 
   ASSERT_EQ(file.Entities.size(), 3u);

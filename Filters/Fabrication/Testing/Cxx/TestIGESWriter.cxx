@@ -99,6 +99,12 @@ void TestMaps(const std::string& path)
         IGESParser::String(file.Global[3]) == vtksys::SystemTools::GetFilenameName(path),
         "file name without folder");
       LACUNA_CHECK_THAT(file.Global[17].size() == 18, "date");
+      // who sends it: a program with its version, and nobody
+      const auto global = [&](int number) { return IGESParser::String(file.Global[number - 1]); };
+      const std::string version = std::string("Lacuna ") + vtkLacunaProvenance::GetVersion();
+      LACUNA_CHECK(global(3) == "Lacuna" && global(12) == "Lacuna");
+      LACUNA_CHECK(global(5) == version && global(6) == version + " IGES Writer");
+      LACUNA_CHECK(global(21) == "Lacuna" && global(22) == "Lacuna");
     }
     std::ostringstream text;
     writer->Print(text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TestMillingMould.h"
+#include "TestSurfaces.h"
 #include "lacunaCheck.h"
 #include "lacunaVector.h"
 #include "vtkCellArray.h"
@@ -151,6 +152,11 @@ void TestWarnsAndRefuses()
   points->SetNumberOfPoints(8);
   volume->SetPoints(points);
   refuses(volume, "exactly one dimension of 1");
+  const auto map = TestSurfaces::Map(TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3), true);
+  refuses(TestSurfaces::PixelGrid(map, {}, false, 0),
+    "plane of a depth map's pixels, not its surface: Transform makes such a grid");
+  refuses(TestSurfaces::PixelGrid(map, lacuna::Matrix4::Translation({ 3, 4, 5 }), false, 0),
+    "Take Transform out of the pipeline");
   auto wrong = Mould();
   vtkLacunaFieldData::Set(wrong, "PressToPatient", { 1, 2, 3 }, 3);
   refuses(wrong, "PressToPatient");

@@ -133,10 +133,9 @@ void TestPlace()
   }
 }
 
-// Where the surface is linear the mould is exact: on the plate's other face, parallel to it.
-void TestExactPlane()
+// The map with a linear surface in the place of the fitted one.
+vtkSmartPointer<vtkImageData> PlaneMap(const vtkLacunaDepthMap::Geometry& geometry)
 {
-  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
   auto map = FilledMap(geometry);
   vtkDataArray* fitted = map->GetPointData()->GetArray("Fitted");
   for (vtkIdType k = 0; k < fitted->GetNumberOfTuples(); ++k)
@@ -146,18 +145,18 @@ void TestExactPlane()
       fitted->SetComponent(k, 0, 30 + 0.1 * 0.5 * (5 + k % 90) - 0.2 * 0.75 * (k / 90 - 3));
     }
   }
-  const auto filter = MakeFilter(map);
-  filter->Update(); // Female, Onlay
-  vtkStructuredGrid* grid = filter->GetOutput();
+  return map;
+}
+
+// How far, in mm, the mould's true surface is at most from where it should be: offset towards the
+// viewer from the plane of PlaneMap.
+double OffPlane(vtkStructuredGrid* grid, const vtkLacunaDepthMap::Geometry& geometry, double offset)
+{
   const double rise = std::sqrt(1 + 0.01 + 0.04);
-  LACUNA_CHECK_NEAR(GetField(grid, "SurfaceOffset"), 0.7, 0);
-  LACUNA_CHECK_NEAR(GetField(grid, "Depth"), 1, 1e-12); // of the fillet, an eighth of the flange
-  const double degrees = 180 / 3.14159265358979323846;
-  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 0), degrees * std::atan(0.2 / std::sqrt(1.01)), 1e-12);
-  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 1), degrees * std::atan(0.1), 1e-12);
   const Matrix4 back = GetPressToPatient(grid);
   vtkDataArray* regions = grid->GetPointData()->GetArray("PressRegion");
   double off = 0;
+  int count = 0;
   for (vtkIdType k = 0; k < grid->GetNumberOfPoints(); ++k)
   {
     if (regions->GetComponent(k, 0) != 2)
@@ -169,13 +168,103 @@ void TestExactPlane()
     const Vec3 q = back.Point(p) - geometry.Origin;
     const double height = 30 + 0.1 * lacuna::Dot(q, geometry.Right) -
       0.2 * lacuna::Dot(q, geometry.Down) - lacuna::Dot(q, geometry.View);
-    off = std::max(off, std::abs(height / rise - 0.7));
+    off = std::max(off, std::abs(height / rise - offset));
+    ++count;
   }
-  LACUNA_CHECK_THAT(off < 1e-12, "off by " + std::to_string(1e6 * off) + " nm");
+  return count > 0 ? off : TestSurfaces::NaN;
+}
+
+// Where the surface is linear the mould is exact: on the plate's other face, parallel to it.
+void TestExactPlane()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  const auto filter = MakeFilter(PlaneMap(geometry));
+  filter->Update(); // Female, Onlay
+  vtkStructuredGrid* grid = filter->GetOutput();
+  LACUNA_CHECK_NEAR(GetField(grid, "SurfaceOffset"), 0.7, 0);
+  LACUNA_CHECK_NEAR(GetField(grid, "Depth"), 1, 1e-12); // of the fillet, an eighth of the flange
+  const double degrees = 180 / 3.14159265358979323846;
+  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 0), degrees * std::atan(0.2 / std::sqrt(1.01)), 1e-12);
+  LACUNA_CHECK_NEAR(GetField(grid, "Angles", 1), degrees * std::atan(0.1), 1e-12);
+  LACUNA_CHECK_NEAR(OffPlane(grid, geometry, 0.7), 0, 1e-12);
   int dimensions[3];
   grid->GetDimensions(dimensions);
   LACUNA_CHECK_NEAR(GetField(grid, "BlockSize", 0), 0.5 * (dimensions[0] - 1), 1e-12);
   LACUNA_CHECK_NEAR(GetField(grid, "BlockSize", 2), 11, 1e-9);
+}
+
+// Of a plate that is hollow to the viewer the convex face is the inner one, and the female mould is
+// for that.
+void TestConvexSide()
+{
+  using Filter = vtkLacunaPressOrientation;
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  const Vec3 towardsViewer =
+    lacuna::Normalized(0.1 * geometry.Right + -0.2 * geometry.Down + -1.0 * geometry.View);
+  const auto filter = MakeFilter(PlaneMap(geometry));
+  const struct
+  {
+    int Mould;
+    int Seating;
+    int Convex;
+    double Offset;
+  } cases[] = { { Filter::Female, Filter::Onlay, Filter::Outward, 0.7 },
+    { Filter::Female, Filter::Inlay, Filter::Outward, 0 },
+    { Filter::Male, Filter::Onlay, Filter::Outward, 0 },
+    { Filter::Male, Filter::Inlay, Filter::Outward, -0.7 },
+    { Filter::Female, Filter::Onlay, Filter::Inward, 0 },
+    { Filter::Female, Filter::Inlay, Filter::Inward, -0.7 },
+    { Filter::Male, Filter::Onlay, Filter::Inward, 0.7 },
+    { Filter::Male, Filter::Inlay, Filter::Inward, 0 } };
+  for (const auto& each : cases)
+  {
+    filter->SetMould(each.Mould);
+    filter->SetSeating(each.Seating);
+    filter->SetConvexSide(each.Convex);
+    filter->Update();
+    vtkStructuredGrid* grid = filter->GetOutput();
+    LACUNA_CHECK_NEAR(GetField(grid, "Outward"), each.Convex == Filter::Outward, 0);
+    LACUNA_CHECK_NEAR(GetField(grid, "SurfaceOffset"), each.Offset, 1e-15);
+    LACUNA_CHECK_NEAR(OffPlane(grid, geometry, each.Offset), 0, 1e-12);
+    // the mill is where the plate's other face is, or on this one's own side
+    const bool behind = (each.Mould == Filter::Female) == (each.Convex == Filter::Outward);
+    const Matrix4 back = GetPressToPatient(grid);
+    LACUNA_CHECK_NEAR(lacuna::Dot(back.Column(2), towardsViewer), behind ? -1 : 1, 1e-14);
+    LACUNA_CHECK_NEAR(back.Determinant3(), 1, 1e-14);
+    const double* bounds = grid->GetBounds();
+    LACUNA_CHECK(each.Mould == Filter::Female ? bounds[5] <= 0 : bounds[4] >= 0);
+  }
+
+  // Automatic finds it
+  auto bowl = FilledMap(geometry);
+  vtkDataArray* fitted = bowl->GetPointData()->GetArray("Fitted");
+  for (vtkIdType k = 0; k < fitted->GetNumberOfTuples(); ++k)
+  {
+    fitted->SetComponent(k, 0, 80 - fitted->GetComponent(k, 0));
+  }
+  filter->SetInputData(bowl);
+  filter->SetMould(Filter::Female);
+  filter->SetSeating(Filter::Inlay);
+  filter->SetConvexSide(Filter::Automatic);
+  filter->Update();
+  LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "Outward"), 0, 0);
+  LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SurfaceOffset"), -0.7, 1e-15);
+  vtkNew<vtkPoints> automatic;
+  automatic->SetDataTypeToDouble();
+  automatic->DeepCopy(filter->GetOutput()->GetPoints());
+  filter->SetConvexSide(Filter::Inward);
+  filter->Update();
+  vtkPoints* given = filter->GetOutput()->GetPoints();
+  LACUNA_CHECK(given->GetNumberOfPoints() == automatic->GetNumberOfPoints());
+  for (vtkIdType k = 0; k < std::min(given->GetNumberOfPoints(), automatic->GetNumberOfPoints());
+       ++k)
+  {
+    Vec3 a;
+    Vec3 b;
+    automatic->GetPoint(k, a.data());
+    given->GetPoint(k, b.data());
+    LACUNA_CHECK(a == b);
+  }
 }
 
 // What the pipeline is told, and what goes on with the grid.
@@ -416,6 +505,7 @@ int TestPressOrientation(int, char*[])
 {
   TestPlace();
   TestExactPlane();
+  TestConvexSide();
   TestPipeline();
   TestUndercut();
   TestErrors();
