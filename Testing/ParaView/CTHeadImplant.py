@@ -47,6 +47,6 @@ for row in (f"| {beside} mm at most |", f"| {near} of its points within 0.02 mm,
     assert row in guide, row
 assert text.count(" ok\n") == 10 and "WRONG" not in text
 
-for name in ("2-filled", "3-plate", "4-model", "5-mould"):
+for name in ("0-ct", "1-hole", "2-marked", "2-filled", "3-plate", "4-model", "5-mould", "6-path", "7-left-over"):
     compare_with_baseline(os.path.join(folder, name + ".png"), os.path.join(example, name + ".png"), 60)
 print("done")

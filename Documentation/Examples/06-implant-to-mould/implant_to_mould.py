@@ -11,7 +11,7 @@ cylinder has sound bone, as in a CT without a hole, the result is compared with 
 
 Files: filled.vti (the filled depth map), plate.3mf and plate.stl (to print), model.stl (the bone around the hole),
 mould.igs and mould.stl (to press a plate of 0.7 mm), mould.nc (G-code). Each can be traced to the CT by its header or
-the .json beside it. Pictures: 1-hole.png to 7-left-over.png. At the end all files are read again and checked; when
+the .json beside it. Pictures: 0-ct.png to 7-left-over.png. At the end all files are read again and checked; when
 one is wrong the names of all that could be made from begin with WRONG-.
 """
 import argparse
@@ -38,6 +38,7 @@ from vtkmodules.vtkIOGeometry import vtkSTLReader
 SHEET = 0.7  # mm, the titanium that is pressed
 TOOL = 4.0  # mm, radius of the ball end
 FINER = 4  # times: the fitted surface for the checks
+MARKED, SUPPORT = (0.80, 0.25, 0.20), (0.55, 0.70, 0.50)  # colours of the hole, and of the bone that carries the fit
 MADE = ("plate.3mf", "plate.stl", "model.stl", "mould.igs", "mould.stl", "mould.nc")
 
 
@@ -286,6 +287,25 @@ def parts(filled):
     return bone, part
 
 
+def marked(depth, filled):
+    """The bone as it was measured, what was marked in it as the hole, and the bone that carries the fit."""
+    measured, image = servermanager.Fetch(depth), servermanager.Fetch(filled)
+    small, large = (np.array(each.GetExtent()) for each in (measured, image))
+    first, size = small[:4:2] - large[:4:2], small[1:4:2] - small[:4:2] + 1
+    parts = np.zeros(size[::-1])
+    for value, name, shown in ((1, "FilledMask", (1,)), (2, "SupportMask", (1, 3))):
+        mask = vtk_to_numpy(image.GetPointData().GetArray(name)).reshape(image.GetDimensions()[1::-1])
+        parts[np.isin(mask[first[1]:first[1] + size[1], first[0]:first[0] + size[0]], shown)] = value
+    array = numpy_to_vtk(parts.ravel(), deep=True)
+    array.SetName("Part")
+    measured.GetPointData().AddArray(array)
+    source = TrivialProducer()
+    source.GetClientSideObject().SetOutput(measured)
+    surface = DepthMapSurface(Input=source, MaximumAngle=80)
+    return [Threshold(Input=surface, Scalars=["POINTS", "Part"], LowerThreshold=value - 0.5, UpperThreshold=value + 0.5,
+                      AllScalars=0) for value in (0, 1, 2)]
+
+
 def picture(name, shown, direction, upwards, letters, scale_bar=50):
     """shown(view) puts things into a view, which is then looked at and saved."""
     view = pictures.new_view((900, 680))
@@ -298,7 +318,7 @@ def picture(name, shown, direction, upwards, letters, scale_bar=50):
     Delete(view)
 
 
-def make_pictures(folder, ct, hole, view, filled, plate, model, mould, path, has_truth):
+def make_pictures(folder, ct, hole, view, depth, filled, plate, model, mould, path, has_truth):
     def name(file):
         return os.path.join(folder, file)
 
@@ -321,6 +341,13 @@ def make_pictures(folder, ct, hole, view, filled, plate, model, mould, path, has
     picture(name("0-ct.png"), show_ct, across, -view, letters)
 
     picture(name("1-hole.png"), lambda v: pictures.show_surface(bone, v, pictures.BONE), view, upwards, letters)
+
+    def show_marked(v):
+        for piece, color in zip(marked(depth, filled), (pictures.BONE, MARKED, SUPPORT)):
+            piece.UpdatePipeline()
+            if piece.GetDataInformation().GetNumberOfPoints() > 0:  # a hole that is open all over has no marked bone
+                pictures.show_surface(piece, v, color)
+    picture(name("2-marked.png"), show_marked, view, upwards, letters)
 
     def show_filled(v):
         pictures.show_surface(bone, v, pictures.BONE)
@@ -407,7 +434,7 @@ def main():
     except AssertionError:
         set_aside(options.output)
         raise
-    make_pictures(options.output, ct, hole, view, filled, plate, model, mould, path, has_truth)
+    make_pictures(options.output, ct, hole, view, depth, filled, plate, model, mould, path, has_truth)
 
 
 if __name__ == "__main__":
