@@ -9,11 +9,10 @@ import sys
 import lacuna_test
 import numpy as np
 from lacuna.errors import raising
-from letter_block import HALF, face_axes, letter_distance
+from letter_block import HALF, face_axes, letter_distance, with_mask
 from paraview import servermanager
-from paraview.simple import Delete, ExtractSurface, LoadPlugin, OpenDataFile, SaveData, TrivialProducer
+from paraview.simple import Delete, ExtractSurface, LoadPlugin, OpenDataFile, SaveData
 from vtkmodules.numpy_interface import dataset_adapter as dsa
-from vtkmodules.util.numpy_support import numpy_to_vtk
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 folder = lacuna_test.output("press chain")
@@ -72,12 +71,7 @@ def mark_pit(depth):
             for step in (-1, 1):
                 grown |= np.roll(pit, step, axis)
         pit = grown
-    array = numpy_to_vtk(pit.astype(np.int8).ravel(), deep=True)
-    array.SetName("Pit")
-    image.GetPointData().AddArray(array)
-    marked = TrivialProducer()
-    marked.GetClientSideObject().SetOutput(image)
-    return marked
+    return with_mask(image, "Pit", pit)
 
 
 worst = 0

@@ -14,11 +14,10 @@ import lacuna_test
 import numpy as np
 from lacuna.errors import raising
 from lacuna.solids import save_solid
-from letter_block import BARS, HALF, face_axes, letter_distance
+from letter_block import BARS, HALF, face_axes, letter_distance, with_mask
 from paraview import servermanager
-from paraview.simple import Delete, ExtractSurface, LoadPlugin, TrivialProducer
+from paraview.simple import Delete, ExtractSurface, LoadPlugin
 from vtkmodules.numpy_interface import dataset_adapter as dsa
-from vtkmodules.util.numpy_support import numpy_to_vtk
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 folder = lacuna_test.output("solid chain")
@@ -63,12 +62,7 @@ def mark(depth):
         for step in range(1, round(GROWN / PIXEL) + 1):
             grown |= np.roll(pit, step, axis) | np.roll(pit, -step, axis)
         pit = grown
-    array = numpy_to_vtk(pit.astype(np.int8).ravel(), deep=True)
-    array.SetName("Defect")
-    image.GetPointData().AddArray(array)
-    marked = TrivialProducer()
-    marked.GetClientSideObject().SetOutput(image)
-    return marked
+    return with_mask(image, "Defect", pit)
 
 
 def walls(points, normal):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The block with letters F in its faces that MakeLetterBlock.cxx scans, in patient coordinates (LPS, mm)."""
 import numpy as np
+from paraview.simple import TrivialProducer
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
 HALF = 28.0  # from the middle, which is the origin, to the faces
 BARS = np.array([[-8, -3.5, -10, 10], [-8, 8, 5.5, 10], [-8, 4, -2.5, 2]])  # a0 a1 b0 b1 of the letter
@@ -25,3 +27,13 @@ def letter_distance(a, b):
     """Distance from the letter, 0 inside."""
     return np.min([np.hypot(np.maximum(np.maximum(x0 - a, a - x1), 0), np.maximum(np.maximum(y0 - b, b - y1), 0))
                    for x0, x1, y0, y1 in BARS], axis=0)
+
+
+def with_mask(image, name, mask):
+    """A source of the map with one more array, 1 where mask is true."""
+    array = numpy_to_vtk(mask.astype(np.int8).ravel(), deep=True)
+    array.SetName(name)
+    image.GetPointData().AddArray(array)
+    source = TrivialProducer()
+    source.GetClientSideObject().SetOutput(image)
+    return source

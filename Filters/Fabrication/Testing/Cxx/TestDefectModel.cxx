@@ -17,9 +17,8 @@ using namespace TestSolids;
 // grid for the mill is the same surface.
 void TestPlace()
 {
-  const Vec3 views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, -2, 0.5 } };
   int turn = 0;
-  for (const Vec3& view : views)
+  for (const Vec3& view : Views)
   {
     const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
     // a disc of Depth was lost, also beside the letter
@@ -33,11 +32,6 @@ void TestPlace()
     vtkPolyData* solid = filter->GetOutput();
     auto* top = vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(1));
     LACUNA_CHECK(IsClosed(solid));
-    const auto place = [&](int i, int j, double depth)
-    {
-      return geometry.Origin + 0.5 * i * geometry.Right + 0.75 * j * geometry.Down +
-        depth * geometry.View;
-    };
     const auto matrix = vtkLacunaFieldData::GetMatrix(
       vtkLacunaFieldData::Get(top, vtkLacunaDefectModel::PressToPatientName, 16, 1), 0);
     LACUNA_CHECK_NEAR(matrix.Determinant3(), 1, 1e-12);
@@ -57,14 +51,7 @@ void TestPlace()
       {
         const double x = X(i);
         const double y = Y(j);
-        int corners = 0;
-        for (const double dx : { -1.2, 1.2 })
-        {
-          for (const double dy : { -1.2, 1.2 })
-          {
-            corners += IsLetter(x + dx, y + dy);
-          }
-        }
+        const int corners = CornersInLetter(x, y, 1.2, 1.2);
         const bool letter = corners == 4;
         if ((corners != 0 && !letter) || (!letter && lost(i, j)) || lost(i + 1, j) != lost(i, j))
         {
@@ -72,11 +59,11 @@ void TestPlace()
         }
         ++seen[letter];
         const double z = TestSurfaces::Depth(x, y);
-        wrong += std::abs(GetWinding(solid, place(i, j, z + 0.5)) - !letter) > 1e-6;
-        wrong += std::abs(GetWinding(solid, place(i, j, z + 3.9)) - !letter) > 1e-6;
-        wrong += std::abs(GetWinding(solid, place(i, j, z - 0.1))) > 1e-6;
+        wrong += std::abs(GetWinding(solid, Place(geometry, i, j, z + 0.5)) - !letter) > 1e-6;
+        wrong += std::abs(GetWinding(solid, Place(geometry, i, j, z + 3.9)) - !letter) > 1e-6;
+        wrong += std::abs(GetWinding(solid, Place(geometry, i, j, z - 0.1))) > 1e-6;
         // the base is everywhere
-        Vec3 p = fromWorld.Point(place(i, j, z));
+        Vec3 p = fromWorld.Point(Place(geometry, i, j, z));
         const Vec3 inBase = matrix.Point({ p[0], p[1], floor - 1 });
         wrong += std::abs(GetWinding(solid, inBase) - 1) > 1e-6;
         // the grid's point of this pixel

@@ -26,11 +26,10 @@ double GetField(vtkPolyData* plate, const char* name, vtkIdType tuple = 0, int c
 // The plate fills the letter and nothing else, wherever the viewer stands.
 void TestPlace()
 {
-  const Vec3 views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, -2, 0.5 } };
   int turn = 0;
   vtkNew<vtkPolyData> first;
   vtkLacunaDepthMap::Geometry firstGeometry{};
-  for (const Vec3& view : views)
+  for (const Vec3& view : Views)
   {
     const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
     vtkNew<vtkLacunaImplantPlate> filter;
@@ -41,12 +40,6 @@ void TestPlace()
     filter->Update();
     vtkPolyData* plate = filter->GetOutput();
     LACUNA_CHECK(IsClosed(plate));
-    const auto place = [&](int i, int j, double depth)
-    {
-      const double x = 0.5 * i;
-      const double y = 0.75 * j;
-      return geometry.Origin + x * geometry.Right + y * geometry.Down + depth * geometry.View;
-    };
     int wrong = 0;
     for (int j = 14; j <= 46; j += 2)
     {
@@ -54,20 +47,15 @@ void TestPlace()
       {
         const double x = X(i);
         const double y = Y(j);
-        int corners = 0;
-        for (const double dx : { -1.2, 1.2 })
-        {
-          for (const double dy : { -1.2, 1.2 })
-          {
-            corners += IsLetter(x + dx, y + dy);
-          }
-        }
+        const int corners = CornersInLetter(x, y, 1.2, 1.2);
         if (corners == 0 || corners == 4)
         {
-          const double winding = GetWinding(plate, place(i, j, TestSurfaces::Depth(x, y) + 1.0));
+          const double winding =
+            GetWinding(plate, Place(geometry, i, j, TestSurfaces::Depth(x, y) + 1.0));
           wrong += std::abs(winding - (corners == 4)) > 1e-6;
           // nothing is in front of the fitted surface
-          wrong += std::abs(GetWinding(plate, place(i, j, TestSurfaces::Depth(x, y) - 0.1))) > 1e-6;
+          wrong += std::abs(GetWinding(
+                     plate, Place(geometry, i, j, TestSurfaces::Depth(x, y) - 0.1))) > 1e-6;
         }
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TestSurfaces.h"
+#include "TestSolids.h"
 #include "lacunaCheck.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -17,29 +17,15 @@ namespace
 {
 using lacuna::Matrix4;
 using lacuna::Vec3;
+using TestSolids::CornersInLetter;
+using TestSolids::IsLetter;
+using TestSolids::Views;
 
-// A thick letter F, upright as the viewer sees it; x, y in mm from the middle of the map.
-bool IsLetter(double x, double y)
-{
-  return (x > -8 && x < -3 && y > -10 && y < 10) || (x >= -3 && x < 8 && y > -10 && y < -5.5) ||
-    (x >= -3 && x < 4 && y > -2 && y < 2.5);
-}
-
-// The map of TestSurfaces with the letter as filled defect.
+// With the plane of the fit.
 vtkSmartPointer<vtkImageData> FilledMap(const vtkLacunaDepthMap::Geometry& geometry,
   const std::function<bool(double, double)>& inside = IsLetter)
 {
-  auto map = TestSurfaces::Map(geometry, true);
-  vtkNew<vtkCharArray> filled;
-  filled->SetName(vtkLacunaDepthMap::FilledMaskName);
-  for (int j = -3; j <= 66; ++j)
-  {
-    for (int i = 5; i <= 94; ++i)
-    {
-      filled->InsertNextValue(inside(0.5 * (i - 49), 0.75 * (j - 30)));
-    }
-  }
-  map->GetPointData()->AddArray(filled);
+  auto map = TestSolids::FilledMap(geometry, inside);
   const Vec3 normal = lacuna::Normalized({ 0.1, -0.2, -1 });
   vtkLacunaFieldData::Set(map, "PlaneNormal", { normal[0], normal[1], normal[2] }, 3);
   return map;
@@ -71,9 +57,8 @@ vtkSmartPointer<vtkLacunaPressOrientation> MakeFilter(vtkImageData* map)
 // viewer stands.
 void TestPlace()
 {
-  const Vec3 views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, -2, 0.5 } };
   int turn = 0;
-  for (const Vec3& view : views)
+  for (const Vec3& view : Views)
   {
     const auto geometry = TestSurfaces::Geometry(view, 0.4 * turn++);
     const auto filter = MakeFilter(FilledMap(geometry));
@@ -113,14 +98,7 @@ void TestPlace()
         {
           off = std::max(off, std::abs(lacuna::Dot(q, geometry.View) - TestSurfaces::Depth(x, y)));
         }
-        int corners = 0;
-        for (const double dx : { -0.3, 0.3 })
-        {
-          for (const double dy : { -0.45, 0.45 })
-          {
-            corners += IsLetter(x + dx, y + dy);
-          }
-        }
+        const int corners = CornersInLetter(x, y, 0.3, 0.45);
         if (corners == 0 || corners == 4)
         {
           wrong += (defect->GetComponent(k, 0) != 0) != (corners == 4);

@@ -21,6 +21,17 @@ inline bool IsLetter(double x, double y)
     (x >= -3 && x < 4 && y > -2 && y < 2.5);
 }
 
+// How many corners of a rectangle of 2 dx by 2 dy about x, y are in the letter: 0 and 4 are clear.
+inline int CornersInLetter(double x, double y, double dx, double dy)
+{
+  return IsLetter(x - dx, y - dy) + IsLetter(x + dx, y - dy) + IsLetter(x - dx, y + dy) +
+    IsLetter(x + dx, y + dy);
+}
+
+// From where viewers look at the map.
+constexpr lacuna::Vec3 Views[] = { { 0, 0, 1 }, { 0, 0, -1 }, { 1, 0, 0 }, { 0, 1, 0 },
+  { 1, -2, 0.5 } };
+
 inline double X(int i)
 {
   return 0.5 * (i - 49);
@@ -29,6 +40,13 @@ inline double X(int i)
 inline double Y(int j)
 {
   return 0.75 * (j - 30);
+}
+
+// At pixel i, j, so deep.
+inline lacuna::Vec3 Place(const vtkLacunaDepthMap::Geometry& geometry, int i, int j, double depth)
+{
+  return geometry.Origin + 0.5 * i * geometry.Right + 0.75 * j * geometry.Down +
+    depth * geometry.View;
 }
 
 // The map of TestSurfaces with the letter as filled defect and bone that grows thinner to the right.
