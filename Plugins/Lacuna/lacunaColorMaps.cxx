@@ -43,33 +43,33 @@ const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
   "SeparationError": { "Title": "Separation error (mm)" },
   "AngleError": { "Title": "Angle error (degrees)" },
   "vtkValidPointMask": { "Title": "Validity", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "no value", "1", "valid"],
     "IndexedColors": [1, 1, 0, 0.45, 0.55, 0.62] } },
   "FilledMask": { "Title": "Filling", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "as measured", "1", "filled"],
     "IndexedColors": [0.87, 0.84, 0.77, 0.85, 0.45, 0.1] } },
   "DefectMask": { "Title": "Defect", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "beside it", "1", "defect"],
     "IndexedColors": [0.87, 0.84, 0.77, 0.85, 0.45, 0.1] } },
   "SupportMask": { "Title": "Support of the fit", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "not used", "1", "used", "2", "beyond a depth step", "3", "used but steep", "4", "no prior surface", "5", "near a depth step"],
     "IndexedColors": [0.87, 0.84, 0.77, 0.1, 0.57, 0.5, 0.8, 0.2, 0.2, 0.55, 0.78, 0.4,
       0.5, 0.37, 0.7, 0.95, 0.75, 0.2] } },
   "Object": { "Title": "Object", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "outside", "1", "object"],
     "IndexedColors": [0.2, 0.23, 0.28, 0.9, 0.82, 0.7] } },
   "PlateFace": { "Title": "Face of the plate", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "outer", "1", "inner", "2", "edge", "3", "screw hole", "4", "drainage hole"],
     "IndexedColors": [0.8, 0.82, 0.85, 0.35, 0.55, 0.75, 0.9, 0.6, 0.2, 0.75, 0.2, 0.2,
       0.2, 0.6, 0.5] } },
   "ModelFace": { "Title": "Face of the model", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "bone", "1", "floor", "2", "wall", "3", "side", "4", "bottom"],
     "IndexedColors": [0.87, 0.84, 0.77, 0.85, 0.45, 0.1, 0.9, 0.65, 0.35, 0.55, 0.6, 0.66,
       0.35, 0.4, 0.46] } },
@@ -77,7 +77,7 @@ const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
     "ColorSpace": "RGB", "RGBPoints":
     [0, 0.45, 0.5, 0.56, 1, 0.9, 0.65, 0.35, 2, 0.87, 0.84, 0.77] } },
   "Motion": { "Title": "Motion", "PVLookupTable": {
-    "IndexedLookup": 1,
+    "IndexedLookup": 1, "AnnotationsInitialized": 1,
     "Annotations": ["0", "rapid", "1", "plunge", "2", "cut", "3", "lead"],
     "IndexedColors": [0.85, 0.3, 0.25, 0.95, 0.7, 0.2, 0.2, 0.5, 0.75, 0.3, 0.7, 0.5] } }
   } })json",

@@ -125,8 +125,10 @@ def check_icon(name, group, proxy, resources):
 def check_resources():
     folder = os.path.join(PLUGIN, "Resources")
     root = ElementTree.parse(os.path.join(folder, "lacuna.qrc")).getroot()
-    assert root.find("qresource").get("prefix") == "/Lacuna"
-    listed = [file.text for file in root.iter("file")]
+    icons, menus = root
+    assert icons.get("prefix") == "/Lacuna" and menus.get("prefix") == "/Lacuna/ParaViewResources"
+    assert [file.text for file in menus] == ["../LacunaMenus.xml"]
+    listed = [file.text for file in icons]
     assert sorted(listed) == sorted("Icons/" + file for file in os.listdir(os.path.join(folder, "Icons"))), listed
     for file in listed:
         picture = ElementTree.parse(os.path.join(folder, file)).getroot()
