@@ -164,6 +164,15 @@ def check_display(proxy, view, representation, array, title):
     return display
 
 
+def views(proxy):
+    """The kinds of views in which ParaView shows the outputs at the first Apply."""
+    proxy.UpdatePipeline()
+    controller = servermanager.vtkSMParaViewPipelineControllerWithRendering()
+    opened = [controller.ShowInPreferredView(proxy.SMProxy, port, None)
+              for port in range(proxy.SMProxy.GetNumberOfOutputPorts())]
+    return [view.GetXMLName() if view else None for view in opened]
+
+
 def check_displays():
     view = CreateRenderView()
     head = SkullPhantom()
@@ -187,7 +196,10 @@ def check_displays():
     assert list(masks.Annotations) == ["0", "as measured", "1", "filled"], list(masks.Annotations)
     valid = GetColorTransferFunction("vtkValidPointMask")
     assert list(valid.IndexedColors)[:3] == [1, 1, 0], "what is not valid is yellow"
-    check_display(DefectModel(Input=filled), view, "Surface", "ModelFace", "Face of the model")
+    model = DefectModel(Input=filled)
+    check_display(model, view, "Surface", "ModelFace", "Face of the model")
+    assert views(model) == ["RenderView", None], "Top is in the coordinates of a press"
+    assert views(ContrastToSpeckle(Input=head, InsideBounds=[-9, 9] * 3)) == ["SpreadSheetView"]
     shape = IncompleteShape(Shape="Sphere", Dimensions=[28, 28, 28])
     check_display(OccludedAngle(Input=shape, NumberOfDirections=20), view, "Slice", "Object", "Object")
 
