@@ -36,5 +36,6 @@ struct vtkLacunaLiveSweep
   bool ToldUncalibrated = false;
   std::string Messages; // what the getter has returned
   std::string FileName;
+  std::string DiskMessage;
 };
 #endif

@@ -219,9 +219,20 @@ public:
   double GetSpeed() const;
   /// s, the largest of the sweep.
   double GetLargestResidual() const;
+  /// Slices of the sweep: those of the output, and those that the next Poll takes over.
+  vtkIdType GetTakenSlices() const;
   /// Slices that are on the disk, and the file they are in.
   vtkIdType GetRecordedSlices() const;
   const char* GetRecordedFileName();
+  /// Slices that are to be recorded and not on the disk yet; for less than a second if all is well.
+  vtkIdType GetWaitingSlices() const;
+  /// MiB that are free on that disk, NaN when nothing is recorded; why nothing is written, empty:
+  /// all is well.
+  double GetDiskSpace() const;
+  const char* GetDiskMessage();
+  /// MiB of pixels, taken or waiting for the disk, and how many there may be; 0 before Connect.
+  double GetMemoryUsed() const;
+  double GetMemoryLimitNow() const;
   /// What is wrong now and what to do, a line each; empty: all is well.
   const char* GetMessage();
 

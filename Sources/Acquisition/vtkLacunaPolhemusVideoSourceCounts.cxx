@@ -3,7 +3,13 @@
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
+#include <algorithm>
 #include <limits>
+
+namespace
+{
+constexpr double Mebibyte = 1024 * 1024;
+}
 
 //------------------------------------------------------------------------------
 bool vtkLacunaPolhemusVideoSource::GetCapturing() const
@@ -78,6 +84,12 @@ double vtkLacunaPolhemusVideoSource::GetLargestResidual() const
 }
 
 //------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetTakenSlices() const
+{
+  return std::max<vtkIdType>(this->Now->GetState().Counts.Slices, this->GetSliceCount());
+}
+
+//------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetRecordedSlices() const
 {
   return this->Now->GetState().File.Synced;
@@ -88,4 +100,44 @@ const char* vtkLacunaPolhemusVideoSource::GetRecordedFileName()
 {
   this->Now->FileName = this->Now->GetState().File.FileName;
   return this->Now->FileName.c_str();
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetWaitingSlices() const
+{
+  const lacuna::SweepFile::State file = this->Now->GetState().File;
+  return file.Added - file.Synced;
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaPolhemusVideoSource::GetDiskSpace() const
+{
+  const std::int64_t bytes = this->Now->GetState().File.FreeBytes;
+  return bytes < 0 ? std::numeric_limits<double>::quiet_NaN()
+                   : static_cast<double>(bytes) / Mebibyte;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkLacunaPolhemusVideoSource::GetDiskMessage()
+{
+  this->Now->DiskMessage = this->Now->GetState().File.Trouble;
+  return this->Now->DiskMessage.c_str();
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaPolhemusVideoSource::GetMemoryUsed() const
+{
+  std::int64_t bytes = 0;
+  if (this->Now->Stack)
+  {
+    const std::array<int, 4> window = this->Now->Stack->GetWindow();
+    bytes = this->Now->Stack->GetNumberOfSlices() * window[2] * window[3];
+  }
+  return static_cast<double>(std::max(bytes, this->Now->GetState().Memory)) / Mebibyte;
+}
+
+//------------------------------------------------------------------------------
+double vtkLacunaPolhemusVideoSource::GetMemoryLimitNow() const
+{
+  return static_cast<double>(this->Now->LimitBytes) / Mebibyte;
 }

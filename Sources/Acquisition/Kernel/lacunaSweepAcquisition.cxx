@@ -270,6 +270,7 @@ void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<Acquire
   this->State.Speed = this->Taking.GetSpeed();
   this->State.LargestResidual = this->Taking.GetLargestResidual();
   this->State.File = this->Taking.GetFile();
+  this->State.Memory = this->Taking.GetMemory();
   this->FramesSincePose = this->Taking.GetFramesSincePose();
   this->State.Messages = this->Taking.GetMessages();
   this->Sweep = this->Taking.GetSweep();

@@ -49,6 +49,7 @@ struct AcquisitionState
   PoseCounts Poses;            ///< since the beginning, over all connections
   VideoSource::Counts Video;
   SweepFile::State File;
+  std::int64_t Memory = 0; ///< see SweepTaking::GetMemory
   /// What is wrong now and what to do, the most important first; empty: nothing is.
   std::vector<std::string> Messages;
   /// What goes on, for the user's patience; no trouble.

@@ -128,6 +128,7 @@ void SweepFile::Retry()
 void SweepFile::Add(const AcquiredSlice& slice, const SweepFrame& frame)
 {
   SequenceFields fields = MakeSliceFields(slice, frame);
+  ++this->Now.Added;
   if (this->Recorder)
   {
     this->Recorder->Add(slice.Pixels, std::move(fields));
@@ -149,6 +150,7 @@ SweepFile::State SweepFile::GetState() const
     const SweepRecorder::State recorded = this->Recorder->GetState();
     state.Synced = recorded.Synced;
     state.WaitingBytes = recorded.WaitingBytes;
+    state.FreeBytes = recorded.FreeBytes;
     state.Trouble = recorded.Trouble;
   }
   for (const Entry& entry : this->Unopened)

@@ -34,8 +34,10 @@ public:
   struct State
   {
     std::string FileName;          ///< empty until it is open
-    std::int64_t Synced = 0;       ///< slices on the disk
+    std::int64_t Added = 0;        ///< slices to be recorded
+    std::int64_t Synced = 0;       ///< those on the disk
     std::int64_t WaitingBytes = 0; ///< of pixels that are not written
+    std::int64_t FreeBytes = -1;   ///< see SweepRecorder::State
     std::string Trouble; ///< why nothing is written now, and what to do; empty: all is well
   };
 

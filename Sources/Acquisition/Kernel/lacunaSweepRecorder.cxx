@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <stdexcept>
@@ -40,7 +41,8 @@ std::string Advise(const std::string& reason)
 struct SweepRecorder::Work
 {
   Work(const std::string& fileName, const SequenceDescription& description, int level)
-    : Kind(fileName, level > 0)
+    : FileName(fileName)
+    , Kind(fileName, level > 0)
     , Bytes(static_cast<std::size_t>(description.Columns * description.Rows))
     , Recorder(fileName, description, level)
     , Thread([this] { this->Run(); })
@@ -92,6 +94,7 @@ struct SweepRecorder::Work
   void Fail(FileError::Kind kind, const std::string& reason);
 
   SteadyClock Clock;
+  const std::string FileName;
   const SequenceKind Kind;
   const std::size_t Bytes;
   SequenceRecorder Recorder; // used by the thread alone until that has ended
@@ -152,7 +155,10 @@ bool SweepRecorder::Work::Try(
   {
     failure = e.what();
   }
+  std::error_code unknown;
+  const std::uintmax_t free = std::filesystem::space(this->FileName, unknown).available;
   lock.lock();
+  this->Now.FreeBytes = unknown ? -1 : static_cast<std::int64_t>(free);
   if (!failure.empty())
   {
     this->Fail(kind, failure);

@@ -30,6 +30,7 @@ public:
     std::int64_t Synced = 0;       ///< on the disk
     std::int64_t WaitingBytes = 0; ///< of pixels in memory that are not written
     double LongestDelay = 0;       ///< s from Add to the disk, of those synced
+    std::int64_t FreeBytes = -1;   ///< of the disk when it was last used; below 0: not known
     std::string Trouble; ///< why nothing is written now, and what to do; empty: all is well
   };
 

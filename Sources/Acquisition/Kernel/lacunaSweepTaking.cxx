@@ -166,9 +166,8 @@ bool SweepTaking::Fits(const VideoFrame& frame, const SweepFrame& window)
 
 bool SweepTaking::HasRoom()
 {
-  const std::int64_t waiting = this->File ? this->File->GetState().WaitingBytes : 0;
-  this->Full = this->Rules.MemoryLimit > 0 &&
-    (this->Counts.Slices + 1) * this->SliceBytes + waiting > this->Rules.MemoryLimit;
+  this->Full =
+    this->Rules.MemoryLimit > 0 && this->GetMemory() + this->SliceBytes > this->Rules.MemoryLimit;
   return !this->Full;
 }
 
@@ -254,6 +253,11 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
 SweepFile::State SweepTaking::GetFile() const
 {
   return this->File ? this->File->GetState() : SweepFile::State();
+}
+
+std::int64_t SweepTaking::GetMemory() const
+{
+  return this->Counts.Slices * this->SliceBytes + this->GetFile().WaitingBytes;
 }
 
 std::vector<std::string> SweepTaking::GetMessages() const

@@ -76,6 +76,8 @@ public:
   double GetLargestResidual() const { return this->LargestResidual; }
   std::optional<double> GetSpeed() const { return this->Speed; }
   SweepFile::State GetFile() const;
+  /// Bytes of the sweep's pixels, and of those that wait for the disk; what MemoryLimit is about.
+  std::int64_t GetMemory() const;
   /// How many frames before and with the newest have no pose.
   int GetFramesSincePose() const { return this->FramesSincePose; }
   /// What else is wrong with the newest frame or the sweep, and what to do.

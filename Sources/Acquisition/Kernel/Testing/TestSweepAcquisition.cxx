@@ -321,6 +321,7 @@ TEST(SweepAcquisition, AtTheMemoryLimitItStopsAndKeepsAll)
   EXPECT_FALSE(state.Capturing);
   EXPECT_EQ(state.Counts.Slices, 30);
   EXPECT_EQ(state.Counts.PastLimit, 1);
+  EXPECT_EQ(state.Memory, 12 * 30);
   EXPECT_TRUE(HasMessage(state, "MemoryLimit; all 30 slices are kept"));
   ExpectNoneForgotten(state, false);
   EXPECT_EQ(acquisition.TakeSlices().size(), 30u); // which does not make room
@@ -331,6 +332,7 @@ TEST(SweepAcquisition, AtTheMemoryLimitItStopsAndKeepsAll)
   EXPECT_EQ(acquisition.GetState().Counts.Slices, 40);
   acquisition.BeginSweep();
   EXPECT_EQ(acquisition.GetState().Counts.Slices, 0);
+  EXPECT_EQ(acquisition.GetState().Memory, 0);
   EXPECT_TRUE(acquisition.TakeSlices().empty()); // those of the sweep before are gone
   EXPECT_FALSE(HasMessage(acquisition.GetState(), "MemoryLimit"));
 }

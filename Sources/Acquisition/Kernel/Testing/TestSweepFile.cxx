@@ -191,6 +191,9 @@ TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
   }
   EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
   EXPECT_NE(file.GetState().Trouble.find("missing"), std::string::npos);
+  EXPECT_EQ(file.GetState().Added, 4);
+  EXPECT_EQ(file.GetState().Synced, 0);
+  EXPECT_LT(file.GetState().FreeBytes, 0); // of a disk that is not known yet
   EXPECT_THROW(file.Finish(), FileError);
   EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
   std::filesystem::create_directory(folder / "missing");
@@ -198,6 +201,8 @@ TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
   file.Finish();
   EXPECT_EQ(file.GetState().WaitingBytes, 0);
   EXPECT_EQ(file.GetState().Trouble, "");
+  EXPECT_EQ(file.GetState().Synced, 4);
+  EXPECT_GT(file.GetState().FreeBytes, 0);
   const ReadBack read(path);
   ASSERT_EQ(read.Frames.size(), 4u);
   EXPECT_EQ(read.Frames[3], MakePixels(3));

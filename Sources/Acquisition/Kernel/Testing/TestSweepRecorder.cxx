@@ -73,6 +73,7 @@ TEST(SweepRecorder, SlicesAreOnDiskWithoutBeingAskedFor)
     EXPECT_EQ(state.WaitingBytes, 0);
     EXPECT_EQ(state.Trouble, "");
     EXPECT_GT(state.LongestDelay, 0);
+    EXPECT_GT(state.FreeBytes, 0);
     std::cout << "longest delay until a slice is on the disk: " << state.LongestDelay << " s\n";
     ExpectBeginning(path, 20); // while the recording goes on
     Add(recorder, 20);

@@ -196,6 +196,10 @@ void TestSlices()
 
   // what is on the disk is the same
   LACUNA_CHECK(bench.PollUntil([&] { return source->GetRecordedSlices() == count; }));
+  LACUNA_CHECK(source->GetTakenSlices() == count && source->GetWaitingSlices() == 0);
+  LACUNA_CHECK(source->GetDiskSpace() > 0 && std::string(source->GetDiskMessage()).empty());
+  LACUNA_CHECK(source->GetMemoryUsed() * 1024 * 1024 == count * 54.0 * 16);
+  LACUNA_CHECK(source->GetMemoryLimitNow() == 64);
   vtkNew<vtkLacunaTrackedSliceReader> reader;
   LACUNA_CHECK(std::string(source->GetRecordedFileName()) == bench.Folder + "/sweep.mhd");
   reader->SetFileName(source->GetRecordedFileName());

@@ -47,6 +47,9 @@ void TestDormant()
   source->Clear();
   source->Disconnect();
   LACUNA_CHECK(source->GetSliceCount() == 0 && source->GetSpeed() != source->GetSpeed());
+  LACUNA_CHECK(source->GetTakenSlices() == 0 && source->GetWaitingSlices() == 0);
+  LACUNA_CHECK(source->GetMemoryUsed() == 0 && source->GetMemoryLimitNow() == 0);
+  LACUNA_CHECK(source->GetDiskSpace() != source->GetDiskSpace());
   std::ostringstream text;
   source->Print(text);
   LACUNA_CHECK_CONTAINS(text.str(), "BaudRate=115200");
