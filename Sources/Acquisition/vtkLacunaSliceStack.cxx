@@ -4,10 +4,13 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -18,6 +21,20 @@ constexpr const char* TrackerToReferenceName = "TrackerToReference";
 std::unique_ptr<vtkLacunaGrowingArray> MakeMatrices(const char* name)
 {
   return std::make_unique<vtkLacunaGrowingArray>(name, VTK_DOUBLE, 16);
+}
+
+// Puts a range where an array keeps one that it has computed.
+void SetRange(vtkDataArray* array, double lowest, double highest)
+{
+  const double range[2] = { lowest, highest };
+  for (vtkInformationInformationVectorKey* key :
+    { vtkAbstractArray::PER_COMPONENT(), vtkAbstractArray::PER_FINITE_COMPONENT() })
+  {
+    vtkNew<vtkInformationVector> components;
+    components->SetNumberOfInformationObjects(1);
+    components->GetInformationObject(0)->Set(vtkDataArray::COMPONENT_RANGE(), range, 2);
+    array->GetInformation()->Set(key, components);
+  }
 }
 }
 
@@ -47,6 +64,11 @@ void vtkLacunaSliceStack::Append(const lacuna::AcquiredSlice& slice)
 {
   const int number = static_cast<int>(slice.FrameNumber);
   this->Pixels->Append(slice.Pixels->data(), static_cast<vtkIdType>(slice.Pixels->size()));
+  for (const std::uint8_t pixel : *slice.Pixels)
+  {
+    this->Darkest = std::min(this->Darkest, pixel);
+    this->Brightest = std::max(this->Brightest, pixel);
+  }
   this->ProbeToTracker.Append(slice.ProbeToTracker.Data());
   this->AppendPose(slice.ProbeToTracker);
   this->Timestamps.Append(&slice.Timestamp);
@@ -94,7 +116,12 @@ void vtkLacunaSliceStack::Fill(vtkImageData* output) const
   output->SetOrigin(column, row, 0);
   output->SetSpacing(1, 1, 1);
   output->SetExtent(0, columns - 1, 0, rows - 1, 0, slices - 1);
-  output->GetPointData()->SetScalars(this->Pixels->MakeView());
+  const vtkSmartPointer<vtkDataArray> pixels = this->Pixels->MakeView();
+  if (slices > 0)
+  {
+    SetRange(pixels, this->Darkest, this->Brightest);
+  }
+  output->GetPointData()->SetScalars(pixels);
   vtkFieldData* fields = output->GetFieldData();
   using Array = const vtkLacunaGrowingArray*;
   for (const Array array : std::initializer_list<Array>{ this->ImageToReference.get(),

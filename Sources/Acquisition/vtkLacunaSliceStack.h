@@ -12,7 +12,8 @@
 
 class vtkImageData;
 
-/// Making an output costs the same however many slices there are: it shares their memory.
+/// Making an output costs the same however many slices there are: it shares their memory, and knows
+/// the range of their pixels, for which all would have to be looked at for each new slice.
 class vtkLacunaSliceStack
 {
 public:
@@ -38,6 +39,8 @@ private:
 
   lacuna::SweepFrame Frame;
   std::unique_ptr<vtkLacunaGrowingArray> Pixels;
+  std::uint8_t Darkest = 255;
+  std::uint8_t Brightest = 0;
   std::unique_ptr<vtkLacunaGrowingArray> ImageToReference; ///< null while not calibrated
   std::unique_ptr<vtkLacunaGrowingArray> TrackerToReference;
   vtkLacunaGrowingArray ProbeToTracker;

@@ -6,12 +6,14 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -193,6 +195,19 @@ void TestSlices()
   const std::vector<std::string> provenance = vtkLacunaProvenance::Get(output);
   LACUNA_CHECK(provenance.size() == 1);
   LACUNA_CHECK_CONTAINS(provenance[0], "VideoURL=\"lavfi:testsrc2=size=64x48:rate=25\"");
+
+  // the range is told, not looked for; by and by, as the slices came
+  vtkDataArray* intensity = output->GetPointData()->GetScalars();
+  LACUNA_CHECK(intensity->HasInformation() &&
+    intensity->GetInformation()->Has(vtkAbstractArray::PER_COMPONENT()));
+  vtkNew<vtkUnsignedCharArray> copy;
+  copy->SetArray(
+    static_cast<unsigned char*>(intensity->GetVoidPointer(0)), intensity->GetNumberOfTuples(), 1);
+  for (int i = 0; i < 2; ++i)
+  {
+    LACUNA_CHECK(intensity->GetRange()[i] == copy->GetRange()[i]);
+    LACUNA_CHECK(intensity->GetFiniteRange()[i] == copy->GetFiniteRange()[i]);
+  }
 
   // what is on the disk is the same
   LACUNA_CHECK(bench.PollUntil([&] { return source->GetRecordedSlices() == count; }));
