@@ -9,17 +9,17 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <mutex>
 #include <string_view>
 #include <thread>
 #include <utility>
 
+#include <dlfcn.h>
 #include <sys/stat.h>
 
 extern "C"
 {
 #include <libavcodec/avcodec.h>
-#include <libavdevice/avdevice.h>
+#include <libavdevice/version.h>
 #include <libavformat/avformat.h>
 #include <libavutil/dict.h>
 }
@@ -35,6 +35,25 @@ constexpr std::size_t DeepestDecoder = 64; // packets between one and its frame
 bool BeginsWith(const std::string& text, std::string_view begin)
 {
   return text.compare(0, begin.size(), begin) == 0;
+}
+
+// Makes FFmpeg know devices and test signals. Their library brings two hundred others, of sound and
+// windows, which would be a third of what loading Lacuna takes. Returns why not; empty: it does.
+const std::string& RegisterDevices()
+{
+  static const std::string trouble = []() -> std::string
+  {
+    const std::string name = "libavdevice.so." + std::to_string(LIBAVDEVICE_VERSION_MAJOR);
+    void* library = dlopen(name.c_str(), RTLD_LAZY); // for good: FFmpeg keeps what it registers
+    void* enter = library ? dlsym(library, "avdevice_register_all") : nullptr;
+    if (!enter)
+    {
+      return "; " + std::string(dlerror());
+    }
+    reinterpret_cast<void (*)()>(enter)();
+    return "";
+  }();
+  return trouble;
 }
 
 // What an address means to FFmpeg.
@@ -186,8 +205,6 @@ struct VideoSource::Stream
 
 void VideoSource::Stream::Open()
 {
-  static std::once_flag registered;
-  std::call_once(registered, [] { avdevice_register_all(); });
   const Address address = FindAddress(this->Settings.URL);
   this->Deadline = this->Time.Now() + this->Settings.OpenTime;
   this->Packet = av_packet_alloc();
@@ -215,11 +232,16 @@ void VideoSource::Stream::Open()
 
 void VideoSource::Stream::OpenInput(const Address& address)
 {
-  const AVInputFormat* demuxer = address.Demuxer ? av_find_input_format(address.Demuxer) : nullptr;
-  if (address.Demuxer && !demuxer)
+  const AVInputFormat* demuxer = nullptr;
+  if (address.Demuxer)
   {
-    throw VideoError(VideoError::Kind::Unsupported,
-      std::string("The FFmpeg of this computer has no input ") + address.Demuxer);
+    const std::string& trouble = RegisterDevices();
+    demuxer = av_find_input_format(address.Demuxer);
+    if (!demuxer)
+    {
+      throw VideoError(VideoError::Kind::Unsupported,
+        std::string("The FFmpeg of this computer has no input ") + address.Demuxer + trouble);
+    }
   }
   AVDictionary* options = nullptr;
   int result = av_dict_parse_string(&options, this->Settings.Options.c_str(), "=", ":", 0);
