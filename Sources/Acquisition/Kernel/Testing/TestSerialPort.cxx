@@ -5,6 +5,7 @@
 #include "lacunaSerialPort.h"
 #include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
+#include "lacunaTestStall.h"
 #include "lacunaTestUnit.h"
 
 #include <gtest/gtest.h>
@@ -48,41 +49,6 @@ FastrakEmulatorOptions Baud(int baud)
   options.Baud = baud;
   return options;
 }
-
-// Measures for how long the computer lets a program stand still at the most.
-class StallWatch
-{
-public:
-  StallWatch()
-    : Thread([this] { this->Watch(); })
-  {
-  }
-  ~StallWatch()
-  {
-    this->Ended = true;
-    this->Thread.join();
-  }
-  StallWatch(const StallWatch&) = delete;
-  StallWatch& operator=(const StallWatch&) = delete;
-  double GetLongest() const { return this->Longest; }
-
-private:
-  void Watch()
-  {
-    constexpr double interval = 0.005; // s
-    const SteadyClock clock;
-    while (!this->Ended)
-    {
-      const double begin = clock.Now();
-      std::this_thread::sleep_for(std::chrono::duration<double>(interval));
-      this->Longest = std::max<double>(this->Longest, clock.Now() - begin - interval);
-    }
-  }
-
-  std::atomic<bool> Ended{ false };
-  std::atomic<double> Longest{ 0 };
-  std::thread Thread;
-};
 
 // Polls until there are so many poses, for at most a minute: a busy computer may miss some.
 std::vector<TrackedPose> Follow(FastrakTracker& tracker, std::size_t count)
