@@ -22,9 +22,11 @@ struct vtkLacunaLiveSweep
   }
 
   std::unique_ptr<lacuna::SweepAcquisition> Acquisition; // null while not connected
-  std::string Devices;                                   // as they were opened
-  std::string Tried;                                     // what was configured last, rightly or not
-  std::string Trouble;                                   // why it could not be
+  std::string Tracker;                                   // as they were opened
+  std::string Video;
+  std::string Crop;
+  std::string Tried;   // what was configured last, rightly or not
+  std::string Trouble; // why it could not be
   std::int64_t LimitBytes = 0;
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
   bool StackIsOfOthers = false;               // of devices that are not these

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPolhemusVideoSource.h"
 
-#include "lacunaDeviceChoice.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaProbeFrames.h"
@@ -50,32 +49,6 @@ std::string GetSubject(std::string message)
   return message;
 }
 
-// What is shown before the first frame: black over a grey wedge, so that colours are chosen for all
-// levels.
-std::unique_ptr<vtkLacunaSliceStack> MakeBlank()
-{
-  constexpr int columns = 768;
-  constexpr int rows = 576;
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  std::array<double, 16> noPose{};
-  noPose.fill(none);
-  lacuna::SweepFrame frame;
-  frame.Window = { 0, 0, columns, rows };
-  lacuna::AcquiredSlice slice;
-  auto pixels = std::make_shared<std::vector<std::uint8_t>>(std::size_t{ columns } * rows);
-  for (int i = 0; i < 16 * columns; ++i)
-  {
-    pixels->rbegin()[i] = static_cast<std::uint8_t>(255 - i % columns * 256 / columns);
-  }
-  slice.Pixels = std::move(pixels);
-  slice.ProbeToTracker = lacuna::Matrix4(noPose);
-  slice.Status = vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::ImageInvalid;
-  slice.Residual = slice.Speed = none;
-  auto stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
-  stack->Append(slice);
-  return stack;
-}
-
 void Announce(vtkInformation* info, const std::array<int, 4>& window, int slices)
 {
   const int extent[6] = { 0, window[2] - 1, 0, window[3] - 1, 0, slices - 1 };
@@ -97,15 +70,12 @@ vtkLacunaPolhemusVideoSource::vtkLacunaPolhemusVideoSource()
 {
   this->SetNumberOfInputPorts(0);
   this->SetNumberOfOutputPorts(2);
-  this->Now->Newest = MakeBlank();
+  this->Now->Newest = vtkLacunaSliceStack::MakeBlank();
 }
 
 //------------------------------------------------------------------------------
 vtkLacunaPolhemusVideoSource::~vtkLacunaPolhemusVideoSource()
 {
-  this->SetTrackerConnection(nullptr);
-  this->SetVideoURL(nullptr);
-  this->SetVideoOptions(nullptr);
   this->SetCalibrationFileName(nullptr);
   this->SetRecordFileName(nullptr);
 }
@@ -115,24 +85,6 @@ int vtkLacunaPolhemusVideoSource::FillOutputPortInformation(int, vtkInformation*
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
   return 1;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkLacunaPolhemusVideoSource::DescribeDevices() const
-{
-  return lacuna::ParameterText()
-    .Add("TrackerConnection", this->TrackerConnection)
-    .Add("BaudRate", this->BaudRate)
-    .Add("Station", this->Station)
-    .Add("Hemisphere", this->Hemisphere)
-    .Add("FiltersOff", this->FiltersOff)
-    .Add("ButtonStarts", this->ButtonStarts) // the records have it then
-    .Add("VideoURL", this->VideoURL)
-    .Add("VideoOptions", this->VideoOptions)
-    .Add("Field", this->Field)
-    .Add("VideoLatency", this->VideoLatency)
-    .Add("CropRectangle", this->CropRectangle)
-    .Get();
 }
 
 //------------------------------------------------------------------------------
@@ -157,39 +109,51 @@ void vtkLacunaPolhemusVideoSource::Open()
   vtkLacunaLiveSweep& now = *this->Now;
   now.Acquisition.reset(); // ports are free for the next
   now.StackIsOfOthers = now.Stack != nullptr;
-  lacuna::TrackerChoice tracker;
-  tracker.Connection = Text(this->TrackerConnection);
-  tracker.BaudRate = this->BaudRate;
-  tracker.Station = this->Station;
-  tracker.Hemisphere = { this->Hemisphere[0], this->Hemisphere[1], this->Hemisphere[2] };
-  tracker.FiltersOff = this->FiltersOff;
-  tracker.WithButton = this->ButtonStarts;
-  lacuna::VideoSettings video;
-  video.URL = Text(this->VideoURL);
-  video.Options = Text(this->VideoOptions);
-  video.Field = static_cast<lacuna::VideoField>(this->Field);
-  lacuna::AcquisitionDevices devices;
-  devices.Poses = lacuna::ChoosePoseDevice(tracker, GetClock());
-  devices.Frames = lacuna::ChooseFrameDevice(video, GetClock());
-  devices.Station = this->Station;
-  if (this->VideoLatency >= 0)
-  {
-    devices.VideoLatency = this->VideoLatency;
-  }
-  std::copy_n(this->CropRectangle, 4, devices.Crop.begin());
-  devices.ReopenEndedVideo = video.URL.find("://") != std::string::npos;
-  now.Acquisition =
-    std::make_unique<lacuna::SweepAcquisition>(devices, lacuna::AcquisitionRules(), GetClock());
-  now.Devices = this->DescribeDevices();
+  now.Acquisition = std::make_unique<lacuna::SweepAcquisition>(
+    this->MakeDevices(GetClock()), lacuna::AcquisitionRules(), GetClock());
+  now.Tracker = this->DescribeTracker();
+  now.Video = this->DescribeVideo();
+  now.Crop = this->DescribeCrop();
 }
 
 //------------------------------------------------------------------------------
-// Whether others were chosen, which a capture does not change.
+// Whether others were chosen.
+bool vtkLacunaPolhemusVideoSource::DevicesDiffer() const
+{
+  const vtkLacunaLiveSweep& now = *this->Now;
+  return this->DescribeTracker() != now.Tracker || this->DescribeVideo() != now.Video ||
+    this->DescribeCrop() != now.Crop;
+}
+
+//------------------------------------------------------------------------------
+// And a capture does not change them.
 bool vtkLacunaPolhemusVideoSource::DevicesWait() const
 {
   const vtkLacunaLiveSweep& now = *this->Now;
-  return now.Acquisition && this->DescribeDevices() != now.Devices &&
-    now.Acquisition->GetState().Capturing;
+  return now.Acquisition && this->DevicesDiffer() && now.Acquisition->GetState().Capturing;
+}
+
+//------------------------------------------------------------------------------
+// A capture goes on with another device in the place of one that does not work: a plug that came
+// back by another name, a wrong baud rate.
+void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  const lacuna::AcquisitionState state = now.GetState();
+  if (!state.Capturing)
+  {
+    return; // they are opened anew
+  }
+  if (!state.TrackerWorks && this->DescribeTracker() != now.Tracker)
+  {
+    now.Acquisition->ReplaceTracker(this->MakeDevices(GetClock()));
+    now.Tracker = this->DescribeTracker();
+  }
+  if (!state.VideoWorks && this->DescribeVideo() != now.Video)
+  {
+    now.Acquisition->ReplaceVideo(this->MakeDevices(GetClock()));
+    now.Video = this->DescribeVideo();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -197,15 +161,16 @@ bool vtkLacunaPolhemusVideoSource::DevicesWait() const
 void vtkLacunaPolhemusVideoSource::Configure()
 {
   vtkLacunaLiveSweep& now = *this->Now;
+  this->ReplaceBrokenDevices();
   const bool wait = this->DevicesWait();
   if (wait && now.Subjects.try_emplace("devices", 0).second)
   {
     vtkWarningMacro(<< WaitingText);
   }
-  const std::string devices = wait ? now.Devices : this->DescribeDevices();
-  const bool reopen = !now.Acquisition || devices != now.Devices;
+  const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
   const std::string calibration = Text(this->CalibrationFileName);
-  const std::string tried = devices + this->DescribeRules() +
+  const std::string tried = (wait ? now.Tracker + now.Video + now.Crop : this->DescribeDevices()) +
+    this->DescribeRules() +
     (calibration.empty() ? "" : std::to_string(vtksys::SystemTools::ModifiedTime(calibration)));
   if (tried == now.Tried && (now.Acquisition || !now.Trouble.empty()))
   {

@@ -12,7 +12,7 @@
  * begins a new one. Opening a state file or setting properties opens nothing. Poll, or GetNeedsUpdate
  * which ParaView calls for a live source, takes over what has come and marks this algorithm as
  * modified; an update gives it. Changed properties are heeded at the next update: those of the
- * devices reopen them, but not during a capture.
+ * devices (vtkLacunaLiveDevices.h) reopen them, during a capture only one that does not work.
  *
  * Output port 0: tracked slices (vtkLacunaTrackedSlices.h) of the sweep, unsigned char, empty before
  * the first slice. Field data, one tuple a slice: ImageToReference (absent while there is no
@@ -32,7 +32,7 @@
 #ifndef vtkLacunaPolhemusVideoSource_h
 #define vtkLacunaPolhemusVideoSource_h
 
-#include "vtkImageAlgorithm.h"
+#include "vtkLacunaLiveDevices.h"
 #include "vtkLacunaSourcesAcquisitionModule.h" // for export macro
 
 #include <memory> // for std::unique_ptr
@@ -40,11 +40,11 @@
 
 struct vtkLacunaLiveSweep;
 
-class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaPolhemusVideoSource : public vtkImageAlgorithm
+class VTKLACUNASOURCESACQUISITION_EXPORT vtkLacunaPolhemusVideoSource : public vtkLacunaLiveDevices
 {
 public:
   static vtkLacunaPolhemusVideoSource* New();
-  vtkTypeMacro(vtkLacunaPolhemusVideoSource, vtkImageAlgorithm);
+  vtkTypeMacro(vtkLacunaPolhemusVideoSource, vtkLacunaLiveDevices);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum CaptureModes
@@ -52,80 +52,6 @@ public:
     Movement = 0,
     EveryFrame = 1
   };
-  enum Fields
-  {
-    Both = 0,
-    Top = 1,
-    Bottom = 2
-  };
-
-  ///@{
-  /// Serial port of the tracker, "/dev/ttyUSB0", or a server of poses,
-  /// "igtl://host:18944?transform=ProbeToTracker" (see lacunaOpenIGTLinkAddress.h), for which
-  /// BaudRate, Hemisphere and FiltersOff mean nothing. Default: none.
-  vtkSetStringMacro(TrackerConnection);
-  vtkGetStringMacro(TrackerConnection);
-  ///@}
-  ///@{
-  /// That of the switches at the tracker's rear. Default: 115200.
-  vtkSetMacro(BaudRate, int);
-  vtkGetMacro(BaudRate, int);
-  ///@}
-  ///@{
-  /// The receiver on the probe, 1 to 4. Default: 1.
-  vtkSetMacro(Station, int);
-  vtkGetMacro(Station, int);
-  ///@}
-  ///@{
-  /// Direction from the transmitter to the middle of the half of space that the receiver is in, in
-  /// the transmitter's coordinates. Default: 1 0 0.
-  vtkSetVector3Macro(Hemisphere, double);
-  vtkGetVector3Macro(Hemisphere, double);
-  ///@}
-  ///@{
-  /// Whether the tracker shall not smooth its measurements, which delays them. Default: off (as it is
-  /// set).
-  vtkSetMacro(FiltersOff, bool);
-  vtkGetMacro(FiltersOff, bool);
-  vtkBooleanMacro(FiltersOff, bool);
-  ///@}
-  ///@{
-  /// Whether a press of the stylus's button, or of a foot switch in its place, starts or stops the
-  /// capture. Default: off.
-  vtkSetMacro(ButtonStarts, bool);
-  vtkGetMacro(ButtonStarts, bool);
-  vtkBooleanMacro(ButtonStarts, bool);
-  ///@}
-
-  ///@{
-  /// "/dev/video0", a file, the address of a stream ("rtsp://..."), a server of images
-  /// ("igtl://host:18944?image=Image_Reference") or a test signal
-  /// ("lavfi:testsrc2=size=768x576:rate=25"). Default: none.
-  vtkSetStringMacro(VideoURL);
-  vtkGetStringMacro(VideoURL);
-  ///@}
-  ///@{
-  /// For FFmpeg, "standard=PAL:channel=1:video_size=768x576". Default: none.
-  vtkSetStringMacro(VideoOptions);
-  vtkGetStringMacro(VideoOptions);
-  ///@}
-  ///@{
-  /// What is used of interlaced frames, whose fields are of two instants. Default: Both.
-  vtkSetClampMacro(Field, int, Both, Bottom);
-  vtkGetMacro(Field, int);
-  ///@}
-  ///@{
-  /// s from the instant that a frame shows to its arrival; below 0: one frame's time for a frame
-  /// grabber (/dev/...), 0 for others. Default: -1.
-  vtkSetMacro(VideoLatency, double);
-  vtkGetMacro(VideoLatency, double);
-  ///@}
-  ///@{
-  /// First column, first row, columns and rows that are kept of a frame; 0 columns or rows: to its
-  /// end. Default: 0 0 0 0.
-  vtkSetVector4Macro(CropRectangle, int);
-  vtkGetVector4Macro(CropRectangle, int);
-  ///@}
 
   ///@{
   /// The XML file that Probe Calibration writes, with a transform from Image to Probe. Default:
@@ -247,25 +173,15 @@ private:
   vtkLacunaPolhemusVideoSource(const vtkLacunaPolhemusVideoSource&) = delete;
   void operator=(const vtkLacunaPolhemusVideoSource&) = delete;
 
-  std::string DescribeDevices() const;
   std::string DescribeRules() const;
+  bool DevicesDiffer() const;
   bool DevicesWait() const;
+  void ReplaceBrokenDevices();
   void Open();
   void Configure();
   bool TakeOver();
   void CollectNews();
 
-  char* TrackerConnection = nullptr;
-  int BaudRate = 115200;
-  int Station = 1;
-  double Hemisphere[3] = { 1, 0, 0 };
-  bool FiltersOff = false;
-  bool ButtonStarts = false;
-  char* VideoURL = nullptr;
-  char* VideoOptions = nullptr;
-  int Field = Both;
-  double VideoLatency = -1;
-  int CropRectangle[4] = { 0, 0, 0, 0 };
   char* CalibrationFileName = nullptr;
   double PixelSpacing = 0;
   double TimeOffset = 0;

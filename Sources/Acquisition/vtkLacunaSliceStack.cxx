@@ -13,6 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -57,6 +60,31 @@ vtkLacunaSliceStack::vtkLacunaSliceStack(const lacuna::SweepFrame& frame, std::i
 {
   this->Pixels->Reserve(bytes);
   this->Calibrate(frame);
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
+{
+  constexpr int columns = 768;
+  constexpr int rows = 576;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::array<double, 16> noPose{};
+  noPose.fill(none);
+  lacuna::SweepFrame frame;
+  frame.Window = { 0, 0, columns, rows };
+  lacuna::AcquiredSlice slice;
+  auto pixels = std::make_shared<std::vector<std::uint8_t>>(std::size_t{ columns } * rows);
+  for (int i = 0; i < 16 * columns; ++i)
+  {
+    pixels->rbegin()[i] = static_cast<std::uint8_t>(255 - i % columns * 256 / columns);
+  }
+  slice.Pixels = std::move(pixels);
+  slice.ProbeToTracker = lacuna::Matrix4(noPose);
+  slice.Status = vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::ImageInvalid;
+  slice.Residual = slice.Speed = none;
+  auto stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
+  stack->Append(slice);
+  return stack;
 }
 
 //------------------------------------------------------------------------------

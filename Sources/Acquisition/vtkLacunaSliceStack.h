@@ -23,6 +23,10 @@ public:
   /// Throws std::bad_alloc.
   vtkLacunaSliceStack(const lacuna::SweepFrame& frame, std::int64_t bytes);
 
+  /// What is shown before the first frame, of 768 x 576 pixels and flagged: black over a grey wedge,
+  /// so that colours are chosen for all levels.
+  static std::unique_ptr<vtkLacunaSliceStack> MakeBlank();
+
   void Append(const lacuna::AcquiredSlice& slice);
   /// Takes the calibration of a frame for all slices, those that are there too.
   void Calibrate(const lacuna::SweepFrame& frame);

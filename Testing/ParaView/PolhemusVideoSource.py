@@ -57,7 +57,8 @@ try:
         ["BaudRate", "Station", "Hemisphere", "FiltersOff", "ButtonStarts", "CropRectangle", "VideoLatency",
          "PixelSpacing", "TimeOffset", "MovementThreshold", "SpeedLimit", "MemoryLimit", "RecordCompression",
          "LiveDisplay"],
-        {"Field": ["Both", "Top", "Bottom"], "CaptureMode": ["Movement", "EveryFrame"]})
+        {"Field": ["Both", "Top", "Bottom"], "CaptureMode": ["Movement", "EveryFrame"], "RecordFormat": ["Binary", "ASCII"],
+         "RecordUnit": ["Centimetre", "Inch"], "TrackerReset": ["Nothing", "Frames", "Factory"]})
     hints = source.SMProxy.GetHints()
     assert hints.FindNestedElementByName("LiveSource").GetAttribute("interval") == "40"
     UpdatePipeline(proxy=source)  # opens nothing
@@ -148,6 +149,20 @@ try:
     steps = abs(arrays["ProbeToTracker"][1:, 7] - arrays["ProbeToTracker"][:-1, 7])
     assert steps.min() > 1.99, steps
     assert (arrays["SliceStatus"] & 4).any() and (arrays["Speed"][arrays["SliceStatus"] & 4 > 0] > 5).all()
+
+    # however the FASTRAK writes its records
+    live.clear(source)
+    source.RecordFormat = "ASCII"
+    source.RecordUnit = "Inch"
+    source.TrackerReset = "Factory"
+    source.CaptureMode = "EveryFrame"
+    live.start(source)
+    wait(source, lambda: live.get(source, "TrackerWorks"), "ASCII in inches")
+    seen = live.get(source, "SliceCount")
+    wait(source, lambda: live.get(source, "SliceCount") >= seen + 20, "slices of ASCII records")
+    live.stop(source)
+    arrays = slices_of(source)[1]
+    assert arrays["SliceStatus"][-1] & 1 == 0 and abs(arrays["ProbeToTracker"][-1][3] - 150) < 0.01
 
     # unplugged and plugged in again, while the capture goes on
     live.clear(source)

@@ -47,7 +47,9 @@ PoseDeviceFactory ChoosePoseDevice(const TrackerChoice& choice, const Clock& clo
   settings.Stations = { choice.Station };
   settings.Hemisphere = choice.Hemisphere;
   settings.FiltersOff = choice.FiltersOff;
-  settings.Layout = ChooseFastrakLayout(choice.BaudRate, choice.WithButton);
+  settings.Format = choice.Format;
+  settings.Reset = choice.Reset;
+  settings.Layout = ChooseFastrakLayout(choice.BaudRate, choice.WithButton, choice.Format.Binary);
   return MakeFastrakFactory(choice.Connection, choice.BaudRate, clock, settings);
 }
 

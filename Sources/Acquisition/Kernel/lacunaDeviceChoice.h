@@ -5,6 +5,7 @@
 #define lacunaDeviceChoice_h
 
 #include "lacunaClock.h"
+#include "lacunaFastrakTracker.h"
 #include "lacunaFrameDevice.h"
 #include "lacunaPoseDevice.h"
 #include "lacunaVector.h"
@@ -22,6 +23,8 @@ struct TrackerChoice
   int Station = 1;
   Vec3 Hemisphere{ 1, 0, 0 }; ///< zenith, in the transmitter's coordinates
   bool FiltersOff = false;
+  FastrakFormat Format{ true, LengthUnit::Centimetre };
+  FastrakReset Reset = FastrakReset::Frames;
   bool WithButton = false; ///< the records tell the stylus's button
 };
 

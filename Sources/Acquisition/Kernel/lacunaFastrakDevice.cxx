@@ -20,19 +20,28 @@ PoseCounts FastrakDevice::GetCounts() const
   return { counts.Records, counts.Silent, counts.Damaged, counts.Implausible, counts.Flipped };
 }
 
-FastrakLayout ChooseFastrakLayout(int baud, bool withButton)
+FastrakLayout ChooseFastrakLayout(int baud, bool withButton, bool binary)
 {
-  constexpr int fast = 38400; // 51 bytes take 13 ms
-  std::vector<FastrakItem> items{ FastrakItem::Position, FastrakItem::Angles };
-  if (baud >= fast)
+  constexpr double longest = 0.0145; // s on the line, beside 10 ms of the unit
+  std::vector<std::vector<int>> lists{ { 2, 4, 2, 4 }, { 2, 4 } };
+  if (!binary)
   {
-    items.insert(items.end(), { FastrakItem::Position, FastrakItem::Angles });
+    lists = { { 52, 54, 52, 54 }, { 52, 54 }, { 2, 4 } };
   }
-  if (withButton)
+  for (std::vector<int>& list : lists)
   {
-    items.push_back(FastrakItem::Button);
+    if (withButton)
+    {
+      list.push_back(static_cast<int>(FastrakItem::Button));
+    }
+    FastrakLayout layout = FastrakLayout::FromNumbers(list);
+    const auto bytes = static_cast<double>(layout.GetLength(binary));
+    if (10 * bytes / baud < longest || &list == &lists.back())
+    {
+      return layout;
+    }
   }
-  return FastrakLayout(std::move(items));
+  return {};
 }
 
 PoseDeviceFactory MakeFastrakFactory(

@@ -28,8 +28,9 @@ private:
 };
 
 /// The record to ask one receiver for: the pose, listed twice where the line carries that 40 times a
-/// second and more, so that damage is seen; and the stylus's button if wanted.
-FastrakLayout ChooseFastrakLayout(int baud, bool withButton);
+/// second and more, so that damage is seen, in ASCII with more digits where it carries these; and the
+/// stylus's button if wanted.
+FastrakLayout ChooseFastrakLayout(int baud, bool withButton, bool binary = true);
 
 /// Opens a FASTRAK on a serial port. The clock must live longer; it is the computer's.
 PoseDeviceFactory MakeFastrakFactory(

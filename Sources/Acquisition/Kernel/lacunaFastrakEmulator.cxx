@@ -17,7 +17,7 @@ namespace
 {
 constexpr double Cycle = 1 / 120.0;     // one receiver's measurement
 constexpr double LongestBacklog = 0.25; // s of output; records beyond are skipped, as by the unit
-constexpr std::string_view WithoutEffect = "ABbGINoQRrVvXxy";
+constexpr std::string_view WithoutEffect = "BbGINoQrVvXxy";
 constexpr std::size_t LongestLine = 256;
 
 enum Code
@@ -180,7 +180,7 @@ void FastrakEmulator::ActOnLine(const std::string& line, double end)
   {
     return;
   }
-  if (std::string_view("lOHe").find(letter) == std::string_view::npos)
+  if (std::string_view("lOHeAR").find(letter) == std::string_view::npos)
   {
     this->Complain(line, Unknown, end);
     return;
@@ -219,6 +219,17 @@ void FastrakEmulator::ActOnLine(const std::string& line, double end)
     else
     {
       station.Active = fields[1].value_or(0) != 0 && this->Options.Receivers[number - 1];
+    }
+  }
+  else if (letter == 'R')
+  {
+    station.TransmitterToFrame = Matrix4();
+  }
+  else if (letter == 'A')
+  {
+    if (!this->Align(station, fields))
+    {
+      this->Complain(line, Missing, end);
     }
   }
   else if (letter == 'e')
@@ -267,6 +278,32 @@ void FastrakEmulator::ActOnLine(const std::string& line, double end)
       this->Complain(line, OutOfRange, end);
     }
   }
+}
+
+// A frame by its origin, a point on its x axis and one in its xy plane, in the frame before.
+bool FastrakEmulator::Align(
+  Station& station, const std::vector<std::optional<double>>& fields) const
+{
+  std::array<Vec3, 3> points{};
+  for (std::size_t i = 0; i < 9; ++i)
+  {
+    if (i + 1 >= fields.size() || !fields[i + 1])
+    {
+      return false;
+    }
+    points[i / 3][static_cast<int>(i % 3)] = *fields[i + 1] * GetMillimetres(this->Format.Unit);
+  }
+  const Vec3 along = points[1] - points[0];
+  const Vec3 normal = Cross(along, points[2] - points[0]);
+  if (!(Norm(normal) > 0))
+  {
+    return false;
+  }
+  const Vec3 x = Normalized(along);
+  const Vec3 z = Normalized(normal);
+  const Matrix4 frame = Matrix4::FromColumns(x, Cross(z, x), z, points[0]);
+  station.TransmitterToFrame = frame.Inverse() * station.TransmitterToFrame;
+  return true;
 }
 
 void FastrakEmulator::AnswerStatus(double time)
@@ -321,7 +358,7 @@ void FastrakEmulator::Corrupt(char value, double time)
 FastrakRecord FastrakEmulator::Measure(int number, double time)
 {
   Station& station = this->Stations[number - 1];
-  const Matrix4 pose = this->Script(time, number);
+  const Matrix4 pose = station.TransmitterToFrame * this->Script(time, number);
   std::normal_distribution<double> noise(0, 1);
   Vec3 position = pose.Column(3);
   Vec3 angles = FastrakAngles(pose);

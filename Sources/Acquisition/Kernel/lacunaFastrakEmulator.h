@@ -14,6 +14,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lacuna
 {
@@ -44,8 +45,8 @@ struct FastrakEmulatorOptions
 /// Takes commands and gives records with the timing of a serial line, in whatever time it is told:
 /// the clock's or a simulated one. Times are s and must not go back.
 ///
-/// It acts on P C c F f U u S W ^K ^Y ^S ^Q l O H e and sends the answers to l, O and H with only a
-/// station. The commands A B b D d G I N o Q R r V v X x y are taken without effect. Anything else
+/// It acts on P C c F f U u S W ^K ^Y ^S ^Q l O H e A R and sends the answers to l, O and H with only
+/// a station. The commands B b D d G I N o Q r V v X x y are taken without effect. Anything else
 /// gets an *ERROR* record. Positions are reported in the hemisphere set, so that a receiver that
 /// leaves it is seen with all signs changed, as by the unit.
 class FastrakEmulator
@@ -74,6 +75,7 @@ private:
     bool Active = false;
     FastrakLayout Layout;
     Vec3 Zenith{ 1, 0, 0 };
+    Matrix4 TransmitterToFrame; ///< of the alignment
     Vec3 LastPosition{ 0, 0, 0 };
   };
   struct Byte
@@ -86,6 +88,7 @@ private:
   void Take(char c, double begin, double end);
   bool ActOnLetter(char c, double begin, double end);
   void ActOnLine(const std::string& line, double end);
+  bool Align(Station& station, const std::vector<std::optional<double>>& fields) const;
   void Answer(const std::string& bytes, double time);
   void AnswerStatus(double time);
   void Complain(const std::string& command, int code, double time);

@@ -12,7 +12,6 @@ namespace lacuna
 {
 namespace
 {
-const FastrakFormat WorkingFormat{ true, LengthUnit::Centimetre };
 constexpr double StopInterval = 0.1; // s
 constexpr double StatusTime = 1;     // s to wait for a status record
 constexpr int Attempts = 6;          // of each step of the set-up
@@ -33,7 +32,7 @@ FastrakTracker::FastrakTracker(ByteChannel& channel, const Clock& clock,
   , Time(clock)
   , Settings(settings)
   , Stopped(std::move(stopped))
-  , Parser(WorkingFormat, settings.Layout)
+  , Parser(settings.Format, settings.Layout)
 {
   std::vector<int>& stations = this->Settings.Stations;
   if (stations.empty() || stations.front() < 1 || stations.back() > FastrakStations ||
@@ -146,15 +145,17 @@ bool FastrakTracker::AskStatus()
 
 void FastrakTracker::SendSettings()
 {
-  std::string commands{ FastrakCommand::StopContinuous, FastrakCommand::Centimetres,
-    FastrakCommand::Binary };
+  const FastrakFormat& format = this->Settings.Format;
+  std::string commands{ FastrakCommand::StopContinuous,
+    format.Unit == LengthUnit::Inch ? FastrakCommand::Inches : FastrakCommand::Centimetres,
+    format.Binary ? FastrakCommand::Binary : FastrakCommand::Ascii };
   for (int station = 1; station <= FastrakStations; ++station)
   {
     commands += FastrakCommand::Active(station, this->IsWanted(station));
   }
   for (const int station : this->Settings.Stations)
   {
-    if (this->Settings.ResetFrames)
+    if (this->Settings.Reset != FastrakReset::Nothing)
     {
       commands += FastrakCommand::ResetAlignment(station) + FastrakCommand::Unboresight(station);
     }
@@ -212,11 +213,15 @@ void FastrakTracker::SetUp()
         "bits, "
         "no parity; or another device is on this port.");
   }
+  if (this->Settings.Reset == FastrakReset::Factory)
+  {
+    this->Channel.Write(std::string(1, FastrakCommand::Defaults));
+    this->Settle(CommandTime, 1);
+  }
   for (int i = 0; i < Attempts; ++i)
   {
     this->SendSettings();
-    if (this->AskStatus() && this->Status.Binary && this->Status.Centimetres &&
-      !this->Status.Continuous && this->LastComplaint.empty())
+    if (this->AskStatus() && this->IsAsSet() && this->LastComplaint.empty())
     {
       break;
     }
@@ -224,7 +229,7 @@ void FastrakTracker::SetUp()
     {
       throw TrackerError(TrackerError::Kind::Complaint,
         this->LastComplaint.empty() ? device +
-            " answers, but does not keep to binary records in centimetres: switch it off "
+            " answers, but does not keep to the records that it is set to: switch it off "
             "and on"
                                     : "The FASTRAK on " + this->Channel.GetName() + " " +
             this->LastComplaint + ": its firmware may be older than this program expects");
@@ -298,7 +303,7 @@ FastrakTracker::Outcome FastrakTracker::Request(std::vector<TrackedPose>& measur
   messages.clear();
 
   const std::size_t expected =
-    this->Settings.Layout.GetLength(true) * this->Settings.Stations.size();
+    this->Settings.Layout.GetLength(this->Settings.Format.Binary) * this->Settings.Stations.size();
   ++this->Count.Requests;
   const double request = this->Time.Now();
   this->Channel.Write(std::string(1, FastrakCommand::Point));
@@ -369,6 +374,7 @@ bool FastrakTracker::Poll(std::vector<TrackedPose>& poses)
     return false;
   }
   this->Failures = 0;
+  this->Doubted = false;
   if (this->Time.Now() - this->WarnedAt > WarningTime)
   {
     this->Warning.clear();
@@ -385,6 +391,13 @@ bool FastrakTracker::Poll(std::vector<TrackedPose>& poses)
   return true;
 }
 
+bool FastrakTracker::IsAsSet() const
+{
+  const FastrakFormat& format = this->Settings.Format;
+  return this->Status.Binary == format.Binary &&
+    this->Status.Centimetres == (format.Unit == LengthUnit::Centimetre) && !this->Status.Continuous;
+}
+
 bool FastrakTracker::MakeSure()
 {
   // answers come in order: after this one none to an earlier request does
@@ -393,8 +406,10 @@ bool FastrakTracker::MakeSure()
     return false;
   }
   this->Failures = 0;
-  if (!this->Status.Binary || !this->Status.Centimetres || this->Status.Continuous)
+  // a restarted unit's records are ASCII in inches, which those wanted may be too, but for their list
+  if (!this->IsAsSet() || std::exchange(this->Doubted, true))
   {
+    this->Doubted = false;
     this->SetUp();
     this->Warn("The FASTRAK had been restarted and was set up again");
   }

@@ -18,15 +18,24 @@
 
 namespace lacuna
 {
+/// What of a unit's own settings is made undone before it is set up.
+enum class FastrakReset
+{
+  Nothing, ///< an alignment and a boresight that were set stay: poses are in that frame
+  Frames,  ///< alignment and boresight: poses are in the transmitter's frame
+  Factory  ///< everything, but for the serial line: also filters and the stylus's tip
+};
+
 struct FastrakSettings
 {
   std::vector<int> Stations{ 1 }; ///< the receivers to follow, ascending
-  /// The binary record; must have a pose. The one of 27 bytes allows 49 records a second at 19200
+  /// Must have a pose. The binary record of 27 bytes allows 46 records a second and more at 19200
   /// baud. From 38400 baud on, list items twice (2 4 2 4): then every damage but an equal one to
   /// both is seen.
   FastrakLayout Layout{ { FastrakItem::Position, FastrakItem::Angles } };
-  Vec3 Hemisphere{ 1, 0, 0 };    ///< zenith of the half of space the receivers are in at first
-  bool ResetFrames = true;       ///< alignment and boresight as from the factory
+  FastrakFormat Format{ true, LengthUnit::Centimetre };
+  Vec3 Hemisphere{ 1, 0, 0 }; ///< zenith of the half of space the receivers are in at first
+  FastrakReset Reset = FastrakReset::Frames;
   bool FiltersOff = false;       ///< no smoothing, which delays; false: as they are set
   double SampleLatency = 0.0035; ///< s from request to the instant of the pose (Carr 1996, ch. 2)
   double ResponseTime = 0.25;    ///< s without an answer after which a request has failed
@@ -79,8 +88,7 @@ public:
   FastrakTracker(ByteChannel& channel, const Clock& clock, const FastrakSettings& settings = {},
     std::function<bool()> stopped = {});
 
-  /// Ends what the unit is doing, sets it up (binary, centimetres, stations, output lists,
-  /// hemisphere) and makes sure that it answers with the records asked for; repeats steps that
+  /// Ends what the unit is doing, sets it up (format, stations, output lists, hemisphere) and makes sure that it answers with the records asked for; repeats steps that
   /// damage spoilt. Throws TrackerError.
   void SetUp();
 
@@ -109,6 +117,7 @@ private:
   bool AskStatus();
   void SendSettings();
   void CheckRecords();
+  bool IsAsSet() const;
   bool MakeSure();
   bool IsWanted(int station) const;
   Outcome Request(std::vector<TrackedPose>& measured);
@@ -128,6 +137,7 @@ private:
   double WarnedAt = 0;
   std::string LastComplaint;
   int Failures = 0;              ///< requests in a row
+  bool Doubted = false;          ///< no record has come since the unit was asked for its state
   std::size_t ReceivedBytes = 0; ///< since the unit was asked for its status
   int OtherStation = 0;          ///< from which a record came last that was not wanted
 };

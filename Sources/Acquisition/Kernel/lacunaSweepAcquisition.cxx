@@ -39,8 +39,7 @@ VideoSource::Counts Sum(const VideoSource::Counts& a, const VideoSource::Counts&
 struct SweepAcquisition::Core
 {
   Core(const AcquisitionDevices& devices, const AcquisitionRules& rules, const Clock& clock)
-    : Devices(devices)
-    , Time(clock)
+    : Time(clock)
     , Epoch(clock.Now())
     , Taking(devices.Crop, rules, this->Epoch)
     , Rules(rules)
@@ -48,9 +47,10 @@ struct SweepAcquisition::Core
   {
   }
 
-  void TrackPoses(DeviceThread::Control& control);
-  void ReadFrames(DeviceThread::Control& control);
-  void AddPoses(const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device);
+  void TrackPoses(const AcquisitionDevices& devices, DeviceThread::Control& control);
+  void ReadFrames(const AcquisitionDevices& devices, DeviceThread::Control& control);
+  void AddPoses(
+    const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
   void HeedButton(const TrackedPose& pose);
   void LosePoses();
   void AddFrame(FramePointer frame, double latency, const VideoSource::Counts& counts);
@@ -62,7 +62,6 @@ struct SweepAcquisition::Core
   }
   std::vector<std::string> DescribePoses() const;
 
-  const AcquisitionDevices Devices;
   const Clock& Time;
   const double Epoch;
 
@@ -93,9 +92,10 @@ struct SweepAcquisition::Core
   std::optional<SweepFrame> Sweep;
 };
 
-void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
+void SweepAcquisition::Core::TrackPoses(
+  const AcquisitionDevices& devices, DeviceThread::Control& control)
 {
-  const auto device = this->Devices.Poses([&control] { return control.IsStopped(); });
+  const auto device = devices.Poses([&control] { return control.IsStopped(); });
   device->SetUp();
   try
   {
@@ -105,7 +105,11 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
     {
       poses.clear();
       const bool came = device->Poll(poses);
-      this->AddPoses(poses, came, *device);
+      if (control.IsStopped())
+      {
+        return; // there may be another tracker
+      }
+      this->AddPoses(poses, came, *device, devices.Station);
       if (came)
       {
         control.SetWorking();
@@ -122,14 +126,16 @@ void SweepAcquisition::Core::TrackPoses(DeviceThread::Control& control)
   }
   catch (...)
   {
-    this->LosePoses();
+    if (!control.IsStopped())
+    {
+      this->LosePoses();
+    }
     throw;
   }
-  this->LosePoses();
 }
 
 void SweepAcquisition::Core::AddPoses(
-  const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device)
+  const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station)
 {
   const PoseCounts counts = device.GetCounts();
   std::string warning = device.GetWarning();
@@ -140,7 +146,7 @@ void SweepAcquisition::Core::AddPoses(
     this->PosesCome = this->PosesCome || came;
     for (const TrackedPose& pose : poses)
     {
-      if (pose.Station == this->Devices.Station)
+      if (pose.Station == station)
       {
         this->HeedButton(pose);
         this->Pairing.AddPose(pose);
@@ -179,10 +185,11 @@ void SweepAcquisition::Core::LosePoses()
   this->Process();
 }
 
-void SweepAcquisition::Core::ReadFrames(DeviceThread::Control& control)
+void SweepAcquisition::Core::ReadFrames(
+  const AcquisitionDevices& devices, DeviceThread::Control& control)
 {
-  const auto device = this->Devices.Frames([&control] { return control.IsStopped(); });
-  const double latency = this->Devices.VideoLatency.value_or(device->GetLatency());
+  const auto device = devices.Frames([&control] { return control.IsStopped(); });
+  const double latency = devices.VideoLatency.value_or(device->GetLatency());
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->EarlierVideo = Sum(this->EarlierVideo, this->NewestVideo);
@@ -194,12 +201,16 @@ void SweepAcquisition::Core::ReadFrames(DeviceThread::Control& control)
     if (device->Read(*frame) == VideoEvent::End)
     {
       const std::string text = "The video has ended";
-      if (this->Devices.ReopenEndedVideo)
+      if (devices.ReopenEndedVideo)
       {
         throw std::runtime_error(
           text + ": does its sender still run? It is opened again when it does");
       }
       throw DeviceEnded(text + ": no more frames come");
+    }
+    if (control.IsStopped())
+    {
+      return; // there may be another video
     }
     control.SetWorking();
     this->AddFrame(std::move(frame), latency, device->GetCounts());
@@ -305,11 +316,39 @@ SweepAcquisition::SweepAcquisition(
 {
   CheckRules(rules);
   this->Work = std::make_shared<Core>(devices, rules, clock);
-  const std::shared_ptr<Core> core = this->Work;
-  this->Tracker = std::make_unique<DeviceThread>(
-    [core](DeviceThread::Control& control) { core->TrackPoses(control); }, devices.RetryTime);
-  this->Video = std::make_unique<DeviceThread>(
-    [core](DeviceThread::Control& control) { core->ReadFrames(control); }, devices.RetryTime);
+  this->OpenTracker(devices);
+  this->OpenVideo(devices);
+}
+
+void SweepAcquisition::OpenTracker(const AcquisitionDevices& devices)
+{
+  this->Tracker =
+    std::make_unique<DeviceThread>([core = this->Work, devices](DeviceThread::Control& control)
+      { core->TrackPoses(devices, control); },
+      devices.RetryTime);
+}
+
+void SweepAcquisition::OpenVideo(const AcquisitionDevices& devices)
+{
+  this->Video =
+    std::make_unique<DeviceThread>([core = this->Work, devices](DeviceThread::Control& control)
+      { core->ReadFrames(devices, control); },
+      devices.RetryTime);
+}
+
+void SweepAcquisition::ReplaceTracker(const AcquisitionDevices& devices)
+{
+  const std::lock_guard<std::mutex> lock(this->DevicesMutex);
+  this->Tracker.reset();
+  this->Work->LosePoses();
+  this->OpenTracker(devices);
+}
+
+void SweepAcquisition::ReplaceVideo(const AcquisitionDevices& devices)
+{
+  const std::lock_guard<std::mutex> lock(this->DevicesMutex);
+  this->Video.reset();
+  this->OpenVideo(devices);
 }
 
 SweepAcquisition::~SweepAcquisition()
@@ -379,8 +418,10 @@ std::optional<LiveFrame> SweepAcquisition::GetLive() const
 
 AcquisitionState SweepAcquisition::GetState() const
 {
+  std::unique_lock<std::mutex> devices(this->DevicesMutex);
   const DeviceThread::Health tracker = this->Tracker->GetHealth();
   const DeviceThread::Health video = this->Video->GetHealth();
+  devices.unlock();
   Core& core = *this->Work;
   // the disk goes on when no frames come
   std::unique_lock<std::mutex> taking(core.TakeMutex, std::try_to_lock);

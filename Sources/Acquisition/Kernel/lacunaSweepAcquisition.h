@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,6 +87,12 @@ public:
 
   void SetRules(const AcquisitionRules& rules);
 
+  /// Closes the tracker, within a second, and opens the one of these devices in its place; the
+  /// capture goes on.
+  void ReplaceTracker(const AcquisitionDevices& devices);
+  /// The same of the video.
+  void ReplaceVideo(const AcquisitionDevices& devices);
+
   /// Takes slices from the frames that come from now on; after Stop it goes on with the sweep.
   void Start();
   /// Ends the capture; what came before is kept.
@@ -106,7 +113,11 @@ public:
 
 private:
   struct Core;
+  void OpenTracker(const AcquisitionDevices& devices);
+  void OpenVideo(const AcquisitionDevices& devices);
+
   std::shared_ptr<Core> Work;
+  mutable std::mutex DevicesMutex; ///< guards the two
   std::unique_ptr<DeviceThread> Tracker;
   std::unique_ptr<DeviceThread> Video;
 };

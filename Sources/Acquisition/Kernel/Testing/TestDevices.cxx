@@ -51,6 +51,9 @@ TEST(FastrakDevice, AsksForWhatTheLineCarries)
   EXPECT_EQ(ChooseFastrakLayout(19200, false).GetLength(true), 27u); // 46 a second and more
   EXPECT_EQ(ChooseFastrakLayout(115200, false).GetLength(true), 51u);
   EXPECT_EQ(ChooseFastrakLayout(115200, true).GetItems().back(), FastrakItem::Button);
+  EXPECT_EQ(ChooseFastrakLayout(19200, false, false).GetLength(false), 45u);
+  EXPECT_EQ(ChooseFastrakLayout(57600, true, false).GetLength(false), 83u); // more digits
+  EXPECT_EQ(ChooseFastrakLayout(115200, false, false).GetLength(false), 159u);
 }
 
 TEST(DeviceChoice, SaysWhatToSetWhenNothingIs)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaEmulatedChannel.h"
 #include "lacunaExecution.h"
-#include "lacunaFastrakTracker.h"
+#include "lacunaFastrakCommand.h"
+#include "lacunaFastrakDevice.h"
+#include "lacunaTestDevice.h"
 #include "lacunaTestPairing.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +29,7 @@ struct Bench
 };
 
 // What SetUp complains of.
-std::string Complaint(Bench&& bench, TrackerError::Kind kind)
+std::string SetUpComplaint(Bench&& bench, TrackerError::Kind kind)
 {
   try
   {
@@ -96,19 +98,127 @@ TEST(FastrakTracker, TwoReceiversAndAQuaternion)
   }
 }
 
+// In each format, as the line carries it; also one that the unit begins with.
+TEST(FastrakTracker, AsciiAndInches)
+{
+  for (const bool binary : { true, false })
+  {
+    for (const LengthUnit unit : { LengthUnit::Centimetre, LengthUnit::Inch })
+    {
+      for (const int baud : { 19200, 38400, 57600, 115200 })
+      {
+        FastrakSettings settings;
+        settings.Format = { binary, unit };
+        settings.Layout = ChooseFastrakLayout(baud, false, binary);
+        Bench bench(Baud(baud), settings);
+        bench.Tracker.SetUp();
+        EXPECT_EQ(bench.Tracker.GetStatus().Binary, binary);
+        EXPECT_EQ(bench.Tracker.GetStatus().Centimetres, unit == LengthUnit::Centimetre);
+        std::vector<TrackedPose> poses;
+        const double begin = bench.Channel.Now();
+        while (bench.Channel.Now() < begin + 4)
+        {
+          ASSERT_TRUE(bench.Tracker.Poll(poses));
+        }
+        // mm and rad; the last digit of ASCII is 0.01 of a unit where the line is slow
+        const bool coarse = !binary && baud < 57600;
+        const double digit = coarse ? 0.5 * 0.01 * GetMillimetres(unit) + 1e-4 : 2e-3;
+        for (const TrackedPose& pose : poses)
+        {
+          EXPECT_LT(Distance(pose.ReceiverToTransmitter, Sweep(pose.Time, 1)), digit);
+        }
+        EXPECT_GE(static_cast<double>(poses.size()) / 4, binary || baud > 19200 ? 43 : 30);
+      }
+    }
+  }
+}
+
+TEST(FastrakTracker, AnAlignmentIsResetUnlessItIsToStay)
+{
+  const Vec3 origin{ 100, -200, -40 }; // the receiver stays in the half of space of +x
+  const std::string align =
+    FastrakCommand::Alignment(1, origin, origin + Vec3{ 0, 100, 0 }, origin + Vec3{ 0, 0, 100 },
+      LengthUnit::Inch); // as after power-up
+  for (const FastrakReset reset :
+    { FastrakReset::Nothing, FastrakReset::Frames, FastrakReset::Factory })
+  {
+    FastrakSettings settings;
+    settings.Reset = reset;
+    Bench bench(Baud(115200), settings);
+    bench.Channel.Write(align);
+    bench.Tracker.SetUp();
+    std::vector<TrackedPose> poses;
+    for (int i = 0; i < 5; ++i)
+    {
+      ASSERT_TRUE(bench.Tracker.Poll(poses));
+    }
+    const Vec3 position = Sweep(poses.back().Time, 1).Column(3);
+    const Vec3 seen = poses.back().ReceiverToTransmitter.Column(3);
+    const Vec3 aligned{ position[1] + 200, position[2] + 40, position[0] - 100 };
+    EXPECT_LT(Norm(seen - (reset == FastrakReset::Nothing ? aligned : position)), 1e-3);
+  }
+}
+
+// The commands that a unit gets.
+TEST(FastrakTracker, SendsTheSettingsThatAreSet)
+{
+  struct Listener : public EmulatedChannel
+  {
+    using EmulatedChannel::EmulatedChannel;
+    void Write(std::string_view bytes) override
+    {
+      this->Sent += bytes;
+      EmulatedChannel::Write(bytes);
+    }
+    std::string Sent;
+  };
+  const auto sent = [](const FastrakSettings& settings)
+  {
+    FastrakEmulatorOptions options = Baud(19200);
+    options.Receivers = { true, true, true, true };
+    FastrakEmulator emulator(Sweep, options);
+    Listener channel(emulator, 19200);
+    FastrakTracker(channel, channel, settings).SetUp();
+    return channel.Sent;
+  };
+  const auto has = [](const std::string& text, const std::string& part)
+  { return text.find(part) != std::string::npos; };
+  FastrakSettings settings;
+  const std::string usual = sent(settings);
+  EXPECT_TRUE(has(usual, "cuf"));
+  EXPECT_TRUE(has(usual, "H1,1"));
+  EXPECT_TRUE(has(usual, "R1\r"));
+  EXPECT_TRUE(has(usual, "l1,1\rl2,0\rl3,0\rl4,0\r"));
+  EXPECT_FALSE(has(usual, "x,1\r"));
+  EXPECT_FALSE(has(usual, "W"));
+  settings.Stations = { 3 };
+  settings.Format = { false, LengthUnit::Inch };
+  settings.Hemisphere = { 0, 0, -1 };
+  settings.FiltersOff = true;
+  settings.Reset = FastrakReset::Factory;
+  const std::string other = sent(settings);
+  EXPECT_TRUE(has(other, "cUF"));
+  EXPECT_TRUE(has(other, FastrakCommand::Hemisphere(3, { 0, 0, -1 })));
+  EXPECT_TRUE(has(other, "l1,0\rl2,0\rl3,1\rl4,0\r"));
+  EXPECT_TRUE(has(other, "x,1\rv,1\r"));
+  EXPECT_LT(other.find('W'), other.find("cUF"));
+  settings.Reset = FastrakReset::Nothing;
+  EXPECT_FALSE(has(sent(settings), "R3\r"));
+}
+
 TEST(FastrakTracker, SaysWhatIsWrong)
 {
   FastrakEmulatorOptions silent = Baud(19200);
   silent.Faults.Silent = true;
-  EXPECT_NE(
-    Complaint(Bench(silent), TrackerError::Kind::Silent).find("switched on"), std::string::npos);
+  EXPECT_NE(SetUpComplaint(Bench(silent), TrackerError::Kind::Silent).find("switched on"),
+    std::string::npos);
   FastrakEmulatorOptions garbage = Baud(19200);
   garbage.Faults.Garbage = true;
-  EXPECT_NE(
-    Complaint(Bench(garbage), TrackerError::Kind::Garbage).find("baud rate"), std::string::npos);
+  EXPECT_NE(SetUpComplaint(Bench(garbage), TrackerError::Kind::Garbage).find("baud rate"),
+    std::string::npos);
   FastrakSettings second;
   second.Stations = { 2 };
-  EXPECT_NE(Complaint(Bench(Baud(19200), second), TrackerError::Kind::WrongStation)
+  EXPECT_NE(SetUpComplaint(Bench(Baud(19200), second), TrackerError::Kind::WrongStation)
               .find("plugged into station 2"),
     std::string::npos);
 }
@@ -191,6 +301,25 @@ TEST(FastrakTracker, SetsARestartedUnitUpAgain)
     ASSERT_TRUE(bench.Tracker.Poll(poses));
   }
   EXPECT_LT(Distance(poses.back().ReceiverToTransmitter, Sweep(poses.back().Time, 1)), 2e-4);
+}
+
+// Nothing but the list of its records tells that it was restarted.
+TEST(FastrakTracker, SetsARestartedUnitUpAgainThatKeepsItsFormat)
+{
+  FastrakSettings settings;
+  settings.Format = { false, LengthUnit::Inch };
+  settings.Layout = ChooseFastrakLayout(115200, false, false);
+  Bench bench(Baud(115200), settings);
+  bench.Tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  ASSERT_TRUE(bench.Tracker.Poll(poses));
+  bench.Channel.Write("W");
+  const double begin = bench.Channel.Now();
+  while (!bench.Tracker.Poll(poses) && bench.Channel.Now() < begin + 60)
+  {
+  }
+  EXPECT_LT(bench.Channel.Now(), begin + 5);
+  EXPECT_HAS(bench.Tracker.GetWarning(), "restarted");
 }
 
 TEST(FastrakTracker, ADamagedStatusIsNotWaitedFor)

@@ -1,122 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An emulated FASTRAK behind the real libserialport, and a test signal of FFmpeg.
-#include "lacunaCheck.h"
 #include "lacunaClock.h"
-#include "lacunaTestUnit.h"
+#include "lacunaTestBench.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaPolhemusVideoSource.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <chrono>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <string>
 
 using namespace lacunaTest;
 
 namespace
 {
-const lacuna::Matrix4 Still = lacuna::Matrix4::Translation({ 120, 30, -40 }) *
-  lacuna::FastrakRotation(lacuna::Vec3{ 10, 20, 30 });
-
-std::string MakeFolder()
-{
-  std::string path = (std::filesystem::temp_directory_path() / "lacuna-source-XXXXXX").string();
-  LACUNA_CHECK(mkdtemp(path.data()) != nullptr);
-  return path;
-}
-
-struct Bench
-{
-  explicit Bench(lacuna::FastrakEmulator::PoseScript script)
-    : Folder(MakeFolder())
-    , Unit(this->Folder + "/tracker", MakeOptions(), std::move(script))
-    , Messages(lacunaCheck::Watch(this->Source))
-  {
-    this->Source->SetTrackerConnection(GetPort(this->Folder + "/tracker").c_str());
-    this->Source->SetVideoURL("lavfi:testsrc2=size=64x48:rate=25");
-    this->Source->SetCaptureMode(vtkLacunaPolhemusVideoSource::EveryFrame);
-  }
-  ~Bench()
-  {
-    this->Source->Disconnect();
-    std::filesystem::remove_all(this->Folder);
-  }
-  static lacuna::FastrakEmulatorOptions MakeOptions()
-  {
-    lacuna::FastrakEmulatorOptions options;
-    options.Baud = 115200;
-    return options;
-  }
-  // Polls until something is so, for at most a minute.
-  bool PollUntil(const std::function<bool()>& condition) const
-  {
-    for (int i = 0; i < 6000 && !condition(); ++i)
-    {
-      this->Source->Poll();
-      if (i % 10 == 0)
-      {
-        this->Source->Update();
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    if (!condition())
-    {
-      std::cerr << this->Source->GetMessage() << "\n";
-      return false;
-    }
-    return true;
-  }
-  bool PollFor(vtkIdType slices) const
-  {
-    return this->PollUntil([&] { return this->Source->GetSliceCount() >= slices; });
-  }
-  bool IsConnected() const
-  {
-    return this->PollUntil(
-      [&] { return this->Source->GetTrackerWorks() && this->Source->GetVideoWorks(); });
-  }
-  std::string WriteCalibration(const lacuna::Matrix4& imageToProbe) const
-  {
-    const std::string path = this->Folder + "/calibration.xml";
-    std::ofstream file(path);
-    file << "<PlusConfiguration><CoordinateDefinitions><Transform From=\"Image\" To=\"Probe\" "
-            "Matrix=\"";
-    for (int i = 0; i < 16; ++i)
-    {
-      file << imageToProbe.Data()[i] << " ";
-    }
-    file << "\"/></CoordinateDefinitions></PlusConfiguration>";
-    return path;
-  }
-
-  std::string Folder;
-  EmulatedUnit Unit;
-  vtkNew<vtkLacunaPolhemusVideoSource> Source;
-  vtkSmartPointer<lacunaCheck::Messages> Messages;
-};
-
-double Distance(const lacuna::Matrix4& a, const lacuna::Matrix4& b)
-{
-  double largest = 0;
-  for (int i = 0; i < 16; ++i)
-  {
-    largest = std::max(largest, std::abs(a.Data()[i] - b.Data()[i]));
-  }
-  return largest;
-}
-
 void TestSlices()
 {
   Bench bench([](double, int) { return Still; });
@@ -245,45 +148,6 @@ void TestSlices()
   LACUNA_CHECK(bench.Messages->Errors.empty());
 }
 
-void TestDevicesThatChange()
-{
-  Bench bench([](double, int) { return Still; });
-  vtkLacunaPolhemusVideoSource* source = bench.Source;
-  source->Start(); // opens them too
-  LACUNA_CHECK(bench.PollFor(3));
-  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
-  source->SetTimeOffset(3); // rules do not wait with them
-  source->Update();
-  LACUNA_CHECK(bench.Messages->HasWarning("after Stop"));
-  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "after Stop");
-  LACUNA_CHECK(bench.Messages->HasError("TimeOffset"));
-  bench.Messages->Errors.clear();
-  source->SetTimeOffset(0);
-  source->SetCalibrationFileName(
-    bench.WriteCalibration(lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 })).c_str());
-  source->Update();
-  LACUNA_CHECK(source->GetOutput(0)->GetFieldData()->HasArray("ImageToReference"));
-  LACUNA_CHECK(source->GetCapturing());
-  source->Stop();
-  LACUNA_CHECK(std::string(source->GetMessage()).find("after Stop") == std::string::npos);
-  source->Update();
-  LACUNA_CHECK(bench.IsConnected());
-  const vtkIdType count = source->GetSliceCount();
-  LACUNA_CHECK(count >= 3);
-  source->Start();
-  LACUNA_CHECK(bench.Messages->HasError("save them"));
-  LACUNA_CHECK(!source->GetCapturing());
-  LACUNA_CHECK(source->GetSliceCount() == count);
-  source->Clear();
-  source->Start();
-  LACUNA_CHECK(bench.PollFor(3));
-  source->Update();
-  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[0] == 32);
-  source->Disconnect();
-  source->Update();
-  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[2] >= 3);
-}
-
 void TestMovement()
 {
   // rests for a while, then goes 10 mm
@@ -320,7 +184,6 @@ void TestMovement()
 int TestPolhemusVideoSource(int, char*[])
 {
   TestSlices();
-  TestDevicesThatChange();
   TestMovement();
   return lacunaCheck::Result();
 }

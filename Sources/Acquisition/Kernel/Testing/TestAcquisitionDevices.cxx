@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A capture that goes on with other devices, in simulated time.
+#include "lacunaSweep.h"
+#include "lacunaTestScene.h"
+
+#include <gtest/gtest.h>
+
+using namespace lacuna;
+using namespace lacunaTest;
+
+TEST(AcquisitionDevices, ABrokenTrackerIsReplacedDuringACapture)
+{
+  Scene scene(EveryFrame());
+  const PoseDeviceFactory works = scene.Devices.Poses;
+  scene.Devices.Poses = [](const Room::Stopped&) -> std::unique_ptr<PoseDevice>
+  { throw std::invalid_argument("TrackerConnection is not set"); }; // final
+  SweepAcquisition& acquisition = scene.Open();
+  acquisition.Start();
+  while (!HasMessage(acquisition.GetState(), "is not set"))
+  {
+  }
+  scene.Devices.Poses = works;
+  acquisition.ReplaceTracker(scene.Devices);
+  scene.Place.RunTo(50);
+  EXPECT_TRUE(acquisition.GetState().TrackerWorks);
+
+  // another one, whose poses are 10 mm away and of another station
+  scene.Devices.Station = 2;
+  scene.Devices.Poses = scene.Place.MakeTracker(
+    [](double time, std::vector<TrackedPose>& poses)
+    {
+      TrackedPose pose = Room::MakePose(time);
+      pose.ReceiverToTransmitter = Matrix4::Translation({ 10, 0, 0 }) * pose.ReceiverToTransmitter;
+      pose.Station = 2;
+      poses.push_back(pose);
+    });
+  acquisition.ReplaceTracker(scene.Devices);
+  scene.Place.RunTo(150);
+  acquisition.Stop();
+  const AcquisitionState state = acquisition.GetState();
+  EXPECT_TRUE(state.TrackerWorks);
+  ExpectNoneForgotten(state, false);
+  EXPECT_GE(state.Poses.Poses, 250u); // of both
+  const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+  ASSERT_GE(slices.size(), 140u);
+  int first = 0;
+  int second = 0;
+  for (const AcquiredSlice& slice : slices)
+  {
+    if (slice.Status == 0)
+    {
+      const double off = slice.ProbeToTracker(0, 3) - lacunaTest::Sweep(slice.Timestamp, 1)(0, 3);
+      first += std::abs(off) < 0.1 ? 1 : 0;
+      second += std::abs(off - 10) < 0.1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(first, 40);
+  EXPECT_GT(second, 90);
+  EXPECT_LE(slices.size() - static_cast<std::size_t>(first + second), 5u); // between the two
+}
+
+TEST(AcquisitionDevices, ABrokenVideoIsReplacedDuringACapture)
+{
+  Scene scene(EveryFrame());
+  const FrameDeviceFactory works = scene.Devices.Frames;
+  scene.Devices.Frames = [](const Room::Stopped&) -> std::unique_ptr<FrameDevice>
+  { throw std::invalid_argument("VideoURL is not set"); };
+  SweepAcquisition& acquisition = scene.Open();
+  acquisition.Start();
+  while (!HasMessage(acquisition.GetState(), "VideoURL"))
+  {
+  }
+  scene.Devices.Frames = works;
+  scene.Devices.VideoLatency = 0.1;
+  acquisition.ReplaceVideo(scene.Devices);
+  scene.Place.RunTo(50);
+  acquisition.Stop();
+  EXPECT_TRUE(acquisition.GetState().VideoWorks);
+  const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+  ASSERT_GE(slices.size(), 40u);
+  for (const AcquiredSlice& slice : slices)
+  {
+    EXPECT_NEAR(slice.Timestamp, Room::FrameTime(static_cast<int>(slice.FrameNumber)) - 0.1, 1e-9);
+  }
+}

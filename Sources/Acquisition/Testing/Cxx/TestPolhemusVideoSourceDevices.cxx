@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Devices that change, come late, or are set in another way, behind the real libserialport.
+#include "lacunaTestBench.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaTrackedSlices.h"
+
+#include <memory>
+
+using namespace lacunaTest;
+
+namespace
+{
+void TestDevicesThatChange()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->Start(); // opens them too
+  LACUNA_CHECK(bench.PollFor(3));
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  source->SetTimeOffset(3); // rules do not wait with them
+  source->Update();
+  LACUNA_CHECK(bench.Messages->HasWarning("after Stop"));
+  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "after Stop");
+  LACUNA_CHECK(bench.Messages->HasError("TimeOffset"));
+  bench.Messages->Errors.clear();
+  source->SetTimeOffset(0);
+  source->SetCalibrationFileName(
+    bench.WriteCalibration(lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 })).c_str());
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetFieldData()->HasArray("ImageToReference"));
+  LACUNA_CHECK(source->GetCapturing());
+  source->Stop();
+  LACUNA_CHECK(std::string(source->GetMessage()).find("after Stop") == std::string::npos);
+  source->Update();
+  LACUNA_CHECK(bench.IsConnected());
+  const vtkIdType count = source->GetSliceCount();
+  LACUNA_CHECK(count >= 3);
+  source->Start();
+  LACUNA_CHECK(bench.Messages->HasError("save them"));
+  LACUNA_CHECK(!source->GetCapturing());
+  LACUNA_CHECK(source->GetSliceCount() == count);
+  source->Clear();
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[0] == 32);
+  source->Disconnect();
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[2] >= 3);
+}
+
+// What the newest slice says of the probe; not a number while it has no pose.
+lacuna::Matrix4 GetNewestPose(vtkLacunaPolhemusVideoSource* source)
+{
+  source->Update();
+  vtkImageData* output = source->GetOutput(0);
+  const vtkIdType count = output->GetDimensions()[2];
+  return vtkLacunaFieldData::GetMatrix(
+    vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count), count - 1);
+}
+
+bool HasPose(vtkLacunaPolhemusVideoSource* source)
+{
+  return source->GetSliceCount() > 0 && GetNewestPose(source).IsFinite();
+}
+
+// Every way in which the unit can write its records gives the same poses.
+void TestFormats()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  for (const int format :
+    { vtkLacunaPolhemusVideoSource::ASCII, vtkLacunaPolhemusVideoSource::Binary })
+  {
+    for (const int unit :
+      { vtkLacunaPolhemusVideoSource::Inch, vtkLacunaPolhemusVideoSource::Centimetre })
+    {
+      source->SetRecordFormat(format);
+      source->SetRecordUnit(unit);
+      source->SetFiltersOff(unit == vtkLacunaPolhemusVideoSource::Inch);
+      source->SetTrackerReset(format == vtkLacunaPolhemusVideoSource::ASCII
+          ? vtkLacunaPolhemusVideoSource::Factory
+          : vtkLacunaPolhemusVideoSource::Frames);
+      source->Clear();
+      source->Update();
+      source->Start();
+      LACUNA_CHECK(bench.PollUntil([&] { return HasPose(source); }));
+      source->Stop();
+      LACUNA_CHECK(Distance(GetNewestPose(source), Still) < 5e-3);
+    }
+  }
+  LACUNA_CHECK(bench.Messages->Errors.empty());
+}
+
+// Started without any tracker: it is taken when it is plugged in, while the capture goes on.
+void TestTrackerThatComesLate()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  const std::string link = bench.Folder + "/late";
+  source->SetTrackerConnection(GetPort(link).c_str());
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  LACUNA_CHECK(source->GetCapturing() && !source->GetTrackerWorks());
+  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "There is no port");
+  lacuna::FastrakEmulatorOptions options = Bench::MakeOptions();
+  options.Faults.Silent = true; // not switched on
+  {
+    const EmulatedUnit unit(link, options, [](double, int) { return Still; });
+    LACUNA_CHECK(bench.PollUntil([&]
+      { return std::string(source->GetMessage()).find("does not answer") != std::string::npos; }));
+  }
+  options.Faults.Silent = false;
+  const EmulatedUnit unit(link, options, [](double, int) { return Still; });
+  LACUNA_CHECK(bench.PollUntil([&] { return source->GetTrackerWorks() && HasPose(source); }));
+  LACUNA_CHECK(source->GetCapturing());
+  LACUNA_CHECK(std::string(source->GetMessage()).find("port") == std::string::npos);
+  source->Disconnect();
+}
+
+// A capture goes on with other settings of a device that does not work, and with these alone.
+void TestBrokenDevicesAreReplaced()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetBaudRate(9600);
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  LACUNA_CHECK(bench.PollUntil(
+    [&] { return std::string(source->GetMessage()).find("baud rate") != std::string::npos; }));
+  const vtkIdType before = source->GetSliceCount();
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25"); // works: waits
+  source->SetBaudRate(115200);
+  source->Update();
+  LACUNA_CHECK(source->GetCapturing());
+  LACUNA_CHECK(bench.PollUntil([&] { return source->GetTrackerWorks() && HasPose(source); }));
+  LACUNA_CHECK(source->GetSliceCount() > before);
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[0] == 64);
+  LACUNA_CHECK(Distance(GetNewestPose(source), Still) < 1e-3);
+  source->SetStation(2); // of a tracker that works: waits
+  source->Update();
+  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "after Stop");
+  LACUNA_CHECK(source->GetTrackerWorks());
+  source->SetStation(1);
+  source->Stop();
+
+  // a video that is not there
+  source->SetVideoURL("/none.avi");
+  source->Clear();
+  source->Update();
+  source->Start();
+  LACUNA_CHECK(bench.PollUntil(
+    [&] { return std::string(source->GetMessage()).find("/none.avi") != std::string::npos; }));
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  LACUNA_CHECK(bench.PollFor(3));
+  LACUNA_CHECK(source->GetCapturing());
+  source->Update();
+  LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[0] == 32);
+}
+}
+
+int TestPolhemusVideoSourceDevices(int, char*[])
+{
+  TestDevicesThatChange();
+  TestFormats();
+  TestTrackerThatComesLate();
+  TestBrokenDevicesAreReplaced();
+  return lacunaCheck::Result();
+}
