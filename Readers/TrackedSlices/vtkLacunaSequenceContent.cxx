@@ -3,6 +3,7 @@
 
 #include "lacunaParameterText.h"
 #include "lacunaPoseFields.h"
+#include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 #include "lacunaTransformGraph.h"
 #include "vtkDataArray.h"
@@ -27,6 +28,7 @@ constexpr const char* TransformSuffix = "Transform";
 constexpr const char* StatusSuffix = "TransformStatus";
 constexpr const char* ImageStatus = "ImageStatus";
 constexpr std::size_t LongestLine = 990; // PLUS reads 1000 characters at a time
+constexpr double MostPixels = 1e9;
 
 // Arrays that are written in a way of their own.
 const std::set<std::string> OwnNames = { vtkLacunaTrackedSlices::ImageToReferenceName,
@@ -98,6 +100,26 @@ void vtkLacunaSequenceContent::FindSlices()
   const std::string reference = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 1);
   this->ImageFrame = image.empty() ? this->ImageFrame : image;
   this->ReferenceFrame = reference.empty() ? this->ReferenceFrame : reference;
+  this->SayWindow();
+}
+
+//------------------------------------------------------------------------------
+// Whole pixels of the scanner's picture: the header says where they begin, so that a calibration of
+// the picture holds.
+void vtkLacunaSequenceContent::SayWindow()
+{
+  const lacuna::Vec3 first = this->PixelToImage.Column(3);
+  const bool whole = first[0] == std::floor(first[0]) && first[1] == std::floor(first[1]) &&
+    std::abs(first[0]) < MostPixels && std::abs(first[1]) < MostPixels;
+  this->Windowed = this->Cropped && whole && this->ImageFrame == "Image" &&
+    lacuna::IsNear(this->PixelToImage, lacuna::Matrix4::Translation(first));
+  if (this->Windowed)
+  {
+    this->AddHeaderField(
+      lacuna::FirstColumnField, std::to_string(static_cast<std::int64_t>(first[0])));
+    this->AddHeaderField(
+      lacuna::FirstRowField, std::to_string(static_cast<std::int64_t>(first[1])));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -333,9 +355,9 @@ void vtkLacunaSequenceContent::AddPoses()
   {
     poses.push_back(vtkLacunaFieldData::GetMatrix(array, slice) * this->PixelToImage);
   }
-  if (this
-        ->Cropped) // the poses go in, so that no calibration of the whole picture takes their place
+  if (this->Cropped && !this->Windowed)
   {
+    // the poses go in, so that no calibration of the whole picture takes their place
     this->Warnings.emplace_back(
       "the slices are cropped or resampled: column and row in the file are those of the pixels as "
       "they are now. Read the file without a CalibrationFileName, which is for the whole picture");

@@ -29,6 +29,7 @@ public:
 
 private:
   void FindSlices();
+  void SayWindow();
   void FindPixels();
   void AddArrays();
   void AddArray(vtkAbstractArray* array);
@@ -59,6 +60,7 @@ private:
   std::string ImageFrame = "Image";
   std::string ReferenceFrame = "Reference";
   bool Cropped = false;
+  bool Windowed = false;        // to whole pixels of the picture, as the header says
   lacuna::Matrix4 PixelToImage; ///< (column, row) of the file to those of the sweep
 };
 #endif

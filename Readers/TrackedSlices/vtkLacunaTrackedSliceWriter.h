@@ -11,13 +11,14 @@
  *   radio-frequency data), to which all transforms refer. They are numbered from 0;
  * - every transform of 16 components with its status, ImageToProbe as a transform of each frame, so
  *   that the file can be read without a calibration file. ImageToReference itself is written when
- *   the other transforms do not lead to the same poses (corrected poses, phantoms, cropped slices);
+ *   the other transforms do not lead to the same poses (corrected poses, phantoms, resampled slices);
  * - Timestamp, FrameNumber, ImageStatus; the flags too fast and gated out as SliceStatus;
  * - string and number arrays with a tuple for each slice or a single one, as text;
  * - the Provenance, as fields LacunaProvenance0 ... of the header.
  *
- * In-plane crops and new pixel spacings go into the transforms from and to the image. Arrays whose
- * names begin with Patient are left out. What cannot be written is named in a warning.
+ * In-plane crops and new pixel spacings go into the transforms from and to the image; a crop to
+ * whole pixels is told by FirstColumn and FirstRow in the header. Arrays whose names begin with
+ * Patient are left out. What cannot be written is named in a warning.
  *
  * In parallel each process has a writer of its own, with its number as Piece. All of them bring the
  * whole stack up to date; piece 0 writes it, the others write nothing.

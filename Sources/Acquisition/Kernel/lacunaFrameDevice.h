@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace lacuna
 {
@@ -30,6 +31,8 @@ public:
   /// after its first. 0: not known.
   virtual double GetLatency() const = 0;
   virtual VideoSource::Counts GetCounts() const = 0;
+  /// What is wrong with the frames now though they come, and what to do; empty: nothing.
+  virtual std::string GetWarning() const { return {}; }
 };
 
 /// Opens a device; asked for another one after a failure. stopped says when to give up.

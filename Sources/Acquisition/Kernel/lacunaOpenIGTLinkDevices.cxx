@@ -369,6 +369,14 @@ VideoSource::Counts OpenIGTLinkFrameDevice::GetCounts() const
   return result;
 }
 
+std::string OpenIGTLinkFrameDevice::GetWarning() const
+{
+  return this->Frames == 0 || this->LastStamp ? std::string()
+                                              : "The images of '" + this->Name +
+      "' have no time stamps: the time of arrival is taken, with all delays of the network. Give "
+      "VideoLatency what they usually are";
+}
+
 PoseDeviceFactory MakeOpenIGTLinkPoseFactory(
   const std::string& address, int station, const Clock& clock)
 {

@@ -89,6 +89,7 @@ public:
   /// 0: a stamp is of the instant.
   double GetLatency() const override { return 0; }
   VideoSource::Counts GetCounts() const override;
+  std::string GetWarning() const override;
 
 private:
   bool Take(const OpenIGTLinkArrival& arrival, VideoFrame& frame);

@@ -53,7 +53,7 @@ struct SweepAcquisition::Core
     const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
   void HeedButton(const TrackedPose& pose);
   void LosePoses();
-  void AddFrame(FramePointer frame, double latency, const VideoSource::Counts& counts);
+  void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
   void Process();
   void Publish(std::int64_t processed, std::vector<AcquiredSlice> slices);
   std::uint64_t CountFlipped() const
@@ -85,6 +85,7 @@ struct SweepAcquisition::Core
   VideoSource::Counts EarlierVideo;
   VideoSource::Counts NewestVideo;
   std::string TrackerWarning;
+  std::string VideoWarning;
   std::optional<std::pair<PairedFrame, SweepFrame>> Live;
   int FramesSincePose = 0;
   std::vector<AcquiredSlice> Slices;
@@ -194,6 +195,7 @@ void SweepAcquisition::Core::ReadFrames(
     const std::lock_guard<std::mutex> lock(this->Mutex);
     this->EarlierVideo = Sum(this->EarlierVideo, this->NewestVideo);
     this->NewestVideo = {};
+    this->VideoWarning.clear();
   }
   while (!control.IsStopped())
   {
@@ -213,13 +215,14 @@ void SweepAcquisition::Core::ReadFrames(
       return; // there may be another video
     }
     control.SetWorking();
-    this->AddFrame(std::move(frame), latency, device->GetCounts());
+    this->AddFrame(std::move(frame), latency, *device);
   }
 }
 
-void SweepAcquisition::Core::AddFrame(
-  FramePointer frame, double latency, const VideoSource::Counts& counts)
+void SweepAcquisition::Core::AddFrame(FramePointer frame, double latency, const FrameDevice& device)
 {
+  const VideoSource::Counts counts = device.GetCounts();
+  std::string warning = device.GetWarning();
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     PairedFrame paired;
@@ -234,6 +237,7 @@ void SweepAcquisition::Core::AddFrame(
         counts.Undecodable - this->NewestVideo.Undecodable);
     }
     this->NewestVideo = counts;
+    this->VideoWarning = std::move(warning);
     this->Pairing.AddFrame(std::move(paired), this->Time.Now());
     if (!this->PosesCome)
     {
@@ -456,6 +460,10 @@ AcquisitionState SweepAcquisition::GetState() const
     describe(tracker, "The tracker is being set up");
   }
   describe(video, "The video is being opened");
+  if (video.Working && !core.VideoWarning.empty())
+  {
+    messages.push_back(core.VideoWarning);
+  }
   for (std::string& message : core.DescribePoses())
   {
     messages.push_back(std::move(message));

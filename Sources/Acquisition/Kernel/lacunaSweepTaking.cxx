@@ -4,6 +4,8 @@
 #include "lacunaSweep.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -24,6 +26,39 @@ std::string SpeedText(double speed)
 {
   constexpr double most = 1e9; // any pose's speed is written
   return std::to_string(std::lround(std::fmin(speed, most)));
+}
+
+std::string SpacingText(double x, double y)
+{
+  std::string text;
+  for (const double value : { x, y })
+  {
+    std::array<char, 32> digits{};
+    const auto result = std::to_chars(
+      digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 4);
+    text += (text.empty() ? "" : " x ") + std::string(digits.data(), result.ptr);
+  }
+  return text + " mm";
+}
+
+// Whether the video says of its pixels what the calibration does.
+std::string CompareSpacings(const VideoFrame& frame, const std::optional<Matrix4>& imageToProbe)
+{
+  constexpr double tolerance = 0.02; // relative; Probe Calibration finds scales to some 0.5 %
+  if (!frame.PixelSpacing || !imageToProbe)
+  {
+    return {};
+  }
+  const Vec2& said = *frame.PixelSpacing;
+  const Vec2 known{ Norm(imageToProbe->Column(0)), Norm(imageToProbe->Column(1)) };
+  const auto same = [](double a, double b) { return std::abs(a - b) <= tolerance * b; };
+  if (same(said[0], known[0]) && same(said[1], known[1]))
+  {
+    return {};
+  }
+  return "The video says that its pixels are " + SpacingText(said[0], said[1]) +
+    ", the calibration that they are " + SpacingText(known[0], known[1]) +
+    ", which is used: set the scanner to the depth of the calibration, or take that of this depth";
 }
 
 Matrix4 NoPose()
@@ -191,6 +226,7 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
     this->File->Retry();
   }
   this->SizeTrouble.clear();
+  this->SpacingTrouble = CompareSpacings(*frame.Frame, this->Rules.ImageToProbe);
   this->FramesSincePose = frame.Pose ? 0 : this->FramesSincePose + 1;
   this->ImageDamaged = frame.Frame->Damaged;
   this->Counts.Frames += frame.Wanted ? 1 : 0;
@@ -272,6 +308,10 @@ std::vector<std::string> SweepTaking::GetMessages() const
   if (!this->SizeTrouble.empty())
   {
     messages.push_back(this->SizeTrouble);
+  }
+  if (!this->SpacingTrouble.empty())
+  {
+    messages.push_back(this->SpacingTrouble);
   }
   if (this->Speed && this->Rules.SpeedLimit > 0 && *this->Speed > this->Rules.SpeedLimit)
   {

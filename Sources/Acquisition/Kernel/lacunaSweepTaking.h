@@ -101,7 +101,8 @@ private:
   std::optional<double> Speed;
   std::unique_ptr<SweepFile> File;
   bool Full = false;
-  std::string SizeTrouble; ///< of the newest frame
+  std::string SizeTrouble;    ///< of the newest frame
+  std::string SpacingTrouble; ///< the same
   int FramesSincePose = 0;
   bool ImageDamaged = false;
 };

@@ -303,6 +303,43 @@ void TestCorrectedPoses()
   LACUNA_CHECK(onTable.GetImageToReference(2)(0, 3) == 1234.5);
 }
 
+// A part of the scanner's picture says where it begins: columns and rows stay those of the picture,
+// and so does what a calibration file says.
+void TestWindows()
+{
+  ReaderOf test(MakeSequence(4).GetContent());
+  test.Reader->Update();
+  const vtkLacunaTrackedSlices whole(test.Reader->GetOutput());
+  vtkNew<vtkExtractVOI> crop;
+  crop->SetInputConnection(test.Reader->GetOutputPort());
+  crop->SetVOI(2, 4, 1, 3, 0, 3);
+  for (const char* name : Names)
+  {
+    const std::string path = Beside(test, name);
+    WriterOf writer(crop->GetOutputPort(), path);
+    LACUNA_CHECK(writer.Writer->Write() == 1);
+    LACUNA_CHECK(writer.Warnings.empty());
+    for (const bool calibrated : { false, true })
+    {
+      vtkNew<vtkLacunaTrackedSliceReader> reader;
+      reader->SetFileName(path.c_str());
+      reader->SetCalibrationFileName(calibrated ? test.GetCalibrationName().c_str() : nullptr);
+      reader->Update();
+      vtkImageData* output = reader->GetOutput();
+      LACUNA_CHECK(output->GetOrigin()[0] == 2 && output->GetOrigin()[1] == 1);
+      LACUNA_CHECK(output->GetScalarComponentAsDouble(2, 1, 3, 0) == GetGrey(4, 2, 3));
+      LACUNA_CHECK(!output->GetFieldData()->HasArray("FirstColumn"));
+      const vtkLacunaTrackedSlices slices(output);
+      for (int k = 0; k < 4; ++k)
+      {
+        const lacuna::Vec3 here = slices.GetImageToReference(k).Point({ 4, 2, 0 });
+        const lacuna::Vec3 there = whole.GetImageToReference(k).Point({ 4, 2, 0 });
+        LACUNA_CHECK(Norm(here - there) < 1e-12);
+      }
+    }
+  }
+}
+
 // A crop keeps every pixel where it was in space.
 void TestCrops()
 {
@@ -416,6 +453,7 @@ int TestTrackedSliceWriter(int, char*[])
   TestEverythingComesBack();
   TestWarnings();
   TestCorrectedPoses();
+  TestWindows();
   TestCrops();
   TestPieces();
   TestErrors();

@@ -83,3 +83,32 @@ TEST(AcquisitionDevices, ABrokenVideoIsReplacedDuringACapture)
     EXPECT_NEAR(slice.Timestamp, Room::FrameTime(static_cast<int>(slice.FrameNumber)) - 0.1, 1e-9);
   }
 }
+
+TEST(AcquisitionDevices, PixelsOfAnotherSizeThanTheCalibrationsAreSaid)
+{
+  AcquisitionRules rules = EveryFrame();
+  rules.ImageToProbe = Matrix4::Translation({ 5, 6, 7 }) * FastrakRotation(Vec3{ 20, 30, 40 }) *
+    Matrix4::Scaling({ 0.2, 0.3, 0.2 });
+  Vec2 spacing{ 0.2, 0.3 };
+  Scene scene(rules,
+    [&](int number, VideoFrame& frame)
+    {
+      frame.PixelSpacing = spacing;
+      return Room::NumberedFrame(number, frame);
+    });
+  SweepAcquisition& acquisition = scene.Open();
+  scene.Place.RunTo(20);
+  EXPECT_FALSE(HasMessage(acquisition.GetState(), "pixels"));
+  for (const Vec2& other : { Vec2{ 0.25, 0.3 }, Vec2{ 0.2, 0.2875 } })
+  {
+    spacing = other;
+    scene.Place.RunTo(other[0] == 0.25 ? 40 : 60);
+    const AcquisitionState state = acquisition.GetState();
+    EXPECT_TRUE(HasMessage(
+      state, other[0] == 0.25 ? "its pixels are 0.25 x 0.3 mm" : "its pixels are 0.2 x 0.2875 mm"));
+    EXPECT_TRUE(HasMessage(state, "the calibration that they are 0.2 x 0.3 mm"));
+  }
+  spacing = { 0.2, 0.303 };
+  scene.Place.RunTo(80);
+  EXPECT_FALSE(HasMessage(acquisition.GetState(), "pixels"));
+}

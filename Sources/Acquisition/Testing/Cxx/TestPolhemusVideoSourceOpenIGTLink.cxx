@@ -169,6 +169,8 @@ int TestPolhemusVideoSourceOpenIGTLink(int, char*[])
   }
   std::cout << right << " of " << count << " slices\n";
   LACUNA_CHECK(right > 0.7 * count);
+  LACUNA_CHECK(messages->HasWarning("its pixels are 0.2 x 0.3 mm, the calibration that they are "
+                                    "0.25 x 0.5 mm"));
   LACUNA_CHECK(messages->Errors.empty());
   return lacunaCheck::Result();
 }
