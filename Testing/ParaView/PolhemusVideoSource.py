@@ -51,7 +51,24 @@ def wait(source, condition, what):
 
 try:
     emulator = plug_in()
+    try:
+        live.find()
+        raise AssertionError("found a source where there is none")
+    except RuntimeError as error:
+        assert "no Polhemus Video Source" in str(error)
     source = PolhemusVideoSource()
+    other = PolhemusVideoSource()
+    SetActiveSource(None)
+    try:
+        live.find()
+        raise AssertionError("chose one of two")
+    except RuntimeError as error:
+        assert "2 Polhemus" in str(error)
+    SetActiveSource(source)
+    assert live.find() == source
+    Delete(other)
+    SetActiveSource(None)
+    assert live.find() == source
     lacuna_test.check_defaults(
         source, lacuna.vtkLacunaPolhemusVideoSource(),
         ["BaudRate", "Station", "Hemisphere", "FiltersOff", "ButtonStarts", "CropRectangle", "VideoLatency",
@@ -181,6 +198,14 @@ try:
     arrays = slices_of(source)[1]
     assert without > 0 and (arrays["SliceStatus"] & 1).sum() >= without
     assert arrays["SliceStatus"][-1] & 1 == 0
+
+    # a macro with a key of its own
+    live.clear(source)
+    assert live.toggle_capture() and live.get(source, "Capturing")
+    wait(source, lambda: live.get(source, "SliceCount") >= 3, "started by a macro")
+    assert not live.toggle_capture() and not live.get(source, "Capturing")
+    assert live.toggle_capture(source)
+    live.stop(source)
 
     # the stylus's button, or a foot switch in its place
     live.clear(source)

@@ -25,6 +25,35 @@ def stop(source):
     poll(source)
 
 
+def find():
+    """The live source of the pipeline: the active one, or the only one there is."""
+    from paraview import simple
+
+    active = simple.GetActiveSource()
+    sources = [each for each in simple.GetSources().values() if each.GetXMLName() == "LacunaPolhemusVideoSource"]
+    if active in sources:
+        return active
+    if len(sources) != 1:
+        raise RuntimeError("There are " + str(len(sources)) + " Polhemus Video Sources: make one of them active" if sources
+                           else "There is no Polhemus Video Source: make one (Sources > Lacuna), then Apply")
+    return sources[0]
+
+
+def toggle_capture(source=None):
+    """Starts the capture, or stops it while it runs; for a macro with a key of its own. Returns whether it runs now.
+
+    source: default: the one that find() finds.
+    """
+    source = source or find()
+    source.SMProxy.UpdatePropertyInformation()
+    if get(source, "Capturing"):
+        stop(source)
+    else:
+        start(source)
+        source.SMProxy.UpdatePropertyInformation()
+    return bool(get(source, "Capturing"))
+
+
 def clear(source):
     """Drops the slices; the next Start begins a new sweep."""
     source.SMProxy.InvokeCommand("Clear")
