@@ -5,6 +5,7 @@
 #ifndef lacunaFastrakRecord_h
 #define lacunaFastrakRecord_h
 
+#include "lacunaFastrakOrientation.h"
 #include "lacunaMatrix4.h"
 #include "lacunaPoseColumns.h"
 
@@ -91,15 +92,6 @@ struct FastrakRecord
   /// the axes, made orthonormal. Nothing when the position or the orientation is missing.
   std::optional<Matrix4> GetPose() const;
 };
-
-/// R = Rz(azimuth) Ry(elevation) Rx(roll), degrees (Carr 1996, ch. 2).
-Matrix4 FastrakRotation(const Vec3& angles);
-/// Rotation of a quaternion w x y z, which need not have the length 1.
-Matrix4 FastrakRotation(const std::array<double, 4>& quaternion);
-/// Azimuth, elevation, roll in degrees of a rotation, elevation -90..90; roll 0 at its ends.
-Vec3 FastrakAngles(const Matrix4& rotation);
-/// Quaternion w x y z of a rotation, w >= 0.
-std::array<double, 4> FastrakQuaternion(const Matrix4& rotation);
 
 /// A record from all its bytes, or nothing when they cannot be one: another length; a header other
 /// than '0', a station and an error code; columns that are no number; numbers that are not finite
