@@ -38,6 +38,8 @@ const char* const EmulatorHelp =
   "                          silent     nothing is sent\n"
   "                          garbage    every byte is another one\n"
   "                          error=C    the error code of all records\n"
+  "                          ignored=L  commands of these letters have no effect\n"
+  "                          refused=L  they are answered with *ERROR*\n"
   "                          none       ends all\n"
   "  --button TIME         presses the stylus's button (or a foot switch there) for 0.2 s; may be\n"
   "                        repeated, as --fault may\n"
@@ -127,6 +129,12 @@ std::function<void(FastrakFaults&)> ReadFault(const std::string& word)
   if (kind == "error" && value.size() == 1)
   {
     return [code = value[0]](FastrakFaults& faults) { faults.Error = code; };
+  }
+  if ((kind == "ignored" || kind == "refused") && !value.empty())
+  {
+    std::string FastrakFaults::*letters =
+      kind == "ignored" ? &FastrakFaults::Ignored : &FastrakFaults::Refused;
+    return [letters, value](FastrakFaults& faults) { faults.*letters = value; };
   }
   if (word == "silent")
   {

@@ -18,6 +18,7 @@ namespace
 constexpr double Cycle = 1 / 120.0;     // one receiver's measurement
 constexpr double LongestBacklog = 0.25; // s of output; records beyond are skipped, as by the unit
 constexpr std::string_view WithoutEffect = "BbGINoQrVvXxy";
+constexpr std::string_view Letters = "PCcFfUuSWDd\x0b\x19\x13\x11"; // that are whole commands
 constexpr std::size_t LongestLine = 256;
 
 enum Code
@@ -123,8 +124,24 @@ void FastrakEmulator::Take(char c, double begin, double end)
   }
 }
 
+// Whether a fault takes a command away.
+bool FastrakEmulator::IsSpoilt(const std::string& command, double end)
+{
+  const FastrakFaults& faults = this->Options.Faults;
+  if (faults.Refused.find(command[0]) != std::string::npos)
+  {
+    this->Complain(command, Unknown, end);
+    return true;
+  }
+  return faults.Ignored.find(command[0]) != std::string::npos;
+}
+
 bool FastrakEmulator::ActOnLetter(char c, double begin, double end)
 {
+  if (Letters.find(c) != std::string_view::npos && this->IsSpoilt(std::string(1, c), end))
+  {
+    return true;
+  }
   switch (c)
   {
     case FastrakCommand::Point:
@@ -176,6 +193,10 @@ bool FastrakEmulator::ActOnLetter(char c, double begin, double end)
 void FastrakEmulator::ActOnLine(const std::string& line, double end)
 {
   const char letter = line[0];
+  if (this->IsSpoilt(line, end))
+  {
+    return;
+  }
   if (WithoutEffect.find(letter) != std::string_view::npos)
   {
     return;

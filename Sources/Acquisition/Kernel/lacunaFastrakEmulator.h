@@ -27,6 +27,8 @@ struct FastrakFaults
   bool Silent = false;  ///< nothing is sent at all
   bool Garbage = false; ///< every byte becomes another, as at a wrong baud rate
   char Error = ' ';     ///< error code of all records
+  std::string Ignored;  ///< letters of commands that have no effect
+  std::string Refused;  ///< letters of commands that it does not know: *ERROR*
 };
 
 struct FastrakEmulatorOptions
@@ -86,6 +88,7 @@ private:
 
   void Reset();
   void Take(char c, double begin, double end);
+  bool IsSpoilt(const std::string& command, double end);
   bool ActOnLetter(char c, double begin, double end);
   void ActOnLine(const std::string& line, double end);
   bool Align(Station& station, const std::vector<std::optional<double>>& fields) const;

@@ -49,7 +49,7 @@ std::optional<FastrakStatus> ReadFastrakStatus(const FastrakReply& reply);
 /// Nothing when the reply is no complaint.
 std::optional<FastrakComplaint> ReadFastrakComplaint(const FastrakReply& reply);
 
-/// "does not know the command 'Z9' (unit's code -99)", for a sentence that begins with "The
+/// "did not understand the command 'Z9' (its code -99)", for a sentence that begins with "The
 /// FASTRAK".
 std::string DescribeFastrakComplaint(const FastrakComplaint& complaint);
 

@@ -162,8 +162,8 @@ TEST(EmulatorSettings, SaysWhatIsWrong)
   {
     EXPECT_NE(Complaint({ "--receivers", list }).find("1 to 4"), std::string::npos) << list;
   }
-  for (const char* fault : { "", "lost", "lost=2", "lost=nan", "error=", "error=kk", "silent=1",
-         "x:silent", "-1:silent", "1:", "none=0", "loud" })
+  for (const char* fault : { "", "lost", "lost=2", "lost=nan", "error=", "error=kk",
+         "ignored=", "refused", "silent=1", "x:silent", "-1:silent", "1:", "none=0", "loud" })
   {
     EXPECT_NE(Complaint({ "--fault", fault }).find("--help"), std::string::npos) << fault;
   }

@@ -26,6 +26,14 @@ TEST(AcquisitionTracker, SaysWhatIsWrongWithTheTracker)
     { "does not answer at 19200 baud", [](auto& options, auto&) { options.Faults.Silent = true; } },
     { "the baud rate is wrong", [](auto& options, auto&) { options.Faults.Garbage = true; } },
     { "plugged into station 2", [](auto&, auto& settings) { settings.Stations = { 2 }; } },
+    { "answers for station 1 and not as asked for 2",
+      [](auto& options, auto& settings)
+      {
+        options.Faults.Ignored = "l";
+        settings.Stations = { 2 };
+      } },
+    { "did not understand the command 'H1",
+      [](auto& options, auto&) { options.Faults.Refused = "H"; } },
     { "weak", [](auto& options, auto&) { options.Faults.Error = 'k'; } },
     { "each once",
       [](auto&, auto& settings) {

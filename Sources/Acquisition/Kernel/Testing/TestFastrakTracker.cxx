@@ -223,6 +223,44 @@ TEST(FastrakTracker, SaysWhatIsWrong)
     std::string::npos);
 }
 
+// A unit that does not know or obey a command.
+TEST(FastrakTracker, ComplaintsAndOtherStationsAreSaid)
+{
+  for (const char* letter : { "H", "O", "f" })
+  {
+    FastrakEmulatorOptions old = Baud(19200);
+    old.Faults.Refused = letter;
+    const std::string text = SetUpComplaint(Bench(old), TrackerError::Kind::Complaint);
+    EXPECT_HAS(text, "did not understand the command '" + std::string(letter));
+    EXPECT_HAS(text, "firmware");
+  }
+  FastrakEmulatorOptions stubborn = Baud(19200);
+  stubborn.Faults.Ignored = "f";
+  EXPECT_HAS(
+    SetUpComplaint(Bench(stubborn), TrackerError::Kind::Complaint), "switch it off and on");
+
+  // the second station was asked for, and the first one's receiver answers
+  FastrakEmulatorOptions options = Baud(19200);
+  options.Faults.Ignored = "l";
+  FastrakSettings second;
+  second.Stations = { 2 };
+  const std::string text = SetUpComplaint(Bench(options, second), TrackerError::Kind::WrongStation);
+  EXPECT_HAS(text, "answers for station 1 and not as asked for 2");
+  EXPECT_HAS(text, "set Station to 1");
+
+  // later, too: the complaint is told for a while and the poses go on
+  Bench bench(Baud(19200));
+  bench.Tracker.SetUp();
+  bench.Channel.Write("Z9\r");
+  std::vector<TrackedPose> poses;
+  for (int i = 0; i < 20 && bench.Tracker.GetWarning().empty(); ++i)
+  {
+    bench.Tracker.Poll(poses);
+  }
+  EXPECT_HAS(bench.Tracker.GetWarning(), "did not understand the command 'Z9'");
+  EXPECT_TRUE(bench.Tracker.Poll(poses));
+}
+
 TEST(FastrakTracker, RefusesSettingsThatCannotBe)
 {
   FastrakSettings settings;
