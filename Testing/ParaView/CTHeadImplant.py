@@ -10,7 +10,7 @@ import sys
 from lacuna_test import compare_with_baseline, data, output
 
 head = data("ct_head/head.mha")
-example = os.path.abspath(os.path.join(os.path.dirname(__file__), "../../Documentation/Examples/06-implant-to-mould"))
+example = os.path.abspath(os.path.join(os.path.dirname(__file__), "../../Documentation/Examples/11-implant-to-mould"))
 folder = output("CTHeadImplant")
 sys.argv = ["implant_to_mould.py", "--output", folder, "--ct", head, "--hole", "84", "105", "100", "30"]
 printed = io.StringIO()

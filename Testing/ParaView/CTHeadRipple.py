@@ -9,7 +9,7 @@ if not os.path.exists(path):
     print("skipped: no", path)
     sys.exit(77)
 here = os.path.dirname(os.path.abspath(__file__))
-script = os.path.join(here, "../../Documentation/Examples/05-ripple/ripple.py")
+script = os.path.join(here, "../../Documentation/Examples/08-ripple/ripple.py")
 specification = importlib.util.spec_from_file_location("ripple", script)
 ripple = importlib.util.module_from_spec(specification)
 specification.loader.exec_module(ripple)

@@ -44,7 +44,7 @@ message = failure("--only", "implant", "--ct", oriented)
 assert "stage 'read the CT' failed" in message and "mirrored" in message, message
 
 # the walk from a CT to a mould takes none of them either
-walk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Documentation/Examples/06-implant-to-mould",
+walk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Documentation/Examples/11-implant-to-mould",
                     "implant_to_mould.py")
 
 
@@ -83,7 +83,7 @@ arguments = ["--output", output("demo-errors"), "--ct", oriented, "--hole", "26.
 for name, pattern in (("demo.sh", r"(pvpython .*) \"\$@\""),
                       ("Plugins/Python/lacuna/demo.py", r"(pvpython .* lacuna\.demo)"),
                       ("Documentation/UserGuide/cranioplasty.md", r"    (pvpython .*\.py)"),
-                      ("Documentation/Examples/06-implant-to-mould/implant_to_mould.py", r"    (pvpython .*\.py)")):
+                      ("Documentation/Examples/11-implant-to-mould/implant_to_mould.py", r"    (pvpython .*\.py)")):
     only = ["--only", "implant"] if "demo" in name else []
     said = command(name, pattern, *only, *arguments)
     assert "oriented.mha is oriented" in said, (name, said)

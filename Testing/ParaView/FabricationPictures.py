@@ -8,8 +8,8 @@ from lacuna_test import compare_with_baseline, output
 
 examples = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Documentation/Examples")
 for script, names in (
-        ("06-plate-model-mould/plate_model_mould.py", ("implant-plate.png", "defect-model.png", "press-orientation.png")),
-        ("06-milling-tool-path/milling_tool_path.py", ("milling-tool-path.png",))):
+        ("12-plate-model-mould/plate_model_mould.py", ("implant-plate.png", "defect-model.png", "press-orientation.png")),
+        ("12-plate-model-mould/milling_tool_path.py", ("milling-tool-path.png",))):
     sys.argv = [os.path.join(examples, script), output("FabricationPictures")]
     runpy.run_path(sys.argv[0], run_name="__main__")
     for name in names:

@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 path = os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                    "../../Documentation/Examples/06-implant-to-mould/implant_to_mould.py")
+                    "../../Documentation/Examples/11-implant-to-mould/implant_to_mould.py")
 spec = importlib.util.spec_from_file_location("walk", path)
 walk = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(walk)

@@ -10,7 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 DOCUMENTATION = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation")
-EXAMPLE = os.path.join(DOCUMENTATION, "Examples", "06-filling-a-hole")
+EXAMPLE = os.path.join(DOCUMENTATION, "Examples", "09-hole-in-a-skull")
 
 
 def pixels(name):
@@ -28,6 +28,6 @@ with open(os.path.join(DOCUMENTATION, "UserGuide", "rbf-hole-filler.md"), encodi
 for (title, name), error in largest.items():
     assert "| %s | %s | %.2f |" % (name, title, error) in guide, (title, name, error)
 for name in ("kernels.png", "kernels-smoothed.png"):
-    assert "06-filling-a-hole/" + name in guide
+    assert "09-hole-in-a-skull/" + name in guide
     difference = np.abs(pixels(os.path.join(folder, name)) - pixels(os.path.join(EXAMPLE, name))).mean()
     assert difference < 2, (name, difference)  # fonts and drivers differ

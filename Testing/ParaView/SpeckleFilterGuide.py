@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
 DOCUMENTATION = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation")
-EXAMPLE = os.path.join(DOCUMENTATION, "Examples", "03-speckle-filters")
+EXAMPLE = os.path.join(DOCUMENTATION, "Examples", "05-speckle-filters")
 
 
 def pixels(name):
@@ -38,7 +38,7 @@ for label, after in csr.items():
     caption = f"CSR {csr['none']}" if label == "none" else f"CSR {csr['none']} → {after}"
     assert caption in guide, (label, caption)
 
-shown = re.findall(r"03-speckle-filters/(\S+\.png)", guide)
+shown = re.findall(r"05-speckle-filters/(\S+\.png)", guide)
 assert len(shown) == len(csr) + 1 and set(shown) == {name for name in os.listdir(EXAMPLE) if name.endswith(".png")}
 for name in shown:
     assert np.array_equal(pixels(os.path.join(folder, name)), pixels(os.path.join(EXAMPLE, name))), name

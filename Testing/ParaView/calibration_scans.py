@@ -12,7 +12,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from lacuna_test import output
 from tracked_slice_files import tracked_slices
 
-sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Examples", "10-calibration"))
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Examples", "04-calibration"))
 from scans import looking_down, pose, rotation  # noqa: F401 (for the tests, too)
 
 WIDTH, HEIGHT, SPACING = 200, 160, 0.4  # 80 x 64 mm

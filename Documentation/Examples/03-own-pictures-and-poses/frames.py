@@ -87,7 +87,7 @@ class Drawing:
         with open(name, "w", encoding="utf-8") as file:
             file.write(
                 f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" font-family="Helvetica, Arial, \'DejaVu Sans\', sans-serif">\n'
-                "<!-- SPDX-License-Identifier: BSD-3-Clause; drawn by Documentation/Examples/02-own-pictures-and-poses/frames.py -->\n"
+                "<!-- SPDX-License-Identifier: BSD-3-Clause; drawn by Documentation/Examples/03-own-pictures-and-poses/frames.py -->\n"
                 "<title>Coordinate frames of a tracked slice</title>\n"
                 f'<defs>{heads}<linearGradient id="scan" x1="0" y1="0" x2="0" y2="1"><stop offset="0" stop-color="#8d959b"/><stop offset="1" stop-color="#3a4247"/></linearGradient></defs>\n'
                 f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>\n' + "\n".join(self.parts) + "\n</svg>\n")

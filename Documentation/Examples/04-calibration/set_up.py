@@ -47,7 +47,7 @@ class Drawing:
         with open(name, "w", encoding="utf-8") as file:
             file.write(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" '
                        "font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n"
-                       "<!-- SPDX-License-Identifier: BSD-3-Clause; drawn by Documentation/Examples/10-calibration/set_up.py -->\n"
+                       "<!-- SPDX-License-Identifier: BSD-3-Clause; drawn by Documentation/Examples/04-calibration/set_up.py -->\n"
                        f'<title>{title}</title>\n<defs><marker id="arrow" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="9" '
                        f'markerHeight="9" orient="auto-start-reverse"><path d="M0,1.5 L9,5 L0,8.5 Z" fill="{BLUE}"/></marker></defs>\n'
                        f'<rect width="{width}" height="{height}" fill="#ffffff"/>\n' + "\n".join(self.parts) + "\n</svg>\n")
