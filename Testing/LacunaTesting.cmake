@@ -12,19 +12,31 @@ function (lacuna_add_kernel_test name)
   set_tests_properties(Kernel.${name} PROPERTIES LABELS "kernel")
 endfunction ()
 
-# lacuna_add_paraview_test(<script.py> [LABELS <label>...] [ARGS <argument>...])
+# lacuna_add_paraview_test(<script.py> [NAME <name>] [LABELS <label>...] [ARGS <argument>...])
 # Runs a script of Testing/ParaView in pvpython with the plugin of the build tree at hand. A script
 # that lacks the real data leaves with code 77, which counts as skipped.
 function (lacuna_add_paraview_test script)
-  cmake_parse_arguments(arg "" "" "LABELS;ARGS" ${ARGN})
+  cmake_parse_arguments(arg "" "NAME" "LABELS;ARGS" ${ARGN})
   get_filename_component(name "${script}" NAME_WE)
-  add_test(NAME ParaView.${name}
+  set(name "ParaView.${name}")
+  if (arg_NAME)
+    set(name "${arg_NAME}")
+  endif ()
+  add_test(NAME "${name}"
     COMMAND "$<TARGET_FILE:ParaView::pvpython>" --force-offscreen-rendering
       "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${arg_ARGS})
-  set_tests_properties(ParaView.${name} PROPERTIES
+  set_tests_properties("${name}" PROPERTIES
     LABELS "paraview;${arg_LABELS}"
     SKIP_RETURN_CODE 77
     ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
+endfunction ()
+
+# lacuna_add_example_test(<folder of Documentation/Examples> <script> [ARGS <argument>...])
+# Runs an example and loads its state files (Testing/ParaView/Example.py), in ctest as Example.<folder>.
+function (lacuna_add_example_test topic script)
+  cmake_parse_arguments(arg "" "" "ARGS" ${ARGN})
+  lacuna_add_paraview_test(Example.py NAME Example.${topic} LABELS example
+    ARGS "${topic}" "${script}" ${arg_ARGS})
 endfunction ()
 
 # lacuna_find_cgal()

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 SKIPPED = 77  # ctest counts this exit code as skipped
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
 def data(name):
@@ -69,14 +70,17 @@ def check_defaults(proxy, own, names, enumerations=None):
 
 
 def compare_with_baseline(picture, name, threshold):
-    """Compares a PNG with one of the pictures of the user guide, so that the guide stays true.
+    """Compares a PNG with one of the pictures of the user guide, so that the guide stays true. threshold: of picture_error."""
+    baseline = os.path.join(ROOT, "Documentation", "UserGuide", "pictures", name)
+    error = picture_error(picture, baseline)
+    print(f"{name}: image error {error:.1f} (at most {threshold})", flush=True)
+    assert error <= threshold
 
-    threshold: see vtkImageDifference; 0 is equal, tens are font and driver differences.
-    """
+
+def picture_error(picture, baseline):
+    """How different two PNG files of one size look (vtkImageDifference): 0 is equal, tens are font and driver differences."""
     from vtkmodules.vtkImagingCore import vtkImageDifference
     from vtkmodules.vtkIOImage import vtkPNGReader
-    pictures = os.path.join(os.path.dirname(__file__), "..", "..", "Documentation", "UserGuide", "pictures")
-    baseline = os.path.join(pictures, name)
     assert os.path.exists(baseline), f"no baseline {baseline}; look at {picture} and copy it there"
     readers = []
     for name in (picture, baseline):
@@ -90,6 +94,4 @@ def compare_with_baseline(picture, name, threshold):
     difference.SetInputConnection(readers[0].GetOutputPort())
     difference.SetImageConnection(readers[1].GetOutputPort())
     difference.Update()
-    error = difference.GetThresholdedError()
-    print(f"{name}: image error {error:.1f} (at most {threshold})", flush=True)
-    assert error <= threshold
+    return difference.GetThresholdedError()

@@ -166,6 +166,31 @@ def save(view, name):
     pv.SaveScreenshot(name, view, ImageResolution=list(view.ViewSize))
 
 
+def lay_out(views, title):
+    """Puts views side by side, in a layout of that name in ParaView's window. Returns the layout, for save_layout."""
+    layout = pv.CreateLayout(title)
+    cell = 0
+    for index, view in enumerate(views):
+        remaining = len(views) - index
+        if remaining > 1:
+            left = layout.SplitHorizontal(cell, 1 / remaining)
+            layout.AssignView(left, view)
+            cell = left + 1
+        else:
+            layout.AssignView(cell, view)
+    return layout
+
+
+def save_layout(layout, name):
+    """Renders all views of a layout into a PNG file, as large as they are together."""
+    views = pv.GetViewsInLayout(layout)
+    size = [sum(view.ViewSize[0] for view in views), max(view.ViewSize[1] for view in views)]
+    layout.SetSize(*size)
+    for view in views:
+        pv.Render(view)
+    pv.SaveScreenshot(name, layout, SaveAllViews=1, ImageResolution=size, SeparatorWidth=2, SeparatorColor=[1, 1, 1])
+
+
 def shaded_pixels(proxy):
     """The picture of a Depth Map Shader as (rows, columns, red green blue), uint8; row 0 is on top."""
     image = fetch(proxy)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""An example of Documentation/Examples: Example.py <folder> <script> [arguments of the script before the folder to write to].
+
+Its script runs without an error and writes a picture that looks like the one in the folder. The state file that it
+writes, and the one in the folder, load without an error into what the script made, value by value, and show the picture.
+"""
+import glob
+import os
+import runpy
+import shutil
+import sys
+
+import lacuna.plugin
+
+lacuna.plugin.load()
+import pipelines
+from lacuna import states
+from lacuna.errors import raising
+from lacuna_test import ROOT, output, picture_error
+from paraview.simple import *
+
+TOLERANCE = 60  # of vtkImageDifference: other fonts and drivers
+
+folder = os.path.join(ROOT, "Documentation", "Examples", sys.argv[1])
+script = os.path.join(folder, sys.argv[2])
+written = os.path.abspath(output(os.path.join("Examples", sys.argv[1])))
+shutil.rmtree(written, ignore_errors=True)
+os.makedirs(written)
+sys.argv = [script, *sys.argv[3:], written]
+with raising():
+    runpy.run_path(script, run_name="__main__")
+    made = pipelines.outputs()
+assert made, "the script leaves no pipeline"
+
+pictures = [os.path.basename(name) for name in glob.glob(os.path.join(written, "*.png"))]
+names = [os.path.basename(name) for name in glob.glob(os.path.join(written, "*.pvsm"))]
+assert len(names) == 1, names
+assert os.path.exists(os.path.join(folder, names[0])), f"copy {written}/{names[0]} to {folder}"
+picture = names[0][:-4] + "png"
+assert picture in pictures, (picture, pictures)
+for name in pictures:
+    error = picture_error(os.path.join(written, name), os.path.join(folder, name))
+    assert error <= TOLERANCE, f"look at {written}/{name}: it differs from the one in {folder} by {error:.0f}"
+
+for place in (written, folder):
+    state = os.path.join(place, names[0])
+    assert os.path.getsize(state) < 250000, f"{state}: write it by lacuna.states.save"
+    with open(state, encoding="utf-8") as file:
+        text = file.read()
+    for path in (ROOT, written, os.path.expanduser("~") + os.sep):
+        assert path not in text, f"{state} belongs to this computer: {path}"
+    with raising():
+        states.load(state)
+        pipelines.check_same(made, pipelines.outputs(), state)
+        shown = [view for view in GetRenderViews() if GetLayout(view) is not None]
+        assert shown, f"{state} has no view in a layout"
+        for view in shown:
+            Render(view)
+            assert any(display.Visibility for display in view.Representations), f"a view of {state} shows nothing"
+    print(f"{os.path.relpath(state, ROOT)}: {len(made)} outputs as the script made them, {len(shown)} views", flush=True)
