@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The two main jobs in one step, on what is selected in the pipeline browser: what the macros in Plugins/Macros call.
+
+    surface = macros.sweep_to_surface()     # tracked slices -> volume -> median -> surface
+    filled, name = macros.ct_to_iges()      # CT -> depth map as the view looks -> filled hole -> IGES file
+"""
+import math
+import os
+
+import paraview.simple as pv
+
+from lacuna import demo_ultrasound, pictures, views
+from lacuna.data import fetch
+from lacuna.errors import PipelineError, raising
+
+BONE = 500  # Hounsfield units
+MEDIAN = 5  # voxels
+VOXELS = 30_000_000  # of a volume, at most
+OUTLINES = 20
+
+
+def run(job):
+    """Runs one of the jobs below as a macro: what is wrong is said in ParaView's Output Messages, without a traceback."""
+    import paraview
+    try:
+        return job()
+    except (ValueError, PipelineError) as error:
+        paraview.print_error(f"Lacuna: {error}")
+        return None
+
+
+def sweep_to_surface(source=None):
+    """A sweep (by default the active source) becomes a volume, less speckle and a surface, shown among outlines of its slices.
+
+    The level is half-way for a Phantom Sweep, else Otsu's threshold of the smoothed volume: change Isosurfaces of the result.
+    Returns the Contour. Raises ValueError when the source has no calibrated tracked slices.
+    """
+    source = _data_of(source, "a sweep: a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or Polhemus Video Source")
+    name = _name(source)
+    image = fetch(source)
+    fields = image.GetFieldData()
+    if not image.IsA("vtkImageData") or not (fields.HasArray("ImageToReference") or fields.HasArray("SliceStatus")):
+        raise ValueError(f"'{name}' holds no tracked slices; select a Tracked Slice Reader, Phantom Sweep, Assemble Tracked Slices or "
+                         "Polhemus Video Source in the pipeline browser")
+    if not fields.HasArray("ImageToReference"):
+        raise ValueError(f"'{name}' is not calibrated: where its images lie is not known. Set CalibrationFileName, or use Probe Calibration")
+    with _made() as made, raising():
+        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source))
+        _fit(volume)
+        smooth = made(pv.SpeckleFilter(registrationName=f"Median of {name}", Input=volume, Operation="Median", KernelSize=[MEDIAN] * 3))
+        smooth.UpdatePipeline()
+        level = source.GetProperty("TrueIsoValue") and source.GetProperty("TrueIsoValue").GetData()
+        if level is None or not math.isfinite(level):
+            level = demo_ultrasound.surface_level(smooth)
+        grey = fetch(smooth).GetPointData().GetScalars().GetName()
+        surface = made(pv.Contour(registrationName=f"Surface of {name}", Input=smooth, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
+        surface.UpdatePipeline()
+        slices = image.GetDimensions()[2]
+        outlines = made(pv.SlicePlanes(registrationName=f"Outlines of {name}", Input=source, OutlineOnly=1, InvalidSlices="Show",
+                                       Stride=max(1, slices // OUTLINES)))
+        if surface.GetDataInformation().GetNumberOfCells() == 0:
+            raise ValueError(f"the volume of '{name}' has no surface at the grey level {level:.4g}")
+    view = _view(hide=source)
+    pictures.show_surface(surface, view, pictures.TISSUE)
+    pictures.show_slices(outlines, view)
+    pv.ResetCamera(view)
+    pv.SetActiveSource(surface)
+    pv.Render(view)
+    print(f"Lacuna: surface at grey level {level:.4g} of {slices} slices; change Isosurfaces of '{_name(surface)}' and Apply to move it")
+    return surface
+
+
+def ct_to_iges(source=None, folder=None):
+    """A CT (by default the active source) becomes an IGES surface that closes the hole that the view looks into.
+
+    A depth map is made as the active 3-D view looks, its holes are filled, bone and filling are shown, and the filled surface
+    is written to implant.igs, implant-2.igs, ... in the folder, by default the user's home. A depth map, or one that is
+    filled, may be given instead of a CT. Returns the filled map and the file's name. Raises ValueError when the source is
+    nothing of these, and PipelineError when there is no hole to fill.
+    """
+    source = _data_of(source, "a CT: a CT Series Reader, another reader of a volume, or Skull Phantom")
+    name = _name(source)
+    image = fetch(source)
+    is_map = image.IsA("vtkImageData") and image.GetFieldData().HasArray("ImageToWorld") and image.GetPointData().HasArray("Depth")
+    if not is_map:
+        _check_volume(image, name)
+    view = _view()
+    with _made() as made, raising():
+        depth = filled = source
+        if not is_map:
+            depth = made(pv.BSplineIsoRayCaster(registrationName=f"Depth map of {name}", Input=source, IsoValues=[BONE],
+                                                Interpolation="InterpolatingBSpline"))
+            camera = view.GetActiveCamera()
+            depth.ViewDirection, depth.ViewUp = list(camera.GetDirectionOfProjection()), list(camera.GetViewUp())
+            depth.UpdatePipeline()
+        if not image.GetPointData().HasArray("FilledMask"):
+            filled = made(pv.RBFHoleFiller(registrationName=f"Filled {name}", Input=depth))
+            filled.UpdatePipeline()
+        result = fetch(filled)
+        mask = result.GetPointData().GetArray("FilledMask") if result else None
+        if mask is None or mask.GetRange()[1] < 1:
+            raise ValueError(f"no hole is seen in '{name}': turn the 3-D view so that you look straight into the hole, and run the macro again; "
+                             "or mark the hole in DefectRegion of RBF Hole Filler")
+        surface = made(pv.DepthMapSurface(registrationName=f"Surface of {name}", Input=filled, MaximumAngle=80))
+        inside = dict(Input=surface, Scalars=["POINTS", "FilledMask"])
+        bone = made(pv.Threshold(registrationName="Bone", ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5, AllScalars=0, **inside))
+        filling = made(pv.Threshold(registrationName="Filling", ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5, **inside))
+        file = _free_name(folder or os.path.expanduser("~"))
+        pv.SaveData(file, proxy=filled)
+    pv.Hide(source, view)
+    pictures.show_surface(bone, view, pictures.BONE)
+    pictures.show_surface(filling, view, pictures.METAL)
+    pv.ResetCamera(view)
+    pv.SetActiveSource(filled)
+    pv.Render(view)
+    try:
+        views.show_orientation(view)
+    except ValueError:  # not known to be the patient's, or something else is shown
+        pass
+    print(f"Lacuna: the filled surface is in {file}; File > Save Data writes it elsewhere")
+    return filled, file
+
+
+def _data_of(source, what):
+    """The source, updated, or the active one. Raises ValueError when there is none."""
+    source = source or pv.GetActiveSource()
+    if source is None:
+        raise ValueError(f"nothing is selected in the pipeline browser; open and select {what}")
+    with raising():
+        source.UpdatePipeline()
+    if fetch(source) is None:
+        raise ValueError(f"'{_name(source)}' has no data yet: press Apply first")
+    return source
+
+
+def _name(source):
+    names = [name for (name, identity), each in pv.GetSources().items() if each == source]
+    return names[0] if names else source.GetXMLLabel()
+
+
+def _check_volume(image, name):
+    if not image.IsA("vtkImageData") or min(image.GetDimensions()) < 2:
+        raise ValueError(f"'{name}' is no volume; select a CT Series Reader, another reader of a volume, or Skull Phantom in the pipeline browser")
+    if image.GetFieldData().HasArray("SliceStatus"):
+        raise ValueError(f"'{name}' is a sweep, not a CT: use the macro for sweeps")
+    grey = image.GetPointData().GetScalars()
+    if grey is None or grey.GetNumberOfComponents() != 1:
+        raise ValueError(f"'{name}' has no grey levels (one number per voxel)")
+    low, high = grey.GetRange()
+    if not low < BONE <= high:
+        raise ValueError(f"the values of '{name}' range from {low:.4g} to {high:.4g}: bone, at {BONE} Hounsfield units, is not among them")
+
+
+def _fit(volume):
+    """Voxels from the data but not too many, and a rim of nothing around the sweep, which closes the surface there."""
+    volume.UpdatePipelineInformation()
+    volume.UpdatePipeline()
+    image = fetch(volume)
+    spacing = list(image.GetSpacing())
+    growth = max(1, (image.GetNumberOfPoints() / VOXELS) ** (1 / 3))
+    volume.OutputSpacing = [growth * step for step in spacing]
+    rim = [MEDIAN * step for step in volume.OutputSpacing]
+    bounds = image.GetBounds()
+    volume.OutputBounds = [bounds[i] + (1 if i % 2 else -1) * rim[i // 2] for i in range(6)]
+
+
+def _view(hide=None):
+    view = pv.GetActiveView()
+    if view is None or not hasattr(view, "GetActiveCamera"):
+        found = pv.GetRenderViews()
+        view = found[0] if found else pv.CreateRenderView()
+        pv.SetActiveView(view)
+    if hide is not None:
+        pv.Hide(hide, view)
+    return view
+
+
+def _free_name(folder):
+    number = 1
+    while True:
+        name = os.path.join(folder, "implant.igs" if number == 1 else f"implant-{number}.igs")
+        if not os.path.exists(name):
+            return name
+        number += 1
+
+
+class _made:
+    """Takes away what was made when the block fails, so that nothing half-done stays in the pipeline browser."""
+
+    def __enter__(self):
+        self.proxies = []
+        self.active = pv.GetActiveSource()
+        return self.add
+
+    def add(self, proxy):
+        self.proxies.append(proxy)
+        return proxy
+
+    def __exit__(self, kind, *_):
+        if kind is not None:
+            for proxy in reversed(self.proxies):
+                pv.Delete(proxy)
+            pv.SetActiveSource(self.active)
