@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DBUILD=... -DSOURCE=... -DWORK=... -P embed.cmake
-# Installs Lacuna into a folder of its own, moves that folder, then configures, builds and runs a
-# program that finds it there: what an embedder does, and a proof that the package is relocatable.
+# cmake -DBUILD=... -DSOURCE=... -DEXAMPLE=... -DWORK=... -P embed.cmake
+# Configures, builds and runs the example that embeds Lacuna: first against the build tree, then
+# against an installation that was moved since, a proof that the package is relocatable.
 function (run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if (NOT result EQUAL 0)
@@ -9,12 +9,28 @@ function (run)
   endif ()
 endfunction ()
 
+function (build_and_run name prefix)
+  file(GLOB_RECURSE config "${prefix}/LacunaConfig.cmake")
+  get_filename_component(config "${config}" DIRECTORY)
+  run("${CMAKE_COMMAND}" -GNinja -S "${SOURCE}" -B "${WORK}/${name}" "-DLacuna_DIR=${config}"
+    "-DEXAMPLE=${EXAMPLE}" -DCMAKE_BUILD_TYPE=Release)
+  run("${CMAKE_COMMAND}" --build "${WORK}/${name}")
+  run("${WORK}/${name}/example/Embedding" "${WORK}/${name}")
+  foreach (file IN ITEMS embedding.png embedding.igs)
+    file(SIZE "${WORK}/${name}/${file}" size)
+    if (size LESS 10000)
+      message(FATAL_ERROR "${WORK}/${name}/${file} has ${size} bytes")
+    endif ()
+  endforeach ()
+endfunction ()
+
 file(REMOVE_RECURSE "${WORK}")
+build_and_run(of-build "${BUILD}/lib/cmake")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/installed")
 file(RENAME "${WORK}/installed" "${WORK}/moved")
-file(GLOB_RECURSE config "${WORK}/moved/*/LacunaConfig.cmake")
-get_filename_component(config "${config}" DIRECTORY)
-run("${CMAKE_COMMAND}" -GNinja -S "${SOURCE}" -B "${WORK}/program" "-DLacuna_DIR=${config}"
-  -DCMAKE_BUILD_TYPE=Release)
-run("${CMAKE_COMMAND}" --build "${WORK}/program")
-run("${WORK}/program/SkullDepthMap")
+build_and_run(of-installation "${WORK}/moved")
+execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/of-build/embedding.png"
+  "${WORK}/of-installation/embedding.png" RESULT_VARIABLE differ)
+if (differ)
+  message(FATAL_ERROR "the pictures differ")
+endif ()

@@ -32,7 +32,7 @@ python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XM
 
 if [ "${1:-}" = --tidy ]; then
   cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
-  git ls-files '*.cxx' | grep -v -e Testing/Embedding -e Testing/Cxx |
+  git ls-files '*.cxx' | grep -v -e Documentation/Examples -e Testing/Cxx |
     xargs -P 2 -n 4 clang-tidy --quiet -p build/release || complain "clang-tidy has findings"
 fi
 exit $failed
