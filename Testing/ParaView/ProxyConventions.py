@@ -164,11 +164,11 @@ def check_display(proxy, view, representation, array, title):
     return display
 
 
-def views(proxy):
+def views(proxy, active=None):
     """The kinds of views in which ParaView shows the outputs at the first Apply."""
     proxy.UpdatePipeline()
     controller = servermanager.vtkSMParaViewPipelineControllerWithRendering()
-    opened = [controller.ShowInPreferredView(proxy.SMProxy, port, None)
+    opened = [controller.ShowInPreferredView(proxy.SMProxy, port, active and active.SMProxy)
               for port in range(proxy.SMProxy.GetNumberOfOutputPorts())]
     return [view.GetXMLName() if view else None for view in opened]
 
@@ -177,7 +177,11 @@ def check_displays():
     view = CreateRenderView()
     head = SkullPhantom()
     check_display(head, view, "Slice", "HounsfieldUnits", "Hounsfield units (HU)")
-    check_display(PhantomSweep(NumberOfSlices=4), view, "Slice", "Intensity", "Grey level")
+    sweep = PhantomSweep(NumberOfSlices=4)
+    check_display(sweep, view, "Slice", "Intensity", "Grey level")
+    volume = SweptVolume(Input=sweep)
+    assert views(volume, view) == ["RenderView"]
+    assert GetDisplayProperties(volume, view).ColorArrayName[1] == "Intensity", "as its input"
     depth = BSplineIsoRayCaster(Input=head, PixelSpacing=3)
     check_display(depth, view, "Slice", "Depth", "Depth (mm)")
     assert GetColorTransferFunction("Depth").NanOpacity == 0
