@@ -84,6 +84,7 @@ def check_help(name, proxy):
 def check_panel(name, proxy):
     shown = [p.get("name") for p in settings(proxy) if p.get("panel_visibility") != "advanced"]
     own_widget = [g for g in proxy.findall("PropertyGroup") if g.get("panel_widget")]
+    in_own_widget = {p.get("name") for group in own_widget for p in group}
     for group in own_widget:  # shown as one
         members = [p.get("name") for p in group if p.get("name") in shown]
         shown = [p for p in shown if p not in members[1:]]
@@ -99,6 +100,12 @@ def check_panel(name, proxy):
         assert set(advanced) <= set(grouped), (name, "not in a group", set(advanced) - set(grouped))
     for group in proxy.findall("PropertyGroup"):
         assert group.get("label"), name
+    for p in settings(proxy):  # ParaView writes no name beside a list
+        if p.get("repeat_command") == "1" and p.tag != "InputProperty" and p.get("name") not in in_own_widget:
+            words = re.sub(r"(?<!^)(?=[A-Z])", " ", p.get("name")).lower()
+            labels = [g.get("label").lower() for g in proxy.findall("PropertyGroup")
+                      if [member.get("name") for member in g] == [p.get("name")]]
+            assert len(labels) == 1 and labels[0].startswith(words), (name, p.get("name"), labels)
     for decorator in proxy.iter("PropertyWidgetDecorator"):
         if decorator.get("type") != "GenericDecorator":
             continue
