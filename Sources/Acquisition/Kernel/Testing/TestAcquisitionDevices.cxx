@@ -18,6 +18,7 @@ TEST(AcquisitionDevices, ABrokenTrackerIsReplacedDuringACapture)
   acquisition.Start();
   while (!HasMessage(acquisition.GetState(), "is not set"))
   {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1)); // the threads shall have their turn
   }
   scene.Devices.Poses = works;
   acquisition.ReplaceTracker(scene.Devices);
@@ -69,6 +70,7 @@ TEST(AcquisitionDevices, ABrokenVideoIsReplacedDuringACapture)
   acquisition.Start();
   while (!HasMessage(acquisition.GetState(), "VideoURL"))
   {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1)); // the threads shall have their turn
   }
   scene.Devices.Frames = works;
   scene.Devices.VideoLatency = 0.1;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <thread>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -57,6 +58,8 @@ TEST(AcquisitionTracker, SaysWhatIsWrongWithTheTracker)
     while (!said && std::chrono::steady_clock::now() < end)
     {
       said = HasMessage(acquisition.GetState(), test.Words);
+      std::this_thread::sleep_for(
+        std::chrono::milliseconds(1)); // the threads shall have their turn
     }
     EXPECT_TRUE(said) << test.Words;
     acquisition.Stop();

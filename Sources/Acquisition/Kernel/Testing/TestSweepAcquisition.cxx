@@ -201,6 +201,7 @@ TEST(SweepAcquisition, SaysWhatIsWrongWithTheDevices)
   while (!HasMessage(state, "/dev/ttyUSB7") || !HasMessage(state, "sends nothing"))
   {
     state = acquisition.GetState();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1)); // the threads shall have their turn
   }
   EXPECT_FALSE(state.TrackerWorks);
   EXPECT_FALSE(state.VideoWorks);

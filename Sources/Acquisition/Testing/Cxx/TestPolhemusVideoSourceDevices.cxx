@@ -7,7 +7,9 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaTrackedSlices.h"
 
-#include <memory>
+#include <functional>
+#include <string>
+#include <vector>
 
 using namespace lacunaTest;
 
@@ -95,6 +97,48 @@ void TestFormats()
   LACUNA_CHECK(bench.Messages->Errors.empty());
 }
 
+// Each is a command that the unit gets when it is set, and only then.
+void TestSettingsReachTheTracker()
+{
+  using Source = vtkLacunaPolhemusVideoSource;
+  struct Case
+  {
+    const char* Command;
+    std::function<void(Source*)> Set;
+  };
+  const std::vector<Case> cases{ { "", [](Source*) {} },
+    { "F", [](Source* source) { source->SetRecordFormat(Source::ASCII); } },
+    { "U", [](Source* source) { source->SetRecordUnit(Source::Inch); } },
+    { "W", [](Source* source) { source->SetTrackerReset(Source::Factory); } },
+    { "x", [](Source* source) { source->SetFiltersOff(true); } },
+    { "H1,0.0000,0.0000,-1.0000", [](Source* source) { source->SetHemisphere(0, 0, -1); } },
+    { "O1,2,4,2,4,16", [](Source* source) { source->SetButtonStarts(true); } } };
+  for (const Case& test : cases)
+  {
+    Bench bench([](double, int) { return Still; });
+    Source* source = bench.Source;
+    lacuna::FastrakEmulatorOptions options = Bench::MakeOptions();
+    options.Faults.Refused = *test.Command ? std::string(1, *test.Command) : "FUWx";
+    const std::string link = bench.Folder + "/other";
+    const EmulatedUnit unit(link, options, [](double, int) { return Still; });
+    source->SetTrackerConnection(GetPort(link).c_str());
+    test.Set(source);
+    source->Connect();
+    const std::string words = "did not understand the command '" + std::string(test.Command);
+    const auto said = [&](const std::string& text)
+    { return std::string(source->GetMessage()).find(text) != std::string::npos; };
+    if (*test.Command)
+    {
+      LACUNA_CHECK(bench.PollUntil([&] { return said(words); }));
+    }
+    else
+    {
+      LACUNA_CHECK(bench.PollUntil([&] { return source->GetTrackerWorks(); }));
+      LACUNA_CHECK(!said(words));
+    }
+  }
+}
+
 // Started without any tracker: it is taken when it is plugged in, while the capture goes on.
 void TestTrackerThatComesLate()
 {
@@ -166,6 +210,7 @@ int TestPolhemusVideoSourceDevices(int, char*[])
 {
   TestDevicesThatChange();
   TestFormats();
+  TestSettingsReachTheTracker();
   TestTrackerThatComesLate();
   TestBrokenDevicesAreReplaced();
   return lacunaCheck::Result();
