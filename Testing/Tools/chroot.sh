@@ -19,12 +19,13 @@ cp /etc/resolv.conf "$folder/etc/resolv.conf"
 
 bind() { mkdir -p "$folder/$2"; mountpoint -q "$folder/$2" || mount --bind "$1" "$folder/$2"; }
 release() {
-  for target in proc dev/pts dev; do
+  for target in proc sys dev/pts dev; do
     if mountpoint -q "$folder/$target"; then umount -l "$folder/$target"; fi
   done
 }
 trap release EXIT
 bind /proc proc
+bind /sys sys # libserialport looks for ports there
 bind /dev dev
 bind /dev/pts dev/pts # tests make pseudo-terminals
 rm -rf "$folder/lacuna"
