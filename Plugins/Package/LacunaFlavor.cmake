@@ -66,7 +66,7 @@ lacuna_find_libraries(SERIALPORT "trackers on serial ports cannot be opened" ser
 # FFmpeg reads the scanner's video.
 find_path(LACUNA_FFMPEG_INCLUDE_DIR libavdevice/avdevice.h PATH_SUFFIXES ffmpeg)
 lacuna_find_libraries(FFMPEG "video cannot be read" avdevice avformat avcodec swscale avutil)
-# loaded when it is needed: it brings two hundred others, of sound and windows
+# loaded when it is needed: it brings some eighty others, of sound and windows
 list(REMOVE_ITEM LACUNA_FFMPEG_LIBRARIES "${LACUNA_FFMPEG_avdevice}")
 
 # libopenigtlink knows the messages of trackers and scanners of the network. Not through its CMake

@@ -37,7 +37,7 @@ bool BeginsWith(const std::string& text, std::string_view begin)
   return text.compare(0, begin.size(), begin) == 0;
 }
 
-// Makes FFmpeg know devices and test signals. Their library brings two hundred others, of sound and
+// Makes FFmpeg know devices and test signals. Their library brings some eighty others, of sound and
 // windows, which would be a third of what loading Lacuna takes. Returns why not; empty: it does.
 const std::string& RegisterDevices()
 {
