@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The button From Camera of the ray casters' panel, pressed in the ParaView application.
 
-What the panel then has applied is compared with lacuna.views.camera_view; it can be undone.
+What the panel then has applied is compared with lacuna.views.camera_view, and the map with what the view shows; it
+can be undone.
 """
 import math
 
@@ -42,8 +43,39 @@ def compare(kind, caster, view, divisor):
     return found
 
 
+def compare_pictures(caster, surface, view):
+    """How much of the map is hit where the view shows the surface, and not where it does not."""
+    from paraview import servermanager
+    from paraview.simple import Hide, Render, Show
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    Hide(caster, view)
+    shown = Show(surface, view)
+    shown.ColorArrayName = ["POINTS", ""]
+    shown.Ambient, shown.Diffuse, shown.AmbientColor = 1, 0, [1, 0, 0]
+    view.UseColorPaletteForBackground, view.Background, view.OrientationAxesVisibility = 0, [0, 0, 1], 0
+    Render(view)
+    picture = view.SMProxy.CaptureWindow(1)
+    columns, rows = picture.GetDimensions()[:2]
+    seen = vtk_to_numpy(picture.GetPointData().GetScalars()).reshape(rows, columns, -1)[::-1, :, 0] > 127
+    Hide(surface, view)
+    Show(caster, view)
+    image = servermanager.Fetch(caster)
+    wide, high = image.GetDimensions()[:2]
+    hit = vtk_to_numpy(image.GetPointData().GetArray("Depth")).reshape(high, wide)
+    hit = hit == hit
+    places = [[min(int((i + 0.5) * size / count), size - 1) for i in range(count)]
+              for size, count in ((rows, high), (columns, wide))]
+    seen = seen[places[0]][:, places[1]]
+    assert 0.05 < seen.mean() < 0.95, seen.mean()
+    same = (seen == hit).mean()
+    assert same > 0.98, same
+    for other in (seen[::-1], seen[:, ::-1]):  # an upright, unmirrored one
+        assert (other == hit).mean() < same - 0.02, "the picture is symmetric"
+    print(f"{100 * same:.2f} % of the map as in the view", flush=True)
+
+
 def test(window):
-    from paraview.simple import (BSplineIsoRayCaster, GetActiveViewOrCreate, PhantomSweep, Render, SetActiveSource,
+    from paraview.simple import (BSplineIsoRayCaster, Contour, GetActiveViewOrCreate, PhantomSweep, Render, SetActiveSource,
                                  Show, SkullPhantom, SliceRayCaster)
     view = GetActiveViewOrCreate("RenderView")
     for kind in ("volume", "slices"):
@@ -62,6 +94,10 @@ def test(window):
         assert read(caster) == before  # until it is applied
         window.press(ACCEPT)
         first = compare(kind, caster, view, 4)
+        surface = Contour(Input=source, ContourBy=["POINTS", "HounsfieldUnits"], Isosurfaces=[500]) if kind == "volume" else None
+        if surface:
+            compare_pictures(caster, surface, view)
+            SetActiveSource(caster)
         bounds = caster.GetDataInformation().GetBounds()
         assert bounds[0] < bounds[1], bounds
 
@@ -77,6 +113,8 @@ def test(window):
         assert read(caster) == first, (read(caster), first)
         window.press("actionEditRedo")
         assert read(caster) == second, (read(caster), second)
+        if surface:
+            compare_pictures(caster, surface, view)
         window.choose("Resolution", "Full")
         print(kind, "ok:", first["ImageSize"], second["ImageSize"], flush=True)
 
