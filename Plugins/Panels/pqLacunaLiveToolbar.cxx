@@ -96,17 +96,17 @@ pqLacunaLiveToolbar::pqLacunaLiveToolbar(QWidget* parent)
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   QObject::connect(
     model, &pqServerManagerModel::sourceAdded, this, &pqLacunaLiveToolbar::FindSource);
-  QObject::connect(model, &pqServerManagerModel::preSourceRemoved, this,
+  // not before it is removed: the selection that changes with it would find it again
+  QObject::connect(model, &pqServerManagerModel::sourceRemoved, this,
     [this](pqPipelineSource* source)
     {
       if (source == this->Source)
       {
         this->Source = nullptr;
         this->ShowNoSource();
+        this->FindSource();
       }
     });
-  QObject::connect(
-    model, &pqServerManagerModel::sourceRemoved, this, &pqLacunaLiveToolbar::FindSource);
   QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this,
     &pqLacunaLiveToolbar::FindSource);
   this->ShowNoSource();
@@ -199,6 +199,7 @@ void pqLacunaLiveToolbar::Poll()
 {
   if (!this->Source)
   {
+    this->ShowNoSource();
     return;
   }
   pqServer* server = this->Source->getServer();

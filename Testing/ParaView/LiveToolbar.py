@@ -18,7 +18,7 @@ PICTURES = "LACUNA_TEST_PICTURES" in os.environ
 
 def test(window):
     from lacuna import live
-    from paraview.simple import Delete, GetActiveSource, Render, ResetCamera
+    from paraview.simple import Delete, GetActiveSource, PolhemusVideoSource, Render, ResetCamera, SetActiveSource
 
     def picture(name):
         if PICTURES:
@@ -114,6 +114,14 @@ def test(window):
     assert "background" in window.get("LiveMemory", "styleSheet")
     assert "MemoryLimit" in window.get("LiveMemory", "toolTip")
     picture("full")
+
+    # the one that is selected is followed, or what is left
+    other = PolhemusVideoSource(registrationName="Other")
+    SetActiveSource(other)
+    window.wait_for_text("LiveStartStop", "^Other: take slices", "toolTip")
+    window.wait_for_text("LiveSlices", "^0 slices$")
+    Delete(other)
+    window.wait_for_text("LiveMemory", "^Memory: full$")
 
     # gone
     live.disconnect(source)
