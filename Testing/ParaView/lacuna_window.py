@@ -18,7 +18,7 @@ IS_INSIDE = INSIDE in os.environ
 F9 = 0x01000038  # of Qt::Key
 
 
-def run(script, seconds=240, **environment):
+def run(script, seconds=600, **environment):
     """Runs paraview with the script; returns what it has printed. Without a display the test is skipped."""
     if not os.environ.get("DISPLAY"):
         print("skipped: the application needs a display")
@@ -87,7 +87,7 @@ class Window:
     def save(self, path):
         assert self.library.lacuna_save(path.encode()), path
 
-    def wait_for(self, what, condition, seconds=30):
+    def wait_for(self, what, condition, seconds=60):
         end = time.monotonic() + seconds
         while not condition():
             assert time.monotonic() < end, f"not within {seconds} s: {what}"
