@@ -139,7 +139,9 @@ class Example:
 
     def card(self):
         first = " ".join(re.sub(r"^#.*|!\[.*?\]\(.*?\)", "", self.text).strip().split("\n\n")[0].split())
-        picture = f"{self.topic}/{self.pictures[len(self.pictures) // 2]}" if self.pictures else ""
+        first = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", first)  # its links lead on from the example's folder
+        shown = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", self.text) or self.pictures[len(self.pictures) // 2:]
+        picture = f"{self.topic}/{shown[0]}" if shown else ""
         image = f"[![{self.title}]({os.path.normpath(picture)})]({self.topic}/index.md)\n\n" if picture else ""
         return f":::{{container}} card\n{image}**[{self.title}]({self.topic}/index.md)**\n\n{first}\n:::\n"
 
@@ -203,7 +205,7 @@ def stage(target):
                 os.makedirs(os.path.dirname(os.path.join(target, linked)), exist_ok=True)
                 shutil.copy(os.path.join(ROOT, linked), os.path.join(target, linked))
         if not path.startswith(EXAMPLES):  # a script's page shows it
-            text = re.sub(r"(\]\([./\w]*Examples/[\w-]+/)[\w.-]+\.(py|md|cxx)\)", r"\1index.md)", text)
+            text = re.sub(r"(\]\([./\w]*Examples/(?:[\w-]+/)?)[\w.-]+\.(py|md|cxx)\)", r"\1index.md)", text)
         text = re.sub(r"(\]\((\.\./)*)README\.md\)", lambda match: match.group(0) if path.startswith(GUIDE) and "../" not in match.group(0) else match.group(1) + "index.md)", text)
         text = re.sub(r"^(\| *name *\| *default *\|.*\n(?:\|.*\n)+)", r":::{container} properties\n\1:::\n", text, flags=re.MULTILINE)
         os.makedirs(os.path.dirname(os.path.join(target, path)), exist_ok=True)

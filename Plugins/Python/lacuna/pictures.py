@@ -167,17 +167,15 @@ def save(view, name):
 
 
 def lay_out(views, title):
-    """Puts views side by side, in a layout of that name in ParaView's window. Returns the layout, for save_layout."""
+    """Puts views side by side, in a layout of that name in ParaView's window, each with its share of the width. Returns the layout, for save_layout."""
     layout = pv.CreateLayout(title)
+    widths = [view.ViewSize[0] for view in views]
     cell = 0
-    for index, view in enumerate(views):
-        remaining = len(views) - index
-        if remaining > 1:
-            left = layout.SplitHorizontal(cell, 1 / remaining)
-            layout.AssignView(left, view)
-            cell = left + 1
-        else:
-            layout.AssignView(cell, view)
+    for index, view in enumerate(views[:-1]):
+        left = layout.SplitHorizontal(cell, widths[index] / sum(widths[index:]))
+        layout.AssignView(left, view)
+        cell = left + 1
+    layout.AssignView(cell, views[-1])
     return layout
 
 
