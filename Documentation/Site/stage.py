@@ -4,7 +4,7 @@
 stage.py <folder to make>
 
 Generated are: the parameters at the end of each filter's page (from the plugin's XML), a page for each example and the
-gallery (from Documentation/Examples), the list of C++ classes, and the navigation, which follows the headings and links
+gallery (from Documentation/Examples), the list of C++ classes, the Python package's reference (from its own texts), and the navigation, which follows the headings and links
 of the user guide's README. Paths stay as in the project, so that links hold; what is in no list is an error of Sphinx.
 """
 import ast
@@ -19,6 +19,7 @@ from proxies import ROOT, read_proxies
 GUIDE = "Documentation/UserGuide"
 EXAMPLES = "Documentation/Examples"
 DEVELOPERS = "Documentation/DeveloperGuide"
+PACKAGE = "Plugins/Python/lacuna"
 PICTURES = (".png", ".jpg", ".svg")
 LANGUAGES = {".py": "python", ".cxx": "cpp", ".txt": "cmake", ".sh": "bash"}
 
@@ -171,6 +172,32 @@ def classes(proxies):
             '<a href="../../cpp/files.html">files</a>.\n\n' + rows)
 
 
+def signature(function):
+    """Arguments of a function as one writes them."""
+    text = ast.unparse(function.args)
+    return f"{function.name}({text})" if len(text) < 100 else f"{function.name}({text[:text.rfind(',', 0, 100)]}, …)"
+
+
+def python_reference():
+    """Every module of the Python package with its public functions and classes, from their own texts."""
+    text = ("# Python reference\n\nThe package `lacuna`, beside the classes `vtkLacuna…` that it contains ([C++ reference](classes.md)): "
+            "helpers for scripts. How to use it: [Scripts](../UserGuide/scripts.md). `help(lacuna.views)` says the same.\n")
+    for name in names(PACKAGE, ".py"):
+        tree = ast.parse(read(f"{PACKAGE}/{name}"))
+        if name.startswith("demo"):  # a program
+            continue
+        text += f"\n## lacuna.{name[:-3]}\n\n```\n{ast.get_docstring(tree)}\n```\n"
+        for each in tree.body:
+            if isinstance(each, (ast.FunctionDef, ast.ClassDef)) and not each.name.startswith("_"):
+                title = signature(each) if isinstance(each, ast.FunctionDef) else f"class {each.name}"
+                text += f"\n`{title}`\n\n```\n{ast.get_docstring(each) or ''}\n```\n"
+        constants = [each.targets[0].id for each in tree.body if isinstance(each, ast.Assign) and isinstance(each.targets[0], ast.Name)
+                     and each.targets[0].id.isupper()]
+        if constants:
+            text += "\nConstants: " + ", ".join(f"`{constant}`" for constant in constants) + "\n"
+    return text
+
+
 def stage(target):
     pages = {"index.md": read("README.md"), "CHANGELOG.md": read("CHANGELOG.md"), "CONTRIBUTING.md": read("CONTRIBUTING.md")}
     for folder in (GUIDE, DEVELOPERS):
@@ -180,6 +207,7 @@ def stage(target):
         if f"{GUIDE}/{proxy.page}.md" in pages:
             pages[f"{GUIDE}/{proxy.page}.md"] += parameters(proxy)
     pages[f"{DEVELOPERS}/classes.md"] = classes(proxies)
+    pages[f"{DEVELOPERS}/python.md"] = python_reference()
 
     called = captions()
     examples = [Example(topic, called) for topic in sorted(os.listdir(os.path.join(ROOT, EXAMPLES))) if os.path.isdir(os.path.join(ROOT, EXAMPLES, topic))]
@@ -194,7 +222,7 @@ def stage(target):
     pages["index.md"] += toctree([f"{GUIDE}/README", f"{EXAMPLES}/index"])
     pages["index.md"] += "".join(toctree(paths, caption) for caption, paths in sections)
     pages["index.md"] += toctree([f"{DEVELOPERS}/{name}" for name in names(DEVELOPERS, ".md")] +
-                                 [f"{DEVELOPERS}/classes", "CONTRIBUTING", "CHANGELOG"], "Development")
+                                 [f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
 
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(os.path.join(ROOT, "Documentation"), os.path.join(target, "Documentation"), ignore=shutil.ignore_patterns("*.md", "Site", "__pycache__"))
