@@ -7,6 +7,7 @@
 import math
 import os
 
+import numpy as np
 import paraview.simple as pv
 
 from lacuna import demo_ultrasound, pictures, views
@@ -63,7 +64,7 @@ def sweep_to_surface(source=None):
     view = _view(hide=source)
     pictures.show_surface(surface, view, pictures.TISSUE)
     pictures.show_slices(outlines, view)
-    pv.ResetCamera(view)
+    _look_from_aside(image, view)
     pv.SetActiveSource(surface)
     pv.Render(view)
     print(f"Lacuna: surface at grey level {level:.4g} of {slices} slices; change Isosurfaces of '{_name(surface)}' and Apply to move it")
@@ -173,6 +174,18 @@ def _view(hide=None):
     if hide is not None:
         pv.Hide(hide, view)
     return view
+
+
+def _look_from_aside(image, view):
+    """From the probe into the tissue and a little from the side, so that slices are not seen head-on."""
+    poses = demo_ultrasound.slice_poses(image)
+    poses = poses[np.isfinite(poses).all(axis=(1, 2))]
+    if not len(poses):
+        return pv.ResetCamera(view)
+    middle = poses[len(poses) // 2][:3, :2]
+    lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
+    travel = np.cross(lateral, depth)
+    return pictures.look(view, depth + 0.5 * lateral + 1.2 * travel, -depth)
 
 
 def _free_name(folder):
