@@ -39,7 +39,7 @@ for label, after in csr.items():
     assert caption in guide, (label, caption)
 
 shown = re.findall(r"05-speckle-filters/(\S+\.png)", guide)
-assert len(shown) == len(csr) + 1 and set(shown) == {name for name in os.listdir(EXAMPLE) if name.endswith(".png")}
+assert len(shown) == len(csr) + 1 and set(shown) == {name for name in os.listdir(folder) if name.endswith(".png")}
 for name in shown:
     assert np.array_equal(pixels(os.path.join(folder, name)), pixels(os.path.join(EXAMPLE, name))), name
 print(f"ok: {len(shown)} pictures")
