@@ -304,3 +304,32 @@ TEST(OpenIGTLinkTroubles, StopsWithinASecondWhateverItDoes)
   server.Send(half.substr(0, half.size() / 2));
   during([&] { scanner->Read(frame); });
 }
+
+TEST(OpenIGTLinkTroubles, AComplaintIsShownForTenSeconds)
+{
+  // late enough that ten seconds and twice the time of the complaint are not alike
+  class SkippingClock : public Clock
+  {
+  public:
+    double Now() const override { return TheClock.Now() + this->Skipped; }
+    std::atomic<double> Skipped{ 5000 };
+  } clock;
+  Server server;
+  const auto device =
+    MakeOpenIGTLinkPoseFactory(server.GetAddress("?transform=Probe"), 1, clock)(Always);
+  device->SetUp();
+  ASSERT_TRUE(server.Accept());
+  std::vector<TrackedPose> poses;
+  server.Send(StatusBytes(18, "Failure", "coil") + TransformBytes(AsymmetricPose(), "Probe", 1));
+  ASSERT_TRUE(device->Poll(poses));
+  EXPECT_HAS(device->GetWarning(), "reports status 18");
+  clock.Skipped = clock.Skipped + 8;
+  server.Send(TransformBytes(AsymmetricPose(1), "Probe", 9));
+  ASSERT_TRUE(device->Poll(poses));
+  EXPECT_HAS(device->GetWarning(), "reports status 18");
+  clock.Skipped = clock.Skipped + 4;
+  server.Send(TransformBytes(AsymmetricPose(2), "Probe", 13));
+  ASSERT_TRUE(device->Poll(poses));
+  EXPECT_EQ(device->GetWarning().find("reports status 18"), std::string::npos)
+    << device->GetWarning();
+}
