@@ -7,7 +7,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 namespace lacuna
@@ -25,6 +27,12 @@ std::string SizeText(int columns, int rows)
 std::string SpeedText(double speed)
 {
   constexpr double most = 1e9; // any pose's speed is written
+  if (speed < 10)
+  {
+    std::ostringstream text;
+    text << std::setprecision(2) << speed;
+    return text.str();
+  }
   return std::to_string(std::lround(std::fmin(speed, most)));
 }
 

@@ -125,6 +125,10 @@ TEST(SweepAcquisition, SaysThatItIsTooFastWhileItIs)
   scene.Place.RunTo(150);
   EXPECT_TRUE(HasMessage(acquisition.GetState(), "50 mm/s, more than SpeedLimit (23)"));
   EXPECT_NEAR(acquisition.GetState().Speed.value(), 50, 1e-6);
+  rules.SpeedLimit = 0.5;
+  acquisition.SetRules(rules);
+  scene.Place.RunTo(160);
+  EXPECT_TRUE(HasMessage(acquisition.GetState(), "more than SpeedLimit (0.5)"));
 }
 
 TEST(SweepAcquisition, SpeedsBeyondAnyNumberAreWritten)
