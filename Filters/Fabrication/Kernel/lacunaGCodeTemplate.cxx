@@ -19,6 +19,7 @@ namespace
 constexpr std::string_view AxisNames = "XYZ";
 constexpr std::string_view Lengths = "XYZABC"; // words that need a decimal point
 constexpr std::string_view Letters = "GMTSHFPXYZABC";
+constexpr std::size_t LongestLine = 74; // 80 with a line number
 constexpr double Dwell = 4;
 constexpr double ToReference[] = { 28, 30 };
 constexpr double MachineCoordinates = 53;
@@ -120,8 +121,18 @@ public:
     return words;
   }
 
+  void JudgeLength(const std::string& line) const
+  {
+    if (line.size() > LongestLine)
+    {
+      this->Throw("has a line of " + std::to_string(line.size()) + " characters, more than the " +
+        std::to_string(LongestLine) + " that controls take: '" + line.substr(0, 40) + "...'");
+    }
+  }
+
   void Judge(const std::vector<Word>& words)
   {
+    this->JudgeRepeats(words);
     const auto isG = [&words](double number)
     {
       return std::any_of(words.begin(), words.end(),
@@ -206,6 +217,22 @@ private:
         ".'");
     }
     return { letter, text, value };
+  }
+
+  // Of a letter that is twice in a block, controls heed the last, the first, or stop.
+  void JudgeRepeats(const std::vector<Word>& words) const
+  {
+    for (auto word = words.begin(); word != words.end(); ++word)
+    {
+      const bool many = word->Letter == 'G' || word->Letter == 'M';
+      const auto before = std::find_if(
+        words.begin(), word, [&](const Word& other) { return other.Letter == word->Letter; });
+      if (!many && before != word)
+      {
+        this->Throw(
+          "has " + before->Text + " and " + word->Text + " in one line: write one of them");
+      }
+    }
   }
 
   void JudgeG(const Word& word) const
@@ -381,6 +408,7 @@ FilledTemplate FillInTemplate(const GCodeTemplate& source,
     line.erase(0, line.find_first_not_of(' '));
     if (!line.empty())
     {
+      reader.JudgeLength(line);
       reader.Judge(reader.Split(line));
       filled.Lines.push_back(line);
     }

@@ -29,7 +29,8 @@ struct FilledTemplate
 
 /// The template's lines in upper case without empty ones, tabs as blanks, placeholders filled in: values are names and
 /// what they stand for. Throws std::invalid_argument that quotes the word for
-/// - an unknown placeholder, characters that controls do not know, comments without end, macros;
+/// - an unknown placeholder, characters that controls do not know, comments without end, macros, lines
+///   of more than 74 characters (80 with a line number), a letter but G and M twice in a line;
 /// - a G word that is not of a few that leave the meaning of the path's coordinates and feeds alone
 ///   (so no inches, increments, other planes, offsets of the tool, scales, mirrors, turns, shifts of
 ///   the zero, arcs or cycles; G91 only in the footer, to the reference point from where the tool is), a work offset other than options.WorkOffset, a subprogram, the end of

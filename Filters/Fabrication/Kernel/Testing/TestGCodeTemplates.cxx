@@ -62,6 +62,11 @@ TEST(GCodeTemplates, TemplatesThatChangeTheMeaningOfThePathAreRefused)
   header("G55", "WorkOffset is 54");
   header("G54", "no error");
   header("M98 P100", "has M98");
+  header("G00 X1. X2.", "has X1. and X2. in one line");
+  header("S3000 M03 S4000", "has S3000 and S4000 in one line");
+  header("M03 M08 G21 G90", "no error");
+  header("(" + std::string(73, 'A') + ")", "a line of 75 characters, more than the 74");
+  header("(" + std::string(72, 'A') + ")", "no error");
   header("M30", "would not be run");
   footer("M05\nM02", "no error");
   footer("M99", "has M99");
