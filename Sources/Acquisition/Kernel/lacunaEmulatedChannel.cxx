@@ -5,9 +5,10 @@
 
 namespace lacuna
 {
-EmulatedChannel::EmulatedChannel(FastrakEmulator& emulator, int baud)
+EmulatedChannel::EmulatedChannel(FastrakEmulator& emulator, int baud, double time)
   : Emulator(emulator)
   , Baud(baud)
+  , Time(time)
 {
 }
 

@@ -19,8 +19,9 @@ class EmulatedChannel
   , public Clock
 {
 public:
-  /// The emulator must live longer; baud is its rate.
-  EmulatedChannel(FastrakEmulator& emulator, int baud);
+  /// The emulator must live longer; baud is its rate, time when the line is opened, not before the
+  /// end of an earlier line to it.
+  EmulatedChannel(FastrakEmulator& emulator, int baud, double time = 0);
 
   std::size_t Read(char* bytes, std::size_t size, double seconds) override;
   void Write(std::string_view bytes) override;
@@ -31,7 +32,7 @@ public:
 private:
   FastrakEmulator& Emulator;
   int Baud;
-  double Time = 0;
+  double Time;
   std::string Arrived;
 };
 }

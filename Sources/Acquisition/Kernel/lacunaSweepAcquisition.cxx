@@ -193,6 +193,10 @@ void SweepAcquisition::Core::ReadFrames(
   const double latency = devices.VideoLatency.value_or(device->GetLatency());
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (control.IsStopped())
+    {
+      return; // it took long to open, and another one counts by now
+    }
     this->EarlierVideo = Sum(this->EarlierVideo, this->NewestVideo);
     this->NewestVideo = {};
     this->VideoWarning.clear();

@@ -61,7 +61,8 @@ TEST(AcquisitionTracker, SaysWhatIsWrongWithTheTracker)
       std::this_thread::sleep_for(
         std::chrono::milliseconds(1)); // the threads shall have their turn
     }
-    EXPECT_TRUE(said) << test.Words;
+    EXPECT_TRUE(said) << test.Words << "\n"
+                      << testing::PrintToString(acquisition.GetState().Messages);
     acquisition.Stop();
     for (const AcquiredSlice& slice : acquisition.TakeSlices())
     {

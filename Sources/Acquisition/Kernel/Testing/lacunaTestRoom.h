@@ -175,7 +175,7 @@ private:
   struct Line : public lacuna::ByteChannel
   {
     Line(Room& room, lacuna::FastrakEmulator& emulator, Stopped stopped)
-      : Channel(emulator, emulator.GetBaud())
+      : Channel(emulator, emulator.GetBaud(), room.Now())
       , Place(room)
       , IsStopped(std::move(stopped))
     {
