@@ -13,7 +13,10 @@ namespace
 {
 using Quaternion = std::array<double, 4>; // x y z w
 
-constexpr double Kilometre = 1e6; // mm
+// mm
+constexpr double Nanometre = 1e-6;
+constexpr double Metre = 1e3;
+constexpr double Kilometre = 1e6;
 
 bool IsPoseOfImage(const PoseTableOptions& options)
 {
@@ -229,6 +232,13 @@ Matrix4 Convert(Matrix4 pose, const PoseTableOptions& options, std::string& what
     {
       pose(r, c) *= mm;
     }
+  }
+  const Vec3 lengths = GetLengths(pose);
+  const auto isSize = [](double length) { return length >= Nanometre && length <= Metre; };
+  if (what.empty() && scaled && !(isSize(lengths[0]) && isSize(lengths[1]) && isSize(lengths[2])))
+  {
+    what = "its columns have the lengths " + Join(lengths) +
+      " mm, which are no sizes of pixels: check the matrix and its unit";
   }
   const Vec3 position = pose.Column(3);
   if (what.empty() && !(Norm(position) <= Kilometre))

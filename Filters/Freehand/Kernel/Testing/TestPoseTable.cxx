@@ -266,6 +266,15 @@ TEST(PoseTable, PixelSizesOfImagePoses)
     "mirrors");
   // the third column is not looked at but for its side
   EXPECT_NO_THROW(ReadPoseTable(ToRow(Matrix4::Scaling({ 0.2, 0.2, 1 })), 16, {}, options));
+  for (const double size : { 1e-7, 1.1e3, 1e-182, 1e82 })
+  {
+    ExpectError(
+      [&] {
+        ReadPoseTable(ToRow(Matrix4::Scaling({ 0.2, size, 0.2 })), 16, {}, options);
+      },
+      size > 1e-100 ? "no sizes of pixels" : "");
+  }
+  EXPECT_NO_THROW(ReadPoseTable(ToRow(Matrix4::Scaling({ 1e-5, 0.9e3, 1 })), 16, {}, options));
   options.PixelSpacing = { 0.2, 0.2 };
   ExpectError([&] { ReadPoseTable(numbers, 16, {}, options); }, "not rigid");
 }
