@@ -8,6 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <cstdint>
 
 using namespace lacunaCalibrationStudy;
@@ -56,6 +57,35 @@ void SingleWall(benchmark::State& state)
   Report(state, study, false);
 }
 BENCHMARK(SingleWall)->ArgName("geometries")->Arg(5)->Arg(200)->Unit(benchmark::kMillisecond);
+
+// arguments: geometries, % of the 0.5 mm's variance that is common to the ends of a line
+void WallCommonErrors(benchmark::State& state)
+{
+  const double common = 0.01 * static_cast<double>(state.range(1));
+  Study study;
+  for (auto _ : state)
+  {
+    study = StudyWall(
+      static_cast<unsigned>(state.range(0)), 0.5 * std::sqrt(1 - common), 0.5 * std::sqrt(common));
+  }
+  Report(state, study, false);
+}
+BENCHMARK(WallCommonErrors)
+  ->ArgNames({ "geometries", "common" })
+  ->ArgsProduct({ { 5, 200, 1000 }, { 50, 99 } })
+  ->Unit(benchmark::kMillisecond);
+
+// four frames of each of 40 places in which the probe was held still
+void WallAtRest(benchmark::State& state)
+{
+  Study study;
+  for (auto _ : state)
+  {
+    study = StudyWallAtRest(static_cast<unsigned>(state.range(0)));
+  }
+  Report(state, study, false);
+}
+BENCHMARK(WallAtRest)->ArgName("geometries")->Arg(5)->Arg(200)->Unit(benchmark::kMillisecond);
 }
 
 BENCHMARK_MAIN();

@@ -37,7 +37,7 @@ Vec3 GetTurns(const std::vector<CalibrationPick>& picks, const CalibrationState&
     return Eigen::Matrix3d(rotation * state.ImageRotation);
   };
   Vec3 turns{ 0, 0, 0 };
-  for (int target = 0; target <= static_cast<int>(CalibrationTarget::Point); ++target)
+  for (int target = 0; target <= static_cast<int>(CalibrationTarget::Tip); ++target)
   {
     std::optional<Eigen::Matrix3d> first;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum;
@@ -64,6 +64,21 @@ Vec3 GetTurns(const std::vector<CalibrationPick>& picks, const CalibrationState&
   }
   return turns;
 }
+
+// The receiver's own axes, which the turns are about.
+std::string DescribeTipWeakness(const Eigen::Vector3d& direction, const Vec3& turns)
+{
+  const Eigen::Vector3d unit = direction.normalized();
+  char text[240];
+  std::snprintf(text, sizeof text,
+    "where the tip lies along the direction (%.2f %.2f %.2f) of the receiver: tilt the stylus "
+    "more, "
+    "to all sides (so far by %.0f, %.0f and %.0f degrees RMS about its x, y and z axes; better "
+    "%.0f "
+    "and more about two of them)",
+    unit[0], unit[1], unit[2], turns[0], turns[1], turns[2], EnoughTurn);
+  return text;
+}
 }
 
 std::string DescribeCalibrationWeakness(const std::vector<int>& unknowns,
@@ -79,6 +94,11 @@ std::string DescribeCalibrationWeakness(const std::vector<int>& unknowns,
       part[unknowns[u]] = direction[static_cast<Eigen::Index>(u)];
     }
   }
+  const Vec3 turns = GetTurns(picks, state);
+  if (std::find(unknowns.begin(), unknowns.end(), 0) == unknowns.end())
+  {
+    return DescribeTipWeakness(part.segment<3>(CalibrationModel::ImageShift), turns);
+  }
   // along the image's own axes
   part.segment<3>(CalibrationModel::ImageTurn) =
     (state.ImageRotation.transpose() * part.segment<3>(CalibrationModel::ImageTurn)).eval();
@@ -87,7 +107,6 @@ std::string DescribeCalibrationWeakness(const std::vector<int>& unknowns,
   Eigen::Index largest;
   part.cwiseAbs().maxCoeff(&largest);
   const int axis = static_cast<int>(largest % 3);
-  const Vec3 turns = GetTurns(picks, state);
   const int across[2] = { (axis + 1) % 3, (axis + 2) % 3 };
   if (largest >= CalibrationModel::Scale)
   {

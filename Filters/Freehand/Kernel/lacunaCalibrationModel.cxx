@@ -31,7 +31,7 @@ Eigen::Matrix3d GetTurn(const Eigen::Vector3d& vector)
 // Whether the target looks the same when it is turned about an axis of the phantom, or moved along it.
 bool IsSameTurned(CalibrationTarget target, int axis)
 {
-  return target == CalibrationTarget::Point ||
+  return target == CalibrationTarget::Point || target == CalibrationTarget::Tip ||
     (target == CalibrationTarget::Wall ? axis == 2 : static_cast<int>(target) == axis);
 }
 
@@ -58,7 +58,11 @@ CalibrationModel::CalibrationModel(const std::vector<CalibrationPick>& picks, bo
     }
     this->Poses.push_back(pose);
   }
-  for (int unknown = 0; unknown < (estimateScale ? PhantomTurn : Scale); ++unknown)
+  const bool hasImage = std::any_of(picks.begin(), picks.end(),
+    [](const CalibrationPick& pick) { return pick.Target != CalibrationTarget::Tip; });
+  const int first = hasImage ? ImageTurn : ImageShift;
+  const int end = hasImage && estimateScale ? PhantomTurn : Scale;
+  for (int unknown = first; unknown < end; ++unknown)
   {
     this->Unknowns.push_back(unknown);
   }

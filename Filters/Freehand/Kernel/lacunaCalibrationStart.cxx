@@ -81,13 +81,16 @@ std::vector<CalibrationState> FindCalibrationStarts(
   {
     phantoms = GetPlanes(Normals);
   }
+  const std::vector<Eigen::Matrix3d> images = seeks(CalibrationModel::ImageTurn)
+    ? GetRotations(ImageOrientations)
+    : std::vector<Eigen::Matrix3d>{ Eigen::Matrix3d::Identity() };
   struct Start
   {
     double Error;
     CalibrationState State;
   };
   std::vector<Start> starts;
-  for (const Eigen::Matrix3d& image : GetRotations(ImageOrientations))
+  for (const Eigen::Matrix3d& image : images)
   {
     for (const Eigen::Matrix3d& phantom : phantoms)
     {

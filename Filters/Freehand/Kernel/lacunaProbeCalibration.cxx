@@ -2,6 +2,7 @@
 #include "lacunaProbeCalibration.h"
 
 #include "lacunaCalibrationAdvice.h"
+#include "lacunaCalibrationClusters.h"
 #include "lacunaCalibrationModel.h"
 #include "lacunaCalibrationStart.h"
 #include "lacunaRigidPose.h"
@@ -26,6 +27,9 @@ constexpr double OtherSolution = 5;     // mm at a corner
 constexpr double SingularRatio = 1e-10; // of the normal matrix's eigenvalues
 constexpr double WeakError = 1;         // mm
 constexpr double WeakRatio = 3;
+// In standard deviations of an equation. Of two poses that each err so much along each axis, the
+// places differ by less than 4.8 of them in 99 %.
+constexpr double RestSpreads = 5;
 
 void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOptions& options)
 {
@@ -39,6 +43,14 @@ void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOpti
     {
       throw std::invalid_argument("pick " + std::to_string(pick) + ": its pixel is not finite");
     }
+  }
+  const auto isTip = [](const CalibrationPick& pick)
+  { return pick.Target == CalibrationTarget::Tip; };
+  const auto tips = std::count_if(picks.begin(), picks.end(), isTip);
+  if (tips != 0 && static_cast<std::size_t>(tips) != picks.size())
+  {
+    throw std::invalid_argument(
+      "tips of a stylus and picks in images go in calibrations of their own");
   }
   for (const double spacing : options.PixelSpacing)
   {
@@ -246,8 +258,8 @@ private:
     {
       throw std::invalid_argument(std::to_string(outliers) + " of " +
         std::to_string(solution.Weights.size()) +
-        " picks do not agree with the others, which are too few then; pick again, check which wire "
-        "is which, or raise OutlierLimit");
+        " picks do not agree with the others, which are too few then; pick again (of wires, check "
+        "which is which), or raise OutlierLimit");
     }
   }
 
@@ -325,6 +337,7 @@ bool IsZeroAt(CalibrationTarget target, int axis)
     case CalibrationTarget::Wall:
       return axis == 2;
     case CalibrationTarget::Point:
+    case CalibrationTarget::Tip:
       return true;
     default:
       return axis != static_cast<int>(target);
@@ -372,7 +385,12 @@ ProbeCalibration ProbeCalibration::Solve(
   // Covariance of all unknowns, of which the image's are kept.
   const Eigen::MatrixXd root = conditioning.Lengths.cwiseInverse().asDiagonal() *
     conditioning.Vectors * conditioning.Values.cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd covariance = result.Spread * result.Spread * root * root.transpose();
+  const std::vector<std::size_t> clusters =
+    FindCalibrationClusters(picks, state, solver.GetFarPixel(), RestSpreads * result.Spread);
+  const ClusteredCovariance clustered =
+    GetClusteredCovariance(solver.GetModel(), state, best.Weights, clusters, root, result.Spread);
+  const Eigen::MatrixXd& covariance = clustered.Covariance;
+  result.Views = clustered.Clusters;
   for (std::size_t a = 0; a < unknowns.size(); ++a)
   {
     for (std::size_t b = 0; b < unknowns.size(); ++b)
@@ -385,7 +403,11 @@ ProbeCalibration ProbeCalibration::Solve(
     }
   }
 
-  // The part of each direction that the image has in it.
+  // The part of each direction that the image has in it. How well it is held follows from the poses
+  // and one spread for all, picks of a view counted as one: the covariance is too uncertain for that.
+  const double spread = result.Spread *
+    std::sqrt(static_cast<double>(std::count(result.Used.begin(), result.Used.end(), true)) /
+      static_cast<double>(result.Views));
   std::vector<CalibrationWeakness> directions;
   for (Eigen::Index v = 0; v < count; ++v)
   {
@@ -397,7 +419,7 @@ ProbeCalibration ProbeCalibration::Solve(
         square += std::pow(conditioning.Vectors(static_cast<Eigen::Index>(u), v), 2);
       }
     }
-    directions.push_back({ result.Spread * std::sqrt(square / conditioning.Values[v]),
+    directions.push_back({ spread * std::sqrt(square / conditioning.Values[v]),
       DescribeCalibrationWeakness(unknowns, conditioning.Vectors.col(v), picks, state) });
   }
   std::sort(directions.begin(), directions.end(),
@@ -439,6 +461,14 @@ double ProbeCalibration::GetExpectedError(const Vec2& pixel) const
 {
   const std::array<Vec3, 3> covariance = this->GetCovariance(pixel);
   return std::sqrt(covariance[0][0] + covariance[1][1] + covariance[2][2]);
+}
+
+double ProbeCalibration::GetRatioError() const
+{
+  constexpr std::size_t column = 6, row = 7, count = ImageUnknowns;
+  return std::sqrt(std::max(0.0,
+    this->Covariance[count * column + column] + this->Covariance[count * row + row] -
+      2 * this->Covariance[count * column + row]));
 }
 
 Vec3 ProbeCalibration::GetAngles() const

@@ -10,6 +10,8 @@
 /// - three wires at right angles through one point (Carr 1996, appendix A): two equations a pick
 /// - a wall, such as the flat floor of a water bath (Prager et al. 1998): one equation a pick
 /// - a point that does not move, such as the tip of a needle: three equations a pick
+/// - the tip of a stylus that carries the receiver, in a hole: three equations a pose. There is no
+///   image then; the tip is where (0, 0) would be
 ///
 /// Picks of different targets may be mixed when they belong to one phantom: its wall is the plane of
 /// wires x and y, its point the crossing of the wires.
@@ -20,6 +22,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -32,7 +35,8 @@ enum class CalibrationTarget
   WireY,
   WireZ,
   Wall,
-  Point
+  Point,
+  Tip
 };
 
 /// Whether phantom coordinate axis, 0 to 2, is zero there.
@@ -41,13 +45,18 @@ bool IsZeroAt(CalibrationTarget target, int axis);
 struct CalibrationPick
 {
   Matrix4 ProbeToTracker; ///< mm; a rotation and a translation
-  Vec2 Pixel;             ///< column, row
+  Vec2 Pixel;             ///< column, row; 0, 0 of a tip
   CalibrationTarget Target;
+  /// Number of the slice. Errors of picks in one slice may be alike, and a probe at rest shows the
+  /// same again in the next ones: what they tell together is not counted as if it were independent.
+  /// Below 0: the pick is on its own.
+  std::int64_t Slice = -1;
 };
 
 struct ProbeCalibrationOptions
 {
-  Vec2 PixelSpacing{ 1, 1 };  ///< mm a column, mm a row, above 0; not used with EstimateScale
+  /// mm a column, mm a row, above 0; not used with EstimateScale, nor of tips.
+  Vec2 PixelSpacing{ 1, 1 };
   bool EstimateScale = false; ///< find the pixel spacing along with the rest
   /// Picks with an equation that is off by more than so many standard deviations are left out, 2 and
   /// more; 0: none is.
@@ -85,6 +94,9 @@ public:
 
   std::size_t Equations = 0; ///< that were used
   std::size_t Unknowns = 0;
+  /// Slices used that are different views: those in which the probe rested (receiver and image within
+  /// five times Spread) count once. The covariance takes errors as independent between views only.
+  std::size_t Views = 0;
   double Rms = 0; ///< mm, of the equations used (Carr 1996, eq. A.14)
   double Spread =
     0; ///< mm, standard deviation of an equation: the same over equations less unknowns
@@ -101,6 +113,9 @@ public:
   std::array<Vec3, 3> GetCovariance(const Vec2& pixel) const;
   /// Root of the sum of the variances, mm.
   double GetExpectedError(const Vec2& pixel) const;
+  /// Standard deviation of the ratio of the row spacing to the column spacing, relative; 0 where
+  /// they were given.
+  double GetRatioError() const;
   /// Azimuth, elevation and roll of the image in degrees, as the 3Space gives a receiver's.
   Vec3 GetAngles() const;
 

@@ -10,8 +10,8 @@
 
 namespace lacuna
 {
-/// What keeps a matrix from being a rotation and a translation (within 0.001), to be put behind its
-/// name: "mirrors", say. Empty when it is one.
+/// What keeps a matrix from being a rotation and a translation (products of its axes within 0.001), to
+/// be put behind its name: "mirrors", say. Empty when it is one.
 std::string DescribeNotRigid(const Matrix4& pose);
 }
 #endif

@@ -86,6 +86,184 @@ TEST(ProbeCalibration, WallSeenFromAboveInFortySlices)
   EXPECT_NEAR(study.GetCoverage(), 0.95, 0.03);
 }
 
+// The two ends of a line that was found in a slice are off alike: by gain, beam width, its tail.
+TEST(ProbeCalibration, ErrorsCommonToASliceAreExpected)
+{
+  for (const Study& study : { StudyWall(200, 0.35, 0.35), StudyWall(200, 0.05, 0.5) })
+  {
+    EXPECT_EQ(study.Converged, 200);
+    EXPECT_NEAR(study.GetCoverage(), 0.95, 0.03);
+  }
+}
+
+TEST(ProbeCalibration, FramesOfAProbeAtRestAreOneView)
+{
+  const Study study = StudyWallAtRest(100);
+  EXPECT_EQ(study.Converged, 100);
+  EXPECT_NEAR(study.GetCoverage(), 0.95, 0.03);
+  // the same picks again and again, as of a recording of a held probe: nothing new
+  Scene scene(31);
+  for (int i = 0; i < 40; ++i)
+  {
+    scene.PickWall(0.5);
+  }
+  const ProbeCalibration once = ProbeCalibration::Solve(scene.Picks, scene.Options());
+  EXPECT_EQ(once.Views, 40u);
+  std::vector<CalibrationPick> often;
+  for (std::size_t pick = 0; pick < scene.Picks.size(); pick += 2)
+  {
+    for (int frame = 0; frame < 10; ++frame)
+    {
+      for (CalibrationPick copy : { scene.Picks[pick], scene.Picks[pick + 1] })
+      {
+        copy.Slice = std::int64_t(5 * pick) + frame;
+        often.push_back(copy);
+      }
+    }
+  }
+  const ProbeCalibration ten = ProbeCalibration::Solve(often, scene.Options());
+  EXPECT_EQ(ten.Views, 40u);
+  EXPECT_NEAR(ten.GetExpectedError({ 0, 0 }) / once.GetExpectedError({ 0, 0 }), 1, 1e-3);
+  // a probe that trembles within the noise is at rest, too; one that goes on is not
+  for (const double step : { 0.1, 5.0 })
+  {
+    Scene moved(32);
+    for (int i = 0; i < 40; ++i)
+    {
+      moved.PickWall(0.5, 60, 0, 2);
+    }
+    const Vec3 sideways = moved.PhantomToTracker.Vector({ step, 0, 0 });
+    for (std::size_t pick = 2; pick < moved.Picks.size(); pick += 4)
+    {
+      for (std::size_t end = 0; end < 2; ++end)
+      {
+        Matrix4& pose = moved.Picks[pick + end].ProbeToTracker;
+        pose = Matrix4::Translation(sideways) * pose; // along the wall
+      }
+    }
+    EXPECT_EQ(ProbeCalibration::Solve(moved.Picks, moved.Options()).Views, step < 1 ? 40u : 80u);
+  }
+  // few places, however many frames: what they cannot tell is not small
+  Scene few(33);
+  for (int i = 0; i < 5; ++i)
+  {
+    few.PickWall(0.3, 60, 0, 20);
+  }
+  const ProbeCalibration held = ProbeCalibration::Solve(few.Picks, few.Options());
+  EXPECT_EQ(held.Views, 5u);
+  EXPECT_GT(held.GetExpectedError({ 0, 0 }), 1);
+  EXPECT_TRUE(std::isfinite(held.GetExpectedError({ 0, 0 })));
+}
+
+// Laterality: a tracker set for the wrong hemisphere gives positions of the opposite sign and the same
+// orientations. The wires, and any wall or point, are their own mirror images in the transmitter, so
+// that the picks fit as well as ever, to the last digit: no calculation can tell.
+TEST(ProbeCalibration, TheOtherHemisphereCannotBeTold)
+{
+  Scene wires(21), wall(22);
+  for (int i = 0; i < 30; ++i)
+  {
+    wires.PickWire(i % 3, { wires.Uniform(-1, 1), wires.Uniform(-1, 1) });
+    wall.PickWall(0.5);
+  }
+  for (const Scene* scene : { &wires, &wall })
+  {
+    const ProbeCalibration right = ProbeCalibration::Solve(scene->Picks, scene->Options());
+    std::vector<CalibrationPick> mirrored = scene->Picks;
+    for (CalibrationPick& pick : mirrored)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        pick.ProbeToTracker(axis, 3) = -pick.ProbeToTracker(axis, 3);
+      }
+    }
+    const ProbeCalibration wrong = ProbeCalibration::Solve(mirrored, scene->Options());
+    EXPECT_NEAR(wrong.Rms, right.Rms, 1e-9);
+    EXPECT_NEAR(wrong.GetExpectedError({ 0, 0 }), right.GetExpectedError({ 0, 0 }), 1e-6);
+    EXPECT_GT(wrong.ImageToProbe.Determinant3(), 0);
+    EXPECT_GT(wrong.RunnerUpRms, 1.5 * wrong.Rms);
+    // every place on the other side of the receiver, and of the transmitter
+    for (const Vec2& corner : Scene::Corners())
+    {
+      const Vec3 pixel{ corner[0], corner[1], 0 };
+      EXPECT_LT(Norm(wrong.ImageToProbe.Point(pixel) + right.ImageToProbe.Point(pixel)), 1e-4);
+      EXPECT_LT(Norm(mirrored[5].ProbeToTracker.Point(wrong.ImageToProbe.Point(pixel)) +
+                  scene->Picks[5].ProbeToTracker.Point(right.ImageToProbe.Point(pixel))),
+        1e-4);
+    }
+  }
+}
+
+TEST(ProbeCalibration, TipOfAStylus)
+{
+  // the tip far off, different along each axis; its hole somewhere
+  const Vec3 tip{ 10, -20, 150 }, hole{ 200, 30, -60 };
+  const auto pivot = [&](Scene& scene, int count, double degrees, double spread)
+  {
+    std::vector<CalibrationPick> picks;
+    for (int i = 0; i < count; ++i)
+    {
+      const Matrix4 turn = scene.Turn(degrees);
+      const Vec3 error{ scene.Normal(spread), scene.Normal(spread), scene.Normal(spread) };
+      picks.push_back(
+        { Matrix4::Translation(hole - turn.Vector(tip) + error) * turn, { 0, 0 }, Target::Tip, i });
+    }
+    return picks;
+  };
+  Scene random(41);
+  const ProbeCalibration exact = ProbeCalibration::Solve(pivot(random, 12, 40, 0));
+  EXPECT_EQ(exact.Unknowns, 6u);
+  EXPECT_LT(Norm(exact.ImageToProbe.Column(3) - tip), 1e-8);
+  EXPECT_LT(Norm(exact.TrackerToPhantom.Point(hole)), 1e-8);
+  EXPECT_LT(exact.Rms, 1e-9);
+  // 0.4 mm along each axis: what is expected is what comes, and 5 % of slips do no harm
+  int covered = 0;
+  double squares = 0, expected = 0;
+  for (unsigned seed = 0; seed < 200; ++seed)
+  {
+    Scene scene(100 + seed);
+    std::vector<CalibrationPick> picks = pivot(scene, 40, 40, 0.4);
+    picks[7].ProbeToTracker(1, 3) += 12;
+    picks[30].ProbeToTracker(0, 3) -= 20;
+    const ProbeCalibration found = ProbeCalibration::Solve(picks);
+    EXPECT_FALSE(found.Used[7] || found.Used[30]);
+    const Vec3 error = found.ImageToProbe.Column(3) - tip;
+    squares += Dot(error, error);
+    expected += std::pow(found.GetExpectedError({ 0, 0 }), 2);
+    // F distribution, 3 and 38 less 6
+    covered += MahalanobisSquare(found.GetCovariance({ 0, 0 }), error) < 3 * 2.90;
+  }
+  EXPECT_NEAR(covered / 200.0, 0.95, 0.03);
+  EXPECT_NEAR(std::sqrt(squares / expected), 1, 0.1);
+  EXPECT_LT(std::sqrt(squares / 200), 0.5);
+  // tilted about one axis only, the tip's place along it is open
+  std::vector<CalibrationPick> flat;
+  for (int i = 0; i < 20; ++i)
+  {
+    const Matrix4 turn = Matrix4::Rotation({ 0, 1, 0 }, 4 * i * Degree);
+    flat.push_back(
+      { Matrix4::Translation(hole - turn.Vector(tip)) * turn, { 0, 0 }, Target::Tip, i });
+  }
+  try
+  {
+    ProbeCalibration::Solve(flat);
+    ADD_FAILURE() << "was solved";
+  }
+  catch (const std::invalid_argument& error)
+  {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("the tip lies along the direction ("), std::string::npos) << text;
+    EXPECT_NE(text.find("1.00"), std::string::npos) << text;
+    EXPECT_NE(text.find("tilt the stylus more"), std::string::npos) << text;
+  }
+  // hardly tilted: solved, badly, and it says so
+  const ProbeCalibration slight = ProbeCalibration::Solve(pivot(random, 40, 3, 0.4));
+  ASSERT_FALSE(slight.Weaknesses.empty());
+  EXPECT_NE(slight.Weaknesses[0].Motion.find("tip"), std::string::npos);
+  EXPECT_GT(slight.GetExpectedError({ 0, 0 }), 1);
+  EXPECT_THROW(ProbeCalibration::Solve(pivot(random, 2, 40, 0)), std::invalid_argument);
+}
+
 TEST(ProbeCalibration, OutliersAreNamedAndOthersKept)
 {
   Scene scene(6);
@@ -255,6 +433,17 @@ TEST(ProbeCalibration, RefusesWhatCannotBe)
     [](Picks& picks, Options&) {
       picks[3].ProbeToTracker = picks[3].ProbeToTracker * Matrix4::Scaling({ 10, 10, 10 });
     });
+  refused("by 0.0",
+    [](Picks& picks, Options&)
+    {
+      for (int i = 0; i < 12; ++i)
+      {
+        double& number = picks[3].ProbeToTracker(i / 4, i % 4);
+        number = std::round(100 * number) / 100;
+      }
+    });
+  refused(
+    "calibrations of their own", [](Picks& picks, Options&) { picks[3].Target = Target::Tip; });
   refused("pick 3: ProbeToTracker mirrors",
     [](Picks& picks, Options&) {
       picks[3].ProbeToTracker = picks[3].ProbeToTracker * Matrix4::Scaling({ 1, 1, -1 });
