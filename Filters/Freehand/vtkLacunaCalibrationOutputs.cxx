@@ -36,7 +36,7 @@ double GetError(const lacuna::Vec3& point, lacuna::CalibrationTarget target)
 
 const char* GetTargetName(lacuna::CalibrationTarget target)
 {
-  static const char* const names[] = { "X", "Y", "Z", "Wall", "Point" };
+  static const char* const names[] = { "X", "Y", "Z", "Wall", "Point", "Tip" };
   return names[static_cast<int>(target)];
 }
 }
@@ -179,22 +179,30 @@ void FillSlices(const Picks& picks, const lacuna::ProbeCalibration& found, vtkPo
 }
 
 //------------------------------------------------------------------------------
-void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map)
+ErrorMapGrid::ErrorMapGrid(const int extent[6], const double origin[3], const double spacing[3])
+  : Extent{ 0, 0, 0, 0, 0, 0 }
+  , Origin{ 0, 0, 0 }
+  , Spacing{ 1, 1, 1 }
 {
-  double bounds[6];
-  slices->GetBounds(bounds);
-  int size[2];
-  double spacing[2];
   for (int axis = 0; axis < 2; ++axis)
   {
-    const double length = bounds[2 * axis + 1] - bounds[2 * axis];
-    const int intervals = length > 0 ? MapIntervals : 0;
-    size[axis] = intervals + 1;
-    spacing[axis] = intervals ? length / intervals : 1;
+    const double length = spacing[axis] * (extent[2 * axis + 1] - extent[2 * axis]);
+    this->Origin[axis] = origin[axis] + spacing[axis] * extent[2 * axis];
+    if (length > 0)
+    {
+      this->Extent[2 * axis + 1] = MapIntervals;
+      this->Spacing[axis] = length / MapIntervals;
+    }
   }
-  map->SetOrigin(bounds[0], bounds[2], 0);
-  map->SetSpacing(spacing[0], spacing[1], 1);
-  map->SetDimensions(size[0], size[1], 1);
+}
+
+//------------------------------------------------------------------------------
+void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map)
+{
+  const ErrorMapGrid grid(slices->GetExtent(), slices->GetOrigin(), slices->GetSpacing());
+  map->SetOrigin(grid.Origin);
+  map->SetSpacing(grid.Spacing);
+  map->SetExtent(0, grid.Extent[1], 0, grid.Extent[3], 0, 0);
   vtkNew<vtkDoubleArray> error;
   error->SetName("ExpectedError");
   for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i)

@@ -22,6 +22,14 @@ void FillTable(const std::vector<vtkLacunaCalibrationPick>& picks,
 void FillPhantom(const std::vector<vtkLacunaCalibrationPick>& picks,
   const lacuna::ProbeCalibration& found, vtkPolyData* picture);
 
+/// The grid of port 3 over a stack of slices with this extent, origin and spacing.
+struct ErrorMapGrid
+{
+  ErrorMapGrid(const int extent[6], const double origin[3], const double spacing[3]);
+  int Extent[6];
+  double Origin[3], Spacing[3];
+};
+
 /// What to expect all over the slices' picture, in its coordinates: port 3.
 void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, vtkImageData* map);
 

@@ -15,14 +15,20 @@
 #include "vtkTable.h"
 #include "vtkVariant.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace
 {
 // Of the image's diagonal: a wire that moves farther from slice to slice is another one.
 constexpr double ReachPart = 0.25;
+
+// Nothing is seen of a stylus, so that its picture may be bad, and none is of another instant.
+constexpr int TipIgnores = vtkLacunaTrackedSlices::ImageInvalid | vtkLacunaTrackedSlices::TooFast;
 
 vtkAbstractArray* GetColumn(vtkTable* table, const char* name)
 {
@@ -59,6 +65,42 @@ lacuna::CalibrationTarget ReadWire(vtkAbstractArray* column, vtkIdType row)
       "' as " + column->GetName() + "; it must be X, Y or Z");
   }
   return static_cast<lacuna::CalibrationTarget>(place % 3);
+}
+
+// In the sweep, of the slice k of the stack.
+vtkIdType GetSliceNumber(vtkImageData* slices, const vtkLacunaProbePoses& poses, std::int64_t k)
+{
+  return vtkLacunaTrackedSlices::GetSliceNumber(
+    slices, slices->GetExtent()[4] + static_cast<int>(k), poses.GetCount());
+}
+
+// How many of these slices are flagged, and why; empty: none is.
+std::string DescribeFlags(const std::vector<int>& status)
+{
+  static const std::pair<int, const char*> flags[] = { { vtkLacunaTrackedSlices::PoseInvalid,
+                                                         "without a pose" },
+    { vtkLacunaTrackedSlices::ImageInvalid, "without a good picture" },
+    { vtkLacunaTrackedSlices::TooFast, "too fast" },
+    { vtkLacunaTrackedSlices::GatedOut, "gated out" } };
+  const auto flagged = std::count_if(status.begin(), status.end(), [](int s) { return s != 0; });
+  if (flagged == 0)
+  {
+    return {};
+  }
+  std::string text = std::to_string(flagged) + " of " + std::to_string(status.size()) +
+    " slices, by their SliceStatus:";
+  const char* separator = " ";
+  for (const auto& [flag, name] : flags)
+  {
+    const auto count =
+      std::count_if(status.begin(), status.end(), [flag = flag](int s) { return s & flag; });
+    if (count != 0)
+    {
+      text += separator + std::to_string(count) + " " + name + " (" + std::to_string(flag) + ")";
+      separator = ", ";
+    }
+  }
+  return text;
 }
 
 // The picks as they are given.
@@ -179,24 +221,28 @@ private:
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaProbePoses::vtkLacunaProbePoses(vtkImageData* slices)
+vtkLacunaProbePoses::vtkLacunaProbePoses(vtkImageData* slices, const char* arrayName)
 {
   vtkDataArray* status =
     vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
   vtkDataArray* matrices =
-    vtkLacunaFieldData::Find(slices, ArrayName, 16, status->GetNumberOfTuples());
+    vtkLacunaFieldData::Find(slices, arrayName, 16, status->GetNumberOfTuples());
   if (!matrices)
   {
-    throw std::runtime_error("the slices have no field data array 'ProbeToTracker' (16 numbers for "
-                             "each slice): record the probe's transform under that name");
+    throw std::runtime_error(std::string("the slices have no field data array '") + arrayName +
+      "' (16 numbers for each slice): record the probe's transform under that name");
   }
   for (vtkIdType i = 0; i < status->GetNumberOfTuples(); ++i)
   {
-    const int flags = static_cast<int>(status->GetTuple1(i));
-    this->Valid.push_back(!(flags & vtkLacunaTrackedSlices::PoseInvalid));
-    this->Seen.push_back(!(flags & vtkLacunaTrackedSlices::ImageInvalid));
+    this->Status.push_back(static_cast<int>(status->GetTuple1(i)));
     this->Matrices.push_back(vtkLacunaFieldData::GetMatrix(matrices, i));
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaProbePoses::IsValid(vtkIdType slice) const
+{
+  return !(this->Status[slice] & vtkLacunaTrackedSlices::PoseInvalid);
 }
 
 //------------------------------------------------------------------------------
@@ -224,7 +270,7 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::Read(vtkDataObj
     }
     picks.push_back({ slice,
       { poses.Get(slice), { point[0], point[1] },
-        target ? *target : rows.GetWire(row, slice, ranges) } });
+        target ? *target : rows.GetWire(row, slice, ranges), slice } });
   }
   return picks;
 }
@@ -239,9 +285,8 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindSpots(
   std::vector<std::int64_t> wanted; // of the stack
   for (std::int64_t k = 0; k < images.GetCount(); ++k)
   {
-    const vtkIdType slice = vtkLacunaTrackedSlices::GetSliceNumber(
-      slices, slices->GetExtent()[4] + static_cast<int>(k), poses.GetCount());
-    if (poses.IsValid(slice) && poses.HasImage(slice) && lacuna::FindWire(ranges, slice))
+    const vtkIdType slice = GetSliceNumber(slices, poses, k);
+    if (!poses.GetStatus(slice) && lacuna::FindWire(ranges, slice))
     {
       wanted.push_back(k);
     }
@@ -252,8 +297,7 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindSpots(
       for (std::int64_t n = first; n < last; ++n)
       {
         const std::int64_t k = wanted[static_cast<std::size_t>(n)];
-        const vtkIdType slice = vtkLacunaTrackedSlices::GetSliceNumber(
-          slices, slices->GetExtent()[4] + static_cast<int>(k), poses.GetCount());
+        const vtkIdType slice = GetSliceNumber(slices, poses, k);
         lacuna::SpotSlice& found = sweep[static_cast<std::size_t>(slice)];
         found.Spots = lacuna::FindSpots(images.Get(k));
         for (lacuna::Spot& spot : found.Spots)
@@ -281,7 +325,7 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindSpots(
       {
         const vtkIdType slice = range.First + static_cast<vtkIdType>(n);
         found.push_back(
-          { slice, { poses.Get(slice), track[n]->Pixel, range.Wire }, track[n]->Score });
+          { slice, { poses.Get(slice), track[n]->Pixel, range.Wire, slice }, track[n]->Score });
       }
     }
   }
@@ -290,7 +334,7 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindSpots(
 
 //------------------------------------------------------------------------------
 std::vector<std::optional<std::array<lacuna::Vec2, 2>>> vtkLacunaCalibrationPicks::FindWalls(
-  vtkLacunaExecution& execution, vtkImageData* slices)
+  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses* poses)
 {
   const Images images(slices, "a wall");
   std::vector<std::optional<std::array<lacuna::Vec2, 2>>> walls(
@@ -300,6 +344,10 @@ std::vector<std::optional<std::array<lacuna::Vec2, 2>>> vtkLacunaCalibrationPick
     {
       for (std::int64_t k = first; k < last; ++k)
       {
+        if (poses && poses->GetStatus(GetSliceNumber(slices, *poses, k)))
+        {
+          continue;
+        }
         if (const std::optional<lacuna::WallLine> wall = lacuna::FindWall(images.Get(k)))
         {
           walls[static_cast<std::size_t>(k)] = { images.GetPixel(wall->Points[0]),
@@ -308,4 +356,78 @@ std::vector<std::optional<std::array<lacuna::Vec2, 2>>> vtkLacunaCalibrationPick
       }
     });
   return walls;
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::FindWallPicks(
+  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses& poses)
+{
+  const auto walls = FindWalls(execution, slices, &poses);
+  std::vector<vtkLacunaCalibrationPick> picks;
+  for (std::size_t k = 0; k < walls.size(); ++k)
+  {
+    if (walls[k])
+    {
+      const vtkIdType slice = GetSliceNumber(slices, poses, static_cast<std::int64_t>(k));
+      for (const lacuna::Vec2& point : *walls[k])
+      {
+        picks.push_back(
+          { slice, { poses.Get(slice), point, lacuna::CalibrationTarget::Wall, slice } });
+      }
+    }
+  }
+  return picks;
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkLacunaCalibrationPick> vtkLacunaCalibrationPicks::GetTips(
+  vtkImageData* slices, const vtkLacunaProbePoses& poses)
+{
+  std::vector<vtkLacunaCalibrationPick> picks;
+  for (int k = 0; k < slices->GetDimensions()[2]; ++k)
+  {
+    const vtkIdType slice = GetSliceNumber(slices, poses, k);
+    if (!(poses.GetStatus(slice) & ~TipIgnores))
+    {
+      picks.push_back(
+        { slice, { poses.Get(slice), { 0, 0 }, lacuna::CalibrationTarget::Tip, slice } });
+    }
+  }
+  return picks;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaCalibrationPicks::DescribeLeftOut(vtkImageData* slices,
+  const vtkLacunaProbePoses& poses, const std::vector<lacuna::WireRange>& ranges, bool tip)
+{
+  std::vector<int> status;
+  for (int k = 0; k < slices->GetDimensions()[2]; ++k)
+  {
+    const vtkIdType slice = GetSliceNumber(slices, poses, k);
+    if (ranges.empty() || lacuna::FindWire(ranges, slice))
+    {
+      status.push_back(poses.GetStatus(slice) & ~(tip ? TipIgnores : 0));
+    }
+  }
+  const std::string flags = DescribeFlags(status);
+  return flags.empty() ? flags : "left out are " + flags;
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaCalibrationPicks::DescribeFlagged(
+  const std::vector<vtkLacunaCalibrationPick>& picks, const vtkLacunaProbePoses& poses)
+{
+  std::vector<int> status;
+  std::set<vtkIdType> seen;
+  for (const vtkLacunaCalibrationPick& pick : picks)
+  {
+    if (seen.insert(pick.Slice).second)
+    {
+      status.push_back(poses.GetStatus(pick.Slice));
+    }
+  }
+  const std::string flags = DescribeFlags(status);
+  return flags.empty() ? flags
+                       : "picks were given, and count, in " + flags +
+      ": the picture may be of another place than the pose";
 }

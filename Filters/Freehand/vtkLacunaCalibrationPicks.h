@@ -9,28 +9,31 @@
 #include "vtkType.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 class vtkImageData;
 class vtkDataObject;
 class vtkLacunaExecution;
 
-/// The poses of the probe, and which slices have none. Throws std::runtime_error when the slices
-/// have no field data array ProbeToTracker.
+/// The poses of the probe, and what SliceStatus says of the slices. Throws std::runtime_error when
+/// the slices have no such field data array.
 class vtkLacunaProbePoses
 {
 public:
   static constexpr const char* ArrayName = "ProbeToTracker";
+  static constexpr const char* StylusName = "StylusToTracker";
 
-  explicit vtkLacunaProbePoses(vtkImageData* slices);
+  explicit vtkLacunaProbePoses(vtkImageData* slices, const char* arrayName = ArrayName);
   /// Of the sweep.
-  vtkIdType GetCount() const { return static_cast<vtkIdType>(this->Valid.size()); }
-  bool IsValid(vtkIdType slice) const { return this->Valid[slice]; }
-  bool HasImage(vtkIdType slice) const { return this->Seen[slice]; }
+  vtkIdType GetCount() const { return static_cast<vtkIdType>(this->Status.size()); }
+  /// The slice's flags (vtkLacunaTrackedSlices.h).
+  int GetStatus(vtkIdType slice) const { return this->Status[slice]; }
+  bool IsValid(vtkIdType slice) const;
   const lacuna::Matrix4& Get(vtkIdType slice) const { return this->Matrices[slice]; }
 
 private:
-  std::vector<char> Valid, Seen;
+  std::vector<int> Status;
   std::vector<lacuna::Matrix4> Matrices;
 };
 
@@ -50,15 +53,34 @@ namespace vtkLacunaCalibrationPicks
 std::vector<vtkLacunaCalibrationPick> Read(vtkDataObject* data, const vtkLacunaProbePoses& poses,
   std::optional<lacuna::CalibrationTarget> target, const std::vector<lacuna::WireRange>& ranges);
 
-/// The bright spots of wires, one at most in each slice of a range that has a pose and none of the
+/// The bright spots of wires, one at most in each slice of a range that has no flag and none of the
 /// picks, which lead: lacunaSpotTracking.h. The same for any number of threads.
 std::vector<vtkLacunaCalibrationPick> FindSpots(vtkLacunaExecution& execution, vtkImageData* slices,
   const vtkLacunaProbePoses& poses, const std::vector<lacuna::WireRange>& ranges,
   const std::vector<vtkLacunaCalibrationPick>& picks);
 
 /// Where the slices show a flat wall, the same for any number of threads: for each slice of the
-/// stack the line's two points (column, row), or nothing.
+/// stack the line's two points (column, row), or nothing. With poses only slices without a flag are
+/// looked at.
 std::vector<std::optional<std::array<lacuna::Vec2, 2>>> FindWalls(
-  vtkLacunaExecution& execution, vtkImageData* slices);
+  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses* poses = nullptr);
+
+/// The same as picks, of slices without a flag.
+std::vector<vtkLacunaCalibrationPick> FindWallPicks(
+  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses& poses);
+
+/// The tip of a stylus: all poses of the stack's slices. Slices without a picture and such that moved
+/// fast count, too, since nothing is seen in them.
+std::vector<vtkLacunaCalibrationPick> GetTips(
+  vtkImageData* slices, const vtkLacunaProbePoses& poses);
+
+/// Which of the stack's slices are left out of what is found by itself for their flags; ranges: only
+/// in these, if there are any; tip: as GetTips does. Empty: none is.
+std::string DescribeLeftOut(vtkImageData* slices, const vtkLacunaProbePoses& poses,
+  const std::vector<lacuna::WireRange>& ranges, bool tip = false);
+
+/// Which of picks that were given are of slices that are flagged. Empty: none is.
+std::string DescribeFlagged(
+  const std::vector<vtkLacunaCalibrationPick>& picks, const vtkLacunaProbePoses& poses);
 }
 #endif

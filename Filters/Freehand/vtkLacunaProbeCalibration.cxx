@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaProbeCalibration.h"
 
-#include "lacunaAtomicFile.h"
 #include "lacunaParameterText.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -9,6 +8,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaCalibrationOutputs.h"
 #include "vtkLacunaCalibrationPicks.h"
+#include "vtkLacunaCalibrationReport.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -30,39 +30,14 @@
 
 namespace
 {
-constexpr double LargeRms = 1.5;      // mm; that of Carr's phantom stayed below 0.5
-constexpr double RivalRatio = 1.5;    // of the RMS of another solution
-constexpr double ManyOutliers = 0.15; // of the picks
+constexpr int SmallestPicture = 16; // pixels
 
 using Picks = std::vector<vtkLacunaCalibrationPick>;
-
-// Two points of the floor's line in each slice that shows it and has a pose.
-Picks FindWallPicks(
-  vtkLacunaExecution& execution, vtkImageData* slices, const vtkLacunaProbePoses& poses)
-{
-  const auto walls = vtkLacunaCalibrationPicks::FindWalls(execution, slices);
-  const int first = slices->GetExtent()[4];
-  Picks picks;
-  for (std::size_t k = 0; k < walls.size(); ++k)
-  {
-    const vtkIdType slice =
-      vtkLacunaTrackedSlices::GetSliceNumber(slices, first + static_cast<int>(k), poses.GetCount());
-    if (walls[k] && poses.IsValid(slice))
-    {
-      for (const lacuna::Vec2& point : *walls[k])
-      {
-        picks.push_back({ slice, { poses.Get(slice), point, lacuna::CalibrationTarget::Wall } });
-      }
-    }
-  }
-  return picks;
-}
 
 // Far outside of the pictures is a slip: too far to be told from the others as an outlier. The
 // slices may be a part of those that were picked in, and poses without pictures have any pixels.
 void CheckPlaces(const Picks& picks, vtkImageData* slices)
 {
-  constexpr double smallestPicture = 16; // pixels
   double bounds[6];
   slices->GetBounds(bounds);
   for (std::size_t i = 0; i < picks.size(); ++i)
@@ -72,7 +47,7 @@ void CheckPlaces(const Picks& picks, vtkImageData* slices)
       const double low = bounds[2 * axis], high = bounds[2 * axis + 1];
       const double pixel = picks[i].Pick.Pixel[static_cast<std::size_t>(axis)];
       const double size = high - low + 1;
-      if (size >= smallestPicture && (pixel < low - size || pixel > high + size))
+      if (size >= SmallestPicture && (pixel < low - size || pixel > high + size))
       {
         throw std::runtime_error("row " + std::to_string(i) + " of the table of picks has " +
           lacuna::FormatNumber(pixel) + (axis == 0 ? " as Column" : " as Row") +
@@ -111,64 +86,13 @@ std::array<lacuna::Vec2, 4> GetCorners(vtkImageData* slices)
     lacuna::Vec2{ bounds[0], bounds[3] }, lacuna::Vec2{ bounds[1], bounds[3] } };
 }
 
-std::string Format(const char* format, double value)
+// Columns and rows; 0 of poses without pictures, which have any pixels.
+lacuna::Vec2 GetSize(vtkImageData* slices)
 {
-  char text[80];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-// What the user should know, the most important first.
-std::vector<std::string> GetAdvice(const lacuna::ProbeCalibration& found, const Picks& picks)
-{
-  std::vector<std::string> advice;
-  if (found.RunnerUpRms < RivalRatio * found.Rms)
-  {
-    advice.push_back(Format("another position of the image fits nearly as well (RMS %.2f mm): ",
-                       found.RunnerUpRms) +
-      "the picks do not tell which is right; scan from more sides");
-  }
-  const auto outliers =
-    static_cast<double>(std::count(found.Used.begin(), found.Used.end(), false));
-  if (outliers > ManyOutliers * static_cast<double>(picks.size()))
-  {
-    advice.push_back(Format("%.0f", outliers) + " of " + std::to_string(picks.size()) +
-      " picks do not agree with the others: check which wire is which, and the poses");
-  }
-  if (found.Rms > LargeRms)
-  {
-    advice.push_back(Format("the RMS error of %.2f mm is large; ", found.Rms) +
-      "below 1 mm is usual. Is the pixel spacing right, the speed of sound that of water at this "
-      "temperature, and no metal near the receiver?");
-  }
-  for (const lacuna::CalibrationWeakness& weakness : found.Weaknesses)
-  {
-    advice.push_back(Format("known to %.1f mm only is ", weakness.Error) + weakness.Motion);
-  }
-  return advice;
-}
-
-void WriteCalibration(const std::string& fileName, const lacuna::ProbeCalibration& found)
-{
-  std::string text = "<!-- Lacuna " + std::string(vtkLacunaProvenance::GetVersion()) +
-    ", Probe Calibration: RMS " + Format("%.3f", found.Rms) + " mm of " +
-    std::to_string(found.Equations) +
-    " equations. Image: column, row, 0; mm. -->\n"
-    "<PlusConfiguration version=\"2.9\">\n  <CoordinateDefinitions>\n"
-    "    <Transform From=\"Image\" To=\"Probe\" Error=\"" +
-    Format("%.4f", found.Rms) + "\"\n      Matrix=\"";
-  for (int row = 0; row < 4; ++row)
-  {
-    for (int column = 0; column < 4; ++column)
-    {
-      text += (column   ? " "
-                  : row ? "\n        "
-                        : "") +
-        lacuna::FormatNumber(found.ImageToProbe(row, column));
-    }
-  }
-  text += "\"/>\n  </CoordinateDefinitions>\n</PlusConfiguration>\n";
-  lacuna::WriteFileAtomically(fileName, text);
+  double bounds[6];
+  slices->GetBounds(bounds);
+  const lacuna::Vec2 size{ bounds[1] - bounds[0] + 1, bounds[3] - bounds[2] + 1 };
+  return std::min(size[0], size[1]) >= SmallestPicture ? size : lacuna::Vec2{ 0, 0 };
 }
 }
 
@@ -224,6 +148,36 @@ void vtkLacunaProbeCalibration::SetWireRanges(const char* ranges)
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaProbeCalibration::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // The map of expected errors has a grid of its own; a request in that of the slices would never be
+  // met and calculate everything anew each time.
+  vtkInformation* slices = inputs[0]->GetInformationObject(0);
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  double origin[3] = { 0, 0, 0 }, spacing[3] = { 1, 1, 1 };
+  if (slices->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    slices->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+  }
+  if (slices->Has(vtkDataObject::ORIGIN()))
+  {
+    slices->Get(vtkDataObject::ORIGIN(), origin);
+  }
+  if (slices->Has(vtkDataObject::SPACING()))
+  {
+    slices->Get(vtkDataObject::SPACING(), spacing);
+  }
+  const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
+  vtkInformation* map = outputs->GetInformationObject(3);
+  map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
+  map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
+  map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
+  vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaProbeCalibration::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
@@ -233,6 +187,76 @@ int vtkLacunaProbeCalibration::RequestUpdateExtent(
     vtkLacunaRequest::OnePiece(table);
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
+  vtkLacunaExecution& execution, vtkImageData* slices, vtkDataObject* given,
+  const vtkLacunaProbePoses& poses, std::vector<std::string>& advice)
+{
+  if (this->Method == StylusPivot && given)
+  {
+    throw std::runtime_error("StylusPivot is calculated from poses alone: take the picks (second "
+                             "input) away");
+  }
+  std::optional<lacuna::CalibrationTarget> target;
+  if (this->Method != ThreeWires)
+  {
+    target = this->Method == SingleWall ? lacuna::CalibrationTarget::Wall
+                                        : lacuna::CalibrationTarget::Point;
+  }
+  std::vector<lacuna::WireRange> ranges;
+  if (this->Method == ThreeWires)
+  {
+    ranges = lacuna::ReadWireRanges(this->WireRanges, poses.GetCount());
+  }
+  else if (this->Method == PointTarget && !given)
+  {
+    ranges.push_back({ lacuna::CalibrationTarget::Point, 0, poses.GetCount() - 1 });
+  }
+  if (!given && this->Method == ThreeWires && ranges.empty())
+  {
+    throw std::runtime_error("neither picks (second input) nor WireRanges are given: say which "
+                             "slices show which wire, like X 0-49, Y 50-99, Z 100-149");
+  }
+  const bool needsSpots = this->Method == ThreeWires || this->Method == PointTarget;
+  if (!given && needsSpots && !this->FindSpots)
+  {
+    throw std::runtime_error("there are no picks (second input), and FindSpots is off");
+  }
+  Picks picks;
+  if (given)
+  {
+    picks = vtkLacunaCalibrationPicks::Read(given, poses, target, ranges);
+    CheckPlaces(picks, slices);
+    advice.push_back(vtkLacunaCalibrationPicks::DescribeFlagged(picks, poses));
+  }
+  const bool finds = needsSpots ? this->FindSpots && !ranges.empty() : !given;
+  std::string leftOut;
+  if (finds)
+  {
+    const Picks found = this->Method == StylusPivot
+      ? vtkLacunaCalibrationPicks::GetTips(slices, poses)
+      : needsSpots ? ::FindSpots(execution, slices, poses, ranges, picks, advice)
+                   : vtkLacunaCalibrationPicks::FindWallPicks(execution, slices, poses);
+    picks.insert(picks.end(), found.begin(), found.end());
+    leftOut = vtkLacunaCalibrationPicks::DescribeLeftOut(
+      slices, poses, ranges, this->Method == StylusPivot);
+    advice.push_back(leftOut);
+  }
+  if (!given && picks.empty())
+  {
+    static const char* const texts[] = { "no slice shows a bright spot on dark. Crop rulers and "
+                                         "texts by Extract Subset, or give picks",
+      "no slice shows a flat wall: a bright line over most of the width, dark above it. Crop "
+      "rulers "
+      "and texts by Extract Subset, or give a table of picks",
+      "", "no slice has a pose that could be used" };
+    throw std::runtime_error(
+      std::string(texts[needsSpots ? 0 : this->Method]) + (leftOut.empty() ? "" : "; " + leftOut));
+  }
+  advice.erase(std::remove(advice.begin(), advice.end(), std::string()), advice.end());
+  return picks;
 }
 
 //------------------------------------------------------------------------------
@@ -248,57 +272,14 @@ int vtkLacunaProbeCalibration::RequestData(
       {
         throw std::runtime_error("the stack of slices is empty");
       }
-      const vtkLacunaProbePoses poses(slices);
-      std::optional<lacuna::CalibrationTarget> target;
-      if (this->Method != ThreeWires)
-      {
-        target = this->Method == SingleWall ? lacuna::CalibrationTarget::Wall
-                                            : lacuna::CalibrationTarget::Point;
-      }
-      std::vector<lacuna::WireRange> ranges;
-      if (this->Method == ThreeWires)
-      {
-        ranges = lacuna::ReadWireRanges(this->WireRanges, poses.GetCount());
-      }
-      else if (this->Method == PointTarget && !given)
-      {
-        ranges.push_back({ lacuna::CalibrationTarget::Point, 0, poses.GetCount() - 1 });
-      }
-      if (!given && this->Method == ThreeWires && ranges.empty())
-      {
-        throw std::runtime_error("neither picks (second input) nor WireRanges are given: say which "
-                                 "slices show which wire, like X 0-49, Y 50-99, Z 100-149");
-      }
-      if (!given && this->Method != SingleWall && !this->FindSpots)
-      {
-        throw std::runtime_error("there are no picks (second input), and FindSpots is off");
-      }
+      const bool pivot = this->Method == StylusPivot;
+      const char* array = pivot && slices->GetFieldData()->HasArray(vtkLacunaProbePoses::StylusName)
+        ? vtkLacunaProbePoses::StylusName
+        : vtkLacunaProbePoses::ArrayName;
+      const vtkLacunaProbePoses poses(slices, array);
       std::vector<std::string> advice;
-      Picks picks;
-      if (given)
-      {
-        picks = vtkLacunaCalibrationPicks::Read(given, poses, target, ranges);
-        CheckPlaces(picks, slices);
-      }
-      if (this->FindSpots && !ranges.empty())
-      {
-        const Picks spots = ::FindSpots(execution, slices, poses, ranges, picks, advice);
-        picks.insert(picks.end(), spots.begin(), spots.end());
-      }
-      else if (!given && this->Method == SingleWall)
-      {
-        picks = FindWallPicks(execution, slices, poses);
-      }
-      if (!given && picks.empty())
-      {
-        throw std::runtime_error(this->Method == SingleWall
-            ? "no slice shows a flat wall: a bright line over most of the width, dark above it. "
-              "Crop "
-              "rulers and texts by Extract Subset, or give a table of picks"
-            : "no slice shows a bright spot on dark. Crop rulers and texts by Extract Subset, or "
-              "give picks");
-      }
-      if (!this->EstimateScale && this->PixelSpacing == 0)
+      const Picks picks = this->FindPicks(execution, slices, given, poses, advice);
+      if (!pivot && !this->EstimateScale && this->PixelSpacing == 0)
       {
         throw std::runtime_error(
           "PixelSpacing is 0: give the mm from pixel to pixel (see the depth "
@@ -306,9 +287,12 @@ int vtkLacunaProbeCalibration::RequestData(
       }
 
       lacuna::ProbeCalibrationOptions options;
-      options.PixelSpacing = { this->PixelSpacing,
-        this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
-      options.EstimateScale = this->EstimateScale;
+      if (!pivot)
+      {
+        options.PixelSpacing = { this->PixelSpacing,
+          this->RowSpacing == 0 ? this->PixelSpacing : this->RowSpacing };
+        options.EstimateScale = this->EstimateScale;
+      }
       options.OutlierLimit = this->OutlierLimit;
       std::vector<lacuna::CalibrationPick> kernelPicks;
       for (const vtkLacunaCalibrationPick& pick : picks)
@@ -316,8 +300,19 @@ int vtkLacunaProbeCalibration::RequestData(
         kernelPicks.push_back(pick.Pick);
       }
       const lacuna::ProbeCalibration found = lacuna::ProbeCalibration::Solve(kernelPicks, options);
-      const std::vector<std::string> more = GetAdvice(found, picks);
-      advice.insert(advice.end(), more.begin(), more.end());
+      vtkLacunaCalibrationReport::Image image;
+      image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
+      image.EstimateScale = options.EstimateScale;
+      image.ExpectedRatio =
+        this->PixelSpacing > 0 && this->RowSpacing > 0 ? this->RowSpacing / this->PixelSpacing : 1;
+      for (const lacuna::Vec2& corner : GetCorners(slices))
+      {
+        image.ExpectedError = std::max(
+          image.ExpectedError, found.GetExpectedError(pivot ? lacuna::Vec2{ 0, 0 } : corner));
+      }
+      const vtkLacunaCalibrationReport report(found, picks, image);
+      const std::vector<std::string> more = report.GetAdvice();
+      advice.insert(advice.begin(), more.begin(), more.end());
       for (const std::string& sentence : advice)
       {
         vtkWarningMacro(<< sentence);
@@ -325,15 +320,23 @@ int vtkLacunaProbeCalibration::RequestData(
 
       vtkImageData* calibrated = vtkImageData::GetData(outputs, 0);
       calibrated->ShallowCopy(slices);
-      std::vector<lacuna::Matrix4> imageToReference;
-      for (vtkIdType i = 0; i < poses.GetCount(); ++i)
+      if (pivot)
       {
-        imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
+        const lacuna::Vec3 tip = found.ImageToProbe.Column(3);
+        vtkLacunaFieldData::Set(calibrated, "StylusTip", { tip[0], tip[1], tip[2] }, 3);
       }
-      vtkLacunaFieldData::SetMatrices(
-        calibrated, vtkLacunaTrackedSlices::ImageToReferenceName, imageToReference);
-      vtkLacunaFieldData::SetMatrices(
-        calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
+      else
+      {
+        std::vector<lacuna::Matrix4> imageToReference;
+        for (vtkIdType i = 0; i < poses.GetCount(); ++i)
+        {
+          imageToReference.push_back(poses.Get(i) * found.ImageToProbe);
+        }
+        vtkLacunaFieldData::SetMatrices(
+          calibrated, vtkLacunaTrackedSlices::ImageToReferenceName, imageToReference);
+        vtkLacunaFieldData::SetMatrices(
+          calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
+      }
       vtkTable* residuals = vtkTable::GetData(outputs, 1);
       vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
       vtkPolyData* picture = vtkPolyData::GetData(outputs, 2);
@@ -343,11 +346,6 @@ int vtkLacunaProbeCalibration::RequestData(
       vtkPolyData* marks = vtkPolyData::GetData(outputs, 4);
       vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
 
-      double expected = 0;
-      for (const lacuna::Vec2& corner : GetCorners(slices))
-      {
-        expected = std::max(expected, found.GetExpectedError(corner));
-      }
       const lacuna::Vec3 angles = found.GetAngles();
       vtkNew<vtkStringArray> sentences;
       sentences->SetName("Advice");
@@ -366,14 +364,18 @@ int vtkLacunaProbeCalibration::RequestData(
       for (vtkDataObject* output :
         std::initializer_list<vtkDataObject*>{ calibrated, residuals, picture, map, marks })
       {
-        vtkLacunaFieldData::Set(
-          output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
+        if (!pivot)
+        {
+          vtkLacunaFieldData::Set(
+            output, "PixelSpacing", { found.PixelSpacing[0], found.PixelSpacing[1] }, 2);
+          vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
+        }
         vtkLacunaFieldData::Set(output, "CalibrationRms", { found.Rms }, 1);
         vtkLacunaFieldData::Set(output, "CalibrationSpread", { found.Spread }, 1);
-        vtkLacunaFieldData::Set(output, "ExpectedError", { expected }, 1);
+        vtkLacunaFieldData::Set(output, "ExpectedError", { image.ExpectedError }, 1);
+        vtkLacunaFieldData::Set(output, "Views", { static_cast<double>(found.Views) }, 1);
         vtkLacunaFieldData::Set(output, "Condition", { found.Condition }, 1);
         vtkLacunaFieldData::Set(output, "RunnerUpRms", { found.RunnerUpRms }, 1);
-        vtkLacunaFieldData::Set(output, "ImageAngles", { angles[0], angles[1], angles[2] }, 3);
         output->GetFieldData()->AddArray(sentences);
         std::vector<vtkDataObject*> sources{ slices };
         if (given)
@@ -388,7 +390,18 @@ int vtkLacunaProbeCalibration::RequestData(
         (!info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) ||
           info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) == 0))
       {
-        WriteCalibration(this->OutputFileName, found);
+        if (const std::string refusal = report.GetRefusal(); !refusal.empty())
+        {
+          vtkErrorMacro(<< "'" << this->OutputFileName
+                        << "' is not written, and kept if it is there: " << refusal
+                        << ". Look at Advice");
+        }
+        else
+        {
+          const std::string frame = array;
+          report.Write(this->OutputFileName, pivot ? "StylusTip" : "Image",
+            frame.substr(0, frame.find("ToTracker")), advice);
+        }
       }
     });
 }

@@ -11,12 +11,17 @@
  * - SingleWall: a flat floor or wall, such as that of a water bath (Prager et al. 1998)
  * - PointTarget: a point that does not move, such as a small ball or the tip of a needle
  *
+ * StylusPivot finds the tip of a stylus that carries the receiver instead, from poses alone, while it
+ * is tilted to all sides with the tip in a hole.
+ *
  * The equations are solved from many starts without a first guess, picks that do not agree with the
  * others are left out, and the result says how exact it is and which motion of the probe would make
  * it more so (lacunaProbeCalibration.h).
  *
  * Input port 0: tracked slices (vtkLacunaTrackedSlices.h) with the field data array
- * ProbeToTracker; the probe need not be calibrated. Port 1: the picks, a vtkTable with the columns
+ * ProbeToTracker (StylusPivot: StylusToTracker, or else this); the probe need not be calibrated.
+ * Slices with any flag of SliceStatus are left out of what is found by itself (StylusPivot: those
+ * without a pose and those gated out), and it is said how many. Port 1: the picks, a vtkTable with the columns
  * Slice (number in the sweep, 0-based), Column, Row (pixels, not whole numbers only) and for
  * ThreeWires Wire (text X, Y or Z; else Target, as in output port 1, else WireRanges), or a
  * vtkPointSet whose points are (column, row, slice), as a selection of the slices' points has them.
@@ -33,9 +38,11 @@
  * its coordinates (column, row) and ExpectedError (mm, RMS) at each. Port 4: vtkPolyData, the picks at
  * (column, row, slice), to be shown on the slices, with Error, Score, Used and Target.
  *
+ * StylusPivot gives port 0 the field data StylusTip (3, mm, in the receiver's coordinates) instead.
+ *
  * All have the field data PixelSpacing (2, mm a column and a row), CalibrationRms (mm, eq. A.14),
  * CalibrationSpread (mm, standard deviation of an equation), ExpectedError (mm, RMS, largest of the
- * image's four corners), Condition, RunnerUpRms (mm, of another solution; infinite without one),
+ * image's four corners; of the tip), Views (different ones: a probe at rest counts once), Condition, RunnerUpRms (mm, of another solution; infinite without one),
  * ImageAngles (3, degrees: azimuth, elevation, roll) and Advice (text, one value for each sentence).
  *
  * @sa vtkLacunaTemporalCalibration
@@ -47,6 +54,11 @@
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 
 #include <string>
+#include <vector>
+
+class vtkLacunaExecution;
+class vtkLacunaProbePoses;
+struct vtkLacunaCalibrationPick;
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaProbeCalibration : public vtkImageAlgorithm
 {
@@ -59,16 +71,18 @@ public:
   {
     ThreeWires = 0,
     SingleWall = 1,
-    PointTarget = 2
+    PointTarget = 2,
+    StylusPivot = 3
   };
 
   ///@{
   /// What was scanned. Default: ThreeWires.
-  vtkSetClampMacro(Method, int, ThreeWires, PointTarget);
+  vtkSetClampMacro(Method, int, ThreeWires, StylusPivot);
   vtkGetMacro(Method, int);
   void SetMethodToThreeWires() { this->SetMethod(ThreeWires); }
   void SetMethodToSingleWall() { this->SetMethod(SingleWall); }
   void SetMethodToPointTarget() { this->SetMethod(PointTarget); }
+  void SetMethodToStylusPivot() { this->SetMethod(StylusPivot); }
   ///@}
 
   ///@{
@@ -85,7 +99,8 @@ public:
   ///@}
 
   ///@{
-  /// Find both spacings along with the rest. The result is a little less exact then. Default: off.
+  /// Find both spacings along with the rest. The result is a little less exact then. Those given only
+  /// say which ratio is to be expected, both 1 if one is 0. Default: off.
   vtkSetMacro(EstimateScale, bool);
   vtkGetMacro(EstimateScale, bool);
   vtkBooleanMacro(EstimateScale, bool);
@@ -114,8 +129,12 @@ public:
   ///@}
 
   ///@{
-  /// A file to write ImageToProbe to: the XML that vtkLacunaTrackedSliceReader takes as calibration,
-  /// as do PLUS and 3D Slicer. It appears whole or not at all. Empty: none is written. Default: empty.
+  /// A file to write ImageToProbe to (StylusPivot: StylusTip to Stylus or Probe): the XML that
+  /// vtkLacunaTrackedSliceReader takes as calibration, as do PLUS and 3D Slicer. It appears whole or
+  /// not at all. Nothing is written, a file that is there is kept, and it is an error (the outputs
+  /// are there to be looked at) when the calibration is of no use: ExpectedError above 5 mm, RMS
+  /// above 3 mm, another position that fits nearly as well, or an image of less than 10 or more than
+  /// 500 mm. Empty: none is written. Default: empty.
   void SetOutputFileName(const char* name);
   const char* GetOutputFileName() const { return this->OutputFileName.c_str(); }
   ///@}
@@ -129,12 +148,19 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
+  // Given or found; what there is to say of them is added to advice. Throws.
+  std::vector<vtkLacunaCalibrationPick> FindPicks(vtkLacunaExecution& execution,
+    vtkImageData* slices, vtkDataObject* given, const vtkLacunaProbePoses& poses,
+    std::vector<std::string>& advice);
+
   vtkLacunaProbeCalibration(const vtkLacunaProbeCalibration&) = delete;
   void operator=(const vtkLacunaProbeCalibration&) = delete;
 

@@ -40,7 +40,7 @@ bath = scans.open_scan("CalibrationBath", np.array(pictures), poses)
 proxy = ProbeCalibration(Input=bath)
 own = vtkLacunaProbeCalibration()
 check_defaults(proxy, own, ["PixelSpacing", "RowSpacing", "OutlierLimit"],
-               {"Method": ["ThreeWires", "SingleWall", "PointTarget"]})
+               {"Method": ["ThreeWires", "SingleWall", "PointTarget", "StylusPivot"]})
 assert proxy.EstimateScale == 0 and not own.GetEstimateScale() and proxy.OutputFileName == ""
 
 proxy.Method = "SingleWall"
@@ -75,12 +75,59 @@ proxy.EstimateScale = 0
 with raising():
     proxy.UpdatePipeline()
 
+# One calculation of a change, whichever outputs are fetched.
+runs = []
+proxy.GetClientSideObject().AddObserver("EndEvent", lambda *_: runs.append(1))
+proxy.OutlierLimit = 4.5
+with raising():
+    proxy.UpdatePipeline()
+for port in (0, 3, 1, 3, 4, 2):
+    servermanager.Fetch(proxy, idx=port)
+assert len(runs) == 1, runs
+found = field(result(proxy, 0), "ImageToProbe").reshape(4, 4)
+
 # The file is what the reader takes as calibration.
 tree = xml.etree.ElementTree.parse(file)
 (transform,) = tree.findall("CoordinateDefinitions/Transform")
 assert (transform.get("From"), transform.get("To")) == ("Image", "Probe")
+expected = field(result(proxy, 0), "ExpectedError")
+assert abs(float(transform.get("Error")) - expected) < 1e-4
+with open(file) as text:
+    comment = text.read().split("-->")[0]
+assert f"ExpectedError {expected:.3f} mm" in comment and "Advice: none" in comment, comment
 written = np.array([float(x) for x in transform.get("Matrix").split()]).reshape(4, 4)
 assert (written == found).all()
+# It also serves a recording that has ProbeToTracker only.
+recording = output("CalibrationTrackerOnly.igs.mha")
+with open(recording, "wb") as out:
+    header = ["ObjectType = Image", "NDims = 3", "BinaryData = True", "CompressedData = False",
+              "UltrasoundImageOrientation = MFA", "UltrasoundImageType = BRIGHTNESS",
+              "DimSize = 8 6 3", "ElementSpacing = 1 1 1", "ElementType = MET_UCHAR"]
+    for i, pose in enumerate(poses[:3]):
+        header += [f"Seq_Frame{i:04d}_ProbeToTrackerTransform = " + " ".join(f"{x:.9f}" for x in pose.ravel()),
+                   f"Seq_Frame{i:04d}_ProbeToTrackerTransformStatus = OK", f"Seq_Frame{i:04d}_Timestamp = {0.1 * i}"]
+    out.write("\n".join(header + ["ElementDataFile = LOCAL", ""]).encode() + bytes(8 * 6 * 3))
+sweep = TrackedSliceReader(FileName=recording, CalibrationFileName=file, ReferenceFrame="Tracker")
+with raising():
+    sweep.UpdatePipeline()
+reference = vtk_to_numpy(result(sweep, 0).GetFieldData().GetArray("ImageToReference")).reshape(-1, 4, 4)
+assert np.abs(reference - np.array(poses[:3]) @ found).max() < 1e-6
+# A hopeless result is an error, and does not take the good one's place.
+with open(file) as text:
+    good = text.read()
+proxy.PixelSpacing = 3 * scans.SPACING
+try:
+    with raising():
+        proxy.UpdatePipeline()
+    raise AssertionError("a hopeless calibration was written")
+except PipelineError as error:
+    assert "is not written" in str(error), error
+with open(file) as text:
+    assert text.read() == good
+proxy.PixelSpacing = scans.SPACING
+with raising():
+    proxy.UpdatePipeline()
+
 # The floor is flat in a volume of the calibrated slices.
 volume = SweptVolume(Input=OutputPort(proxy, 0), OutputSpacing=[1, 1, 1], PixelSampling="Nearest",
                      Interpolation="NearestVoxel", Compounding="Maximum")
@@ -142,6 +189,21 @@ with raising():
     point.UpdatePipeline()
 found = field(result(point, 0), "ImageToProbe").reshape(4, 4)
 assert scans.corner_error(found) < 1e-5
+
+# The tip of a stylus, in a hole.
+tip, hole = np.array([10, -20, 150]), np.array([200, 30, -60])
+poses = []
+for i in range(60):
+    turn = scans.looking_down(random, 40)
+    poses.append(scans.pose(turn, hole - turn @ tip + random.normal(0, 0.3, 3)))
+stylus = ProbeCalibration(Input=scans.open_scan("CalibrationStylus", np.zeros((60, 2, 2), np.uint8), poses),
+                          Method="StylusPivot")
+with raising():
+    stylus.UpdatePipeline()
+fields = result(stylus, 0)
+error = np.linalg.norm(field(fields, "StylusTip") - tip)
+print("stylus: tip off by", error, "expected", field(fields, "ExpectedError"))
+assert error < 0.4 and error < 3 * field(fields, "ExpectedError")
 
 # What cannot be is said.
 for rows, columns, words in [
