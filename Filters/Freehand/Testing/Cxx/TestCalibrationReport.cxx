@@ -39,8 +39,22 @@ void TestHopelessFile()
   LACUNA_CHECK_CONTAINS(good, "Error=\"0.0000\"");
   LACUNA_CHECK_CONTAINS(good, "Advice: none -->");
   // a wrong spacing, for a moment
-  LACUNA_CHECK_CONTAINS(
-    calibrate(scan.Slices, scan.Picks, [](auto* f) { f->SetRowSpacing(1.5); }), "is not written");
+  LACUNA_CHECK_CONTAINS(calibrate(scan.Slices, scan.Picks, [](auto* f) { f->SetRowSpacing(1.5); }),
+    "another position of the image fits nearly as well");
+  LACUNA_CHECK(ReadFile(name) == good);
+  // many picks, all bad: their mean may be good, but nobody should trust it
+  const Scan many = ScanWires(150);
+  const auto bad = Spoilt(many.Picks.Get(),
+    [](vtkTable* t)
+    {
+      for (int i = 0; i < 150; ++i)
+      {
+        t->SetValueByName(
+          i, "Column", t->GetValueByName(i, "Column").ToDouble() + 14 * Wave(7 * i, 20));
+        t->SetValueByName(i, "Row", t->GetValueByName(i, "Row").ToDouble() + 12 * Wave(5 * i, 21));
+      }
+    });
+  LACUNA_CHECK_CONTAINS(calibrate(many.Slices, bad, [](auto*) {}), "the RMS error is");
   LACUNA_CHECK(ReadFile(name) == good);
   // positions in inches: the scale that is found fits perfectly
   const auto inches = Spoilt(scan.Slices.Get(),
@@ -183,6 +197,26 @@ void TestFlags()
   LACUNA_CHECK_CONTAINS(given.Warnings, "picks were given, and count, in 1 of 18 slices");
 }
 
+// Each method says of its own outliers what they may be.
+void TestOutlierAdvice()
+{
+  const auto slices = ScanFloor(40);
+  const auto wall = [](auto* f) { f->SetMethodToSingleWall(); };
+  const Calibrated found = Calibrate(slices, nullptr, wall);
+  const auto wrong = Spoilt(found.Residuals.Get(),
+    [](vtkTable* t)
+    {
+      for (vtkIdType i = 0; i < t->GetNumberOfRows(); i += 5)
+      {
+        t->SetValueByName(i, "Row", t->GetValueByName(i, "Row").ToDouble() + 25);
+      }
+    });
+  const Calibrated given = Calibrate(slices, wrong, wall);
+  LACUNA_CHECK_THAT(given.Errors.empty(), given.Errors);
+  LACUNA_CHECK_CONTAINS(given.Warnings, "is their line the floor");
+  LACUNA_CHECK(given.Warnings.find("wire") == std::string::npos);
+}
+
 // One calculation, whichever output is asked for and however often.
 void TestOnce()
 {
@@ -286,6 +320,7 @@ int TestCalibrationReport(int, char*[])
   TestHopelessFile();
   TestScaleAdvice();
   TestFlags();
+  TestOutlierAdvice();
   TestOnce();
   TestStylus();
   return lacunaCheck::Result();
