@@ -77,7 +77,7 @@ def ct_to_iges(source=None, folder=None):
     A depth map is made as the active 3-D view looks, its holes are filled, bone and filling are shown, and the filled surface
     is written to implant.igs, implant-2.igs, ... in the folder, by default the user's home. A depth map, or one that is
     filled, may be given instead of a CT. Returns the filled map and the file's name. Raises ValueError when the source is
-    nothing of these, and PipelineError when there is no hole to fill.
+    nothing of these or no hole is seen in it, and PipelineError when a filter fails.
     """
     source = _data_of(source, "a CT: a CT Series Reader, another reader of a volume, or Skull Phantom")
     name = _name(source)
