@@ -3,6 +3,8 @@
 #include "lacunaFastrakParser.h"
 #include "lacunaFuzzTarget.h"
 
+#include <algorithm>
+
 using namespace lacuna;
 using namespace lacuna_fuzz;
 
@@ -17,6 +19,26 @@ std::vector<int> MakeItems(Bytes& bytes)
     items.push_back(known[bytes.Take() % std::size(known)]);
   }
   return items;
+}
+
+bool AreSame(const FastrakMessage& left, const FastrakMessage& right)
+{
+  if (left.index() != right.index())
+  {
+    return false;
+  }
+  if (const auto* reply = std::get_if<FastrakReply>(&left))
+  {
+    const auto& other = std::get<FastrakReply>(right);
+    return reply->Station == other.Station && reply->Command == other.Command &&
+      reply->Text == other.Text;
+  }
+  const auto& record = std::get<FastrakRecord>(left);
+  const auto& other = std::get<FastrakRecord>(right);
+  return record.Station == other.Station && record.Error == other.Error &&
+    record.Position == other.Position && record.RelativePosition == other.RelativePosition &&
+    record.Angles == other.Angles && record.Axes == other.Axes &&
+    record.Quaternion == other.Quaternion && record.Button == other.Button;
 }
 
 void Use(const FastrakMessage& message)
@@ -72,7 +94,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     divided.Feed(std::string_view(stream).substr(at, step), pieces);
   }
-  Require(messages.size() == pieces.size(), "the same messages of a divided stream");
+  Require(std::equal(messages.begin(), messages.end(), pieces.begin(), pieces.end(), AreSame),
+    "the same messages of a divided stream");
   Require(whole.GetCounts().DroppedBytes == divided.GetCounts().DroppedBytes &&
       whole.GetNumberOfWaitingBytes() == divided.GetNumberOfWaitingBytes(),
     "the same losses of a divided stream");
