@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Holes cut beside the middle of a real skull, filled with and without its own mirror image as prior.
 
-The bone that is cut out is unknown to the filters: the map that is mirrored has the hole, too. Prints
-the table of the guide page: largest error and RMS on sound bone, mm.
+The bone that is cut out is unknown to the filters: the map that is mirrored has the hole, too. The
+table of the guide page is compared: largest error and RMS on sound bone, mm.
 """
 import os
 
@@ -19,6 +19,7 @@ PLACES = {  # column and row in the map, radius in mm, and whether the bone bend
     "forehead": (118, 145, 20, False),
     "side": (118, 110, 20, False),
 }
+TITLES = {"side": "side, near the vertex"}  # in the guide
 THIN_PLATE = dict(Kernel="ThinPlate", SupportMargin=12, SupportStepMargin=0, NodeSpacing=1, CutoffWavelength=0)
 CUBIC = dict(Kernel="Cubic", SupportMargin=20, SupportStepMargin=3, NodeSpacing=2, CutoffWavelength=10)
 VIEW = (0, 0.5, 0.86)  # from above the forehead
@@ -52,6 +53,12 @@ for place, (column, row, radius, _) in PLACES.items():
         error = (filled["Depth"] - depth)[disc & ~unsound]
         figures[place, label] = np.abs(error).max(), np.sqrt((error ** 2).mean())
         print("%-9s %2d mm %-16s %.2f / %.2f mm" % (place, radius, label, *figures[place, label]), flush=True)
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "UserGuide", "mirror.md"), encoding="utf-8") as file:
+    guide = file.read()
+for place, (_, _, radius, _) in PLACES.items():
+    row = "| %s | %d mm |" % (TITLES.get(place, place), radius)
+    row += "".join(" %.2f / %.2f |" % figures[place, label] for label in ("ThinPlate", "Cubic", "prior, ThinPlate", "prior, Cubic"))
+    assert row in guide, row
 for place, (*_, bends) in PLACES.items():
     plain, mirrored = ([figures[place, prefix + label] for label in ("ThinPlate", "Cubic")]
                        for prefix in ("", "prior, "))
