@@ -66,7 +66,7 @@ def test(window):
     picture("capturing")
 
     # by the key, which a held foot does not repeat
-    window.key(lacuna_window.F9)
+    window.key(lacuna_window.F9, repeats=3)
     window.wait_for_text("LiveStartStop", "^Start$")
     source.SMProxy.UpdatePropertyInformation()
     assert not live.get(source, "Capturing")

@@ -101,8 +101,8 @@ extern "C"
     return 1;
   }
 
-  /// Presses a key, one of Qt::Key, in the main window.
-  int lacuna_key(int key)
+  /// Presses a key, one of Qt::Key, in the main window, and holds it for so many repeats.
+  int lacuna_key(int key, int repeats)
   {
     QWidget* window = GetMainWindow();
     if (!window)
@@ -114,7 +114,14 @@ extern "C"
     {
       return 0;
     }
-    QTest::keyClick(window->windowHandle(), static_cast<Qt::Key>(key));
+    const auto code = static_cast<Qt::Key>(key);
+    QTest::keyPress(window->windowHandle(), code);
+    for (int i = 0; i < repeats; ++i)
+    {
+      lacuna_wait(500); // the toolbar looks at its source five times a second
+      qt_handleKeyEvent(window->windowHandle(), QEvent::KeyPress, code, Qt::NoModifier, {}, true);
+    }
+    QTest::keyRelease(window->windowHandle(), code);
     return 1;
   }
 

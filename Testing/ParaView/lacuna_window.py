@@ -76,8 +76,8 @@ class Window:
         assert self.library.lacuna_choose(name.encode(), text.encode()), f"{name} has no {text}"
         self.wait(50)
 
-    def key(self, code):
-        assert self.library.lacuna_key(code)
+    def key(self, code, repeats=0):
+        assert self.library.lacuna_key(code, repeats)
         self.wait(50)
 
     def resize(self, width, height):
