@@ -211,9 +211,8 @@ def stage(target):
 
     called = captions()
     examples = [Example(topic, called) for topic in sorted(os.listdir(os.path.join(ROOT, EXAMPLES))) if os.path.isdir(os.path.join(ROOT, EXAMPLES, topic))]
-    intro = f"{EXAMPLES}/README.md"
-    pages[f"{EXAMPLES}/index.md"] = (read(intro) if os.path.exists(os.path.join(ROOT, intro)) else
-                                     "# Examples\n\nEach is a script to run and change; the tests run them, and they made these pictures.\n")
+    # Its gallery, which shows on the project's page, is made anew
+    pages[f"{EXAMPLES}/index.md"] = read(f"{EXAMPLES}/README.md").split("\n## Gallery\n")[0] + "\n"
     pages[f"{EXAMPLES}/index.md"] += ("\n::::{container} gallery\n" + "".join(example.card() for example in examples) + "::::\n" +
                                       toctree([f"{example.topic}/index" for example in examples]))
     pages.update({f"{EXAMPLES}/{example.topic}/index.md": example.page() for example in examples})
