@@ -38,6 +38,8 @@
 #include <string>
 #include <vector>
 
+using namespace lacunaSurfaceComparison;
+
 namespace
 {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;

@@ -26,6 +26,8 @@
 #include <functional>
 #include <vector>
 
+namespace lacunaSurfaceComparison
+{
 using Point = std::array<double, 3>;
 
 struct Mesh
@@ -251,4 +253,5 @@ private:
   Mesh Complete;
   Locator Surface;
 };
+}
 #endif
