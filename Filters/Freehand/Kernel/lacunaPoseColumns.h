@@ -44,8 +44,8 @@ double GetMillimetres(LengthUnit unit);
 ///   to 16, or r with two indices for the rotation beside a position.
 ///
 /// Throws std::runtime_error when columns are missing or there is more than one choice (with advice,
-/// naming the columns there are and another format that would fit), and when the name of a column has a unit
-/// that is not the one of positions or is not degrees.
+/// naming the columns there are and another format that would fit), and when the name of a column
+/// has a unit that is not the one of positions or is not degrees.
 std::vector<int> FindPoseColumns(const std::vector<std::string>& names, PoseFormat format,
   LengthUnit unit, const std::vector<std::string>& wanted,
   const std::string& advice =
