@@ -12,9 +12,8 @@ import lacuna.plugin
 
 lacuna.plugin.load()
 from lacuna import pictures, states
-from paraview.simple import *
-
 from lacuna.data import fetch
+from paraview.simple import *
 
 # The hole is in the right temple; of your own: lacuna.data.open_volume("folder of DICOM files")
 skull = SkullPhantom(registrationName="CT", Spacing=[1, 1, 1], DefectRadius=20, DefectDirection=[-0.8, -0.7, 0.05])

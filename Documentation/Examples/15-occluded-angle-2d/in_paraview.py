@@ -5,6 +5,7 @@
 
 Writes occluded-angle-2d.png and occluded-angle-2d.pvsm, for File > Load State.
 """
+import math
 import os
 import sys
 
@@ -13,8 +14,6 @@ import lacuna.plugin
 lacuna.plugin.load()
 from lacuna import pictures, states
 from paraview.simple import *
-
-import math
 
 CASES = (
     ("a gap of 40 degrees", dict(GapAngle=40), dict(Mode="Binary", NumberOfDirections=100, ThresholdsOverPi=[1])),

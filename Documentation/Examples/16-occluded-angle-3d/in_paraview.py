@@ -5,6 +5,7 @@
 
 Writes occluded-angle-3d.png and occluded-angle-3d.pvsm, for File > Load State.
 """
+import math
 import os
 import sys
 
@@ -13,8 +14,6 @@ import lacuna.plugin
 lacuna.plugin.load()
 from lacuna import occlusion, pictures, states
 from paraview.simple import *
-
-import math
 
 CASES = (
     ("a cube, 80 % missing", dict(Shape="Cube", Dimensions=[44, 44, 44], PresentFraction=0.2), occlusion.CUBE, (-1, -2, -0.8)),

@@ -34,7 +34,7 @@ def find():
     if active in sources:
         return active
     if len(sources) != 1:
-        raise RuntimeError("There are " + str(len(sources)) + " Polhemus Video Sources: make one of them active" if sources
+        raise RuntimeError(f"There are {len(sources)} Polhemus Video Sources: make one of them active" if sources
                            else "There is no Polhemus Video Source: make one (Sources > Lacuna), then Apply")
     return sources[0]
 
