@@ -54,12 +54,13 @@ constexpr double RigidTolerance = 0.01;
 /// A row without a pose (numbers that are not finite; a matrix or a quaternion of zeros, as some
 /// trackers write what they did not see) is not usable, and a warning names it. Everything else
 /// that is no pose throws std::runtime_error with its row (or becomes a warning, see SkipInvalid):
-/// a matrix with another last row than 0 0 0 1, a mirroring or singular one, one that is not rigid
-/// within RigidTolerance, a position beyond a kilometre, pixels below a nanometre or above a metre, a
-/// quaternion that is not of length 1 within RigidTolerance; it is normalised. Matrices are taken as
-/// they are. Angles are degrees: azimuth about z, elevation about the new y, roll about the new x
-/// (Carr 1996, ch. 2), so R = Rz(azimuth) Ry(elevation) Rx(roll). All 0 is then a pose, but a warning
-/// names such rows after the first, since ParaView reads empty ones so.
+/// a matrix with another last row than 0 0 0 1, a mirroring or singular one, one that is not
+/// rigid within RigidTolerance, a position beyond a kilometre, pixels below a nanometre or above
+/// a metre, a quaternion that is not of length 1 within RigidTolerance; it is normalised.
+/// Matrices are taken as they are. Angles are degrees: azimuth about z, elevation about the new
+/// y, roll about the new x (Carr 1996, ch. 2), so R = Rz(azimuth) Ry(elevation) Rx(roll). All 0
+/// is then a pose, but a warning names such rows after the first, since ParaView reads empty ones
+/// so.
 ///
 /// Only poses of an image frame in pixels may have columns of other lengths than 1: pixel sizes,
 /// the same in all rows within RigidTolerance.
