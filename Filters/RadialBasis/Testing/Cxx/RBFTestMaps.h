@@ -5,6 +5,7 @@
 #define RBFTestMaps_h
 
 #include "vtkCharArray.h"
+#include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -77,6 +78,15 @@ struct TestMap
     const lacuna::Vec2 p = this->GetPosition(i);
     return std::hypot(p[0] - 45, p[1] - 42) <= radius;
   }
+  /// Cuts that disc.
+  vtkSmartPointer<vtkCylinder> MakeDisc(double radius) const
+  {
+    auto cylinder = vtkSmartPointer<vtkCylinder>::New();
+    cylinder->SetCenter(this->GetSurfacePoint(45, 42).data());
+    cylinder->SetAxis(this->View[0], this->View[1], this->View[2]);
+    cylinder->SetRadius(radius);
+    return cylinder;
+  }
   /// Takes the depth of pixel i away.
   void Invalidate(vtkIdType i)
   {
@@ -86,4 +96,10 @@ struct TestMap
     this->Image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName)->SetTuple1(i, 0);
   }
 };
+
+/// Component of pixel i of an array.
+inline double Get(vtkImageData* image, const char* name, vtkIdType i, int component = 0)
+{
+  return image->GetPointData()->GetArray(name)->GetComponent(i, component);
+}
 #endif

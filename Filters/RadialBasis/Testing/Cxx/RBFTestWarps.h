@@ -4,8 +4,11 @@
 #ifndef RBFTestWarps_h
 #define RBFTestWarps_h
 
+#include "lacunaCheck.h"
 #include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
+#include "vtkLacunaRBFImageWarp.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -73,5 +76,21 @@ inline void MakeLandmarks(
   landmarks->SetPoints(from);
   targets->SetPoints(to);
 }
+
+/// A warp of all three inputs, and what it says.
+struct WatchedWarp
+{
+  vtkNew<vtkLacunaRBFImageWarp> Filter;
+  vtkNew<lacunaCheck::Messages> Messages;
+
+  WatchedWarp(vtkImageData* image, vtkPolyData* landmarks, vtkPolyData* targets)
+  {
+    this->Messages->Watch(this->Filter);
+    this->Messages->Watch(this->Filter->GetExecutive());
+    this->Filter->SetInputData(0, image);
+    this->Filter->SetInputData(1, landmarks);
+    this->Filter->SetInputData(2, targets);
+  }
+};
 }
 #endif

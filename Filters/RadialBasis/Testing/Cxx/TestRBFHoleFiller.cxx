@@ -21,11 +21,6 @@
 
 namespace
 {
-double Get(vtkImageData* image, const char* name, vtkIdType i, int component = 0)
-{
-  return image->GetPointData()->GetArray(name)->GetComponent(i, component);
-}
-
 double GetField(vtkImageData* image, const char* name, int component = 0)
 {
   return image->GetFieldData()->GetArray(name)->GetComponent(0, component);

@@ -2,7 +2,6 @@
 // Control points press the surface in and pull it out, where they are and as far as they say.
 #include "RBFTestMaps.h"
 #include "lacunaCheck.h"
-#include "vtkCylinder.h"
 #include "vtkDoubleArray.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFHoleFiller.h"
@@ -17,27 +16,13 @@ namespace
 {
 using Filler = vtkLacunaRBFHoleFiller;
 
-double Get(vtkImageData* image, const char* name, vtkIdType i)
-{
-  return image->GetPointData()->GetArray(name)->GetComponent(i, 0);
-}
-
-void MarkDisc(Filler* filler, const TestMap& map, double radius)
-{
-  vtkNew<vtkCylinder> cylinder;
-  cylinder->SetCenter(map.GetSurfacePoint(45, 42).data());
-  cylinder->SetAxis(map.View[0], map.View[1], map.View[2]);
-  cylinder->SetRadius(radius);
-  filler->SetDefectRegion(cylinder);
-}
-
 void TestControlPoints()
 {
   TestMap map;
   vtkNew<Filler> filler;
   filler->SetInputData(map.Image);
   filler->SetAccuracy(0);
-  MarkDisc(filler, map, 9);
+  filler->SetDefectRegion(map.MakeDisc(9));
   vtkNew<vtkPolyData> control;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -109,7 +94,7 @@ void TestPulledOut()
   vtkNew<Filler> filler;
   filler->SetInputData(map.Image);
   filler->SetAccuracy(0);
-  MarkDisc(filler, map, 12);
+  filler->SetDefectRegion(map.MakeDisc(12));
   filler->SetInputDataObject(Filler::ControlPointsPort, control);
   constexpr int column = 41; // x = 51 mm, 6 mm to the right of the middle of the defect
   constexpr int row = 30;    // y = 40 mm, 2 mm above it

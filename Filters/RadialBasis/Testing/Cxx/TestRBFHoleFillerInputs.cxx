@@ -27,11 +27,6 @@ namespace
 {
 using Filler = vtkLacunaRBFHoleFiller;
 
-double Get(vtkImageData* image, const char* name, vtkIdType i)
-{
-  return image->GetPointData()->GetArray(name)->GetComponent(i, 0);
-}
-
 // A surface with a point for each pixel that has a depth, in reverse order.
 vtkSmartPointer<vtkPolyData> MakeSurface(const TestMap& map)
 {
@@ -260,15 +255,6 @@ void TestMarksThatAreNoNumbers()
   CheckFilled(map, filler->GetOutput(), [&](vtkIdType i) { return map.IsInDisc(i, 12); });
 }
 
-void MarkDisc(Filler* filler, const TestMap& map, double radius)
-{
-  vtkNew<vtkCylinder> cylinder;
-  cylinder->SetCenter(map.GetSurfacePoint(45, 42).data());
-  cylinder->SetAxis(map.View[0], map.View[1], map.View[2]);
-  cylinder->SetRadius(radius);
-  filler->SetDefectRegion(cylinder);
-}
-
 void TestPriorOfAnotherView()
 {
   // A dome in world coordinates, the prior a map of it that is turned, shifted, finer and perspective.
@@ -312,7 +298,7 @@ void TestPriorOfAnotherView()
   vtkNew<Filler> filler;
   filler->SetInputData(map.Image);
   filler->SetSupportMargin(6);
-  MarkDisc(filler, map, 12);
+  filler->SetDefectRegion(map.MakeDisc(12));
   vtkNew<vtkCylinder> cylinder; // on this dome
   cylinder->SetCenter(center.data());
   cylinder->SetAxis(map.View[0], map.View[1], map.View[2]);
@@ -410,7 +396,7 @@ void TestFieldData()
   TestMap map;
   vtkNew<Filler> filler;
   filler->SetInputData(map.Image);
-  MarkDisc(filler, map, 9);
+  filler->SetDefectRegion(map.MakeDisc(9));
   const auto get = [&](const char* name)
   {
     filler->Update();

@@ -4,7 +4,6 @@
 #include "lacunaCheck.h"
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
-#include "vtkExecutive.h"
 #include "vtkLacunaRBFImageWarp.h"
 
 #include <cmath>
@@ -151,20 +150,14 @@ void CheckErrors()
     vtkNew<vtkPolyData> landmarks;
     vtkNew<vtkPolyData> targets;
     MakeLandmarks(image, 25, landmarks, targets);
-    vtkNew<vtkLacunaRBFImageWarp> warp;
-    vtkNew<lacunaCheck::Messages> messages;
-    messages->Watch(warp);
-    messages->Watch(warp->GetExecutive());
-    c.Spoil(landmarks, targets, warp);
-    warp->SetInputData(0, image);
-    warp->SetInputData(1, landmarks);
-    warp->SetInputData(2, targets);
-    warp->Update();
-    if (!messages->HasError(c.Expected))
+    WatchedWarp run(image, landmarks, targets);
+    c.Spoil(landmarks, targets, run.Filter);
+    run.Filter->Update();
+    if (!run.Messages->HasError(c.Expected))
     {
-      lacunaCheck::Fail(__FILE__, __LINE__, std::string(c.Name) + ": " + messages->Errors);
+      lacunaCheck::Fail(__FILE__, __LINE__, std::string(c.Name) + ": " + run.Messages->Errors);
     }
-    LACUNA_CHECK(warp->GetOutput()->GetNumberOfPoints() == 0);
+    LACUNA_CHECK(run.Filter->GetOutput()->GetNumberOfPoints() == 0);
   }
 }
 
@@ -176,15 +169,9 @@ void CheckMaskAlone()
   vtkNew<vtkPolyData> targets;
   MakeLandmarks(image, 25, landmarks, targets);
   image->GetPointData()->SetScalars(MakeMask(image));
-  vtkNew<vtkLacunaRBFImageWarp> warp;
-  vtkNew<lacunaCheck::Messages> messages;
-  messages->Watch(warp);
-  messages->Watch(warp->GetExecutive());
-  warp->SetInputData(0, image);
-  warp->SetInputData(1, landmarks);
-  warp->SetInputData(2, targets);
-  warp->Update();
-  LACUNA_CHECK(messages->HasError("active scalars are its vtkValidPointMask"));
+  WatchedWarp run(image, landmarks, targets);
+  run.Filter->Update();
+  LACUNA_CHECK(run.Messages->HasError("active scalars are its vtkValidPointMask"));
 }
 }
 

@@ -2,7 +2,6 @@
 // Image warps that fold or mirror: what is warned of and what is refused.
 #include "RBFTestWarps.h"
 #include "lacunaCheck.h"
-#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkLacunaRBFImageWarp.h"
 #include "vtkMath.h"
@@ -23,31 +22,25 @@ void CheckFolds()
   vtkNew<vtkPolyData> landmarks;
   vtkNew<vtkPolyData> targets;
   MakeLandmarks(image, 25, landmarks, targets);
-  vtkNew<vtkLacunaRBFImageWarp> warp;
-  vtkNew<lacunaCheck::Messages> messages;
-  messages->Watch(warp);
-  messages->Watch(warp->GetExecutive());
-  warp->SetKernel(vtkLacunaRBFImageWarp::Linear);
-  warp->SetInputData(0, image);
-  warp->SetInputData(1, landmarks);
-  warp->SetInputData(2, targets);
+  WatchedWarp run(image, landmarks, targets);
+  run.Filter->SetKernel(vtkLacunaRBFImageWarp::Linear);
   double x[3];
   targets->GetPoint(4, x);
   targets->GetPoints()->SetPoint(4, x[0] + 20, x[1], x[2]);
-  warp->Update();
-  LACUNA_CHECK(messages->Warnings.find("folds") != std::string::npos);
-  LACUNA_CHECK(messages->Errors.empty());
-  vtkDataArray* folded = warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction");
+  run.Filter->Update();
+  LACUNA_CHECK(run.Messages->Warnings.find("folds") != std::string::npos);
+  LACUNA_CHECK(run.Messages->Errors.empty());
+  vtkDataArray* folded = run.Filter->GetOutput()->GetFieldData()->GetArray("FoldedFraction");
   LACUNA_CHECK(folded && folded->GetComponent(0, 0) > 0 && folded->GetComponent(0, 0) < 0.05);
 
-  warp->SetKernel(vtkLacunaRBFImageWarp::ThinPlate);
+  run.Filter->SetKernel(vtkLacunaRBFImageWarp::ThinPlate);
   targets->GetPoints()->SetPoint(4, landmarks->GetPoint(7));
   targets->GetPoints()->SetPoint(7, landmarks->GetPoint(4));
   targets->GetPoints()->Modified();
   targets->Modified();
-  warp->Update();
-  LACUNA_CHECK(messages->HasError(" % of the box around the targets: left would be right"));
-  LACUNA_CHECK(warp->GetOutput()->GetNumberOfPoints() == 0);
+  run.Filter->Update();
+  LACUNA_CHECK(run.Messages->HasError(" % of the box around the targets: left would be right"));
+  LACUNA_CHECK(run.Filter->GetOutput()->GetNumberOfPoints() == 0);
 }
 
 // Landmarks in the middle of a picture, set by hand to a pixel: far from them the smoother kernels
@@ -81,30 +74,24 @@ void CheckPatch()
   }
   for (const int kernel : { vtkLacunaRBFImageWarp::ThinPlate, vtkLacunaRBFImageWarp::Triharmonic })
   {
-    vtkNew<vtkLacunaRBFImageWarp> warp;
-    vtkNew<lacunaCheck::Messages> messages;
-    messages->Watch(warp);
-    messages->Watch(warp->GetExecutive());
-    warp->SetKernel(kernel);
-    warp->SetInputData(0, image);
-    warp->SetInputData(1, landmarks);
-    warp->SetInputData(2, targets);
-    warp->Update();
-    LACUNA_CHECK(messages->Errors.empty());
-    vtkDataArray* folded = warp->GetOutput()->GetFieldData()->GetArray("FoldedFraction");
+    WatchedWarp run(image, landmarks, targets);
+    run.Filter->SetKernel(kernel);
+    run.Filter->Update();
+    LACUNA_CHECK(run.Messages->Errors.empty());
+    vtkDataArray* folded = run.Filter->GetOutput()->GetFieldData()->GetArray("FoldedFraction");
     if (!folded)
     {
       lacunaCheck::Fail(__FILE__, __LINE__, "no image, kernel " + std::to_string(kernel));
     }
     else if (kernel == vtkLacunaRBFImageWarp::ThinPlate)
     {
-      LACUNA_CHECK(messages->Warnings.empty());
+      LACUNA_CHECK(run.Messages->Warnings.empty());
       LACUNA_CHECK(folded->GetComponent(0, 0) == 0);
     }
     else
     {
-      LACUNA_CHECK(messages->Warnings.find(" 0 % of those in the box") != std::string::npos);
-      LACUNA_CHECK(messages->Warnings.find("Triharmonic swings") != std::string::npos);
+      LACUNA_CHECK(run.Messages->Warnings.find(" 0 % of those in the box") != std::string::npos);
+      LACUNA_CHECK(run.Messages->Warnings.find("Triharmonic swings") != std::string::npos);
       LACUNA_CHECK(folded->GetComponent(0, 0) > 0.1);
     }
   }
@@ -162,18 +149,13 @@ std::string Turn(int layers, const double* linear, int count = 25, double frame 
     std::fill_n(
       static_cast<unsigned char*>(image->GetScalarPointer()), image->GetNumberOfPoints(), 1);
   }
-  vtkNew<vtkLacunaRBFImageWarp> warp;
-  vtkNew<lacunaCheck::Messages> messages;
-  messages->Watch(warp);
-  messages->Watch(warp->GetExecutive());
-  warp->SetKernel(vtkLacunaRBFImageWarp::Linear);
-  warp->SetInputData(0, image);
-  warp->SetInputData(1, landmarks);
-  warp->SetInputData(2, targets);
-  warp->Update();
-  LACUNA_CHECK(messages->Warnings.empty());
-  LACUNA_CHECK((warp->GetOutput()->GetNumberOfPoints() == 0) == !messages->Errors.empty());
-  return messages->Errors;
+  WatchedWarp run(image, landmarks, targets);
+  run.Filter->SetKernel(vtkLacunaRBFImageWarp::Linear);
+  run.Filter->Update();
+  LACUNA_CHECK(run.Messages->Warnings.empty());
+  LACUNA_CHECK(
+    (run.Filter->GetOutput()->GetNumberOfPoints() == 0) == !run.Messages->Errors.empty());
+  return run.Messages->Errors;
 }
 
 // An image may be turned in any way but never be mirrored: a patient's left stays left.
