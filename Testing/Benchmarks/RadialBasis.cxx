@@ -6,6 +6,7 @@
 #include "lacunaCenterReduction.h"
 #include "lacunaExecution.h"
 #include "lacunaHoleFill.h"
+#include "lacunaProcessMemory.h"
 #include "lacunaRadialBasis.h"
 #include "lacunaUpdatableRadialBasis.h"
 
@@ -26,11 +27,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <random>
-#include <string>
 #include <vector>
 
 namespace
@@ -44,12 +42,12 @@ public:
 #ifdef __GLIBC__
     malloc_trim(0); // what rows before have freed
 #endif
-    std::ofstream("/proc/self/clear_refs") << 5; // the peak counts from now on
-    this->Start = GetMegabytes("VmRSS:");
+    lacuna::ResetPeakMemory();
+    this->Start = lacuna::GetProcessMemory("VmRSS") / 1e6;
   }
   void Report(benchmark::State& state) const
   {
-    const double peak = GetMegabytes("VmHWM:");
+    const double peak = lacuna::GetProcessMemory("VmHWM") / 1e6;
     if (peak > 0)
     {
       state.counters["peak_MB"] = peak;
@@ -58,19 +56,6 @@ public:
   }
 
 private:
-  static double GetMegabytes(const std::string& key)
-  {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-    {
-      if (line.rfind(key, 0) == 0)
-      {
-        return std::strtod(line.c_str() + key.size(), nullptr) * 1024 / 1e6;
-      }
-    }
-    return 0;
-  }
-
   double Start = 0;
 };
 

@@ -12,6 +12,7 @@
 /// what it had.
 #include "lacunaMemory.h"
 #include "lacunaPixelSplat.h"
+#include "lacunaProcessMemory.h"
 #include "lacunaSweptScene.h"
 #include "lacunaSweptVolume.h"
 
@@ -19,7 +20,6 @@
 
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <map>
 #include <utility>
 
@@ -122,21 +122,6 @@ Volume<Out> Reconstruct(
   return volume;
 }
 
-// A line of /proc/self/status, MB; 0 where there is no such file.
-double GetMemory(const std::string& name)
-{
-  std::ifstream status("/proc/self/status");
-  std::string key;
-  for (double value = 0; status >> key; status.ignore(1000, '\n'))
-  {
-    if (key == name + ":" && status >> value)
-    {
-      return value / 1024;
-    }
-  }
-  return 0;
-}
-
 template <class In, class Out>
 void Batch(benchmark::State& state, bool isNoisy)
 {
@@ -152,10 +137,10 @@ void Batch(benchmark::State& state, bool isNoisy)
 #ifdef __GLIBC__
   malloc_trim(0); // what was freed is not used again
 #endif
-  std::ofstream("/proc/self/clear_refs") << 5; // the peak counts from now on
-  const double before = GetMemory("VmRSS");
+  ResetPeakMemory();
+  const double before = GetProcessMemory("VmRSS");
   const Volume<Out> volume = Reconstruct<Out>(sweep.Slices, grid, mode, threads);
-  state.counters["peakMB"] = GetMemory("VmHWM") - before;
+  state.counters["peakMB"] = (GetProcessMemory("VmHWM") - before) / (1 << 20);
   const auto size = static_cast<double>(GetSize(grid));
   const std::vector<char> region = MarkSweptRegion(sweep.TruePoses, grid);
   const SceneScore score = GetScore(grid, region, volume.Intensity.get(), volume.Mask.get());

@@ -1,35 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // At most 12 bytes per voxel besides the input.
 #include "lacunaCheck.h"
+#include "lacunaProcessMemory.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaOccludedAngle.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
-#include <fstream>
 #include <iostream>
-#include <string>
-
-namespace
-{
-// A line of /proc/self/status in bytes; 0 where there is no such file.
-double GetStatus(const std::string& name)
-{
-  std::ifstream file("/proc/self/status");
-  std::string word;
-  while (file >> word)
-  {
-    if (word == name + ":")
-    {
-      double kilobytes = 0;
-      file >> kilobytes;
-      return 1024 * kilobytes;
-    }
-  }
-  return 0;
-}
-}
 
 int TestOccludedAngleMemory(int, char*[])
 {
@@ -45,9 +24,9 @@ int TestOccludedAngleMemory(int, char*[])
   filter->SetNumberOfDirections(6);
   filter->SetThresholdsOverPi(1, 2);
   filter->SetInputData(image);
-  const double before = GetStatus("VmRSS");
+  const double before = lacuna::GetProcessMemory("VmRSS");
   filter->Update();
-  const double used = GetStatus("VmHWM") - before;
+  const double used = lacuna::GetProcessMemory("VmHWM") - before;
   const double voxels = 240.0 * 240 * 240;
   std::cout << used / voxels << " bytes per voxel\n";
   LACUNA_CHECK(before == 0 || used < 12 * voxels);

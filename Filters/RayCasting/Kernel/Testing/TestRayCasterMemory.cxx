@@ -2,6 +2,7 @@
 /// The memory that casting takes beyond the volume and the map: counted at every allocation, and
 /// asked of the system. A program of its own, since it replaces the global operator new.
 #include "lacunaIsoRayCaster.h"
+#include "lacunaProcessMemory.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <new>
-#include <string>
 #include <vector>
 
 #include <malloc.h>
@@ -91,21 +90,6 @@ constexpr bool Sanitized = true; // by red zones and shadows, which the system c
 constexpr bool Sanitized = false;
 #endif
 
-/// Bytes: "VmHWM", the most that has been in memory, or "VmRSS", what is there now; 0 where the
-/// system does not tell.
-std::int64_t AskSystem(const std::string& key)
-{
-  std::ifstream file("/proc/self/status");
-  for (std::string line; std::getline(file, line);)
-  {
-    if (line.rfind(key + ":", 0) == 0)
-    {
-      return 1024 * std::stoll(line.substr(key.size() + 1));
-    }
-  }
-  return 0;
-}
-
 constexpr int N = 384;
 
 /// A shell of bone in noise; slices of noise make every block mixed, which asks for most.
@@ -147,8 +131,8 @@ void CheckMemory(ScalarType type, FieldInterpolation interpolation, double coeff
   const std::size_t pixels = 512 * 512;
 
   // Memory in use that the system has not seen yet must not hide what comes.
-  std::ofstream("/proc/self/clear_refs") << 5; // VmHWM starts anew
-  const std::int64_t residentBefore = AskSystem("VmRSS");
+  ResetPeakMemory();
+  const double residentBefore = GetProcessMemory("VmRSS");
   const std::int64_t before = InUse;
   Peak = before;
   int hits = 0;
@@ -172,16 +156,15 @@ void CheckMemory(ScalarType type, FieldInterpolation interpolation, double coeff
   const double counted = static_cast<double>(Peak - before);
   EXPECT_LE(counted, allowed);
   EXPECT_GT(counted, map) << "nothing was counted";
-  const std::int64_t resident = AskSystem("VmHWM");
+  const double resident = GetProcessMemory("VmHWM");
   if (!Sanitized && resident > 0)
   {
     // and the stacks of threads and pages of the program that are touched for the first time
     constexpr double pages = 1 << 20;
-    EXPECT_LE(static_cast<double>(resident - residentBefore), allowed + pages);
+    EXPECT_LE(resident - residentBefore, allowed + pages);
   }
   std::printf("beyond the volume and the map: %.2f %% counted, %.2f %% by the system\n",
-    100 * (counted - map) / bytes,
-    100 * (static_cast<double>(resident - residentBefore) - map) / bytes);
+    100 * (counted - map) / bytes, 100 * (resident - residentBefore - map) / bytes);
 }
 }
 
