@@ -22,9 +22,7 @@ truth = BSplineIsoRayCaster(registrationName="Truth", Input=ct, IsoValues=[500],
 # What is known: some 300 places, as if touched with a tracked pointer: chosen by a formula, the same each time
 CHANCE = "frac(abs(sin(coordsX*12.9898 + coordsY*78.233)*43758.5453))"
 chosen = Calculator(registrationName="Chosen", Input=truth, ResultArrayName="Chosen", Function=f"if({CHANCE} < 0.01, 1, 0)*vtkValidPointMask")
-pixels = MaskPoints(registrationName="Pixels", Input=chosen, OnRatio=1, MaximumNumberofPoints=100000, GenerateVertices=1, SingleVertexPerCell=1)
-touched = Threshold(registrationName="Touched", Input=pixels, Scalars=["POINTS", "Chosen"], ThresholdMethod="Above Upper Threshold",
-                    UpperThreshold=0.5)
+touched = pictures.marked_points(chosen, "Chosen", "Pixels", "Touched")
 # A thin plate through all of them, on the pixels of the truth
 truth.UpdatePipeline()
 fit = RBFInterpolator(registrationName="Fit", Input=touched, ScalarArray="Depth", Kernel="ThinPlate", OutputSpacing=[0.5, 0.5, 0.5],

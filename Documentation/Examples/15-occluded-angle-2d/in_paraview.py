@@ -28,8 +28,7 @@ for title, shape, settings in CASES:
     lines = Contour(registrationName="Threshold of " + title, Input=angle, ContourBy=["POINTS", "OccludedAngle"],
                     Isosurfaces=[settings["ThresholdsOverPi"][-1] * math.pi])
     outline = Connectivity(registrationName="Outline of " + title, Input=lines, ExtractionMode="Extract Largest Region", ColorRegions=0)
-    pixels = MaskPoints(registrationName="Voxels of " + title, Input=data, OnRatio=1, MaximumNumberofPoints=10000000, GenerateVertices=1, SingleVertexPerCell=1)
-    seen = Threshold(registrationName="Data of " + title, Input=pixels, Scalars=["POINTS", "Data"], ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
+    seen = pictures.marked_points(data, "Data", "Voxels of " + title, "Data of " + title)
     last = title == CASES[-1][0]
     view = pictures.new_view((700 if last else 560, 560))  # with a scalar bar
     view.OrientationAxesVisibility = 0

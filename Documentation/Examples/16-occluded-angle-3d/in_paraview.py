@@ -30,8 +30,7 @@ for title, shape, schedule, direction in CASES:
     surface = Contour(registrationName="Surface of " + title, Input=solid, ContourBy=["POINTS", "OccludedAngle"], Isosurfaces=[3 * math.pi],
                       ComputeScalars=0)
     body = Connectivity(registrationName="Largest piece of " + title, Input=surface, ExtractionMode="Extract Largest Region", ColorRegions=0)
-    pixels = MaskPoints(registrationName="Voxels of " + title, Input=data, OnRatio=1, MaximumNumberofPoints=10000000, GenerateVertices=1, SingleVertexPerCell=1)
-    seen = Threshold(registrationName="Data of " + title, Input=pixels, Scalars=["POINTS", "Data"], ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
+    seen = pictures.marked_points(data, "Data", "Voxels of " + title, "Data of " + title)
     view = pictures.new_view((800, 650))
     pictures.show_surface(body, view, pictures.TISSUE).Opacity = 0.75
     pictures.show_surface(seen, view, (0.1, 0.3, 0.8)).PointSize = 4

@@ -18,8 +18,7 @@ data = IncompleteShape(registrationName="Kumara", Shape="Kumara", Dimensions=[10
                        OutlierFraction=0.02)
 angle = OccludedAngle(registrationName="Angle", Input=data, NumberOfDirections=200, **occlusion.scaled(occlusion.GROW_AND_SNAP, data))
 surface = OcclusionSurface(registrationName="Surface", Input=angle, Data=data)
-pixels = MaskPoints(registrationName="Voxels", Input=data, OnRatio=1, MaximumNumberofPoints=10000000, GenerateVertices=1, SingleVertexPerCell=1)
-seen = Threshold(registrationName="Seen", Input=pixels, Scalars=["POINTS", "Data"], ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
+seen = pictures.marked_points(data, "Data", "Voxels", "Seen")
 views = []
 for title in ("Data: 40 % of the surface, 2 % outliers", "Occlusion Surface"):
     view = pictures.new_view((800, 650))

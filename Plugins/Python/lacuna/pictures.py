@@ -58,6 +58,12 @@ def show_surface(proxy, view, color):
     return display
 
 
+def marked_points(image, array, all_name, name):
+    """The pixels or voxels of an image where an array is above a half, as points to be shown; names are the pipeline browser's."""
+    points = pv.MaskPoints(registrationName=all_name, Input=image, OnRatio=1, MaximumNumberofPoints=10000000, GenerateVertices=1, SingleVertexPerCell=1)
+    return pv.Threshold(registrationName=name, Input=points, Scalars=["POINTS", array], ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
+
+
 def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     """Colours by a point array over fixed bounds, with a scalar bar that says what it is."""
     pv.ColorBy(display, ("POINTS", array))
