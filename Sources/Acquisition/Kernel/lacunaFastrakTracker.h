@@ -88,8 +88,9 @@ public:
   FastrakTracker(ByteChannel& channel, const Clock& clock, const FastrakSettings& settings = {},
     std::function<bool()> stopped = {});
 
-  /// Ends what the unit is doing, sets it up (format, stations, output lists, hemisphere) and makes sure that it answers with the records asked for; repeats steps that
-  /// damage spoilt. Throws TrackerError.
+  /// Ends what the unit is doing, sets it up (format, stations, output lists, hemisphere) and makes
+  /// sure that it answers with the records asked for; repeats steps that damage spoilt. Throws
+  /// TrackerError.
   void SetUp();
 
   /// Asks for one record of each station and adds the poses that are taken now (see MotionCheck).
