@@ -72,6 +72,7 @@ private:
   const TransformGraph& Graph() const { return this->Transforms.GetGraph(); }
 
   void KeepFields();
+  static void RestateInPicture(const SweepTransform& transform, std::vector<std::string>& texts);
   void ReadTimes();
   void FlagImages();
   void AddFlags(std::size_t frame, const std::string& text);
@@ -99,12 +100,35 @@ void SweepBuilder::KeepFields()
       this->Result.Transforms[transform.Name] = transform.Matrices;
     }
   }
+  const bool cropped = !(GetPictureOrigin(this->Header) == Vec3{ 0, 0, 0 });
   for (const auto& [field, texts] : this->Header.FrameFields)
   {
-    const std::string transform = SweepTransforms::GetTransformName(field);
-    if (transform.empty() || ReservedNames.count(transform) > 0)
+    const std::string name = SweepTransforms::GetTransformName(field);
+    if (name.empty() || ReservedNames.count(name) > 0)
     {
       this->Result.TextFields[field] = texts;
+    }
+    for (const SweepTransform& transform : this->Transforms.GetAll())
+    {
+      // these, too, shall count from the picture's first pixel, as everything else does then
+      if (cropped && ReservedNames.count(name) > 0 && transform.Name == name &&
+        !transform.FromCalibration)
+      {
+        this->RestateInPicture(transform, this->Result.TextFields[field]);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void SweepBuilder::RestateInPicture(
+  const SweepTransform& transform, std::vector<std::string>& texts)
+{
+  for (std::size_t i = 0; i < texts.size(); ++i)
+  {
+    if (transform.Matrices[i].IsFinite())
+    {
+      texts[i] = FormatMatrix(transform.Matrices[i]);
     }
   }
 }

@@ -336,6 +336,24 @@ void TestWindows()
         const lacuna::Vec3 there = whole.GetImageToReference(k).Point({ 4, 2, 0 });
         LACUNA_CHECK(Norm(here - there) < 1e-12);
       }
+      // and once more: what was read of the crop is written anew
+      const std::string againPath = Beside(test, std::string("again-") + name);
+      WriterOf again(reader->GetOutputPort(), againPath);
+      LACUNA_CHECK(again.Writer->Write() == 1);
+      vtkNew<vtkLacunaTrackedSliceReader> copy;
+      copy->SetFileName(againPath.c_str());
+      copy->Update();
+      LACUNA_CHECK(copy->GetOutput()->GetOrigin()[0] == 2);
+      const auto point = [](vtkImageData* stack)
+      {
+        return vtkLacunaFieldData::GetMatrix(
+          vtkLacunaFieldData::Get(stack, "ImageToProbe", 16, 1), 0)
+          .Point({ 4, 2, 0 });
+      };
+      LACUNA_CHECK(Norm(point(copy->GetOutput()) - point(test.Reader->GetOutput())) < 1e-12);
+      const vtkLacunaTrackedSlices third(copy->GetOutput());
+      LACUNA_CHECK(Norm(third.GetImageToReference(3).Point({ 4, 2, 0 }) -
+                     whole.GetImageToReference(3).Point({ 4, 2, 0 })) < 1e-12);
     }
   }
 }
