@@ -21,6 +21,8 @@ constexpr double SpeedOfSound = 1540; // m/s, with which scanners count
 constexpr double SmallestImage = 10, LargestImage = 500;
 // mm; beyond, a calibration is of no use
 constexpr double HopelessError = 5, HopelessRms = 3;
+// With fewer, a position far off may fit as well and be expected to be right.
+constexpr std::size_t FewestViews = 10;
 
 std::string Format(const char* format, double a, double b = 0)
 {
@@ -151,6 +153,12 @@ std::string vtkLacunaCalibrationReport::GetRefusal() const
   {
     return Format(
       "the expected error is %.1f mm, above %.0f", this->Picture.ExpectedError, HopelessError);
+  }
+  if (this->Picture.Size[0] > 0 && this->Found.Views < FewestViews)
+  {
+    return Format(
+             "%.0f views are too few, there must be ", static_cast<double>(this->Found.Views)) +
+      std::to_string(FewestViews);
   }
   return {};
 }

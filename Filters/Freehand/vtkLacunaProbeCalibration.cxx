@@ -24,6 +24,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -93,6 +95,33 @@ lacuna::Vec2 GetSize(vtkImageData* slices)
   slices->GetBounds(bounds);
   const lacuna::Vec2 size{ bounds[1] - bounds[0] + 1, bounds[3] - bounds[2] + 1 };
   return std::min(size[0], size[1]) >= SmallestPicture ? size : lacuna::Vec2{ 0, 0 };
+}
+// With what is known of slices that were not looked at, which often is why there are too few picks.
+lacuna::ProbeCalibration SolveOrTell(const std::vector<lacuna::CalibrationPick>& picks,
+  const lacuna::ProbeCalibrationOptions& options, const std::vector<std::string>& known)
+{
+  try
+  {
+    return lacuna::ProbeCalibration::Solve(picks, options);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    std::string text = error.what();
+    for (const std::string& sentence : known)
+    {
+      text += "; " + sentence;
+    }
+    throw std::invalid_argument(text);
+  }
+}
+
+// Whether a file is a calibration, and none from this frame.
+bool HoldsOther(const std::string& fileName, const std::string& from)
+{
+  std::ifstream file(fileName, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  return text.find("<Transform ") != std::string::npos &&
+    text.find("From=\"" + from + "\"") == std::string::npos;
 }
 }
 
@@ -299,7 +328,7 @@ int vtkLacunaProbeCalibration::RequestData(
       {
         kernelPicks.push_back(pick.Pick);
       }
-      const lacuna::ProbeCalibration found = lacuna::ProbeCalibration::Solve(kernelPicks, options);
+      const lacuna::ProbeCalibration found = SolveOrTell(kernelPicks, options, advice);
       vtkLacunaCalibrationReport::Image image;
       image.Size = pivot ? lacuna::Vec2{ 0, 0 } : GetSize(slices);
       image.EstimateScale = options.EstimateScale;
@@ -390,7 +419,14 @@ int vtkLacunaProbeCalibration::RequestData(
         (!info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) ||
           info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) == 0))
       {
-        if (const std::string refusal = report.GetRefusal(); !refusal.empty())
+        const char* from = pivot ? "StylusTip" : "Image";
+        std::string refusal = report.GetRefusal();
+        if (refusal.empty() && HoldsOther(this->OutputFileName, from))
+        {
+          refusal = std::string("it holds another calibration than one from '") + from +
+            "'; set another OutputFileName";
+        }
+        if (!refusal.empty())
         {
           vtkErrorMacro(<< "'" << this->OutputFileName
                         << "' is not written, and kept if it is there: " << refusal
@@ -399,8 +435,8 @@ int vtkLacunaProbeCalibration::RequestData(
         else
         {
           const std::string frame = array;
-          report.Write(this->OutputFileName, pivot ? "StylusTip" : "Image",
-            frame.substr(0, frame.find("ToTracker")), advice);
+          report.Write(
+            this->OutputFileName, from, frame.substr(0, frame.find("ToTracker")), advice);
         }
       }
     });

@@ -7,6 +7,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cstdio>
+#include <fstream>
 
 using namespace lacunaTestCalibrations;
 
@@ -86,6 +87,18 @@ void TestHopelessFile()
   LACUNA_CHECK_CONTAINS(
     calibrate(scan.Slices, rough, [](auto* f) { f->SetOutlierLimit(0); }), "is not written");
   LACUNA_CHECK(ReadFile(name) == good);
+  // all right by its own account, but of so few views that another position may be
+  const auto few = Spoilt(scan.Picks.Get(), [](vtkTable* t) { t->SetNumberOfRows(9); });
+  LACUNA_CHECK_CONTAINS(
+    calibrate(scan.Slices, few, [](auto*) {}), "9 views are too few, there must be 10");
+  LACUNA_CHECK(ReadFile(name) == good);
+  // the calibration of something else
+  std::string other = good;
+  other.replace(other.find("From=\"Image\""), 12, "From=\"StylusTip\"");
+  std::ofstream(name) << other;
+  LACUNA_CHECK_CONTAINS(calibrate(scan.Slices, scan.Picks, [](auto*) {}), "another calibration");
+  LACUNA_CHECK(ReadFile(name) == other);
+  std::ofstream(name) << good;
   // usable, with advice: both are in the file, which is good XML
   const auto fair = Spoilt(scan.Picks.Get(),
     [](vtkTable* t)
@@ -188,6 +201,20 @@ void TestFlags()
     slices.Get(), [](vtkImageData* s) { s->GetFieldData()->GetArray("SliceStatus")->Fill(4); });
   LACUNA_CHECK_CONTAINS(Calibrate(none, nullptr, wall).Errors,
     "left out are 40 of 40 slices, by their SliceStatus: 40 too fast (4)");
+  // too few are left: the error says where the others are
+  const auto most = Spoilt(slices.Get(),
+    [](vtkImageData* s)
+    {
+      vtkDataArray* status = s->GetFieldData()->GetArray("SliceStatus");
+      status->Fill(4);
+      for (int i = 0; i < 3; ++i)
+      {
+        status->SetTuple1(11 * i, 0);
+      }
+    });
+  const std::string errors = Calibrate(most, nullptr, wall).Errors;
+  LACUNA_CHECK_CONTAINS(errors, "picks give");
+  LACUNA_CHECK_CONTAINS(errors, "left out are 37 of 40 slices");
   // given picks count
   const Scan wires = ScanWires(18);
   const auto fast = Spoilt(wires.Slices.Get(),
