@@ -107,9 +107,13 @@ std::vector<std::string> vtkLacunaCalibrationReport::GetAdvice() const
   }
   if (this->Found.Rms > LargeRms)
   {
+    const bool tip = this->Picks.front().Pick.Target == lacuna::CalibrationTarget::Tip;
     advice.push_back(Format("the RMS error of %.2f mm is large; ", this->Found.Rms) +
-      "below 1 mm is usual. Is the pixel spacing right, are positions in mm, was the probe held "
-      "still, is the speed of sound 1540 m/s in this bath, and no metal near the receiver?");
+      "below 1 mm is usual. " +
+      (tip
+          ? "Did the tip stay in its hole, are positions in mm, and is no metal near the receiver?"
+          : "Is the pixel spacing right, are positions in mm, was the probe held "
+            "still, is the speed of sound 1540 m/s in this bath, and no metal near the receiver?"));
   }
   if (this->Picture.EstimateScale && this->Picture.Size[0] > 0)
   {

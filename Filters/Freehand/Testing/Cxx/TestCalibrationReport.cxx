@@ -335,6 +335,15 @@ void TestStylus()
             s->GetFieldData()->AddArray(probe);
           }),
     "Stylus");
+  // a tip that leaves its hole
+  for (int i = 0; i < 30; ++i)
+  {
+    poses[i] =
+      Matrix4::Translation({ 4 * Wave(i, 9), 4 * Wave(i, 10), 4 * Wave(i, 11) }) * poses[i];
+  }
+  const std::string loose = Calibrate(MakeScan(poses), nullptr, pivot).Warnings;
+  LACUNA_CHECK_CONTAINS(loose, "Did the tip stay in its hole");
+  LACUNA_CHECK(loose.find("sound") == std::string::npos);
   std::remove(name.c_str());
   const Calibrated still = Calibrate(MakeScan(std::vector<Matrix4>(30, poses[0])), nullptr, pivot);
   LACUNA_CHECK_CONTAINS(still.Errors, "tilt the stylus more");
