@@ -78,10 +78,7 @@ pictures.color_by(pictures.show_surface(picked, wires, pictures.METAL), wires, "
 pictures.add_title(wires, "Picks and wires")
 pictures.look(wires, (-0.7, 1, -0.5), (0, 0, 1), 1.5)
 expected = pictures.new_view((760, 640))
-expected.OrientationAxesVisibility = 0
-display = Show(OutputPort(calibration, 3), expected)
-display.SetRepresentationType("Slice")
-pictures.color_by(display, expected, "ExpectedError", "Expected error (mm)", (0, 1), "Viridis (matplotlib)")
+pictures.show_image(OutputPort(calibration, 3), expected, "ExpectedError", "Expected error (mm)", (0, 1), "Viridis (matplotlib)")
 pictures.add_title(expected, "Error to expect, over the image")
 pictures.look(expected, (0, 0, 1), (0, -1, 0), 1)
 views = [wires, expected]

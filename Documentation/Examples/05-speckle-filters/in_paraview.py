@@ -29,11 +29,7 @@ for title, settings in FILTERS.items():
     border = Contour(registrationName="Border, " + title.lower(), Input=image, ContourBy=["POINTS", "Intensity"], Isosurfaces=[120])
     last = title == "Gaussian 1.41"
     view = pictures.new_view((640 if last else 440, 440))  # with a scalar bar
-    view.OrientationAxesVisibility = 0
-    display = Show(image, view)
-    display.SetRepresentationType("Slice")
-    pictures.color_by(display, view, "Intensity", "Grey level", (0, 255), "Grayscale")
-    display.SetScalarBarVisibility(view, last)
+    pictures.show_image(image, view, "Intensity", "Grey level", (0, 255)).SetScalarBarVisibility(view, last)
     pictures.show_surface(border, view, (0.9, 0.15, 0.1)).LineWidth = 2
     pictures.add_title(view, title)
     pictures.look(view, (0, 0, 1), (0, -1, 0), 1.2)

@@ -42,10 +42,8 @@ views = []
 for index, (image, points, title) in enumerate(((truth, true_places, "Truth"), (distorted, seen_places, "As the machine shows it"),
                                                 (corrected, true_places, "Corrected by 25 marks"))):
     view = pictures.new_view((600, 700))
-    view.OrientationAxesVisibility = 0
-    display = Show(image, view)
-    display.SetRepresentationType("Slice")
-    pictures.color_by(display, view, "Grey", "Hounsfield units", (-1000, 1500), "Grayscale").NanOpacity = 1
+    display = pictures.show_image(image, view, "Grey", "Hounsfield units", (-1000, 1500))
+    display.LookupTable.NanOpacity = 1
     display.SetScalarBarVisibility(view, index == 2)
     dots = Glyph(registrationName="Dots of " + title, Input=points, GlyphType="Sphere", ScaleArray=["POINTS", "No scale array"],
                  ScaleFactor=5, GlyphMode="All Points")

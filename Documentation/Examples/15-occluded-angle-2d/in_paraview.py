@@ -31,11 +31,7 @@ for title, shape, settings in CASES:
     seen = pictures.marked_points(data, "Data", "Voxels of " + title, "Data of " + title)
     last = title == CASES[-1][0]
     view = pictures.new_view((700 if last else 560, 560))  # with a scalar bar
-    view.OrientationAxesVisibility = 0
-    display = Show(angle, view)
-    display.SetRepresentationType("Slice")
-    pictures.color_by(display, view, "OccludedAngle", "Occluded angle (rad)", (0, 2 * math.pi), "Grayscale")
-    display.SetScalarBarVisibility(view, last)
+    pictures.show_image(angle, view, "OccludedAngle", "Occluded angle (rad)", (0, 2 * math.pi)).SetScalarBarVisibility(view, last)
     pictures.show_surface(seen, view, (0.2, 0.5, 1)).PointSize = 3
     pictures.show_surface(outline, view, (0.9, 0.1, 0.1)).LineWidth = 3
     pictures.add_title(view, title.capitalize())

@@ -82,6 +82,15 @@ def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     return table
 
 
+def show_image(image, view, array, title, bounds, preset="Grayscale"):
+    """Shows an image that is one pixel deep, an output of a source too, flat by a point array; returns its display."""
+    view.OrientationAxesVisibility = 0
+    display = pv.Show(image, view)
+    display.SetRepresentationType("Slice")
+    color_by(display, view, array, title, bounds, preset)
+    return display
+
+
 def show_slices(planes, view):
     """Shows Slice Planes as pictures, not as lit surfaces: in grey levels, or by speed or error with units.
 
