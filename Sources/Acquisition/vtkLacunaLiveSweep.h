@@ -21,6 +21,12 @@ struct vtkLacunaLiveSweep
     return this->Acquisition ? this->Acquisition->GetState() : lacuna::AcquisitionState();
   }
 
+  // Of what took the slices that are there.
+  lacuna::AcquisitionState GetSweepState() const
+  {
+    return this->StackIsOfOthers ? this->Past : this->GetState();
+  }
+
   std::unique_ptr<lacuna::SweepAcquisition> Acquisition; // null while not connected
   std::string Tracker;                                   // as they were opened
   std::string Video;
@@ -30,6 +36,7 @@ struct vtkLacunaLiveSweep
   std::int64_t LimitBytes = 0;
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
   bool StackIsOfOthers = false;               // of devices that are not these
+  lacuna::AcquisitionState Past;              // at the end of those, then
   bool MayDiscard = false;                    // Clear was called and failed
   std::unique_ptr<vtkLacunaSliceStack> Newest;
   std::int64_t NewestNumber = -1;

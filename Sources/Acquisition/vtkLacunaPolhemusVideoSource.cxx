@@ -107,13 +107,30 @@ std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
 void vtkLacunaPolhemusVideoSource::Open()
 {
   vtkLacunaLiveSweep& now = *this->Now;
-  now.Acquisition.reset(); // ports are free for the next
-  now.StackIsOfOthers = now.Stack != nullptr;
+  this->Close(); // ports are free for the next
   now.Acquisition = std::make_unique<lacuna::SweepAcquisition>(
     this->MakeDevices(GetClock()), lacuna::AcquisitionRules(), GetClock());
   now.Tracker = this->DescribeTracker();
   now.Video = this->DescribeVideo();
   now.Crop = this->DescribeCrop();
+}
+
+//------------------------------------------------------------------------------
+// The slices stay, and what is told of them.
+void vtkLacunaPolhemusVideoSource::Close()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  if (!now.Acquisition)
+  {
+    return;
+  }
+  this->Stop();
+  if (now.Stack && !now.StackIsOfOthers)
+  {
+    now.Past = now.Acquisition->Finish();
+    now.StackIsOfOthers = true;
+  }
+  now.Acquisition.reset();
 }
 
 //------------------------------------------------------------------------------
@@ -242,9 +259,7 @@ void vtkLacunaPolhemusVideoSource::Disconnect()
 {
   if (this->Now->Acquisition)
   {
-    this->Stop();
-    this->Now->Acquisition.reset();
-    this->Now->StackIsOfOthers = this->Now->Stack != nullptr;
+    this->Close();
     this->Now->Subjects.clear();
     this->Modified();
   }

@@ -178,6 +178,7 @@ private:
   bool DevicesWait() const;
   void ReplaceBrokenDevices();
   void Open();
+  void Close();
   void Configure();
   bool TakeOver();
   void CollectNews();

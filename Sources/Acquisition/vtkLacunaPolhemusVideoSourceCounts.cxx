@@ -32,43 +32,43 @@ bool vtkLacunaPolhemusVideoSource::GetVideoWorks() const
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetFrameCount() const
 {
-  return this->Now->GetState().Counts.Frames;
+  return this->Now->GetSweepState().Counts.Frames;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetStillFrames() const
 {
-  return this->Now->GetState().Counts.Still;
+  return this->Now->GetSweepState().Counts.Still;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetFramesWithoutPose() const
 {
-  return this->Now->GetState().Counts.WithoutPose;
+  return this->Now->GetSweepState().Counts.WithoutPose;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetFramesOfWrongSize() const
 {
-  return this->Now->GetState().Counts.WrongSize;
+  return this->Now->GetSweepState().Counts.WrongSize;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetFramesPastLimit() const
 {
-  return this->Now->GetState().Counts.PastLimit;
+  return this->Now->GetSweepState().Counts.PastLimit;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetMissingFrames() const
 {
-  return this->Now->GetState().Missing;
+  return this->Now->GetSweepState().Missing;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetTooFastSlices() const
 {
-  return this->Now->GetState().Counts.TooFast;
+  return this->Now->GetSweepState().Counts.TooFast;
 }
 
 //------------------------------------------------------------------------------
@@ -80,39 +80,39 @@ double vtkLacunaPolhemusVideoSource::GetSpeed() const
 //------------------------------------------------------------------------------
 double vtkLacunaPolhemusVideoSource::GetLargestResidual() const
 {
-  return this->Now->GetState().LargestResidual;
+  return this->Now->GetSweepState().LargestResidual;
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetTakenSlices() const
 {
-  return std::max<vtkIdType>(this->Now->GetState().Counts.Slices, this->GetSliceCount());
+  return std::max<vtkIdType>(this->Now->GetSweepState().Counts.Slices, this->GetSliceCount());
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetRecordedSlices() const
 {
-  return this->Now->GetState().File.Synced;
+  return this->Now->GetSweepState().File.Synced;
 }
 
 //------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetRecordedFileName()
 {
-  this->Now->FileName = this->Now->GetState().File.FileName;
+  this->Now->FileName = this->Now->GetSweepState().File.FileName;
   return this->Now->FileName.c_str();
 }
 
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaPolhemusVideoSource::GetWaitingSlices() const
 {
-  const lacuna::SweepFile::State file = this->Now->GetState().File;
+  const lacuna::SweepFile::State file = this->Now->GetSweepState().File;
   return file.Added - file.Synced;
 }
 
 //------------------------------------------------------------------------------
 double vtkLacunaPolhemusVideoSource::GetDiskSpace() const
 {
-  const std::int64_t bytes = this->Now->GetState().File.FreeBytes;
+  const std::int64_t bytes = this->Now->GetSweepState().File.FreeBytes;
   return bytes < 0 ? std::numeric_limits<double>::quiet_NaN()
                    : static_cast<double>(bytes) / Mebibyte;
 }
@@ -120,7 +120,7 @@ double vtkLacunaPolhemusVideoSource::GetDiskSpace() const
 //------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetDiskMessage()
 {
-  this->Now->DiskMessage = this->Now->GetState().File.Trouble;
+  this->Now->DiskMessage = this->Now->GetSweepState().File.Trouble;
   return this->Now->DiskMessage.c_str();
 }
 

@@ -329,8 +329,9 @@ bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame&
     frame.Rows = image.Rows;
     frame.Grey = std::move(image.Grey);
     frame.PixelSpacing = image.PixelSpacing;
-    frame.PixelAspect =
+    const double aspect =
       image.PixelSpacing ? (*image.PixelSpacing)[0] / (*image.PixelSpacing)[1] : 1;
+    frame.PixelAspect = std::isfinite(aspect) && aspect > 0 ? aspect : 1;
     frame.Arrival = arrival.Time;
     frame.StreamTime = message.Header.Stamp;
     frame.Damaged = false;

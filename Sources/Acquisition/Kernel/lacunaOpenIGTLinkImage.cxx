@@ -65,8 +65,7 @@ void SetPlane(const igtl_image_header& header, OpenIGTLinkImage& image)
   const Vec3 normal{ n[6], n[7], n[8] };
   const Vec3 centre{ n[9], n[10], n[11] };
   const Vec2 spacing{ Norm(column), Norm(row) };
-  const auto isLength = [](double length) { return std::isfinite(length) && length > 0; };
-  if (isLength(spacing[0]) && isLength(spacing[1]) && (spacing[0] != 1 || spacing[1] != 1))
+  if (spacing[0] != 1 || spacing[1] != 1)
   {
     image.PixelSpacing = spacing;
   }

@@ -92,8 +92,8 @@ struct OpenIGTLinkImage
   /// signed ones negative levels are black), colours to the luminance of lacunaLuminance.h. Rows as
   /// they are sent: j = 0 first.
   std::vector<std::uint8_t> Grey;
-  /// mm of a column and a row. Nothing where both are exactly 1, which senders write that do not
-  /// know it, or no lengths.
+  /// mm of a column and a row, as sent: they may be none. Nothing where both are exactly 1, which
+  /// senders write that do not know it.
   std::optional<Vec2> PixelSpacing;
   /// Of the image's plane: millimetres along the rows, the columns and its normal, from the centre of
   /// the first pixel, to the sender's frame (the message has that of the image's centre).

@@ -387,6 +387,16 @@ void SweepAcquisition::Stop()
   this->Work->Settled.wait_for(lock, LongestSettling, [this] { return this->Work->Pending == 0; });
 }
 
+AcquisitionState SweepAcquisition::Finish()
+{
+  this->Stop();
+  {
+    const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+    this->Work->Taking.Finish();
+  }
+  return this->GetState();
+}
+
 void SweepAcquisition::BeginSweep(bool discard)
 {
   this->Stop();

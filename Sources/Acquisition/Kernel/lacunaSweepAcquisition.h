@@ -97,6 +97,9 @@ public:
   void Start();
   /// Ends the capture; what came before is kept.
   void Stop();
+  /// Ends the capture and its recording, and with that this acquisition: nothing is captured after
+  /// it. Slices that cannot be written are told by the state.
+  AcquisitionState Finish();
   /// Ends the capture and its recording; the next one begins a new sweep. The slices that were not
   /// asked for are dropped. Throws FileError, and the sweep stays, when slices that are to be
   /// recorded cannot be written, unless discard is set.

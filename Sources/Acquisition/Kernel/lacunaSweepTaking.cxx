@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweepTaking.h"
 
+#include "lacunaOutputFile.h"
 #include "lacunaSweep.h"
 
 #include <algorithm>
@@ -59,6 +60,13 @@ std::string CompareSpacings(const VideoFrame& frame, const std::optional<Matrix4
   }
   const Vec2& said = *frame.PixelSpacing;
   const Vec2 known{ Norm(imageToProbe->Column(0)), Norm(imageToProbe->Column(1)) };
+  const auto isLength = [](double length) { return std::isfinite(length) && length > 0; };
+  if (!isLength(said[0]) || !isLength(said[1]))
+  {
+    return "The video says that its pixels are " + SpacingText(said[0], said[1]) +
+      ", which cannot be, so that nothing tells whether its depth is that of the calibration: "
+      "mend what sends it, and compare the depth on the scanner's screen";
+  }
   const auto same = [](double a, double b) { return std::abs(a - b) <= tolerance * b; };
   if (same(said[0], known[0]) && same(said[1], known[1]))
   {
@@ -160,6 +168,21 @@ void SweepTaking::SetRules(const AcquisitionRules& rules)
   this->Full = false; // unless the next slice finds it so
 }
 
+void SweepTaking::Finish()
+{
+  this->Finished = true;
+  try
+  {
+    if (this->File)
+    {
+      this->File->Finish();
+    }
+  }
+  catch (const FileError&) // the file's state has it
+  {
+  }
+}
+
 void SweepTaking::BeginSweep(bool discard)
 {
   if (this->File && !discard)
@@ -229,6 +252,10 @@ void SweepTaking::Record(const AcquiredSlice& slice, const SweepFrame& window)
 
 void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<AcquiredSlice>& slices)
 {
+  if (this->Finished)
+  {
+    return;
+  }
   if (this->File)
   {
     this->File->Retry();

@@ -63,6 +63,8 @@ public:
   void SetRules(const AcquisitionRules& rules);
   /// See SweepAcquisition.
   void BeginSweep(bool discard);
+  /// Writes what waits, if that can be, and ends the file; frames that come later are of no sweep.
+  void Finish();
   /// The next frame in time, wanted or not; now: the clock's time. Adds its slice, if it becomes
   /// one.
   void Add(const PairedFrame& frame, double now, std::vector<AcquiredSlice>& slices);
@@ -100,6 +102,7 @@ private:
   double LargestResidual = 0;
   std::optional<double> Speed;
   std::unique_ptr<SweepFile> File;
+  bool Finished = false;
   bool Full = false;
   std::string SizeTrouble;    ///< of the newest frame
   std::string SpacingTrouble; ///< the same

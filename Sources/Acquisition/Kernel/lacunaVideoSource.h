@@ -66,7 +66,7 @@ struct VideoFrame
   double Arrival = 0;               ///< when all its bytes were there, s of the clock
   std::optional<double> StreamTime; ///< s of the stream's own clock
   bool Damaged = false;             ///< the decoder had to guess parts
-  std::optional<Vec2> PixelSpacing; ///< mm of a column and a row, where the stream says so
+  std::optional<Vec2> PixelSpacing; ///< mm of a column and a row, where and as the stream says
 };
 
 enum class VideoEvent

@@ -4,6 +4,7 @@
 #include "lacunaTestScene.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -111,6 +112,17 @@ TEST(AcquisitionDevices, PixelsOfAnotherSizeThanTheCalibrationsAreSaid)
     EXPECT_TRUE(HasMessage(state, "the calibration that they are 0.2 x 0.3 mm"));
   }
   spacing = { 0.2, 0.303 };
-  scene.Place.RunTo(80);
+  int end = 80;
+  scene.Place.RunTo(end);
   EXPECT_FALSE(HasMessage(acquisition.GetState(), "pixels"));
+  for (const double none :
+    { 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
+  {
+    spacing = { none, 0.3 };
+    scene.Place.RunTo(end += 20);
+    EXPECT_TRUE(HasMessage(acquisition.GetState(), "which cannot be")) << none;
+    spacing = { 0.2, none };
+    scene.Place.RunTo(end += 20);
+    EXPECT_TRUE(HasMessage(acquisition.GetState(), "which cannot be")) << none;
+  }
 }

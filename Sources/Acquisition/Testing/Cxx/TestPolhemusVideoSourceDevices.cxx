@@ -54,6 +54,40 @@ void TestDevicesThatChange()
   LACUNA_CHECK(source->GetOutput(0)->GetDimensions()[2] >= 3);
 }
 
+// What is told of the slices holds as long as they are there, whatever becomes of the devices.
+void TestFiguresStayWithTheSlices()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  const std::string file = bench.Folder + "/sweep.mhd";
+  source->SetRecordFileName(file.c_str());
+  const auto check = [source, &file](vtkIdType count)
+  {
+    LACUNA_CHECK(source->GetSliceCount() == count);
+    LACUNA_CHECK(source->GetFrameCount() == count);
+    LACUNA_CHECK(source->GetTakenSlices() == count);
+    LACUNA_CHECK(source->GetRecordedSlices() == count);
+    LACUNA_CHECK(source->GetWaitingSlices() == 0);
+    LACUNA_CHECK(file == source->GetRecordedFileName());
+  };
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  source->Disconnect(); // at once: the last slices are not on the disk yet
+  const vtkIdType count = source->GetSliceCount();
+  check(count);
+  source->Connect();
+  LACUNA_CHECK(bench.IsConnected());
+  check(count);
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  source->Update();
+  LACUNA_CHECK(bench.IsConnected());
+  check(count);
+  source->Clear();
+  LACUNA_CHECK(source->GetFrameCount() == 0);
+  LACUNA_CHECK(source->GetRecordedSlices() == 0);
+  LACUNA_CHECK(std::string(source->GetRecordedFileName()).empty());
+}
+
 // What the newest slice says of the probe; not a number while it has no pose.
 lacuna::Matrix4 GetNewestPose(vtkLacunaPolhemusVideoSource* source)
 {
@@ -209,6 +243,7 @@ void TestBrokenDevicesAreReplaced()
 int TestPolhemusVideoSourceDevices(int, char*[])
 {
   TestDevicesThatChange();
+  TestFiguresStayWithTheSlices();
   TestFormats();
   TestSettingsReachTheTracker();
   TestTrackerThatComesLate();
