@@ -90,6 +90,10 @@ std::map<std::string, std::string> CheckVolume(
     throw std::runtime_error("all slices lie in the same plane: there is nothing between them");
   }
   std::map<std::string, std::string> warnings;
+  if (!plan.Grid.Miss.empty()) // not an error: a sweep that is taken now may get there
+  {
+    warnings["miss"] = "the volume is empty: " + plan.Grid.Miss;
+  }
   if (pairs.Turned > 0)
   {
     warnings["turned"] = std::to_string(pairs.Turned) + " of " + std::to_string(pairs.All) +

@@ -39,8 +39,10 @@ Box GetBox(const std::vector<SliceImage>& slices)
   return box;
 }
 
-void CutToBounds(Box& box, const std::array<double, 6>& bounds)
+// Returns in what the bounds miss the box, nothing when they meet.
+std::string CutToBounds(Box& box, const std::array<double, 6>& bounds)
 {
+  std::string miss;
   for (std::size_t a = 0; a < 3; ++a)
   {
     const double low = bounds[2 * a];
@@ -59,11 +61,12 @@ void CutToBounds(Box& box, const std::array<double, 6>& bounds)
     if (low > box.Maximum[a] || high < box.Minimum[a])
     {
       message << "the slices lie between " << box.Minimum[a] << " and " << box.Maximum[a] << " mm";
-      throw std::invalid_argument(message.str());
+      miss = message.str();
     }
     box.Minimum[a] = low;
     box.Maximum[a] = high;
   }
+  return miss;
 }
 
 double GetLargestPixelSpacing(const std::vector<SliceImage>& slices)
@@ -173,9 +176,8 @@ VolumeGrid MakeVolumeGrid(const std::vector<SliceImage>& slices, const VolumeGri
     throw std::invalid_argument("there are no slices to make a volume of");
   }
   Box box = GetBox(slices);
-  CutToBounds(box, request.Bounds);
-
   VolumeGrid grid;
+  grid.Miss = CutToBounds(box, request.Bounds);
   double fromData = 0;
   for (int a = 0; a < 3; ++a)
   {

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace lacuna
@@ -18,6 +19,8 @@ struct VolumeGrid
   Vec3 Origin{};
   Vec3 Spacing{};
   std::array<int, 3> Dimensions{};
+  /// How the requested bounds miss the slices, so that all voxels stay empty; empty: they meet.
+  std::string Miss{};
 };
 
 /// What the user wants of a grid.
@@ -39,9 +42,9 @@ struct VolumeGridRequest
 ///   if the box would then have over 2^23 voxels (about 203 x 203 x 203): the spacing that gives
 ///   this number, rounded up to two digits.
 ///
-/// Throws std::invalid_argument for negative or non-finite spacing, inverted bounds, bounds that
-/// miss the slices, and when the volume would not fit into the memory limit; the text then says how
-/// many bytes it would take, which spacing would do, and which slice lies far off, if one does.
+/// Throws std::invalid_argument for negative or non-finite spacing, inverted bounds, and when the
+/// volume would not fit into the memory limit; the text then says how many bytes it would take, which
+/// spacing would do, and which slice lies far off, if one does.
 VolumeGrid MakeVolumeGrid(const std::vector<SliceImage>& slices, const VolumeGridRequest& request);
 }
 #endif

@@ -105,7 +105,9 @@ TEST(VolumeGrid, RefusesBadRequests)
   request.Bounds = { 5, -5, 1, -1, 1, -1 };
   EXPECT_TRUE(Contains(GetError(slices, request), "give the minimum first"));
   request.Bounds = { 1, -1, 1, -1, 8, 9 };
-  EXPECT_TRUE(Contains(GetError(slices, request), "the slices lie between 1 and 7 mm"));
+  EXPECT_TRUE(Contains(MakeVolumeGrid(slices, request).Miss, "the slices lie between 1 and 7 mm"));
+  request.Bounds = { 1, -1, 1, -1, 6, 9 };
+  EXPECT_EQ(MakeVolumeGrid(slices, request).Miss, "");
   request.Bounds = { 1, -1, 1, -1, 0, std::numeric_limits<double>::infinity() };
   EXPECT_TRUE(Contains(GetError(slices, request), "OutputBounds along z"));
   EXPECT_TRUE(Contains(GetError({}, {}), "no slices"));

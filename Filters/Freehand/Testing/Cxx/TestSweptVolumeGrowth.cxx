@@ -275,6 +275,26 @@ void TestLive()
     AreEqual(filter->GetOutput(), AtOnce(MakeSweep(Slices, Slices, 77), filter->GetOutput())),
     "with the changed pixel");
 
+  // bounds that the sweep reaches late
+  vtkNew<vtkLacunaSweptVolume> late;
+  SetUp(late);
+  late->SetOutputBounds(0, 15, 0, 14, 6.6, 7.4);
+  const auto messages = lacunaCheck::Watch(late);
+  int told = 0;
+  for (int count = 2; count <= Slices; ++count)
+  {
+    messages->Warnings.clear();
+    late->SetInputData(MakeSweep(count));
+    late->Update();
+    LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+    told += messages->HasWarning("the volume is empty: OutputBounds along z") ? 1 : 0;
+    LACUNA_CHECK_THAT(AreEqual(late->GetOutput(), AtOnce(MakeSweep(count), late->GetOutput())),
+      std::to_string(count) + " slices, bounds that are reached late");
+  }
+  LACUNA_CHECK(told == 1);
+  LACUNA_CHECK(
+    late->GetOutput()->GetPointData()->GetArray("vtkValidPointMask")->GetRange()[1] == 1);
+
   // without bounds the grid grows: all is made anew, and right
   vtkNew<vtkLacunaSweptVolume> free;
   SetUp(free);
