@@ -3,6 +3,7 @@
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -13,6 +14,8 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+vtkInformationKeyMacro(vtkLacunaTrackedSlices, GROWS, Integer);
 
 //------------------------------------------------------------------------------
 vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)

@@ -15,7 +15,8 @@
 /// - FrameNumber (int): number in the file or of the frame grabber
 /// - ProbeToTracker, ... (double, 16 components): every transform of the file under its own name
 ///
-/// and, when known, ImageToProbe with one tuple.
+/// and, when known, ImageToProbe with one tuple. The information of a stack that is being taken has
+/// GROWS.
 #ifndef vtkLacunaTrackedSlices_h
 #define vtkLacunaTrackedSlices_h
 
@@ -27,6 +28,7 @@
 
 class vtkDataArray;
 class vtkImageData;
+class vtkInformationIntegerKey;
 
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices
 {
@@ -46,6 +48,10 @@ public:
     TooFast = 4,
     GatedOut = 8
   };
+
+  /// In the information of a data object: slices are to come, so that too few to make anything of
+  /// are no error yet.
+  static vtkInformationIntegerKey* GROWS();
 
   /// Checks stack against the contract. Throws std::runtime_error that names the array and what is
   /// wrong with it. Keeps no reference: stack must outlive this object.

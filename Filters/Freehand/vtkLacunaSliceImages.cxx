@@ -4,6 +4,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
@@ -212,6 +213,7 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
     isToCome = this->FindSlicesToCome(tracked);
     this->IsMoreToCome = std::find(isToCome.begin(), isToCome.end(), true) != isToCome.end();
   }
+  this->IsMoreToCome |= stack->GetInformation()->Has(vtkLacunaTrackedSlices::GROWS()) != 0;
   std::vector<Candidate> candidates;
   for (vtkIdType number = 0; number < tracked.GetNumberOfSlices(); ++number)
   {

@@ -79,7 +79,7 @@ struct vtkLacunaSliceImages
   std::vector<lacuna::SliceImage> Slices;
   /// In a replay: slices whose pose is known, but not their image. They have no pixels.
   std::vector<lacuna::SliceImage> Others;
-  /// A replay has not shown all of them yet: too little to see is no error.
+  /// A replay has not shown all of them yet, or they are being taken: too little to see is no error.
   bool IsMoreToCome = false;
   /// ImageToReference of Slices, then of Others.
   std::vector<lacuna::Matrix4> Poses;

@@ -87,6 +87,11 @@ public:
       message << "; " << this->Images->DescribeRemedy();
       throw std::runtime_error(message.str());
     }
+    if (this->GetSlices().empty() && this->Images->Others.empty())
+    {
+      this->Images.reset(); // of a sweep that has just begun
+      return;
+    }
     const vtkLacunaSliceFan fan = vtkLacunaSliceFan::Make(self);
     if (fan.HasSector())
     {
@@ -97,7 +102,7 @@ public:
 
   bool IsEmpty() const { return !this->Images; }
   const std::vector<lacuna::SliceImage>& GetSlices() const { return this->Images->Slices; }
-  /// True while a replay has not reached its end.
+  /// True while a replay has not reached its end, and while slices are being taken.
   bool IsMoreToCome() const { return this->Images->IsMoreToCome; }
 
   std::unique_ptr<vtkLacunaSliceImages> Images;

@@ -55,7 +55,15 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
     this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
     this->IsMoreToCome |= sweep.IsMoreToCome;
-    if (!sweep.IsMoreToCome && static_cast<int>(sweep.Slices.size()) < needed)
+    if (static_cast<int>(sweep.Slices.size()) >= needed)
+    {
+      continue;
+    }
+    if (sweep.IsMoreToCome && sweep.Others.empty()) // of a sweep that has just begun
+    {
+      this->Sweeps.pop_back();
+    }
+    else if (!sweep.IsMoreToCome)
     {
       std::ostringstream message;
       message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()

@@ -56,7 +56,7 @@ public:
   /// An input has time steps: its slices come one after the other, and the grid is that of all of
   /// the sweep from the beginning.
   bool IsReplay = false;
-  /// A replay has not shown all of its slices yet.
+  /// A replay has not shown all of its slices yet, or some are still being taken.
   bool IsMoreToCome = false;
 
 private:

@@ -43,7 +43,8 @@ struct vtkLacunaLiveSweep
   std::map<std::string, double> Subjects; // of messages, and when they were there last
   std::vector<std::string> News;          // messages to warn of
   bool ToldUncalibrated = false;
-  std::string Messages; // what the getter has returned
+  bool ToldCapturing = false; // by the output
+  std::string Messages;       // what the getter has returned
   std::string FileName;
   std::string DiskMessage;
 };

@@ -7,6 +7,7 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaLiveSweep.h"
@@ -376,7 +377,8 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
     this->Now->News.push_back(this->Now->Trouble);
   }
   this->CollectNews();
-  changed = changed || !this->Now->News.empty();
+  changed = changed || !this->Now->News.empty() ||
+    (this->Now->ToldCapturing && !this->Now->GetState().Capturing);
   if (changed)
   {
     this->Modified();
@@ -428,6 +430,7 @@ int vtkLacunaPolhemusVideoSource::RequestData(
     [&](vtkLacunaExecution&)
     {
       vtkLacunaLiveSweep& now = *this->Now;
+      now.ToldCapturing = now.GetState().Capturing;
       for (const std::string& message : std::exchange(now.News, {}))
       {
         vtkWarningMacro(<< message);
@@ -442,9 +445,17 @@ int vtkLacunaPolhemusVideoSource::RequestData(
             "run a server without MPI where they are plugged in");
         }
         const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
+        vtkImageData* output = vtkImageData::GetData(outputs, port);
+        if (port == 0 && now.ToldCapturing)
+        {
+          output->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
+        }
+        else
+        {
+          output->GetInformation()->Remove(vtkLacunaTrackedSlices::GROWS());
+        }
         if (stack)
         {
-          vtkImageData* output = vtkImageData::GetData(outputs, port);
           stack->Fill(output);
           vtkLacunaProvenance::Record(
             output, this, {}, this->DescribeDevices() + " " + this->DescribeRules());

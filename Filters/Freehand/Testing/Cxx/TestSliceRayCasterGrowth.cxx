@@ -5,6 +5,7 @@
 #include "lacunaTestReplay.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkMath.h"
 
 #include <cmath>
@@ -194,6 +195,24 @@ void TestReplay()
   LACUNA_CHECK_CONTAINS(messages->Errors, "no slice is left to look at");
 }
 
+// Of the first slices of a live sweep nothing can be seen yet, which is no error.
+void TestLiveBeginning()
+{
+  vtkNew<Caster> caster;
+  FixView(caster);
+  const auto messages = lacunaCheck::Watch(caster);
+  const auto flagged = MakeStack(MakePoses(2), VTK_SHORT, { 1, 1 });
+  flagged->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
+  caster->SetInputData(flagged);
+  caster->Update();
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  LACUNA_CHECK(caster->GetOutput()->GetNumberOfPoints() == 0);
+  flagged->GetInformation()->Remove(vtkLacunaTrackedSlices::GROWS());
+  caster->Modified();
+  caster->Update();
+  LACUNA_CHECK_CONTAINS(messages->Errors, "no slice is left to look at");
+}
+
 void TestWarnings()
 {
   vtkNew<Caster> caster;
@@ -329,6 +348,7 @@ int TestSliceRayCasterGrowth(int, char*[])
   TestNoPassOverAllPixels();
   TestRangeGrows();
   TestReplay();
+  TestLiveBeginning();
   TestWarnings();
   TestPipeline();
   return lacunaCheck::Result();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaSweptVolume while its sweep grows: replayed in time, or live.
 #include "lacunaTestReplay.h"
+#include "vtkInformationIntegerKey.h"
 
 #include <cmath>
 #include <cstring>
@@ -310,6 +311,31 @@ void TestLive()
   }
 }
 
+// Of the first slices of a live sweep nothing can be made yet, which is no error.
+void TestLiveBeginning()
+{
+  vtkNew<vtkLacunaSweptVolume> filter;
+  SetUp(filter);
+  const auto messages = lacunaCheck::Watch(filter);
+  const auto update = [&](vtkImageData* sweep, bool grows)
+  {
+    if (grows)
+    {
+      sweep->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
+    }
+    filter->SetInputData(sweep);
+    filter->Update();
+    return filter->GetOutput()->GetNumberOfPoints();
+  };
+  LACUNA_CHECK(update(MakeSweep(1), true) == 0);
+  LACUNA_CHECK(update(MakeSweep(3, 0), true) == 0); // all are flagged
+  LACUNA_CHECK(update(MakeSweep(3, 1), true) == 0);
+  LACUNA_CHECK(update(MakeSweep(3), true) > 0);
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  LACUNA_CHECK(update(MakeSweep(1), false) == 0);
+  LACUNA_CHECK_CONTAINS(messages->Errors, "the slices are too few: 1 of 1");
+}
+
 // Not every stack with invalid images is a replay.
 void TestNoReplay()
 {
@@ -333,6 +359,7 @@ int TestSweptVolumeGrowth(int, char*[])
   TestReplayOfRest();
   TestWarnings();
   TestLive();
+  TestLiveBeginning();
   TestNoReplay();
   return lacunaCheck::Result();
 }

@@ -296,7 +296,8 @@ TEST(OpenIGTLinkMessage, ImagePlaneIsAtTheFirstPixel)
   EXPECT_FALSE(with({ 1, 1 }, Matrix4()).PixelSpacing);
   EXPECT_FALSE(with({ 1, 1 }, Matrix4()).Plane.Usable);
   EXPECT_TRUE(with({ 1, 2 }, Matrix4()).PixelSpacing);
-  EXPECT_TRUE(with({ 0, 0.3F }, AsymmetricPose()).PixelSpacing); // as sent: who compares it complains
+  EXPECT_TRUE(
+    with({ 0, 0.3F }, AsymmetricPose()).PixelSpacing); // as sent: who compares it complains
   EXPECT_HAS(
     with({ 0.2F, 0.3F }, AsymmetricPose() * Matrix4::Scaling({ 1, -1, 1 })).Plane.Fault, "mirrors");
 }

@@ -4,6 +4,8 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaTrackedSlices.h"
 
@@ -72,7 +74,18 @@ void TestFiguresStayWithTheSlices()
   };
   source->Start();
   LACUNA_CHECK(bench.PollFor(3));
+  const auto grows = [source]
+  {
+    source->Update();
+    return source->GetOutput(0)->GetInformation()->Has(vtkLacunaTrackedSlices::GROWS()) != 0;
+  };
+  LACUNA_CHECK(grows());
+  source->Stop();
+  LACUNA_CHECK(!grows());
+  source->Start();
+  LACUNA_CHECK(bench.PollUntil(grows));
   source->Disconnect(); // at once: the last slices are not on the disk yet
+  LACUNA_CHECK(!grows());
   const vtkIdType count = source->GetSliceCount();
   check(count);
   source->Connect();
