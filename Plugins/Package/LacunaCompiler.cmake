@@ -28,3 +28,7 @@ if (LACUNA_SANITIZE)
   add_compile_options(-fsanitize=${LACUNA_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${LACUNA_SANITIZE})
 endif ()
+if (LACUNA_COVERAGE)
+  add_compile_options(--coverage -Wno-error=maybe-uninitialized) # which counters cause by mistake
+  add_link_options(--coverage)
+endif ()
