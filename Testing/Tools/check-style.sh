@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Rules that a tool can check: format, license tags, kernels without VTK, links of the pages, and
-# that the pages say what the plugin's XML says. With --tidy also
-# clang-tidy on every source (needs build/release).
+# that the pages say what the plugin's XML says.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 sources=$(git ls-files '*.h' '*.cxx')
@@ -30,9 +29,4 @@ grep -qx "version: $version" CITATION.cff || complain "CITATION.cff is not of ve
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
 python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"
 
-if [ "${1:-}" = --tidy ]; then
-  cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
-  git ls-files '*.cxx' | grep -v -e Documentation/Examples -e Testing/Cxx |
-    xargs -P 2 -n 4 clang-tidy --quiet -p build/release || complain "clang-tidy has findings"
-fi
 exit $failed

@@ -61,7 +61,8 @@ void PreferLargePages(void* memory, std::size_t bytes)
   const std::uintptr_t end = (address + bytes) / page * page;
   if (first < end)
   {
-    madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE); // a wish, may fail
+    void* pages = static_cast<char*>(memory) + (first - address);
+    madvise(pages, end - first, MADV_HUGEPAGE); // a wish, may fail
   }
 #else
   static_cast<void>(memory);

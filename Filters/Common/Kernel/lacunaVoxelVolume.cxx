@@ -9,6 +9,7 @@ namespace lacuna
 std::vector<Vec3> CornersOf(const Matrix4& indexToWorld, const std::array<int, 3>& size)
 {
   std::vector<Vec3> corners;
+  corners.reserve(8);
   for (int corner = 0; corner < 8; ++corner)
   {
     corners.push_back(indexToWorld.Point({ corner & 1 ? size[0] - 1.0 : 0.0,

@@ -61,9 +61,9 @@ void AddComment(std::string& program, const std::string& comment)
   std::string line;
   const auto add = [&program](const std::string& text) { program += "(" + text + ")\n"; };
   constexpr std::string_view known = " .,+-*/=:#[]";
-  for (std::size_t k = 0; k < comment.size(); ++k)
+  for (const char each : comment)
   {
-    const auto c = static_cast<unsigned char>(comment[k]);
+    const auto c = static_cast<unsigned char>(each);
     if (c >= 0x80 && c < 0xC0)
     {
       continue; // the rest of a character in UTF-8

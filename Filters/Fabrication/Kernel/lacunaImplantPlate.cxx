@@ -308,6 +308,7 @@ private:
       for (const auto& ring : hole.Rings)
       {
         std::vector<std::int32_t> points;
+        points.reserve(ring.size());
         for (const Vec3& p : ring)
         {
           points.push_back(this->AddPoint(p));

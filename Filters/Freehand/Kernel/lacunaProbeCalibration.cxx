@@ -12,6 +12,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace lacuna
 {
@@ -114,7 +115,7 @@ public:
   // From a start to the end, outliers left out.
   Solution Finish(CalibrationState state) const
   {
-    Solution solution{ state, std::vector<double>(this->Model.GetNumberOfPicks(), 1.0) };
+    Solution solution{ std::move(state), std::vector<double>(this->Model.GetNumberOfPicks(), 1.0) };
     if (this->Options.OutlierLimit > 0)
     {
       double spread = this->GetRobustSpread(solution.State);
