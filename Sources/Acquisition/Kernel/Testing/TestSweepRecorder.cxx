@@ -170,7 +170,7 @@ TEST(SweepRecorder, KilledItLosesNothingThatWasWritten)
     if (child == 0)
     {
       SweepRecorder recorder(path, MakeDescription(), round % 4 == 3 ? 1 : 0);
-      for (int i = 0; i < 20000; ++i)
+      for (int i = 0;; ++i)
       {
         Add(recorder, i);
         const std::int64_t written = recorder.GetState().Written;
