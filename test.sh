@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Sets up everything on a Debian 12 machine, builds and runs all tests.
-#   ./test.sh [--preset NAME] [ctest options]      presets: release debug asan tsan vtk
+#   ./test.sh [--preset NAME] [--target NAME] [ctest options]
+# Presets: release debug asan tsan vtk kernels; the target is what to build, if not all.
 set -euo pipefail
 cd "$(dirname "$0")"
 . Testing/Tools/setup.sh
-preset=release
+preset=release target=all
 if [ "${1:-}" = --preset ]; then preset=$2; shift 2; fi
+if [ "${1:-}" = --target ]; then target=$2; shift 2; fi
 lacuna_install_packages
-lacuna_build "$preset"
-lacuna_display ctest --preset "$preset" -LE soak "$@"
+lacuna_build "$preset" --target "$target"
+lacuna_display ctest --preset "$preset" -j2 -LE soak "$@"

@@ -1,15 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Helpers that declare tests.
 
-# lacuna_add_kernel_test(<name> SOURCES <file>... LIBRARIES <target>...)
-# A GoogleTest program without VTK, in ctest as Kernel.<name>.
+# What .ci/run repeats with sanitizers (label sanitize): tests of what takes files, streams and tables
+# of others.
+add_custom_target(LacunaSanitizeTests)
+
+# lacuna_add_kernel_test(<name> [SANITIZE] SOURCES <file>... LIBRARIES <target>...)
+# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above.
 function (lacuna_add_kernel_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZE" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})
   target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
   target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
   add_test(NAME Kernel.${name} COMMAND Test${name}Kernel)
   set_tests_properties(Kernel.${name} PROPERTIES LABELS "kernel")
+  if (arg_SANITIZE)
+    set_property(TEST Kernel.${name} APPEND PROPERTY LABELS "sanitize")
+    add_dependencies(LacunaSanitizeTests Test${name}Kernel)
+  endif ()
+endfunction ()
+
+# lacuna_tests_in_real_time(<test>...)
+# Devices, frames and deadlines in real time: no other test runs beside them (ctest -j).
+function (lacuna_tests_in_real_time)
+  set_tests_properties(${ARGN} PROPERTIES RUN_SERIAL ON)
 endfunction ()
 
 # lacuna_add_paraview_test(<script.py> [NAME <name>] [LABELS <label>...] [ARGS <argument>...])

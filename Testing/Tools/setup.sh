@@ -28,17 +28,23 @@ lacuna_install_packages() {
     lacuna_fail "installing packages" "apt-get could not install$missing"
 }
 
-# lacuna_build <preset> [options of cmake --build]: configures and builds into build/<preset>; does
-# nothing when up to date.
-lacuna_build() {
+# lacuna_configure <preset>: into build/<preset>; does nothing when that is there.
+lacuna_configure() {
   local preset=$1 log="build/$1.log"
-  shift
   mkdir -p build
   if [ ! -f "build/$preset/build.ninja" ]; then
     echo "== configuring ($preset)"
     cmake --preset "$preset" >"$log" 2>&1 ||
       { tail -n 30 "$log" >&2; lacuna_fail "configuring" "see $log"; return 1; }
   fi
+}
+
+# lacuna_build <preset> [options of cmake --build]: configures and builds into build/<preset>; does
+# nothing when up to date.
+lacuna_build() {
+  local preset=$1 log="build/$1.log"
+  shift
+  lacuna_configure "$preset" || return 1
   echo "== building ($preset)"
   cmake --build --preset "$preset" "$@" >"$log" 2>&1 ||
     { grep -E -A8 'error|FAILED' "$log" | head -n 60 >&2; lacuna_fail "building" "see $log"; }
