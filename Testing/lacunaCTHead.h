@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The CT head of the test data, for programs without VTK. Needs LACUNA_TEST_DATA and zlib.
+/// The CT head of the test data, for programs without VTK. Needs LACUNA_TEST_DATA, the folder of the
+/// build (the environment can name another), and zlib.
 #ifndef lacunaCTHead_h
 #define lacunaCTHead_h
 
@@ -48,7 +49,9 @@ inline const ShortVolume& Head()
   static const ShortVolume head = []
   {
     ShortVolume result;
-    std::ifstream file(LACUNA_TEST_DATA "/ct_head/head.mha", std::ios::binary);
+    const char* const folder = std::getenv("LACUNA_TEST_DATA");
+    std::ifstream file(
+      std::string(folder ? folder : LACUNA_TEST_DATA) + "/ct_head/head.mha", std::ios::binary);
     const std::string text(
       (std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     const std::string local = "ElementDataFile = LOCAL\n";

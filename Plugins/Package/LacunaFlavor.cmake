@@ -28,7 +28,7 @@ else ()
   find_package(VTK 9.1 REQUIRED
     COMPONENTS ${lacuna_vtk_components}
     OPTIONAL_COMPONENTS TestingCore TestingRendering RenderingOpenGL2 InteractionStyle
-      Python WrappingPythonCore
+      Python WrappingPythonCore FiltersPoints ImagingHybrid
     PATHS ${lacuna_paraview_vtk})
   set(lacuna_flavor "vtk${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
 endif ()

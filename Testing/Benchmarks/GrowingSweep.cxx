@@ -10,6 +10,7 @@
 /// Counters, ms per update: early, the mean of the 5th to the 14th slice; late, that of the last
 /// ten; worst; cpuEarly and cpuLate, the processor time of all threads. added: slices that the
 /// last update worked on.
+#include "lacunaBenchmark.h"
 #include "lacunaSweptScene.h"
 #include "vtkImageData.h"
 #include "vtkLacunaSliceRayCaster.h"
@@ -20,15 +21,13 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <functional>
 #include <numeric>
 
 using namespace lacuna;
+using lacunaBenchmark::GetProcessSeconds;
 
 namespace
 {
@@ -61,13 +60,6 @@ vtkSmartPointer<vtkImageData> MakeStack(int count)
   vtkLacunaTrackedSlices::Write(
     stack, poses, times, std::vector<unsigned char>(poses.size(), 0), frames);
   return stack;
-}
-
-double GetProcessSeconds()
-{
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 double GetMean(const std::vector<double>& values, std::size_t first)
@@ -157,7 +149,7 @@ void SweptVolume(benchmark::State& state)
 
 void Set(benchmark::internal::Benchmark* b)
 {
-  b->ArgName("slices")->Arg(20)->Arg(200)->Iterations(1)->Unit(benchmark::kMillisecond);
+  b->ArgName("slices")->Arg(20)->Arg(200)->Iterations(1)->Apply(lacunaBenchmark::Measure);
 }
 }
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points -> bicubic surface -> IGES file, 121 x 121 points at 1 mm, tolerance 1 um, beside
+// Points -> bicubic surface -> IGES file, 120 x 120 mm, 121 x 121 points, tolerance 1 um, beside
 // OpenCASCADE's own approximation (GeomAPI_PointsToBSplineSurface) and IGES writer. Both end with a
 // file on the disk. Counters: bytes of the file, control points, largest distance in um of a point
 // from the surface (at its parameters for Lacuna, from its foot point for OpenCASCADE).
 #include "lacunaAtomicFile.h"
+#include "lacunaBenchmark.h"
 #include "lacunaExecution.h"
 #include "lacunaIGESDocument.h"
 #include "lacunaSurfaceFit.h"
-
-#include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,15 +67,15 @@ using Shape = double (*)(double, double);
 constexpr Shape Shapes[] = { Waves, Skull, SkullWithBump, ThinPlate };
 const char* const Names[] = { "waves", "skull", "skull with bump", "thin plate" };
 
-std::vector<lacuna::Vec3> Points(Shape shape)
+std::vector<lacuna::Vec3> Points(Shape shape, int count = Count)
 {
   std::vector<lacuna::Vec3> points;
-  for (int j = 0; j < Count; ++j)
+  for (int j = 0; j < count; ++j)
   {
-    for (int i = 0; i < Count; ++i)
+    for (int i = 0; i < count; ++i)
     {
-      const double x = i - 60;
-      const double y = j - 60;
+      const double x = 120.0 * i / (count - 1) - 60;
+      const double y = 120.0 * j / (count - 1) - 60;
       points.push_back({ x, y, shape(x, y) });
     }
   }
@@ -90,16 +89,15 @@ std::string OutputName(const char* name)
 
 void Report(benchmark::State& state, const std::string& path, double points, double deviation)
 {
-  state.SetLabel(Names[state.range(0)]);
   state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(path));
   state.counters["control_points"] = points;
   state.counters["deviation_um"] = 1000 * deviation;
   std::filesystem::remove(path);
 }
 
-void Write(benchmark::State& state, double tolerance)
+void Write(
+  benchmark::State& state, const std::vector<lacuna::Vec3>& points, int count, double tolerance)
 {
-  const std::vector<lacuna::Vec3> points = Points(Shapes[state.range(0)]);
   const std::string path = OutputName("lacuna-benchmark.igs");
   lacuna::ThreadExecution execution(1); // as OpenCASCADE
   lacuna::SurfaceFitOptions options;
@@ -107,7 +105,7 @@ void Write(benchmark::State& state, double tolerance)
   lacuna::SurfaceFit fit;
   for (auto _ : state)
   {
-    fit = lacuna::FitPoints(execution, { Count, Count }, points, options);
+    fit = lacuna::FitPoints(execution, { count, count }, points, options);
     lacuna::IGESDocument document;
     document.AddSurface(fit.Surface, {});
     lacuna::IGESHeader header;
@@ -120,7 +118,15 @@ void Write(benchmark::State& state, double tolerance)
 
 void Lacuna(benchmark::State& state)
 {
-  Write(state, Tolerance);
+  state.SetLabel(Names[state.range(0)]);
+  Write(state, Points(Shapes[state.range(0)]), Count, Tolerance);
+}
+
+// argument: points along an edge of the skull with a bump
+void LacunaOfPoints(benchmark::State& state)
+{
+  const int count = static_cast<int>(state.range(0));
+  Write(state, Points(SkullWithBump, count), count, Tolerance);
 }
 
 #ifdef LACUNA_WITH_OPENCASCADE
@@ -148,12 +154,12 @@ double Distance(
   return surface->Value(uv.X(), uv.Y()).Distance(point);
 }
 
-TColgp_Array2OfPnt Array(const std::vector<lacuna::Vec3>& points)
+TColgp_Array2OfPnt Array(const std::vector<lacuna::Vec3>& points, int count = Count)
 {
-  TColgp_Array2OfPnt array(1, Count, 1, Count);
-  for (int k = 0; k < Count * Count; ++k)
+  TColgp_Array2OfPnt array(1, count, 1, count);
+  for (int k = 0; k < count * count; ++k)
   {
-    array(k % Count + 1, k / Count + 1) = gp_Pnt(points[k][0], points[k][1], points[k][2]);
+    array(k % count + 1, k / count + 1) = gp_Pnt(points[k][0], points[k][1], points[k][2]);
   }
   return array;
 }
@@ -179,23 +185,24 @@ double Deviation(
 // far below it.
 void LacunaNoWorse(benchmark::State& state)
 {
+  state.SetLabel(Names[state.range(0)]);
   const std::vector<lacuna::Vec3> points = Points(Shapes[state.range(0)]);
   const auto surface = Approximate(Array(points), static_cast<int>(state.range(1)));
-  Write(state, std::min(Tolerance, Deviation(surface, points)));
+  Write(state, points, Count, std::min(Tolerance, Deviation(surface, points)));
 }
 
-// range(1): the largest degree OpenCASCADE may use; 8 is its default, 3 gives bicubic patches.
-void OpenCASCADE(benchmark::State& state)
+// degree: the largest one OpenCASCADE may use; 8 is its default, 3 gives bicubic patches.
+void WriteByOpenCASCADE(
+  benchmark::State& state, const std::vector<lacuna::Vec3>& points, int count, int degree)
 {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   IGESControl_Controller::Init();
-  const std::vector<lacuna::Vec3> points = Points(Shapes[state.range(0)]);
-  const TColgp_Array2OfPnt array = Array(points);
+  const TColgp_Array2OfPnt array = Array(points, count);
   const std::string path = OutputName("opencascade-benchmark.igs");
   Handle(Geom_BSplineSurface) surface;
   for (auto _ : state)
   {
-    surface = Approximate(array, static_cast<int>(state.range(1)));
+    surface = Approximate(array, degree);
     IGESControl_Writer writer("MM", 0);
     writer.AddGeom(surface);
     writer.ComputeModel();
@@ -204,18 +211,39 @@ void OpenCASCADE(benchmark::State& state)
   Report(state, path, static_cast<double>(surface->NbUPoles() * surface->NbVPoles()),
     Deviation(surface, points));
 }
+
+void OpenCASCADE(benchmark::State& state)
+{
+  state.SetLabel(Names[state.range(0)]);
+  WriteByOpenCASCADE(
+    state, Points(Shapes[state.range(0)]), Count, static_cast<int>(state.range(1)));
+}
+
+void OpenCASCADEOfPoints(benchmark::State& state)
+{
+  const int count = static_cast<int>(state.range(0));
+  WriteByOpenCASCADE(state, Points(SkullWithBump, count), count, 8);
+}
 #endif
 }
 
-BENCHMARK(Lacuna)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Lacuna)->DenseRange(0, 3)->Apply(lacunaBenchmark::Measure);
+BENCHMARK(LacunaOfPoints)
+  ->ArgName("points")
+  ->Arg(39)
+  ->Arg(122)
+  ->Arg(384)
+  ->Apply(lacunaBenchmark::Measure);
 #ifdef LACUNA_WITH_OPENCASCADE
 BENCHMARK(LacunaNoWorse)
   ->ArgsProduct({ { 0, 1, 2, 3 }, { 8, 3 } })
-  ->Unit(benchmark::kMillisecond)
-  ->UseRealTime();
-BENCHMARK(OpenCASCADE)
-  ->ArgsProduct({ { 0, 1, 2, 3 }, { 8, 3 } })
-  ->Unit(benchmark::kMillisecond)
-  ->UseRealTime();
+  ->Apply(lacunaBenchmark::Measure);
+BENCHMARK(OpenCASCADE)->ArgsProduct({ { 0, 1, 2, 3 }, { 8, 3 } })->Apply(lacunaBenchmark::Measure);
+BENCHMARK(OpenCASCADEOfPoints)
+  ->ArgName("points")
+  ->Arg(39)
+  ->Arg(122)
+  ->Arg(384)
+  ->Apply(lacunaBenchmark::Measure);
 #endif
 BENCHMARK_MAIN();

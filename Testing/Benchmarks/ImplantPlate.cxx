@@ -3,9 +3,8 @@
 // the closed solid with its measures. The goal is 2 s. Arguments: threads, and what is made: 0 a plate
 // in the defect, 1 the same with drainage every 8 mm, 2 an overlapping one with four countersunk screw
 // holes and drainage. Counters: triangles, MinimumThickness in mm.
+#include "lacunaBenchmark.h"
 #include "lacunaPlateScene.h"
-
-#include <benchmark/benchmark.h>
 
 #include <array>
 
@@ -48,9 +47,5 @@ void Plate(benchmark::State& state)
 }
 }
 
-BENCHMARK(Plate)
-  ->ArgsProduct({ { 1, 2 }, { 0, 1, 2 } })
-  ->Unit(benchmark::kMillisecond)
-  ->MeasureProcessCPUTime()
-  ->UseRealTime();
+BENCHMARK(Plate)->ArgsProduct({ { 1, 2, 4 }, { 0, 1, 2 } })->Apply(lacunaBenchmark::Measure);
 BENCHMARK_MAIN();

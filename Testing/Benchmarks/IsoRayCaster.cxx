@@ -3,14 +3,13 @@
 /// Times the iso ray caster from volume to depth map: the CT head at 500 HU with 512 x 512 rays and
 /// normals, by us, by the thesis's algorithm and by VTK's FlyingEdges3D with a z-buffer; and how the
 /// time grows with voxels and rays.
+#include "lacunaBenchmark.h"
 #include "lacunaCTHead.h"
 #include "lacunaIsoRayCaster.h"
 #include "lacunaReferenceCaster.h"
 #ifdef LACUNA_WITH_FLYING_EDGES
 #include "lacunaSurfacePass.h"
 #endif
-
-#include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +20,7 @@
 namespace
 {
 using namespace lacuna;
+using lacunaBenchmark::Measure;
 
 /// A shell of bone in a cube of 200 mm.
 const ShortVolume& Shell(int n)
@@ -192,32 +192,26 @@ void ShellFlyingEdges(benchmark::State& state)
 BENCHMARK(CTHead)
   ->ArgNames({ "interpolation", "view", "threads" })
   ->ArgsProduct({ { 0, 1, 2 }, { 0, 1 }, { 1, 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->Apply(Measure);
 BENCHMARK(CTHeadReference)
   ->ArgNames({ "view", "threads" })
   ->ArgsProduct({ { 0, 1 }, { 1, 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->Apply(Measure);
 #ifdef LACUNA_WITH_FLYING_EDGES
 BENCHMARK(CTHeadFlyingEdges)
   ->ArgNames({ "normals", "view", "threads" })
   ->ArgsProduct({ { 0, 1 }, { 0, 1 }, { 1, 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->Apply(Measure);
 BENCHMARK(ShellFlyingEdges)
   ->ArgsProduct({ { 256, 512 }, { 256, 512, 1024, 2048 }, { 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->ArgsProduct({ { 46, 100, 215, 464 }, { 512 }, { 2 } })
+  ->ArgsProduct({ { 256 }, { 512 }, { 1, 4 } })
+  ->Apply(Measure);
 #endif
 BENCHMARK(ShellOf)
   ->Name("Shell")
   ->ArgsProduct({ { 64, 256, 512 }, { 256, 512, 1024, 2048 }, { 2 } })
-  ->MeasureProcessCPUTime()
-  ->UseRealTime()
-  ->Unit(benchmark::kMillisecond);
+  ->ArgsProduct({ { 46, 100, 215, 464 }, { 512 }, { 2 } })
+  ->ArgsProduct({ { 256 }, { 512 }, { 1, 4 } })
+  ->Apply(Measure);
 BENCHMARK_MAIN();

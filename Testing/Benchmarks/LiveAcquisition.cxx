@@ -8,12 +8,11 @@
 /// earliest measurement that its pose needs, at the latest; cpu, % of one core of all threads but the
 /// emulator's, with the making of the test signal (signal: 0 a grey field, which costs next to
 /// nothing as a frame grabber does, 1 a picture that FFmpeg draws); lost, frames without a pose.
+#include "lacunaBenchmark.h"
 #include "lacunaDeviceChoice.h"
 #include "lacunaPoseScript.h"
 #include "lacunaSweepAcquisition.h"
 #include "lacunaTestUnit.h"
-
-#include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
@@ -126,5 +125,5 @@ BENCHMARK(Live)
   ->ArgNames({ "seconds", "signal" })
   ->ArgsProduct({ { 1, 30 }, { 0, 1 } })
   ->Iterations(1)
-  ->Unit(benchmark::kSecond);
+  ->Apply(lacunaBenchmark::Measure);
 BENCHMARK_MAIN();

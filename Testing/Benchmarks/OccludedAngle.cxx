@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Occluded angles beside the time that memory alone needs: 12 bytes per voxel (read the data,
 // update the sums), in the same run.
+#include "lacunaBenchmark.h"
 #include "lacunaOccludedAngle.h"
-
-#include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <vector>
+
+using lacunaBenchmark::Measure;
 
 namespace
 {
@@ -41,9 +41,9 @@ void PerDirection(benchmark::State& state, double voxels, double directions)
 template <class Body>
 double ProcessorSeconds(Body&& body)
 {
-  const std::clock_t start = std::clock();
+  const double start = lacunaBenchmark::GetProcessSeconds();
   body();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  return lacunaBenchmark::GetProcessSeconds() - start;
 }
 
 // The anchor: sums += data.
@@ -81,7 +81,7 @@ void Stream(benchmark::State& state)
   }
   PerDirection(state, static_cast<double>(n), 1);
 }
-BENCHMARK(Stream)->Arg(192)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(Stream)->Arg(192)->Apply(Measure);
 
 // edge, threads, Binary, local radius in voxels
 void Cube(benchmark::State& state)
@@ -119,15 +119,31 @@ void Cube(benchmark::State& state)
 BENCHMARK(Cube)
   ->Args({ 192, 1, 0, 0 })
   ->Args({ 192, 2, 0, 0 })
+  ->Args({ 192, 4, 0, 0 })
   ->Args({ 192, 1, 1, 0 })
   ->Args({ 192, 1, 0, 15 })
   ->Args({ 64, 1, 0, 0 })
   ->Args({ 128, 1, 0, 0 })
   ->Args({ 256, 1, 0, 0 })
   ->Args({ 512, 1, 0, 0 })
-  ->Unit(benchmark::kMillisecond)
-  ->MeasureProcessCPUTime()
-  ->UseRealTime();
+  ->Apply(Measure);
+
+// 20 directions, two threads. argument: edge
+void Size(benchmark::State& state)
+{
+  const std::int64_t n = state.range(0);
+  lacuna::AttenuationField field = MakeField(n, n, n);
+  lacuna::OccludedAngleOptions options;
+  options.Directions = 20;
+  std::vector<float> angle(field.GetNumberOfVoxels());
+  lacuna::ThreadExecution execution(2);
+  for (auto _ : state)
+  {
+    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+  }
+  PerDirection(state, static_cast<double>(angle.size()), options.Directions);
+}
+BENCHMARK(Size)->ArgName("edge")->Arg(46)->Arg(100)->Arg(215)->Arg(464)->Apply(Measure);
 
 // How much faster several threads are than one, turn by turn in the same run: the shortest time of
 // each. On a busy machine look at cpu_ratio, what the threads take together over what one takes.
@@ -158,7 +174,7 @@ void Scaling(benchmark::State& state)
   state.counters["speedup"] = wall[0] / wall[1];
   state.counters["cpu_ratio"] = cpu[1] / cpu[0];
 }
-BENCHMARK(Scaling)->Arg(2)->Iterations(10)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(Scaling)->Arg(2)->Iterations(10)->Apply(Measure);
 
 // The thesis's kumara: 190 x 80 x 90 voxels, two iterations of 1000 directions.
 void Kumara(benchmark::State& state)
@@ -175,7 +191,7 @@ void Kumara(benchmark::State& state)
   }
   PerDirection(state, static_cast<double>(angle.size()), 2.0 * options.Directions);
 }
-BENCHMARK(Kumara)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(Kumara)->Apply(Measure);
 }
 
 BENCHMARK_MAIN();

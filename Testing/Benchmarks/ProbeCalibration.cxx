@@ -45,6 +45,7 @@ void ThreeWires(benchmark::State& state)
 BENCHMARK(ThreeWires)
   ->ArgNames({ "geometries", "outliers" })
   ->ArgsProduct({ { 5, 200 }, { 0, 5 } })
+  ->MeasureProcessCPUTime()
   ->Unit(benchmark::kMillisecond);
 
 void SingleWall(benchmark::State& state)
@@ -56,7 +57,12 @@ void SingleWall(benchmark::State& state)
   }
   Report(state, study, false);
 }
-BENCHMARK(SingleWall)->ArgName("geometries")->Arg(5)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(SingleWall)
+  ->ArgName("geometries")
+  ->Arg(5)
+  ->Arg(200)
+  ->MeasureProcessCPUTime()
+  ->Unit(benchmark::kMillisecond);
 
 // arguments: geometries, % of the 0.5 mm's variance that is common to the ends of a line
 void WallCommonErrors(benchmark::State& state)
@@ -73,6 +79,7 @@ void WallCommonErrors(benchmark::State& state)
 BENCHMARK(WallCommonErrors)
   ->ArgNames({ "geometries", "common" })
   ->ArgsProduct({ { 5, 200, 1000 }, { 50, 99 } })
+  ->MeasureProcessCPUTime()
   ->Unit(benchmark::kMillisecond);
 
 // four frames of each of 40 places in which the probe was held still
@@ -85,7 +92,12 @@ void WallAtRest(benchmark::State& state)
   }
   Report(state, study, false);
 }
-BENCHMARK(WallAtRest)->ArgName("geometries")->Arg(5)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(WallAtRest)
+  ->ArgName("geometries")
+  ->Arg(5)
+  ->Arg(200)
+  ->MeasureProcessCPUTime()
+  ->Unit(benchmark::kMillisecond);
 }
 
 BENCHMARK_MAIN();

@@ -4,18 +4,17 @@
 // per_sample is wall time on all cores (of use on an idle machine only), cpu_per_sample what all
 // threads took together. Goal cases carry what per_sample has to reach on two cores as goal, and
 // how many times faster than vtkImageMedian3D in the same run they are as faster and cpu_faster.
+#include "lacunaBenchmark.h"
 #include "lacunaSpeckleFilter.h"
 #include "vtkImageData.h"
+#include "vtkImageGaussianSmooth.h"
 #include "vtkImageMedian3D.h"
 #include "vtkMultiThreader.h"
 #include "vtkNew.h"
 
-#include <benchmark/benchmark.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <random>
 #include <type_traits>
 #include <vector>
@@ -74,7 +73,7 @@ public:
     : State(state)
     , Samples(static_cast<double>(samples))
     , Start(std::chrono::steady_clock::now())
-    , CpuStart(std::clock())
+    , CpuStart(lacunaBenchmark::GetProcessSeconds())
   {
   }
   ~Clock()
@@ -88,14 +87,15 @@ public:
   {
     const double count = this->Samples * static_cast<double>(this->State.iterations());
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - this->Start;
-    return { wall.count() / count, double(std::clock() - this->CpuStart) / CLOCKS_PER_SEC / count };
+    return { wall.count() / count,
+      (lacunaBenchmark::GetProcessSeconds() - this->CpuStart) / count };
   }
 
 private:
   benchmark::State& State;
   double Samples;
   std::chrono::steady_clock::time_point Start;
-  std::clock_t CpuStart;
+  double CpuStart;
 };
 
 /// What the median of VTK cost in this run.
@@ -106,14 +106,15 @@ Cost& PeerCost()
 }
 
 template <class T>
-Cost Filter(benchmark::State& state, const Size& size, const lacuna::SpeckleParameters& parameters)
+Cost Filter(benchmark::State& state, const Size& size, const lacuna::SpeckleParameters& parameters,
+  int threads = 0)
 {
   const lacuna::Extent box{ 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 };
   const std::vector<T>& samples = Speckle<T>(size);
   std::vector<T> result(samples.size());
   const lacuna::ImageView<const T> input(samples.data(), box);
   const lacuna::ImageView<T> output(result.data(), box);
-  lacuna::ThreadExecution execution;
+  lacuna::ThreadExecution execution(threads);
   const Clock clock(state, samples.size());
   for (auto _ : state)
   {
@@ -131,31 +132,45 @@ lacuna::SpeckleParameters Make(SpeckleOperation operation, int width, bool flat)
   return parameters;
 }
 
-void VTKMedian(benchmark::State& state, const Size& size, int width)
+template <class Peer>
+void RunPeer(benchmark::State& state, const Size& size, Peer* filter)
 {
   vtkNew<vtkImageData> image;
   image->SetDimensions(size.data());
   image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
   const std::vector<std::uint8_t>& samples = Speckle<std::uint8_t>(size);
   std::memcpy(image->GetScalarPointer(), samples.data(), samples.size());
-  vtkNew<vtkImageMedian3D> median;
-  median->SetInputData(image);
-  median->SetKernelSize(width, width, width);
-  median->SetEnableSMP(false); // ParaView's default back end is sequential
-  median->SetNumberOfThreads(vtkMultiThreader::GetGlobalDefaultNumberOfThreads());
+  filter->SetInputData(image);
+  filter->SetEnableSMP(false); // ParaView's default back end is sequential
+  filter->SetNumberOfThreads(vtkMultiThreader::GetGlobalDefaultNumberOfThreads());
   const Clock clock(state, samples.size());
   for (auto _ : state)
   {
-    median->Modified();
-    median->Update();
+    filter->Modified();
+    filter->Update();
   }
   PeerCost() = clock.GetCost();
+}
+
+void VTKMedian(benchmark::State& state, const Size& size, int width, bool flat)
+{
+  vtkNew<vtkImageMedian3D> median;
+  median->SetKernelSize(width, width, flat ? 1 : width);
+  RunPeer(state, size, median.Get());
+}
+
+void VTKGaussian(benchmark::State& state, const Size& size, double deviation)
+{
+  vtkNew<vtkImageGaussianSmooth> gaussian;
+  gaussian->SetStandardDeviation(deviation);
+  gaussian->SetRadiusFactors(3, 3, 3);
+  RunPeer(state, size, gaussian.Get());
 }
 
 template <class Body>
 void Register(const std::string& name, const Body& body)
 {
-  benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond)->UseRealTime();
+  benchmark::RegisterBenchmark(name.c_str(), body)->Apply(lacunaBenchmark::Measure);
 }
 
 /// A goal: nanoseconds of wall time for a sample on two cores.
@@ -169,6 +184,58 @@ void RegisterGoal(const std::string& name, double goal, const Size& size,
       state.counters["goal"] = 1e-9 * goal;
     });
 }
+
+/// On the same images as the rows of the other filters, the peers.
+void RegisterPeers(const Size& slab)
+{
+  for (const int width : { 3, 5, 9 })
+  {
+    Register("Size3D/VTKMedian_uint8/" + std::to_string(width),
+      [=](benchmark::State& state) { VTKMedian(state, slab, width, false); });
+  }
+  const Size image{ 640, 480, 4 };
+  Register("Image/VTKMedian_uint8/11",
+    [=](benchmark::State& state) { VTKMedian(state, image, 11, true); });
+  Register("Image/Median_uint8/11",
+    [=](benchmark::State& state)
+    { Filter<std::uint8_t>(state, image, Make(SpeckleOperation::Median, 11, true)); });
+  Register("Gaussian3D/VTKGaussian_uint8/2",
+    [=](benchmark::State& state) { VTKGaussian(state, slab, 2); });
+  Register("Gaussian3D/Gaussian_uint8/2",
+    [=](benchmark::State& state)
+    {
+      auto parameters = Make(SpeckleOperation::Gaussian, 3, false);
+      parameters.StandardDeviation = 2;
+      Filter<std::uint8_t>(state, slab, parameters);
+    });
+}
+
+/// Median of 9 x 9 x 9 samples against the samples and the threads.
+void RegisterScaling()
+{
+  const auto parameters = Make(SpeckleOperation::Median, 9, false);
+  for (const int edge : { 46, 100, 215, 464 })
+  {
+    Register("Cube/Median_uint8/" + std::to_string(edge),
+      [=](benchmark::State& state) {
+        Filter<std::uint8_t>(state, { edge, edge, edge }, parameters, 2);
+      });
+    if (edge < 200)
+    {
+      Register("Cube/VTKMedian_uint8/" + std::to_string(edge),
+        [=](benchmark::State& state) {
+          VTKMedian(state, { edge, edge, edge }, 9, false);
+        });
+    }
+  }
+  for (const int threads : { 1, 2, 4 })
+  {
+    Register("Threads/Median_uint8/" + std::to_string(threads),
+      [=](benchmark::State& state) {
+        Filter<std::uint8_t>(state, { 215, 215, 215 }, parameters, threads);
+      });
+  }
+}
 }
 
 int main(int argc, char* argv[])
@@ -176,7 +243,7 @@ int main(int argc, char* argv[])
   // The goals: against VTK on 40 slices, where whole windows dominate.
   const Size slab{ Foetus[0], Foetus[1], 40 };
   Register("Goal/VTKMedian_9x9x9_uint8_40slices",
-    [=](benchmark::State& state) { VTKMedian(state, slab, 9); });
+    [=](benchmark::State& state) { VTKMedian(state, slab, 9, false); });
   Register("Goal/Median_9x9x9_uint8_40slices",
     [=](benchmark::State& state)
     {
@@ -279,6 +346,8 @@ int main(int argc, char* argv[])
       [=](benchmark::State& state) { Filter<std::uint8_t>(state, slab, parameters); });
   }
 
+  RegisterPeers(slab);
+  RegisterScaling();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))
   {

@@ -8,26 +8,21 @@
 ///
 /// Counters: filled, the part of the swept region that has grey levels; RMS, the error there;
 /// RMSall, that of all voxels with grey levels, also of those just outside of the swept region;
-/// bytes, what one voxel takes; peakMB, what the process took most in one reconstruction beyond
-/// what it had.
+/// bytes, what one voxel takes; grown_MB, what the process took most in one reconstruction beyond
+/// what it had, and peak_MB with it.
+#include "lacunaBenchmark.h"
 #include "lacunaMemory.h"
 #include "lacunaPixelSplat.h"
-#include "lacunaProcessMemory.h"
 #include "lacunaSweptScene.h"
 #include "lacunaSweptVolume.h"
 
-#include <benchmark/benchmark.h>
-
 #include <cstring>
-#include <ctime>
 #include <map>
 #include <utility>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 using namespace lacuna;
+using lacunaBenchmark::GetProcessSeconds;
+using lacunaBenchmark::Measure;
 
 namespace
 {
@@ -134,13 +129,9 @@ void Batch(benchmark::State& state, bool isNoisy)
   {
     benchmark::DoNotOptimize(Reconstruct<Out>(sweep.Slices, grid, mode, threads));
   }
-#ifdef __GLIBC__
-  malloc_trim(0); // what was freed is not used again
-#endif
-  ResetPeakMemory();
-  const double before = GetProcessMemory("VmRSS");
+  const lacunaBenchmark::Memory memory;
   const Volume<Out> volume = Reconstruct<Out>(sweep.Slices, grid, mode, threads);
-  state.counters["peakMB"] = (GetProcessMemory("VmHWM") - before) / (1 << 20);
+  memory.Report(state);
   const auto size = static_cast<double>(GetSize(grid));
   const std::vector<char> region = MarkSweptRegion(sweep.TruePoses, grid);
   const SceneScore score = GetScore(grid, region, volume.Intensity.get(), volume.Mask.get());
@@ -150,13 +141,6 @@ void Batch(benchmark::State& state, bool isNoisy)
   state.counters["Mvoxel"] = size * 1e-6;
   state.counters["bytes"] = static_cast<double>(
     SweptVolume::GetBytesPerVoxel(GetOptions(mode)) + Volume<Out>::BytesPerVoxel);
-}
-
-double GetProcessSeconds()
-{
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 // One slice more, one thread, as during a scan. meanMs and worstMs are processor time: what else
@@ -267,44 +251,42 @@ void SplatNoisy(benchmark::State& state)
 {
   Splat<float>(state, true);
 }
-
-void Set(benchmark::internal::Benchmark* b)
-{
-  b->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
-}
 }
 
 // spacing in 0.1 mm
 BENCHMARK(CleanFloat)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing", "mode", "threads" })
   ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, Bilinear, Nearest, NearestVoxel }, { 1, 2 } })
   ->ArgsProduct({ { 200 }, { 4 }, { AcrossSlices, Wide }, { 1, 2 } })
-  ->ArgsProduct({ { 600 }, { 4 }, { Footprint, Bilinear, Nearest, AcrossSlices }, { 1, 2 } });
+  ->ArgsProduct({ { 600 }, { 4 }, { Footprint, Bilinear, Nearest, AcrossSlices }, { 1, 2 } })
+  ->ArgsProduct({ { 200 }, { 4 }, { Footprint }, { 4 } })
+  ->ArgsProduct({ { 20, 2000 }, { 4 }, { Footprint }, { 2 } });
 BENCHMARK(CleanUInt8)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing", "mode", "threads" })
   ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, Bilinear, Nearest }, { 1, 2 } });
 BENCHMARK(NoisyFloat)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing", "mode", "threads" })
   ->ArgsProduct({ { 200 }, { 5, 4, 3 }, { Footprint, AcrossSlices, Wide }, { 2 } });
 BENCHMARK(NoisyUInt8)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing", "mode", "threads" })
   ->ArgsProduct({ { 200 }, { 4 }, { Footprint, AcrossSlices, Wide }, { 2 } });
 BENCHMARK(NoisyUInt8Rounded)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing", "mode", "threads" })
   ->Args({ 200, 4, Wide, 2 });
 BENCHMARK(SplatClean)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "slices", "spacing" })
-  ->ArgsProduct({ { 200 }, { 5, 4, 3 } });
-BENCHMARK(SplatNoisy)->Apply(Set)->ArgNames({ "slices", "spacing" })->Args({ 200, 4 });
-BENCHMARK(ReadAndWrite)->Apply(Set)->ArgName("spacing")->Arg(4);
+  ->ArgsProduct({ { 200 }, { 5, 4, 3 } })
+  ->ArgsProduct({ { 20, 2000 }, { 4 } });
+BENCHMARK(SplatNoisy)->Apply(Measure)->ArgNames({ "slices", "spacing" })->Args({ 200, 4 });
+BENCHMARK(ReadAndWrite)->Apply(Measure)->ArgName("spacing")->Arg(4);
 BENCHMARK(OneByOne)
-  ->Apply(Set)
+  ->Apply(Measure)
   ->ArgNames({ "spacing", "mode" })
   ->ArgsProduct({ { 4 }, { Footprint, Bilinear, Nearest, NearestVoxel, AcrossSlices, Wide } });
 BENCHMARK_MAIN();

@@ -4,17 +4,18 @@
 // looks between them nor links lines). Then the left-over map, and the judge of the tests: the depth
 // of the surface within the tool at 10^7 pairs of a triangle and a place on the swept path.
 // Counters: positions, microseconds for each, largest depth in um.
+#include "lacunaBenchmark.h"
 #include "lacunaExecution.h"
 #include "lacunaMaterialRemoval.h"
 #include "lacunaMillScene.h"
 #include "lacunaToolPath.h"
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
+
+using lacunaBenchmark::Measure;
 
 namespace
 {
@@ -24,6 +25,11 @@ const lacuna::MillSurface& Mould()
 {
   static const lacuna::MillSurface surface = lacunaMill::Surface(121, 121, 1, lacunaMill::Mould);
   return surface;
+}
+
+lacuna::MillSurface MouldOf(std::int64_t count)
+{
+  return lacunaMill::Surface(count, count, 120 / static_cast<double>(count - 1), lacunaMill::Mould);
 }
 
 void Report(benchmark::State& state, double positions)
@@ -43,6 +49,23 @@ void Path(benchmark::State& state)
   {
     const lacuna::MillSurface surface({ 121, 121 }, points);
     path = lacuna::MakeToolPath(execution, surface, {});
+  }
+  Report(state, static_cast<double>(path.Points.size()));
+}
+
+// As many lines as the surface has rows. argument: points along an edge
+void PathOfPoints(benchmark::State& state)
+{
+  const lacuna::MillSurface mould = MouldOf(state.range(0));
+  const std::vector<Vec3> points = mould.GetPoints();
+  lacuna::ThreadExecution execution(2);
+  lacuna::ToolPathOptions options;
+  options.StepOver = 120 / static_cast<double>(state.range(0) - 1);
+  lacuna::ToolPath path;
+  for (auto _ : state)
+  {
+    const lacuna::MillSurface surface(mould.GetSize(), points);
+    path = lacuna::MakeToolPath(execution, surface, options);
   }
   Report(state, static_cast<double>(path.Points.size()));
 }
@@ -127,10 +150,9 @@ double PlainDrop(const lacuna::MillSurface& surface, double radius, double x, do
   return best - radius;
 }
 
-void PlainDropCutter(benchmark::State& state)
+void DropPlainly(benchmark::State& state, const lacuna::MillSurface& surface, int threads)
 {
-  lacuna::ThreadExecution execution(static_cast<int>(state.range(0)));
-  const lacuna::MillSurface& surface = Mould();
+  lacuna::ThreadExecution execution(threads);
   std::vector<double> heights(surface.GetPoints().size());
   for (auto _ : state)
   {
@@ -154,6 +176,16 @@ void PlainDropCutter(benchmark::State& state)
   }
   Report(state, static_cast<double>(heights.size()));
   state.counters["difference_um"] = 1000 * difference;
+}
+
+void PlainDropCutter(benchmark::State& state)
+{
+  DropPlainly(state, Mould(), static_cast<int>(state.range(0)));
+}
+
+void PlainDropCutterOfPoints(benchmark::State& state)
+{
+  DropPlainly(state, MouldOf(state.range(0)), 2);
 }
 
 void DropAlone(benchmark::State& state)
@@ -196,9 +228,11 @@ void Judge(benchmark::State& state)
 }
 }
 
-BENCHMARK(Path)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(PathAndLeftOver)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(PlainDropCutter)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(DropAlone)->Arg(1)->Arg(2)->Arg(5)->Arg(10)->Unit(benchmark::kMillisecond);
-BENCHMARK(Judge)->Unit(benchmark::kMillisecond);
+BENCHMARK(Path)->Arg(1)->Arg(2)->Arg(4)->Apply(Measure);
+BENCHMARK(PathOfPoints)->ArgName("points")->Arg(39)->Arg(122)->Arg(384)->Apply(Measure);
+BENCHMARK(PathAndLeftOver)->Arg(1)->Arg(2)->Apply(Measure);
+BENCHMARK(PlainDropCutterOfPoints)->ArgName("points")->Arg(39)->Arg(122)->Apply(Measure);
+BENCHMARK(PlainDropCutter)->Arg(1)->Arg(2)->Apply(Measure);
+BENCHMARK(DropAlone)->Arg(1)->Arg(2)->Arg(5)->Arg(10)->Apply(Measure);
+BENCHMARK(Judge)->Apply(Measure);
 BENCHMARK_MAIN();

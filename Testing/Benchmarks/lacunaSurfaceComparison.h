@@ -24,6 +24,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace lacunaSurfaceComparison
@@ -91,6 +93,22 @@ struct Mesh
       volume += vtkMath::Dot(this->Points[t[0]].data(), this->GetNormal(t).data()) / 6;
     }
     return std::abs(volume);
+  }
+
+  /// Whether each edge has as many triangles on one side as on the other.
+  bool IsClosed() const
+  {
+    std::map<std::pair<vtkIdType, vtkIdType>, int> edges;
+    for (const auto& t : this->Triangles)
+    {
+      for (int corner = 0; corner < 3; ++corner)
+      {
+        const vtkIdType a = t[corner];
+        const vtkIdType b = t[(corner + 1) % 3];
+        edges[std::minmax(a, b)] += a < b ? 1 : -1;
+      }
+    }
+    return std::all_of(edges.begin(), edges.end(), [](const auto& e) { return e.second == 0; });
   }
 
   /// Takes the offset of a wrap away again.
