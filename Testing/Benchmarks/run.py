@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs all benchmarks beside their peers and writes a page with tables and plots.
+
+    Testing/Benchmarks/run.py                       all, some 40 minutes, into Documentation/Benchmarks
+    Testing/Benchmarks/run.py --quick               a few minutes, into build/benchmarks
+    Testing/Benchmarks/run.py --only speckle        one suite (several times for several)
+
+Needs a release build and the packages of Testing/Tools/packages-benchmarks.txt; peers that are not installed are
+left out, and so is what needs data of LACUNA_TEST_DATA where there is none. A benchmark that fails is noted on the
+page, the others go on. Leave the machine alone meanwhile: the page says how much others had of it.
+"""
+import argparse
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+from harness import cases, machine, report, rows
+from harness.statistics import Measured
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+MINUTES = 40
+
+
+class Runner:
+    def __init__(self, options):
+        self.build = os.path.abspath(options.build)
+        self.quick = options.quick
+        self.rounds = options.rounds
+        self.seconds = 0.02 if options.quick else 0.15
+        self.timeout = 120 if options.quick else 400
+        self.end = time.monotonic() + 60 * options.minutes
+        self.environment = self.read_environment()
+
+    def read_environment(self):
+        """With the plugins of the build, where it has them."""
+        script = os.path.join(self.build, "lacuna-env.sh")
+        environment = dict(os.environ)
+        if os.path.exists(script):
+            printed = subprocess.run(["bash", "-c", f". {shlex.quote(script)} && env -0"], check=True, stdout=subprocess.PIPE).stdout
+            environment = dict(each.split("=", 1) for each in printed.decode(errors="replace").split("\0") if "=" in each)
+        return environment
+
+    def command(self, program):
+        """None where the program is not there."""
+        if program.endswith(".py"):
+            display = [] if os.environ.get("DISPLAY") or "startup" not in program else ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24 -noreset"]
+            return [*display, sys.executable, os.path.join(HERE, program)] if not display or shutil.which("xvfb-run") else None
+        path = os.path.join(self.build, "bin", "Benchmark" + program)
+        return [path] if os.path.exists(path) else None
+
+    def measure(self, suite):
+        """All rounds of a suite."""
+        programs = suite.rows(self.quick)
+        rounds = suite.rounds or self.rounds
+        found = {cases.Row(program, name).key: [] for program, names in programs.items() for name in names}
+        errors, done, start, load = {}, 0, time.monotonic(), machine.Load()
+        for turn in range(rounds):
+            if turn and time.monotonic() > self.end:
+                break
+            for program, names in programs.items():
+                measured = {}
+                if program not in errors:
+                    try:
+                        measured = self.run(program, names)
+                    except rows.Failure as failure:
+                        errors[program] = str(failure)
+                for name in names:
+                    row, key = measured.get(name), cases.Row(program, name).key
+                    if row is None or row.error:
+                        found[key].append(None)
+                        if program not in errors:
+                            errors[key] = row.error if row else "there is no such row: what it needs was not installed when it was built"
+                    else:
+                        found[key].append({"wall": row.wall, "cpu": row.cpu, "counters": row.counters, "label": row.label})
+            done += 1
+            print(f"  {suite.name}: round {done} of {rounds}, {time.monotonic() - start:.0f} s", flush=True)
+        return {"rows": found, "errors": errors, "rounds": done, "others": load.others(), "seconds": time.monotonic() - start}
+
+    def run(self, program, names):
+        command = self.command(program)
+        if command is None:
+            raise rows.Failure("not there: what it needs was not installed when Lacuna was built, or nothing was built")
+        left = max(30.0, self.end - time.monotonic() + 60)
+        return rows.run(command, names, self.seconds, min(self.timeout, left), self.environment)
+
+    def ranks(self):
+        """ranks.py scales over MPI's ranks; its rows are CASE/strong/ranks:N and CASE/weak/ranks:N."""
+        script = os.path.join(HERE, "ranks.py")
+        if not os.path.exists(script):
+            return None
+        print("  ranks", flush=True)
+        try:
+            described = subprocess.run([sys.executable, script, "--help"], check=True, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT).stdout
+            quick = ["--quick"] if self.quick and "--quick" in described else []
+            with tempfile.TemporaryDirectory() as folder:
+                out = os.path.join(folder, "ranks.json")
+                written = ["--benchmark_out", out] if "--benchmark_out" in described else []
+                said = subprocess.run([sys.executable, script, *quick, *written], check=True, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                      timeout=self.timeout, env=self.environment).stdout
+                if not os.path.exists(out):
+                    return {"text": said.strip()}
+                with open(out, encoding="utf-8") as file:
+                    return {"rows": {name: row.wall for name, row in rows.parse(file.read()).items() if not row.error}, "text": said.strip()}
+        except (OSError, ValueError, KeyError, subprocess.SubprocessError) as problem:
+            return {"text": f"ranks.py failed: {problem}"}
+
+
+def rank_rows(results):
+    """{case: {kind: {ranks: ms}}}"""
+    found = {}
+    for name, wall in (results.get("ranks") or {}).get("rows", {}).items():
+        case, _, rest = name.rpartition("/ranks:")
+        case, _, kind = case.rpartition("/")
+        if rest.isdigit() and kind in ("strong", "weak"):
+            found.setdefault(case, {}).setdefault(kind, {})[int(rest)] = wall
+    return found
+
+
+def write(results, folder, suites):
+    """The page, its plots, and the figures themselves."""
+    os.makedirs(folder, exist_ok=True)
+    try:
+        from harness import plots  # after all was measured: without matplotlib there are the tables
+        drawn = plots.draw(results, suites, folder, rank_rows(results))
+    except ImportError as missing:
+        print(f"no plots: {missing} (Debian: python3-matplotlib)", file=sys.stderr)
+        drawn = []
+    for name in os.listdir(folder):
+        if name.endswith(".svg") and name[:-4] not in drawn:
+            os.remove(os.path.join(folder, name))  # of an earlier run
+    with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as file:
+        file.write(report.Page(results, suites).text(drawn))
+    with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:
+        json.dump(results, file, indent=1, ensure_ascii=False)
+        file.write("\n")
+
+
+def parse_arguments(arguments):
+    names = [suite.name for suite in cases.SUITES]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="small cases, two rounds")
+    parser.add_argument("--only", action="append", choices=names, metavar="NAME", help="one of " + ", ".join(names))
+    parser.add_argument("--output", metavar="FOLDER", help="default: Documentation/Benchmarks; build/benchmarks with --quick, --only or --rounds")
+    parser.add_argument("--build", default=os.path.join(ROOT, "build", "release"), metavar="FOLDER", help="default: build/release")
+    parser.add_argument("--rounds", type=int, metavar="N", help="default: 5; 2 with --quick")
+    parser.add_argument("--minutes", type=float, default=MINUTES, help=f"no new suite or round after so many; default: {MINUTES}")
+    parser.add_argument("--redraw", metavar="FILE", help="measure nothing, write page and plots of a results.json")
+    options = parser.parse_args(arguments)
+    if options.rounds is not None and options.rounds < 1:
+        parser.error("--rounds must be 1 or more")
+    partial = options.quick or options.only or options.rounds
+    options.output = options.output or (os.path.join(ROOT, "build", "benchmarks") if partial else os.path.join(ROOT, "Documentation", "Benchmarks"))
+    options.rounds = options.rounds or (2 if options.quick else 5)
+    return options
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    if options.redraw:
+        with open(options.redraw, encoding="utf-8") as file:
+            write(json.load(file), options.output, cases.SUITES)
+        return 0
+    runner = Runner(options)
+    suites = [suite for suite in cases.SUITES if not options.only or suite.name in options.only]
+    given = " ".join(["Testing/Benchmarks/run.py", *(["--quick"] if options.quick else []), *(f"--only {name}" for name in options.only or [])])
+    results = {"command": given, "machine": machine.describe(ROOT, runner.build), "cores": os.cpu_count(), "quick": options.quick, "rounds": options.rounds,
+               "suites": {}, "left_out": {}}
+    start, load = time.monotonic(), machine.Load()
+    for suite in suites:
+        if time.monotonic() > runner.end:
+            results["left_out"][suite.title] = f"not begun within {options.minutes:g} minutes"
+            continue
+        print(suite.title, flush=True)
+        results["suites"][suite.name] = runner.measure(suite)
+    if not options.only and time.monotonic() < runner.end:
+        results["ranks"] = runner.ranks()
+    results["load"] = {"mean": load.others(), "largest": max((each["others"] for each in results["suites"].values()), default=0.0)}
+    results["minutes"] = (time.monotonic() - start) / 60
+    write(results, options.output, suites)
+    failed = [f"{name}: {what}: {why}" for name, each in results["suites"].items() for what, why in each["errors"].items()]
+    print("\n".join([os.path.join(options.output, "README.md"), *(f"not measured: {each}" for each in failed)]))
+    nothing = not any(Measured(each).rows and any(any(values) for values in each["rows"].values()) for each in results["suites"].values())
+    return 1 if nothing else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
