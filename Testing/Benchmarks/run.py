@@ -13,6 +13,7 @@ page, the others go on. Leave the machine alone meanwhile: the page says how muc
 import argparse
 import json
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -34,17 +35,20 @@ class Runner:
         self.quick = options.quick
         self.rounds = options.rounds
         self.seconds = 0.02 if options.quick else 0.15
-        self.timeout = 120 if options.quick else 400
+        self.timeout = 300 if options.quick else 600
         self.end = time.monotonic() + 60 * options.minutes
         self.environment = self.read_environment()
 
     def read_environment(self):
-        """With the plugins of the build, where it has them."""
+        """With the plugins of the build, where it has them, and its data."""
         script = os.path.join(self.build, "lacuna-env.sh")
         environment = dict(os.environ)
         if os.path.exists(script):
             printed = subprocess.run(["bash", "-c", f". {shlex.quote(script)} && env -0"], check=True, stdout=subprocess.PIPE).stdout
             environment = dict(each.split("=", 1) for each in printed.decode(errors="replace").split("\0") if "=" in each)
+        data = re.search(r"^LACUNA_TEST_DATA:\w+=(.*)$", machine.read(os.path.join(self.build, "CMakeCache.txt")), re.MULTILINE)
+        if data:
+            environment.setdefault("LACUNA_TEST_DATA", data.group(1))
         return environment
 
     def command(self, program):

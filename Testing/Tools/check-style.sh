@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Rules that a tool can check: format, license tags, kernels without VTK, links of the pages, and
-# that the pages say what the plugin's XML says.
+# Rules that a tool can check: format, license tags, kernels without VTK, links of the pages, that the
+# pages say what the plugin's XML says, and that the commands behind their figures are there.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 sources=$(git ls-files '*.h' '*.cxx')
@@ -27,6 +27,7 @@ bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 grep -qx "version: $version" CITATION.cff || complain "CITATION.cff is not of version $version"
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
+python3 Testing/Tools/check-benchmarks.py || complain "commands behind figures of the pages, see above"
 python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"
 
 exit $failed

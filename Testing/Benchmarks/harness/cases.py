@@ -136,7 +136,7 @@ def speckle():
             against(f"mean 9 × 9 × 9, {slab}", "Size3D/Mean_uint8/9", Row(PEERS, "Size3D/Mean_uint8/9", SCIPY))),
         scalings=(
             Scaling("speckle-voxels", "Median of 9 × 9 × 9", "voxels",
-                    (points(own, "Cube/Median_uint8/{}", (46, 100, 215, 464), x=cube), points(own, "Cube/VTKMedian_uint8/{}", (46, 100), VTK, cube)), quick=1.1e6),
+                    (points(own, "Cube/Median_uint8/{}", (46, 100, 215, 464), x=cube), points(own, "Cube/VTKMedian_uint8/{}", (46, 100), VTK, cube)), quick=1e5),
             Scaling("speckle-window", f"Median, {slab}", "window's edge, voxels",
                     (points(own, "Size3D/Median_uint8/{}", (3, 5, 9, 15, 31)), points(own, "Size3D/VTKMedian_uint8/{}", (3, 5, 9), VTK),
                      points(PEERS, "Size3D/Median_uint8/{}", (3, 5, 9), SCIPY)), quick=3)),
@@ -324,6 +324,17 @@ def live_acquisition():
                  figures=(Figures("Live", columns, (("30 s", Row(own, "Live/seconds:30/signal:0")),), quick=False), Figures("Live, short", columns, (("1 s", Row(own, "Live/seconds:1/signal:0")),))), rounds=1)
 
 
+def filters():
+    own = "filters.py"
+    columns = (("wall", "clock, ms", ".0f"), ("cpu", "processor, ms", ".0f"), ("MB", "output, MB", ".2f"))
+    return Suite("filters", "Further filters", "Whole filters in VTK, on all cores unless said otherwise.", figures=(
+        Figures("Mirror and Slice Planes", columns, (
+            ("Mirror, 256³ voxels", Row(own, "Mirror/edge:256")), ("Mirror, 256³ voxels, plane given", Row(own, "MirrorGivenPlane/edge:256")),
+            ("Slice Planes, 200 slices of 640 × 480, at most 1 million points, one thread", Row(own, "SlicePlanes/points:1000000")),
+            ("the same, 4 million", Row(own, "SlicePlanes/points:4000000")), ("the same, all 61 million", Row(own, "SlicePlanes/points:100000000"))), quick=False),
+        Figures("Tracked Slice Writer, ultrasound_spine, by level of compression", columns, tuple((str(level), Row(own, f"Writer/level:{level}")) for level in (0, 1, 6, 9)))))
+
+
 def plugin_startup():
     def against(program):
         return Comparison(f"start of {program}", Row("plugin_startup.py", f"{program}/with"), (Row("plugin_startup.py", f"{program}/without", "yardstick: without plugins"),), quick=program == "pvpython")
@@ -331,4 +342,4 @@ def plugin_startup():
 
 
 SUITES = tuple(make() for make in (speckle, radial_basis, swept_volume, iso_ray_caster, slice_ray_caster, growing_sweep, occluded_angle, closed_surfaces, iges, tool_path,
-                                   implant_plate, ct_series, probe_calibration, live_acquisition, plugin_startup))
+                                   implant_plate, ct_series, probe_calibration, live_acquisition, filters, plugin_startup))

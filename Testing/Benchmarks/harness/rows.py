@@ -99,7 +99,7 @@ class Program:
         self.rows = []
 
     def add(self, name, prepare):
-        """prepare() returns what is to be measured, a function that may return a dict of counters."""
+        """prepare() returns what is to be measured, a function that may return a dict of counters; None without its data."""
         self.rows.append((name, prepare))
 
     def main(self, arguments=None):
@@ -117,6 +117,9 @@ class Program:
         results = []
         for name, prepare in chosen:
             results.append(self.measure(name, prepare, options.benchmark_min_time))
+            if "real_time" not in results[-1]:
+                print(f"{name:50} {results[-1]['error_message']}", flush=True)
+                continue
             shown = {key: f"{value:.4g}" for key, value in results[-1].items() if isinstance(value, float) and key not in ("real_time", "cpu_time")}
             print(f"{name:50} {results[-1]['real_time']:12.3f} ms {results[-1]['cpu_time']:12.3f} ms  "
                   + "  ".join(f"{key}={value}" for key, value in shown.items()), flush=True)
@@ -127,6 +130,8 @@ class Program:
     @staticmethod
     def measure(name, prepare, least):
         function = prepare()
+        if function is None:
+            return {"name": name, "run_type": "iteration", "error_occurred": True, "error_message": "what it reads is not in LACUNA_TEST_DATA"}
         iterations, counters = 0, None
         start, busy = time.perf_counter(), processor_seconds()
         while True:
