@@ -73,7 +73,12 @@ vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(int k) const
 //------------------------------------------------------------------------------
 vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(vtkImageData* stack, int k, vtkIdType slices)
 {
-  const double z = stack->GetOrigin()[2] + stack->GetSpacing()[2] * k;
+  return GetSliceNumber(stack->GetOrigin()[2] + stack->GetSpacing()[2] * k, slices);
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(double z, vtkIdType slices)
+{
   if (!(std::abs(z - std::round(z)) < 1e-3))
   {
     std::ostringstream message;

@@ -15,8 +15,9 @@
 /// - FrameNumber (int): number in the file or of the frame grabber
 /// - ProbeToTracker, ... (double, 16 components): every transform of the file under its own name
 ///
-/// and, when known, ImageToProbe with one tuple. The information of a stack that is being taken has
-/// GROWS.
+/// and with one tuple: ImageToProbe, when known; Preview (string), when the stack holds only every
+/// n-th slice because all would not fit into the memory (vtkLacunaSliceStream.h). The information of
+/// a stack that is being taken has GROWS.
 #ifndef vtkLacunaTrackedSlices_h
 #define vtkLacunaTrackedSlices_h
 
@@ -38,6 +39,7 @@ public:
   static constexpr const char* TimestampName = "Timestamp";
   static constexpr const char* SliceStatusName = "SliceStatus";
   static constexpr const char* FrameNumberName = "FrameNumber";
+  static constexpr const char* PreviewName = "Preview";
 
   /// Flags of SliceStatus.
   enum Status : unsigned char
@@ -65,6 +67,8 @@ public:
 
   /// The same for a stack whose probe is not calibrated, of a sweep of so many slices.
   static vtkIdType GetSliceNumber(vtkImageData* stack, int k, vtkIdType slices);
+  /// The same for a z coordinate.
+  static vtkIdType GetSliceNumber(double z, vtkIdType slices);
 
   /// (column, row, 0, 1) to mm in the reference frame.
   const lacuna::Matrix4& GetImageToReference(vtkIdType slice) const { return this->Poses[slice]; }

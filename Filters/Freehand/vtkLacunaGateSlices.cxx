@@ -14,6 +14,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -154,6 +155,14 @@ void vtkLacunaGateSlices::SetKeyColumn(const char* name)
     this->KeyColumn = name ? name : "";
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaGateSlices::RequestInformation(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkLacunaSliceStream::Pass(this, outputs->GetInformationObject(0));
+  return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------

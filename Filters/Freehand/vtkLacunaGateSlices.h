@@ -22,6 +22,9 @@
  * Output: the slices, with SliceStatus, and field data array Gate (double, NaN where there is no
  * value), Provenance.
  *
+ * Slices that are too many for the memory (vtkLacunaSliceStream.h) are marked like others, and their
+ * stream is passed on.
+ *
  * It is an error when columns or arrays are missing or have the wrong length, when there is nothing
  * to gate by, and for a range or period that makes no sense.
  *
@@ -133,6 +136,8 @@ protected:
   ~vtkLacunaGateSlices() override = default;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 

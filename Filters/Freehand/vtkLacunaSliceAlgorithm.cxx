@@ -6,6 +6,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <utility>
@@ -31,7 +32,11 @@ int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
 {
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
-    vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(i));
+    vtkInformation* info = inputs[0]->GetInformationObject(i);
+    if (!this->TakesStreams() || !vtkLacunaSliceStream::RequestFields(this, info, 0, i))
+    {
+      vtkLacunaRequest::Whole(info);
+    }
   }
   return 1;
 }

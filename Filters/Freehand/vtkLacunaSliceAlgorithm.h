@@ -9,7 +9,9 @@
  *
  * What is made of slices lies where their poses say, which are data: so the input is brought up to
  * date already when information about the output is asked for, and again when the time changes. It
- * is always asked for as a whole, since any part of the output may need any slice, on any rank.
+ * is always asked for as a whole, since any part of the output may need any slice, on any rank. A
+ * subclass that takes streams (vtkLacunaSliceStream.h) asks for one slice of a preview, for its field
+ * data.
  *
  * Replays: while an input with time steps has not reached the last of them, those slices are still
  * to come which stand at its end and have an invalid image (SliceStatus 2). They are never taken,
@@ -111,6 +113,10 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+  /// Whether slices that are too many for the memory are taken from their stream; else what is made
+  /// of a preview is a preview, and a warning says so. Default: no.
+  virtual bool TakesStreams() const { return false; }
 
   /// Gives those warnings of an update that the one before did not give. warnings: the text for
   /// each fact, by a name that stays the same while it is the same fact. leftOut: the sentences

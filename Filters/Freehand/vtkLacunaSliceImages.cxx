@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceImages.h"
 
+#include "lacunaExecution.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
@@ -9,12 +11,15 @@
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSliceAlgorithm.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkMatrix3x3.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -38,12 +43,10 @@ void CheckClip(const std::array<int, 4>& clip)
   }
 }
 
-// Cuts one axis of a stack to a part of the clip rectangle; size 0 reaches to the edge.
-Range Clip(vtkImageData* stack, int axis, int start, int size)
+// Cuts one axis of a stack to a part of the clip rectangle; size 0 reaches to the edge. extent: of
+// that axis.
+Range Clip(const int extent[2], double origin, double spacing, int axis, int start, int size)
 {
-  const int* extent = stack->GetExtent() + (axis == 0 ? 0 : 2);
-  const double origin = stack->GetOrigin()[axis];
-  const double spacing = stack->GetSpacing()[axis];
   Range range{ extent[0], extent[1] };
   const double first = origin + spacing * range.First;
   const double last = origin + spacing * range.Last;
@@ -120,15 +123,20 @@ vtkLacunaSliceSelection vtkLacunaSliceSelection::Make(
 struct vtkLacunaSliceImages::Candidate
 {
   vtkIdType Number;
+  int Layer; // index along z
   bool HasImage;
   lacuna::SliceImage Slice;
 };
 
 //------------------------------------------------------------------------------
 vtkLacunaSliceImages::vtkLacunaSliceImages(
-  vtkImageData* stack, const vtkLacunaSliceSelection& selection)
+  vtkImageData* stack, const vtkLacunaSliceSelection& selection, vtkLacunaSliceStream* stream)
   : Stack(stack)
+  , Stream(stream)
 {
+  std::copy_n(stream ? stream->GetExtent() : stack->GetExtent(), 6, this->Extent);
+  std::copy_n(stream ? stream->GetOrigin() : stack->GetOrigin(), 3, this->Origin.begin());
+  std::copy_n(stream ? stream->GetSpacing() : stack->GetSpacing(), 3, this->Spacing.begin());
   const vtkLacunaTrackedSlices tracked(stack);
   CheckStack(stack);
   this->GreyLevels = tracked.GetGreyLevels();
@@ -147,6 +155,10 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
       if (candidate.HasImage == hasImage)
       {
         (hasImage ? this->Slices : this->Others).push_back(candidate.Slice);
+        if (hasImage)
+        {
+          this->Layers.push_back(candidate.Layer);
+        }
         this->Poses.push_back(tracked.GetImageToReference(candidate.Number));
       }
     }
@@ -179,11 +191,14 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
   vtkImageData* const stack = this->Stack;
   const lacuna::ScalarType type = vtkLacunaScalarType::Get(this->GreyLevels);
   const auto* pixels = static_cast<const unsigned char*>(this->GreyLevels->GetVoidPointer(0));
+  const int* extent = this->Extent;
+  const std::array<double, 3>& origin = this->Origin;
+  const std::array<double, 3>& spacing = this->Spacing;
   CheckClip(selection.Clip);
-  const Range columns = Clip(stack, 0, selection.Clip[0], selection.Clip[2]);
-  const Range rows = Clip(stack, 1, selection.Clip[1], selection.Clip[3]);
-  const double* origin = stack->GetOrigin();
-  const double* spacing = stack->GetSpacing();
+  const Range columns =
+    Clip(extent, origin[0], spacing[0], 0, selection.Clip[0], selection.Clip[2]);
+  const Range rows =
+    Clip(extent + 2, origin[1], spacing[1], 1, selection.Clip[1], selection.Clip[3]);
   this->Window.Origin = { origin[0] + spacing[0] * columns.First,
     origin[1] + spacing[1] * rows.First };
   this->Window.Step = { spacing[0], spacing[1] };
@@ -191,17 +206,18 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
   vtkDataArray* const frames = vtkLacunaFieldData::Find(
     stack, vtkLacunaTrackedSlices::FrameNumberName, 1, tracked.GetNumberOfSlices());
 
-  const int* extent = stack->GetExtent();
   const std::int64_t width = extent[1] - extent[0] + 1;
   const std::int64_t height = extent[3] - extent[2] + 1;
   std::vector<std::int64_t> layers(tracked.GetNumberOfSlices(), -1); // of the stack
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
-    std::int64_t& layer = layers[tracked.GetSliceNumber(k)];
+    const vtkIdType number = vtkLacunaTrackedSlices::GetSliceNumber(
+      origin[2] + spacing[2] * k, tracked.GetNumberOfSlices());
+    std::int64_t& layer = layers[number];
     if (layer >= 0)
     {
-      throw std::runtime_error("the stack holds slice " +
-        std::to_string(tracked.GetSliceNumber(k)) + " twice; its z spacing must be 1 or more");
+      throw std::runtime_error("the stack holds slice " + std::to_string(number) +
+        " twice; its z spacing must be 1 or more");
     }
     layer = k - extent[4];
   }
@@ -235,10 +251,11 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
     {
       Candidate candidate;
       candidate.Number = number;
+      candidate.Layer = static_cast<int>(layer) + extent[4];
       candidate.HasImage = isUsable;
       lacuna::SliceImage& slice = candidate.Slice;
       slice.Type = type;
-      if (isUsable)
+      if (isUsable && !this->Stream)
       {
         slice.Pixels = pixels +
           (layer * height * width + (rows.First - extent[2]) * width + columns.First - extent[0]) *
@@ -323,6 +340,82 @@ void vtkLacunaSliceImages::ApplyFan(const vtkLacunaSliceFan& fan)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribePreview() const
+{
+  auto* preview = vtkStringArray::SafeDownCast(
+    this->Stack->GetFieldData()->GetAbstractArray(vtkLacunaTrackedSlices::PreviewName));
+  return !this->Stream && preview && preview->GetNumberOfValues() > 0
+    ? "the input is made of " + preview->GetValue(0)
+    : std::string();
+}
+
+//------------------------------------------------------------------------------
+std::vector<lacuna::SliceImage> vtkLacunaSliceImages::Load(const std::vector<std::size_t>& indices,
+  std::vector<unsigned char>& storage, lacuna::Execution& execution) const
+{
+  std::vector<lacuna::SliceImage> loaded;
+  for (const std::size_t i : indices)
+  {
+    loaded.push_back(this->Slices[i]);
+  }
+  if (!this->Stream)
+  {
+    return loaded;
+  }
+  const auto sliceSize = static_cast<std::size_t>(this->Stream->GetSliceSize());
+  storage.resize(indices.size() * sliceSize);
+  for (std::size_t begin = 0, end = 0; begin < indices.size(); begin = end)
+  {
+    const int first = this->Layers[indices[begin]];
+    while (
+      end < indices.size() && this->Layers[indices[end]] == first + static_cast<int>(end - begin))
+    {
+      ++end;
+    }
+    this->Stream->Read(first, first + static_cast<int>(end - begin) - 1,
+      storage.data() + begin * sliceSize, execution);
+  }
+  // where the window begins in a slice of the stack
+  const auto column =
+    std::llround((this->Window.Origin[0] - this->Origin[0]) / this->Spacing[0]) - this->Extent[0];
+  const auto row =
+    std::llround((this->Window.Origin[1] - this->Origin[1]) / this->Spacing[1]) - this->Extent[2];
+  for (std::size_t n = 0; n < loaded.size(); ++n)
+  {
+    lacuna::SliceImage& slice = loaded[n];
+    slice.Pixels = storage.data() + n * sliceSize +
+      (slice.RowStride * row + column) *
+        static_cast<std::int64_t>(lacuna::GetScalarSize(slice.Type));
+  }
+  return loaded;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::ForEachPart(
+  lacuna::Execution& execution, double begin, double end, const Part& f) const
+{
+  const std::size_t count = this->Slices.size();
+  if (!this->Stream)
+  {
+    f(this->Slices, 0, 1);
+    return;
+  }
+  const auto atATime = static_cast<std::size_t>(this->Stream->GetSlicesAtATime());
+  std::vector<unsigned char> storage;
+  std::vector<std::size_t> indices;
+  for (std::size_t next = 0; next < count; next += indices.size())
+  {
+    indices.resize(std::min(atATime, count - next));
+    std::iota(indices.begin(), indices.end(), next);
+    const double first = static_cast<double>(next) / static_cast<double>(count);
+    const double last = static_cast<double>(next + indices.size()) / static_cast<double>(count);
+    const double progress = begin + (end - begin) * first;
+    execution.SetStage(progress, progress);
+    f(this->Load(indices, storage, execution), first, last);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSliceImages::HideSlices()
 {
   this->Others.insert(this->Others.begin(), this->Slices.begin(), this->Slices.end());
@@ -333,7 +426,7 @@ void vtkLacunaSliceImages::HideSlices()
 std::string vtkLacunaSliceImages::DescribeFlags() const
 {
   std::ostringstream text;
-  text << this->NumberLeftOut << " of " << this->Stack->GetDimensions()[2]
+  text << this->NumberLeftOut << " of " << this->GetNumberOfLayers()
        << " are flagged in SliceStatus";
   const char* separator = ": ";
   for (std::size_t flag = 0; flag < FlagNames.size(); ++flag)

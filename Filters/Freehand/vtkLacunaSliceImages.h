@@ -10,13 +10,19 @@
 #include "vtkType.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
+namespace lacuna
+{
+class Execution;
+}
 class vtkDataArray;
 class vtkImageData;
 class vtkInformation;
 class vtkLacunaSliceAlgorithm;
+class vtkLacunaSliceStream;
 class vtkLacunaTrackedSlices;
 
 /// Which slices of a stack to take, and which part of them.
@@ -56,7 +62,27 @@ struct vtkLacunaSliceImages
   /// Refers to the pixels of stack, which must outlive this object. Throws std::exception with a
   /// text for the user when stack is not what vtkLacunaTrackedSlices.h wants, for bad poses as
   /// selection says, and when its clip leaves less than 2 x 2 pixels.
-  vtkLacunaSliceImages(vtkImageData* stack, const vtkLacunaSliceSelection& selection);
+  /// stream: when given, the slices are its own, stack is a preview of them, and Slices have no
+  /// pixels: see ForEachPart. It must outlive this object, too.
+  vtkLacunaSliceImages(vtkImageData* stack, const vtkLacunaSliceSelection& selection,
+    vtkLacunaSliceStream* stream = nullptr);
+
+  /// A warning when these are the slices of a preview only; else empty.
+  std::string DescribePreview() const;
+
+  /// Slices of the whole stack, used or not.
+  int GetNumberOfLayers() const { return this->Extent[5] - this->Extent[4] + 1; }
+
+  /// Gives f the slices with their pixels, in order: all at once, or, of a stream, as many as are
+  /// read at a time; the pixels are there until f returns. first and last: how much of Slices is
+  /// done before and after it, from 0 to 1. Progress of reading covers begin..end of the whole.
+  using Part =
+    std::function<void(const std::vector<lacuna::SliceImage>& slices, double first, double last)>;
+  void ForEachPart(lacuna::Execution& execution, double begin, double end, const Part& f) const;
+
+  /// Of the slices with these indices in Slices (ascending), with pixels that storage holds.
+  std::vector<lacuna::SliceImage> Load(const std::vector<std::size_t>& indices,
+    std::vector<unsigned char>& storage, lacuna::Execution& execution) const;
 
   /// How many slices of the stack are flagged with what, for a message: "20 of 21 are left out: 18
   /// pose invalid, 2 gated out".
@@ -75,6 +101,7 @@ struct vtkLacunaSliceImages
   static std::string DescribeLeftOut(const std::vector<std::string>& leftOut);
 
   vtkImageData* Stack;
+  vtkLacunaSliceStream* Stream;             ///< null when the slices are in the stack
   vtkSmartPointer<vtkDataArray> GreyLevels; ///< in one piece of memory
   std::vector<lacuna::SliceImage> Slices;
   /// In a replay: slices whose pose is known, but not their image. They have no pixels.
@@ -90,6 +117,9 @@ struct vtkLacunaSliceImages
 
 private:
   struct Candidate;
+  int Extent[6]; // of the whole stack
+  std::array<double, 3> Origin, Spacing;
+  std::vector<int> Layers; // of Slices: indices along z
   std::vector<bool> FindSlicesToCome(const vtkLacunaTrackedSlices& tracked) const;
   std::vector<Candidate> FindCandidates(
     const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);

@@ -289,6 +289,11 @@ int vtkLacunaSliceRayCaster::RequestData(
 void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
 {
   std::map<std::string, std::string> warnings;
+  const std::string preview = plan.Images->DescribePreview();
+  if (!preview.empty())
+  {
+    warnings["preview"] = preview;
+  }
   const lacuna::SliceRayCaster& caster = *this->Kept->Caster;
   const std::int64_t edgeOn = caster.GetNumberOfEdgeOnSlices();
   if (edgeOn > 0)

@@ -94,6 +94,14 @@ std::map<std::string, std::string> CheckVolume(
   {
     warnings["miss"] = "the volume is empty: " + plan.Grid.Miss;
   }
+  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  {
+    const std::string preview = sweep.DescribePreview();
+    if (!preview.empty())
+    {
+      warnings["preview"] = preview;
+    }
+  }
   if (pairs.Turned > 0)
   {
     warnings["turned"] = std::to_string(pairs.Turned) + " of " + std::to_string(pairs.All) +
@@ -107,6 +115,46 @@ std::map<std::string, std::string> CheckVolume(
       "slices cover (or OutputBounds); it is meant in mm";
   }
   return warnings;
+}
+
+// Fills a volume from slices of which some are not in memory.
+std::unique_ptr<lacuna::SweptVolume> FillFromStreams(const vtkLacunaSweptVolumePlan& plan,
+  const std::array<int, 6>& extent, lacuna::Execution& execution, double end)
+{
+  auto volume = std::make_unique<lacuna::SweptVolume>(plan.Grid, extent, plan.Options);
+  double all = 0;
+  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  {
+    all += static_cast<double>(sweep.Slices.size());
+  }
+  double done = 0;
+  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  {
+    const double begin = end * done / all;
+    done += static_cast<double>(sweep.Slices.size());
+    const double length = end * done / all - begin;
+    volume->BeginSweep();
+    sweep.ForEachPart(execution, begin, begin + length,
+      [&](const std::vector<lacuna::SliceImage>& slices, double first, double last)
+      { volume->AddSlices(slices, execution, begin + length * first, begin + length * last); });
+  }
+  return volume;
+}
+
+// What a volume was made of, for its provenance: pixels that were read in parts have no hash.
+std::vector<vtkSmartPointer<vtkDataObject>> GetOrigins(const vtkLacunaSweptVolumePlan& plan)
+{
+  std::vector<vtkSmartPointer<vtkDataObject>> origins;
+  for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+  {
+    origins.emplace_back(sweep.Stack);
+    if (sweep.Stream)
+    {
+      origins.back() = vtkSmartPointer<vtkImageData>::New();
+      origins.back()->GetFieldData()->ShallowCopy(sweep.Stack->GetFieldData());
+    }
+  }
+  return origins;
 }
 }
 
@@ -242,8 +290,16 @@ int vtkLacunaSweptVolume::RequestData(
         {
           sweeps.push_back(&sweep.Slices);
         }
-        const lacuna::SweptVolume& volume = this->Growing->Update(
-          sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
+        std::unique_ptr<lacuna::SweptVolume> streamed;
+        if (plan.HasStreams())
+        {
+          this->Growing = std::make_unique<lacuna::GrowingVolume>(); // without what was kept
+          streamed = FillFromStreams(plan, extent, execution, 0.9);
+        }
+        const lacuna::SweptVolume& volume = streamed
+          ? *streamed
+          : this->Growing->Update(
+              sweeps, plan.Grid, extent, plan.Options, plan.IsReplay, execution, 0, 0.9);
         warnings = CheckVolume(volume, plan);
         execution.SetStage(0.9, 1);
         std::int64_t faults = 0;
@@ -273,12 +329,9 @@ int vtkLacunaSweptVolume::RequestData(
       output->GetPointData()->AddArray(contributions);
       output->GetPointData()->AddArray(mask);
       WriteFans(output, *this->Fans);
-      std::vector<vtkDataObject*> stacks;
-      for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
-      {
-        stacks.push_back(sweep.Stack);
-      }
-      vtkLacunaProvenance::Record(output, this, stacks, this->DescribeParameters());
+      const std::vector<vtkSmartPointer<vtkDataObject>> origins = GetOrigins(plan);
+      vtkLacunaProvenance::Record(
+        output, this, { origins.begin(), origins.end() }, this->DescribeParameters());
     });
 }
 

@@ -31,6 +31,10 @@
  * not change for that: in a replay (an input with time steps) it is that of the whole sweep, with
  * FanMask Automatic that of the whole images; for a live source set OutputBounds and OutputSpacing.
  *
+ * Input that is too large for the memory: of a preview (vtkLacunaSliceStream.h) all slices are taken,
+ * a few at a time, in bounded memory; the volume is bit by bit that of all slices in memory. Each
+ * requested piece reads all of them.
+ *
  * Errors: an array of the input is missing; fewer than two slices of an input are left (one for
  * NearestVoxel); a pose cannot be true (see BadPoses); all slices lie in one plane; the fan cannot
  * be found; the volume would need more than MemoryLimit. What a replay has not shown yet is no
@@ -210,6 +214,7 @@ protected:
   vtkLacunaSweptVolume();
   ~vtkLacunaSweptVolume() override;
 
+  bool TakesStreams() const override { return true; }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;

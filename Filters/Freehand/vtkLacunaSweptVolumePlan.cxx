@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSweptVolumePlan.h"
 
+#include "lacunaActivityMap.h"
 #include "lacunaPrincipalFrame.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaExecution.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkLacunaSweptVolume.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+namespace
+{
+// Looks at the same slices, whether they are in memory or not.
+vtkLacunaSliceFan DetectFan(const vtkLacunaSliceImages& sweep, vtkAlgorithm* filter)
+{
+  vtkLacunaExecution execution(filter);
+  execution.SetStage(0, 0);
+  std::vector<unsigned char> storage;
+  return vtkLacunaSliceFan::Detect(
+    sweep.Load(lacuna::ActivityMap::ChooseSlices(sweep.Slices.size()), storage, execution),
+    sweep.Window);
+}
+}
 
 //------------------------------------------------------------------------------
 vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
@@ -35,6 +52,13 @@ vtkLacunaSweptVolumePlan::vtkLacunaSweptVolumePlan(
 }
 
 //------------------------------------------------------------------------------
+bool vtkLacunaSweptVolumePlan::HasStreams() const
+{
+  return std::any_of(this->Sweeps.begin(), this->Sweeps.end(),
+    [](const vtkLacunaSliceImages& sweep) { return sweep.Stream != nullptr; });
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSweptVolumePlan::ReadSweeps(
   vtkLacunaSweptVolume* filter, vtkInformationVector* inputs)
 {
@@ -51,7 +75,7 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
       vtkLacunaSliceSelection::Make(filter, inputs->GetInformationObject(i));
     this->IsReplay |= selection.IsReplay;
     selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";
-    this->Sweeps.emplace_back(stack, selection);
+    this->Sweeps.emplace_back(stack, selection, vtkLacunaSliceStream::Find(filter, 0, i));
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
     this->LeftOut.insert(this->LeftOut.end(), sweep.LeftOut.begin(), sweep.LeftOut.end());
     this->IsMoreToCome |= sweep.IsMoreToCome;
@@ -67,9 +91,9 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     {
       std::ostringstream message;
       message << "the slices" << selection.Suffix << " are too few: " << sweep.Slices.size()
-              << " of " << stack->GetDimensions()[2] << " can be used, at least " << needed
+              << " of " << sweep.GetNumberOfLayers() << " can be used, at least " << needed
               << " are needed";
-      if (stack->GetDimensions()[2] < needed)
+      if (sweep.GetNumberOfLayers() < needed)
       {
         message << ", since a volume is made of what lies between slices; give more slices, or set "
                    "Interpolation to NearestVoxel, which takes one";
@@ -121,7 +145,7 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
     {
       try
       {
-        fans.Found.emplace_back(vtkLacunaSliceFan::Detect(sweep.Slices, sweep.Window));
+        fans.Found.emplace_back(DetectFan(sweep, filter));
       }
       catch (const std::runtime_error& error)
       {

@@ -40,6 +40,8 @@ public:
 
   /// True when there is nothing in the inputs.
   bool IsEmpty() const { return this->Sweeps.empty(); }
+  /// True when pixels of an input are not in memory.
+  bool HasStreams() const;
 
   std::vector<vtkLacunaSliceImages> Sweeps; ///< poses lead to the output's frame
   /// Voxel (0, 0, 0) in the reference frame, mm.

@@ -13,6 +13,8 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSequenceNames.h"
+#include "vtkLacunaSliceStream.h"
+#include "vtkLacunaStreamedPixels.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
@@ -34,7 +36,8 @@ constexpr double MostPixels = 1e9;
 const std::set<std::string> OwnNames = { vtkLacunaTrackedSlices::ImageToReferenceName,
   vtkLacunaTrackedSlices::ImageToProbeName, vtkLacunaTrackedSlices::TimestampName,
   vtkLacunaTrackedSlices::SliceStatusName, vtkLacunaTrackedSlices::FrameNumberName,
-  vtkLacunaProvenance::ArrayName, vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
+  vtkLacunaTrackedSlices::PreviewName, vtkLacunaProvenance::ArrayName,
+  vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
   vtkLacunaSequenceNames::Orientation, ImageStatus };
 
 std::string GetString(vtkImageData* stack, const char* name, vtkIdType i)
@@ -55,13 +58,24 @@ std::string FormatTuple(vtkDataArray* array, vtkIdType i)
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaSequenceContent::vtkLacunaSequenceContent(
-  vtkImageData* stack, const lacuna::SequenceKind& kind)
+vtkLacunaSequenceContent::vtkLacunaSequenceContent(vtkImageData* stack,
+  const lacuna::SequenceKind& kind, vtkLacunaSliceStream* stream, lacuna::Execution& execution)
   : Stack(stack)
+  , Whole(stream ? Place{ stream->GetExtent(), stream->GetOrigin(), stream->GetSpacing() }
+                 : Place{ stack->GetExtent(), stack->GetOrigin(), stack->GetSpacing() })
   , Kind(kind)
 {
   this->FindSlices();
   this->FindPixels();
+  const std::string preview = GetString(stack, vtkLacunaTrackedSlices::PreviewName, 0);
+  if (stream)
+  {
+    this->Content.GetPixels = vtkLacunaStreamedPixels(stream, execution);
+  }
+  else if (!preview.empty())
+  {
+    this->Warnings.push_back("the input is made of " + preview);
+  }
   this->AddArrays();
   this->AddStates();
   this->AddPoses();
@@ -80,18 +94,15 @@ void vtkLacunaSequenceContent::FindSlices()
                              "array 'SliceStatus'; write other images with ParaView's own writers");
   }
   this->Count = status->GetNumberOfTuples();
-  const int* extent = this->Stack->GetExtent();
+  const auto [extent, origin, spacing] = this->Whole;
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
-    this->Slices.push_back(vtkLacunaTrackedSlices::GetSliceNumber(this->Stack, k, this->Count));
+    this->Slices.push_back(
+      vtkLacunaTrackedSlices::GetSliceNumber(origin[2] + spacing[2] * k, this->Count));
     this->Status.push_back(static_cast<unsigned char>(status->GetTuple1(this->Slices.back())));
   }
   this->Content.Frames.resize(this->Slices.size());
 
-  double origin[3];
-  double spacing[3];
-  this->Stack->GetOrigin(origin);
-  this->Stack->GetSpacing(spacing);
   this->PixelToImage = lacuna::Matrix4::Translation({ origin[0] + spacing[0] * extent[0],
                          origin[1] + spacing[1] * extent[2], 0 }) *
     lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });

@@ -14,14 +14,22 @@
 class vtkAbstractArray;
 class vtkDataArray;
 class vtkImageData;
+class vtkLacunaSliceStream;
 class vtkStringArray;
+namespace lacuna
+{
+class Execution;
+}
 
 class vtkLacunaSequenceContent
 {
 public:
   /// Collects the slices that stack holds, with their fields; stack must outlive this object.
-  /// Throws std::runtime_error that names the array when stack is not tracked slices.
-  vtkLacunaSequenceContent(vtkImageData* stack, const lacuna::SequenceKind& kind);
+  /// stream: when given, the slices are its own, and stack is a preview of them; both must outlive
+  /// this object. execution: for reading them. Throws std::runtime_error that names the array when
+  /// stack is not tracked slices.
+  vtkLacunaSequenceContent(vtkImageData* stack, const lacuna::SequenceKind& kind,
+    vtkLacunaSliceStream* stream, lacuna::Execution& execution);
 
   const lacuna::SequenceContent& Get() const { return this->Content; }
   /// What cannot be written, one sentence each.
@@ -49,7 +57,15 @@ private:
   const std::string* FindText(std::size_t frame, const std::string& field) const;
   std::vector<std::string> GetTexts(const std::string& name) const;
 
+  /// Where the stack lies, or that of all slices.
+  struct Place
+  {
+    const int* Extent;
+    const double* Origin;
+    const double* Spacing;
+  };
   vtkImageData* Stack;
+  Place Whole;
   const lacuna::SequenceKind& Kind;
   lacuna::SequenceContent Content;
   std::vector<std::string> Warnings;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaTrackedSliceReader.h"
 
+#include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "lacunaPixelSource.h"
 #include "lacunaSequenceFormat.h"
-#include "lacunaSequenceHeader.h"
 #include "lacunaSequenceText.h"
-#include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
 #include "lacunaSweepReplay.h"
 #include "lacunaSweepTransforms.h"
@@ -21,7 +19,9 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaSequenceFile.h"
 #include "vtkLacunaSequenceNames.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -30,13 +30,11 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
-#include <vtksys/SystemInformation.hxx>
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 
 namespace
@@ -73,10 +71,7 @@ void AddStrings(vtkDataObject* data, const std::string& name, const std::vector<
 
 struct vtkLacunaTrackedSliceReader::Sequence
 {
-  lacuna::SequenceHeader Header;
-  std::unique_ptr<lacuna::PixelSource> Pixels;
-  int First = 0; // slice at index 0 of the stack
-  int Slices = 0;
+  std::shared_ptr<vtkLacunaSequenceFile> File;
   std::unique_ptr<lacuna::SweepReplay> Replay; // null unless asked for
   vtkSmartPointer<vtkImageData> Fields;        // its field data are those of every output
   // What was read for the time before this one.
@@ -111,29 +106,26 @@ int vtkLacunaTrackedSliceReader::CanReadFile(const char* fileName)
 }
 
 //------------------------------------------------------------------------------
+double vtkLacunaTrackedSliceReader::GetMostBytes() const
+{
+  constexpr double mebibyte = 1048576;
+  constexpr double unlimited = 9e18;
+  const double machine = lacuna::GetPhysicalMemory();
+  return this->MemoryLimit > 0 ? this->MemoryLimit * mebibyte
+    : machine > 0              ? machine / 4
+                               : unlimited;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 {
-  sequence.Header = lacuna::ReadSequenceHeader(this->FileName);
-  sequence.Pixels = lacuna::PixelSource::Open(sequence.Header);
-
-  const auto frames = static_cast<int>(sequence.Header.Frames);
-  const auto whole = static_cast<int>(sequence.Pixels->GetNumberOfWholeFrames());
-  const int first = this->FrameRange[0];
-  const int last = this->FrameRange[1] == -1 ? frames - 1 : this->FrameRange[1];
-  if (first < 0 || last < first || last >= frames || first >= whole)
-  {
-    std::ostringstream message;
-    message << this->FileName << ": FrameRange " << first << " " << this->FrameRange[1]
-            << " does not fit; the file has the pixels of slices 0 to " << whole - 1
-            << " (a last slice of -1 means the end)";
-    throw std::runtime_error(message.str());
-  }
-  sequence.First = first;
-  sequence.Slices = (std::min(last, whole - 1) - first) / this->FrameStride + 1;
+  sequence.File = std::make_shared<vtkLacunaSequenceFile>(
+    this->FileName, this->FrameRange, this->FrameStride, this->GetMostBytes());
   if (this->ReplayInTime)
   {
+    const vtkLacunaSequenceFile::Choice& stack = sequence.File->GetStack();
     sequence.Replay = std::make_unique<lacuna::SweepReplay>(
-      lacuna::ReadTimestamps(sequence.Header), first, this->FrameStride, sequence.Slices);
+      lacuna::ReadTimestamps(sequence.File->Header), stack.First, stack.Stride, stack.Slices);
   }
 }
 
@@ -142,10 +134,12 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   this->Opened.reset();
+  this->Preview.clear();
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkInformation* info = outputs->GetInformationObject(0);
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
+  info->Remove(vtkLacunaSliceStream::STREAM());
   if (!this->FileName || !this->FileName[0])
   {
     // Not yet an error: ParaView asks as soon as one of several properties is set.
@@ -158,19 +152,17 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
     {
       auto sequence = std::make_unique<Sequence>();
       this->OpenSequence(*sequence);
-      const lacuna::SequenceHeader& header = sequence->Header;
-      const int extent[6] = { 0, static_cast<int>(header.Columns) - 1, 0,
-        static_cast<int>(header.Rows) - 1, 0, sequence->Slices - 1 };
-      // (column, row) of the scanner's picture; z is the number of the slice in the file
-      const lacuna::Vec3 corner = lacuna::GetPictureOrigin(header);
-      const double origin[3] = { corner[0], corner[1], static_cast<double>(sequence->First) };
-      const double spacing[3] = { 1, 1, static_cast<double>(this->FrameStride) };
+      const vtkLacunaSequenceFile& file = *sequence->File;
+      int extent[6];
+      double origin[3];
+      double spacing[3];
+      file.GetPlace(file.GetStack(), extent, origin, spacing);
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkDataObject::ORIGIN(), origin, 3);
       info->Set(vtkDataObject::SPACING(), spacing, 3);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkDataObject::SetPointDataActiveScalarInfo(
-        info, vtkLacunaScalarType::ToVTK(sequence->Pixels->GetScalarType()), 1);
+        info, vtkLacunaScalarType::ToVTK(file.Pixels->GetScalarType()), 1);
       if (sequence->Replay)
       {
         const std::vector<double>& times = sequence->Replay->GetTimes();
@@ -179,6 +171,11 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
           static_cast<int>(times.size()));
         info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
       }
+      else
+      {
+        info->Set(vtkLacunaSliceStream::STREAM(), sequence->File->MakeStream());
+      }
+      this->Preview = file.DescribePreview();
       this->Opened = std::move(sequence);
     });
   if (!opened)
@@ -191,37 +188,9 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaTrackedSliceReader::CheckMemory(const int extent[6]) const
-{
-  const double columns = static_cast<double>(extent[1]) - extent[0] + 1;
-  const double rows = static_cast<double>(extent[3]) - extent[2] + 1;
-  const double slices = static_cast<double>(extent[5]) - extent[4] + 1;
-  const double mebibyte = 1024.0 * 1024.0;
-  const auto elementSize =
-    static_cast<double>(lacuna::GetScalarSize(this->Opened->Pixels->GetScalarType()));
-  const double needed = columns * rows * slices * elementSize / mebibyte;
-  double limit = this->MemoryLimit;
-  if (this->MemoryLimit == 0)
-  {
-    vtksys::SystemInformation system;
-    system.RunMemoryCheck();
-    limit = static_cast<double>(system.GetTotalPhysicalMemory()); // MiB
-  }
-  if (needed > limit)
-  {
-    std::ostringstream message;
-    message << this->FileName << ": " << slices << " slices of " << columns << " x " << rows
-            << " pixels take " << static_cast<std::int64_t>(needed) + 1 << " MiB, but "
-            << (this->MemoryLimit == 0 ? "the machine has " : "MemoryLimit is ") << limit
-            << " MiB; read fewer slices by FrameRange or FrameStride";
-    throw std::runtime_error(message.str());
-  }
-}
-
-//------------------------------------------------------------------------------
 std::string vtkLacunaTrackedSliceReader::DescribeParameters(const std::string& chain) const
 {
-  const lacuna::SequenceHeader& header = this->Opened->Header;
+  const lacuna::SequenceHeader& header = this->Opened->File->Header;
   lacuna::ParameterText text;
   text.Add("FileName", BaseName(this->FileName))
     .Add("FileSize", vtksys::SystemTools::FileLength(header.DataFileName))
@@ -244,13 +213,13 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
 {
   auto fields = vtkSmartPointer<vtkImageData>::New();
   vtkImageData* output = fields;
-  const lacuna::SequenceHeader& header = this->Opened->Header;
+  const lacuna::SequenceHeader& header = this->Opened->File->Header;
   lacuna::SweepOptions options;
   options.CalibrationFileName = Text(this->CalibrationFileName);
   options.ImageFrame = Text(this->ImageFrame);
   options.ReferenceFrame = Text(this->ReferenceFrame);
   options.DropInvalid = this->DropInvalidSlices;
-  options.FramesWithPixels = this->Opened->Pixels->GetNumberOfWholeFrames();
+  options.FramesWithPixels = this->Opened->File->Pixels->GetNumberOfWholeFrames();
   const lacuna::Sweep sweep = lacuna::BuildSweep(header, options);
 
   // The arrays of the contract come last: no field of the file takes their place.
@@ -291,6 +260,10 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
     output, vtkLacunaSequenceNames::Frames, { options.ImageFrame, options.ReferenceFrame });
   vtkLacunaTrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
+  if (!this->Preview.empty())
+  {
+    AddStrings(output, vtkLacunaTrackedSlices::PreviewName, { this->Preview });
+  }
   vtkLacunaProvenance::Record(output, this, {}, this->DescribeParameters(sweep.Chain));
   if (!steps.empty()) // the file goes on with them
   {
@@ -299,11 +272,15 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
 
   std::vector<std::string> warnings = header.Warnings;
-  if (!this->Opened->Pixels->GetWarning().empty())
+  if (!this->Opened->File->Pixels->GetWarning().empty())
   {
-    warnings.push_back(this->Opened->Pixels->GetWarning());
+    warnings.push_back(this->Opened->File->Pixels->GetWarning());
   }
   warnings.insert(warnings.end(), sweep.Warnings.begin(), sweep.Warnings.end());
+  if (!this->Preview.empty())
+  {
+    warnings.push_back("this is " + this->Preview);
+  }
   if (this->Opened->Replay && !this->Opened->Replay->HasTimestamps())
   {
     warnings.emplace_back(
@@ -324,8 +301,7 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
   Sequence& sequence = *this->Opened;
   int extent[6];
   output->GetExtent(extent);
-  this->CheckMemory(extent);
-  output->AllocateScalars(vtkLacunaScalarType::ToVTK(sequence.Pixels->GetScalarType()), 1);
+  output->AllocateScalars(vtkLacunaScalarType::ToVTK(sequence.File->Pixels->GetScalarType()), 1);
   vtkDataArray* scalars = output->GetPointData()->GetScalars();
   scalars->SetName(IntensityName);
   auto* pixels = static_cast<unsigned char*>(output->GetScalarPointer());
@@ -333,15 +309,10 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
   {
     throw std::bad_alloc();
   }
-  lacuna::SliceRegion region;
-  region.FirstColumn = extent[0];
-  region.Columns = extent[1] - extent[0] + 1;
-  region.FirstRow = extent[2];
-  region.Rows = extent[3] - extent[2] + 1;
-  region.FrameStride = this->FrameStride;
 
   // A replay goes on where it was.
-  const auto sliceSize = static_cast<std::size_t>(region.Columns * region.Rows) *
+  const auto sliceSize = static_cast<std::size_t>(extent[1] - extent[0] + 1) *
+    static_cast<std::size_t>(extent[3] - extent[2] + 1) *
     static_cast<std::size_t>(scalars->GetDataTypeSize());
   const auto at = [&](int k) { return static_cast<std::size_t>(k - extent[4]) * sliceSize; };
   int known = extent[4];
@@ -354,10 +325,8 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
   std::memset(pixels + at(end), 0, at(extent[5] + 1) - at(end));
   if (known < end)
   {
-    region.FirstFrame = sequence.First + std::int64_t{ known } * this->FrameStride;
-    region.Frames = end - known;
-    lacuna::ReadSliceStack(
-      sequence.Header, *sequence.Pixels, region, pixels + at(known), execution);
+    const int part[6] = { extent[0], extent[1], extent[2], extent[3], known, end - 1 };
+    sequence.File->Read(sequence.File->GetStack(), part, pixels + at(known), execution);
   }
   if (sequence.Replay)
   {
@@ -371,8 +340,8 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
 // Slices that have not been taken yet have no image.
 void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) const
 {
-  const vtkIdType last =
-    this->Opened->First + static_cast<vtkIdType>(shown - 1) * this->FrameStride;
+  const vtkLacunaSequenceFile::Choice& stack = this->Opened->File->GetStack();
+  const vtkIdType last = stack.First + (shown - 1) * stack.Stride;
   vtkDataArray* all = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName);
   vtkNew<vtkUnsignedCharArray> status;
   status->DeepCopy(all);
@@ -409,7 +378,8 @@ int vtkLacunaTrackedSliceReader::RequestData(
       output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
       output->SetSpacing(info->Get(vtkDataObject::SPACING()));
       output->SetExtent(extent);
-      int shown = this->Opened->Slices;
+      const int all = this->Opened->File->GetStack().Slices;
+      int shown = all;
       if (this->Opened->Replay && info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
       {
         const double time = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
@@ -428,7 +398,7 @@ int vtkLacunaTrackedSliceReader::RequestData(
         {
           return;
         }
-        if (shown < this->Opened->Slices)
+        if (shown < all)
         {
           this->HideSlices(output, shown);
         }

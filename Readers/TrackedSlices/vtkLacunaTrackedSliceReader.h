@@ -50,6 +50,12 @@
  * See lacuna::SweepReplay for clocks that jump or fail. Without a requested time all slices are
  * there. What was read for one time is kept for the next.
  *
+ * **Previews.** When the slices take more than MemoryLimit, the output is every n-th of them, with the
+ * smallest n that fits, the z spacing that belongs to it, the field data of all, and a field data
+ * string `Preview` that says so. Beside it, all slices are offered to be read in parts
+ * (vtkLacunaSliceStream; not in a replay): so consumers that need each slice once work on any file in
+ * bounded memory.
+ *
  * Requested extents are honoured: of uncompressed files only the slices asked for are read, of
  * compressed ones all up to the last slice asked for. Errors set vtkErrorCode::FileFormatError or
  * FileNotFoundError.
@@ -126,11 +132,15 @@ public:
   ///@}
 
   ///@{
-  /// Most memory that the pixels may take, in MiB; more is an error before anything is allocated.
-  /// Default: 0, the memory of the machine.
+  /// Most memory that the pixels may take, in MiB; of more slices, the output is a preview. Default:
+  /// 0, a quarter of the machine's memory.
   vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryLimit, int);
   ///@}
+
+  /// When the output is a preview: of which slices, why, and how to get all of them. Else empty.
+  /// Known after UpdateInformation().
+  const char* GetPreview() const { return this->Preview.c_str(); }
 
   /// Whether a file is a tracked sequence that this class reads: its header has Seq_Frame fields
   /// and its frames are slices. Reads no more than the beginning of the header.
@@ -151,7 +161,7 @@ private:
 
   struct Sequence;
   void OpenSequence(Sequence& sequence);
-  void CheckMemory(const int extent[6]) const;
+  double GetMostBytes() const;
   void ReadPixels(vtkImageData* output, int shown, vtkLacunaExecution& execution);
   void HideSlices(vtkImageData* output, int shown) const;
   void MakeFieldData();
@@ -166,6 +176,7 @@ private:
   bool DropInvalidSlices = true;
   bool ReplayInTime = false;
   int MemoryLimit = 0;
+  std::string Preview;
   /// The file as RequestInformation found it; kept open from one requested extent to the next.
   std::unique_ptr<Sequence> Opened;
 };

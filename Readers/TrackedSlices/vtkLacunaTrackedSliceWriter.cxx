@@ -9,6 +9,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSequenceContent.h"
+#include "vtkLacunaSliceStream.h"
 #include "vtkLacunaWriting.h"
 #include "vtkLogger.h"
 #include "vtkObjectFactory.h"
@@ -41,8 +42,11 @@ int vtkLacunaTrackedSliceWriter::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info &&
     info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
   {
-    // Also of the pieces that write nothing: filters before this one may need all processes.
-    vtkLacunaRequest::Whole(info);
+    if (!vtkLacunaSliceStream::RequestFields(this, info))
+    {
+      // Also of the pieces that write nothing: filters before this one may need all processes.
+      vtkLacunaRequest::Whole(info);
+    }
     return 1;
   }
   return this->Superclass::ProcessRequest(request, inputs, outputs);
@@ -109,7 +113,7 @@ void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
 {
   vtkLacunaExecution execution(this);
   const lacuna::SequenceKind kind(this->FileName, this->CompressionLevel > 0);
-  const vtkLacunaSequenceContent content(stack, kind);
+  const vtkLacunaSequenceContent content(stack, kind, vtkLacunaSliceStream::Find(this), execution);
   const std::string neighbour = this->DescribeNeighbour(kind);
   this->FileSize =
     lacuna::WriteSequence(this->FileName, content.Get(), this->CompressionLevel, execution);

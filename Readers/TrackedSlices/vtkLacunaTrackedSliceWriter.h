@@ -16,6 +16,9 @@
  * - string and number arrays with a tuple for each slice or a single one, as text;
  * - the Provenance, as fields LacunaProvenance0 ... of the header.
  *
+ * Slices that are too many for the memory (vtkLacunaSliceStream.h) are all written, a few at a time.
+ * Of a preview that a filter has changed the slices that there are are written, with a warning.
+ *
  * In-plane crops and new pixel spacings go into the transforms from and to the image; a crop to
  * whole pixels is told by FirstColumn and FirstRow in the header. Arrays whose names begin with
  * Patient are left out. What cannot be written is named in a warning.

@@ -9,8 +9,17 @@
 
 namespace lacuna
 {
-/// Bytes of memory that can be had now without swapping; 0 when the system does not tell.
+/// Bytes of memory of the machine, or of the container this process runs in; 0 when the system does
+/// not tell.
+double GetPhysicalMemory();
+
+/// Bytes of memory that this process can have now without swapping: what is free, as far as limits
+/// of containers (cgroup) and of the address space (ulimit -v) allow. 0 when the system does not
+/// tell.
 double GetAvailableMemory();
+
+/// In full, and in a unit that can be read: "20000000000 bytes (18.6 GiB)".
+std::string DescribeBytes(double bytes);
 
 /// Throws std::runtime_error when bytes exceed the available memory; the text names what is
 /// to be stored, its size and the memory there is. bytes is a double so that no product of sizes

@@ -110,14 +110,12 @@ std::int64_t LabelPart(
   }
   return size;
 }
-// At most MostSlices of them, evenly spread.
 template <class Function>
 void ForEachSlice(const std::vector<SliceImage>& slices, const Function& f)
 {
-  const std::size_t count = std::min(MostSlices, slices.size());
-  for (std::size_t n = 0; n < count; ++n)
+  for (const std::size_t i : ActivityMap::ChooseSlices(slices.size()))
   {
-    f(slices[count > 1 ? n * (slices.size() - 1) / (count - 1) : 0]);
+    f(slices[i]);
   }
 }
 
@@ -187,6 +185,16 @@ PixelSet PixelSet::Flipped() const
     }
   }
   return flipped;
+}
+
+std::vector<std::size_t> ActivityMap::ChooseSlices(std::size_t count)
+{
+  std::vector<std::size_t> chosen(std::min(MostSlices, count));
+  for (std::size_t n = 0; n < chosen.size(); ++n)
+  {
+    chosen[n] = chosen.size() > 1 ? n * (count - 1) / (chosen.size() - 1) : 0;
+  }
+  return chosen;
 }
 
 ActivityMap::ActivityMap(const std::vector<SliceImage>& slices)

@@ -7,6 +7,7 @@
 
 #include "lacunaSliceImage.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -53,6 +54,9 @@ public:
   /// The same of how much pixels differ from the background, which is the most frequent grey level;
   /// 1 image will do. Of several a pixel's largest difference counts (from 4 on the second largest).
   static ActivityMap OfContrast(const std::vector<SliceImage>& slices);
+
+  /// Indices of the slices that are taken, of so many, ascending: of these alone all are taken.
+  static std::vector<std::size_t> ChooseSlices(std::size_t count);
 
   int GetWidth() const { return this->Width; }
   int GetHeight() const { return this->Height; }

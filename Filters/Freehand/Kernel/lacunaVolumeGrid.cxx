@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaVolumeGrid.h"
 
+#include "lacunaMemory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -107,21 +109,6 @@ double FitSpacing(const Box& box, double smallest, double voxels)
     spacing = RoundUpToTwoDigits(spacing * std::max(ratio, 1.001));
   }
   return spacing;
-}
-
-// In full, and in a unit that can be read.
-std::string DescribeBytes(double bytes)
-{
-  std::ostringstream text;
-  if (bytes < 1e15)
-  {
-    text << static_cast<std::int64_t>(bytes) << " bytes (" << bytes / 1048576 << " MiB)";
-  }
-  else
-  {
-    text << bytes << " bytes";
-  }
-  return text.str();
 }
 
 Vec3 GetCentre(const SliceImage& slice)

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <sys/resource.h>
+
 TEST(Memory, RefusesWhatTheMachineDoesNotHave)
 {
   EXPECT_GT(lacuna::GetAvailableMemory(), 1e8);
@@ -21,8 +23,31 @@ TEST(Memory, RefusesWhatTheMachineDoesNotHave)
   {
     const std::string text = e.what();
     EXPECT_NE(text.find("2e9 x 2e9 x 2e9"), std::string::npos);
-    EXPECT_NE(text.find("GiB"), std::string::npos);
+    EXPECT_NE(text.find("8e+27 bytes (7.45e+18 GiB)"), std::string::npos) << text;
   }
+}
+
+TEST(Memory, IsDescribedInFull)
+{
+  EXPECT_EQ(lacuna::DescribeBytes(20e9), "20000000000 bytes (18.6 GiB)");
+  EXPECT_EQ(lacuna::DescribeBytes(0), "0 bytes (0 GiB)");
+}
+
+TEST(Memory, IsAtMostWhatTheAddressSpaceAllows)
+{
+  const double before = lacuna::GetAvailableMemory();
+  EXPECT_GE(lacuna::GetPhysicalMemory(), before);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &old), 0);
+  rlimit limit = old;
+  limit.rlim_cur = 1 << 30;
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+  const double limited = lacuna::GetAvailableMemory();
+  setrlimit(RLIMIT_AS, &old);
+  EXPECT_LT(limited, 1 << 30);
+  EXPECT_GT(limited, 1 << 29); // the test itself is small
+#endif
 }
 
 TEST(Memory, OfAnySizeMayAskForLargePages)

@@ -91,15 +91,17 @@ void TestFrameRange()
 
 void TestMemoryLimit()
 {
-  SequenceFile file = MakeSequence(3, 1024, 1024);
+  SequenceFile file = MakeSequence(3, 1024, 1536);
   ReaderOf test(file.GetContent());
-  test.Reader->SetMemoryLimit(2);
-  ExpectError(
-    test, vtkErrorCode::FileFormatError, "3 slices of 1024 x 1024 pixels take 4 MiB, but Memory");
-  test.Reader->SetFrameStride(2);
+  test.Reader->SetMemoryLimit(1);
+  ExpectError(test, vtkErrorCode::FileFormatError,
+    "one slice of 1024 x 1536 pixels takes 1572864 bytes (0.00146 GiB), but MemoryLimit allows "
+    "1048576 bytes");
+  test.Reader->SetMemoryLimit(2); // more slices are previewed: TestTrackedSlicePreview
   test.Forget();
   test.Reader->Update();
   LACUNA_CHECK(test.Errors.empty());
+  LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 1);
 }
 
 void TestCutOff()

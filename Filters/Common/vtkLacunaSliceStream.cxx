@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSliceStream.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkAlgorithmOutput.h"
+#include "vtkInformation.h"
+#include "vtkInformationObjectBaseKey.h"
+#include "vtkLacunaRequest.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+
+vtkInformationKeyMacro(vtkLacunaSliceStream, STREAM, ObjectBase);
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceStream* vtkLacunaSliceStream::Find(vtkAlgorithm* consumer, int port, int connection)
+{
+  if (connection >= consumer->GetNumberOfInputConnections(port))
+  {
+    return nullptr;
+  }
+  vtkAlgorithmOutput* output = consumer->GetInputConnection(port, connection);
+  while (output->GetProducer()->IsA("vtkPVPostFilter") &&
+    output->GetProducer()->GetNumberOfInputConnections(0) > 0)
+  {
+    output = output->GetProducer()->GetInputConnection(0, 0);
+  }
+  vtkInformation* info = output->GetProducer()->GetOutputInformation(output->GetIndex());
+  return info ? vtkLacunaSliceStream::SafeDownCast(info->Get(STREAM())) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaSliceStream::RequestFields(
+  vtkAlgorithm* consumer, vtkInformation* input, int port, int connection)
+{
+  if (!Find(consumer, port, connection))
+  {
+    return false;
+  }
+  int slice[6];
+  input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), slice);
+  slice[5] = slice[4];
+  vtkLacunaRequest::Extent(input, slice);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceStream::Pass(vtkAlgorithm* filter, vtkInformation* output)
+{
+  output->Set(STREAM(), Find(filter)); // null removes it
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceStream::GetSlicesAtATime() const
+{
+  constexpr std::int64_t bytes = 32 << 20;
+  return static_cast<int>(std::max<std::int64_t>(1, bytes / this->GetSliceSize()));
+}
