@@ -43,6 +43,7 @@ if [ -n "${CCACHE_DIR:-}" ]; then
     CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
 inside() { chroot "$folder" env -i "${variables[@]}" bash -ec "$1"; }
+inside 'dpkg --configure -a' # where an earlier run was interrupted
 rm -rf "$folder/lacuna"
 git clone -q "$source" "$folder/lacuna"
 mkdir -p "$folder/data"
