@@ -24,7 +24,13 @@ int CountVoxels(const LayerCrossing& c)
 
 // One set of functions per instruction set, all from the same code.
 #define LACUNA_AVX2 __attribute__((target("avx2")))
+#ifdef __clang__ // knows neither the last target nor the pragma, and checks in the loop instead
+#define LACUNA_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))
+#define LACUNA_INDEPENDENT
+#else
 #define LACUNA_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
+#define LACUNA_INDEPENDENT _Pragma("GCC ivdep")
+#endif
 
 #define LACUNA_LANES_SET Plain
 #define LACUNA_LANES_TARGET
@@ -90,7 +96,7 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
 {
   const OcclusionRows::Side a = before;
   const OcclusionRows::Side b = after;
-#pragma GCC ivdep
+  LACUNA_INDEPENDENT
   for (std::int64_t i = 0; i < n; ++i)
   {
     const float path = half * own[i];
@@ -103,7 +109,7 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
   const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)
 {
   const OcclusionRows::Side a = side;
-#pragma GCC ivdep
+  LACUNA_INDEPENDENT
   for (std::int64_t i = 0; i < n; ++i)
   {
     hidden[i] += HiddenOn<Binary>(half * own[i], a, fx, gain, i);
