@@ -244,8 +244,10 @@ void vtkLacunaCTSeriesReader::OpenSeries()
 void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
 {
   Content& found = *this->Found;
-  const lacuna::CTSeries& series = lacuna::SelectSeries(
-    list, Text(this->SeriesUID), this->FileName, found.Folder.GetOpenedSeries());
+  const std::string requested = Text(this->SeriesUID);
+  const std::string file = this->FileName;
+  const std::string opened = found.Folder.GetOpenedSeries();
+  const lacuna::CTSeries& series = lacuna::SelectSeries(list, requested, file, opened);
   const std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
   lacuna::CheckSameVolume(frames);
   const std::vector<std::string> doubts = lacuna::FindDoubtsOfPatient(frames);
