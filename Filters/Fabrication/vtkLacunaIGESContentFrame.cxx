@@ -155,8 +155,8 @@ std::string vtkLacunaIGESContent::FindLost(
     return {};
   }
   const bool before = vtkLacunaFieldData::Find(data, vtkLacunaPressPosition::MovedName, 1, 1);
-  const std::string why = before ? "what it is made of was MOVED since it was made for the press"
-                                 : "it has no PressToPatient";
+  std::string why = before ? "what it is made of was MOVED since it was made for the press"
+                           : "it has no PressToPatient";
   if (!asGiven)
   {
     throw std::runtime_error(prefix +

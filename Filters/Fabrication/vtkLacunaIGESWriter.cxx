@@ -72,6 +72,7 @@ public:
       part.Subordinate = 1;
       const std::int64_t whole = this->Document.AddSurface(surface.Fit.Surface, part);
       std::vector<lacuna::IGESDocument::Boundary> boundaries;
+      boundaries.reserve(piece.size());
       for (const vtkLacunaIGESSurface::Boundary& boundary : piece)
       {
         boundaries.push_back({ &boundary.Parameters, &boundary.Space });

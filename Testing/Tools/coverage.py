@@ -10,6 +10,8 @@ import json
 import os
 import sys
 
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+
 
 def read(path):
     """{file: {line: whether it ran}}"""
@@ -17,10 +19,11 @@ def read(path):
         report = json.load(file)
     ran = collections.defaultdict(dict)
     for each in report["files"]:
+        name = os.path.relpath(os.path.realpath(each["file"]), os.path.realpath(ROOT))
         for line in each["lines"]:
             if not line.get("gcovr/noncode"):
                 number = line["line_number"]
-                ran[each["file"]][number] = ran[each["file"]].get(number, False) or line["count"] != 0
+                ran[name][number] = ran[name].get(number, False) or line["count"] != 0
     return ran
 
 
