@@ -107,7 +107,7 @@ std::vector<double> GetGateField(vtkImageData* slices, const std::string& name, 
     throw std::runtime_error(which + "has " + std::to_string(texts->GetNumberOfValues()) +
       " texts; expected one for each of the " + std::to_string(count) + " slices");
   }
-  const std::vector<double> numbers = GetNumbers(texts);
+  std::vector<double> numbers = GetNumbers(texts);
   if (std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isnan(x); }))
   {
     throw std::runtime_error(
