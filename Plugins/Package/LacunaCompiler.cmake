@@ -13,8 +13,13 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}"
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 
-if (NOT CMAKE_INSTALL_RPATH)
-  # Installed modules find each other wherever the tree is moved to.
+# Installed modules find each other wherever the tree is moved to; those of a package are where the
+# system looks.
+set(lacuna_relative_rpath ON)
+if (LACUNA_DEBIAN)
+  set(lacuna_relative_rpath OFF)
+  set(CMAKE_SKIP_INSTALL_RPATH ON)
+elseif (NOT CMAKE_INSTALL_RPATH)
   set(CMAKE_INSTALL_RPATH "\$ORIGIN")
 endif ()
 

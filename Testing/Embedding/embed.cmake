@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -DBUILD=... -DSOURCE=... -DEXAMPLE=... -DWORK=... -P embed.cmake
+# cmake -DBUILD=... -DSOURCE=... -DEXAMPLE=... -DWORK=... [-DPVPYTHON=...] -P embed.cmake
 # Configures, builds and runs the example that embeds Lacuna: first against the build tree, then
-# against an installation that was moved since, a proof that the package is relocatable.
+# against an installation that was moved since, a proof that the package is relocatable. With
+# PVPYTHON, ParaView's Python loads the plugin from there, too.
 function (run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if (NOT result EQUAL 0)
@@ -28,9 +29,23 @@ file(REMOVE_RECURSE "${WORK}")
 build_and_run(of-build "${BUILD}/lib/cmake")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/installed")
 file(RENAME "${WORK}/installed" "${WORK}/moved")
+file(GLOB_RECURSE texts "${WORK}/moved/*.cmake" "${WORK}/moved/*.py" "${WORK}/moved/*.xml")
+foreach (text IN LISTS texts)
+  file(STRINGS "${text}" fixed REGEX "${WORK}/installed")
+  if (fixed)
+    message(FATAL_ERROR "${text} is for one place only: ${fixed}")
+  endif ()
+endforeach ()
 build_and_run(of-installation "${WORK}/moved")
 execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/of-build/embedding.png"
   "${WORK}/of-installation/embedding.png" RESULT_VARIABLE differ)
 if (differ)
   message(FATAL_ERROR "the pictures differ")
+endif ()
+if (PVPYTHON)
+  file(GLOB_RECURSE package "${WORK}/moved/*/lacuna/__init__.py")
+  get_filename_component(package "${package}" DIRECTORY)
+  get_filename_component(package "${package}" DIRECTORY)
+  run("${CMAKE_COMMAND}" -E env --unset=LACUNA_PLUGIN --unset=LD_LIBRARY_PATH --unset=PV_PLUGIN_CONFIG_FILE
+    "PYTHONPATH=${package}" "${PVPYTHON}" --force-offscreen-rendering "${SOURCE}/moved.py" "${WORK}/moved")
 endif ()

@@ -26,6 +26,8 @@ bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 
 version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 grep -qx "version: $version" CITATION.cff || complain "CITATION.cff is not of version $version"
+grep -m 1 '^## ' CHANGELOG.md | grep -qE "^## ${version//./\\.} \\(" ||
+  complain "the top of CHANGELOG.md is not of version $version"
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
 python3 Testing/Tools/check-benchmarks.py || complain "commands behind figures of the pages, see above"
 python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"

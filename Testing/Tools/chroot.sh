@@ -4,6 +4,8 @@
 #   Testing/Tools/chroot.sh FOLDER fresh           ./test.sh in a clean clone, as a newcomer runs it
 #   Testing/Tools/chroot.sh FOLDER vtk [SUITE]     modules only, against the VTK of that Debian:
 #                                                  bookworm (9.1, the default), trixie (9.3), sid
+#   Testing/Tools/chroot.sh FOLDER package         installs, uses and purges build/package/lacuna*.deb
+#                                                  (Testing/Tools/package.sh makes them)
 # FOLDER is made by debootstrap (package debootstrap; DEBIAN_MIRROR) when it does not exist: about
 # 0.4 GB, 3 GB when all is installed. Options of the configuration: LACUNA_CMAKE_OPTIONS. When
 # CCACHE_DIR is set, the compiler's results are kept there.
@@ -19,8 +21,9 @@ if [ ! -x "$folder/bin/bash" ]; then
   debootstrap --variant=minbase "$suite" "$folder" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
 fi
 cp /etc/resolv.conf "$folder/etc/resolv.conf"
-# a mirror may lag behind
-echo 'Acquire::Check-Valid-Until "false";' >"$folder/etc/apt/apt.conf.d/80lacuna"
+# a mirror may lag behind, and a folder to try things in need not survive a power failure
+printf '%s\n' 'Acquire::Check-Valid-Until "false";' 'DPkg::Options { "--force-unsafe-io"; };' \
+  >"$folder/etc/apt/apt.conf.d/80-tried"
 
 bind() { mkdir -p "$folder/$2"; mountpoint -q "$folder/$2" || mount --bind "$1" "$folder/$2"; }
 release() {
@@ -36,7 +39,7 @@ bind /dev/pts dev/pts # tests make pseudo-terminals
 variables=(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root
   DEBIAN_FRONTEND=noninteractive LACUNA_TEST_DATA=/data)
 launcher=
-if [ -n "${CCACHE_DIR:-}" ]; then
+if [ -n "${CCACHE_DIR:-}" ] && [ "$what" != package ]; then
   bind "$CCACHE_DIR" ccache
   launcher=ccache
   variables+=(CCACHE_DIR=/ccache CCACHE_BASEDIR=/lacuna CCACHE_NOHASHDIR=1
@@ -44,10 +47,12 @@ if [ -n "${CCACHE_DIR:-}" ]; then
 fi
 inside() { chroot "$folder" env -i "${variables[@]}" bash -ec "$1"; }
 inside 'dpkg --configure -a' # where an earlier run was interrupted
-rm -rf "$folder/lacuna"
-git clone -q "$source" "$folder/lacuna"
-mkdir -p "$folder/data"
-if [ -d "$data" ]; then cp -r "$data/." "$folder/data/"; fi
+if [ "$what" != package ]; then
+  rm -rf "$folder/lacuna"
+  git clone -q "$source" "$folder/lacuna"
+  mkdir -p "$folder/data"
+  if [ -d "$data" ]; then cp -r "$data/." "$folder/data/"; fi
+fi
 
 case $what in
   fresh)
@@ -67,8 +72,15 @@ case $what in
       cd /lacuna && cmake --preset vtk ${LACUNA_CMAKE_OPTIONS:-} && cmake --build --preset vtk -- -k 0
       xvfb-run -a -s -noreset ctest --preset vtk -LE soak"
     ;;
+  package)
+    version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
+    rm -rf "$folder/packages"
+    cp -r "$source/Testing/Package" "$folder/packages"
+    cp -r "$source/Documentation/Examples/18-embedding" "$source/build/package"/lacuna*.deb "$folder/packages"
+    inside "/packages/check.sh $version"
+    ;;
   *)
-    echo "usage: $0 FOLDER fresh|vtk [SUITE]" >&2
+    echo "usage: $0 FOLDER fresh|package|vtk [SUITE]" >&2
     exit 2
     ;;
 esac

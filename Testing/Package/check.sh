@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs, uses and purges the Debian packages beside this script (Testing/Tools/chroot.sh FOLDER
+# package runs it in a clean Debian, as root).
+#   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/
+set -euo pipefail
+cd "$(dirname "$0")"
+version=$1
+tools="cmake g++ make xvfb xauth libgl1-mesa-dri"
+install() { apt-get -y -qq install --no-install-recommends "$@" >/dev/null; }
+purge() { apt-get -y -qq purge lacuna lacuna-dev lacuna-doc >/dev/null; }
+files() {
+  find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /tmp -o -path /var/tmp -o -path /run -o -path /root \
+    -o -path /home -o -path /var/lib/apt -o -path /var/lib/dpkg/info -o -path /var/cache -o -path /var/log \
+    -o -path "$PWD" -o -path /ccache \) -prune -o -print | sort
+}
+as_user() { (cd "$work" && setpriv --reuid=nobody --regid=nogroup --clear-groups env HOME="$work" "$@"); }
+work=$(mktemp -d)
+cp -r 18-embedding installed.py in_window.py "$work"
+chown -R nobody "$work"
+apt-get -qq update
+
+echo "== lacuna alone, with what it depends on"
+install ./lacuna_"$version"-*.deb
+as_user pvpython --force-offscreen-rendering installed.py "$version" "$work"
+as_user python3 -c "import lacuna; lacuna.vtkLacunaSkullPhantom().Update(); print('installed: python3 works')"
+as_user lacuna-fastrak-emulator --help >/dev/null
+if find / -xdev -name '*.conffiles' -name 'lacuna*' | grep .; then exit 1; fi
+
+echo "== lacuna-dev: find_package(Lacuna)"
+install ./lacuna-dev_"$version"-*.deb $tools
+as_user cmake -S 18-embedding -B embedding >"$work/cmake.log" || { cat "$work/cmake.log"; exit 1; }
+as_user cmake --build embedding >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+as_user embedding/Embedding "$work"
+test "$(stat -c %s "$work/embedding.igs")" -gt 10000
+
+echo "== in ParaView's window"
+as_user timeout 120 xvfb-run -a -s -noreset paraview --script=in_window.py >"$work/window.log" 2>&1 || cat "$work/window.log"
+cat "$work/in_window.txt"
+grep -qx works "$work/in_window.txt"
+
+echo "== removal"
+purge
+files >"$work/before"
+install ./lacuna*_"$version"-*.deb
+test -e /usr/share/doc/lacuna-doc/examples/README.md
+python3 -c 'import lacuna.plugin, lacuna.pictures' # as root, who may write beside the modules
+pvpython --force-offscreen-rendering installed.py "$version" "$work" >/dev/null
+dpkg --verify lacuna lacuna-dev lacuna-doc
+purge
+files >"$work/after"
+diff "$work/before" "$work/after"
+if grep -i lacuna "$work/after"; then exit 1; fi
+
+# as it was, so that the next run sees what is missing among the dependencies
+apt-mark auto $tools >/dev/null
+apt-get -y -qq autoremove --purge >/dev/null
+rm -rf "$work"
+echo "packages: installed, used and removed without a trace"

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes the Debian packages, build/package/lacuna*.deb, and lets lintian judge them.
+#   Testing/Tools/package.sh             with the site of the documentation in lacuna-doc
+#   Testing/Tools/package.sh --no-site   without, as long as Documentation/build-site.sh was not run
+# Testing/Tools/chroot.sh FOLDER package then tries them in a clean Debian.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+. Testing/Tools/setup.sh
+lacuna_install_packages
+lacuna_install_packages packages-packaging.txt
+if [ "${1:-}" != --no-site ]; then Documentation/build-site.sh; fi
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+cmake --preset package >/dev/null # the changelog's date, and whether there is a site
+lacuna_build package
+rm -f build/package/*.deb
+(umask 022 && cpack --config build/package/CPackConfig.cmake -B build/package) >build/cpack.log 2>&1 || { cat build/cpack.log; exit 1; }
+lintian --allow-root --fail-on error,warning --tag-display-limit 0 build/package/*.deb
+ls -l build/package/*.deb
