@@ -43,7 +43,7 @@ if (differ)
   message(FATAL_ERROR "the pictures differ")
 endif ()
 if (PVPYTHON)
-  file(GLOB_RECURSE package "${WORK}/moved/*/lacuna/__init__.py")
+  file(GLOB_RECURSE package "${WORK}/moved/__init__.py")
   get_filename_component(package "${package}" DIRECTORY)
   get_filename_component(package "${package}" DIRECTORY)
   run("${CMAKE_COMMAND}" -E env --unset=LACUNA_PLUGIN --unset=LD_LIBRARY_PATH --unset=PV_PLUGIN_CONFIG_FILE
