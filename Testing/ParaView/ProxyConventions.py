@@ -106,6 +106,9 @@ def check_panel(name, proxy):
             labels = [g.get("label").lower() for g in proxy.findall("PropertyGroup")
                       if [member.get("name") for member in g] == [p.get("name")]]
             assert len(labels) == 1 and labels[0].startswith(words), (name, p.get("name"), labels)
+    for p in proxy.findall("InputProperty"):  # ParaView asks only for those that are needed
+        if p.find("Hints/Optional") is not None and p.find("Hints/SelectionInput") is None:
+            assert p.get("panel_widget") == "input_selector", (name, p.get("name"), "cannot be set in the panel")
     for decorator in proxy.iter("PropertyWidgetDecorator"):
         if decorator.get("type") != "GenericDecorator":
             continue
