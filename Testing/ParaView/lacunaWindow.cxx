@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The window of the ParaView application, for scripts that run in it (lacuna_window.py). Names are
-/// those of Qt's objects, wherever they are (a/b: b within a); functions return nothing (0) where there is none.
+/// those of Qt's objects, wherever they are (a/b: b within a), in the dialog that is open or else in the
+/// main window; functions return nothing (0) where there is none.
 #include <QAbstractButton>
+#include <QAbstractItemModel>
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
+#include <QDialog>
 #include <QEventLoop>
+#include <QItemSelectionModel>
+#include <QLabel>
+#include <QLineEdit>
 #include <QMainWindow>
+#include <QMenu>
+#include <QMenuBar>
 #include <QPixmap>
+#include <QPointer>
 #include <QScreen>
 #include <QTest>
+#include <QTextEdit>
 #include <QTimer>
 #include <QVariant>
 #include <QWindow>
@@ -19,30 +29,138 @@
 
 namespace
 {
-QWidget* GetMainWindow()
+QMainWindow* GetMainWindow()
 {
   for (QWidget* widget : QApplication::topLevelWidgets())
   {
-    if (qobject_cast<QMainWindow*>(widget))
+    if (auto* window = qobject_cast<QMainWindow*>(widget))
     {
-      return widget;
+      return window;
     }
   }
   return nullptr;
 }
 
+QString Plain(const QString& text)
+{
+  return QString(text).remove('&').remove(QString::fromUtf8("\u2026"));
+}
+
+// What has no name: a button by its words, or a widget by its class.
+QObject* FindNameless(const QObject* parent, const QString& text)
+{
+  const auto widgets = parent->findChildren<QWidget*>();
+  const auto found = std::find_if(widgets.begin(), widgets.end(),
+    [&](const QWidget* one)
+    {
+      const auto* button = qobject_cast<const QAbstractButton*>(one);
+      return one->isVisible() &&
+        (text == one->metaObject()->className() || (button && Plain(button->text()) == text));
+    });
+  return found != widgets.end() ? *found : nullptr;
+}
+
 // The first one of a name that is seen, or else the first; with slashes one within another.
 QObject* Find(const char* path)
 {
-  QObject* object = GetMainWindow();
-  for (const QString& name : QString(path).split('/'))
+  QObject* object = QApplication::activeModalWidget();
+  if (!object)
+  {
+    object = GetMainWindow();
+  }
+  for (const QString& name : QString::fromUtf8(path).split('/', Qt::SkipEmptyParts))
   {
     const QObjectList found = object ? object->findChildren<QObject*>(name) : QObjectList();
     const auto seen = std::find_if(found.begin(), found.end(),
       [](const QObject* one) { return one->isWidgetType() && one->property("visible").toBool(); });
-    object = seen != found.end() ? *seen : found.value(0);
+    object = seen != found.end() ? *seen
+      : !found.isEmpty()         ? found[0]
+      : object                   ? FindNameless(object, name)
+                                 : nullptr;
   }
   return object;
+}
+
+// An action by the words of the menus, as "Filters/Lacuna/Mirror".
+QAction* FindAction(const char* path)
+{
+  QMainWindow* window = GetMainWindow();
+  QWidget* menu = window ? window->menuBar() : nullptr;
+  QAction* action = nullptr;
+  for (const QString& text : QString::fromUtf8(path).split('/'))
+  {
+    if (auto* popup = qobject_cast<QMenu*>(menu))
+    {
+      emit popup->aboutToShow(); // fills it, and greys out what has no fitting input
+    }
+    const QList<QAction*> actions = menu ? menu->actions() : QList<QAction*>();
+    const auto found = std::find_if(actions.begin(), actions.end(),
+      [&](const QAction* one) { return Plain(one->text()) == text; });
+    action = found != actions.end() ? *found : nullptr;
+    menu = action ? action->menu() : nullptr;
+  }
+  return action;
+}
+
+// Dialogs hold up whoever has opened them. So what is to be done in one is a function that is called
+// when it is there; one that nobody expects is closed, and told of.
+using Handler = void (*)();
+Handler handler = nullptr;
+QPointer<QWidget> handled;
+QByteArray unexpected;
+
+void CloseDialog(QWidget* dialog)
+{
+  QStringList words{ dialog->windowTitle() };
+  for (const QLabel* label : dialog->findChildren<QLabel*>())
+  {
+    words << label->text();
+  }
+  unexpected += words.join(" ").toUtf8() + "\n";
+  if (auto* box = qobject_cast<QDialog*>(dialog))
+  {
+    box->reject();
+  }
+  else
+  {
+    dialog->close();
+  }
+}
+
+void WatchDialogs()
+{
+  QTimer::singleShot(50, qApp, &WatchDialogs);
+  static int turns = 0;
+  QWidget* dialog = QApplication::activeModalWidget();
+  if (!dialog || dialog == handled)
+  {
+    turns = 0;
+  }
+  else if (handler)
+  {
+    handled = dialog;
+    const Handler call = handler;
+    handler = nullptr;
+    call();
+  }
+  else if (++turns == 20)
+  {
+    CloseDialog(dialog);
+  }
+}
+
+void Describe(const QObject* object, int depth, QByteArray& text)
+{
+  const auto* widget = qobject_cast<const QWidget*>(object);
+  if (widget ? widget->isVisible() : object->inherits("QAction"))
+  {
+    text += QByteArray(2 * depth, ' ') + object->metaObject()->className() + " " +
+      object->objectName().toUtf8() + "\n";
+    for (const QObject* child : object->children())
+    {
+      Describe(child, depth + 1, text);
+    }
+  }
 }
 }
 
@@ -54,6 +172,60 @@ extern "C"
     QEventLoop loop;
     QTimer::singleShot(milliseconds, &loop, &QEventLoop::quit);
     loop.exec();
+  }
+
+  /// From now on dialogs that nobody expects are closed.
+  void lacuna_watch()
+  {
+    WatchDialogs();
+  }
+
+  /// Calls the function once when a dialog has come up; null: none is expected.
+  void lacuna_expect(Handler function)
+  {
+    handler = function;
+  }
+
+  /// The words of dialogs that nobody expected; until the next call.
+  const char* lacuna_unexpected()
+  {
+    static QByteArray text;
+    text = unexpected;
+    unexpected.clear();
+    return text.constData();
+  }
+
+  /// Closes the dialog that is open.
+  void lacuna_reject()
+  {
+    if (QWidget* dialog = QApplication::activeModalWidget())
+    {
+      dialog->close();
+    }
+  }
+
+  /// What the window Output Messages holds, until the next call.
+  const char* lacuna_messages()
+  {
+    static QByteArray text;
+    const QMainWindow* window = GetMainWindow();
+    const auto* console = window ? window->findChild<QWidget*>("consoleWidget") : nullptr;
+    const auto* edit = console ? console->findChild<QTextEdit*>() : nullptr;
+    text = edit ? edit->toPlainText().trimmed().toUtf8() : "there is no window Output Messages";
+    return text.constData();
+  }
+
+  /// Classes and names of an object and of what is seen in it; until the next call.
+  const char* lacuna_describe(const char* name)
+  {
+    static QByteArray text;
+    const QObject* object = Find(name);
+    text.clear();
+    if (object)
+    {
+      Describe(object, 0, text);
+    }
+    return text.constData();
   }
 
   /// A property's value as UTF-8, until the next call.
@@ -88,6 +260,38 @@ extern "C"
     return 0;
   }
 
+  /// Whether the menus have an action: 0 no, 1 greyed out, 2 yes.
+  int lacuna_menu_has(const char* path)
+  {
+    const QAction* action = FindAction(path);
+    return !action ? 0 : action->isEnabled() ? 2 : 1;
+  }
+
+  /// Chooses an action by the words of the menus, unless it is disabled.
+  int lacuna_menu(const char* path)
+  {
+    QAction* action = FindAction(path);
+    if (!action || !action->isEnabled())
+    {
+      return 0;
+    }
+    action->trigger();
+    return 1;
+  }
+
+  /// The entries of a list, one a line; until the next call.
+  const char* lacuna_entries(const char* name)
+  {
+    static QByteArray text;
+    const auto* list = qobject_cast<QComboBox*>(Find(name));
+    text.clear();
+    for (int i = 0; list && i < list->count(); ++i)
+    {
+      text += list->itemText(i).toUtf8() + "\n";
+    }
+    return text.constData();
+  }
+
   /// Chooses what is called so in a list.
   int lacuna_choose(const char* name, const char* text)
   {
@@ -98,6 +302,41 @@ extern "C"
       return 0;
     }
     list->setCurrentIndex(index);
+    return 1;
+  }
+
+  /// Selects what is called so in a list or tree; ParaView's own trees are no QAbstractItemView.
+  int lacuna_select(const char* name, const char* text)
+  {
+    const QObject* view = Find(name);
+    auto* selection = view ? view->findChild<QItemSelectionModel*>() : nullptr;
+    const QAbstractItemModel* model = selection ? selection->model() : nullptr;
+    const QModelIndexList found = model
+      ? model->match(model->index(0, 0), Qt::DisplayRole, QString::fromUtf8(text), 1,
+          Qt::MatchExactly | Qt::MatchRecursive)
+      : QModelIndexList();
+    if (found.isEmpty())
+    {
+      return 0;
+    }
+    selection->setCurrentIndex(found[0], QItemSelectionModel::ClearAndSelect);
+    return 1;
+  }
+
+  /// Types a text into a field instead of what is there.
+  int lacuna_type(const char* name, const char* text)
+  {
+    auto* field = qobject_cast<QLineEdit*>(Find(name));
+    if (!field || !field->isEnabled() || !field->isVisible())
+    {
+      return 0;
+    }
+    field->window()->activateWindow(); // as no window manager does
+    field->setFocus();
+    field->selectAll();
+    QTest::keyClick(field, Qt::Key_Delete);
+    QTest::keyClicks(field, QString::fromUtf8(text));
+    QTest::keyClick(field, Qt::Key_Tab);
     return 1;
   }
 
@@ -125,11 +364,45 @@ extern "C"
     return 1;
   }
 
-  /// Writes a picture of the main window as it is on the screen.
-  int lacuna_save(const char* fileName)
+  /// The left mouse button at a place of a widget, in pixels from its upper left corner. action: 0
+  /// pressed, 1 moved there while pressed, 2 released, 3 moved there without it. It goes to the window,
+  /// which finds who gets it, as it does with a real mouse.
+  int lacuna_mouse(const char* name, int x, int y, int action)
   {
-    const QWidget* window = GetMainWindow();
-    return window && window->screen()->grabWindow(window->winId()).save(QString::fromUtf8(fileName))
+    auto* widget = qobject_cast<QWidget*>(Find(name));
+    if (!widget)
+    {
+      return 0;
+    }
+    QWidget* window = widget->window();
+    const QPoint place = widget->mapTo(window, QPoint(x, y));
+    const bool held = action < 2;
+    const bool moved = action % 2 == 1;
+    static int time = 1000;
+    time += 600; // more than a double click
+    qt_handleMouseEvent(window->windowHandle(), place, window->mapToGlobal(place),
+      held ? Qt::LeftButton : Qt::NoButton, moved ? Qt::NoButton : Qt::LeftButton,
+      moved    ? QEvent::MouseMove
+        : held ? QEvent::MouseButtonPress
+               : QEvent::MouseButtonRelease,
+      Qt::NoModifier, time);
+    return 1;
+  }
+
+  /// Writes a picture of a widget, "" for the whole window, as it is on the screen.
+  int lacuna_save(const char* name, const char* fileName)
+  {
+    auto* widget = qobject_cast<QWidget*>(Find(name));
+    if (!widget)
+    {
+      return 0;
+    }
+    QWidget* window = widget->window();
+    const QPoint corner = widget->mapTo(window, QPoint(0, 0));
+    return window->screen()
+             ->grabWindow(
+               window->winId(), corner.x(), corner.y(), widget->width(), widget->height())
+             .save(QString::fromUtf8(fileName))
       ? 1
       : 0;
   }

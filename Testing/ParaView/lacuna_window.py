@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests in the ParaView application: starts it with a script, and lets that press, look and wait.
 
-    if lacuna_window.IS_INSIDE: test(lacuna_window.Window())
+    if lacuna_window.IS_INSIDE: lacuna_window.inside(test)  # calls test(window)
     else: lacuna_window.run(__file__)
+
+The test fails when there is a warning or an error in the window Output Messages, or a dialog that it does not expect.
 """
 import ctypes
 import os
@@ -15,7 +17,12 @@ import traceback
 
 INSIDE = "LACUNA_INSIDE_PARAVIEW"
 IS_INSIDE = INSIDE in os.environ
+RENEW = "LACUNA_RENEW_BASELINES"
+BASELINES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Baselines")
 F9 = 0x01000038  # of Qt::Key
+VIEW = "MultiViewWidget/Viewport"
+ACCEPT = "propertiesPanel/Accept"
+PANEL = "propertiesPanel/PropertiesFrame/"
 
 
 def run(script, seconds=600, **environment):
@@ -24,8 +31,9 @@ def run(script, seconds=600, **environment):
         print("skipped: the application needs a display")
         sys.exit(77)
     command = [os.environ["LACUNA_PARAVIEW"], "--dr", "--script=" + os.path.abspath(script)]
-    environment = {**os.environ, **environment, INSIDE: "1", "QT_LOGGING_RULES": "*.debug=false"}
-    with tempfile.TemporaryFile("w+") as file:
+    with tempfile.TemporaryFile("w+") as file, tempfile.TemporaryDirectory(prefix="lacuna-home-") as home:
+        environment = {**os.environ, **environment, INSIDE: "1", "QT_LOGGING_RULES": "*.debug=false",
+                       "HOME": home, "XDG_CONFIG_HOME": home}  # nobody's macros and settings
         try:
             status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, timeout=seconds, env=environment,
                                     check=False).returncode
@@ -42,7 +50,9 @@ def inside(test):
     status = 1
     sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__  # not to ParaView's messages
     try:
-        test(Window())
+        window = Window()
+        test(window)
+        window.check_messages()
         status = 0
     except BaseException:
         traceback.print_exc()
@@ -52,40 +62,124 @@ def inside(test):
 
 
 class Window:
-    """The main window; names are those of Qt's objects, "panel/Accept" is an Accept within a panel."""
+    """The main window, or the dialog that is open. Names are those of Qt's objects (describe tells them), "panel/Accept" is an Accept in a panel."""
 
     def __init__(self):
         self.library = ctypes.PyDLL(os.environ["LACUNA_WINDOW"])
-        self.library.lacuna_get.restype = ctypes.c_char_p
+        for name in ("get", "describe", "entries", "messages", "unexpected"):
+            getattr(self.library, "lacuna_" + name).restype = ctypes.c_char_p
         self.begin = time.monotonic()
+        self.handlers = []
+        self.failures = []
+        self.call = ctypes.CFUNCTYPE(None)(self.handle_dialog)
         self.wait(500)
+        self.library.lacuna_watch()
 
     def wait(self, milliseconds):
         self.library.lacuna_wait(milliseconds)
+        self.check_dialogs()
+
+    def describe(self, name=""):
+        """Classes and names of what is seen in it, for whoever writes a test."""
+        return self.library.lacuna_describe(name.encode()).decode()
 
     def get(self, name, attribute="text"):
         value = self.library.lacuna_get(name.encode(), attribute.encode())
         assert value is not None, f"nothing is called {name}, or has no {attribute}"
         return value.decode()
 
-    def press(self, name):
+    def press(self, name, *dialogs):
+        """Presses a button; dialogs: functions of no arguments, each for a dialog that then comes up."""
+        pending = self.expect(dialogs)
         assert self.library.lacuna_press(name.encode()), f"{name} is not there or disabled"
-        self.wait(50)
+        self.finish(pending)
+
+    def has_menu(self, path):
+        """Whether the menus have it, as "Filters/Lacuna/Mirror", and it can be chosen."""
+        found = self.library.lacuna_menu_has(path.encode())
+        assert found, f"there is no menu {path}"
+        return found == 2
+
+    def menu(self, path, *dialogs):
+        assert self.has_menu(path), f"{path} is disabled"
+        pending = self.expect(dialogs)
+        self.library.lacuna_menu(path.encode())
+        self.finish(pending)
+
+    def entries(self, name):
+        """What a list offers."""
+        return self.library.lacuna_entries(name.encode()).decode().splitlines()
 
     def choose(self, name, text):
-        assert self.library.lacuna_choose(name.encode(), text.encode()), f"{name} has no {text}"
+        assert self.library.lacuna_choose(name.encode(), text.encode()), f"{name} has no {text}, but {self.entries(name)}"
+        self.wait(50)
+
+    def select(self, name, text):
+        """Selects what is called so in a list or tree, as in the "pipelineBrowser"."""
+        assert self.library.lacuna_select(name.encode(), text.encode()), f"{name} has no {text}"
+        self.wait(50)
+
+    def type(self, name, text):
+        """Types a text instead of what is in the field."""
+        assert self.library.lacuna_type(name.encode(), str(text).encode()), f"{name} is no field, or not seen"
         self.wait(50)
 
     def key(self, code, repeats=0):
         assert self.library.lacuna_key(code, repeats)
         self.wait(50)
 
+    def apply(self):
+        """Presses Apply, and looks whether there is a complaint."""
+        self.press(ACCEPT)
+        self.check_messages()
+
+    def drag(self, places, name=VIEW):
+        """Drags the mouse from the first place to the last; pixels from the widget's upper left corner."""
+        library, name = self.library, name.encode()
+        places = [(round(x), round(y)) for x, y in places]
+        assert library.lacuna_mouse(name, *places[0], 3), name
+        self.wait(50)
+        library.lacuna_mouse(name, *places[0], 0)
+        for (x, y), (u, v) in zip(places, places[1:]):
+            for k in range(1, 6):
+                library.lacuna_mouse(name, round(x + (u - x) * k / 5), round(y + (v - y) * k / 5), 1)
+                self.wait(20)
+        library.lacuna_mouse(name, *places[-1], 2)
+        self.wait(100)
+
+    def open_file(self, path, *dialogs):
+        """File > Open."""
+        self.menu("File/Open...", lambda: self.choose_file(path), *dialogs)
+
+    def save_file(self, path, kind, *dialogs):
+        """File > Save Data, in the format whose entry begins so; dialogs: of the options, mostly one with OK."""
+        self.menu("File/Save Data...", lambda: self.choose_file(path, kind), *dialogs)
+
+    def choose_file(self, path, kind=None):
+        """What is done in ParaView's file dialog."""
+        if kind:
+            formats = self.entries("EntityType")
+            found = [entry for entry in formats if entry.startswith(kind)]
+            assert len(found) == 1, (kind, formats)
+            self.choose("EntityType", found[0])
+        self.type("EntityName", path)
+        self.press("OK")
+
     def resize(self, width, height):
         self.library.lacuna_resize(width, height)
         self.wait(500)
 
-    def save(self, path):
-        assert self.library.lacuna_save(path.encode()), path
+    def save(self, path, name=""):
+        """A picture of a widget, or of the whole window."""
+        assert self.library.lacuna_save(name.encode(), path.encode()), path
+
+    def compare(self, baseline, name=VIEW, difference=4, likeness=0.95):
+        """Compares a picture of a widget with Baselines/<baseline>.png, or writes that (environment LACUNA_RENEW_BASELINES)."""
+        from window_pictures import compare
+        self.wait(300)
+        path = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], baseline + ".png")
+        self.save(path, name)
+        compare(path, os.path.join(BASELINES, baseline + ".png"), difference, likeness, RENEW in os.environ)
 
     def wait_for(self, what, condition, seconds=60):
         end = time.monotonic() + seconds
@@ -99,3 +193,46 @@ class Window:
             self.wait_for(f"{name}: {pattern}", lambda: re.search(pattern, self.get(name, attribute)))
         except AssertionError as error:
             raise AssertionError(f"{error}; it is {self.get(name, attribute)!r}") from None
+
+    def check_messages(self):
+        said = self.library.lacuna_messages().decode()
+        assert not said, f"the window Output Messages says:\n{said}"
+
+    def take_messages(self):
+        """What the window Output Messages says; it is empty then."""
+        said = self.library.lacuna_messages().decode()
+        self.library.lacuna_press(b"clearButton")
+        return said
+
+    def expect(self, dialogs):
+        """Handlers of the next dialogs; returns how many were expected before."""
+        pending = len(self.handlers)
+        self.handlers[:0] = dialogs
+        self.library.lacuna_expect(self.call if self.handlers else None)
+        return pending
+
+    def handle_dialog(self):
+        handler = self.handlers.pop(0)
+        if self.handlers:
+            self.library.lacuna_expect(self.call)
+        try:
+            handler()
+        except BaseException as error:  # not through Qt
+            self.failures.append(error)
+            self.handlers.clear()
+            self.library.lacuna_expect(None)
+            self.library.lacuna_reject()
+
+    def finish(self, pending):
+        """The dialogs that were expected have come and gone."""
+        end = time.monotonic() + 10
+        while len(self.handlers) > pending:
+            assert time.monotonic() < end, "an expected dialog did not come up"
+            self.wait(50)
+        self.wait(50)
+
+    def check_dialogs(self):
+        if self.failures:
+            raise self.failures.pop()
+        words = self.library.lacuna_unexpected().decode()
+        assert not words, f"a dialog that was not expected: {words}"
