@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pqLacunaViewDirection.h"
 
+#include "pqApplicationCore.h"
 #include "pqDoubleVectorPropertyWidget.h"
+#include "pqProxy.h"
 #include "pqRenderView.h"
+#include "pqServerManagerModel.h"
 #include "vtkCamera.h"
 #include "vtkMath.h"
 #include "vtkSMProxy.h"
@@ -12,6 +15,7 @@
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <QTimer>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -69,6 +73,8 @@ pqLacunaViewDirection::pqLacunaViewDirection(
   QObject::connect(
     this, &pqPropertyWidget::viewChanged, this, &pqLacunaViewDirection::UpdateButton);
   this->UpdateButton(this->view());
+  // by then the proxy is said to be new, and the panel has its view
+  QTimer::singleShot(0, this, &pqLacunaViewDirection::StartFromCamera);
 }
 
 //------------------------------------------------------------------------------
@@ -92,6 +98,23 @@ void pqLacunaViewDirection::reset()
 void pqLacunaViewDirection::UpdateButton(pqView* view)
 {
   this->FromCamera->setEnabled(qobject_cast<pqRenderView*>(view) != nullptr);
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaViewDirection::StartFromCamera()
+{
+  auto* view = qobject_cast<pqRenderView*>(this->view());
+  auto* caster =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqProxy*>(this->proxy());
+  // slices are shown in pixels, where the camera says nothing about the frame that they lie in
+  const bool ofVolumes = this->proxy()->GetProperty("Projection") != nullptr;
+  if (!view || !ofVolumes || !caster || caster->modifiedState() != pqProxy::UNINITIALIZED)
+  {
+    return;
+  }
+  vtkCamera* camera = view->getRenderViewProxy()->GetActiveCamera();
+  Show(this->proxy(), "ViewDirection", camera->GetDirectionOfProjection(), 3);
+  Show(this->proxy(), "ViewUp", camera->GetViewUp(), 3);
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
  * @class pqLacunaViewDirection
  * @brief editor of a ray caster's ViewDirection, with a button that takes the active view's camera
  *
+ * A new caster of volumes starts to look as the active view does.
  * From Camera gives all properties that place the map the values that lacuna.views.copy_camera gives
  * them; of these, Projection, EyePosition and ViewAngle only to proxies that have them. As with any
  * editor, the values count when they are applied. Resolution divides the number of the map's rows and
@@ -33,6 +34,7 @@ public:
 private:
   void TakeCamera();
   void SetResolution();
+  void StartFromCamera();
   void UpdateButton(pqView* view);
 
   pqPropertyWidget* Direction;

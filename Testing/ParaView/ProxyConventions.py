@@ -149,7 +149,7 @@ def check_resources():
 def check_menus(proxies):
     root = ElementTree.parse(os.path.join(PLUGIN, "LacunaMenus.xml")).getroot()
     for tag, group in (("ParaViewSources", "sources"), ("ParaViewFilters", "filters")):
-        (category,) = root.find(tag)
+        category, *common = root.find(tag)
         assert category.get("name") == "Lacuna" and category.get("preserve_order") == "1"
         entries = [entry.get("name")[len("Lacuna"):] for entry in category]
         expected = {name for name, (place, proxy) in proxies.items()
@@ -157,6 +157,10 @@ def check_menus(proxies):
         assert len(entries) == len(set(entries)) and set(entries) == expected, set(entries) ^ expected
         for entry, name in zip(category, entries):
             assert entry.get("group") == group and entry.get("icon") == f":/Lacuna/Icons/{name}.svg", entry.attrib
+        icons = {entry.get("name"): entry.get("icon") for entry in category}
+        for other in common:  # in ParaView's toolbar "Common"
+            assert group == "filters" and other.get("name") == "Common", other.attrib
+            assert len(other) <= 4 and all(icons[entry.get("name")] == entry.get("icon") for entry in other)
     for pipeline in PIPELINES:
         places = [entries.index(name) for name in pipeline]
         assert places == sorted(places), pipeline
