@@ -165,16 +165,15 @@ def sweep_to_surface(folder, data):
     job.picture("1-open", DIALOG, SECOND_FILE, DIALOG_OK, percent=50)
     job.click(SECOND_FILE)
     job.click(DIALOG_OK)
+    job.marks = []
+    job.picture("2-slices", WINDOW, APPLY, SWEPT_VOLUME, percent=45)
     job.click(APPLY)
-    job.marks = job.marks[-1:]
-    job.picture("2-slices", WINDOW, SWEPT_VOLUME, percent=45)
     job.click(SWEPT_VOLUME)
+    job.picture("3-volume", WINDOW, APPLY, CONTOUR, percent=45)
     job.click(APPLY)
-    job.picture("3-volume", WINDOW, CONTOUR, percent=45)
     job.click(CONTOUR)
     job.click(APPLY)
     job.click(RESET_CAMERA)
-    job.marks = job.marks[-3:]
     job.picture("4-surface", WINDOW, percent=45)
     job.end(9)
 
