@@ -48,7 +48,8 @@ double GetAddressSpace()
     return Unlimited;
   }
   const double used = ReadNumber("/proc/self/statm") * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::max(0.0, static_cast<double>(limit.rlim_cur) - (used < Unlimited ? used : 0));
+  // not 0, which means that nobody tells
+  return std::max(1.0, static_cast<double>(limit.rlim_cur) - (used < Unlimited ? used : 0));
 }
 }
 
@@ -107,8 +108,10 @@ void RequireMemory(const std::string& what, double bytes)
   {
     return;
   }
-  throw std::runtime_error(what + " would need " + DescribeBytes(bytes) + ", this machine has " +
-    DescribeBytes(available) + " of memory free");
+  throw std::runtime_error(what + " would need " + DescribeBytes(bytes) +
+    (GetAddressSpace() <= available
+        ? ", this process may have (ulimit -v) " + DescribeBytes(available) + " more"
+        : ", this machine has " + DescribeBytes(available) + " of memory free"));
 }
 
 void PreferLargePages(void* memory, std::size_t bytes)

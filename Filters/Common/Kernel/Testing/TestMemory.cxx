@@ -44,7 +44,17 @@ TEST(Memory, IsAtMostWhatTheAddressSpaceAllows)
   limit.rlim_cur = 1 << 30;
   ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
   const double limited = lacuna::GetAvailableMemory();
+  std::string text;
+  try
+  {
+    lacuna::RequireMemory("a gigabyte", 1 << 30);
+  }
+  catch (const std::runtime_error& e)
+  {
+    text = e.what();
+  }
   setrlimit(RLIMIT_AS, &old);
+  EXPECT_NE(text.find("ulimit -v"), std::string::npos) << text;
   EXPECT_LT(limited, 1 << 30);
   EXPECT_GT(limited, 1 << 29); // the test itself is small
 #endif
