@@ -5,6 +5,7 @@
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaVersionCompat.h"
 #include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -63,6 +64,7 @@ int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outpu
     const std::string error = ErrorOf(
       [&]
       {
+        vtkLacunaInputs::Check(algorithm);
         vtkLacunaExecution execution(algorithm);
         body(execution);
       });

@@ -24,9 +24,9 @@ public:
   {
   }
 
-  /// Runs the body of algorithm's RequestData. Returns what RequestData shall return: 1, or 0 after
-  /// an exception, whose text becomes algorithm's error. When body fails or is stopped by the user
-  /// all outputs are emptied, so that no half result looks whole.
+  /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). Returns 1, or
+  /// 0 after an exception, whose text becomes algorithm's error. When body fails or is stopped by the
+  /// user all outputs are emptied, so that no half result looks whole.
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 

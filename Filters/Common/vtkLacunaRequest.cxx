@@ -4,6 +4,7 @@
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
+#include "vtkLacunaInputs.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
@@ -39,4 +40,5 @@ void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
   Whole(filter->GetInputInformation(port, 0));
   vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
   connection->GetProducer()->Update(connection->GetIndex());
+  vtkLacunaInputs::Check(filter, port);
 }

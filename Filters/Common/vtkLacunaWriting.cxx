@@ -7,6 +7,7 @@
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -40,6 +41,7 @@ unsigned long vtkLacunaWriting::Run(
       code = vtkErrorCode::NoFileNameError;
       throw std::runtime_error("no FileName is given");
     }
+    vtkLacunaInputs::Check(writer);
     body();
     return vtkErrorCode::NoError;
   }

@@ -17,6 +17,7 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkNew.h"
@@ -208,6 +209,7 @@ int vtkLacunaSliceRayCaster::RequestInformation(
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      vtkLacunaInputs::Check(this);
       vtkInformation* info = outputs->GetInformationObject(0);
       const Plan plan(this, inputs[0]);
       if (plan.IsEmpty())

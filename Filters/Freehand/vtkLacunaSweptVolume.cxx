@@ -13,6 +13,7 @@
 #include "vtkIntArray.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
@@ -204,6 +205,7 @@ int vtkLacunaSweptVolume::RequestInformation(
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      vtkLacunaInputs::Check(this);
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       const vtkLacunaSweptVolumePlan plan(this, inputs[0], *this->Fans);

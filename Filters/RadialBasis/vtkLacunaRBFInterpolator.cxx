@@ -15,6 +15,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -256,6 +257,7 @@ int vtkLacunaRBFInterpolator::RequestInformation(
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      vtkLacunaInputs::Check(this);
       vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaInputs.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkAlgorithm.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkMatrix3x3.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+void CheckLengths(
+  vtkDataObject* data, const std::string& name, int type, const char* array, const char* of)
+{
+  vtkFieldData* group = data->GetAttributesAsFieldData(type);
+  const vtkIdType wanted = data->GetNumberOfElements(type);
+  for (int a = 0; group && wanted > 0 && a < group->GetNumberOfArrays(); ++a)
+  {
+    vtkAbstractArray* values = group->GetAbstractArray(a);
+    if (values->GetNumberOfTuples() != wanted)
+    {
+      std::ostringstream message;
+      message << name << " is not sound: its " << array << " "
+              << (values->GetName() ? values->GetName() : "without a name") << " has "
+              << values->GetNumberOfTuples() << " values for " << wanted << " " << of
+              << "; mend or leave it out where it is made";
+      throw std::runtime_error(message.str());
+    }
+  }
+}
+
+void CheckNumbers(const std::string& name, const char* what, const double* numbers, int count)
+{
+  if (std::all_of(numbers, numbers + count, [](double n) { return std::isfinite(n); }))
+  {
+    return;
+  }
+  std::ostringstream message;
+  message << name << " is not sound: its " << what << " is";
+  for (int i = 0; i < count; ++i)
+  {
+    message << " " << numbers[i];
+  }
+  message << "; these must be finite numbers";
+  throw std::runtime_error(message.str());
+}
+
+// Room for windows and margins around it, which are counted in the same type.
+void CheckExtent(const std::string& name, const int extent[6])
+{
+  constexpr int limit = 1 << 30;
+  if (std::any_of(extent, extent + 6, [](int index) { return index < -limit || index > limit; }))
+  {
+    std::ostringstream message;
+    message << name << " is not sound: its extent is";
+    for (int i = 0; i < 6; ++i)
+    {
+      message << " " << extent[i];
+    }
+    message << "; indices must be from -2^30 to 2^30";
+    throw std::runtime_error(message.str());
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaInputs::Check(vtkDataObject* data, const std::string& name)
+{
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto block = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    for (block->InitTraversal(); !block->IsDoneWithTraversal(); block->GoToNextItem())
+    {
+      Check(block->GetCurrentDataObject(),
+        name + ", block " + std::to_string(block->GetCurrentFlatIndex()) + ",");
+    }
+    return;
+  }
+  if (!data)
+  {
+    return;
+  }
+  CheckLengths(data, name, vtkDataObject::POINT, "point array", "points");
+  CheckLengths(data, name, vtkDataObject::CELL, "cell array", "cells");
+  CheckLengths(data, name, vtkDataObject::ROW, "column", "rows");
+  auto* image = vtkImageData::SafeDownCast(data);
+  if (image && image->GetNumberOfPoints() > 0)
+  {
+    CheckExtent(name, image->GetExtent());
+    CheckNumbers(name, "spacing", image->GetSpacing(), 3);
+    CheckNumbers(name, "origin", image->GetOrigin(), 3);
+    CheckNumbers(name, "direction matrix", image->GetDirectionMatrix()->GetData(), 9);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaInputs::Check(vtkAlgorithm* algorithm)
+{
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    Check(algorithm, port);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
+{
+  for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+  {
+    Check(algorithm->GetInputDataObject(port, i), "input " + std::to_string(port));
+  }
+}

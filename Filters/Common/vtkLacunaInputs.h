@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Refuses data that are not sound in themselves, whatever a filter wants of them: VTK does not look
+/// whether arrays are as long as there are points, and filters would read beyond their ends.
+#ifndef vtkLacunaInputs_h
+#define vtkLacunaInputs_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+
+#include <string>
+
+class vtkAlgorithm;
+class vtkDataObject;
+
+namespace vtkLacunaInputs
+{
+/// Throws std::runtime_error that begins with name when a point or cell array has another number of
+/// tuples than there are points or cells, columns of a table differ in length, origin, spacing or
+/// direction of an image are not finite, or an index of its extent is beyond 2^30. Blocks of composite data are looked at one by one; data
+/// without points, cells and rows are sound.
+VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string& name);
+
+/// All inputs that algorithm has, by the numbers of their ports.
+VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
+
+/// Those of one port.
+VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm, int port);
+}
+#endif
