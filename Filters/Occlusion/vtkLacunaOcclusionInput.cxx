@@ -97,7 +97,7 @@ Grid::Grid(vtkImageData* image)
       this->Spacing[this->Axes++] = image->GetSpacing()[axis];
     }
   }
-  if (this->Axes < 2)
+  if (this->Axes < 2 || image->GetNumberOfPoints() == 0)
   {
     throw std::runtime_error("an occluded angle needs an image that is at least two voxels wide "
                              "along two axes");
@@ -130,12 +130,6 @@ vtkDataArray* FindScalars(vtkImageData* image, const std::string& name)
   if (scalars->GetNumberOfComponents() != 1)
   {
     throw std::runtime_error("the array '" + found + "' has more than one component; extract one");
-  }
-  if (scalars->GetNumberOfTuples() != image->GetNumberOfPoints())
-  {
-    throw std::runtime_error("the array '" + found + "' has " +
-      std::to_string(scalars->GetNumberOfTuples()) + " values, the image " +
-      std::to_string(image->GetNumberOfPoints()) + " points; a point array has one for each");
   }
   return scalars;
 }

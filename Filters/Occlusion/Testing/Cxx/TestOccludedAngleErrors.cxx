@@ -5,6 +5,7 @@
 #include "vtkImageData.h"
 #include "vtkLacunaOccludedAngle.h"
 #include "vtkNew.h"
+#include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
 #include "vtkSphere.h"
 
@@ -47,7 +48,7 @@ int TestOccludedAngleErrors(int, char*[])
     [](Filter* filter, vtkImageData*) { filter->SetScalarArray("Echo"); });
   Expect("at least two voxels wide",
     [](Filter*, vtkImageData* image) { image->SetDimensions(0, 0, 0); });
-  Expect("the array 'Short' has 3 values, the image 960 points",
+  Expect("its point array Short has 3 values for 960 points",
     [](Filter* filter, vtkImageData* image)
     {
       vtkNew<vtkFloatArray> array;
@@ -67,6 +68,18 @@ int TestOccludedAngleErrors(int, char*[])
       line->AllocateScalars(VTK_FLOAT, 1);
       line->GetPointData()->GetScalars()->Fill(1);
       filter->SetInputData(line);
+    });
+  Expect("at least two voxels wide",
+    [](Filter* filter, vtkImageData*)
+    {
+      vtkNew<vtkImageData> nothing; // though it is wide along two axes
+      nothing->SetDimensions(9, 0, 7);
+      nothing->AllocateScalars(VTK_DOUBLE, 1);
+      vtkNew<vtkPiecewiseFunction> function;
+      function->AddPoint(0, 1);
+      filter->SetOpacityFunction(function);
+      filter->SetAttenuation(Filter::OPACITY_FUNCTION);
+      filter->SetInputData(nothing);
     });
   Expect("not a finite number at voxel (9, 4, 3)",
     [](Filter*, vtkImageData* image)
