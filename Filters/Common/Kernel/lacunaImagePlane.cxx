@@ -137,6 +137,14 @@ ImagePlane MakeImagePlane(
   const double z =
     view.HasPlaneOrigin ? Dot(view.PlaneOrigin, plane.View) : Span(points, plane.View).First;
   plane.Origin = x * plane.Right + y * plane.Down + z * plane.View;
+  const double width = std::max(columns, rows) * plane.PixelSpacing;
+  if (!IsFinite(plane.Origin) || !IsFinite(plane.Origin + width * plane.Right + width * plane.Down))
+  {
+    std::ostringstream message;
+    message << "an image of " << columns << " x " << rows << " pixels, " << plane.PixelSpacing
+            << " mm apart, does not end at any finite place: give a smaller PixelSpacing";
+    throw std::invalid_argument(message.str());
+  }
   return plane;
 }
 }

@@ -122,6 +122,10 @@ TEST(ImagePlane, RefusesWhatCannotBeSeen)
     view.PixelSpacing = spacing;
     EXPECT_NE(ErrorOf(view).find("pixel spacing"), std::string::npos) << spacing;
   }
+  view.PixelSpacing = 1e308;
+  view.Size = { 22, 3 };
+  EXPECT_NE(ErrorOf(view).find("finite place"), std::string::npos) << ErrorOf(view);
+  view.Size = ViewSettings().Size;
   for (const double spacing : { 1e-9, 1e-300, 5e-324 })
   {
     view.PixelSpacing = spacing;
