@@ -7,6 +7,7 @@
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkImageInterpolator.h"
 #include "vtkInformation.h"
@@ -124,6 +125,18 @@ private:
   std::vector<char> Mask; // empty: all are valid
 };
 
+// vtkImageInterpolator knows no integers of 64 bits, and leaves grey levels undefined then.
+vtkSmartPointer<vtkDataArray> GetInterpolable(vtkDataArray* scalars)
+{
+  if (scalars->GetDataTypeSize() < 8 || scalars->GetDataType() == VTK_DOUBLE)
+  {
+    return scalars;
+  }
+  auto doubles = vtkSmartPointer<vtkDoubleArray>::New();
+  doubles->DeepCopy(scalars);
+  return doubles;
+}
+
 struct Sampling
 {
   int Interpolation;
@@ -146,7 +159,7 @@ Folds Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* s
 
   vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
   input->ShallowCopy(image);
-  input->GetPointData()->SetScalars(scalars);
+  input->GetPointData()->SetScalars(GetInterpolable(scalars));
   vtkNew<vtkImageInterpolator> interpolator;
   interpolator->SetInterpolationMode(sampling.Interpolation);
   interpolator->SetOutValue(sampling.OutsideValue);

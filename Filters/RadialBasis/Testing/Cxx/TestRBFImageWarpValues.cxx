@@ -471,10 +471,45 @@ void CheckSwirl()
     LACUNA_CHECK(wave.Largest < CubicBound + away[1] / 2);
   }
 }
+
+// Whole numbers are the same in every type that holds them.
+void WarpAllTypes()
+{
+  std::vector<double> expected;
+  for (const int type : { VTK_DOUBLE, VTK_FLOAT, VTK_UNSIGNED_CHAR, VTK_SHORT, VTK_INT, VTK_LONG,
+         VTK_UNSIGNED_LONG, VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE })
+  {
+    const vtkSmartPointer<vtkImageData> image = MakeImage(4);
+    vtkNew<vtkPolyData> landmarks;
+    vtkNew<vtkPolyData> targets;
+    MakeLandmarks(image, 25, landmarks, targets);
+    const auto levels = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+    levels->SetName("Levels");
+    levels->SetNumberOfTuples(image->GetNumberOfPoints());
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+    {
+      levels->SetTuple1(i, static_cast<double>((7 * i) % 200));
+    }
+    image->GetPointData()->SetScalars(levels);
+    WatchedWarp warp(image, landmarks, targets);
+    warp.Filter->SetInterpolation(vtkLacunaRBFImageWarp::Nearest);
+    warp.Filter->Update();
+    vtkDataArray* warped = warp.Filter->GetOutput()->GetPointData()->GetArray("Levels");
+    LACUNA_CHECK_THAT(warped && warped->GetDataType() == type, "the type stays");
+    std::vector<double> values;
+    for (vtkIdType i = 0; warped && i < warped->GetNumberOfTuples(); ++i)
+    {
+      values.push_back(warped->GetTuple1(i));
+    }
+    expected = expected.empty() ? values : expected;
+    LACUNA_CHECK_THAT(values == expected, "levels of type " + std::to_string(type));
+  }
+}
 }
 
 int TestRBFImageWarpValues(int, char*[])
 {
+  WarpAllTypes();
   CompareWithVTK(12, vtkLacunaRBFImageWarp::Linear);
   CompareWithVTK(12, vtkLacunaRBFImageWarp::ThinPlate);
   CompareWithVTK(1, vtkLacunaRBFImageWarp::ThinPlate);
