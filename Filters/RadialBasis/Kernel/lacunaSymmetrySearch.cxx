@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 namespace lacuna
@@ -14,6 +15,7 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr const char* NoPlane =
   "no plane mirrors enough of the data onto data: too little of one side is there";
+constexpr double LongestInCells = 10000;
 constexpr std::size_t FirstCandidates = 16;
 constexpr std::size_t LastCandidates = 4;
 constexpr std::size_t ComparedLevels = 3;
@@ -319,6 +321,16 @@ SymmetryResult FindSymmetryPlane(const std::vector<std::unique_ptr<SymmetryLevel
   const Execution::NestedStages nested(execution);
   const Vec3 center = levels.front()->Center;
   const double size = Norm(levels.front()->HalfSize);
+  // Planes a cell apart are tried: thousands mean a spacing that is wrong, not a patient.
+  if (!(size <= LongestInCells * levels.front()->CellSize))
+  {
+    std::ostringstream message;
+    message << "the data reach " << size
+            << " mm from their middle, too far to look for symmetry in "
+            << "cells of " << levels.front()->CellSize
+            << " mm: mend the spacing, or give the plane (PlaneMethod Given)";
+    throw std::runtime_error(message.str());
+  }
   execution.SetStage(0, 0.3);
   std::vector<Candidate> candidates = SelectBest(RateAll(*levels.front(), directions, execution),
     FirstCandidates, center, 15, 2.5 * levels.front()->CellSize);

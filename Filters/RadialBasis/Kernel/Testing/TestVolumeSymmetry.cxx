@@ -224,6 +224,9 @@ TEST(VolumeSymmetry, NamesWhatIsWrong)
   volume.Volume.IndexToWorld = lacuna::Matrix4();
   lacuna::ThreadExecution execution;
   EXPECT_LT(FindSymmetryPlane(volume, execution).Rating, 0.5);
+  volume.Volume.IndexToWorld = lacuna::Matrix4::Scaling({ 1, 1e9, 1 });
+  EXPECT_NE(ErrorOf(volume).find("mend the spacing"), std::string::npos) << ErrorOf(volume);
+  volume.Volume.IndexToWorld = lacuna::Matrix4();
   for (const std::array<int, 3>& size : { std::array<int, 3>{ 2, 2, 2 }, { 3, 4, 5 }, { 2, 1, 2 } })
   {
     volume.Volume.Size = size;
