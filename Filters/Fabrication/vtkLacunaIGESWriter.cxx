@@ -260,7 +260,7 @@ void vtkLacunaIGESWriter::WriteContent()
   execution.SetStage(0.9, 1);
   execution.Report(0);
   lacuna::WriteFileAtomically(this->FileName, text);
-  execution.Report(1);
+  this->UpdateProgress(1); // no longer to be stopped: the file is there
 
   for (const vtkLacunaIGESSurface& surface : content.Surfaces)
   {
