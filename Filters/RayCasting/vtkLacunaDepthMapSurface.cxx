@@ -214,7 +214,11 @@ int vtkLacunaDepthMapSurface::RequestData(
       pointData->SetActiveScalars(pointData->HasArray(vtkLacunaDepthMap::ColorName)
           ? vtkLacunaDepthMap::ColorName
           : this->DepthArray.c_str());
-      pointData->SetActiveNormals(normals.c_str());
+      vtkDataArray* carriedNormals = pointData->GetArray(normals.c_str());
+      if (carriedNormals && carriedNormals->GetNumberOfComponents() == 3)
+      {
+        pointData->SetActiveNormals(normals.c_str());
+      }
 
       lacuna::ParameterText parameters;
       parameters.Add("DepthArray", this->DepthArray)
