@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests of what every algorithm promises, on random data and properties:
+//
+//   LacunaProperties outcome|abort|cycles [--seed N] [--count N] [--filter NAME]... [--output FOLDER]
+//
+// --seed: of the first case, the others follow; `clock` takes one from the time. --count: cases of
+// an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone.
+#include "lacunaTests.h"
+#include "lacunaTrial.h"
+#include "vtkLogger.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+
+namespace
+{
+using lacunaProperties::Subject;
+
+constexpr int LongestCase = 120; // s of the processor's time; they take milliseconds
+constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes of address space; they take little
+
+char Current[300] = ""; ///< the options that repeat the case at hand
+
+const std::string* Story = nullptr; ///< of that case
+
+void SayWhere()
+{
+  const char* const parts[] = { "\nin the case of: ", Current, "\n", Story ? Story->c_str() : "" };
+  for (const char* part : parts)
+  {
+    (void)!write(STDERR_FILENO, part, std::strlen(part));
+  }
+}
+
+void Die(int signal)
+{
+  SayWhere();
+  std::signal(signal, SIG_DFL);
+  raise(signal);
+}
+
+void TakesTooLong(int)
+{
+  (void)!write(STDERR_FILENO, "takes too long", 14);
+  SayWhere();
+  _exit(1);
+}
+
+struct Options
+{
+  std::string Test;
+  std::uint64_t Seed = 1996;
+  int Count = 60;
+  std::vector<std::string> Filters;
+};
+
+bool Parse(int argc, char* argv[], Options& options)
+{
+  if (argc < 2)
+  {
+    return false;
+  }
+  options.Test = argv[1];
+  for (int i = 2; i + 1 < argc; i += 2)
+  {
+    const std::string key = argv[i];
+    const std::string value = argv[i + 1];
+    if (key == "--seed")
+    {
+      options.Seed = value == "clock"
+        ? static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count())
+        : std::stoull(value);
+    }
+    else if (key == "--count")
+    {
+      options.Count = std::stoi(value);
+    }
+    else if (key == "--filter")
+    {
+      options.Filters.push_back(value);
+    }
+    else if (key == "--output")
+    {
+      lacunaProperties::SetOutputFolder(value);
+    }
+    else
+    {
+      return false;
+    }
+  }
+  return argc % 2 == 0;
+}
+
+double GetProcessorTime()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+// How many cases of the subject failed.
+int TestSubject(const Options& options, const Subject& subject, int count,
+  const std::function<std::string(std::uint64_t seed, std::string& story)>& test)
+{
+  const double start = GetProcessorTime();
+  int failures = 0;
+  for (int i = 0; i < count; ++i)
+  {
+    const std::uint64_t seed = options.Seed + static_cast<std::uint64_t>(i);
+    std::snprintf(Current, sizeof(Current), "%s --filter %s --seed %llu --count 1",
+      options.Test.c_str(), subject.Name.c_str(), static_cast<unsigned long long>(seed));
+    const struct itimerval limit = { { 0, 0 }, { LongestCase, 0 } };
+    setitimer(ITIMER_PROF, &limit, nullptr);
+    std::string story;
+    Story = &story;
+    const std::string fault = test(seed, story);
+    Story = nullptr;
+    if (!fault.empty())
+    {
+      ++failures;
+      std::cerr << "FAILED: " << Current << "\n" << story << "  " << fault << "\n";
+    }
+    else if (options.Count == 1)
+    {
+      std::cout << story;
+    }
+  }
+  std::cout << subject.Name << ": " << count << " cases, " << failures << " failed, "
+            << GetProcessorTime() - start << " s" << std::endl;
+  return failures;
+}
+}
+
+int main(int argc, char* argv[])
+{
+  Options options;
+  if (!Parse(argc, argv, options))
+  {
+    std::cerr << "usage: LacunaProperties outcome|abort|cycles [--seed N|clock] [--count N] "
+                 "[--filter NAME]... [--output FOLDER]\n";
+    return 2;
+  }
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  std::signal(SIGPROF, TakesTooLong);
+  if (__sanitizer_set_death_callback)
+  {
+    __sanitizer_set_death_callback(SayWhere);
+  }
+  else
+  {
+    const struct rlimit limit = { MostMemory, MostMemory };
+    setrlimit(RLIMIT_AS, &limit);
+    for (const int signal : { SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS })
+    {
+      std::signal(signal, Die);
+    }
+  }
+  int failures = 0;
+  int found = 0;
+  for (const Subject& subject : lacunaProperties::GetSubjects())
+  {
+    if (!options.Filters.empty() &&
+      std::find(options.Filters.begin(), options.Filters.end(), subject.Name) ==
+        options.Filters.end())
+    {
+      continue;
+    }
+    ++found;
+    const int count = std::max(1, options.Count / subject.Cost);
+    using namespace lacunaProperties;
+    failures += options.Test == "cycles"
+      ? TestSubject(options, subject, 1,
+          [&](std::uint64_t seed, std::string& story)
+          { return TestCycles(subject, seed, options.Count, story); })
+      : TestSubject(options, subject, count,
+          [&](std::uint64_t seed, std::string& story)
+          {
+            return options.Test == "abort" ? TestAbort(subject, seed, story)
+                                           : TestOutcome(subject, seed, story);
+          });
+  }
+  if (found == 0)
+  {
+    std::cerr << "no such filter\n";
+    return 2;
+  }
+  return failures == 0 ? 0 : 1;
+}

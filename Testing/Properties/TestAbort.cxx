@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaTests.h"
+#include "lacunaTrial.h"
+#include "vtkCommand.h"
+
+namespace lacunaProperties
+{
+namespace
+{
+// Counts reports, and stops at one of them.
+class Stopper : public vtkCommand
+{
+public:
+  static Stopper* New() { return new Stopper; }
+  vtkTypeMacro(Stopper, vtkCommand);
+  void Execute(vtkObject* caller, unsigned long, void*) override
+  {
+    if (++this->Count == this->StopAt)
+    {
+      vtkAlgorithm::SafeDownCast(caller)->AbortExecuteOn();
+    }
+  }
+  int Count = 0;
+  int StopAt = 0;
+};
+}
+
+//------------------------------------------------------------------------------
+std::string TestAbort(const Subject& subject, std::uint64_t seed, std::string& story)
+{
+  const Trial trial(subject, seed, true);
+  Dice dice(seed + 1);
+  vtkNew<Stopper> counter;
+  const vtkSmartPointer<vtkAlgorithm> fresh = trial.Make();
+  fresh->AddObserver(vtkCommand::ProgressEvent, counter);
+  const Run whole = trial.Execute(fresh, 0);
+  story = "  " + std::to_string(counter->Count) + " reports of progress\n" + whole.Errors;
+  if (!whole.Errors.empty() || counter->Count == 0)
+  {
+    return {}; // an error, or so short that nobody can stop it
+  }
+  vtkNew<Stopper> stopper;
+  stopper->StopAt = dice.Whole(1, counter->Count);
+  story += "  stopped at report " + std::to_string(stopper->StopAt) + "\n";
+  const vtkSmartPointer<vtkAlgorithm> algorithm = trial.Make();
+  algorithm->AddObserver(vtkCommand::ProgressEvent, stopper);
+  const Run stopped = trial.Execute(algorithm, dice.Pick({ 0, 1, 5 }));
+  if (!stopped.Errors.empty() || !stopped.Stray.empty())
+  {
+    return "messages when stopped: " + stopped.Errors + stopped.Stray;
+  }
+  // stopped at the last report it may have been ready
+  bool isWhole = stopped.Outputs.size() == whole.Outputs.size();
+  for (std::size_t port = 0; isWhole && port < whole.Outputs.size(); ++port)
+  {
+    isWhole = Compare(whole.Outputs[port], stopped.Outputs[port]).empty();
+  }
+  if (!stopped.IsEmpty && !isWhole)
+  {
+    return "stopped, and half an output";
+  }
+  stopper->StopAt = 0;
+  algorithm->AbortExecuteOff();
+  algorithm->Modified();
+  const Run again = trial.Execute(algorithm, 0);
+  if (again.Outputs.size() != whole.Outputs.size())
+  {
+    return "nothing after it was stopped: " + again.Errors;
+  }
+  for (std::size_t port = 0; port < whole.Outputs.size(); ++port)
+  {
+    const std::string difference = Compare(whole.Outputs[port], again.Outputs[port]);
+    if (!difference.empty())
+    {
+      return "after it was stopped output " + std::to_string(port) + " differs in " + difference;
+    }
+  }
+  return {};
+}
+}

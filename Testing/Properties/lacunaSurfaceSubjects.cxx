@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Radial basis functions and fabrication.
+#include "lacunaRandomData.h"
+#include "lacunaSubject.h"
+#include "vtkImageData.h"
+#include "vtkLacunaDefectModel.h"
+#include "vtkLacunaDepthMapSurface.h"
+#include "vtkLacunaGCodeWriter.h"
+#include "vtkLacunaIGESWriter.h"
+#include "vtkLacunaImplantPlate.h"
+#include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaPressOrientation.h"
+#include "vtkLacunaRBFHoleFiller.h"
+#include "vtkLacunaRBFInterpolator.h"
+#include "vtkPolyData.h"
+#include "vtkSphere.h"
+#include "vtkStructuredGrid.h"
+
+namespace lacunaProperties
+{
+namespace
+{
+Inputs MakeFilledMap(Dice& dice)
+{
+  return { RandomDepthMap(dice, true, dice.Chance(0.2) ? 3 : 18) };
+}
+
+// Points on a map's plane, near its middle.
+vtkSmartPointer<vtkPolyData> PointsOn(vtkImageData* map, Dice& dice)
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  const int* extent = map->GetExtent();
+  for (int i = dice.Whole(1, 3); i > 0; --i)
+  {
+    const double index[3] = { dice.Real(extent[0], extent[1]), dice.Real(extent[2], extent[3]),
+      20 };
+    double p[3];
+    map->TransformContinuousIndexToPhysicalPoint(index, p);
+    points->InsertNextPoint(p);
+  }
+  data->SetPoints(points);
+  return data;
+}
+
+Subject MakeHoleFiller()
+{
+  using T = vtkLacunaRBFHoleFiller;
+  Subject subject{ "RBFHoleFiller", NewOf<T>,
+    [](Dice& dice) -> Inputs
+    {
+      const auto map = RandomDepthMap(dice, false, 8);
+      vtkSmartPointer<vtkPolyData> surface;
+      if (dice.Chance(0.2))
+      {
+        vtkNew<vtkLacunaDepthMapSurface> mesher;
+        mesher->SetInputData(map);
+        mesher->Update();
+        surface = mesher->GetOutput();
+      }
+      const auto points = dice.Chance(0.2) ? PointsOn(map, dice) : vtkSmartPointer<vtkPolyData>();
+      vtkSmartPointer<vtkImageData> prior;
+      if (dice.Chance(0.2))
+      {
+        prior = vtkSmartPointer<vtkImageData>::New();
+        prior->DeepCopy(map);
+      }
+      return { map, surface, nullptr, points, prior };
+    },
+    { Whole("Kernel", &T::SetKernel, 0, 5), Real("KernelLength", &T::SetKernelLength, 0, 10),
+      Whole("Trend", &T::SetTrend, 0, 1),
+      Other<T>("DefectRegion",
+        [](T* filter, Dice& dice, bool isHostile)
+        {
+          vtkNew<vtkSphere> sphere;
+          sphere->SetCenter(dice.Real(-100, 100), dice.Real(-100, 100), dice.Real(-100, 100));
+          sphere->SetRadius(isHostile ? HostileReal(dice) : dice.Real(1, 120));
+          filter->SetDefectRegion(sphere);
+          return std::string("a sphere");
+        }),
+      Word("DefectArray", &T::SetDefectArray, { "", "Defect", "None", "Depth" }),
+      Word("SupportArray", &T::SetSupportArray, { "", "Defect", "vtkValidPointMask" }),
+      Real("SupportMargin", &T::SetSupportMargin, 1, 20),
+      Real("SupportStepMargin", &T::SetSupportStepMargin, 0, 3),
+      Real("NodeSpacing", &T::SetNodeSpacing, 0.5, 4), Real("Smoothing", &T::SetSmoothing, 0, 10),
+      Real("CutoffWavelength", &T::SetCutoffWavelength, 0, 10),
+      Word("ControlDepthArray", &T::SetControlDepthArray, { "", "Value" }),
+      Real("OutputMargin", &T::SetOutputMargin, 0, 5),
+      Reals<3>("OutputSpacing", &T::SetOutputSpacing, 0.4, 2),
+      Real("Accuracy", &T::SetAccuracy, 0, 0.01), Whole("Solver", &T::SetSolver, 0, 2) } };
+  subject.Cost = 8;
+  return subject;
+}
+
+Subject MakeInterpolator()
+{
+  using T = vtkLacunaRBFInterpolator;
+  Subject subject{ "RBFInterpolator", NewOf<T>,
+    [](Dice& dice) -> Inputs { return { RandomPoints(dice, dice.Chance(0.1) ? 0 : 4, 40) }; },
+    { Word("ScalarArray", &T::SetScalarArray, { "", "Value", "None" }),
+      Whole("Kernel", &T::SetKernel, 0, 5), Real("KernelLength", &T::SetKernelLength, 0, 10),
+      Real("Smoothing", &T::SetSmoothing, 0, 10),
+      Word("ErrorArray", &T::SetErrorArray, { "", "Error", "None" }),
+      Real("Accuracy", &T::SetAccuracy, 0, 0.01), Whole("Solver", &T::SetSolver, 0, 2),
+      Reals<3>("OutputSpacing", &T::SetOutputSpacing, 2, 10),
+      Reals<6>("OutputBounds", &T::SetOutputBounds, -20, 20),
+      Real("CenterTolerance", &T::SetCenterTolerance, 0, 10) } };
+  subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetOutputSpacing(4, 4, 4); };
+  subject.Cost = 4;
+  return subject;
+}
+
+Subject MakePlate()
+{
+  using T = vtkLacunaImplantPlate;
+  Subject subject{ "ImplantPlate", NewOf<T>,
+    [](Dice& dice) -> Inputs
+    {
+      const Inputs map = MakeFilledMap(dice);
+      return { map[0],
+        dice.Chance(0.2) ? PointsOn(vtkImageData::SafeDownCast(map[0]), dice)
+                         : vtkSmartPointer<vtkPolyData>() };
+    },
+    { Real("Thickness", &T::SetThickness, 0.5, 5), Whole("Side", &T::SetSide, 0, 1),
+      Real("EdgeClearance", &T::SetEdgeClearance, -1, 1),
+      Whole("EdgeShape", &T::SetEdgeShape, 0, 2), Real("Bevel", &T::SetBevel, 0, 1),
+      Switch("BevelBothFaces", &T::SetBevelBothFaces),
+      Real("CornerRadius", &T::SetCornerRadius, 0, 2),
+      Real("TriangleSize", &T::SetTriangleSize, 0.4, 2),
+      Real("HoleDiameter", &T::SetHoleDiameter, 0.5, 3),
+      Real("CountersinkDiameter", &T::SetCountersinkDiameter, 0, 4),
+      Real("CountersinkAngle", &T::SetCountersinkAngle, 30, 150),
+      Real("MinimumBoneThickness", &T::SetMinimumBoneThickness, 0, 5),
+      Real("DrainageSpacing", &T::SetDrainageSpacing, 0, 8),
+      Real("DrainageDiameter", &T::SetDrainageDiameter, 0.5, 2),
+      Real("Density", &T::SetDensity, 1, 5) } };
+  subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(1); };
+  subject.Cost = 40;
+  return subject;
+}
+
+Subject MakeToolPath()
+{
+  using T = vtkLacunaMillingToolPath;
+  Subject subject{ "MillingToolPath", NewOf<T>,
+    [](Dice& dice) -> Inputs { return { RandomMould(dice) }; },
+    { Whole("ToolShape", &T::SetToolShape, 0, 1), Real("ToolRadius", &T::SetToolRadius, 0.5, 8),
+      Real("StepOver", &T::SetStepOver, 0.3, 3),
+      Real("ScallopHeight", &T::SetScallopHeight, 0.005, 0.2),
+      Real("Overrun", &T::SetOverrun, 0, 5), Real("Direction", &T::SetDirection, -180, 180),
+      Whole("Pattern", &T::SetPattern, 0, 1), Switch("Finishing", &T::SetFinishing),
+      Real("RoughingStep", &T::SetRoughingStep, 0.5, 5),
+      Real("RoughingStepOver", &T::SetRoughingStepOver, 0.5, 5),
+      Real("StockAllowance", &T::SetStockAllowance, 0, 1), Real("StockTop", &T::SetStockTop, -5, 5),
+      Real("SafeHeight", &T::SetSafeHeight, 1, 10), Real("LeadRadius", &T::SetLeadRadius, 0, 3),
+      Real("PathStep", &T::SetPathStep, 0.2, 2), Real("Tolerance", &T::SetTolerance, 0.002, 0.1),
+      Real("FeedRate", &T::SetFeedRate, 10, 2000),
+      Real("PlungeFeedRate", &T::SetPlungeFeedRate, 10, 900),
+      Real("RapidFeedRate", &T::SetRapidFeedRate, 100, 9000),
+      Real("SpindleSpeed", &T::SetSpindleSpeed, 100, 9000),
+      Real("MapSpacing", &T::SetMapSpacing, 0.3, 2),
+      Real("LeftOverLimit", &T::SetLeftOverLimit, 0, 1) } };
+  subject.Cost = 8;
+  return subject;
+}
+
+Inputs MakePath(Dice& dice)
+{
+  vtkNew<vtkLacunaMillingToolPath> path;
+  path->SetInputData(vtkStructuredGrid::SafeDownCast(RandomMould(dice)));
+  path->SetToolRadius(2);
+  path->Update();
+  auto output = vtkSmartPointer<vtkPolyData>::New();
+  output->DeepCopy(path->GetOutput());
+  return { output };
+}
+}
+
+//------------------------------------------------------------------------------
+void AddSurfaceSubjects(std::vector<Subject>& subjects)
+{
+  subjects.push_back(MakeHoleFiller());
+  subjects.push_back(MakeInterpolator());
+  subjects.push_back(MakePlate());
+  {
+    using T = vtkLacunaDefectModel;
+    subjects.push_back({ "DefectModel", NewOf<T>, MakeFilledMap,
+      { Real("Margin", &T::SetMargin, 0, 10), Whole("FloorShape", &T::SetFloorShape, 0, 1),
+        Real("DefectDepth", &T::SetDefectDepth, 1, 15),
+        Real("BaseThickness", &T::SetBaseThickness, 1, 10),
+        Real("MaximumHeight", &T::SetMaximumHeight, 0, 30) },
+      20 });
+  }
+  {
+    using T = vtkLacunaPressOrientation;
+    subjects.push_back({ "PressOrientation", NewOf<T>, MakeFilledMap,
+      { Whole("PlaneMethod", &T::SetPlaneMethod, 0, 1), Whole("Mould", &T::SetMould, 0, 1),
+        Whole("Seating", &T::SetSeating, 0, 1),
+        Real("PlateThickness", &T::SetPlateThickness, 0.3, 2),
+        Real("PlateMargin", &T::SetPlateMargin, 0, 5),
+        Real("FlangeWidth", &T::SetFlangeWidth, 5, 20),
+        Reals<3>("BlockSize", &T::SetBlockSize, 0, 80),
+        Real("OutputSpacing", &T::SetOutputSpacing, 0.5, 2),
+        Whole("ConvexSide", &T::SetConvexSide, 0, 2) },
+      20 });
+  }
+  subjects.push_back(MakeToolPath());
+  {
+    using T = vtkLacunaIGESWriter;
+    Subject subject{ "IGESWriter", NewOf<T>,
+      [](Dice& dice) -> Inputs
+      {
+        return { dice.Chance(0.4) ? vtkSmartPointer<vtkDataObject>(RandomMould(dice))
+            : dice.Chance(0.7)    ? MakeFilledMap(dice)[0]
+                                  : vtkSmartPointer<vtkDataObject>(RandomPoints(dice, 1, 20)) };
+      },
+      { Real("Tolerance", &T::SetTolerance, 0.001, 0.5),
+        Whole("DefectOutline", &T::SetDefectOutline, 0, 2),
+        Whole("Coordinates", &T::SetCoordinates, 0, 2),
+        Switch("AllowMirrored", &T::SetAllowMirrored),
+        Switch("SkipUnsupported", &T::SetSkipUnsupported) } };
+    subject.SetFile = FileOf<T>("igs");
+    subject.Cost = 20;
+    subjects.push_back(subject);
+  }
+  {
+    using T = vtkLacunaGCodeWriter;
+    Subject subject{ "GCodeWriter", NewOf<T>, MakePath,
+      { Whole("ProgramNumber", &T::SetProgramNumber, 1, 9999),
+        Whole("ToolNumber", &T::SetToolNumber, 1, 99),
+        Whole("WorkOffset", &T::SetWorkOffset, 54, 59),
+        Real("SpindleSpeed", &T::SetSpindleSpeed, 0, 9000),
+        Switch("LineNumbers", &T::SetLineNumbers),
+        Real("ArcTolerance", &T::SetArcTolerance, 0.001, 1),
+        Reals<6>("Envelope", &T::SetEnvelope, -100, 100),
+        Switch("AllowMirrored", &T::SetAllowMirrored),
+        Word("Header", &T::SetHeader, { "", "%\nO1\nG21 G90\n" }),
+        Word("Footer", &T::SetFooter, { "", "M30\n%\n" }) } };
+    subject.SetFile = FileOf<T>("nc");
+    subject.Cost = 8;
+    subjects.push_back(subject);
+  }
+}
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Runs algorithms and says what came of it.
+#ifndef lacunaTrial_h
+#define lacunaTrial_h
+
+#include "lacunaSubject.h"
+#include "lacunaVerdict.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lacunaProperties
+{
+/// What came of one run.
+struct Run
+{
+  std::string Errors;   ///< of the algorithm and its executive
+  std::string Warnings; ///< of the algorithm
+  std::string Stray;    ///< messages of other objects, which a user could not place
+  bool IsEmpty = true;  ///< no output has anything, no file was written
+  std::vector<Fingerprint> Outputs;
+};
+
+/// A subject with inputs and properties that a seed chooses.
+class Trial
+{
+public:
+  /// With isSound the inputs are as made, and the properties the defaults.
+  Trial(const Subject& subject, std::uint64_t seed, bool isSound);
+
+  /// An algorithm with them; sound: with the inputs before they were spoiled.
+  vtkSmartPointer<vtkAlgorithm> Make(bool sound = false) const;
+  void Connect(vtkAlgorithm* algorithm, bool sound = false) const;
+  /// threads: of vtkSMPTools; 0: as a user has it.
+  Run Execute(vtkAlgorithm* algorithm, int threads) const;
+
+  const Subject& What;
+  const Inputs& GetInputs() const { return this->Given; }
+  bool IsSpoiled() const { return this->Spoiled; }
+  bool IsHostile() const { return this->Hostile; }
+  /// What was chosen, to be read.
+  const std::string& GetStory() const { return this->Story; }
+
+private:
+  struct Choice
+  {
+    const Property* What;
+    std::uint64_t Seed;
+    bool IsHostile;
+  };
+  void SpoilInputs(Dice& dice);
+
+  Inputs Sound;
+  Inputs Given;
+  std::vector<Choice> Choices;
+  bool Spoiled = false;
+  bool Hostile = false;
+  std::string Story;
+};
+
+/// The folder for files that writers make.
+void SetOutputFolder(const std::string& folder);
+}
+#endif
