@@ -283,11 +283,14 @@ extern "C"
   const char* lacuna_entries(const char* name)
   {
     static QByteArray text;
-    const auto* list = qobject_cast<QComboBox*>(Find(name));
+    const QObject* object = Find(name);
+    const auto* box = qobject_cast<const QComboBox*>(object);
+    const auto* selection = object ? object->findChild<QItemSelectionModel*>() : nullptr;
+    const QAbstractItemModel* model = box ? box->model() : selection ? selection->model() : nullptr;
     text.clear();
-    for (int i = 0; list && i < list->count(); ++i)
+    for (int row = 0; model && row < model->rowCount(); ++row)
     {
-      text += list->itemText(i).toUtf8() + "\n";
+      text += model->index(row, 0).data().toString().toUtf8() + "\n";
     }
     return text.constData();
   }

@@ -45,6 +45,17 @@ def run(script, seconds=600, **environment):
     return said
 
 
+def leave(*error):
+    """Ends the application after an error outside of test, with which it would stay open."""
+    sys.__stdout__.write("".join(traceback.format_exception(*error)))
+    sys.__stdout__.flush()
+    os._exit(1)
+
+
+if IS_INSIDE:
+    sys.excepthook = leave
+
+
 def inside(test):
     """Runs test(window) in paraview and ends it."""
     status = 1
@@ -116,7 +127,7 @@ class Window:
 
     def select(self, name, text):
         """Selects what is called so in a list or tree, as in the "pipelineBrowser"."""
-        assert self.library.lacuna_select(name.encode(), text.encode()), f"{name} has no {text}"
+        assert self.library.lacuna_select(name.encode(), text.encode()), f"{name} has no {text}, but {self.entries(name)}"
         self.wait(50)
 
     def type(self, name, text):
@@ -147,9 +158,12 @@ class Window:
         library.lacuna_mouse(name, *places[-1], 2)
         self.wait(100)
 
-    def open_file(self, path, *dialogs):
-        """File > Open."""
-        self.menu("File/Open...", lambda: self.choose_file(path), *dialogs)
+    def open_file(self, path, reader=None):
+        """File > Open, by this reader in the list of readers, which comes up when there are several."""
+        def choose_reader():
+            self.select("listWidget", reader)
+            self.press("okButton")
+        self.menu("File/Open...", lambda: self.choose_file(path), *[choose_reader] * bool(reader))
 
     def save_file(self, path, kind, *dialogs):
         """File > Save Data, in the format whose entry begins so; dialogs: of the options, mostly one with OK."""
