@@ -160,7 +160,8 @@ public:
    * Surface within this distance of a depth step (above 65 degrees between neighbours) or of a pixel
    * without depth is not used, in mm in the map's plane, >= 0: beside burr holes, saw cuts and the
    * rim of the hole the partial volume effect rounds the bone, and kernels that carry its
-   * curvature into the hole (Cubic) carry that, too. Default 0: off.
+   * curvature into the hole (Cubic) carry that, too; in a view that does not quite face the hole
+   * the cut wall on its far side is no bone to follow, either. Default 2; 0: off.
    */
   vtkSetMacro(SupportStepMargin, double);
   vtkGetMacro(SupportStepMargin, double);
@@ -274,7 +275,7 @@ private:
   std::string DefectArray;
   std::string SupportArray;
   double SupportMargin = 12;
-  double SupportStepMargin = 0;
+  double SupportStepMargin = 2;
   double NodeSpacing = 1;
   double Smoothing = 0;
   double CutoffWavelength = 0;

@@ -38,7 +38,7 @@ figures = {}
 for place, (column, row, radius, _) in PLACES.items():
     disc = np.hypot(rows - row, columns - column) * spacing[0] <= radius
     cut = write_map("MirrorPriorHead-" + place, np.where(disc, np.nan, depth), spacing, to_world[:3, 3], *axes.T)
-    pattern = RBFHoleFiller(Input=Mirror(Input=cut))  # the sound side, burr holes in it filled
+    pattern = RBFHoleFiller(Input=Mirror(Input=cut), SupportStepMargin=0)  # the sound side, burr holes in it filled
     filler = RBFHoleFiller(Input=cut, DefectRegion="Cylinder")
     filler.DefectRegion.Center = list(to_world[:3, 3] + to_world[:3, 0] * column + to_world[:3, 1] * row)
     filler.DefectRegion.Axis = list(VIEW)

@@ -56,6 +56,7 @@ def fill():
 
 
 filler.SetSupportMargin(8)
+filler.SetSupportStepMargin(0)
 counts, largest, rms = fill()
 assert counts[2] > 0 and any("beyond a depth step" in w and "first at column" in w for w in warnings)
 assert counts[3] > 0 and any("steeper than 65 degrees" in w for w in warnings)
