@@ -1,13 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRequest.h"
 
+#include "lacunaMemory.h"
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkLacunaInputs.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
 using SDDP = vtkStreamingDemandDrivenPipeline;
+
+namespace
+{
+// Throws when the whole of an announced image does not fit into the memory.
+void RequireMemoryFor(vtkInformation* input)
+{
+  if (!input->Has(SDDP::WHOLE_EXTENT()))
+  {
+    return;
+  }
+  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  auto* image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
+  if (image && std::equal(whole, whole + 6, image->GetExtent()))
+  {
+    return; // it is here
+  }
+  std::ostringstream what;
+  what << "this filter takes its input as a whole, which with";
+  double size = 1;
+  for (int a = 0; a < 3; ++a)
+  {
+    const double points = static_cast<double>(whole[2 * a + 1]) - whole[2 * a] + 1;
+    size *= points;
+    what << (a > 0 ? " x " : " ") << points;
+  }
+  what << " points";
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  {
+    size *=
+      std::max(1, vtkDataArray::GetDataTypeSize(scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())));
+  }
+  if (scalars && scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
+  {
+    size *= std::max(1, scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
+  }
+  lacuna::RequireMemory(what.str(), size);
+}
+}
 
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::OnePiece(vtkInformation* input)
@@ -35,8 +83,28 @@ void vtkLacunaRequest::Whole(vtkInformation* input)
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaRequest::WholeIfItFits(vtkAlgorithm* filter, vtkInformation* input)
+{
+  try
+  {
+    RequireMemoryFor(input);
+  }
+  catch (const std::runtime_error& error)
+  {
+    // VTK goes on with the request of before although this one fails: let it be for nothing
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    Extent(input, nothing);
+    vtkErrorWithObjectMacro(filter, << error.what());
+    return 0;
+  }
+  Whole(input);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
 {
+  RequireMemoryFor(filter->GetInputInformation(port, 0));
   Whole(filter->GetInputInformation(port, 0));
   vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
   connection->GetProducer()->Update(connection->GetIndex());

@@ -16,6 +16,11 @@ namespace vtkLacunaRequest
 /// All of an input, on every rank: images by their whole extent, other data as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void Whole(vtkInformation* input);
 
+/// The same for filters that cannot do with less: returns 1, or 0 after an error of filter that names
+/// the bytes, when the input is an image that is not in memory yet and does not fit into it. Then
+/// nothing is asked for, so nobody tries to load it. What RequestUpdateExtent returns.
+VTKLACUNAFILTERSCOMMON_EXPORT int WholeIfItFits(vtkAlgorithm* filter, vtkInformation* input);
+
 /// This very extent of an image.
 VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);
 
@@ -24,7 +29,7 @@ VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
 
 /// For RequestInformation of filters whose output's size depends on their data: executes now, as a
 /// whole, what is connected to an input port. When it is up to date, as it usually is, this does
-/// nothing.
+/// nothing. Throws std::runtime_error when it does not fit into the memory.
 VTKLACUNAFILTERSCOMMON_EXPORT void UpdateNow(vtkAlgorithm* filter, int port = 0);
 }
 #endif

@@ -210,12 +210,11 @@ int vtkLacunaProbeCalibration::RequestInformation(
 int vtkLacunaProbeCalibration::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
   if (vtkInformation* table = inputs[1]->GetInformationObject(0))
   {
     vtkLacunaRequest::OnePiece(table);
   }
-  return 1;
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
 }
 
 //------------------------------------------------------------------------------

@@ -283,8 +283,7 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 int vtkLacunaScanRegion::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
-  return 1;
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
 }
 
 //------------------------------------------------------------------------------

@@ -33,9 +33,11 @@ int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* info = inputs[0]->GetInformationObject(i);
-    if (!this->TakesStreams() || !vtkLacunaSliceStream::RequestFields(this, info, 0, i))
+    const bool isStream =
+      this->TakesStreams() && vtkLacunaSliceStream::RequestFields(this, info, 0, i);
+    if (!isStream && !vtkLacunaRequest::WholeIfItFits(this, info))
     {
-      vtkLacunaRequest::Whole(info);
+      return 0;
     }
   }
   return 1;
@@ -47,7 +49,10 @@ int vtkLacunaSliceAlgorithm::RequestInformation(
 {
   // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
   // must be executed now. When they are up to date, as they usually are, this does nothing.
-  this->RequestUpdateExtent(request, inputs, outputs);
+  if (!this->RequestUpdateExtent(request, inputs, outputs))
+  {
+    return 0;
+  }
   for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
   {
     vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);

@@ -205,7 +205,10 @@ vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
 int vtkLacunaSliceRayCaster::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  this->Superclass::RequestInformation(request, inputs, outputs);
+  if (!this->Superclass::RequestInformation(request, inputs, outputs))
+  {
+    return 0;
+  }
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {

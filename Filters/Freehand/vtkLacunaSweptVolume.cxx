@@ -201,7 +201,10 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaSweptVolume::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  this->Superclass::RequestInformation(request, inputs, outputs);
+  if (!this->Superclass::RequestInformation(request, inputs, outputs))
+  {
+    return 0;
+  }
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {

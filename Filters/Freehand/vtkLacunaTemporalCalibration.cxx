@@ -56,8 +56,7 @@ int vtkLacunaTemporalCalibration::FillInputPortInformation(int, vtkInformation* 
 int vtkLacunaTemporalCalibration::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
-  return 1;
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
 }
 
 //------------------------------------------------------------------------------

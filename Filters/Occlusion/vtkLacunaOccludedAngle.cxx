@@ -368,12 +368,13 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
+  int fits = 1;
   for (int port : { 0, 1 })
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
       vtkInformation* info = inputVector[port]->GetInformationObject(i);
-      vtkLacunaRequest::Whole(info);
+      fits &= vtkLacunaRequest::WholeIfItFits(this, info);
       if (this->KeepIterations) // the time asked for is an iteration, not the input's time
       {
         info->Remove(Pipeline::UPDATE_TIME_STEP());
@@ -388,7 +389,7 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
       }
     }
   }
-  return 1;
+  return fits;
 }
 
 //------------------------------------------------------------------------------

@@ -198,11 +198,12 @@ int vtkLacunaOcclusionSurface::FillInputPortInformation(int, vtkInformation* inf
 int vtkLacunaOcclusionSurface::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
+  int fits = 1;
   for (int port : { 0, 1 })
   {
-    vtkLacunaRequest::Whole(inputVector[port]->GetInformationObject(0));
+    fits &= vtkLacunaRequest::WholeIfItFits(this, inputVector[port]->GetInformationObject(0));
   }
-  return 1;
+  return fits;
 }
 
 //------------------------------------------------------------------------------

@@ -345,8 +345,7 @@ int vtkLacunaMirror::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // Any voxel may be the image of any other, and the plane depends on all.
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
-  return 1;
+  return vtkLacunaRequest::WholeIfItFits(this, inputVector[0]->GetInformationObject(0));
 }
 
 //------------------------------------------------------------------------------

@@ -255,11 +255,12 @@ int vtkLacunaRBFImageWarp::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // Any voxel may show any place, and each depends on all landmarks.
+  int fits = 1;
   for (int port = 0; port < 3; ++port)
   {
-    vtkLacunaRequest::Whole(inputs[port]->GetInformationObject(0));
+    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0));
   }
-  return 1;
+  return fits;
 }
 
 //------------------------------------------------------------------------------

@@ -5,7 +5,6 @@
 #include "lacunaParameterText.h"
 #include "lacunaPerspective.h"
 
-#include "vtkAlgorithmOutput.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -327,7 +326,7 @@ int vtkLacunaBSplineIsoRayCaster::FillInputPortInformation(int port, vtkInformat
 
 //------------------------------------------------------------------------------
 int vtkLacunaBSplineIsoRayCaster::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
@@ -345,9 +344,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       {
         // ParaView's filter between any two proxies drops the direction from the information, so that
         // only the data know where the volume is. When they are up to date, as they usually are, this does nothing.
-        this->RequestUpdateExtent(request, inputVector, outputVector);
-        vtkAlgorithmOutput* connection = this->GetInputConnection(0, 0);
-        connection->GetProducer()->Update(connection->GetIndex());
+        vtkLacunaRequest::UpdateNow(this);
       }
       const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
       vtkLacunaDepthMap::SetInformation(outInfo, plane);
@@ -360,14 +357,13 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
 {
   // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
   // another size must be seen to be one.
+  int fits = 1;
   for (int port = 0; port < 2; ++port)
   {
-    if (inputVector[port]->GetNumberOfInformationObjects() > 0)
-    {
-      vtkLacunaRequest::Whole(inputVector[port]->GetInformationObject(0));
-    }
+    vtkInformation* input = inputVector[port]->GetInformationObject(0); // null: none is connected
+    fits &= input ? vtkLacunaRequest::WholeIfItFits(this, input) : 1;
   }
-  return 1;
+  return fits;
 }
 
 //------------------------------------------------------------------------------

@@ -160,8 +160,7 @@ int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // All of the image, on every rank: what is upstream may need all ranks to make it.
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
-  return 1;
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
 }
 
 //------------------------------------------------------------------------------

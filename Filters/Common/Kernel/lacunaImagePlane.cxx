@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaImagePlane.h"
 
+#include "lacunaMemory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -129,7 +131,9 @@ ImagePlane MakeImagePlane(
   {
     std::ostringstream message;
     message << "an image of " << columns << " x " << rows << " pixels (" << plane.PixelSpacing
-            << " mm apart) is too large, at most " << MaximumNumberOfPixels
+            << " mm apart) is too large: its depths alone would take "
+            << DescribeBytes(sizeof(double) * columns * rows) << ". At most "
+            << MaximumNumberOfPixels
             << " pixels are possible: give a larger PixelSpacing or a smaller ImageSize";
     throw std::invalid_argument(message.str());
   }

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Volumes and images of 2048^3 points and far more: refused with the number of bytes, or made by pieces in little memory.
+
+The address space is limited, so that what cannot be had is not had on any machine.
+"""
+import resource
+import sys
+
+import lacuna
+import numpy as np
+from vtkmodules.numpy_interface import dataset_adapter as dsa
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+
+GIBIBYTE = 1 << 30
+N = 2048
+
+
+def status(key):
+    with open("/proc/self/status", encoding="ascii") as file:
+        return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
+
+
+def errors_of(filter, update=None):
+    said = []
+    for each in (filter, filter.GetExecutive()):
+        each.AddObserver("ErrorEvent", lambda *_: said.append(""))
+    texts = []
+
+    def listen(_, __, text):
+        texts.append(text)
+    listen.CallDataType = "string0"
+    filter.AddObserver("ErrorEvent", listen)
+    (update or filter.Update)()
+    return "\n".join(texts)
+
+
+def check_refused(name, filter, *parts):
+    before = status("VmHWM")
+    text = errors_of(filter)
+    print(f"{name}: {text.strip()[:220]}", flush=True)
+    assert "bytes" in text and all(part in text for part in parts), (name, text)
+    output = filter.GetOutputDataObject(0)
+    assert not hasattr(output, "GetNumberOfPoints") or output.GetNumberOfPoints() == 0, name
+    assert status("VmHWM") - before < GIBIBYTE / 4, name
+
+
+def check_piece(name, filter, extent, points):
+    before = status("VmRSS")
+    with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
+        file.write("5")
+    texts = errors_of(filter, lambda: filter.UpdateExtent(extent))
+    assert not texts, (name, texts)
+    output = filter.GetOutput()
+    used = status("VmHWM") - before
+    print(f"{name}: piece {extent} of {points} points, {used / 2**20:.0f} MiB", flush=True)
+    assert output.GetNumberOfPoints() >= points, (name, output.GetExtent())
+    assert used < GIBIBYTE / 2, (name, used)
+
+
+def wavelet(n=N):
+    source = vtkRTAnalyticSource()
+    source.SetWholeExtent(0, n - 1, 0, n - 1, 0, n - 1)
+    return source
+
+
+def points(length):
+    data = vtkPolyData()
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(length * np.random.default_rng(2).random((30, 3)), deep=1))
+    data.SetPoints(places)
+    values = numpy_to_vtk(np.arange(30.0), deep=1)
+    values.SetName("Value")
+    data.GetPointData().SetScalars(values)
+    return data
+
+
+def behind(filter, source=None, port=0):
+    source = source or wavelet()  # keeps its output port alive
+    filter.SetInputConnection(port, source.GetOutputPort())
+    return filter
+
+
+def sources():
+    for spacing in (0.05, 1e-3, 1e-4):
+        skull = lacuna.vtkLacunaSkullPhantom()
+        skull.SetSpacing(spacing, spacing, spacing)
+        check_refused(f"Skull Phantom {spacing}", skull)
+    skull = lacuna.vtkLacunaSkullPhantom()
+    skull.SetSpacing(0.08, 0.08, 0.08)
+    check_piece("Skull Phantom", skull, (500, 699, 500, 699, 1000, 1009), 400000)
+    for slices, size in ((N, (N, N)), (2**31 - 1, (2**31 - 1, 2**31 - 1))):
+        sweep = lacuna.vtkLacunaPhantomSweep()
+        sweep.SetNumberOfSlices(slices)
+        sweep.SetImageSize(*size)
+        check_refused(f"Phantom Sweep {slices}", sweep)
+    for n in (N, 2**31 - 1):
+        shape = lacuna.vtkLacunaIncompleteShape()
+        shape.SetShape(shape.CUBE)
+        shape.SetDimensions(n, n, n)
+        check_refused(f"Incomplete Shape {n}", shape)
+
+
+def freehand():
+    sweep = lacuna.vtkLacunaPhantomSweep()
+    sweep.SetNumberOfSlices(20)
+    for spacing in (0.03, 1e-7, 1e-300):
+        volume = behind(lacuna.vtkLacunaSweptVolume(), sweep)
+        volume.SetOutputSpacing(spacing, spacing, spacing)
+        check_refused(f"Swept Volume {spacing}", volume)
+    volume = behind(lacuna.vtkLacunaSweptVolume(), sweep)
+    volume.SetOutputSpacing(0.03, 0.03, 0.03)
+    volume.SetMemoryLimit(0)
+    volume.UpdateInformation()
+    check_piece("Swept Volume", volume, (1000, 1099, 500, 599, 1000, 1009), 100000)
+    for spacing in (1e-4, 1e-9):
+        caster = behind(lacuna.vtkLacunaSliceRayCaster(), sweep)
+        caster.SetIsoValue(100)
+        caster.SetPixelSpacing(spacing)
+        check_refused(f"Slice Ray Caster {spacing}", caster)
+
+
+def whole_inputs():
+    """Filters that need all of their input: nobody tries to load it."""
+    angle = behind(lacuna.vtkLacunaOccludedAngle())
+    check_refused("Occluded Angle", angle, "2048 x 2048 x 2048", "34359738368 bytes")
+    check_refused("Mirror", behind(lacuna.vtkLacunaMirror()), "34359738368 bytes")
+    check_refused("B-Spline Iso Ray Caster", behind(lacuna.vtkLacunaBSplineIsoRayCaster()), "34359738368 bytes")
+    check_refused("Contrast To Speckle", behind(lacuna.vtkLacunaContrastToSpeckle()), "34359738368 bytes")
+    warp = behind(lacuna.vtkLacunaRBFImageWarp())
+    warp.SetInputData(1, points(100))
+    warp.SetInputData(2, points(101))
+    check_refused("RBF Image Warp", warp, "34359738368 bytes")
+    check_refused("Swept Volume of a large stack", behind(lacuna.vtkLacunaSweptVolume()), "34359738368 bytes")
+    surface = behind(lacuna.vtkLacunaOcclusionSurface())
+    behind(surface, port=1)
+    check_refused("Occlusion Surface", surface, "34359738368 bytes")
+
+
+def pieces():
+    for kernel in ((5, 5, 1), (5, 5, 5)):
+        speckle = behind(lacuna.vtkLacunaSpeckleFilter())
+        speckle.SetKernelSize(*kernel)
+        check_piece(f"Speckle Filter {kernel}", speckle, (100, 227, 200, 327, 300, 307), 128 * 128 * 8)
+    for spacing in (0.04, 1e-6):
+        interpolator = lacuna.vtkLacunaRBFInterpolator()
+        interpolator.SetInputData(points(100))
+        interpolator.SetOutputSpacing(spacing, spacing, spacing)
+        check_refused(f"RBF Interpolator {spacing}", interpolator)
+    for size in ((200000, 200000), (2**31 - 1, 2**31 - 1)):
+        caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), wavelet(64))
+        caster.SetImageSize(*size)
+        caster.SetIsoValue(0, 150)
+        check_refused(f"B-Spline Iso Ray Caster {size}", caster)
+    caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), wavelet(64))
+    caster.SetImageSize(16000, 16000)
+    caster.SetIsoValue(0, 150)
+    check_piece("B-Spline Iso Ray Caster", caster, (1000, 1199, 2000, 2199, 0, 0), 40000)
+
+
+if __name__ == "__main__":
+    limit = status("VmSize") + 2 * GIBIBYTE
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    for part in (sources, freehand, whole_inputs, pieces):
+        if len(sys.argv) < 2 or part.__name__ in sys.argv[1:]:
+            part()
