@@ -219,11 +219,11 @@ struct IGESTrimmedSurface
 
 private:
   static const IGESParser::Entity& Part(
-    const IGESParser& file, const std::string& pointer, long type, const std::string& status)
+    const IGESParser& file, const std::string& pointer, long type, const char* status)
   {
     const IGESParser::Entity& entity = file.Entities.at(IGESParser::Integer(pointer));
     IGESParser::Require(entity.Type == type, "a pointer to a " + std::to_string(type));
-    IGESParser::Require(entity.Status == status, "status " + status + " of a part");
+    IGESParser::Require(entity.Status == status, std::string("status ") + status + " of a part");
     return entity;
   }
 };
