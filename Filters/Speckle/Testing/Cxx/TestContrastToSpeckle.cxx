@@ -98,12 +98,13 @@ void TestMasksAndBoxes()
 
 void TestPieces()
 {
-  // Under MPI each rank asks for a piece: all of the row is in the first.
-  vtkNew<vtkLacunaContrastToSpeckle> contrast;
-  contrast->SetInputData(MakeImage());
-  contrast->SetInsideArray("Left");
+  // Under MPI each rank asks its filter for a piece: all of the row is in the first. VTK 9.6 does
+  // not make a table anew when the same filter is asked for another piece.
   for (const int piece : { 1, 0, 2 })
   {
+    vtkNew<vtkLacunaContrastToSpeckle> contrast;
+    contrast->SetInputData(MakeImage());
+    contrast->SetInsideArray("Left");
     contrast->UpdatePiece(piece, 3, 0);
     vtkTable* table = contrast->GetOutput();
     LACUNA_CHECK(table->GetNumberOfColumns() == 11);
