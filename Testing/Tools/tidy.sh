@@ -13,8 +13,9 @@ if [ ${#sources[@]} = 0 ]; then
   mapfile -t sources < <(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/)
 fi
 failed=0
+# warnings of the compiler are GCC's, which knows attributes that clang does not
 printf '%s\n' "${sources[@]}" |
-  xargs -P "$(nproc)" -n 4 clang-tidy-14 --quiet -p build/release 2>&1 |
+  xargs -P "$(nproc)" -n 4 clang-tidy-14 --quiet -p build/release --extra-arg=-Wno-error 2>&1 |
   grep -v ' warnings\? generated' || failed=${PIPESTATUS[1]}
 echo "clang-tidy: ${#sources[@]} sources"
 [ "$failed" = 0 ] || { echo "clang-tidy: findings, see above" >&2; exit 1; }

@@ -100,7 +100,7 @@ std::optional<std::vector<double>> ParseDicomNumbers(std::string_view text, std:
 //------------------------------------------------------------------------------
 std::string DicomTextToUtf8(std::string_view text, std::string_view characterSet)
 {
-  const std::string trimmed = TrimDicomText(text);
+  std::string trimmed = TrimDicomText(text);
   if (std::all_of(trimmed.begin(), trimmed.end(), [](char c) { return c >= 0x20 && c < 0x7F; }))
   {
     return trimmed; // most values of many files

@@ -182,7 +182,7 @@ FastrakEmulator::PoseScript ReadMotion(const std::string& fileName, bool loop, d
   {
     throw std::runtime_error("The file '" + fileName + "' cannot be read");
   }
-  const PoseScript script(file, fileName);
+  PoseScript script(file, fileName);
   const double duration = script.GetDuration();
   aim = 0.5 * duration;
   if (loop && duration > 0)
