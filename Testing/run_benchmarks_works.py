@@ -43,7 +43,7 @@ assert abs(exponent.median - 1.5) < 1e-12 and abs(exponent.least - 1.5) < 1e-12
 assert measured.spread(cases.Row("p", "none")) is None
 
 # Figures
-assert [report.number(value) for value in (0.00123, 0.5, 12.34, 123.4, 1234, 97336, 1e6)] == ["0.00123", "0.5", "12.3", "123", "1 230", "97 300", "1 000 000"]
+assert [report.number(value) for value in (0.00123, 0.5, -12.34, 123.4, 999.9, 1234, 97336, 1e6)] == ["0.00123", "0.5", "−12.3", "123", "1 000", "1 230", "97 300", "1 000 000"]
 
 # Suites: rows of a quick run are fewer, names of files are not used twice
 files = [each.file for suite in cases.SUITES for each in (*suite.scalings, *suite.threads)]
@@ -51,6 +51,12 @@ assert len(files) == len(set(files)), files
 for suite in cases.SUITES:
     quick, full = suite.rows(True), suite.rows(False)
     assert quick and all(set(names) <= set(full[program]) for program, names in quick.items()), suite.name
+
+# Ranks
+import run  # noqa: E402
+assert run.rank_rows({"ranks": {"rows": {"Swept Volume/strong/ranks:1": 8.0, "Swept Volume/strong/ranks:2": 5.0, "Swept Volume/weak/ranks:2": 9.0, "Setup": 1.0}}}) == {
+    "Swept Volume": {"strong": {1: 8.0, 2: 5.0}, "weak": {2: 9.0}}}
+assert run.rank_rows({"ranks": None}) == run.rank_rows({}) == run.rank_rows({"ranks": {"text": "no mpirun"}}) == {}
 
 # A run with programs that stand in for ours: they write the time that their rows' names say
 FAKE = """#!{python}

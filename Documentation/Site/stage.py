@@ -19,6 +19,7 @@ from proxies import ROOT, read_proxies
 GUIDE = "Documentation/UserGuide"
 EXAMPLES = "Documentation/Examples"
 DEVELOPERS = "Documentation/DeveloperGuide"
+BENCHMARKS = "Documentation/Benchmarks"
 PACKAGE = "Plugins/Python/lacuna"
 PICTURES = (".png", ".jpg", ".svg")
 LANGUAGES = {".py": "python", ".cxx": "cpp", ".txt": "cmake", ".sh": "bash"}
@@ -202,6 +203,7 @@ def stage(target):
     pages = {"index.md": read("README.md"), "CHANGELOG.md": read("CHANGELOG.md"), "CONTRIBUTING.md": read("CONTRIBUTING.md")}
     for folder in (GUIDE, DEVELOPERS):
         pages.update({f"{folder}/{name}": read(f"{folder}/{name}") for name in names(folder, ".md")})
+    pages[f"{BENCHMARKS}/README.md"] = read(f"{BENCHMARKS}/README.md")
     proxies = read_proxies()
     for proxy in proxies:
         if f"{GUIDE}/{proxy.page}.md" in pages:
@@ -221,7 +223,7 @@ def stage(target):
     pages["index.md"] += toctree([f"{GUIDE}/README", f"{EXAMPLES}/index"])
     pages["index.md"] += "".join(toctree(paths, caption) for caption, paths in sections)
     pages["index.md"] += toctree([f"{DEVELOPERS}/{name}" for name in names(DEVELOPERS, ".md")] +
-                                 [f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
+                                 [f"{BENCHMARKS}/README", f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
 
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(os.path.join(ROOT, "Documentation"), os.path.join(target, "Documentation"), ignore=shutil.ignore_patterns("*.md", "Site", "__pycache__"))

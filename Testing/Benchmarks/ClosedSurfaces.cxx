@@ -391,12 +391,5 @@ int main(int argc, char* argv[])
     kumara->Shape->SetOutlierFraction(outliers);
     RegisterAll(outliers > 0 ? "kumara_noise" : "kumara", kumara);
   }
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv))
-  {
-    return 1;
-  }
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return lacunaBenchmark::RunRows(argc, argv);
 }

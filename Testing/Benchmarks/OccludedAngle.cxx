@@ -128,20 +128,28 @@ BENCHMARK(Cube)
   ->Args({ 512, 1, 0, 0 })
   ->Apply(Measure);
 
-// 20 directions, two threads. argument: edge
-void Size(benchmark::State& state)
+// Two threads; times: one after the other.
+void Compute(benchmark::State& state, lacuna::AttenuationField field, int directions, int times)
 {
-  const std::int64_t n = state.range(0);
-  lacuna::AttenuationField field = MakeField(n, n, n);
   lacuna::OccludedAngleOptions options;
-  options.Directions = 20;
+  options.Directions = directions;
   std::vector<float> angle(field.GetNumberOfVoxels());
   lacuna::ThreadExecution execution(2);
   for (auto _ : state)
   {
-    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+    for (int i = 0; i < times; ++i)
+    {
+      lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
+    }
   }
-  PerDirection(state, static_cast<double>(angle.size()), options.Directions);
+  PerDirection(state, static_cast<double>(angle.size()), 1.0 * times * directions);
+}
+
+// argument: edge
+void Size(benchmark::State& state)
+{
+  const std::int64_t n = state.range(0);
+  Compute(state, MakeField(n, n, n), 20, 1);
 }
 BENCHMARK(Size)->ArgName("edge")->Arg(46)->Arg(100)->Arg(215)->Arg(464)->Apply(Measure);
 
@@ -179,17 +187,7 @@ BENCHMARK(Scaling)->Arg(2)->Iterations(10)->Apply(Measure);
 // The thesis's kumara: 190 x 80 x 90 voxels, two iterations of 1000 directions.
 void Kumara(benchmark::State& state)
 {
-  lacuna::AttenuationField field = MakeField(190, 80, 90);
-  lacuna::OccludedAngleOptions options;
-  options.Directions = 1000;
-  std::vector<float> angle(field.GetNumberOfVoxels());
-  lacuna::ThreadExecution execution(2);
-  for (auto _ : state)
-  {
-    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
-    lacuna::ComputeOccludedAngle(field, options, angle.data(), execution);
-  }
-  PerDirection(state, static_cast<double>(angle.size()), 2.0 * options.Directions);
+  Compute(state, MakeField(190, 80, 90), 1000, 2);
 }
 BENCHMARK(Kumara)->Apply(Measure);
 }

@@ -348,12 +348,5 @@ int main(int argc, char* argv[])
 
   RegisterPeers(slab);
   RegisterScaling();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv))
-  {
-    return 1;
-  }
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return lacunaBenchmark::RunRows(argc, argv);
 }

@@ -28,6 +28,19 @@ inline void Measure(benchmark::internal::Benchmark* row)
   row->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 }
 
+/// What BENCHMARK_MAIN does, for programs that register their rows one by one.
+inline int RunRows(int argc, char* argv[])
+{
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+  {
+    return 1;
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
+
 /// Processor time of all threads since the process began, s.
 inline double GetProcessSeconds()
 {

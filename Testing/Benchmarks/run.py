@@ -107,7 +107,7 @@ class Runner:
                 out = os.path.join(folder, "ranks.json")
                 written = ["--benchmark_out", out] if "--benchmark_out" in described else []
                 said = subprocess.run([sys.executable, script, *quick, *written], check=True, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                      timeout=self.timeout, env=self.environment).stdout
+                                      timeout=min(self.timeout, max(60.0, self.end - time.monotonic())), env=self.environment).stdout
                 if not os.path.exists(out):
                     return {"text": said.strip()}
                 with open(out, encoding="utf-8") as file:

@@ -165,7 +165,7 @@ def radial_basis():
             points(own, "FastFit<2>/kernel:0/nodes:20000/digits:4/threads:{}", (1, 2, 4), "fit of 20 000 nodes"),
             points(own, "Evaluate/kernel:0/nodes:700/grid:512/threads:{}/set:1", (1, 2, 4), "exact sums, 700 nodes, 512 × 512"))),),
         figures=(Figures("The cases of the thesis (section 6.4), to 10⁻⁴: how many times as fast as", (
-            ("direct/fast", "exact sums with vectors", ".1f"), ("plain/fast", "the plain sum", ".1f"), ("error/bound", "error / bound", ".2f")),
+            ("direct/fast", "exact sums with vectors", ".1f"), ("plain/fast", "the plain sum", ".1f"), ("error/bound", "error / bound", ".4f")),
             tuple((f"{nodes} nodes, {size} × {size}", Row(own, f"ThesisCase/nodes:{nodes}/grid:{size}")) for nodes in (697, 578) for size in (205, 512))),))
 
 

@@ -56,12 +56,12 @@ def seconds_axis(axis):
     axis.set_minor_formatter(ticker.NullFormatter())
 
 
-def plain_axis(axis, powers):
+def plain_axis(axis):
     def name(value, _position):
-        digits = f"{value:.0e}".split("e")
-        if powers and value >= 1e4:
-            return ("" if digits[0] == "1" else digits[0] + "·") + f"$10^{{{int(digits[1])}}}$"
-        return f"{value:,.0f}".replace(",", "\u2009") if value >= 1 else f"{value:g}"
+        digits, power = f"{value:.10e}".split("e")
+        if value >= 1e4 and float(digits) == 1:
+            return f"$10^{{{int(power)}}}$"
+        return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u2009") if value >= 1 else f"{value:g}"
     axis.set_major_formatter(ticker.FuncFormatter(name))
     axis.set_minor_formatter(ticker.NullFormatter())
 
@@ -82,14 +82,14 @@ def curve(axes, points, measured, index, value):
 def place_labels(axes, labels, size=10.5):
     """Labels right of the ends of their lines, moved apart where they would touch."""
     to_points = axes.transData.transform
-    height = size * 1.25 * axes.figure.dpi / 72
-    placed = []
+    pixels = axes.figure.dpi / 72
+    placed = []  # middle, half of the height, left
     for x, y, text, paint in sorted(labels, key=lambda label: to_points((label[0], label[1]))[1]):
         at = to_points((x, y))
-        low = max([other + height for other, left in placed if abs(left - at[0]) < 140 * axes.figure.dpi / 72], default=at[1])
-        height_now = max(at[1], low)
-        placed.append((height_now, at[0]))
-        axes.annotate(text, (x, y), xytext=(9, (height_now - at[1]) * 72 / axes.figure.dpi), textcoords="offset points", va="center", color=paint, fontsize=size, annotation_clip=False)
+        half = 0.62 * size * pixels * (1 + text.count("\n"))
+        middle = max([other + room + half for other, room, left in placed if abs(left - at[0]) < 140 * pixels] + [at[1]])
+        placed.append((middle, half, at[0]))
+        axes.annotate(text, (x, y), xytext=(9, (middle - at[1]) / pixels), textcoords="offset points", va="center", color=paint, fontsize=size, annotation_clip=False)
 
 
 def scaling(measured, each, path):
@@ -102,7 +102,8 @@ def scaling(measured, each, path):
         if end:
             there = [(x, row) for x, row in points if measured.spread(row)]
             exponent = measured.exponent(there)
-            ends.append((*end, f"{label} · n$^{{{exponent.median:.2f}}}$" if exponent else label, colour(index)))
+            power = f"n$^{{{exponent.median:.2f}}}$" if exponent else ""
+            ends.append((*end, label + ("\n" if len(label) > 15 else " · " if power else "") + power, colour(index)))
     if not ends:
         pyplot.close(figure)
         return False
@@ -110,7 +111,7 @@ def scaling(measured, each, path):
     axes.set_title(each.title)
     axes.set_ylabel("time by the clock")
     axes.yaxis.set_major_locator(ticker.LogLocator(numticks=8))
-    plain_axis(axes.xaxis, True)
+    plain_axis(axes.xaxis)
     sizes = sorted({x for _, points in each.series for x, row in points if measured.spread(row)})
     if sizes[-1] / sizes[0] < 100:  # too few powers of ten to read
         axes.xaxis.set_major_locator(ticker.FixedLocator(sizes))
@@ -125,7 +126,7 @@ def scaling(measured, each, path):
 def threads(groups, path, cores):
     """groups: of (title, measured, Threads): small panels with common axes."""
     shown = [(suite.title, measured, each) for suite, measured, each in groups
-             if any(measured.spread(row) for _, points in each.series for _, row in points)]
+             if any(measured.spread(row) for _, points in each.series for n, row in points if n > 1)]
     if not shown:
         return False
     columns = min(3, len(shown))
@@ -157,49 +158,45 @@ def threads(groups, path, cores):
 
 def peers(suites, measured, path):
     """All ratios to peers in one picture."""
-    rows = []
+    lines, ratios = [], []  # (heading, what, peer, ratio), of which some are empty
     for suite in suites:
+        heading = suite.title
         for each in suite.comparisons:
             there = [(peer, measured[suite.name].ratio(peer, each.ours)) for peer in each.peers if not is_yardstick(peer)]
-            there = [(peer, ratio) for peer, ratio in there if ratio]
-            if there:
-                rows.append((suite.title, each.title, there))
-    if not rows:
+            there = sorted(((peer, ratio) for peer, ratio in there if ratio), key=lambda item: item[1].median)
+            if there and heading:
+                lines.append((heading, "", "", None))
+                heading = ""
+            for index, (peer, ratio) in enumerate(there):
+                lines.append(("", "" if index else each.title, peer.label, ratio))
+                ratios.append(ratio)
+    if not ratios:
         return False
-    lines, last = [], None
-    for title, what, there in rows:
-        if title != last:
-            lines.append((title, None, None))
-            last = title
-        lines.append((None, what, there))
-    figure, axes = pyplot.subplots(figsize=(8.6, 0.7 + 0.27 * len(lines)))
+    figure, axes = pyplot.subplots(figsize=(8.6, 0.7 + 0.25 * len(lines)))
     axes.set_xscale("log")
-    for line, (title, what, there) in enumerate(lines):
-        if title:
-            axes.annotate(title, (0, line), xycoords=("axes fraction", "data"), xytext=(-262, 0), textcoords="offset points", va="center", fontweight="bold", fontsize=10)
-            continue
-        axes.annotate(what, (0, line), xycoords=("axes fraction", "data"), xytext=(-252, 0), textcoords="offset points", va="center", fontsize=10)
-        axes.axhline(line, color=GRID, linewidth=0.8, zorder=0)
-        for index, (peer, ratio) in enumerate(sorted(there, key=lambda item: item[1].median)):
+    for line, (heading, what, peer, ratio) in enumerate(lines):
+        axes.annotate(heading or what, (0, line), xycoords=("axes fraction", "data"), xytext=(-262 if heading else -252, 0), textcoords="offset points",
+                      va="center", fontweight="bold" if heading else "normal", fontsize=10)
+        if ratio:
+            axes.axhline(line, color=GRID, linewidth=0.8, zorder=0)
             axes.plot([ratio.least, ratio.largest], [line, line], color=OURS, linewidth=3.5, alpha=0.35, solid_capstyle="butt")
             axes.plot(ratio.median, line, marker="o", color=OURS)
-            axes.annotate(peer.label, (max(ratio.largest, ratio.median), line), xytext=(6, 0), textcoords="offset points", va="center", fontsize=8.5, color=FAINT)
-    axes.axvline(1, color=FAINT, linewidth=1)
+            axes.annotate(peer, (ratio.largest, line), xytext=(8, 0), textcoords="offset points", va="center", fontsize=9, color=FAINT, annotation_clip=False,
+                          bbox={"facecolor": GROUND, "edgecolor": "none", "pad": 0.8})
+    axes.axvline(1, color=FAINT, linewidth=1, zorder=1)
     axes.set_ylim(len(lines) - 0.4, -0.6)
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     axes.set_xlabel("times as fast as the peer, by the clock")
-    least = min(ratio.least for _, _, there in rows for _, ratio in there)
-    most = max(ratio.largest for _, _, there in rows for _, ratio in there)
-    axes.set_xlim(min(0.5, least / 1.5), most * 1.5)
-    plain_axis(axes.xaxis, False)
+    axes.set_xlim(min(0.5, min(ratio.least for ratio in ratios) / 1.5), max(ratio.largest for ratio in ratios) * 1.5)
+    plain_axis(axes.xaxis)
     height = figure.get_size_inches()[1]
-    figure.subplots_adjust(left=0.435, right=0.93, top=1 - 0.15 / height, bottom=0.55 / height)
+    figure.subplots_adjust(left=0.435, right=0.82, top=1 - 0.15 / height, bottom=0.55 / height)
     save(figure, path, "Times as fast as each peer")
     return True
 
 
-def ranks(rows, path):
+def ranks(rows, path, cores):
     """rows: {case: {kind: {ranks: ms}}} with kind strong or weak."""
     figure, both = pyplot.subplots(1, 2, figsize=(8.6, 3.6), sharex=True)
     for axes, kind, words in zip(both, ("strong", "weak"), ("Strong scaling: the same work", "Weak scaling: work in proportion")):
@@ -212,15 +209,17 @@ def ranks(rows, path):
                 axes.plot(x, y, color=colour(index), marker=MARKERS[index % len(MARKERS)], zorder=3)
                 ends.append((x[-1], y[-1], case, colour(index)))
                 most = max(most, x[-1])
-        axes.plot([1, most], [1, most if kind == "strong" else 1], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
+        can = min(most, cores)  # ranks beyond the cores take turns
+        axes.plot([1, can, most], [1, can, can] if kind == "strong" else [1, 1, can / most], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
         axes.set_title(words, fontsize=10.5)
         axes.set_xlabel("ranks")
         axes.set_ylabel("times as fast as one rank" if kind == "strong" else "efficiency")
         axes.set_ylim(bottom=0)
         axes.xaxis.set_major_locator(ticker.MaxNLocator(integer=True))
         axes.grid(axis="x", visible=False)
-        figure.subplots_adjust(left=0.08, right=0.86, top=0.88, bottom=0.16, wspace=0.75)
-        place_labels(axes, ends, 8.5)
+        figure.subplots_adjust(left=0.07, right=0.78, top=0.88, bottom=0.16, wspace=0.28)
+        if axes is both[1]:
+            place_labels(axes, ends, 8.5)
     save(figure, path, "Speed-up by ranks")
     return True
 
@@ -238,7 +237,7 @@ def draw(results, suites, folder, rank_rows):
     drawn("peers", peers(suites, measured, os.path.join(folder, "peers.svg")))
     drawn("threads", threads([(suite, measured[suite.name], each) for suite in suites for each in suite.threads], os.path.join(folder, "threads.svg"), results["cores"]))
     if rank_rows:
-        drawn("ranks", ranks(rank_rows, os.path.join(folder, "ranks.svg")))
+        drawn("ranks", ranks(rank_rows, os.path.join(folder, "ranks.svg"), results["cores"]))
     for suite in suites:
         for each in suite.scalings:
             drawn(each.file, scaling(measured[suite.name], each, os.path.join(folder, f"{each.file}.svg")))

@@ -11,13 +11,14 @@ def number(value, digits=3):
     """With so many digits that mean something, in groups of three."""
     if value == 0:
         return "0"
-    text = f"{value:.{digits}g}"
-    if "e" in text or abs(value) >= 1000:
-        rounded = float(text)
-        if abs(rounded) >= 1e9 or abs(rounded) < 1e-4:
-            return text
-        text = f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 1000 else f"{rounded:f}".rstrip("0").rstrip(".")
-    return text
+    rounded = float(f"{value:.{digits}g}")
+    if abs(rounded) >= 1e9 or abs(rounded) < 1e-4:
+        text = f"{rounded:g}"
+    elif abs(rounded) >= 1000:
+        text = f"{rounded:,.0f}".replace(",", " ")
+    else:
+        text = f"{rounded:.10f}".rstrip("0").rstrip(".")
+    return text.replace("-", "−")
 
 
 def times(spread):
@@ -113,7 +114,7 @@ class Page:
         if not rows:
             return ""
         return ("## Threads\nHow many times as fast by the clock as with one thread, and how much more the processors work. Results do not depend on the number of threads. "
-                "Four threads on fewer cores show that too many do no harm.\n\n" + picture("threads", "Speed-up by threads", plots)
+                "Four threads on fewer cores show that too many do no harm. Dashed: as many times as fast as there are threads, and cores for them.\n\n" + picture("threads", "Speed-up by threads", plots)
                 + table(("", "1 thread, ms", "2: times as fast", "4: times as fast", "2: processor", "4: processor"), rows))
 
     def ranks(self, plots):
@@ -163,7 +164,7 @@ class Page:
 
 def thread_row(measured, title, rows):
     one = measured.spread(rows[1])
-    if one is None:
+    if one is None or not any(measured.spread(row) for n, row in rows.items() if n != 1):
         return None
     speed = [times(measured.ratio(rows[1], rows[n])) if n in rows else "" for n in (2, 4)]
     work = [times(measured.ratio(rows[n], rows[1], "cpu")) if n in rows else "" for n in (2, 4)]
