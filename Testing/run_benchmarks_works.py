@@ -43,7 +43,7 @@ assert abs(exponent.median - 1.5) < 1e-12 and abs(exponent.least - 1.5) < 1e-12
 assert measured.spread(cases.Row("p", "none")) is None
 
 # Figures
-assert [report.number(value) for value in (0.00123, 0.5, -12.34, 123.4, 999.9, 1234, 97336, 1e6)] == ["0.00123", "0.5", "−12.3", "123", "1 000", "1 230", "97 300", "1 000 000"]
+assert [report.number(value) for value in (0.00123, 0.5, -12.34, 123.4, 999.9, 1234, 97336, 1e6)] == ["0.00123", "0.5", "−12.3", "123", "1\u202f000", "1\u202f230", "97\u202f300", "1\u202f000\u202f000"]
 
 # Suites: rows of a quick run are fewer, names of files are not used twice
 files = [each.file for suite in cases.SUITES for each in (*suite.scalings, *suite.threads)]
@@ -93,11 +93,12 @@ with tempfile.TemporaryDirectory() as folder:
     assert done.returncode == 0, done
     with open(os.path.join(output, "README.md"), encoding="utf-8") as file:
         page = file.read()
+    plain = page.replace("\u202f", " ").replace("\u00a0", " ")
     with open(log, encoding="utf-8") as file:
         assert file.read().split().count("IsoRayCaster") == 3
-    row = next(line for line in page.splitlines() if line.startswith("| CT head, B-spline, along an axis"))
-    assert row.split(" | ")[1:8] == ["10", "20", "the thesis's algorithm", "30", "60", "**3** (3 – 3)", "**3** (3 – 3) |"], row
-    row = next(line for line in page.splitlines() if line.startswith("| [Depth map of 512 × 512, B-spline](#b-spline-iso-ray-caster) | Lacuna"))
+    row = next(line for line in plain.splitlines() if line.startswith("| CT head, B-spline, along an axis"))
+    assert row.split(" | ")[1:] == ["10 / 20", "30 / 60", "the thesis's algorithm", "**3** (3 – 3)", "**3** (3 – 3) |"], row
+    row = next(line for line in plain.splitlines() if line.startswith("| [Depth map of 512 × 512, B-spline](#b-spline-iso-ray-caster) | Lacuna"))
     assert "97 300 – 1 000 000 voxels | **1** (1 – 1)" in row, row
     for words in ("ended by signal 6", "ended with code 1: no room on the disk", "`ImplantPlate:Plate/2/1` | there is no such row", "`OccludedAngle` | not there",
                   "A quick run", "Other programs had", "| in the defect | 10 | 20 | 12 |"):

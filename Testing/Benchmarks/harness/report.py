@@ -15,27 +15,32 @@ def number(value, digits=3):
     if abs(rounded) >= 1e9 or abs(rounded) < 1e-4:
         text = f"{rounded:g}"
     elif abs(rounded) >= 1000:
-        text = f"{rounded:,.0f}".replace(",", " ")
+        text = f"{rounded:,.0f}".replace(",", "\u202f")
     else:
         text = f"{rounded:.10f}".rstrip("0").rstrip(".")
     return text.replace("-", "−")
 
 
 def times(spread):
-    """A ratio with its spread."""
+    """A ratio with its spread, in one line."""
     if spread is None:
         return ""
-    return f"**{number(spread.median)}** ({number(spread.least)} – {number(spread.largest)})"
+    return f"**{number(spread.median)}** ({number(spread.least)}\u2009–\u2009{number(spread.largest)})".replace(" ", "\u00a0").replace("\u2009", "\u202f")
 
 
 def milliseconds(spread):
     return number(spread.median) if spread else ""
 
 
-def table(headings, rows, aligned=None):
-    """Columns but the first ones, which are text, stand right."""
-    text = aligned or 1
-    lines = ["| " + " | ".join(headings) + " |", "|" + "|".join("---" if i < text else "---:" for i in range(len(headings))) + "|"]
+def both_times(measured, row):
+    """Clock and processor."""
+    wall, cpu = measured.spread(row), measured.spread(row, "cpu")
+    return f"{milliseconds(wall)}\u00a0/\u00a0{milliseconds(cpu)}" if wall and cpu else milliseconds(wall)
+
+
+def table(headings, rows, text=(0,)):
+    """Columns stand right but those of text."""
+    lines = ["| " + " | ".join(headings) + " |", "|" + "|".join("---" if i in text else "---:" for i in range(len(headings))) + "|"]
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
 
 
@@ -83,26 +88,26 @@ class Page:
         rows, last = [], None
         for suite, each, peer, measured, first in self.compared(False):
             if suite is not last:
-                rows.append((f"**[{suite.title}](#{anchor(suite.title)})**",) + ("",) * 7)
+                rows.append((f"**[{suite.title}](#{anchor(suite.title)})**",) + ("",) * 5)
                 last = suite
-            own = (each.title, milliseconds(measured.spread(each.ours)), milliseconds(measured.spread(each.ours, "cpu"))) if first else ("", "", "")
-            rows.append((*own, peer.label, milliseconds(measured.spread(peer)), milliseconds(measured.spread(peer, "cpu")),
+            own = (each.title, both_times(measured, each.ours)) if first else ("", "")
+            rows.append((*own, both_times(measured, peer), peer.label,
                          times(measured.ratio(peer, each.ours)), times(measured.ratio(peer, each.ours, "cpu"))))
         if not rows:
             return ""
         return ("## Beside peers\nHow many times as fast as a peer that does the same on the same machine in the same rounds.\n\n" + picture("peers", "Times as fast as each peer", plots)
-                + table(("", "clock", "processor", "peer", "clock", "processor", "times as fast, clock", "times as fast, processor"), rows))
+                + table(("", "clock / processor, ms", "peer: clock / processor, ms", "", "times as fast, clock", "times as fast, processor"), rows, (0, 3)))
 
     def yardsticks(self):
         rows = []
         for suite, each, peer, measured, first in self.compared(True):
             name = f"{suite.title}: {each.title}" if first else ""
-            rows.append((name, milliseconds(measured.spread(each.ours)) if first else "", peer.label.split(": ", 1)[1], milliseconds(measured.spread(peer)),
+            rows.append((name, both_times(measured, each.ours) if first else "", both_times(measured, peer), peer.label.split(": ", 1)[1],
                          times(measured.ratio(each.ours, peer)), times(measured.ratio(each.ours, peer, "cpu"))))
         if not rows:
             return ""
         return ("## Beside the least possible\nHow many times as long as work that any program would have to do.\n\n"
-                + table(("", "clock", "yardstick", "clock", "times as long, clock", "times as long, processor"), rows))
+                + table(("", "clock / processor, ms", "yardstick: clock / processor, ms", "", "times as long, clock", "times as long, processor"), rows, (0, 3)))
 
     def threads(self, plots):
         rows = []
@@ -137,7 +142,7 @@ class Page:
         if not rows:
             return ""
         return ("## Size\nThe exponent p of time ~ sizeᵖ, fitted to all sizes: 1 is in proportion.\n\n"
-                + table(("", "", "sizes", "clock", "processor"), rows, 3))
+                + table(("", "", "sizes", "clock", "processor"), rows, (0, 1, 2)))
 
     def section(self, suite, plots):
         measured = self.measured[suite.name]
@@ -159,7 +164,7 @@ class Page:
         rows += [(name, "", why) for name, why in self.results.get("left_out", {}).items()]
         if not rows:
             return ""
-        return "## What was not measured\n\n" + table(("", "", ""), [(a, f"`{b}`" if b else "", clean(c)) for a, b, c in rows], 3)
+        return "## What was not measured\n\n" + table(("", "", ""), [(a, f"`{b}`" if b else "", clean(c)) for a, b, c in rows], (0, 1, 2))
 
 
 def thread_row(measured, title, rows):
@@ -178,10 +183,9 @@ def size_table(measured, scaling):
         cells = []
         for _, points in scaling.series:
             row = dict(points).get(x)
-            cells += [milliseconds(measured.spread(row)) if row else "", milliseconds(measured.spread(row, "cpu")) if row else ""]
+            cells.append(both_times(measured, row) if row else "")
         rows.append((number(x), *cells))
-    there = [label for label, _ in scaling.series]
-    return table((scaling.x, *(f"{label}, {what}" for label in there for what in ("clock", "processor"))), rows, 0) if rows else ""
+    return table((scaling.x, *(f"{label}: clock / processor, ms" for label, _ in scaling.series)), rows, ()) if rows else ""
 
 
 def cell(spread, form):
