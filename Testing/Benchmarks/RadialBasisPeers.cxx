@@ -111,7 +111,7 @@ BENCHMARK(GridALGLIB)
   ->ArgNames({ "nodes", "grid" })
   ->Args({ 700, 512 })
   ->Args({ 1000, 512 })
-  ->Args({ 10000, 512 })
+  ->Args({ 3000, 512 })
   ->Iterations(1) // the fit is not counted, but would be made anew for each trial
   ->Apply(Measure);
 #endif

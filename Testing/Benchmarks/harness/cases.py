@@ -160,7 +160,7 @@ def radial_basis():
             Scaling("radial-basis-fit", "Fit of a thin plate", "nodes",
                     (points(own, fit, (1000, 10000, 100000)), points(PEERS, "Fit/nodes:{}", (1000, 3000, 10000), SCIPY), points(own, "FitALGLIB/nodes:{}", (1000, 10000), ALGLIB)), quick=1000),
             Scaling("radial-basis-grid", "512 × 512 values of a thin plate", "nodes",
-                    (points(own, grid, (1000, 10000, 100000)), points(PEERS, "Grid/nodes:{}/grid:512", (1000, 3000), SCIPY), points(own, "GridALGLIB/nodes:{}/grid:512", (1000, 10000), ALGLIB)), quick=1000)),
+                    (points(own, grid, (1000, 10000, 100000)), points(PEERS, "Grid/nodes:{}/grid:512", (1000, 3000), SCIPY), points(own, "GridALGLIB/nodes:{}/grid:512", (1000, 3000), ALGLIB)), quick=1000)),
         threads=(Threads("radial-basis-threads", "Radial basis functions", (
             points(own, "FastFit<2>/kernel:0/nodes:20000/digits:4/threads:{}", (1, 2, 4), "fit of 20 000 nodes"),
             points(own, "Evaluate/kernel:0/nodes:700/grid:512/threads:{}/set:1", (1, 2, 4), "exact sums, 700 nodes, 512 × 512"))),),
