@@ -12,7 +12,8 @@ lacuna_install_packages packages-packaging.txt
 if [ "${1:-}" != --no-site ]; then Documentation/build-site.sh; fi
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
-cmake --preset package >/dev/null # the changelog's date, and whether there is a site
+mkdir -p build # configured anew: the changelog's date, and whether there is a site
+cmake --preset package >build/package.log 2>&1 || { cat build/package.log; exit 1; }
 lacuna_build package
 rm -f build/package/*.deb
 (umask 022 && cpack --config build/package/CPackConfig.cmake -B build/package) >build/cpack.log 2>&1 || { cat build/cpack.log; exit 1; }
