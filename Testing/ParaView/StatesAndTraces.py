@@ -59,30 +59,9 @@ def make_files():
     poses = [scans.pose(scans.rotation([0, 0, 1], 2 * i), [0, 0, i]) for i in range(8)]
     open_slices("StatesAndTraces/stack", random.integers(0, 255, (8, 30, 40)).astype(np.uint8), poses)
     scans.open_table("StatesAndTraces/poses", ["Slice", *(f"m{i}" for i in range(16))], [[n, *pose.ravel()] for n, pose in enumerate(poses)])
-    wall, times = [], 0.04 * np.arange(150)
-    for time in times:
-        turn = scans.rotation([0, 1, 0], 8) @ np.column_stack([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
-        wall.append(scans.pose(turn, [0, 0, 35 + 8 * np.sin(6.1 * time) + 4 * np.sin(3.7 * time + 1)]))
-    scans.open_scan("StatesAndTraces/wall", np.array([scans.wall_picture(pose, random) for pose in wall]),
-                    [scans.probe_to_tracker(pose) for pose in wall], times)
-    rows, poses = [], []
-    for i in range(30):
-        wire = i % 3
-        place = np.zeros(3)
-        place[wire] = random.uniform(-40, 40)
-        turn = scans.rotation(random.normal(size=3), random.uniform(-35, 35)) @ np.roll(np.eye(3), -wire - 1, axis=1)
-        pixel = random.uniform([10, 10], [scans.WIDTH - 10, scans.HEIGHT - 10])
-        poses.append(scans.probe_to_tracker(scans.pose(turn, place - turn[:, :2] @ (scans.SPACING * pixel))))
-        rows.append([i, *(pixel + random.uniform(-0.5, 0.5, 2)), "XYZ"[wire]])
-    scans.open_scan("StatesAndTraces/wires", np.zeros((30, scans.HEIGHT, scans.WIDTH), np.uint8), poses)
-    scans.open_table("StatesAndTraces/picks", ["Slice", "Column", "Row", "Wire"], rows)
-    rows = []
-    for i in range(60):
-        turn, place = scans.rotation(random.normal(size=3), random.uniform(-60, 60)), random.uniform([20, -25, -15], [50, 20, 15])
-        for station, where in ((1, place), (2, place + turn @ [20, 1, 2])):
-            angles = [np.arctan2(turn[1, 0], turn[0, 0]), -np.arcsin(turn[2, 0]), np.arctan2(turn[2, 1], turn[2, 2])]
-            rows.append([30 * i + 0.0083 * station, station, *where, *np.degrees(angles)])
-    scans.open_table("StatesAndTraces/receivers", ["Time", "Station", "x", "y", "z", "azimuth", "elevation", "roll"], rows)
+    scans.open_wall("StatesAndTraces/", random)
+    scans.open_wires("StatesAndTraces/", random)
+    scans.open_receivers("StatesAndTraces/", random)
     if len(sys.argv) > 1:
         subprocess.run([sys.argv[1], path("series")], check=True, stdout=subprocess.DEVNULL)
     ResetSession()

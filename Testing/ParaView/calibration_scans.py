@@ -110,3 +110,39 @@ def open_table(name, columns, rows):
         writer.writerow(columns)
         writer.writerows(rows)
     return CSVReader(FileName=[path])
+
+
+def open_wall(prefix, random):
+    """A wall that a probe is moved to and fro before: for the lag of the video."""
+    wall, times = [], 0.04 * np.arange(150)
+    for time in times:
+        turn = rotation([0, 1, 0], 8) @ np.column_stack([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+        wall.append(pose(turn, [0, 0, 35 + 8 * np.sin(6.1 * time) + 4 * np.sin(3.7 * time + 1)]))
+    return open_scan(prefix + "wall", np.array([wall_picture(pose, random) for pose in wall]),
+                    [probe_to_tracker(pose) for pose in wall], times)
+
+
+def open_wires(prefix, random):
+    """Slices without pictures, and the picks of three wires in them."""
+    rows, poses = [], []
+    for i in range(30):
+        wire = i % 3
+        place = np.zeros(3)
+        place[wire] = random.uniform(-40, 40)
+        turn = rotation(random.normal(size=3), random.uniform(-35, 35)) @ np.roll(np.eye(3), -wire - 1, axis=1)
+        pixel = random.uniform([10, 10], [WIDTH - 10, HEIGHT - 10])
+        poses.append(probe_to_tracker(pose(turn, place - turn[:, :2] @ (SPACING * pixel))))
+        rows.append([i, *(pixel + random.uniform(-0.5, 0.5, 2)), "XYZ"[wire]])
+    scan = open_scan(prefix + "wires", np.zeros((30, HEIGHT, WIDTH), np.uint8), poses)
+    return scan, open_table(prefix + "picks", ["Slice", "Column", "Row", "Wire"], rows)
+
+
+def open_receivers(prefix, random):
+    """A table of two receivers that are fixed to each other."""
+    rows = []
+    for i in range(60):
+        turn, place = rotation(random.normal(size=3), random.uniform(-60, 60)), random.uniform([20, -25, -15], [50, 20, 15])
+        for station, where in ((1, place), (2, place + turn @ [20, 1, 2])):
+            angles = [np.arctan2(turn[1, 0], turn[0, 0]), -np.arcsin(turn[2, 0]), np.arctan2(turn[2, 1], turn[2, 2])]
+            rows.append([30 * i + 0.0083 * station, station, *where, *np.degrees(angles)])
+    return open_table(prefix + "receivers", ["Time", "Station", "x", "y", "z", "azimuth", "elevation", "roll"], rows)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every entry of Sources > Lacuna and Filters > Lacuna in the ParaView application: chosen, Apply with defaults, and there is something.
+
+Those that the other Window tests make from the menu (of a CT to its files) are not made again, but must be in the menu.
+Polhemus Video Source is in LiveToolbar.py.
+"""
+import os
+from xml.etree import ElementTree
+
+import lacuna_window
+
+MENUS = "LACUNA_MENUS"  # names of the proxies in the menus, without Lacuna
+ELSEWHERE = {"PolhemusVideoSource", "SkullPhantom", "BSplineIsoRayCaster", "DepthMapSurface", "Mirror", "RBFHoleFiller",
+             "ImplantPlate", "DefectModel", "PressOrientation", "MillingToolPath"}
+
+
+def test(window):
+    import calibration_scans as scans
+    import numpy as np
+    from paraview.simple import (BSplineIsoRayCaster, Calculator, GetActiveSource, GetSources, SetActiveSource, SkullPhantom, Sphere,
+                                 Transform)
+    from tracked_slice_files import open_slices
+    made, faults = {}, []
+
+    def label(source):
+        return source.SMProxy.GetXMLLabel()
+
+    def make(group, text, source=None, others=None, slow=False, says="", **settings):
+        """From the menu, on a source that is selected. others: of the inputs that ParaView asks for; slow: it asks whether to go on; says: what it warns of."""
+        if source:
+            source.UpdatePipeline()
+        SetActiveSource(source)
+        window.wait(50)
+
+        def choose_inputs():
+            for name, one in (others or {}).items():
+                window.press(name)
+                window.select("pipelineView", names()[one])
+            window.press("OK")
+        window.menu(f"{group}/Lacuna/{text}", *[choose_inputs] * bool(others), *[lambda: window.press("Yes")] * slow)
+        proxy = GetActiveSource()
+        assert label(proxy) == text, (label(proxy), text)
+        for name, value in settings.items():
+            setattr(proxy, name, value)
+        window.press(lacuna_window.ACCEPT)
+        said = window.take_messages()
+        if says not in said or (said and not says):
+            faults.append(f"{text}: {said}")
+        made[proxy.SMProxy.GetXMLName()[len("Lacuna"):]] = proxy
+        rows = proxy.GetDataInformation().DataInformation.GetNumberOfRows()
+        count = proxy.GetDataInformation().GetNumberOfPoints() + max(rows, 0)
+        if count == 0:
+            faults.append(f"{text}: nothing after the first Apply")
+        print(f"{text}: {count} points", flush=True)
+        return proxy
+
+    def names():
+        return {source: name for (name, _), source in GetSources().items()}
+
+    window.resize(1300, 900)
+    random = np.random.default_rng(3)
+    sweep = make("Sources", "Phantom Sweep", NumberOfSlices=12, ImageSize=[80, 60], PixelSpacing=0.8)
+    make("Filters", "Gate Slices", sweep, SpeedLimit=200)
+    for text in ("Speckle Filter", "Slice Planes", "Slice Ray Caster"):
+        make("Filters", text, sweep)
+    window.compare("MenusSweep")
+    volume = make("Filters", "Swept Volume", sweep)
+    make("Filters", "Contrast To Speckle", volume, InsideBounds=[-5, 5, -5, 5, 20, 30])
+
+    poses = [scans.pose(scans.rotation([0, 0, 1], 2 * i), [0, 0, i]) for i in range(8)]
+    stack = open_slices("WindowMenus-stack", random.integers(0, 255, (8, 30, 40)).astype(np.uint8), poses)
+    table = scans.open_table("WindowMenus-poses", ["Slice", *(f"m{i}" for i in range(16))], [[n, *pose.ravel()] for n, pose in enumerate(poses)])
+    make("Filters", "Assemble Tracked Slices", stack, {"Poses": table}, PixelSpacing=0.4)
+    wall = scans.open_wall("WindowMenus-", random)
+    make("Filters", "Temporal Calibration", wall)
+    make("Filters", "Scan Region", wall)
+    wires, picks = scans.open_wires("WindowMenus-", random)
+    make("Filters", "Probe Calibration", wires, Picks=picks, PixelSpacing=0.4)
+    make("Filters", "Tracker Self Test", scans.open_receivers("WindowMenus-", random), says="the tracker is as specified", LengthUnit="cm")
+
+    depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[4, 4, 4]), PixelSpacing=3)
+    make("Filters", "Depth Map Shader", depth)
+
+    shape = make("Sources", "Incomplete Shape", Shape="Sphere", Dimensions=[28, 28, 28])
+    angle = make("Filters", "Occluded Angle", shape, slow=True, NumberOfDirections=60)
+    make("Filters", "Occlusion Surface", angle, {"Data": shape})
+
+    places = Sphere(Radius=50)
+    warmth = Calculator(Input=places, ResultArrayName="Warmth", Function="20 + coordsX/10")
+    warmth.UpdatePipeline()
+    cloud = make("Filters", "RBF Interpolator", warmth, OutputSpacing=[9, 9, 9])
+    moved = Transform(Input=places)
+    moved.Transform.Rotate = [0, 0, 10]
+    moved.UpdatePipeline()
+    make("Filters", "RBF Image Warp", cloud, {"Landmarks": places, "Targets": moved})
+
+    assert not faults, "\n".join(faults)
+    missing = set(os.environ[MENUS].split()) - set(made) - ELSEWHERE
+    assert not missing, f"not made from the menu: {sorted(missing)}"
+
+
+if lacuna_window.IS_INSIDE:
+    lacuna_window.inside(test)
+else:
+    folder = os.path.dirname(os.path.abspath(__file__))
+    menus = ElementTree.parse(os.path.join(folder, "..", "..", "Plugins", "Lacuna", "LacunaMenus.xml"))
+    names = [entry.get("name")[len("Lacuna"):] for entry in menus.getroot().iter("Proxy")]
+    lacuna_window.run(__file__, **{MENUS: " ".join(names)})
+    print("ok")
