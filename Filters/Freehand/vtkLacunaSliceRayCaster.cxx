@@ -18,6 +18,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaInputs.h"
+#include "vtkLacunaProposedLevel.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkNew.h"
@@ -374,6 +375,13 @@ std::string vtkLacunaSliceRayCaster::DescribeParameters() const
     .Add("UseGatedOut", this->UseGatedOut)
     .Add("BadPoses", badPoses[this->BadPoses])
     .Get();
+}
+
+//------------------------------------------------------------------------------
+double* vtkLacunaSliceRayCaster::GetProposedIsoRange()
+{
+  this->ProposedIsoRange = vtkLacunaProposedLevel::Get(this, {}, 128);
+  return this->ProposedIsoRange.data();
 }
 
 //------------------------------------------------------------------------------

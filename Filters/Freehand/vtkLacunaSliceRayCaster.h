@@ -42,6 +42,7 @@
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"
 
+#include <array>  // for std::array
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 
@@ -63,6 +64,12 @@ public:
   vtkSetMacro(IsoValue, double);
   vtkGetMacro(IsoValue, double);
   ///@}
+
+  /**
+   * The level that a panel proposes for what is connected now, twice (the range of one value): the
+   * middle of the range.
+   */
+  double* GetProposedIsoRange() VTK_SIZEHINT(2);
 
   ///@{
   /// Which side of the iso-value is solid. Default: Above; Below for vessels filled with fluid.
@@ -141,6 +148,7 @@ private:
   std::string DescribeParameters() const;
 
   double IsoValue = 128;
+  std::array<double, 2> ProposedIsoRange{ 128, 128 };
   int SolidSide = Above;
   double MaximumGap = 0;
   double ViewDirection[3] = { 0, 0, -1 };

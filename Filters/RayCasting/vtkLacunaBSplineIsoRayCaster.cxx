@@ -19,6 +19,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
+#include "vtkLacunaProposedLevel.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeCaster.h"
@@ -288,6 +289,13 @@ void vtkLacunaBSplineIsoRayCaster::SetIsoValue(int i, double value)
 double vtkLacunaBSplineIsoRayCaster::GetIsoValue(int i) const
 {
   return i >= 0 && i < this->GetNumberOfIsoValues() ? this->IsoValues[i] : vtkMath::Nan();
+}
+
+//------------------------------------------------------------------------------
+double* vtkLacunaBSplineIsoRayCaster::GetProposedIsoRange()
+{
+  this->ProposedIsoRange = vtkLacunaProposedLevel::Get(this, this->ScalarArray, 500);
+  return this->ProposedIsoRange.data();
 }
 
 //------------------------------------------------------------------------------

@@ -47,6 +47,7 @@
 
 #include "vtkSmartPointer.h" // for CutAway
 
+#include <array>  // for std::array
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
 #include <vector> // for std::vector
@@ -101,6 +102,12 @@ public:
   void SetIsoValue(int i, double value);
   double GetIsoValue(int i) const;
   ///@}
+
+  /**
+   * The level that a panel proposes for what is connected now, twice (the range of one value): 500 in
+   * Hounsfield units, else the middle of the range.
+   */
+  double* GetProposedIsoRange() VTK_SIZEHINT(2);
 
   ///@{
   /**
@@ -213,6 +220,7 @@ protected:
 
   std::string ScalarArray;
   std::vector<double> IsoValues{ 500 };
+  std::array<double, 2> ProposedIsoRange{ 500, 500 };
   int Interpolation = BSpline;
   int SolidSide = Above;
   double ViewDirection[3] = { 0, 0, -1 };

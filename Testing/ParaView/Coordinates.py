@@ -91,7 +91,7 @@ for proxy in (Reflect(Input=plate), back, Triangulate(Input=back)):
         assert "mirror image" in str(error), error
 
 # mirrored: refused, or named
-mirror = Mirror(Input=skull, PlaneMethod="Given", Normal=[1, 0, 0])
+mirror = Mirror(Input=skull, PlaneMethod="Given", Origin=[0, 0, 0], Normal=[1, 0, 0])
 surface = DepthMapSurface(Input=BSplineIsoRayCaster(Input=mirror, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9]))
 for proxy in (mirror, surface):
     check(proxy, coordinates.PATIENT + coordinates.MIRRORED)

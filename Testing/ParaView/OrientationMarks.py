@@ -216,7 +216,7 @@ def refused(what, mark, *arguments):
 
 front = dict(IsoValues=[500], ViewDirection=[0, 1, 0], ViewUp=[0, 0, 1], PixelSpacing=2)
 known = DepthMapSurface(Input=BSplineIsoRayCaster(Input=skull, **front))
-mirrored = BSplineIsoRayCaster(Input=Mirror(Input=skull, PlaneMethod="Given", Normal=[1, 0, 0]), **front)
+mirrored = BSplineIsoRayCaster(Input=Mirror(Input=skull, PlaneMethod="Given", Origin=[0, 0, 0], Normal=[1, 0, 0]), **front)
 above = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[2, 2, 2]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
 press = PressOrientation(Input=RBFHoleFiller(Input=above, Smoothing=5, OutputMargin=25))
 view = pictures.new_view((300, 200))
