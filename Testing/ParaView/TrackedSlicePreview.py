@@ -26,11 +26,6 @@ assert preview.GetFieldData().GetArray("ImageToReference").GetNumberOfTuples() =
 information = reader.GetDataInformation().GetFieldDataInformation().GetArrayInformation("Preview")
 assert information.GetStringValue(0).startswith(text)
 
-# a picture of it, as opening the file gives
-view = CreateView("RenderView")
-Show(reader, view)
-Render(view)
-
 whole = OpenDataFile(name)
 assert whole.GetPropertyValue("Preview") == ""
 
