@@ -93,12 +93,6 @@ def angle(n):
     return OccludedAngle(Input=shape(n), NumberOfDirections=6, ThresholdsOverPi=[1.9, 1.7])
 
 
-def surface(n):
-    data = shape(n)
-    closed = OccludedAngle(Input=data, NumberOfDirections=60, ThresholdsOverPi=[1.9, 1.7, 1.6], LocalRadii=[8, 0, 0])
-    return OcclusionSurface(Input=closed, Data=data)
-
-
 # name: (what makes the filter of a size, small size, large size)
 CASES = {
     "Skull Phantom": (skull, 1, 0.5),
@@ -127,11 +121,9 @@ CASES = {
     "RBF Interpolator": (interpolate, 0.5, 0.3),
     "RBF Image Warp": (warp, 160, 256),
     "Occluded Angle": (angle, 160, 320),
-    "Occlusion Surface": (surface, 60, 120),
     "Implant Plate": (lambda n: ImplantPlate(Input=filled(n), Thickness=2, EdgeClearance=0.5), 0.3, 0.15),
     "Defect Model": (lambda n: DefectModel(Input=filled(n)), 0.3, 0.15),
     "Press Orientation": (lambda n: PressOrientation(Input=filled(n)), 0.3, 0.15),
-    "Milling Tool Path": (lambda n: MillingToolPath(Input=PressOrientation(Input=filled(n)), ToolRadius=5, StepOver=1), 0.3, 0.15),
 }
 
 
