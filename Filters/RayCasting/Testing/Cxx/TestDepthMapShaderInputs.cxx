@@ -56,7 +56,7 @@ void TestBadInput()
   LACUNA_CHECK_CONTAINS(errorOf(map), "of three components");
   normals->SetNumberOfComponents(3);
   normals->SetNumberOfTuples(5);
-  LACUNA_CHECK_CONTAINS(errorOf(map), "has 5 tuples");
+  LACUNA_CHECK_CONTAINS(errorOf(map), "Normals has 5 values for 6");
   normals->SetNumberOfTuples(6);
   normals->Fill(0);
   normals->SetTuple3(1, 0, 0, 1);

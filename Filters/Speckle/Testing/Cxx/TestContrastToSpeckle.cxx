@@ -149,7 +149,6 @@ void TestErrors()
   vtkNew<vtkIntArray> short5;
   short5->SetName("Short");
   short5->SetNumberOfTuples(5);
-  image->GetPointData()->AddArray(short5);
   vtkNew<vtkIntArray> triple;
   triple->SetName("Triple");
   triple->SetNumberOfComponents(3);
@@ -178,8 +177,10 @@ void TestErrors()
   fails("no sample is inside", [](auto* c) { c->SetInsideBounds(0, 1, 0, 1, 0, 1); });
   fails("no sample is outside", [](auto* c) { c->SetInsideBounds(0, 1000, 0, 10, 0, 0); });
   fails("no sample is inside", [](auto* c) { c->SetInsideArray("Nothing"); });
-  fails(
-    "array 'Short' has 5 values, the image 60 points", [](auto* c) { c->SetInsideArray("Short"); });
+  image->GetPointData()->AddArray(short5);
+  fails("its point array Short has 5 values for 60 points",
+    [](auto* c) { c->SetInsideArray("Short"); });
+  image->GetPointData()->RemoveArray("Short");
   fails("array 'Triple' has 3 components", [](auto* c) { c->SetInsideArray("Triple"); });
   const auto inside = [](auto* c) { c->SetInsideArray("Left"); };
   fails("array 'Triple' has 3 components",
@@ -203,8 +204,9 @@ void TestErrors()
 
   // A damaged mask of valid points must not be read beyond its end.
   short5->SetName("vtkValidPointMask");
-  fails("array 'vtkValidPointMask' has 5 values", inside);
-  short5->SetName("Short");
+  image->GetPointData()->AddArray(short5);
+  fails("array vtkValidPointMask has 5 values", inside);
+  image->GetPointData()->RemoveArray("vtkValidPointMask");
 
   // An image of which a part is missing.
   vtkNew<vtkTrivialProducer> producer;

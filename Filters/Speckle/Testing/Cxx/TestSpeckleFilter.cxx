@@ -436,7 +436,8 @@ void TestErrors()
     other->GetPointData()->AddArray(array);
   }
   LACUNA_CHECK(has(errors(other, [](auto* f) { f->SetScalarArray("Five"); }),
-    "array 'Five' has 5 values, the image 160 points"));
+    "its point array Five has 5 values for 160 points"));
+  other->GetPointData()->RemoveArray("Five");
   LACUNA_CHECK(has(errors(other, [](auto* f) { f->SetScalarArray("Bits"); }), "of type bit"));
   LACUNA_CHECK(
     has(errors(other, [](auto* f) { f->SetScalarArray("Words"); }), "no point array 'Words'"));
