@@ -56,6 +56,10 @@ vtkSmartPointer<vtkAbstractArray> Remake(
   array->SetName(old->GetName());
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(tuples);
+  if (auto* numbers = vtkDataArray::SafeDownCast(array))
+  {
+    numbers->Fill(0); // texts that are no numbers are not set below
+  }
   const vtkIdType count = components * tuples;
   for (vtkIdType i = 0; i < count; ++i)
   {
