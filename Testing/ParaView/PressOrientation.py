@@ -164,7 +164,7 @@ for change in ({}, {"Translate": [0, 0, 5]}, {"Rotate": [10, 0, 0]}):
 hurt = SkullPhantom(DefectRadius=40)
 view = [-0.1, 0.2, -0.9]
 wide = BSplineIsoRayCaster(Input=hurt, IsoValues=[500], ViewDirection=view)
-filled = RBFHoleFiller(Input=wide, Smoothing=5)
+filled = RBFHoleFiller(Input=wide, Smoothing=5, SupportStepMargin=0)  # also the steep rim, which this view has
 press = PressOrientation(Input=filled, FlangeWidth=20)
 
 
