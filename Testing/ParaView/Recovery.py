@@ -146,8 +146,8 @@ def short(data, name):
 
 cast.Update()
 for array in ("Depth", "vtkValidPointMask", "Normals"):
-    refused(lacuna.vtkLacunaRBFHoleFiller(), short(cast.GetOutput(), array), "5 tuples")
-    refused(lacuna.vtkLacunaDepthMapSurface(), short(cast.GetOutput(), array), "5 tuples")
+    refused(lacuna.vtkLacunaRBFHoleFiller(), short(cast.GetOutput(), array), "5 values")
+    refused(lacuna.vtkLacunaDepthMapSurface(), short(cast.GetOutput(), array), "5 values")
 phantom = lacuna.vtkLacunaPhantomSweep()
 phantom.SetImageSize(40, 30)
 phantom.Update()

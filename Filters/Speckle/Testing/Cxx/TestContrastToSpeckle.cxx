@@ -169,7 +169,7 @@ void TestErrors()
     contrast->SetInputData(image);
     set(contrast);
     contrast->Update();
-    LACUNA_CHECK(messages->HasError(part));
+    LACUNA_CHECK_CONTAINS(messages->Errors, part);
     LACUNA_CHECK(contrast->GetOutput()->GetNumberOfRows() == 0);
   };
   fails("give InsideArray or InsideBounds", [](auto*) {});
