@@ -118,6 +118,7 @@ class Example:
             self.title = re.sub(r"\b(\d)d\b", r"\1-D", topic[3:].replace("-", " ").capitalize())
             self.text = plain(ast.get_docstring(ast.parse(read(f"{folder}/{main_script(topic)}")))) + "\n"
         self.text += "".join("\n" + read(f"{folder}/{name}") for name in others)
+        self.text = re.sub(r"\]\((\.\./\d\d-[^/)]+)/README\.md\)", r"](\1/index.md)", self.text)
         self.captions = {name: called.get(f"{topic}/{name}", (os.path.splitext(name)[0], ""))[0] for name in self.pictures}
         self.guides = guide_pages(topic)
         if not self.pictures:  # its pictures are the guide's
