@@ -78,9 +78,4 @@ def test(window):
     sweep_to_surface(window)
 
 
-if lacuna_window.IS_INSIDE:
-    lacuna_window.inside(test)
-else:
-    said = lacuna_window.run(__file__)
-    assert "WARN|" not in said
-    print("ok")
+lacuna_window.main(test)

@@ -119,9 +119,4 @@ def test(window):
         print(kind, "ok:", first["ImageSize"], second["ImageSize"], flush=True)
 
 
-if lacuna_window.IS_INSIDE:
-    lacuna_window.inside(test)
-else:
-    said = lacuna_window.run(__file__)
-    assert "WARN|" not in said
-    print("ok")
+lacuna_window.main(test)

@@ -126,9 +126,4 @@ def test(window):
     window.compare("HandlesMirror")
 
 
-if lacuna_window.IS_INSIDE:
-    lacuna_window.inside(test)
-else:
-    said = lacuna_window.run(__file__)
-    assert "WARN|" not in said
-    print("ok")
+lacuna_window.main(test)

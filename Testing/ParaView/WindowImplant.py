@@ -112,9 +112,4 @@ def test(window):
     assert b"M30" in program and program.count(b"\n") > 1000
 
 
-if lacuna_window.IS_INSIDE:
-    lacuna_window.inside(test)
-else:
-    said = lacuna_window.run(__file__)
-    assert "WARN|" not in said
-    print("ok")
+lacuna_window.main(test)

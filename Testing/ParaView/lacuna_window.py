@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests in the ParaView application: starts it with a script, and lets that press, look and wait.
 
-    if lacuna_window.IS_INSIDE: lacuna_window.inside(test)  # calls test(window)
+    lacuna_window.main(test)  # calls test(window)
+
+or, where something is to be prepared outside of ParaView,
+
+    if lacuna_window.IS_INSIDE: lacuna_window.inside(test)
     else: lacuna_window.run(__file__)
 
 The test fails when there is a warning or an error in the window Output Messages, or a dialog that it does not expect.
@@ -54,6 +58,15 @@ def leave(*error):
 
 if IS_INSIDE:
     sys.excepthook = leave
+
+
+def main(test):
+    """Runs the script of test in paraview, and there test(window), which prints no warning."""
+    if IS_INSIDE:
+        inside(test)
+    said = run(test.__code__.co_filename)  # paraview's scripts have no __file__
+    assert "WARN|" not in said
+    print("ok")
 
 
 def inside(test):
