@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 
 namespace
 {
@@ -23,6 +26,7 @@ constexpr double SmallestImage = 10, LargestImage = 500;
 constexpr double HopelessError = 5, HopelessRms = 3;
 // With fewer, a position far off may fit as well and be expected to be right.
 constexpr std::size_t FewestViews = 10;
+constexpr const char* Beginning = "<!-- Lacuna "; // of the file
 
 std::string Format(const char* format, double a, double b = 0)
 {
@@ -84,6 +88,10 @@ bool vtkLacunaCalibrationReport::HasRival() const
 std::vector<std::string> vtkLacunaCalibrationReport::GetAdvice() const
 {
   std::vector<std::string> advice;
+  if (const std::string refusal = this->GetRefusal(); !refusal.empty())
+  {
+    advice.push_back("this result is not to be used: " + refusal);
+  }
   if (this->HasRival())
   {
     advice.push_back(Format("another position of the image fits nearly as well (RMS %.2f mm): ",
@@ -168,10 +176,24 @@ std::string vtkLacunaCalibrationReport::GetRefusal() const
 }
 
 //------------------------------------------------------------------------------
+bool vtkLacunaCalibrationReport::MayReplace(const std::string& fileName, const std::string& from)
+{
+  std::ifstream file(fileName, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::size_t elements = std::min(text.find("-->"), text.size());
+  constexpr int ownTags = 5; // a Transform, in two elements that begin and end
+  return text.empty() ||
+    (text.compare(0, std::strlen(Beginning), Beginning) == 0 &&
+      std::count(text.begin() + static_cast<std::ptrdiff_t>(elements), text.end(), '<') ==
+        ownTags &&
+      text.find("From=\"" + from + "\"", elements) != std::string::npos);
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaCalibrationReport::Write(const std::string& fileName, const char* from,
   const std::string& to, const std::vector<std::string>& advice) const
 {
-  std::string text = "<!-- Lacuna " + std::string(vtkLacunaProvenance::GetVersion()) +
+  std::string text = Beginning + std::string(vtkLacunaProvenance::GetVersion()) +
     ", Probe Calibration: ExpectedError " +
     Format("%.3f mm, RMS %.3f mm of ", this->Picture.ExpectedError, this->Found.Rms) +
     std::to_string(this->Found.Equations) + " equations, " + std::to_string(this->Found.Views) +

@@ -115,14 +115,6 @@ lacuna::ProbeCalibration SolveOrTell(const std::vector<lacuna::CalibrationPick>&
   }
 }
 
-// Whether a file is a calibration, and none from this frame.
-bool HoldsOther(const std::string& fileName, const std::string& from)
-{
-  std::ifstream file(fileName, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  return text.find("<Transform ") != std::string::npos &&
-    text.find("From=\"" + from + "\"") == std::string::npos;
-}
 }
 
 vtkStandardNewMacro(vtkLacunaProbeCalibration);
@@ -420,16 +412,17 @@ int vtkLacunaProbeCalibration::RequestData(
       {
         const char* from = pivot ? "StylusTip" : "Image";
         std::string refusal = report.GetRefusal();
-        if (refusal.empty() && HoldsOther(this->OutputFileName, from))
+        refusal += refusal.empty() ? "" : ". Look at Advice";
+        if (refusal.empty() && !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from))
         {
-          refusal = std::string("it holds another calibration than one from '") + from +
-            "'; set another OutputFileName";
+          refusal = std::string("it holds something else, or more, than a calibration from '") +
+            from +
+            "' that Probe Calibration wrote, which would be lost. Set another OutputFileName";
         }
         if (!refusal.empty())
         {
           vtkErrorMacro(<< "'" << this->OutputFileName
-                        << "' is not written, and kept if it is there: " << refusal
-                        << ". Look at Advice");
+                        << "' is not written, and kept if it is there: " << refusal);
         }
         else
         {

@@ -86,6 +86,7 @@ public:
     : Options(options)
     , Model(picks, options.EstimateScale)
     , Unknowns(static_cast<int>(this->Model.GetUnknowns().size()))
+    , OfTip(!picks.empty() && picks.front().Target == CalibrationTarget::Tip)
   {
     int equations = 0;
     for (std::size_t pick = 0; pick < picks.size(); ++pick)
@@ -259,8 +260,11 @@ private:
     {
       throw std::invalid_argument(std::to_string(outliers) + " of " +
         std::to_string(solution.Weights.size()) +
-        " picks do not agree with the others, which are too few then; pick again (of wires, check "
-        "which is which), or raise OutlierLimit");
+        (this->OfTip
+            ? " poses do not agree with the others, which are too few then: the tip slipped in its "
+              "hole, or metal is near; record them again, or raise OutlierLimit"
+            : " picks do not agree with the others, which are too few then; pick again (of wires, "
+              "check which is which), or raise OutlierLimit"));
     }
   }
 
@@ -286,6 +290,7 @@ private:
   const ProbeCalibrationOptions& Options;
   CalibrationModel Model;
   int Unknowns;
+  bool OfTip;
   Vec2 FarPixel{ 0, 0 };
 };
 

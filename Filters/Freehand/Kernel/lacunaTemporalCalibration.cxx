@@ -214,7 +214,7 @@ Peak FindOnlyPeak(
                                     std::min(best.Lag, other.Lag)) +
         Format(
           " and %.3f s, as after half a cycle or a whole one: ", std::max(best.Lag, other.Lag)) +
-        advice);
+        advice + " (TimeOffset has the other sign than the lag)");
     }
   }
   return best;

@@ -91,14 +91,25 @@ void TestHopelessFile()
   const auto few = Spoilt(scan.Picks.Get(), [](vtkTable* t) { t->SetNumberOfRows(9); });
   LACUNA_CHECK_CONTAINS(
     calibrate(scan.Slices, few, [](auto*) {}), "9 views are too few, there must be 10");
+  LACUNA_CHECK_CONTAINS(
+    Calibrate(scan.Slices, few, [](auto*) {}).Warnings, "not to be used: 9 views are too few");
   LACUNA_CHECK(ReadFile(name) == good);
-  // the calibration of something else
-  std::string other = good;
-  other.replace(other.find("From=\"Image\""), 12, "From=\"StylusTip\"");
-  std::ofstream(name) << other;
-  LACUNA_CHECK_CONTAINS(calibrate(scan.Slices, scan.Picks, [](auto*) {}), "another calibration");
-  LACUNA_CHECK(ReadFile(name) == other);
-  std::ofstream(name) << good;
+  // the calibration of something else, more than this calibration, of someone else, or none at all
+  const auto replaced = [](std::string text, const std::string& from, const std::string& to)
+  { return text.replace(text.find(from), from.size(), to); };
+  for (const std::string& other : { replaced(good, "From=\"Image\"", "From=\"StylusTip\""),
+         replaced(good, "<CoordinateD", "<DataCollection/><CoordinateD"),
+         replaced(good, "</Coord", "<Transform From=\"Tracker\" To=\"Reference\"/></Coord"),
+         replaced(good, "<!-- Lacuna", "<!-- fCal"), std::string("ObjectType = Image\n") })
+  {
+    std::ofstream(name) << other;
+    LACUNA_CHECK_CONTAINS(
+      calibrate(scan.Slices, scan.Picks, [](auto*) {}), "something else, or more");
+    LACUNA_CHECK_THAT(ReadFile(name) == other, other);
+  }
+  std::ofstream(name).close(); // just made
+  LACUNA_CHECK(calibrate(scan.Slices, scan.Picks, [](auto*) {}).empty());
+  LACUNA_CHECK(ReadFile(name) == good);
   // usable, with advice: both are in the file, which is good XML
   const auto fair = Spoilt(scan.Picks.Get(),
     [](vtkTable* t)
@@ -344,6 +355,14 @@ void TestStylus()
   const std::string loose = Calibrate(MakeScan(poses), nullptr, pivot).Warnings;
   LACUNA_CHECK_CONTAINS(loose, "Did the tip stay in its hole");
   LACUNA_CHECK(loose.find("sound") == std::string::npos);
+  // in two holes
+  const Matrix4 elsewhere = Matrix4::Translation({ 80, 0, 0 });
+  for (int i = 15; i < 30; ++i)
+  {
+    poses[i] = elsewhere * poses[i];
+  }
+  LACUNA_CHECK_CONTAINS(
+    Calibrate(MakeScan(poses), nullptr, pivot).Errors, "the tip slipped in its hole");
   std::remove(name.c_str());
   const Calibrated still = Calibrate(MakeScan(std::vector<Matrix4>(30, poses[0])), nullptr, pivot);
   LACUNA_CHECK_CONTAINS(still.Errors, "tilt the stylus more");
