@@ -73,18 +73,25 @@ std::vector<Vec3> CaptureRule::Place(const Matrix4& pose) const
 
 CaptureRule::Verdict CaptureRule::Judge(const Matrix4& receiverToTransmitter, double instant)
 {
-  std::vector<Vec3> places = this->Place(receiverToTransmitter);
+  const std::vector<Vec3> places = this->Place(receiverToTransmitter);
   Verdict verdict;
   const double gap = instant - this->BeforeInstant;
-  if (!this->Before.empty() && gap > 0 && gap <= LongestGap)
+  if (this->Before && gap > 0 && gap <= LongestGap)
   {
-    verdict.Speed = LargestDistance(places, this->Before) / gap;
+    verdict.Speed = LargestDistance(places, this->Place(*this->Before)) / gap;
     verdict.TooFast = this->SpeedLimit > 0 && *verdict.Speed > this->SpeedLimit;
   }
-  verdict.Take = this->Mode == CaptureMode::EveryFrame || this->LastTaken.empty() ||
-    LargestDistance(places, this->LastTaken) > this->Threshold;
-  this->Before = std::move(places);
+  verdict.Take = this->Mode == CaptureMode::EveryFrame || !this->LastTaken ||
+    LargestDistance(places, this->Place(*this->LastTaken)) > this->Threshold;
+  this->Before = receiverToTransmitter;
   this->BeforeInstant = instant;
   return verdict;
+}
+
+void CaptureRule::Continue(const CaptureRule& other)
+{
+  this->LastTaken = other.LastTaken;
+  this->Before = other.Before;
+  this->BeforeInstant = other.BeforeInstant;
 }
 }

@@ -48,7 +48,9 @@ public:
   /// The frame that was judged last is taken.
   void Take() { this->LastTaken = this->Before; }
   /// The next frame is the first of a sweep.
-  void BeginSweep() { this->LastTaken.clear(); }
+  void BeginSweep() { this->LastTaken.reset(); }
+  /// Goes on with the sweep of another rule.
+  void Continue(const CaptureRule& other);
 
 private:
   std::vector<Vec3> Place(const Matrix4& pose) const;
@@ -57,8 +59,8 @@ private:
   double Threshold;
   double SpeedLimit;
   std::vector<Vec3> Points;
-  std::vector<Vec3> LastTaken; ///< where they were, mm in the transmitter's coordinates
-  std::vector<Vec3> Before;
+  std::optional<Matrix4> LastTaken; ///< poses of the receiver
+  std::optional<Matrix4> Before;
   double BeforeInstant = 0;
 };
 }

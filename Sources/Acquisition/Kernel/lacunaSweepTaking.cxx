@@ -164,8 +164,15 @@ SweepTaking::SweepTaking(
 void SweepTaking::SetRules(const AcquisitionRules& rules)
 {
   this->Rules = rules;
-  this->Rule = MakeRule(rules, this->RuleWindow);
+  this->RenewRule();
   this->Full = false; // unless the next slice finds it so
+}
+
+void SweepTaking::RenewRule()
+{
+  CaptureRule rule = MakeRule(this->Rules, this->RuleWindow);
+  rule.Continue(this->Rule);
+  this->Rule = std::move(rule);
 }
 
 void SweepTaking::Finish()
@@ -276,7 +283,7 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   if (this->RuleWindow != window->Window)
   {
     this->RuleWindow = window->Window;
-    this->Rule = MakeRule(this->Rules, this->RuleWindow);
+    this->RenewRule();
   }
   CaptureRule::Verdict verdict;
   verdict.Take = this->Rules.Mode == CaptureMode::EveryFrame;

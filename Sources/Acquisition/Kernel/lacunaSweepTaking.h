@@ -86,6 +86,7 @@ public:
   std::vector<std::string> GetMessages() const;
 
 private:
+  void RenewRule();
   bool Fits(const VideoFrame& frame, const SweepFrame& window);
   bool HasRoom();
   void Record(const AcquiredSlice& slice, const SweepFrame& window);

@@ -65,6 +65,19 @@ TEST(CaptureRule, TakesAFrameWhenACornerHasMovedSinceTheLastThatWasTaken)
   EXPECT_TRUE(rule.Judge(there, 52).Take);
 }
 
+TEST(CaptureRule, AnotherRuleGoesOnFromTheLastSlice)
+{
+  CaptureRule first = MakeRule({ { 0, 0, 0 } });
+  first.Judge(Matrix4(), 0);
+  first.Take();
+  CaptureRule rule(CaptureMode::Movement, 2, 10, { { 0, 0, 0 } });
+  rule.Continue(first);
+  const auto near = rule.Judge(Matrix4::Translation({ 1.9, 0, 0 }), 0.1);
+  EXPECT_FALSE(near.Take);
+  EXPECT_TRUE(near.TooFast); // since the frame before, which the first rule saw
+  EXPECT_TRUE(rule.Judge(Matrix4::Translation({ 2.1, 0, 0 }), 0.2).Take);
+}
+
 TEST(CaptureRule, WithoutCalibrationTheReceiverAndItsTurnsCount)
 {
   CaptureRule rule = MakeRule(GetReceiverPoints());
