@@ -3,7 +3,6 @@
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -14,8 +13,6 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-
-vtkInformationKeyMacro(vtkLacunaTrackedSlices, GROWS, Integer);
 
 //------------------------------------------------------------------------------
 vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
@@ -96,6 +93,22 @@ vtkIdType vtkLacunaTrackedSlices::GetSliceNumber(double z, vtkIdType slices)
     throw std::runtime_error(message.str());
   }
   return slice;
+}
+
+//------------------------------------------------------------------------------
+// Field data, since ParaView's server copies a source's output without its information.
+void vtkLacunaTrackedSlices::MarkAsGrowing(vtkImageData* stack)
+{
+  vtkNew<vtkIntArray> growing;
+  growing->SetName(GrowingName);
+  growing->InsertNextValue(1);
+  stack->GetFieldData()->AddArray(growing);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaTrackedSlices::IsGrowing(vtkImageData* stack)
+{
+  return stack->GetFieldData()->HasArray(GrowingName) != 0;
 }
 
 //------------------------------------------------------------------------------

@@ -16,8 +16,8 @@
 /// - ProbeToTracker, ... (double, 16 components): every transform of the file under its own name
 ///
 /// and with one tuple: ImageToProbe, when known; Preview (string), when the stack holds only every
-/// n-th slice because all would not fit into the memory (vtkLacunaSliceStream.h). The information of
-/// a stack that is being taken has GROWS.
+/// n-th slice because all would not fit into the memory (vtkLacunaSliceStream.h); Growing (int), while
+/// the stack is being taken.
 #ifndef vtkLacunaTrackedSlices_h
 #define vtkLacunaTrackedSlices_h
 
@@ -29,7 +29,6 @@
 
 class vtkDataArray;
 class vtkImageData;
-class vtkInformationIntegerKey;
 
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices
 {
@@ -40,6 +39,7 @@ public:
   static constexpr const char* SliceStatusName = "SliceStatus";
   static constexpr const char* FrameNumberName = "FrameNumber";
   static constexpr const char* PreviewName = "Preview";
+  static constexpr const char* GrowingName = "Growing";
 
   /// Flags of SliceStatus.
   enum Status : unsigned char
@@ -51,9 +51,11 @@ public:
     GatedOut = 8
   };
 
-  /// In the information of a data object: slices are to come, so that too few to make anything of
-  /// are no error yet.
-  static vtkInformationIntegerKey* GROWS();
+  ///@{
+  /// Whether slices are to come, so that too few to make anything of are no error yet.
+  static void MarkAsGrowing(vtkImageData* stack);
+  static bool IsGrowing(vtkImageData* stack);
+  ///@}
 
   /// Checks stack against the contract. Throws std::runtime_error that names the array and what is
   /// wrong with it. Keeps no reference: stack must outlive this object.

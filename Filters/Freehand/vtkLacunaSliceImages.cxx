@@ -6,7 +6,6 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
@@ -229,7 +228,7 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
     isToCome = this->FindSlicesToCome(tracked);
     this->IsMoreToCome = std::find(isToCome.begin(), isToCome.end(), true) != isToCome.end();
   }
-  this->IsMoreToCome |= stack->GetInformation()->Has(vtkLacunaTrackedSlices::GROWS()) != 0;
+  this->IsMoreToCome |= vtkLacunaTrackedSlices::IsGrowing(stack);
   std::vector<Candidate> candidates;
   for (vtkIdType number = 0; number < tracked.GetNumberOfSlices(); ++number)
   {

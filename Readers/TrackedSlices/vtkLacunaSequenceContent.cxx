@@ -36,8 +36,8 @@ constexpr double MostPixels = 1e9;
 const std::set<std::string> OwnNames = { vtkLacunaTrackedSlices::ImageToReferenceName,
   vtkLacunaTrackedSlices::ImageToProbeName, vtkLacunaTrackedSlices::TimestampName,
   vtkLacunaTrackedSlices::SliceStatusName, vtkLacunaTrackedSlices::FrameNumberName,
-  vtkLacunaTrackedSlices::PreviewName, vtkLacunaProvenance::ArrayName,
-  vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
+  vtkLacunaTrackedSlices::PreviewName, vtkLacunaTrackedSlices::GrowingName,
+  vtkLacunaProvenance::ArrayName, vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
   vtkLacunaSequenceNames::Orientation, ImageStatus };
 
 std::string GetString(vtkImageData* stack, const char* name, vtkIdType i)

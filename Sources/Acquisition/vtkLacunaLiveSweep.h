@@ -27,6 +27,13 @@ struct vtkLacunaLiveSweep
     return this->StackIsOfOthers ? this->Past : this->GetState();
   }
 
+  // Slices that are only in memory though they were to be recorded, and will not be: what took them
+  // has ended.
+  std::int64_t GetUnwritten() const
+  {
+    return this->StackIsOfOthers ? this->Past.File.Added - this->Past.File.Synced : 0;
+  }
+
   std::unique_ptr<lacuna::SweepAcquisition> Acquisition; // null while not connected
   std::string Tracker;                                   // as they were opened
   std::string Video;
@@ -37,7 +44,7 @@ struct vtkLacunaLiveSweep
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
   bool StackIsOfOthers = false;               // of devices that are not these
   lacuna::AcquisitionState Past;              // at the end of those, then
-  bool MayDiscard = false;                    // Clear was called and failed
+  bool MayDiscard = false;                    // Clear was refused, for just these slices
   std::unique_ptr<vtkLacunaSliceStack> Newest;
   std::int64_t NewestNumber = -1;
   std::map<std::string, double> Subjects; // of messages, and when they were there last

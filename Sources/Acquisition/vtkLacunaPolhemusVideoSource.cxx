@@ -7,7 +7,6 @@
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaLiveSweep.h"
@@ -130,6 +129,13 @@ void vtkLacunaPolhemusVideoSource::Close()
   {
     now.Past = now.Acquisition->Finish();
     now.StackIsOfOthers = true;
+    if (const std::int64_t unwritten = now.GetUnwritten(); unwritten > 0)
+    {
+      now.Past.File.Trouble = std::to_string(unwritten) + " of " +
+        std::to_string(now.Past.File.Added) +
+        " slices could not be recorded and are only in memory: save the sweep (Save Data)";
+      vtkWarningMacro(<< now.Past.File.Trouble);
+    }
   }
   now.Acquisition.reset();
 }
@@ -248,6 +254,21 @@ void vtkLacunaPolhemusVideoSource::Configure()
 }
 
 //------------------------------------------------------------------------------
+// What is to be done with slices before others can be taken; empty: nothing.
+std::string vtkLacunaPolhemusVideoSource::DescribeKept() const
+{
+  const vtkLacunaLiveSweep& now = *this->Now;
+  if (!now.StackIsOfOthers)
+  {
+    return {};
+  }
+  return (now.Past.File.Trouble.empty() ? "" : now.Past.File.Trouble + "\n") + "There are " +
+    std::to_string(this->GetSliceCount()) +
+    " slices of devices that have been closed: save them, Clear, then Start" +
+    (this->ButtonStarts ? "; before that the button does nothing" : "");
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaPolhemusVideoSource::Connect()
 {
   this->Now->Tried.clear(); // asked for: tries again what failed
@@ -280,11 +301,10 @@ void vtkLacunaPolhemusVideoSource::Start()
   }
   if (this->Now->StackIsOfOthers)
   {
-    vtkErrorMacro("The devices were opened anew and there are " << this->GetSliceCount()
-                                                                << " slices of before: save them, "
-                                                                   "Clear, then Start");
+    vtkErrorMacro(<< this->DescribeKept());
     return;
   }
+  this->Now->MayDiscard = false;
   this->Now->Acquisition->Start();
 }
 
@@ -302,8 +322,13 @@ void vtkLacunaPolhemusVideoSource::Stop()
 void vtkLacunaPolhemusVideoSource::Clear()
 {
   vtkLacunaLiveSweep& now = *this->Now;
+  this->Stop(); // the last slices, of which it is to be said whether they are on the disk
   try
   {
+    if (now.GetUnwritten() > 0 && !now.MayDiscard)
+    {
+      throw std::runtime_error(now.Past.File.Trouble);
+    }
     if (now.Acquisition)
     {
       now.Acquisition->BeginSweep(now.MayDiscard);
@@ -345,6 +370,7 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
   for (const lacuna::AcquiredSlice& slice : slices)
   {
     now.Stack->Append(slice);
+    now.MayDiscard = false;
   }
   const auto live = now.Acquisition->GetLive();
   if (!live || live->Slice.FrameNumber == now.NewestNumber)
@@ -448,11 +474,7 @@ int vtkLacunaPolhemusVideoSource::RequestData(
         vtkImageData* output = vtkImageData::GetData(outputs, port);
         if (port == 0 && now.ToldCapturing)
         {
-          output->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
-        }
-        else
-        {
-          output->GetInformation()->Remove(vtkLacunaTrackedSlices::GROWS());
+          vtkLacunaTrackedSlices::MarkAsGrowing(output);
         }
         if (stack)
         {
@@ -477,17 +499,12 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   std::string text = now.Trouble;
   const auto add = [&text](const std::string& line)
   { text += (text.empty() || line.empty() ? "" : "\n") + line; };
-  if (now.Acquisition)
-  {
-    const lacuna::AcquisitionState state = now.Acquisition->GetState();
-    add(this->DevicesWait() ? WaitingText : "");
-    std::for_each(state.Messages.begin(), state.Messages.end(), add);
-    std::for_each(state.Notes.begin(), state.Notes.end(), add);
-  }
-  else
-  {
-    add("The devices are not open: Connect, or Start");
-  }
+  add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
+  add(this->DevicesWait() ? WaitingText : "");
+  add(this->DescribeKept());
+  const lacuna::AcquisitionState state = now.GetState();
+  std::for_each(state.Messages.begin(), state.Messages.end(), add);
+  std::for_each(state.Notes.begin(), state.Notes.end(), add);
   now.Messages = std::move(text);
   return now.Messages.c_str();
 }

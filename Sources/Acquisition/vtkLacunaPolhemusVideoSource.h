@@ -118,8 +118,9 @@ public:
   void Start();
   /// Ends the capture, within a second.
   void Stop();
-  /// Begins a new sweep without slices. When slices could not be recorded that is an error at first;
-  /// a second call drops them.
+  /// Begins a new sweep without slices. When slices could not be recorded, also those of devices that
+  /// have been closed since, that is an error at first; a second call drops them, if none has been
+  /// taken in between.
   void Clear();
   /// Takes over what has come.
   void Poll() { this->GetNeedsUpdate(); }
@@ -174,6 +175,7 @@ private:
   void operator=(const vtkLacunaPolhemusVideoSource&) = delete;
 
   std::string DescribeRules() const;
+  std::string DescribeKept() const;
   bool DevicesDiffer() const;
   bool DevicesWait() const;
   void ReplaceBrokenDevices();

@@ -12,6 +12,7 @@ import time
 
 import lacuna
 from lacuna import live
+from lacuna.errors import raising
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -148,15 +149,35 @@ try:
     planes.UpdatePipeline()
     assert planes.GetDataInformation().GetNumberOfPoints() > 0
 
-    # by movement: none while it rests, evenly spaced while it goes
+    # by movement: none while it rests, evenly spaced while it goes; of none, and of the first ones, no volume can be made
+    # yet, which is no error (here each would be raised)
     live.clear(source)
     assert live.get(source, "SliceCount") == 0
     source.RecordFileName = ""
     source.CaptureMode = "Movement"
     source.MovementThreshold = 2
-    source.SpeedLimit = 5
+    source.SpeedLimit = 50
+    gated = GateSlices(Input=source, SpeedLimit=100)
+    volumes = [SweptVolume(Input=source, OutputSpacing=[1, 1, 1]), SweptVolume(Input=gated, OutputSpacing=[1, 1, 1])]
+    sizes = {}
+
+    def reconstruct():
+        count = slices_of(source)[0].GetDimensions()[2]
+        for volume in volumes:
+            with raising():
+                volume.UpdatePipeline()
+        sizes[count] = [servermanager.Fetch(volume).GetNumberOfPoints() for volume in volumes]
+        return live.get(source, "SliceCount") >= 8
+
+    reconstruct()
     live.start(source)
-    wait(source, lambda: live.get(source, "SliceCount") >= 8, "slices by movement")
+    wait(source, reconstruct, "slices by movement")
+    print("voxels of slices:", sizes, flush=True)
+    assert max(sizes[min(sizes)]) == 0 and min(sizes[max(sizes)]) > 0
+    assert 1 in sizes or 2 in sizes, "the first slices came too fast to be looked at"
+    for volume in volumes + [gated]:
+        Delete(volume)
+    source.SpeedLimit = 5
     wait(source, lambda: live.get(source, "TooFastSlices") > 0, "speed")
     live.stop(source)
     data, arrays = slices_of(source)

@@ -5,7 +5,6 @@
 #include "lacunaTestReplay.h"
 #include "vtkCallbackCommand.h"
 #include "vtkDataArray.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkMath.h"
 
 #include <cmath>
@@ -202,12 +201,12 @@ void TestLiveBeginning()
   FixView(caster);
   const auto messages = lacunaCheck::Watch(caster);
   const auto flagged = MakeStack(MakePoses(2), VTK_SHORT, { 1, 1 });
-  flagged->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
+  vtkLacunaTrackedSlices::MarkAsGrowing(flagged);
   caster->SetInputData(flagged);
   caster->Update();
   LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
   LACUNA_CHECK(caster->GetOutput()->GetNumberOfPoints() == 0);
-  flagged->GetInformation()->Remove(vtkLacunaTrackedSlices::GROWS());
+  flagged->GetFieldData()->RemoveArray(vtkLacunaTrackedSlices::GrowingName);
   caster->Modified();
   caster->Update();
   LACUNA_CHECK_CONTAINS(messages->Errors, "no slice is left to look at");

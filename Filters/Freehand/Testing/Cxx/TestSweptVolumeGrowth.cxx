@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkLacunaSweptVolume while its sweep grows: replayed in time, or live.
 #include "lacunaTestReplay.h"
-#include "vtkInformationIntegerKey.h"
 
 #include <cmath>
 #include <cstring>
@@ -321,7 +320,7 @@ void TestLiveBeginning()
   {
     if (grows)
     {
-      sweep->GetInformation()->Set(vtkLacunaTrackedSlices::GROWS(), 1);
+      vtkLacunaTrackedSlices::MarkAsGrowing(sweep);
     }
     filter->SetInputData(sweep);
     filter->Update();

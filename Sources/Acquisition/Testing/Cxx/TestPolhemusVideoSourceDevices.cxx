@@ -4,8 +4,6 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkInformationIntegerKey.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaTrackedSlices.h"
 
@@ -77,7 +75,7 @@ void TestFiguresStayWithTheSlices()
   const auto grows = [source]
   {
     source->Update();
-    return source->GetOutput(0)->GetInformation()->Has(vtkLacunaTrackedSlices::GROWS()) != 0;
+    return vtkLacunaTrackedSlices::IsGrowing(source->GetOutput(0));
   };
   LACUNA_CHECK(grows());
   source->Stop();
@@ -99,6 +97,60 @@ void TestFiguresStayWithTheSlices()
   LACUNA_CHECK(source->GetFrameCount() == 0);
   LACUNA_CHECK(source->GetRecordedSlices() == 0);
   LACUNA_CHECK(std::string(source->GetRecordedFileName()).empty());
+}
+
+// Slices that are not on the disk are dropped by a second Clear only, also when what took them is
+// gone, and each sweep is asked of anew.
+void TestUnwrittenSlicesAreKept()
+{
+  for (const bool connectedAgain : { false, true })
+  {
+    Bench bench([](double, int) { return Still; });
+    vtkLacunaPolhemusVideoSource* source = bench.Source;
+    const auto refused = [&](const std::string& words)
+    {
+      source->Clear();
+      LACUNA_CHECK_CONTAINS(bench.Messages->Errors, words);
+      bench.Messages->Errors.clear();
+    };
+    const auto cleared = [&]
+    {
+      source->Clear();
+      LACUNA_CHECK_THAT(bench.Messages->Errors.empty(), bench.Messages->Errors);
+      return source->GetSliceCount() == 0;
+    };
+    source->SetRecordFileName((bench.Folder + "/missing/sweep.mhd").c_str());
+    source->Start();
+    LACUNA_CHECK(bench.PollFor(3));
+    refused("missing");
+    source->Start(); // more slices: of those it was not said
+    LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
+    refused("missing");
+    LACUNA_CHECK(cleared());
+    source->Start();
+    LACUNA_CHECK(bench.PollFor(3));
+    source->Disconnect();
+    const vtkIdType count = source->GetSliceCount();
+    const std::string words = std::to_string(count) + " of " + std::to_string(count) + " slices";
+    LACUNA_CHECK(bench.Messages->HasWarning(words));
+    LACUNA_CHECK(source->GetWaitingSlices() == count);
+    if (connectedAgain)
+    {
+      source->Connect();
+      LACUNA_CHECK(bench.IsConnected());
+    }
+    LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), words);
+    LACUNA_CHECK_CONTAINS(std::string(source->GetDiskMessage()), "only in memory");
+    LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "save them, Clear");
+    LACUNA_CHECK(std::string(source->GetMessage()).find("button") == std::string::npos);
+    source->SetButtonStarts(true);
+    LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "the button does nothing");
+    refused(words);
+    LACUNA_CHECK(source->GetSliceCount() == count);
+    LACUNA_CHECK(cleared());
+    LACUNA_CHECK(std::string(source->GetMessage()).find("save them") == std::string::npos);
+    LACUNA_CHECK(std::string(source->GetDiskMessage()).empty());
+  }
 }
 
 // What the newest slice says of the probe; not a number while it has no pose.
@@ -257,6 +309,7 @@ int TestPolhemusVideoSourceDevices(int, char*[])
 {
   TestDevicesThatChange();
   TestFiguresStayWithTheSlices();
+  TestUnwrittenSlicesAreKept();
   TestFormats();
   TestSettingsReachTheTracker();
   TestTrackerThatComesLate();
