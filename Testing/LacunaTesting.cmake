@@ -53,6 +53,15 @@ function (lacuna_add_example_test topic script)
     ARGS "${topic}" "${script}" ${arg_ARGS})
 endfunction ()
 
+# lacuna_add_example_script(<script of Documentation/Examples> [ARGS <argument>...])
+# Runs a script of an example alone (Testing/ParaView/ExampleScript.py).
+function (lacuna_add_example_script script)
+  cmake_parse_arguments(arg "" "" "ARGS" ${ARGN})
+  get_filename_component(name "${script}" NAME_WE)
+  lacuna_add_paraview_test(ExampleScript.py NAME ParaView.${name} LABELS example
+    ARGS "${script}" ${arg_ARGS})
+endfunction ()
+
 # lacuna_find_cgal()
 # Makes the target LacunaCGAL (header-only geometry library, for tests only) if it is installed.
 function (lacuna_find_cgal)

@@ -3,10 +3,10 @@
 
 Its script runs without an error and writes a picture that looks like the one in the folder. The state file that it
 writes, and the one in the folder, load without an error into what the script made, value by value, and show the picture.
+All of them warn of nothing but what the folder's README.md tells.
 """
 import glob
 import os
-import runpy
 import shutil
 import sys
 
@@ -16,20 +16,17 @@ lacuna.plugin.load()
 import pipelines
 from lacuna import states
 from lacuna.errors import raising
-from lacuna_test import ROOT, output, picture_error
+from lacuna_test import ROOT, check_warnings, output, picture_error, run_example
 from paraview.simple import *
 
 TOLERANCE = 60  # of vtkImageDifference: other fonts and drivers
 
 folder = os.path.join(ROOT, "Documentation", "Examples", sys.argv[1])
-script = os.path.join(folder, sys.argv[2])
 written = os.path.abspath(output(os.path.join("Examples", sys.argv[1])))
 shutil.rmtree(written, ignore_errors=True)
 os.makedirs(written)
-sys.argv = [script, *sys.argv[3:], written]
-with raising():
-    runpy.run_path(script, run_name="__main__")
-    made = pipelines.outputs()
+run_example(os.path.join(sys.argv[1], sys.argv[2]), *sys.argv[3:], written)
+made = pipelines.outputs()
 assert made, "the script leaves no pipeline"
 
 pictures = [os.path.basename(name) for name in glob.glob(os.path.join(written, "*.png"))]
@@ -42,6 +39,7 @@ for name in pictures:
     error = picture_error(os.path.join(written, name), os.path.join(folder, name))
     assert error <= TOLERANCE, f"look at {written}/{name}: it differs from the one in {folder} by {error:.0f}"
 
+warnings = []
 for place in (written, folder):
     state = os.path.join(place, names[0])
     assert os.path.getsize(state) < 250000, f"{state}: write it by lacuna.states.save"
@@ -49,7 +47,7 @@ for place in (written, folder):
         text = file.read()
     for path in (ROOT, written, os.path.expanduser("~") + os.sep):
         assert path not in text, f"{state} belongs to this computer: {path}"
-    with raising():
+    with raising(warnings):
         states.load(state)
         pipelines.check_same(made, pipelines.outputs(), state)
         shown = [view for view in GetRenderViews() if GetLayout(view) is not None]
@@ -58,3 +56,4 @@ for place in (written, folder):
             Render(view)
             assert any(display.Visibility for display in view.Representations), f"a view of {state} shows nothing"
     print(f"{os.path.relpath(state, ROOT)}: {len(made)} outputs as the script made them, {len(shown)} views", flush=True)
+check_warnings(warnings, os.path.join(folder, "README.md"))

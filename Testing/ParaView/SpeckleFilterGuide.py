@@ -2,11 +2,9 @@
 """Runs the example of the speckle filters: its pictures and numbers are those that the user guide shows."""
 import os
 import re
-import runpy
-import sys
 
 import numpy as np
-from lacuna_test import output
+from lacuna_test import output, run_example
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
@@ -27,8 +25,7 @@ def text(*names):
 
 
 folder = output("speckle-filters")
-sys.argv = ["speckle-filters.py", folder]
-runpy.run_path(os.path.join(EXAMPLE, "speckle-filters.py"), run_name="__main__")
+run_example("05-speckle-filters/speckle-filters.py", folder)
 
 guide = text(DOCUMENTATION, "UserGuide", "speckle-filter.md")
 table = text(folder, "speckle-filters.md")

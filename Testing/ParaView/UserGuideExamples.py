@@ -12,11 +12,10 @@ import subprocess
 import sys
 import time
 
-from lacuna_test import output
+from lacuna_test import ROOT, check_warnings, output
 
 PVPYTHON = sys.argv[1]  # sys.executable is not the program that runs in pvpython
 OWN_FILES = "# needs your own files"
-ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
 def examples():
@@ -51,6 +50,11 @@ def run(name, source):
     print(f"{name}: exit code {done.returncode}, {time.monotonic() - start:.1f} s", flush=True)
     # VTK reports an error and goes on; an example of raising() makes one on purpose
     reported = re.search(r"ERR\||ERROR: In ", done.stdout) and "raising()" not in source
+    warnings = re.findall(r"WARN\| (.*)", done.stdout)
+    try:
+        check_warnings(warnings, os.path.join(ROOT, name.split(":")[0]))
+    except AssertionError as error:
+        return str(error)
     return done.stdout if done.returncode or reported else ""
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the scripts in this folder share."""
 import os
+import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -67,6 +69,31 @@ def check_defaults(proxy, own, names, enumerations=None):
             setattr(proxy, name, word)
             assert getattr(proxy.GetClientSideObject(), "Get" + name)() == value, (name, word)
         setattr(proxy, name, default)
+
+
+def check_warnings(warnings, page):
+    """Whoever follows a page gets no warning but those that it tells of: each has words that the page quotes as `code`."""
+    with open(page, encoding="utf-8") as file:
+        quoted = [words for words in re.findall("`([^`\n]+)`", file.read()) if words.count(" ") >= 2]
+    untold = [warning for warning in warnings if not any(words in warning for words in quoted)]
+    assert not untold, f"{page} does not tell of: " + "; ".join(untold)
+
+
+def run_example(script, *arguments):
+    """Runs <folder>/<script> of Documentation/Examples: without an error, and without a warning of which the folder's README.md does not tell.
+
+    Returns the script's globals.
+    """
+    from lacuna.errors import raising
+    script = os.path.join(ROOT, "Documentation", "Examples", script)
+    folder = os.path.dirname(script)
+    sys.argv = [script, *arguments]
+    sys.path.insert(0, folder)
+    warnings = []
+    with raising(warnings):
+        made = runpy.run_path(script, run_name="__main__")
+    check_warnings(warnings, os.path.join(folder, "README.md"))
+    return made
 
 
 def compare_with_baseline(picture, name, threshold):
