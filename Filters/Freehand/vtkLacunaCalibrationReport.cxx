@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -26,7 +28,9 @@ constexpr double SmallestImage = 10, LargestImage = 500;
 constexpr double HopelessError = 5, HopelessRms = 3;
 // With fewer, a position far off may fit as well and be expected to be right.
 constexpr std::size_t FewestViews = 10;
-constexpr const char* Beginning = "<!-- Lacuna "; // of the file
+constexpr std::uintmax_t LargestFile = 1024 * 1024; // bytes, of those written here
+// Of all but this line: what others have changed is not written over.
+constexpr const char* HashLine = "\n  Hash: fnv1a:";
 
 std::string Format(const char* format, double a, double b = 0)
 {
@@ -176,24 +180,37 @@ std::string vtkLacunaCalibrationReport::GetRefusal() const
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaCalibrationReport::MayReplace(const std::string& fileName, const std::string& from)
+bool vtkLacunaCalibrationReport::MayReplace(
+  const std::string& fileName, const std::string& from, const std::string& to)
 {
+  std::error_code none;
+  if (!std::filesystem::exists(fileName, none))
+  {
+    return true;
+  }
+  if (!std::filesystem::is_regular_file(fileName, none) ||
+    std::filesystem::file_size(fileName, none) > LargestFile)
+  {
+    return false;
+  }
   std::ifstream file(fileName, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  const std::size_t elements = std::min(text.find("-->"), text.size());
-  constexpr int ownTags = 5; // a Transform, in two elements that begin and end
-  return text.empty() ||
-    (text.compare(0, std::strlen(Beginning), Beginning) == 0 &&
-      std::count(text.begin() + static_cast<std::ptrdiff_t>(elements), text.end(), '<') ==
-        ownTags &&
-      text.find("From=\"" + from + "\"", elements) != std::string::npos);
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::size_t line = text.find(HashLine);
+  if (text.empty() || line == std::string::npos)
+  {
+    return text.empty();
+  }
+  const std::string hash = text.substr(line + std::strlen(HashLine), 16);
+  text.erase(line, std::strlen(HashLine) + hash.size());
+  return hash == lacuna::HashText(text) &&
+    text.find("From=\"" + from + "\" To=\"" + to + "\"") != std::string::npos;
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaCalibrationReport::Write(const std::string& fileName, const char* from,
   const std::string& to, const std::vector<std::string>& advice) const
 {
-  std::string text = Beginning + std::string(vtkLacunaProvenance::GetVersion()) +
+  std::string text = "<!-- Lacuna " + std::string(vtkLacunaProvenance::GetVersion()) +
     ", Probe Calibration: ExpectedError " +
     Format("%.3f mm, RMS %.3f mm of ", this->Picture.ExpectedError, this->Found.Rms) +
     std::to_string(this->Found.Equations) + " equations, " + std::to_string(this->Found.Views) +
@@ -202,8 +219,10 @@ void vtkLacunaCalibrationReport::Write(const std::string& fileName, const char* 
   {
     text += "\n  - " + ToComment(sentence);
   }
-  text += std::string(advice.empty() ? " none" : "") +
-    " -->\n<PlusConfiguration version=\"2.9\">\n  <CoordinateDefinitions>\n    <Transform From=\"" +
+  text += advice.empty() ? " none" : "";
+  const std::size_t line = text.size();
+  text += std::string(" -->\n<PlusConfiguration version=\"2.9\">\n  <CoordinateDefinitions>\n    "
+                      "<Transform From=\"") +
     from + "\" To=\"" + to + "\" Error=\"" + Format("%.4f", this->Picture.ExpectedError) +
     "\"\n      Matrix=\"";
   for (int row = 0; row < 4; ++row)
@@ -217,5 +236,6 @@ void vtkLacunaCalibrationReport::Write(const std::string& fileName, const char* 
     }
   }
   text += "\"/>\n  </CoordinateDefinitions>\n</PlusConfiguration>\n";
+  text.insert(line, HashLine + lacuna::HashText(text));
   lacuna::WriteFileAtomically(fileName, text);
 }

@@ -35,9 +35,10 @@ public:
   /// Why nobody should use this calibration, so that no file is written; empty: it may be used.
   std::string GetRefusal() const;
 
-  /// Whether a file may be written over: it is not there, or holds nothing but what Write wrote, from
-  /// this frame.
-  static bool MayReplace(const std::string& fileName, const std::string& from);
+  /// Whether a file may be written over: it is not there, empty, or what Write wrote for these frames
+  /// and nobody has changed.
+  static bool MayReplace(
+    const std::string& fileName, const std::string& from, const std::string& to);
 
   /// The XML that vtkLacunaTrackedSliceReader, PLUS and 3D Slicer take: a transform between frames of
   /// these names, Error is the expected error. It appears whole or not at all.

@@ -24,8 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -411,13 +409,15 @@ int vtkLacunaProbeCalibration::RequestData(
           info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) == 0))
       {
         const char* from = pivot ? "StylusTip" : "Image";
+        const std::string frame = array;
+        const std::string to = frame.substr(0, frame.find("ToTracker"));
         std::string refusal = report.GetRefusal();
         refusal += refusal.empty() ? "" : ". Look at Advice";
-        if (refusal.empty() && !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from))
+        if (refusal.empty() &&
+          !vtkLacunaCalibrationReport::MayReplace(this->OutputFileName, from, to))
         {
-          refusal = std::string("it holds something else, or more, than a calibration from '") +
-            from +
-            "' that Probe Calibration wrote, which would be lost. Set another OutputFileName";
+          refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
+            std::string(from) + "' to '" + to + "'. Set another OutputFileName";
         }
         if (!refusal.empty())
         {
@@ -426,9 +426,7 @@ int vtkLacunaProbeCalibration::RequestData(
         }
         else
         {
-          const std::string frame = array;
-          report.Write(
-            this->OutputFileName, from, frame.substr(0, frame.find("ToTracker")), advice);
+          report.Write(this->OutputFileName, from, to, advice);
         }
       }
     });

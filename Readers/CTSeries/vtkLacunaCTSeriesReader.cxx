@@ -37,12 +37,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
-#include <iomanip>
 #include <new>
 #include <optional>
-#include <sstream>
 
 namespace
 {
@@ -59,19 +56,6 @@ unsigned long GetReadError(const char* path)
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) ? vtkErrorCode::FileFormatError
                                                 : vtkErrorCode::FileNotFoundError;
-}
-
-// FNV-1a: tells which scan it was to one who has it, and nothing to others.
-std::string Hash(const std::string& text)
-{
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text)
-  {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  }
-  std::ostringstream digits;
-  digits << std::hex << std::setw(16) << std::setfill('0') << hash;
-  return digits.str();
 }
 
 void AddString(vtkDataObject* data, const char* name, const std::string& text)
@@ -332,7 +316,8 @@ std::string vtkLacunaCTSeriesReader::DescribeParameters() const
 {
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
   return lacuna::ParameterText()
-    .Add("Series", "fnv1a:" + Hash(geometry.Slices[0].Frame.Header->SeriesUid))
+    // tells which scan it was to one who has it, and nothing to others
+    .Add("Series", "fnv1a:" + lacuna::HashText(geometry.Slices[0].Frame.Header->SeriesUid))
     .Add("Images", geometry.Slices.size())
     .Add("MissingSlices", this->MissingSlices == MISSING_SLICES_ERROR ? "Error" : "Interpolate")
     .Add("GantryTilt", this->GantryTilt == GANTRY_TILT_CORRECT ? "Correct" : "Refuse")

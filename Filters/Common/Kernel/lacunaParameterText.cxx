@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
 
 namespace lacuna
 {
@@ -32,6 +35,18 @@ std::string FormatNumber(double value)
 std::string FormatNumber(float value)
 {
   return Shortest(value);
+}
+
+std::string HashText(std::string_view text)
+{
+  std::uint64_t hash = 14695981039346656037ull;
+  for (const char c : text)
+  {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  }
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016" PRIx64, hash);
+  return digits;
 }
 
 std::string QuoteWord(std::string_view word)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Numbers and parameters as text that loses nothing.
+/// Numbers and parameters as text that loses nothing; texts by their hashes.
 #ifndef lacunaParameterText_h
 #define lacunaParameterText_h
 
@@ -13,6 +13,9 @@ namespace lacuna
 /// The shortest text that reads as the same number, independent of the locale.
 std::string FormatNumber(double value);
 std::string FormatNumber(float value);
+
+/// The 16 hexadecimal digits of its 64-bit FNV-1a hash; no protection from those who mean harm.
+std::string HashText(std::string_view text);
 
 /// A word as it is; in double quotes when it is empty or has a blank, a comma, an equals sign, a
 /// quote, a backslash or a control character. Within quotes, `\"`, `\\`, `\n`, `\r` and `\t`

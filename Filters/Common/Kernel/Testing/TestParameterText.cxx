@@ -53,3 +53,10 @@ TEST(ParameterText, WordsAreQuotedWhereNeeded)
   const char* null = nullptr;
   EXPECT_EQ(ParameterText().Add("Name", null).Add("Mode", "Mean").Get(), "Name=\"\" Mode=Mean");
 }
+
+TEST(ParameterText, HashesAreThoseOfFNV1a)
+{
+  EXPECT_EQ(HashText(""), "cbf29ce484222325"); // draft-eastlake-fnv, appendix C
+  EXPECT_EQ(HashText("a"), "af63dc4c8601ec8c");
+  EXPECT_EQ(HashText("foobar"), "85944171f73967e8");
+}
