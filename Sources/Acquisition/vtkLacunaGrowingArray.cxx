@@ -89,12 +89,18 @@ void vtkLacunaGrowingArray::Reserve(vtkIdType tuples)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaGrowingArray::Append(const void* values, vtkIdType tuples)
+void vtkLacunaGrowingArray::MakeRoom(vtkIdType tuples)
 {
   if (this->Tuples + tuples > this->Room)
   {
     this->Reserve(std::max(this->Tuples + tuples, this->Room + this->Room / 2));
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaGrowingArray::Append(const void* values, vtkIdType tuples)
+{
+  this->MakeRoom(tuples);
   std::memcpy(this->Memory.get() + static_cast<std::size_t>(this->Tuples) * this->TupleSize, values,
     static_cast<std::size_t>(tuples) * this->TupleSize);
   this->Tuples += tuples;

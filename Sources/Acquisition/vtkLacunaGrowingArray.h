@@ -28,6 +28,9 @@ public:
   /// Makes room for so many tuples in one piece; otherwise room is made as it is needed, half as
   /// much again each time. Throws std::bad_alloc.
   void Reserve(vtkIdType tuples);
+  /// Makes room for so many tuples more, in that way: Append of them does not throw. Throws
+  /// std::bad_alloc.
+  void MakeRoom(vtkIdType tuples);
   /// Adds tuples, whose values lie one behind the other. Throws std::bad_alloc.
   void Append(const void* values, vtkIdType tuples = 1);
   vtkIdType GetNumberOfTuples() const { return this->Tuples; }

@@ -8,6 +8,7 @@
 #include "vtkLacunaSliceStack.h"
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -34,6 +35,12 @@ struct vtkLacunaLiveSweep
     return this->StackIsOfOthers ? this->Past.File.Added - this->Past.File.Synced : 0;
   }
 
+  // As they were opened.
+  std::string DescribeDevices() const
+  {
+    return this->Tracker + " " + this->Video + " " + this->Crop;
+  }
+
   std::unique_ptr<lacuna::SweepAcquisition> Acquisition; // null while not connected
   std::string Tracker;                                   // as they were opened
   std::string Video;
@@ -41,7 +48,11 @@ struct vtkLacunaLiveSweep
   std::string Tried;   // what was configured last, rightly or not
   std::string Trouble; // why it could not be
   std::int64_t LimitBytes = 0;
+  std::int64_t FreeBytes = 0;              // of memory, when the devices were opened
+  std::deque<lacuna::AcquiredSlice> Taken; // slices that wait for memory
+  bool IsShortOfMemory = false;
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
+  std::string TakenBy;                        // devices and rules, for its provenance
   bool StackIsOfOthers = false;               // of devices that are not these
   lacuna::AcquisitionState Past;              // at the end of those, then
   bool MayDiscard = false;                    // Clear was refused, for just these slices

@@ -14,10 +14,10 @@
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -31,6 +31,7 @@ std::string Text(const char* s)
   return s ? s : "";
 }
 
+constexpr std::int64_t Mebibyte = 1024 * 1024;
 constexpr const char* WaitingText = "The devices are changed at the next update after Stop";
 
 // Threads that a call of the system holds may need it to the end of the program.
@@ -38,6 +39,15 @@ const lacuna::Clock& GetClock()
 {
   static const auto* clock = new lacuna::SteadyClock;
   return *clock;
+}
+
+// Changes when the file does.
+std::string DescribeVersion(const std::string& fileName)
+{
+  std::error_code none;
+  const auto time = std::filesystem::last_write_time(fileName, none).time_since_epoch().count();
+  const std::uintmax_t size = std::filesystem::file_size(fileName, none);
+  return none ? "" : std::to_string(time) + " " + std::to_string(size);
 }
 
 // What a message is about, without its numbers.
@@ -113,6 +123,7 @@ void vtkLacunaPolhemusVideoSource::Open()
   now.Tracker = this->DescribeTracker();
   now.Video = this->DescribeVideo();
   now.Crop = this->DescribeCrop();
+  now.FreeBytes = std::max(static_cast<std::int64_t>(lacuna::GetAvailableMemory()), 128 * Mebibyte);
 }
 
 //------------------------------------------------------------------------------
@@ -193,9 +204,8 @@ void vtkLacunaPolhemusVideoSource::Configure()
   }
   const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
   const std::string calibration = Text(this->CalibrationFileName);
-  const std::string tried = (wait ? now.Tracker + now.Video + now.Crop : this->DescribeDevices()) +
-    this->DescribeRules() +
-    (calibration.empty() ? "" : std::to_string(vtksys::SystemTools::ModifiedTime(calibration)));
+  const std::string tried = (wait ? now.DescribeDevices() : this->DescribeDevices()) +
+    this->DescribeRules() + DescribeVersion(calibration);
   if (tried == now.Tried && (now.Acquisition || !now.Trouble.empty()))
   {
     return;
@@ -214,23 +224,23 @@ void vtkLacunaPolhemusVideoSource::Configure()
     rules.MovementThreshold = this->MovementThreshold;
     rules.SpeedLimit = this->SpeedLimit;
     rules.TimeOffset = this->TimeOffset;
-    rules.ButtonStarts =
-      this->ButtonStarts && !(reopen ? now.Stack != nullptr : now.StackIsOfOthers);
     rules.RecordFileName = Text(this->RecordFileName);
     rules.RecordCompressionLevel = this->RecordCompression;
-    constexpr std::int64_t mebibyte = 1024 * 1024;
-    rules.MemoryLimit = this->MemoryLimit > 0
-      ? this->MemoryLimit * mebibyte
-      : std::max<std::int64_t>(
-          static_cast<std::int64_t>(lacuna::GetAvailableMemory() / 2), 64 * mebibyte);
     lacuna::CheckRules(rules);
     if (reopen)
     {
       this->Open();
     }
+    // of the devices that are open now
+    rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
+    rules.MemoryLimit = this->MemoryLimit > 0 ? this->MemoryLimit * Mebibyte : now.FreeBytes / 2;
     now.Acquisition->SetRules(rules);
     now.LimitBytes = rules.MemoryLimit;
-    if (now.Stack)
+    if (!now.StackIsOfOthers)
+    {
+      now.TakenBy = now.DescribeDevices() + " " + this->DescribeRules();
+    }
+    if (now.Stack && !now.StackIsOfOthers) // another probe may have taken those
     {
       lacuna::SweepFrame frame;
       frame.Calibrated = rules.ImageToProbe.has_value();
@@ -294,6 +304,10 @@ void vtkLacunaPolhemusVideoSource::Start()
   {
     this->Connect();
   }
+  if (!this->Now->Trouble.empty())
+  {
+    this->Now->Tried.clear(); // asked for: tries again what failed
+  }
   this->Configure();
   if (!this->Now->Acquisition || !this->Now->Trouble.empty())
   {
@@ -335,6 +349,7 @@ void vtkLacunaPolhemusVideoSource::Clear()
     }
     now.MayDiscard = false;
     now.Stack.reset();
+    now.Taken.clear();
     now.StackIsOfOthers = false;
     now.Subjects.clear();
     now.Tried.clear(); // the button may start again
@@ -348,15 +363,23 @@ void vtkLacunaPolhemusVideoSource::Clear()
 }
 
 //------------------------------------------------------------------------------
-// Slices and the newest frame; returns whether there are new ones.
+// Slices and the newest frame; returns whether there are new ones. Throws std::bad_alloc: the slices
+// for which there is no memory are kept for the next time.
 bool vtkLacunaPolhemusVideoSource::TakeOver()
 {
   vtkLacunaLiveSweep& now = *this->Now;
-  const std::vector<lacuna::AcquiredSlice> slices = now.Acquisition->TakeSlices();
-  if (!slices.empty() && !now.Stack)
+  if (!now.StackIsOfOthers)
+  {
+    for (lacuna::AcquiredSlice& slice : now.Acquisition->TakeSlices())
+    {
+      now.Taken.push_back(std::move(slice));
+    }
+  }
+  const bool grows = !now.Taken.empty();
+  if (grows && !now.Stack)
   {
     const auto sweep = now.Acquisition->GetSweep();
-    const auto size = static_cast<std::int64_t>(slices.front().Pixels->size());
+    const auto size = static_cast<std::int64_t>(now.Taken.front().Pixels->size());
     const std::int64_t most = std::max<std::int64_t>(now.LimitBytes / size, 1);
     try
     {
@@ -364,23 +387,23 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
     }
     catch (const std::bad_alloc&) // a system that gives no memory in advance
     {
-      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, size);
+      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, 0);
     }
   }
-  for (const lacuna::AcquiredSlice& slice : slices)
+  for (; !now.Taken.empty(); now.Taken.pop_front())
   {
-    now.Stack->Append(slice);
+    now.Stack->Append(now.Taken.front());
     now.MayDiscard = false;
   }
   const auto live = now.Acquisition->GetLive();
   if (!live || live->Slice.FrameNumber == now.NewestNumber)
   {
-    return !slices.empty();
+    return grows;
   }
   now.NewestNumber = live->Slice.FrameNumber;
   now.Newest = std::make_unique<vtkLacunaSliceStack>(live->Sweep, 0);
   now.Newest->Append(live->Slice);
-  return this->LiveDisplay || !slices.empty();
+  return this->LiveDisplay || grows;
 }
 
 //------------------------------------------------------------------------------
@@ -394,13 +417,23 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
   try
   {
     changed = this->TakeOver();
+    if (std::exchange(this->Now->IsShortOfMemory, false))
+    {
+      this->Now->Trouble.clear();
+    }
   }
   catch (const std::bad_alloc&)
   {
     this->Now->Acquisition->Stop();
-    this->Now->Trouble = "There is no memory for the slices; the capture has ended. Set a lower "
-                         "MemoryLimit";
-    this->Now->News.push_back(this->Now->Trouble);
+    this->Now->IsShortOfMemory = true;
+    const std::string trouble = "There is no memory for " +
+      std::to_string(this->Now->Taken.size()) +
+      " slices, which wait for it; the capture has ended. Close what needs memory, then Start, or "
+      "save the others; and set a lower MemoryLimit";
+    if (std::exchange(this->Now->Trouble, trouble) != trouble)
+    {
+      this->Now->News.push_back(trouble);
+    }
   }
   this->CollectNews();
   changed = changed || !this->Now->News.empty() ||
@@ -479,8 +512,8 @@ int vtkLacunaPolhemusVideoSource::RequestData(
         if (stack)
         {
           stack->Fill(output);
-          vtkLacunaProvenance::Record(
-            output, this, {}, this->DescribeDevices() + " " + this->DescribeRules());
+          vtkLacunaProvenance::Record(output, this, {},
+            port == 0 ? now.TakenBy : now.DescribeDevices() + " " + this->DescribeRules());
         }
       }
     });

@@ -112,7 +112,8 @@ public:
 
   /// Begins to open the devices.
   void Connect();
-  /// Ends the capture and closes them, within a second. The slices stay.
+  /// Ends the capture and closes them, within a second and what the disk needs for slices that wait
+  /// for it. The slices stay, with the calibration that they have.
   void Disconnect();
   /// Takes slices from now on, after Connect if need be.
   void Start();

@@ -91,7 +91,18 @@ std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
 void vtkLacunaSliceStack::Append(const lacuna::AcquiredSlice& slice)
 {
   const int number = static_cast<int>(slice.FrameNumber);
-  this->Pixels->Append(slice.Pixels->data(), static_cast<vtkIdType>(slice.Pixels->size()));
+  const auto pixels = static_cast<vtkIdType>(slice.Pixels->size());
+  this->Pixels->MakeRoom(pixels);
+  for (vtkLacunaGrowingArray* array :
+    { this->ImageToReference.get(), this->TrackerToReference.get(), &this->ProbeToTracker,
+      &this->Timestamps, &this->Status, &this->FrameNumbers, &this->Residuals, &this->Speeds })
+  {
+    if (array)
+    {
+      array->MakeRoom(1);
+    }
+  }
+  this->Pixels->Append(slice.Pixels->data(), pixels);
   for (const std::uint8_t pixel : *slice.Pixels)
   {
     this->Darkest = std::min(this->Darkest, pixel);

@@ -27,6 +27,7 @@ public:
   /// so that colours are chosen for all levels.
   static std::unique_ptr<vtkLacunaSliceStack> MakeBlank();
 
+  /// Takes the slice as a whole or, throwing std::bad_alloc, nothing of it.
   void Append(const lacuna::AcquiredSlice& slice);
   /// Takes the calibration of a frame for all slices, those that are there too.
   void Calibrate(const lacuna::SweepFrame& frame);

@@ -97,6 +97,17 @@ SweepFile::SweepFile(const std::string& fileName, int compressionLevel)
   MakeKind(fileName, compressionLevel);
 }
 
+void SweepFile::Rename(const std::string& fileName, int compressionLevel)
+{
+  if (!this->Recorder && fileName != this->FileName)
+  {
+    MakeKind(fileName, compressionLevel);
+    this->FileName = fileName;
+    this->CompressionLevel = compressionLevel;
+    this->RetryTime = 0;
+  }
+}
+
 void SweepFile::Retry()
 {
   if (this->Recorder || this->Unopened.empty() || this->Clock.Now() < this->RetryTime)

@@ -44,6 +44,9 @@ public:
   /// Throws std::invalid_argument for a name by which no sweep can be recorded.
   SweepFile(const std::string& fileName, int compressionLevel);
 
+  /// Another name for a file that is not open yet; of an open one nothing changes. Throws as the
+  /// constructor does.
+  void Rename(const std::string& fileName, int compressionLevel);
   /// Takes a slice of the frame's window.
   void Add(const AcquiredSlice& slice, const SweepFrame& frame);
   /// Tries again to open the file, when there is something to write and it is time.

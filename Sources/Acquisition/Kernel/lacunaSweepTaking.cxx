@@ -165,6 +165,10 @@ void SweepTaking::SetRules(const AcquisitionRules& rules)
 {
   this->Rules = rules;
   this->RenewRule();
+  if (this->File && !rules.RecordFileName.empty())
+  {
+    this->File->Rename(rules.RecordFileName, rules.RecordCompressionLevel);
+  }
   this->Full = false; // unless the next slice finds it so
 }
 
@@ -195,6 +199,10 @@ void SweepTaking::BeginSweep(bool discard)
   if (this->File && !discard)
   {
     this->File->Finish();
+  }
+  if (this->IsUnrecorded() && !discard)
+  {
+    throw FileError(FileError::Kind::Other, this->GetFile().Trouble);
   }
   this->File.reset();
   this->Counts = {};
@@ -316,7 +324,16 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   {
     this->Rule.Take();
   }
-  slices.push_back(MakeSlice(frame, *window, this->Epoch));
+  try
+  {
+    slices.push_back(MakeSlice(frame, *window, this->Epoch));
+  }
+  catch (const std::bad_alloc&) // MemoryLimit was set too high
+  {
+    this->Full = true;
+    ++this->Counts.PastLimit;
+    return;
+  }
   AcquiredSlice& slice = slices.back();
   slice.Speed = verdict.Speed.value_or(NaN);
   slice.Status |= verdict.TooFast ? Sweep::TooFast : 0;
@@ -328,9 +345,22 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   this->Record(slice, *window);
 }
 
+bool SweepTaking::IsUnrecorded() const
+{
+  return !this->File && this->Counts.Slices > 0 && !this->Rules.RecordFileName.empty();
+}
+
 SweepFile::State SweepTaking::GetFile() const
 {
-  return this->File ? this->File->GetState() : SweepFile::State();
+  SweepFile::State state = this->File ? this->File->GetState() : SweepFile::State();
+  if (this->IsUnrecorded())
+  {
+    state.Added = this->Counts.Slices;
+    state.Trouble =
+      "This sweep is not recorded: it had begun when RecordFileName was set, which is "
+      "for the next one. Save its slices and begin a new sweep";
+  }
+  return state;
 }
 
 std::int64_t SweepTaking::GetMemory() const

@@ -89,6 +89,7 @@ private:
   void RenewRule();
   bool Fits(const VideoFrame& frame, const SweepFrame& window);
   bool HasRoom();
+  bool IsUnrecorded() const; ///< though it was to be
   void Record(const AcquiredSlice& slice, const SweepFrame& window);
 
   std::array<int, 4> Crop;

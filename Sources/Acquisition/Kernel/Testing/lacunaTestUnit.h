@@ -4,6 +4,7 @@
 #ifndef lacunaTestUnit_h
 #define lacunaTestUnit_h
 
+#include "lacunaClock.h"
 #include "lacunaFastrakEmulator.h"
 #include "lacunaPseudoTerminal.h"
 
@@ -28,7 +29,15 @@ struct EmulatedUnit
     : Terminal(link)
     , Emulator(std::move(script), options)
     , Thread(
-        [this] { this->Terminal.Serve(this->Emulator, [this] { return this->Ended.load(); }); })
+        [this]
+        {
+          this->Terminal.Serve(this->Emulator,
+            [this]
+            {
+              this->Emulator.SetButton(this->Pressed, this->Clock.Now());
+              return this->Ended.load();
+            });
+        })
   {
   }
   ~EmulatedUnit()
@@ -38,6 +47,8 @@ struct EmulatedUnit
   }
   lacuna::PseudoTerminal Terminal;
   lacuna::FastrakEmulator Emulator;
+  lacuna::SteadyClock Clock;
+  std::atomic<bool> Pressed{ false }; ///< the stylus's button
   std::atomic<bool> Ended{ false };
   std::thread Thread;
 };

@@ -5,10 +5,13 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSlices.h"
 
+#include <chrono>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace lacunaTest;
@@ -151,6 +154,131 @@ void TestUnwrittenSlicesAreKept()
     LACUNA_CHECK(std::string(source->GetMessage()).find("save them") == std::string::npos);
     LACUNA_CHECK(std::string(source->GetDiskMessage()).empty());
   }
+}
+
+// A file's name that comes too late is not passed over in silence, one that is mended is taken.
+void TestRecordFileNameDuringASweep()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  source->SetRecordFileName((bench.Folder + "/late.mhd").c_str());
+  source->Update();
+  LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
+  LACUNA_CHECK(bench.PollUntil([&]
+    { return std::string(source->GetMessage()).find("is not recorded") != std::string::npos; }));
+  source->Stop();
+  source->Update();
+  LACUNA_CHECK(source->GetWaitingSlices() == source->GetSliceCount());
+  LACUNA_CHECK_CONTAINS(std::string(source->GetDiskMessage()), "is for the next one");
+  source->Clear();
+  LACUNA_CHECK(bench.Messages->HasError("is not recorded") && source->GetSliceCount() > 0);
+  bench.Messages->Errors.clear();
+  source->Clear();
+  source->SetRecordFileName((bench.Folder + "/mistyped/sweep.mhd").c_str());
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  LACUNA_CHECK_CONTAINS(std::string(source->GetDiskMessage()), "mistyped");
+  const std::string file = bench.Folder + "/sweep.mhd";
+  source->SetRecordFileName(file.c_str());
+  source->Update();
+  LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
+  source->Stop();
+  LACUNA_CHECK(
+    bench.PollUntil([&] { return source->GetRecordedSlices() == source->GetSliceCount(); }));
+  LACUNA_CHECK(file == source->GetRecordedFileName());
+  source->Clear();
+  LACUNA_CHECK_THAT(bench.Messages->Errors.empty(), bench.Messages->Errors);
+}
+
+// Slices belong to the probe and the devices that took them.
+void TestKeptSlicesStayAsTheyWere()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  const auto calibrate = [&](double x)
+  {
+    source->SetCalibrationFileName(bench
+                                     .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
+                                       lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
+                                     .c_str());
+  };
+  const auto has = [&](int port, double x)
+  {
+    source->Update();
+    vtkDataArray* matrices = source->GetOutput(port)->GetFieldData()->GetArray("ImageToProbe");
+    return matrices && matrices->GetComponent(0, 3) == x;
+  };
+  calibrate(5);
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  calibrate(6); // rewritten at once: of the same length, in the same second
+  LACUNA_CHECK(has(0, 6));
+  source->Disconnect();
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  calibrate(50);
+  source->Connect();
+  LACUNA_CHECK(bench.PollUntil([&] { return has(1, 50); }));
+  LACUNA_CHECK(has(0, 6));
+  const auto names = [&](int port, const char* size) {
+    return vtkLacunaProvenance::Get(source->GetOutput(port)).at(0).find(size) != std::string::npos;
+  };
+  LACUNA_CHECK(names(0, "64x48") && !names(0, "32x24"));
+  LACUNA_CHECK(names(1, "32x24"));
+  source->Clear();
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  LACUNA_CHECK(has(0, 50) && names(0, "32x24"));
+}
+
+// Half of the memory that was free when the devices were opened, whatever is changed later.
+void TestMemoryLimitOfItsOwn()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  const double limit = source->GetMemoryLimitNow();
+  const std::vector<char> used(64 << 20, 1);
+  source->SetSpeedLimit(24);
+  source->Update();
+  LACUNA_CHECK(source->GetMemoryLimitNow() == limit && used.back() == 1);
+  source->SetMemoryLimit(100);
+  source->Update();
+  LACUNA_CHECK(source->GetMemoryLimitNow() == 100);
+}
+
+// The button does not put slices of other devices to those that are there, also when nobody polled
+// while they were taken.
+void TestButtonWithoutPolls()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetButtonStarts(true);
+  source->Connect();
+  LACUNA_CHECK(bench.IsConnected());
+  const auto press = [&]
+  {
+    for (const bool pressed : { true, false })
+    {
+      bench.Unit.Pressed = pressed;
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    }
+  };
+  press();
+  press();
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  source->Update();
+  const vtkIdType count = source->GetSliceCount();
+  LACUNA_CHECK(count > 0);
+  LACUNA_CHECK(bench.IsConnected());
+  press();
+  LACUNA_CHECK(!source->GetCapturing());
+  source->Poll();
+  source->Update();
+  LACUNA_CHECK(source->GetSliceCount() == count);
+  LACUNA_CHECK(source->GetOutput(0)->GetNumberOfPoints() == count * 64 * 48);
 }
 
 // What the newest slice says of the probe; not a number while it has no pose.
@@ -310,6 +438,10 @@ int TestPolhemusVideoSourceDevices(int, char*[])
   TestDevicesThatChange();
   TestFiguresStayWithTheSlices();
   TestUnwrittenSlicesAreKept();
+  TestRecordFileNameDuringASweep();
+  TestKeptSlicesStayAsTheyWere();
+  TestMemoryLimitOfItsOwn();
+  TestButtonWithoutPolls();
   TestFormats();
   TestSettingsReachTheTracker();
   TestTrackerThatComesLate();
