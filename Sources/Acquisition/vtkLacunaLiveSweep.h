@@ -17,6 +17,9 @@
 /// What vtkLacunaPolhemusVideoSource has while it is live.
 struct vtkLacunaLiveSweep
 {
+  static constexpr const char* WaitingText =
+    "The devices are changed at the next update after Stop";
+
   lacuna::AcquisitionState GetState() const
   {
     return this->Acquisition ? this->Acquisition->GetState() : lacuna::AcquisitionState();

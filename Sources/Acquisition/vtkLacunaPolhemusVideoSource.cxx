@@ -32,7 +32,6 @@ std::string Text(const char* s)
 }
 
 constexpr std::int64_t Mebibyte = 1024 * 1024;
-constexpr const char* WaitingText = "The devices are changed at the next update after Stop";
 
 // Threads that a call of the system holds may need it to the end of the program.
 const lacuna::Clock& GetClock()
@@ -200,7 +199,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
   const bool wait = this->DevicesWait();
   if (wait && now.Subjects.try_emplace("devices", 0).second)
   {
-    vtkWarningMacro(<< WaitingText);
+    vtkWarningMacro(<< vtkLacunaLiveSweep::WaitingText);
   }
   const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
   const std::string calibration = Text(this->CalibrationFileName);
@@ -261,21 +260,6 @@ void vtkLacunaPolhemusVideoSource::Configure()
     now.Trouble = e.what();
     vtkErrorMacro(<< now.Trouble);
   }
-}
-
-//------------------------------------------------------------------------------
-// What is to be done with slices before others can be taken; empty: nothing.
-std::string vtkLacunaPolhemusVideoSource::DescribeKept() const
-{
-  const vtkLacunaLiveSweep& now = *this->Now;
-  if (!now.StackIsOfOthers)
-  {
-    return {};
-  }
-  return (now.Past.File.Trouble.empty() ? "" : now.Past.File.Trouble + "\n") + "There are " +
-    std::to_string(this->GetSliceCount()) +
-    " slices of devices that have been closed: save them, Clear, then Start" +
-    (this->ButtonStarts ? "; before that the button does nothing" : "");
 }
 
 //------------------------------------------------------------------------------
@@ -517,29 +501,6 @@ int vtkLacunaPolhemusVideoSource::RequestData(
         }
       }
     });
-}
-
-//------------------------------------------------------------------------------
-vtkIdType vtkLacunaPolhemusVideoSource::GetSliceCount() const
-{
-  return this->Now->Stack ? this->Now->Stack->GetNumberOfSlices() : 0;
-}
-
-//------------------------------------------------------------------------------
-const char* vtkLacunaPolhemusVideoSource::GetMessage()
-{
-  vtkLacunaLiveSweep& now = *this->Now;
-  std::string text = now.Trouble;
-  const auto add = [&text](const std::string& line)
-  { text += (text.empty() || line.empty() ? "" : "\n") + line; };
-  add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
-  add(this->DevicesWait() ? WaitingText : "");
-  add(this->DescribeKept());
-  const lacuna::AcquisitionState state = now.GetState();
-  std::for_each(state.Messages.begin(), state.Messages.end(), add);
-  std::for_each(state.Notes.begin(), state.Notes.end(), add);
-  now.Messages = std::move(text);
-  return now.Messages.c_str();
 }
 
 //------------------------------------------------------------------------------

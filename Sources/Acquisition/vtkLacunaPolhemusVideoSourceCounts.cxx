@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What vtkLacunaPolhemusVideoSource tells of an acquisition's state.
+// What vtkLacunaPolhemusVideoSource tells of its state, in figures and in words.
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 
 namespace
 {
 constexpr double Mebibyte = 1024 * 1024;
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetSliceCount() const
+{
+  return this->Now->Stack ? this->Now->Stack->GetNumberOfSlices() : 0;
 }
 
 //------------------------------------------------------------------------------
@@ -140,4 +148,36 @@ double vtkLacunaPolhemusVideoSource::GetMemoryUsed() const
 double vtkLacunaPolhemusVideoSource::GetMemoryLimitNow() const
 {
   return static_cast<double>(this->Now->LimitBytes) / Mebibyte;
+}
+
+//------------------------------------------------------------------------------
+// What is to be done with slices before others can be taken; empty: nothing.
+std::string vtkLacunaPolhemusVideoSource::DescribeKept() const
+{
+  const vtkLacunaLiveSweep& now = *this->Now;
+  if (!now.StackIsOfOthers)
+  {
+    return {};
+  }
+  return (now.Past.File.Trouble.empty() ? "" : now.Past.File.Trouble + "\n") + "There are " +
+    std::to_string(this->GetSliceCount()) +
+    " slices of devices that have been closed: save them, Clear, then Start" +
+    (this->ButtonStarts ? "; before that the button does nothing" : "");
+}
+
+//------------------------------------------------------------------------------
+const char* vtkLacunaPolhemusVideoSource::GetMessage()
+{
+  vtkLacunaLiveSweep& now = *this->Now;
+  std::string text = now.Trouble;
+  const auto add = [&text](const std::string& line)
+  { text += (text.empty() || line.empty() ? "" : "\n") + line; };
+  add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
+  add(this->DevicesWait() ? vtkLacunaLiveSweep::WaitingText : "");
+  add(this->DescribeKept());
+  const lacuna::AcquisitionState state = now.GetState();
+  std::for_each(state.Messages.begin(), state.Messages.end(), add);
+  std::for_each(state.Notes.begin(), state.Notes.end(), add);
+  now.Messages = std::move(text);
+  return now.Messages.c_str();
 }
