@@ -8,12 +8,15 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
+#include "vtkLacunaRanks.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
@@ -55,6 +58,32 @@ void RequireMemoryFor(vtkInformation* input)
   }
   lacuna::RequireMemory(what.str(), size);
 }
+
+void AskForNothing(vtkInformation* input)
+{
+  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+  vtkLacunaRequest::Extent(input, nothing);
+}
+
+// Whether there are filters upstream that are neither Lacuna's nor ParaView's between two proxies.
+bool HasStrangersUpstream(vtkAlgorithm* filter)
+{
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkAlgorithm* other = filter->GetInputAlgorithm(port, i);
+      const std::string name = other->GetClassName();
+      const bool known = name.rfind("vtkLacuna", 0) == 0 || name == "vtkPVPostFilter" ||
+        other->GetTotalNumberOfInputConnections() == 0;
+      if (!known || HasStrangersUpstream(other))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -73,8 +102,64 @@ void vtkLacunaRequest::Extent(vtkInformation* input, const int extent[6])
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRequest::Whole(vtkInformation* input)
+bool vtkLacunaRequest::IsFirst(vtkInformationVector* outputs)
 {
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    if (outputs->GetInformationObject(i)->Get(SDDP::UPDATE_PIECE_NUMBER()) > 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
+{
+  const auto isImage = [outputs](int i)
+  {
+    vtkDataObject* data = vtkDataObject::GetData(outputs, i);
+    return data && data->GetExtentType() == VTK_3D_EXTENT;
+  };
+  if (!isImage(0))
+  {
+    return IsFirst(outputs);
+  }
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    const int* extent = outputs->GetInformationObject(i)->Get(SDDP::UPDATE_EXTENT());
+    if (isImage(i) &&
+      (!extent || (extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5])))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
+{
+  if (HasStrangersUpstream(filter))
+  {
+    Whole(filter, input, nullptr);
+  }
+  else if (input->Has(SDDP::WHOLE_EXTENT()))
+  {
+    AskForNothing(input);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRequest::Whole(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
+{
+  if (outputs && !IsWanted(outputs))
+  {
+    Nothing(filter, input);
+    return;
+  }
   if (input->Has(SDDP::WHOLE_EXTENT()))
   {
     input->Set(SDDP::UPDATE_EXTENT(), input->Get(SDDP::WHOLE_EXTENT()), 6);
@@ -83,21 +168,24 @@ void vtkLacunaRequest::Whole(vtkInformation* input)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRequest::WholeIfItFits(vtkAlgorithm* filter, vtkInformation* input)
+int vtkLacunaRequest::WholeIfItFits(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {
   try
   {
-    RequireMemoryFor(input);
+    if (!outputs || IsWanted(outputs))
+    {
+      RequireMemoryFor(input);
+    }
   }
   catch (const std::runtime_error& error)
   {
     // VTK goes on with the request of before although this one fails: let it be for nothing
-    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-    Extent(input, nothing);
+    AskForNothing(input);
     vtkErrorWithObjectMacro(filter, << error.what());
     return 0;
   }
-  Whole(input);
+  Whole(filter, input, outputs);
   return 1;
 }
 
@@ -105,8 +193,22 @@ int vtkLacunaRequest::WholeIfItFits(vtkAlgorithm* filter, vtkInformation* input)
 void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
 {
   RequireMemoryFor(filter->GetInputInformation(port, 0));
-  Whole(filter->GetInputInformation(port, 0));
+  Whole(filter, filter->GetInputInformation(port, 0), nullptr);
   vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
   connection->GetProducer()->Update(connection->GetIndex());
   vtkLacunaInputs::Check(filter, port);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRequest::UpdateNowOnFirst(vtkAlgorithm* filter, int port)
+{
+  if (vtkLacunaRanks().GetRank() == 0)
+  {
+    UpdateNow(filter, port);
+    return true;
+  }
+  Nothing(filter, filter->GetInputInformation(port, 0));
+  vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
+  connection->GetProducer()->Update(connection->GetIndex());
+  return false;
 }

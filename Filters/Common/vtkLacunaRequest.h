@@ -8,21 +8,36 @@
 
 class vtkAlgorithm;
 class vtkInformation;
+class vtkInformationVector;
 
 /// For RequestUpdateExtent. An extent alone does not do: a producer of sub-extents divides it once
 /// more by the piece that was asked for, so that ranks would get parts of it.
 namespace vtkLacunaRequest
 {
-/// All of an input, on every rank: images by their whole extent, other data as one piece.
-VTKLACUNAFILTERSCOMMON_EXPORT void Whole(vtkInformation* input);
+/// Whether the first piece is asked for, of any output.
+VTKLACUNAFILTERSCOMMON_EXPORT bool IsFirst(vtkInformationVector* outputs);
+
+/// Whether anything is asked of a filter whose first output is an image, of which the part may be
+/// empty, or else is made as a whole in the first piece.
+VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
+
+/// All of an input of filter, on every rank: images by their whole extent, other data as one piece.
+/// When outputs are not wanted (null: they are), nothing of an image, unless a filter that is not
+/// Lacuna's lies upstream: such a one may need all ranks, and execute on some of them only.
+VTKLACUNAFILTERSCOMMON_EXPORT void Whole(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
 /// The same for filters that cannot do with less: returns 1, or 0 after an error of filter that names
 /// the bytes, when the input is an image that is not in memory yet and does not fit into it. Then
 /// nothing is asked for, so nobody tries to load it. What RequestUpdateExtent returns.
-VTKLACUNAFILTERSCOMMON_EXPORT int WholeIfItFits(vtkAlgorithm* filter, vtkInformation* input);
+VTKLACUNAFILTERSCOMMON_EXPORT int WholeIfItFits(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
 /// This very extent of an image.
 VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);
+
+/// What Whole asks for when nothing is wanted.
+VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
 
 /// Data of any kind as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
@@ -31,5 +46,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
 /// whole, what is connected to an input port. When it is up to date, as it usually is, this does
 /// nothing. Throws std::runtime_error when it does not fit into the memory.
 VTKLACUNAFILTERSCOMMON_EXPORT void UpdateNow(vtkAlgorithm* filter, int port = 0);
+
+/// The same for filters that make all of their output on the first rank: returns true there; the
+/// others ask for nothing, so that what is upstream executes on all ranks, and have no output.
+VTKLACUNAFILTERSCOMMON_EXPORT bool UpdateNowOnFirst(vtkAlgorithm* filter, int port = 0);
 }
 #endif

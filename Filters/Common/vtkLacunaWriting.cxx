@@ -17,14 +17,20 @@
 #include <string>
 
 //------------------------------------------------------------------------------
-bool vtkLacunaWriting::AskForWhole(vtkInformation* request, vtkInformationVector** inputs)
+bool vtkLacunaWriting::AskForWhole(
+  vtkAlgorithm* writer, int piece, vtkInformation* request, vtkInformationVector** inputs)
 {
   vtkInformation* info = inputs[0]->GetInformationObject(0);
   if (!info || !request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
   {
     return false;
   }
-  vtkLacunaRequest::Whole(info);
+  if (piece > 0)
+  {
+    vtkLacunaRequest::Nothing(writer, info); // the first one writes
+    return true;
+  }
+  vtkLacunaRequest::Whole(writer, info, nullptr);
   return true;
 }
 

@@ -15,10 +15,10 @@ class vtkInformationVector;
 namespace vtkLacunaWriting
 {
 /// For ProcessRequest of writers whose first process writes all: when the request is for the update
-/// extent, asks for the whole input and returns true. The processes that write nothing ask, too, since
-/// filters before the writer may need all of them.
+/// extent, asks for the whole input of writer, which is that of a piece, and returns true. For the
+/// processes that write nothing see vtkLacunaRequest::Whole.
 VTKLACUNAFILTERSCOMMON_EXPORT bool AskForWhole(
-  vtkInformation* request, vtkInformationVector** inputs);
+  vtkAlgorithm* writer, int piece, vtkInformation* request, vtkInformationVector** inputs);
 
 /// Runs the body of writer's WriteData and returns its error code (vtkErrorCode::NoError when all
 /// went well). An exception becomes writer's error message and the code for no file name, disk full,

@@ -155,10 +155,11 @@ int vtkLacunaDefectModel::RequestInformation(
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
     {
-      vtkLacunaRequest::UpdateNow(this); // the size of the grid depends on the defect
+      // the size of the grid depends on the defect
+      const bool first = vtkLacunaRequest::UpdateNowOnFirst(this);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       vtkImageData* map = vtkImageData::GetData(inputVector[0]);
-      if (map && map->GetNumberOfPoints() > 0)
+      if (first && map && map->GetNumberOfPoints() > 0)
       {
         const Input input(map, this);
         const auto plan = lacuna::PlanDefectModel(input.Scene, input.Options);
@@ -173,9 +174,9 @@ int vtkLacunaDefectModel::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaDefectModel::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }
 
@@ -189,14 +190,7 @@ int vtkLacunaDefectModel::RequestData(
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  int piece = 0;
-  for (int port = 0; port < 2; ++port)
-  {
-    piece = std::max(piece,
-      outputVector->GetInformationObject(port)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()));
-  }
-  if (!map || map->GetNumberOfPoints() == 0 || piece > 0)
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out; the model is one piece
   }

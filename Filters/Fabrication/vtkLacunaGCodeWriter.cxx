@@ -198,7 +198,7 @@ int vtkLacunaGCodeWriter::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaGCodeWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaWriting::AskForWhole(request, inputs)
+  return vtkLacunaWriting::AskForWhole(this, this->Piece, request, inputs)
     ? 1
     : this->Superclass::ProcessRequest(request, inputs, outputs);
 }

@@ -168,7 +168,7 @@ int vtkLacunaIGESWriter::FillInputPortInformation(int, vtkInformation* info)
 int vtkLacunaIGESWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaWriting::AskForWhole(request, inputs)
+  return vtkLacunaWriting::AskForWhole(this, this->Piece, request, inputs)
     ? 1
     : this->Superclass::ProcessRequest(request, inputs, outputs);
 }

@@ -190,13 +190,13 @@ int vtkLacunaImplantPlate::FillInputPortInformation(int port, vtkInformation* in
 
 //------------------------------------------------------------------------------
 int vtkLacunaImplantPlate::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   for (int port = 0; port < 2; ++port)
   {
     if (vtkInformation* info = inputVector[port]->GetInformationObject(0))
     {
-      vtkLacunaRequest::Whole(info);
+      vtkLacunaRequest::Whole(this, info, outputVector);
     }
   }
   return 1;
@@ -209,9 +209,7 @@ int vtkLacunaImplantPlate::RequestData(
   vtkImageData* map = vtkImageData::GetData(inputVector[0]);
   vtkPointSet* marks = vtkPointSet::GetData(inputVector[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  const int piece = outputVector->GetInformationObject(0)->Get(
-    vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
-  if (!map || map->GetNumberOfPoints() == 0 || piece > 0)
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out; the plate is one piece
   }

@@ -246,9 +246,9 @@ int vtkLacunaMillingToolPath::FillInputPortInformation(int, vtkInformation* info
 
 //------------------------------------------------------------------------------
 int vtkLacunaMillingToolPath::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }
 
@@ -319,9 +319,7 @@ int vtkLacunaMillingToolPath::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
-  const int piece = outputVector->GetInformationObject(0)->Get(
-    vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
-  if (!grid || grid->GetNumberOfPoints() == 0 || piece > 0)
+  if (!grid || grid->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out; a path is one piece
   }

@@ -254,9 +254,9 @@ int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* inf
 
 //------------------------------------------------------------------------------
 int vtkLacunaPressOrientation::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkLacunaRequest::Whole(inputVector[0]->GetInformationObject(0));
+  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }
 
@@ -267,10 +267,11 @@ int vtkLacunaPressOrientation::RequestInformation(
   return vtkLacunaExecution::RunInformation(this, outputVector,
     [&]
     {
-      vtkLacunaRequest::UpdateNow(this); // the size of the grid depends on the defect
+      // the size of the grid depends on the defect
+      const bool first = vtkLacunaRequest::UpdateNowOnFirst(this);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       vtkImageData* map = vtkImageData::GetData(inputVector[0]);
-      if (map && map->GetNumberOfPoints() > 0)
+      if (first && map && map->GetNumberOfPoints() > 0)
       {
         vtkLacunaExecution execution(this);
         try
@@ -305,9 +306,7 @@ int vtkLacunaPressOrientation::RequestData(
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  const int piece = outputVector->GetInformationObject(0)->Get(
-    vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER());
-  if (!map || map->GetNumberOfPoints() == 0 || piece > 0)
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out; the mould is one piece
   }

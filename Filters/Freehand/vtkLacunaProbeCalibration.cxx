@@ -198,13 +198,13 @@ int vtkLacunaProbeCalibration::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaProbeCalibration::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   if (vtkInformation* table = inputs[1]->GetInformationObject(0))
   {
     vtkLacunaRequest::OnePiece(table);
   }
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
 }
 
 //------------------------------------------------------------------------------
@@ -281,6 +281,10 @@ std::vector<vtkLacunaCalibrationPick> vtkLacunaProbeCalibration::FindPicks(
 int vtkLacunaProbeCalibration::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
@@ -331,9 +335,14 @@ int vtkLacunaProbeCalibration::RequestData(
       const vtkLacunaCalibrationReport report(found, picks, image);
       const std::vector<std::string> more = report.GetAdvice();
       advice.insert(advice.begin(), more.begin(), more.end());
+      // Each rank has the slices calibrated; all else is there once.
+      const bool first = vtkLacunaRequest::IsFirst(outputs);
       for (const std::string& sentence : advice)
       {
-        vtkWarningMacro(<< sentence);
+        if (first)
+        {
+          vtkWarningMacro(<< sentence);
+        }
       }
 
       vtkImageData* calibrated = vtkImageData::GetData(outputs, 0);
@@ -356,13 +365,16 @@ int vtkLacunaProbeCalibration::RequestData(
           calibrated, vtkLacunaTrackedSlices::ImageToProbeName, { found.ImageToProbe });
       }
       vtkTable* residuals = vtkTable::GetData(outputs, 1);
-      vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
       vtkPolyData* picture = vtkPolyData::GetData(outputs, 2);
-      vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
       vtkImageData* map = vtkImageData::GetData(outputs, 3);
-      vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
       vtkPolyData* marks = vtkPolyData::GetData(outputs, 4);
-      vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
+      vtkLacunaCalibrationOutputs::FillErrorMap(slices, found, map);
+      if (first)
+      {
+        vtkLacunaCalibrationOutputs::FillTable(picks, found, residuals);
+        vtkLacunaCalibrationOutputs::FillPhantom(picks, found, picture);
+        vtkLacunaCalibrationOutputs::FillSlices(picks, found, marks);
+      }
 
       const lacuna::Vec3 angles = found.GetAngles();
       vtkNew<vtkStringArray> sentences;
@@ -402,11 +414,7 @@ int vtkLacunaProbeCalibration::RequestData(
         }
         vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
       }
-      // Once, on the first rank of a parallel server.
-      vtkInformation* info = outputs->GetInformationObject(0);
-      if (!this->OutputFileName.empty() &&
-        (!info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) ||
-          info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) == 0))
+      if (first && !this->OutputFileName.empty())
       {
         const char* from = pivot ? "StylusTip" : "Image";
         const std::string frame = array;

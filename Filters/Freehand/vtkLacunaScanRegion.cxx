@@ -281,15 +281,19 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 
 //------------------------------------------------------------------------------
 int vtkLacunaScanRegion::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaScanRegion::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // it is made in one piece
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution&)
     {

@@ -28,14 +28,21 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
 
 //------------------------------------------------------------------------------
 int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return this->AskForSlices(inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceAlgorithm::AskForSlices(
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* info = inputs[0]->GetInformationObject(i);
     const bool isStream =
       this->TakesStreams() && vtkLacunaSliceStream::RequestFields(this, info, 0, i);
-    if (!isStream && !vtkLacunaRequest::WholeIfItFits(this, info))
+    if (!isStream && !vtkLacunaRequest::WholeIfItFits(this, info, outputs))
     {
       return 0;
     }
@@ -45,11 +52,11 @@ int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
 
 //------------------------------------------------------------------------------
 int vtkLacunaSliceAlgorithm::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
   // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
   // must be executed now. When they are up to date, as they usually are, this does nothing.
-  if (!this->RequestUpdateExtent(request, inputs, outputs))
+  if (!this->AskForSlices(inputs, nullptr))
   {
     return 0;
   }

@@ -137,6 +137,9 @@ private:
   vtkLacunaSliceAlgorithm(const vtkLacunaSliceAlgorithm&) = delete;
   void operator=(const vtkLacunaSliceAlgorithm&) = delete;
 
+  /// Of outputs, if they are wanted; null: they are.
+  int AskForSlices(vtkInformationVector** inputs, vtkInformationVector* outputs);
+
   std::set<std::string> KnownFacts;
 };
 #endif

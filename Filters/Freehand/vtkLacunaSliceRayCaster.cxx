@@ -20,6 +20,7 @@
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaProposedLevel.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -233,6 +234,10 @@ int vtkLacunaSliceRayCaster::RequestInformation(
 int vtkLacunaSliceRayCaster::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {

@@ -15,6 +15,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSweptVolumePlan.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -236,6 +237,10 @@ int vtkLacunaSweptVolume::RequestInformation(
 int vtkLacunaSweptVolume::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {

@@ -54,15 +54,19 @@ int vtkLacunaTemporalCalibration::FillInputPortInformation(int, vtkInformation* 
 
 //------------------------------------------------------------------------------
 int vtkLacunaTemporalCalibration::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaTemporalCalibration::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // it is made in one piece
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {

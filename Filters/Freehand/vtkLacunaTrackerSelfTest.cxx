@@ -158,9 +158,9 @@ int vtkLacunaTrackerSelfTest::FillOutputPortInformation(int port, vtkInformation
 
 //------------------------------------------------------------------------------
 int vtkLacunaTrackerSelfTest::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 
@@ -168,6 +168,10 @@ int vtkLacunaTrackerSelfTest::RequestUpdateExtent(
 int vtkLacunaTrackerSelfTest::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // it is made in one piece
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution&)
     {

@@ -18,6 +18,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
@@ -31,6 +32,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -82,41 +84,44 @@ void AddFunction(lacuna::ParameterText& text, vtkImplicitFunction* function)
 }
 
 //------------------------------------------------------------------------------
-/// One execution: from the inputs to the iterations' images.
+/// One execution: from the inputs to the iterations' images. The constructor gets all that takes
+/// memory.
 class vtkLacunaOccludedAngle::Run
 {
 public:
-  Run(vtkLacunaOccludedAngle* self, vtkImageData* input, vtkImageData* space)
+  Run(vtkLacunaOccludedAngle* self, vtkImageData* input, vtkImageData* space,
+    lacuna::Execution& execution)
     : Self(self)
     , Input(input)
     , Space(space)
     , Grid(input)
     , Scalars(vtkLacunaOcclusionInput::FindScalars(input, self->ScalarArray))
   {
+    std::ostringstream what;
+    what << "the occluded angle of " << this->Grid.GetSize() << " voxels";
+    const double kept = self->KeepIterations ? 5.0 * self->ThresholdsOverPi.size() : 0;
+    lacuna::RequireMemory(what.str(),
+      (12.0 + kept + lacuna::GetOccludedAngleMemory(self->NumberOfDirections)) *
+        static_cast<double>(this->Grid.GetSize()));
+
+    this->Options = this->GetOptions();
+    this->Field =
+      std::make_unique<lacuna::AttenuationField>(this->Grid.Dimensions, this->Grid.Spacing);
+    vtkLacunaOcclusionInput::Fill(*this->Field, this->Input, this->Scalars,
+      { self->Attenuation, self->OpacityFunction, self->Mode == BINARY }, execution);
+    vtkLacunaOcclusionInput::CutSpace(
+      *this->Field, this->Input, this->Space, self->ReconstructionSpace);
+    this->Angle->SetName("OccludedAngle");
+    this->Angle->SetNumberOfTuples(this->Grid.GetSize());
+    this->Object->SetName("Object");
+    this->Object->SetNumberOfTuples(this->Grid.GetSize());
   }
 
   /// The last iteration, or all of them when they are kept.
-  std::vector<vtkSmartPointer<vtkImageData>> GetIterations(lacuna::Execution& execution)
+  std::vector<vtkSmartPointer<vtkImageData>> GetIterations(
+    lacuna::Execution& execution, const lacuna::Ranks& ranks)
   {
-    lacuna::GrowthOptions options = this->GetOptions();
-    std::ostringstream what;
-    what << "the occluded angle of " << this->Grid.GetSize() << " voxels";
-    const double kept = this->Self->KeepIterations ? 5.0 * options.Steps.size() : 0;
-    lacuna::RequireMemory(what.str(), (12.0 + kept) * static_cast<double>(this->Grid.GetSize()));
-
-    lacuna::AttenuationField field(this->Grid.Dimensions, this->Grid.Spacing);
-    vtkLacunaOcclusionInput::Fill(field, this->Input, this->Scalars,
-      { this->Self->Attenuation, this->Self->OpacityFunction, this->Self->Mode == BINARY },
-      execution);
-    vtkLacunaOcclusionInput::CutSpace(
-      field, this->Input, this->Space, this->Self->ReconstructionSpace);
-
-    vtkNew<vtkFloatArray> angle;
-    angle->SetName("OccludedAngle");
-    angle->SetNumberOfTuples(this->Grid.GetSize());
-    vtkNew<vtkUnsignedCharArray> object;
-    object->SetName("Object");
-    object->SetNumberOfTuples(this->Grid.GetSize());
+    const lacuna::GrowthOptions& options = this->Options;
     std::vector<vtkSmartPointer<vtkImageData>> images;
     std::vector<lacuna::GrowthStatistics> all;
     const auto observe = [&](int iteration, const lacuna::GrowthStatistics& statistics)
@@ -126,15 +131,15 @@ public:
       if (this->Self->KeepIterations && !last)
       {
         vtkNew<vtkFloatArray> angleCopy;
-        angleCopy->DeepCopy(angle);
+        angleCopy->DeepCopy(this->Angle);
         vtkNew<vtkUnsignedCharArray> objectCopy;
-        objectCopy->DeepCopy(object);
+        objectCopy->DeepCopy(this->Object);
         images.push_back(this->MakeImage(angleCopy, objectCopy, options, all));
       }
     };
-    lacuna::GrowShape(
-      field, options, angle->GetPointer(0), object->GetPointer(0), observe, execution);
-    images.push_back(this->MakeImage(angle, object, options, all));
+    lacuna::GrowShape(*this->Field, options, this->Angle->GetPointer(0),
+      this->Object->GetPointer(0), observe, execution, ranks);
+    images.push_back(this->MakeImage(this->Angle, this->Object, options, all));
     const auto empty = std::find_if(all.begin(), all.end(),
       [](const lacuna::GrowthStatistics& statistics) { return statistics.ObjectVoxels == 0; });
     if (empty != all.end())
@@ -219,6 +224,10 @@ private:
   vtkImageData* Space;
   vtkLacunaOcclusionInput::Grid Grid;
   vtkDataArray* Scalars;
+  lacuna::GrowthOptions Options;
+  std::unique_ptr<lacuna::AttenuationField> Field;
+  vtkNew<vtkFloatArray> Angle;
+  vtkNew<vtkUnsignedCharArray> Object;
 };
 
 //------------------------------------------------------------------------------
@@ -374,7 +383,7 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
       vtkInformation* info = inputVector[port]->GetInformationObject(i);
-      fits &= vtkLacunaRequest::WholeIfItFits(this, info);
+      fits &= vtkLacunaRequest::WholeIfItFits(this, info, nullptr);
       if (this->KeepIterations) // the time asked for is an iteration, not the input's time
       {
         info->Remove(Pipeline::UPDATE_TIME_STEP());
@@ -404,22 +413,30 @@ int vtkLacunaOccludedAngle::RequestData(
       vtkMTimeType time = std::max(this->GetMTime(), input->GetMTime());
       time = space ? std::max(time, space->GetMTime()) : time;
       std::vector<vtkSmartPointer<vtkImageData>> iterations;
-      if (this->KeepIterations && !this->Iterations.empty() && this->IterationsTime == time)
+      const vtkLacunaRanks ranks;
+      // Ranks meet when something has changed. Later they may be asked for other parts one by one.
+      const bool keep = this->KeepIterations || ranks.GetNumber() > 1;
+      if (keep && !this->Iterations.empty() && this->IterationsTime == time)
       {
         iterations = this->Iterations;
       }
       else
       {
         this->Iterations.clear();
-        iterations = Run(this, input, space).GetIterations(execution);
+        std::unique_ptr<Run> run;
+        ranks.Together([&] { run = std::make_unique<Run>(this, input, space, execution); });
+        iterations = run->GetIterations(execution, ranks);
+      }
+      if (keep)
+      {
+        this->Iterations = iterations;
+        this->IterationsTime = time;
       }
       std::size_t chosen = iterations.size() - 1;
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkImageData* output = vtkImageData::GetData(outputVector);
       if (this->KeepIterations)
       {
-        this->Iterations = iterations;
-        this->IterationsTime = time;
         if (info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
         {
           const double step = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());

@@ -20,8 +20,10 @@
 /// `ObjectVoxels`, `ObjectVolume` (ml; 2-D: area in mm^2), `MeanAngle`, `SuggestedThresholdOverPi`
 /// (0: none; from the histogram of the angle over the voxels that were not object before).
 ///
-/// The whole input is needed for any part of the output; under MPI each rank computes it all. The
-/// result does not depend on the number of threads. See lacunaOccludedAngle.h for the method.
+/// The whole input is needed for any part of the output. The ranks of an MPI program share the
+/// directions (vtkLacunaRanks), so all of them must execute; each keeps the whole result, 5 bytes
+/// per voxel. It does not depend on the number of threads or ranks. See lacunaOccludedAngle.h for the
+/// method.
 ///
 /// Errors: no data, equal grey levels, NaN or negative attenuation, a radius smaller than a voxel,
 /// a schedule of radii of another length than that of thresholds, a reconstruction space of another
@@ -194,7 +196,7 @@ private:
 
   class Run;
 
-  /// The iterations kept, and what they were made from.
+  /// The iterations kept (the last one for ranks), and what they were made from.
   std::vector<vtkSmartPointer<vtkImageData>> Iterations;
   vtkMTimeType IterationsTime = 0;
 };

@@ -196,12 +196,13 @@ int vtkLacunaOcclusionSurface::FillInputPortInformation(int, vtkInformation* inf
 
 //------------------------------------------------------------------------------
 int vtkLacunaOcclusionSurface::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   int fits = 1;
   for (int port : { 0, 1 })
   {
-    fits &= vtkLacunaRequest::WholeIfItFits(this, inputVector[port]->GetInformationObject(0));
+    fits &= vtkLacunaRequest::WholeIfItFits(
+      this, inputVector[port]->GetInformationObject(0), outputVector);
   }
   return fits;
 }
@@ -213,8 +214,7 @@ int vtkLacunaOcclusionSurface::RequestData(
   return vtkLacunaExecution::Run(this, outputVector,
     [&](vtkLacunaExecution& execution)
     {
-      if (outputVector->GetInformationObject(0)->Get(
-            vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
+      if (!vtkLacunaRequest::IsWanted(outputVector))
       {
         return;
       }

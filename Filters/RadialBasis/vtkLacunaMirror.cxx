@@ -342,10 +342,11 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 
 //------------------------------------------------------------------------------
 int vtkLacunaMirror::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // Any voxel may be the image of any other, and the plane depends on all.
-  return vtkLacunaRequest::WholeIfItFits(this, inputVector[0]->GetInformationObject(0));
+  return vtkLacunaRequest::WholeIfItFits(
+    this, inputVector[0]->GetInformationObject(0), outputVector);
 }
 
 //------------------------------------------------------------------------------
@@ -353,7 +354,7 @@ int vtkLacunaMirror::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-  if (!input || input->GetNumberOfPoints() == 0)
+  if (!input || input->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out
   }
@@ -392,7 +393,10 @@ int vtkLacunaMirror::RequestData(
       parameters.Add("Interpolation", this->Interpolation);
     }
     vtkPolyData* plane = vtkPolyData::GetData(outputVector, 1);
-    Internals::MakeSquare(input, result.Plane, plane);
+    if (vtkLacunaRequest::IsFirst(outputVector))
+    {
+      Internals::MakeSquare(input, result.Plane, plane); // one is enough
+    }
     vtkLacunaVolumeDirection::Remove(plane);
     for (vtkDataObject* data :
       { static_cast<vtkDataObject*>(whole), static_cast<vtkDataObject*>(plane) })

@@ -279,14 +279,14 @@ int vtkLacunaRBFHoleFiller::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFHoleFiller::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   // The fit depends on the whole surroundings of the defect, whatever piece is asked for.
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
     {
-      vtkLacunaRequest::Whole(inputs[port]->GetInformationObject(i));
+      vtkLacunaRequest::Whole(this, inputs[port]->GetInformationObject(i), outputs);
     }
   }
   return 1;
@@ -365,7 +365,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
 {
   vtkImageData* map = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputVector);
-  if (!map || map->GetNumberOfPoints() == 0)
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
   {
     return 1; // empty in, empty out
   }

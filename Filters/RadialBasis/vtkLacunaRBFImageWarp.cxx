@@ -252,13 +252,13 @@ int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* in
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFImageWarp::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   // Any voxel may show any place, and each depends on all landmarks.
   int fits = 1;
   for (int port = 0; port < 3; ++port)
   {
-    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0));
+    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0), outputs);
   }
   return fits;
 }
@@ -269,7 +269,7 @@ int vtkLacunaRBFImageWarp::RequestData(
 {
   vtkImageData* image = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputs);
-  if (!image || image->GetNumberOfPoints() == 0)
+  if (!image || image->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputs))
   {
     return 1; // empty in, empty out
   }

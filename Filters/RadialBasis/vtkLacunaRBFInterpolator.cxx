@@ -240,19 +240,19 @@ int vtkLacunaRBFInterpolator::FillInputPortInformation(int, vtkInformation* info
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFInterpolator::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   // Each value of the image depends on all points.
-  vtkLacunaRequest::Whole(inputs[0]->GetInformationObject(0));
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFInterpolator::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   // The grid follows from the points, and is asked for before any data are.
-  this->RequestUpdateExtent(request, inputs, outputs);
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), nullptr);
   this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
@@ -282,6 +282,10 @@ int vtkLacunaRBFInterpolator::RequestInformation(
 int vtkLacunaRBFInterpolator::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {

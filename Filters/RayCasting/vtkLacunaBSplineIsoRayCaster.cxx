@@ -361,7 +361,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
   // another size must be seen to be one.
@@ -369,7 +369,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
   for (int port = 0; port < 2; ++port)
   {
     vtkInformation* input = inputVector[port]->GetInformationObject(0); // null: none is connected
-    fits &= input ? vtkLacunaRequest::WholeIfItFits(this, input) : 1;
+    fits &= input ? vtkLacunaRequest::WholeIfItFits(this, input, outputVector) : 1;
   }
   return fits;
 }
@@ -378,6 +378,10 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
 int vtkLacunaBSplineIsoRayCaster::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  if (!vtkLacunaRequest::IsWanted(outputVector))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputVector,
     [&](vtkLacunaExecution& execution)
     {

@@ -327,7 +327,7 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
   vtkLacunaRequest::Extent(inInfo, extent);
   if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
   {
-    return vtkLacunaRequest::WholeIfItFits(this, volumeInfo);
+    return vtkLacunaRequest::WholeIfItFits(this, volumeInfo, outputVector);
   }
   return 1;
 }
@@ -336,6 +336,10 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
 int vtkLacunaDepthMapShader::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  if (!vtkLacunaRequest::IsWanted(outputVector))
+  {
+    return 1; // an empty part
+  }
   return vtkLacunaExecution::Run(this, outputVector,
     [&](vtkLacunaExecution& execution)
     {

@@ -157,10 +157,9 @@ int vtkLacunaContrastToSpeckle::FillInputPortInformation(int, vtkInformation* in
 
 //------------------------------------------------------------------------------
 int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  // All of the image, on every rank: what is upstream may need all ranks to make it.
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0));
+  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
 }
 
 //------------------------------------------------------------------------------
@@ -171,7 +170,7 @@ int vtkLacunaContrastToSpeckle::RequestData(
     [&](vtkLacunaExecution& execution)
     {
       vtkTable* table = vtkTable::GetData(outputs);
-      if (outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_PIECE_NUMBER()) > 0)
+      if (!vtkLacunaRequest::IsWanted(outputs))
       {
         Write(Measures(), this->IsoValue, Row(table, false));
         return;

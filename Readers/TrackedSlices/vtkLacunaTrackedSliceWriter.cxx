@@ -42,10 +42,13 @@ int vtkLacunaTrackedSliceWriter::ProcessRequest(
   if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) && info &&
     info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
   {
-    if (!vtkLacunaSliceStream::RequestFields(this, info))
+    if (this->Piece > 0)
     {
-      // Also of the pieces that write nothing: filters before this one may need all processes.
-      vtkLacunaRequest::Whole(info);
+      vtkLacunaRequest::Nothing(this, info); // the first one writes
+    }
+    else if (!vtkLacunaSliceStream::RequestFields(this, info))
+    {
+      vtkLacunaRequest::Whole(this, info, nullptr);
     }
     return 1;
   }

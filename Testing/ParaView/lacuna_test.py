@@ -41,14 +41,18 @@ def mpi_environment():
     environment = {key: value for key, value in os.environ.items()
                    if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
     environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
+                       OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1")
     return environment
 
 
 def run_ranks(ranks, script, *arguments):
-    """Runs a script in pvbatch with so many MPI ranks, or leaves the test as skipped."""
-    subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering",
-                    os.path.abspath(script), *arguments], env=mpi_environment(), check=True, timeout=300)
+    """What a script prints in pvbatch with so many MPI ranks, or leaves the test as skipped."""
+    done = subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering",
+                           os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=300, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    print(done.stdout, flush=True)
+    done.check_returncode()
+    return done.stdout
 
 
 def check_defaults(proxy, own, names, enumerations=None):

@@ -11,7 +11,8 @@ namespace
 {
 constexpr std::int64_t Block = 16; // values of a cache line
 
-void SwapPlane(float* values, std::int64_t nx, std::int64_t ny, std::vector<float>& copy)
+template <class Value>
+void SwapPlane(Value* values, std::int64_t nx, std::int64_t ny, std::vector<Value>& copy)
 {
   copy.assign(values, values + nx * ny);
   for (std::int64_t y0 = 0; y0 < ny; y0 += Block)
@@ -84,17 +85,22 @@ void AttenuationField::SwapXY(Execution& execution)
   this->Strides[1] = this->Dimensions[0] + 2;
 }
 
+template <class Value>
 void SwapXY(
-  float* values, std::int64_t nx, std::int64_t ny, std::int64_t planes, Execution& execution)
+  Value* values, std::int64_t nx, std::int64_t ny, std::int64_t planes, Execution& execution)
 {
   execution.For(planes, 4,
     [&](std::int64_t begin, std::int64_t end)
     {
-      std::vector<float> copy;
+      std::vector<Value> copy;
       for (std::int64_t k = begin; k < end; ++k)
       {
         SwapPlane(values + k * nx * ny, nx, ny, copy);
       }
     });
 }
+
+template void SwapXY(float*, std::int64_t, std::int64_t, std::int64_t, Execution&);
+template void SwapXY(std::uint32_t*, std::int64_t, std::int64_t, std::int64_t, Execution&);
+template void SwapXY(std::uint64_t*, std::int64_t, std::int64_t, std::int64_t, Execution&);
 }

@@ -53,6 +53,8 @@ private:
 
 /// Swaps the x and y axes of planes layers of nx * ny values in place; one plane of extra memory
 /// per thread.
-void SwapXY(float* values, std::int64_t nx, std::int64_t ny, std::int64_t planes, Execution&);
+/// Value is float, std::uint32_t or std::uint64_t.
+template <class Value>
+void SwapXY(Value* values, std::int64_t nx, std::int64_t ny, std::int64_t planes, Execution&);
 }
 #endif

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,7 +20,7 @@ namespace
 const double Pi = 3.14159265358979323846;
 
 // Up to this size a line is too little work to be divided among threads: lines are, in a fixed
-// number of parts whose sums are added in a fixed order.
+// number of parts.
 constexpr std::int64_t SmallGrid = 1 << 18;
 constexpr std::int64_t LineParts = 16;
 
@@ -30,34 +33,34 @@ class Accumulator
 {
 public:
   Accumulator(AttenuationField& field, const OccludedAngleOptions& options, bool space,
-    float* hidden, Execution& execution)
+    std::uint32_t* hidden, Execution& execution, const Ranks& ranks)
     : Field(field)
     , Options(options)
     , Space(space)
     , Hidden(hidden)
     , Runner(execution)
+    , Sharing(ranks)
   {
-    const std::int64_t voxels = field.GetNumberOfVoxels();
-    std::fill_n(hidden, voxels, 0.0F);
-    if (voxels <= SmallGrid)
-    {
-      this->Parts.assign(LineParts * voxels, 0.0F);
-    }
-    this->SortLines();
   }
 
   void Run()
   {
-    const std::int64_t nz = this->Field.GetDimensions()[2];
-    this->March(2, this->Lines[2], false);
-    this->March(1, this->Lines[1], false);
-    // Rows shall be contiguous in memory: lines along x march along y of the swapped grid.
-    float* sums = this->Parts.empty() ? this->Hidden : this->Parts.data();
-    const std::int64_t planes = this->Parts.empty() ? nz : LineParts * nz;
-    this->SwapXY(sums, planes);
-    this->March(1, this->Lines[0], true);
-    this->AddParts();
-    this->SwapXY(this->Hidden, nz);
+    this->Sharing.Together([this] { this->MarchAll(); });
+    const std::int64_t voxels = this->Field.GetNumberOfVoxels();
+    if (this->Totals.empty())
+    {
+      this->Sharing.Sum(this->Hidden, voxels);
+    }
+    else
+    {
+      this->Sharing.Sum(this->Totals.data(), voxels);
+    }
+  }
+
+  /// In units; after Run.
+  double GetSum(std::int64_t voxel) const
+  {
+    return this->Totals.empty() ? this->Hidden[voxel] : static_cast<double>(this->Totals[voxel]);
   }
 
 private:
@@ -68,11 +71,34 @@ private:
     double OffsetY;
   };
 
+  void MarchAll()
+  {
+    const std::int64_t voxels = this->Field.GetNumberOfVoxels();
+    if (voxels <= SmallGrid)
+    {
+      this->Parts.assign(LineParts * voxels, 0);
+    }
+    if (GetOccludedAngleMemory(this->Options.Directions) > 0)
+    {
+      this->Totals.assign(voxels, 0);
+    }
+    this->SortLines();
+    const std::int64_t nz = this->Field.GetDimensions()[2];
+    this->MarchBlocks(2, this->Lines[2], false);
+    this->MarchBlocks(1, this->Lines[1], false);
+    // Rows shall be contiguous in memory: lines along x march along y of the swapped grid.
+    this->SwapXY(nz);
+    this->MarchBlocks(1, this->Lines[0], true);
+    this->SwapXY(nz);
+  }
+
+  /// Those of this rank, dealt like cards: neighbours cost the same.
   void SortLines()
   {
     const int count = this->Options.Directions / 2;
     const Vec3& spacing = this->Field.GetSpacing();
     double number = 0;
+    std::int64_t dealt[3] = { 0, 0, 0 };
     for (const Vec3& line : this->Field.IsFlat() ? EqualAngleLines(count) : EqualAreaLines(count))
     {
       const Vec3 voxels{ line[0] / spacing[0], line[1] / spacing[1], line[2] / spacing[2] };
@@ -85,18 +111,41 @@ private:
       ++number;
       const double offsetX = std::fmod(number * 0.7548776662466927, 1.0);
       const double offsetY = std::fmod(number * 0.5698402909980532, 1.0);
-      this->Lines[axis].push_back({ voxels, offsetX, this->Field.IsFlat() ? 0 : offsetY });
+      if (dealt[axis]++ % this->Sharing.GetNumber() == this->Sharing.GetRank())
+      {
+        this->Lines[axis].push_back({ voxels, offsetX, this->Field.IsFlat() ? 0 : offsetY });
+        this->LineCount += 1;
+      }
     }
   }
 
-  void SwapXY(float* sums, std::int64_t planes)
+  void SwapXY(std::int64_t planes)
   {
     const auto& n = this->Field.GetDimensions();
-    lacuna::SwapXY(sums, n[0], n[1], planes, this->Runner);
+    if (this->Totals.empty())
+    {
+      lacuna::SwapXY(this->Hidden, n[0], n[1], planes, this->Runner);
+    }
+    else
+    {
+      lacuna::SwapXY(this->Totals.data(), n[0], n[1], planes, this->Runner);
+    }
     this->Field.SwapXY(this->Runner);
   }
 
-  MarchFrame GetFrame(int axis, float* hidden) const
+  /// As many lines at a time as one sum holds, if there are more.
+  void MarchBlocks(int axis, const std::vector<Line>& lines, bool swapped)
+  {
+    const std::size_t block = this->Totals.empty() ? lines.size() : LinesPerSum;
+    for (std::size_t first = 0; first < lines.size(); first += block)
+    {
+      const std::size_t last = std::min(lines.size(), first + block);
+      this->March(axis, { lines.begin() + first, lines.begin() + last }, swapped);
+      this->AddParts();
+    }
+  }
+
+  MarchFrame GetFrame(int axis, std::uint32_t* hidden) const
   {
     const auto& n = this->Field.GetDimensions();
     const int row = axis == 2 ? 1 : 2;
@@ -143,7 +192,7 @@ private:
 
   void SetStage(std::int64_t lines)
   {
-    const double all = this->Options.Directions / 2;
+    const double all = std::max(1.0, this->LineCount);
     const double length = this->Options.LastProgress - this->Options.FirstProgress;
     const double first = this->Options.FirstProgress + length * this->LinesDone / all;
     this->LinesDone += static_cast<double>(lines);
@@ -203,17 +252,26 @@ private:
     for (std::int64_t first = 0; first < all; first += voxels)
     {
       std::transform(this->Parts.begin() + first, this->Parts.begin() + first + voxels,
-        this->Hidden, this->Hidden, [](float part, float sum) { return sum + part; });
+        this->Hidden, this->Hidden, std::plus<>());
+    }
+    std::fill(this->Parts.begin(), this->Parts.end(), 0U);
+    for (std::size_t i = 0; i < this->Totals.size(); ++i)
+    {
+      this->Totals[i] += this->Hidden[i];
+      this->Hidden[i] = 0;
     }
   }
 
   AttenuationField& Field;
   const OccludedAngleOptions& Options;
   bool Space;
-  float* Hidden;
+  std::uint32_t* Hidden;
   Execution& Runner;
-  std::vector<float> Parts;
+  const Ranks& Sharing;
+  std::vector<std::uint32_t> Parts;
+  std::vector<std::uint64_t> Totals; ///< when there are too many lines for Hidden alone
   std::vector<Line> Lines[3];
+  double LineCount = 0;
   double LinesDone = 0;
 };
 
@@ -243,8 +301,13 @@ double GetFullAngle(const AttenuationField& field)
   return field.IsFlat() ? 2 * Pi : 4 * Pi;
 }
 
-void ComputeOccludedAngle(
-  AttenuationField& field, const OccludedAngleOptions& options, float* angle, Execution& execution)
+int GetOccludedAngleMemory(int directions)
+{
+  return directions / 2 > LinesPerSum ? sizeof(std::uint64_t) : 0;
+}
+
+void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
+  float* angle, Execution& execution, const Ranks& ranks)
 {
   Check(field, options);
   const auto n = field.GetDimensions();
@@ -254,15 +317,20 @@ void ComputeOccludedAngle(
     const float* values = field.Row(row % n[1], row / n[1]);
     space = space || std::any_of(values, values + n[0], AttenuationField::IsOutsideSpace);
   }
-  Accumulator(field, options, space, angle, execution).Run();
-  const float scale = static_cast<float>(GetFullAngle(field) / options.Directions);
+  // The sums are where the angle will be: it may be most of the memory.
+  static_assert(sizeof(float) == sizeof(std::uint32_t), "they take each other's place");
+  auto* hidden = reinterpret_cast<std::uint32_t*>(angle);
+  std::uninitialized_fill_n(hidden, field.GetNumberOfVoxels(), 0U);
+  Accumulator accumulator(field, options, space, hidden, execution, ranks);
+  accumulator.Run();
+  const double scale = GetFullAngle(field) / options.Directions / HiddenUnits;
   for (std::int64_t row = 0; row < n[1] * n[2]; ++row)
   {
     const float* values = field.Row(row % n[1], row / n[1]);
-    float* out = angle + row * n[0];
     for (std::int64_t i = 0; i < n[0]; ++i)
     {
-      out[i] = AttenuationField::IsOutsideSpace(values[i]) ? 0.0F : scale * out[i];
+      const auto seen = static_cast<float>(scale * accumulator.GetSum(row * n[0] + i));
+      new (angle + row * n[0] + i) float(AttenuationField::IsOutsideSpace(values[i]) ? 0.0F : seen);
     }
   }
 }

@@ -6,6 +6,7 @@
 
 #include "lacunaAttenuationField.h"
 #include "lacunaExecution.h"
+#include "lacunaRanks.h"
 
 namespace lacuna
 {
@@ -42,11 +43,18 @@ double GetFullAngle(const AttenuationField& field);
 ///   through the next layer. In the mean voxels are cubes.
 /// A voxel outside the space gets 0.
 ///
+/// Directions are shared among ranks that have the same field; each gets all of the angle. Sums over
+/// directions are of whole numbers (HiddenUnits), so that the result depends neither on the number
+/// of threads nor on that of ranks, and a small part is not lost beside a large sum.
+///
 /// angle has a value per voxel, x fastest. The field is unchanged in the end (its axes are swapped
-/// meanwhile). Cost: voxels times directions; memory: a few megabytes per thread. The
-/// result does not depend on the number of threads. Throws std::invalid_argument for an odd or
+/// meanwhile). Cost: voxels times directions, divided by the ranks. Memory: a few megabytes per
+/// thread, and GetOccludedAngleMemory. Throws std::invalid_argument for an odd or
 /// non-positive number of directions and for a radius below the shortest voxel edge.
-void ComputeOccludedAngle(
-  AttenuationField& field, const OccludedAngleOptions& options, float* angle, Execution& execution);
+void ComputeOccludedAngle(AttenuationField& field, const OccludedAngleOptions& options,
+  float* angle, Execution& execution, const Ranks& ranks = Ranks());
+
+/// Bytes that it needs for each voxel of a large field meanwhile.
+int GetOccludedAngleMemory(int directions);
 }
 #endif

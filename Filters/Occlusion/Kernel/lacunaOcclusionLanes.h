@@ -93,6 +93,17 @@ LACUNA_LANES_FUNCTION Floats PowerOfTwo(const Floats& x)
   return result;
 }
 
+/// A fraction 0...2 as a number of HiddenUnits, rounded.
+template <class Floats, class Integers>
+LACUNA_LANES_FUNCTION Integers Count(const Floats& fraction)
+{
+  const Floats magic = Floats{} + 8388608.0F; // 2^23: the sum's low bits are the number
+  const Floats shifted = magic + HiddenUnits * fraction;
+  Integers bits;
+  std::memcpy(&bits, &shifted, sizeof bits);
+  return bits - 0x4B000000U; // of 2^23
+}
+
 /// Equal neighbours give exactly their value.
 template <class Floats>
 LACUNA_LANES_FUNCTION Floats Interpolate(const Floats& a, const Floats& b, float toB)
@@ -179,7 +190,10 @@ struct Step
     using Integers = typename Vector<Lanes>::Integers;
     const Floats through =
       PowerOfTwo<Floats, Integers>(path.After) + PowerOfTwo<Floats, Integers>(path.Before);
-    Store(p.Hidden + i, Load(p.Hidden + i) + (2.0F - through));
+    Integers hidden;
+    std::memcpy(&hidden, p.Hidden + i, sizeof hidden);
+    hidden += Count<Floats, Integers>(2.0F - through);
+    std::memcpy(p.Hidden + i, &hidden, sizeof hidden);
   }
 };
 

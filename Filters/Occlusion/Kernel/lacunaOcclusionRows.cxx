@@ -50,6 +50,7 @@ int CountVoxels(const LayerCrossing& c)
 #endif
 
 // What follows is left to the compiler to vectorise.
+using Plain::Count;
 using Plain::Interpolate;
 using Plain::PowerOfTwo;
 
@@ -90,9 +91,9 @@ LACUNA_INLINE float HiddenOn(
 }
 
 template <bool Binary>
-LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,
-  std::int64_t n)
+LACUNA_INLINE void HideBody(std::uint32_t* __restrict hidden, const float* __restrict own,
+  float half, const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx,
+  float gain, std::int64_t n)
 {
   const OcclusionRows::Side a = before;
   const OcclusionRows::Side b = after;
@@ -100,19 +101,20 @@ LACUNA_INLINE void HideBody(float* __restrict hidden, const float* __restrict ow
   for (std::int64_t i = 0; i < n; ++i)
   {
     const float path = half * own[i];
-    hidden[i] += HiddenOn<Binary>(path, a, fx, gain, i) + HiddenOn<Binary>(path, b, fx, gain, i);
+    hidden[i] += Count<float, std::uint32_t>(
+      HiddenOn<Binary>(path, a, fx, gain, i) + HiddenOn<Binary>(path, b, fx, gain, i));
   }
 }
 
 template <bool Binary>
-LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restrict own, float half,
-  const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)
+LACUNA_INLINE void HideSideBody(std::uint32_t* __restrict hidden, const float* __restrict own,
+  float half, const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)
 {
   const OcclusionRows::Side a = side;
   LACUNA_INDEPENDENT
   for (std::int64_t i = 0; i < n; ++i)
   {
-    hidden[i] += HiddenOn<Binary>(half * own[i], a, fx, gain, i);
+    hidden[i] += Count<float, std::uint32_t>(HiddenOn<Binary>(half * own[i], a, fx, gain, i));
   }
 }
 
@@ -125,13 +127,13 @@ LACUNA_INLINE void HideSideBody(float* __restrict hidden, const float* __restric
     {                                                                                              \
       SeeBody<Binary>(first, last, row, between, fy, n);                                           \
     }                                                                                              \
-    TARGET static void Hide(float* hidden, const float* own, float half,                           \
+    TARGET static void Hide(std::uint32_t* hidden, const float* own, float half,                   \
       const OcclusionRows::Side& before, const OcclusionRows::Side& after, float fx, float gain,   \
       std::int64_t n)                                                                              \
     {                                                                                              \
       HideBody<Binary>(hidden, own, half, before, after, fx, gain, n);                             \
     }                                                                                              \
-    TARGET static void HideSide(float* hidden, const float* own, float half,                       \
+    TARGET static void HideSide(std::uint32_t* hidden, const float* own, float half,               \
       const OcclusionRows::Side& side, float fx, float gain, std::int64_t n)                       \
     {                                                                                              \
       HideSideBody<Binary>(hidden, own, half, side, fx, gain, n);                                  \

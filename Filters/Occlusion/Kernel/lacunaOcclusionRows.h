@@ -13,6 +13,14 @@ namespace lacuna
 /// the usual attenuation.
 constexpr double PathPerAttenuation = 1.4426950408889634;
 
+/// Hidden fractions are added up as whole numbers of so many units in one, so that their sum is exact
+/// and does not depend on its order. A fraction, up to 2 for both directions of a line, is as exact
+/// as in a float.
+constexpr float HiddenUnits = 4194304; // 2^22
+
+/// The fractions of so many lines fit into a sum of 32 bits.
+constexpr int LinesPerSum = 511;
+
 /// The voxels that a row of parallel rays passes in one layer: ray i passes Voxels[v][i], up to
 /// three of them, and adds Weights[v] of their attenuation to its path.
 struct LayerCrossing
@@ -52,7 +60,7 @@ struct OcclusionRows
     float FractionX;  ///< of the way from ray i to ray i - 1
     const float* Own; ///< voxel i lies between the rays i - 1 and i, the first one is not served
     float Half;
-    float* Hidden;
+    std::uint32_t* Hidden;
     std::int64_t HiddenStride; ///< from row to row of voxels
     std::int64_t HiddenAhead;  ///< as Rays.FieldAhead
     bool FirstServes;          ///< else the first row of rays has no voxels
@@ -72,12 +80,12 @@ struct OcclusionRows
     LayerCrossing Next;
   };
 
-  /// hidden += sum over both sides of 1 - 2^-(half * own + path); in Binary mode of 1 where own or
+  /// hidden += HiddenUnits times the sum over both sides of 1 - 2^-(half * own + path); in Binary mode of 1 where own or
   /// Next attenuate, else of gain times what is between the rays, at most 1.
-  void (*Hide)(float* hidden, const float* own, float half, const Side& before, const Side& after,
-    float fx, float gain, std::int64_t n);
+  void (*Hide)(std::uint32_t* hidden, const float* own, float half, const Side& before,
+    const Side& after, float fx, float gain, std::int64_t n);
   /// The same for one side.
-  void (*HideSide)(float* hidden, const float* own, float half, const Side& side, float fx,
+  void (*HideSide)(std::uint32_t* hidden, const float* own, float half, const Side& side, float fx,
     float gain, std::int64_t n);
 };
 

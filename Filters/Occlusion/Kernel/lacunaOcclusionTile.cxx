@@ -11,7 +11,8 @@ namespace lacuna
 {
 namespace
 {
-void Prefetch(const float* first, std::int64_t n)
+template <class Value>
+void Prefetch(const Value* first, std::int64_t n)
 {
 #if defined(__GNUC__)
   constexpr std::int64_t Line = 16; // floats
@@ -251,7 +252,8 @@ void TileMarch::Hide(const Span& span, Sides sides)
       this->GetCrossing(
         this->Neighbors[side], i, j, side == BeforeSide ? span.K - 1 : span.K + 1) };
   };
-  float* hidden = frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i;
+  std::uint32_t* hidden =
+    frame.Hidden + span.K * frame.HiddenLayerStride + j * frame.HiddenRowStride + i;
   const float* own = frame.FieldAt(i, j, span.K);
   const float gain = 1 / (1 - this->Options.Dilation);
   if (sides == BothSides)
@@ -293,7 +295,8 @@ void TileMarch::PassLayer(std::int64_t k)
   // of the voxel between the first ray and the one before, both outside
   const std::int64_t i = first.FirstX + layer.ShiftX;
   const std::int64_t j = first.Q + layer.ShiftY;
-  float* hidden = frame.Hidden + (k * frame.HiddenLayerStride + j * frame.HiddenRowStride + i);
+  std::uint32_t* hidden =
+    frame.Hidden + (k * frame.HiddenLayerStride + j * frame.HiddenRowStride + i);
   this->Rows.Pass(
     { this->GetRays(first, -1), this->Path.data() + offset, this->Total.data() + offset,
       this->Seen[AfterSide].data() + column, this->Seen[BeforeSide].data() + column,

@@ -22,7 +22,8 @@ struct MarchFrame
   const float* Field; ///< attenuation at voxel (0, 0, 0)
   std::int64_t FieldRowStride;
   std::int64_t FieldLayerStride;
-  float* Hidden; ///< sum over directions of the fraction that is hidden, not bordered
+  /// Sum over directions of the fraction that is hidden, in HiddenUnits; not bordered.
+  std::uint32_t* Hidden;
   std::int64_t HiddenRowStride;
   std::int64_t HiddenLayerStride;
 

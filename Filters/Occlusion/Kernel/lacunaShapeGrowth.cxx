@@ -198,7 +198,7 @@ double SuggestThreshold(const std::vector<std::int64_t>& counts, double full)
 }
 
 void GrowShape(AttenuationField& field, const GrowthOptions& options, float* angle,
-  unsigned char* object, const GrowthObserver& observer, Execution& execution)
+  unsigned char* object, const GrowthObserver& observer, Execution& execution, const Ranks& ranks)
 {
   Check(field, options);
   const auto& n = field.GetDimensions();
@@ -240,7 +240,7 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
     seeing.Radius = options.Steps[iteration].Radius;
     seeing.FirstProgress = static_cast<double>(iteration) / count;
     seeing.LastProgress = (iteration + 0.9) / count;
-    ComputeOccludedAngle(field, seeing, angle, execution);
+    ComputeOccludedAngle(field, seeing, angle, execution, ranks);
     execution.SetStage(seeing.LastProgress, (iteration + 1.0) / count);
     if (options.MedianKernel > 1)
     {

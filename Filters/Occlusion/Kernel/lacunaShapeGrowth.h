@@ -50,9 +50,10 @@ using GrowthObserver = std::function<void(int iteration, const GrowthStatistics&
 /// Runs the iterations. field holds the data first, and the last iteration's object in the end.
 /// angle and object (1 or 0) have a value per voxel, x fastest; they hold the last iteration's.
 /// Throws std::invalid_argument when the options are wrong, see GrowthOptions and
-/// ComputeOccludedAngle, or when no voxel of the field attenuates.
+/// ComputeOccludedAngle (also about ranks), or when no voxel of the field attenuates.
 void GrowShape(AttenuationField& field, const GrowthOptions& options, float* angle,
-  unsigned char* object, const GrowthObserver& observer, Execution& execution);
+  unsigned char* object, const GrowthObserver& observer, Execution& execution,
+  const Ranks& ranks = Ranks());
 
 /// The attenuation coefficient (per mm) that takes the fraction opacity of a ray over the shortest
 /// edge of a voxel; at most GetLargestAttenuation.

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
+#include <string>
 
 namespace lacuna
 {
@@ -285,6 +287,96 @@ TEST(OccludedAngle, DoesNotDependOnThreads)
       }
     }
   }
+}
+
+// In small grids, where lines are divided among threads, and in large ones, where tiles are.
+TEST(OccludedAngle, DoesNotDependOnRanks)
+{
+  for (const Dimensions& n :
+    { Dimensions{ 20, 13, 9 }, Dimensions{ 90, 70, 50 }, Dimensions{ 40, 30, 1 } })
+  {
+    for (bool binary : { false, true })
+    {
+      OccludedAngleOptions options;
+      options.Binary = binary;
+      options.Directions = n[0] > 50 ? 10 : n[2] > 1 ? 46 : 2500; // in the end more than one sum
+      options.Radius = binary ? 5 : 0;
+      const auto fill = [&](AttenuationField& field)
+      {
+        Numbers numbers(3);
+        FillField(field,
+          [&](std::int64_t, std::int64_t, std::int64_t) { return numbers() < 0.1 ? 0.3 : 0; });
+      };
+      AttenuationField field(n, { 1, 1.1, 0.9 });
+      fill(field);
+      const std::vector<float> alone = GetAngle(field, options);
+      for (int number : { 2, 3, 30 }) // in the end more than there are lines
+      {
+        std::vector<std::vector<float>> angles(number, std::vector<float>(alone.size()));
+        ThreadRanks::Run(number,
+          [&](const Ranks& ranks)
+          {
+            AttenuationField own(n, { 1, 1.1, 0.9 });
+            fill(own);
+            ThreadExecution execution(1);
+            ComputeOccludedAngle(own, options, angles[ranks.GetRank()].data(), execution, ranks);
+          });
+        for (const std::vector<float>& angle : angles)
+        {
+          ASSERT_EQ(angle, alone) << number << " ranks";
+        }
+      }
+    }
+  }
+}
+
+// Nobody waits for a rank that has stopped.
+TEST(OccludedAngle, StopsOnAllRanks)
+{
+  std::atomic<int> stopped(0);
+  std::atomic<int> told(0);
+  ThreadRanks::Run(3,
+    [&](const Ranks& ranks)
+    {
+      AttenuationField field({ 30, 30, 30 }, { 1, 1, 1 });
+      field.Row(3, 4)[5] = 1;
+      std::vector<float> angle(field.GetNumberOfVoxels());
+      ThreadExecution execution(1, [&](double) { return ranks.GetRank() != 1; });
+      try
+      {
+        ComputeOccludedAngle(field, {}, angle.data(), execution, ranks);
+      }
+      catch (const Aborted&)
+      {
+        ++stopped;
+      }
+      catch (const std::runtime_error& error)
+      {
+        told += std::string(error.what()).find("another rank") != std::string::npos;
+      }
+    });
+  EXPECT_EQ(stopped, 1);
+  EXPECT_EQ(told, 2);
+}
+
+// A million small parts add up to what fewer do: nothing is lost beside a large sum.
+TEST(OccludedAngle, ManyDirectionsLoseNothing)
+{
+  AttenuationField field({ 8, 8, 1 }, { 1, 1, 1 });
+  FillField(field, [](std::int64_t i, std::int64_t, std::int64_t) { return i < 4 ? 1e-3 : 100; });
+  OccludedAngleOptions options;
+  options.Radius = 2;
+  options.Directions = 1 << 16;
+  const std::vector<float> few = GetAngle(field, options);
+  options.Directions = 1 << 20;
+  const std::vector<float> many = GetAngle(field, options);
+  for (std::size_t i = 0; i < few.size(); ++i)
+  {
+    ASSERT_NEAR(many[i], few[i], 2e-3 * few[i]) << i;
+  }
+  EXPECT_LT(few[24], 0.02);
+  EXPECT_EQ(few[7 + 24], static_cast<float>(2 * Pi));
+  EXPECT_EQ(many[7 + 24], static_cast<float>(2 * Pi));
 }
 
 TEST(OccludedAngle, LeavesTheFieldAsItWas)

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaRanks.h"
+
+#include "vtkCommunicator.h"
+#include "vtkMultiProcessController.h"
+#include "vtkTypeTraits.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace
+{
+constexpr std::int64_t Chunk = 1 << 22; // MPI counts in int, and the copy shall be small
+
+template <class Value>
+void SumIn(vtkMultiProcessController* controller, Value* values, std::int64_t count)
+{
+  if (!controller || controller->GetNumberOfProcesses() == 1)
+  {
+    return;
+  }
+  std::vector<Value> own(std::min(count, Chunk));
+  for (std::int64_t first = 0; first < count; first += Chunk)
+  {
+    const std::int64_t size = std::min(Chunk, count - first);
+    std::copy_n(values + first, size, own.begin());
+    controller->GetCommunicator()->AllReduceVoidArray(
+      own.data(), values + first, size, vtkTypeTraits<Value>::VTK_TYPE_ID, vtkCommunicator::SUM_OP);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaRanks::vtkLacunaRanks()
+  : Controller(vtkMultiProcessController::GetGlobalController())
+{
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRanks::GetRank() const
+{
+  return this->Controller ? this->Controller->GetLocalProcessId() : 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRanks::GetNumber() const
+{
+  return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRanks::Sum(std::uint32_t* values, std::int64_t count) const
+{
+  SumIn(this->Controller, values, count);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRanks::Sum(std::uint64_t* values, std::int64_t count) const
+{
+  SumIn(this->Controller, values, count);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRanks::AllFine(bool fine) const
+{
+  if (this->GetNumber() == 1)
+  {
+    return fine;
+  }
+  const int own = fine ? 1 : 0;
+  int all = own;
+  this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::MIN_OP);
+  return all == 1;
+}

@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every proxy of the plugin under MPI: one, two, three and four ranks make the same, bit for bit, and what only the first rank can do costs the others nothing.
+
+Ranks.py [program that makes a CT series]
+
+It runs itself in pvbatch, `Ranks.py in pvbatch`: there every rank writes its piece of every output of every pipeline. Pieces are compared
+here, put together again, with what one rank makes.
+"""
+import json
+import os
+import shutil
+import sys
+
+import lacuna.plugin
+import numpy as np
+
+lacuna.plugin.load()
+import every_proxy
+import lacuna_test
+import pipelines
+from lacuna.errors import PipelineError, raising
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader, vtkXMLTableReader
+
+RANKS = 1, 2, 3, 4
+# How ranks divide what each kind makes, in ParaView's words without Lacuna; a new one is listed here after a thought.
+# Parts of an image, which overlap in nothing but shared faces
+IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "DepthMapShader", "GateSlices", "IncompleteShape",
+          "Mirror", "OccludedAngle", "PhantomSweep", "ProbeCalibration", "RBFHoleFiller", "RBFImageWarp", "RBFInterpolator",
+          "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader"}
+# Some of the cells of a mesh
+MESHES = {"DepthMapSurface", "SlicePlanes"}
+# All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
+FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "PressOrientation",
+         "ScanRegion", "TemporalCalibration", "TrackerSelfTest"}
+WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
+# Devices belong to one process: it says so
+REFUSED = {"PolhemusVideoSource"}
+
+# Provenance has the hash of what a rank was given, which for these is a part
+HASHED_PARTS = {"AssembleTrackedSlices", "GateSlices", "SpeckleFilter"}
+# Have their whole input on every rank, whatever is asked of them: the size of their output is in it, or all ranks work for it
+ALWAYS_ASK = {"BSplineIsoRayCaster", "OccludedAngle", "RBFInterpolator", "SliceRayCaster", "SweptVolume"}
+
+# In ParaView's Programmable Filter, on each rank: its piece as a file, and how much of its inputs it has.
+WRITE = """
+import json
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkIOXML import vtkXMLDataObjectWriter
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+rank = vtkMultiProcessController.GetGlobalController().GetLocalProcessId()
+data = self.GetInputDataObject(0, 0)
+writer = vtkXMLDataObjectWriter.NewWriter(data.GetDataObjectType())
+writer.SetDataModeToBinary()
+writer.SetCompressorTypeToNone()
+for attributes in (data.GetAttributes(0), data.GetAttributes(1), data.GetFieldData()):
+    for index in range(attributes.GetNumberOfArrays() if attributes else 0):
+        attributes.GetAbstractArray(index).GetInformation().Clear()  # ranges that are NaN cannot be read again
+writer.SetInputData(data)
+writer.SetFileName({start!r} + str(rank))
+writer.Write()
+
+def elements(data):
+    return data.GetNumberOfRows() if data.IsA("vtkTable") else data.GetNumberOfPoints() if data.IsA("vtkDataSet") else 0
+
+def upstream(algorithm):
+    found = {{}}
+    for port in range(algorithm.GetNumberOfInputPorts()):
+        for i in range(algorithm.GetNumberOfInputConnections(port)):
+            other = algorithm.GetInputAlgorithm(port, i)
+            found[other] = other.GetClassName(), elements(algorithm.GetInputDataObject(port, i))
+            found.update(upstream(other))
+    return found
+
+everything = upstream(self)
+needed = set()
+for algorithm in everything:
+    if algorithm.GetClassName()[9:] in {always!r}:
+        needed |= set(upstream(algorithm))
+with open({start!r} + str(rank) + ".json", "w", encoding="ascii") as file:
+    json.dump([value for algorithm, value in everything.items() if algorithm not in needed], file)
+"""
+
+
+def kind(source):
+    return source.GetXMLName().replace("Lacuna", "")
+
+
+def folder(ranks):
+    return lacuna_test.output(f"Ranks/{ranks}")  # by its whole name: ParaView's Programmable Source deletes others
+
+
+# --- in pvbatch, on the first rank; ParaView runs filters on all of them ---
+
+
+def write(pipeline, ranks):
+    for name in every_proxy.written():
+        os.remove(every_proxy.path(name))
+    with raising():
+        pipeline()
+        ours = [(name, source) for (name, _), source in GetSources().items() if source.GetXMLName().startswith("Lacuna")]
+        # those first that shall find nothing done yet
+        for name, source in sorted(ours, key=lambda one: kind(one[1]) not in FIRST):
+            for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+                start = os.path.join(folder(ranks), f"{pipeline.__name__}-{kind(source)}-{name}-{port}-")
+                ProgrammableFilter(Input=OutputPort(source, port), Script=WRITE.format(start=start, always=ALWAYS_ASK), CopyArrays=0).UpdatePipeline()
+    for name in every_proxy.written():
+        shutil.copy(every_proxy.path(name), os.path.join(folder(ranks), f"{pipeline.__name__}-{name}"))
+    ResetSession()
+
+
+def run(ranks):
+    every_proxy.use_files("Ranks")
+    for pipeline in every_proxy.PIPELINES:
+        refused = ranks > 1 and pipeline is every_proxy.live
+        try:
+            write(pipeline, ranks)
+        except PipelineError as error:
+            assert refused and "one process only" in str(error)
+            ResetSession()
+            refused = False
+        assert not refused, "more than one process drives the devices"
+
+
+# --- in pvpython ---
+
+
+def read(file):
+    with open(file, "rb") as content:
+        table = b'<VTKFile type="Table"' in content.read(200)
+    reader = vtkXMLTableReader() if table else vtkXMLGenericDataObjectReader()
+    reader.SetFileName(file)
+    vtkObject.GlobalWarningDisplayOff()  # of meshes without points
+    reader.Update()
+    vtkObject.GlobalWarningDisplayOn()
+    return reader.GetOutput()
+
+
+def outputs(ranks):
+    """(pipeline, kind, name, port) -> the ranks' pieces, each with what it had upstream."""
+    found = {}
+    for name in sorted(os.listdir(folder(ranks))):
+        if name.endswith(".json"):
+            file = os.path.join(folder(ranks), name[:-5])
+            with open(file + ".json", encoding="ascii") as text:
+                found.setdefault(tuple(name[:-5].split("-")[:4]), []).append((read(file), json.load(text)))
+    assert all(len(pieces) == ranks for key, pieces in found.items() if key[1] not in REFUSED)
+    return found
+
+
+def join_image(pieces):
+    """extent, geometry and arrays (z, y, x, component) of images that are parts of one."""
+    pieces = [piece for piece in pieces if piece.GetNumberOfPoints() > 0]
+    if not pieces:
+        return {}
+    low, high = (np.array([choose(piece.GetExtent()[2 * a + side] for piece in pieces) for a in (2, 1, 0)])
+                 for side, choose in ((0, min), (1, max)))
+    found = {"extent": np.array([low, high])}
+    for piece in pieces:
+        extent = np.array(piece.GetExtent()).reshape(3, 2)[::-1]
+        where = tuple(slice(first - start, last - start + 1) for (first, last), start in zip(extent, low))
+        geometry = np.array([*piece.GetOrigin(), *piece.GetSpacing(), *piece.GetDirectionMatrix().GetData()])
+        assert np.array_equal(found.setdefault("geometry", geometry), geometry)
+        for index in range(piece.GetPointData().GetNumberOfArrays()):
+            array = piece.GetPointData().GetArray(index)
+            values = vtk_to_numpy(array).reshape(*(extent[:, 1] - extent[:, 0] + 1), -1)
+            filled, whole = found.setdefault(array.GetName(), (np.zeros(high - low + 1, bool),
+                                                               np.zeros((*(high - low + 1), values.shape[-1]), values.dtype)))
+            again = filled[where]
+            assert np.array_equal(whole[where][again], values[again], equal_nan=values.dtype.kind == "f"), (array.GetName(), "at a shared face")
+            whole[where], filled[where] = values, True
+    for name, value in found.items():
+        if isinstance(value, tuple):
+            assert value[0].all(), (name, "has holes")
+            found[name] = value[1]
+    return found
+
+
+def tuples(attributes, count):
+    """What all arrays have at each point or cell, as bytes."""
+    arrays = [attributes.GetAbstractArray(i) for i in range(attributes.GetNumberOfArrays())]
+    numbers = [vtk_to_numpy(array) if array.IsA("vtkDataArray") else np.array([array.GetValue(i) for i in range(count)]) for array in arrays]
+    return [b"".join(array[i].tobytes() for array in numbers) for i in range(count)]
+
+
+def join_mesh(pieces):
+    """The cells of surfaces as bytes, the corners with what is on them, in an order of their own."""
+    cells = []
+    for piece in pieces:
+        if piece.GetNumberOfCells() == 0:
+            continue
+        places = vtk_to_numpy(piece.GetPoints().GetData())
+        points = [place.tobytes() + values for place, values in zip(places, tuples(piece.GetPointData(), len(places)))]
+        for c, values in enumerate(tuples(piece.GetCellData(), piece.GetNumberOfCells())):
+            cell = piece.GetCell(c).GetPointIds()
+            cells.append(b"".join(points[cell.GetId(i)] for i in range(cell.GetNumberOfIds())) + values)
+    return sorted(cells)
+
+
+def check(key, alone, pieces):
+    what = key[1]
+    (one, _), = alone
+    data = [piece for piece, _ in pieces]
+    if what in FIRST or one.IsA("vtkTable"):
+        texts = pipelines.differences(one, data[0])
+        assert not texts, (key, texts)
+        for piece, upstream in pieces[1:]:
+            assert sum(piece.GetNumberOfElements(kind) for kind in (0, 1, 6)) == 0, (key, "not on the first rank only")
+            assert what not in FIRST or not any(count for _, count in upstream), (key, upstream)
+    elif one.IsA("vtkPolyData"):
+        assert join_mesh(data) == join_mesh([one]), key
+    else:
+        whole, parts = join_image([one]), join_image(data)
+        assert set(whole) == set(parts), (key, set(whole) ^ set(parts))
+        for name, values in whole.items():
+            assert values.dtype == parts[name].dtype and np.array_equal(values, parts[name], equal_nan=values.dtype.kind == "f"), (key, name)
+        field, others = ({name: values for name, values in pipelines.values(image).items() if name[0] == "FieldData"} for image in (one, data[0]))
+        assert set(field) == set(others), (key, set(field) ^ set(others))
+        for name, values in field.items():
+            if name[1] == "Provenance" and what in HASHED_PARTS:
+                continue
+            assert np.array_equal(values, others[name], equal_nan=values.dtype.kind == "f"), (key, name)
+
+
+def files(ranks):
+    found = {}
+    for name in sorted(os.listdir(folder(ranks))):
+        if "-written." in name:
+            with open(os.path.join(folder(ranks), name), "rb") as file:
+                found[name] = every_proxy.without_time(file.read())
+    return found
+
+
+def main():
+    shutil.rmtree(lacuna_test.output("Ranks"), ignore_errors=True)
+    every_proxy.make_files("Ranks", *sys.argv[1:])
+    for ranks in RANKS:
+        os.makedirs(folder(ranks))
+        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", str(ranks))
+        errors = [line for line in printed.splitlines() if "ERR|" in line and not any(f"vtkLacuna{name} " in line for name in REFUSED)]
+        assert not errors, errors
+    alone = outputs(1)
+    seen = {what for _, what, _, _ in alone} | {
+        writer.replace("Lacuna", "") for ending, writer in every_proxy.WRITERS.items() if any(name.endswith("." + ending) for name in files(1))}
+    missing = {name.replace("Lacuna", "") for name in every_proxy.every_kind()} - seen
+    assert missing <= ({"CTSeriesReader"} if len(sys.argv) < 2 else set()), f"no pipeline has {sorted(missing)}"
+    listed = IMAGES | MESHES | FIRST | WRITERS | REFUSED
+    assert seen <= listed, f"not listed here: {sorted(seen - listed)}"
+    faults = []
+    for ranks in RANKS[1:]:
+        together = outputs(ranks)
+        expected = {key for key in alone if key[1] not in REFUSED}
+        assert expected <= set(together), expected - set(together)
+        assert files(ranks) == files(1), ranks
+        for key in sorted(expected):
+            try:
+                check(key, alone[key], together[key])
+            except AssertionError as fault:
+                faults.append(f"{ranks} ranks: {fault}")
+    assert not faults, "\n".join(faults)
+    print(f"{len(alone)} outputs of {len(seen)} kinds are the same on {RANKS} ranks")
+
+
+if sys.argv[1:2] == ["in pvbatch"]:
+    run(int(sys.argv[2]))
+else:
+    main()
