@@ -117,20 +117,21 @@ bool vtkLacunaRequest::IsFirst(vtkInformationVector* outputs)
 //------------------------------------------------------------------------------
 bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 {
-  const auto isImage = [outputs](int i)
-  {
-    vtkDataObject* data = vtkDataObject::GetData(outputs, i);
-    return data && data->GetExtentType() == VTK_3D_EXTENT;
-  };
-  if (!isImage(0))
+  if (!vtkImageData::GetData(outputs, 0))
   {
     return IsFirst(outputs);
   }
+  const auto isEmpty = [](const int* extent)
+  { return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5]; };
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
   {
-    const int* extent = outputs->GetInformationObject(i)->Get(SDDP::UPDATE_EXTENT());
-    if (isImage(i) &&
-      (!extent || (extent[0] <= extent[1] && extent[2] <= extent[3] && extent[4] <= extent[5])))
+    vtkInformation* info = outputs->GetInformationObject(i);
+    const int* whole = info->Get(SDDP::WHOLE_EXTENT());
+    const int* extent = info->Get(SDDP::UPDATE_EXTENT());
+    const bool asked = extent && !isEmpty(extent);
+    // of a first image that is empty as a whole there may be something to say
+    const bool unknown = i == 0 && (!whole || !extent || isEmpty(whole));
+    if (vtkImageData::GetData(info) && (asked || unknown))
     {
       return true;
     }

@@ -17,6 +17,7 @@
 #include "vtkLacunaFittedPart.h"
 #include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -176,7 +177,15 @@ int vtkLacunaDefectModel::RequestInformation(
 int vtkLacunaDefectModel::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
+  vtkInformation* info = inputVector[0]->GetInformationObject(0);
+  if (vtkLacunaRanks().GetRank() == 0)
+  {
+    vtkLacunaRequest::Whole(this, info, outputVector);
+  }
+  else
+  {
+    vtkLacunaRequest::Nothing(this, info); // whoever asks: it is on the first rank
+  }
   return 1;
 }
 
@@ -190,7 +199,8 @@ int vtkLacunaDefectModel::RequestData(
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector) ||
+    vtkLacunaRanks().GetRank() > 0)
   {
     return 1; // empty in, empty out; the model is one piece
   }

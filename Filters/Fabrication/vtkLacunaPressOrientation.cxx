@@ -16,6 +16,7 @@
 #include "vtkLacunaFittedPart.h"
 #include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -256,7 +257,15 @@ int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* inf
 int vtkLacunaPressOrientation::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkLacunaRequest::Whole(this, inputVector[0]->GetInformationObject(0), outputVector);
+  vtkInformation* info = inputVector[0]->GetInformationObject(0);
+  if (vtkLacunaRanks().GetRank() == 0)
+  {
+    vtkLacunaRequest::Whole(this, info, outputVector);
+  }
+  else
+  {
+    vtkLacunaRequest::Nothing(this, info); // whoever asks: it is on the first rank
+  }
   return 1;
 }
 
@@ -306,7 +315,8 @@ int vtkLacunaPressOrientation::RequestData(
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector) ||
+    vtkLacunaRanks().GetRank() > 0)
   {
     return 1; // empty in, empty out; the mould is one piece
   }

@@ -154,8 +154,8 @@ lacuna::ReducedCenters<Dimension> Fit(vtkLacunaExecution& execution,
 
 template <int Dimension>
 void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray* array,
-  const OutputGrid& to, const lacuna::RadialBasisOptions& options, double tolerance,
-  vtkDoubleArray* image, vtkImageData* output)
+  const OutputGrid& to, const int piece[6], const lacuna::RadialBasisOptions& options,
+  double tolerance, vtkDoubleArray* image, vtkImageData* output)
 {
   const vtkIdType n = points->GetNumberOfPoints();
   const int components = array->GetNumberOfComponents();
@@ -180,11 +180,14 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
   const lacuna::RadialBasis<Dimension>& function = *fit.Function;
 
   lacuna::RegularGrid<Dimension> grid;
+  lacuna::GridPart<Dimension> part;
   for (int c = 0; c < Dimension; ++c)
   {
     grid.Origin[c] = to.Grid.Origin[to.Axes[c]];
     grid.Spacing[c] = to.Grid.Spacing[to.Axes[c]];
     grid.Size[c] = to.Grid.Size[to.Axes[c]];
+    part[c] = { piece[2 * to.Axes[c]],
+      std::min<std::int64_t>(piece[2 * to.Axes[c] + 1] + 1, grid.Size[c]) };
   }
   const std::int64_t count = grid.GetNumberOfPoints();
   image->SetNumberOfComponents(components);
@@ -194,7 +197,7 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
   {
     execution.SetStage(0.7 + 0.3 * k / components, 0.7 + 0.3 * (k + 1) / components);
     double* to1 = components > 1 ? one.data() : image->GetPointer(0);
-    function.EvaluateGrid(execution, grid, to1, k);
+    function.EvaluateGrid(execution, grid, part, to1, k);
     for (std::int64_t i = 0; components > 1 && i < count; ++i)
     {
       image->SetTypedComponent(i, k, one[i]);
@@ -335,6 +338,9 @@ int vtkLacunaRBFInterpolator::RequestData(
           options.Errors.push_back(errors->GetComponent(i, 0));
         }
       }
+      int piece[6]; // of ranks, which share the evaluation: each fits for itself
+      outputs->GetInformationObject(0)->Get(
+        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
       vtkNew<vtkImageData> whole;
       whole->SetExtent(0, static_cast<int>(to.Grid.Size[0]) - 1, 0,
         static_cast<int>(to.Grid.Size[1]) - 1, 0, static_cast<int>(to.Grid.Size[2]) - 1);
@@ -346,11 +352,11 @@ int vtkLacunaRBFInterpolator::RequestData(
       {
         case 3:
           Interpolate<3>(
-            execution, points, array, to, options, this->CenterTolerance, image, whole);
+            execution, points, array, to, piece, options, this->CenterTolerance, image, whole);
           break;
         case 2:
           Interpolate<2>(
-            execution, points, array, to, options, this->CenterTolerance, image, whole);
+            execution, points, array, to, piece, options, this->CenterTolerance, image, whole);
           break;
         default:
           throw std::runtime_error("all points lie at one place or on one line along an axis: that "
@@ -371,9 +377,6 @@ int vtkLacunaRBFInterpolator::RequestData(
         .Add("OutputBounds", this->OutputBounds);
       vtkLacunaProvenance::Record(whole, this, { points }, parameters.Get());
       output->ShallowCopy(whole);
-      int piece[6];
-      outputs->GetInformationObject(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
       output->Crop(piece);
     });
 }

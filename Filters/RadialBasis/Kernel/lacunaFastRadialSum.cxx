@@ -69,6 +69,7 @@ FastRadialSum<Dimension>::FastRadialSum(
   this->Sources = std::make_unique<PointTree<Dimension>>(root, sources, GridSourceCapacity);
   this->Grid = std::make_unique<GridTree<Dimension>>(
     root, grid, Dimension == 2 ? GridCapacity2D : GridCapacity3D);
+  this->Part = WholeGrid(grid);
   this->Prepare();
 }
 
@@ -348,12 +349,12 @@ template <int Dimension>
 void FastRadialSum<Dimension>::PointsToLocal(int target)
 {
   const CellLists<std::int32_t>& lists = this->Lists->PointsToLocal;
-  if (lists.Begin[target] == lists.Begin[target + 1])
+  const CellTree<Dimension>& tree = this->GetTargets();
+  const Cell& cell = tree.Cells[target];
+  if (lists.Begin[target] == lists.Begin[target + 1] || !this->IsWanted(cell))
   {
     return;
   }
-  const CellTree<Dimension>& tree = this->GetTargets();
-  const Cell& cell = tree.Cells[target];
   const int size = this->Far->GetSize();
   NodeLattice<Dimension> nodes;
   nodes.Set(
@@ -385,7 +386,13 @@ void FastRadialSum<Dimension>::Across(Execution& execution)
     {
       for (std::int64_t b = begin; b < end; ++b)
       {
-        this->ApplyPairs(this->Lists->Blocks[b]);
+        const typename InteractionLists<Dimension>::Block& block = this->Lists->Blocks[b];
+        const auto first = this->GetTargets().Cells.begin();
+        if (std::any_of(first + block.FirstTarget, first + block.LastTarget,
+              [this](const Cell& cell) { return this->IsWanted(cell); }))
+        {
+          this->ApplyPairs(block);
+        }
       }
     });
   if (!this->Lists->PointsToLocal.Items.empty())

@@ -44,6 +44,10 @@ public:
 
   std::int64_t GetNumberOfPoints() const;
 
+  /// The part of the grid where values are wanted, by default all: others may be left as they are.
+  /// Those of the part have the same bits.
+  void SetPart(const GridPart<Dimension>& part) { this->Part = part; }
+
   /// values[k] = u(x_k) within tolerance (> 0, in the unit of weight x phi); the grid's points with
   /// the first index fastest. Returns the bound of the error. Throws std::runtime_error when
   /// doubles cannot give the tolerance.
@@ -93,6 +97,8 @@ private:
     const Cell& cell, std::size_t padded, std::array<std::vector<double>, Dimension>& axis) const;
   void Store(const Cell& cell, const double* from, double* values) const;
   void SumDirectly(Execution& execution, double* values) const;
+  /// Whether a box of points has some of the part.
+  bool IsWanted(const Cell& cell) const;
   static void ForCells(Execution& execution, int first, int last,
     const std::function<void(std::int64_t, std::int64_t)>& body);
 
@@ -101,6 +107,7 @@ private:
   std::unique_ptr<PointTree<Dimension>> Sources;
   std::unique_ptr<PointTree<Dimension>> Points;
   std::unique_ptr<GridTree<Dimension>> Grid;
+  GridPart<Dimension> Part{};
   bool SameTree = false;
   std::unique_ptr<InteractionLists<Dimension>> Lists;
   std::vector<char> Levels;                                    // where interpolants are used

@@ -13,6 +13,20 @@ namespace lacuna
 {
 //------------------------------------------------------------------------------
 template <int Dimension>
+bool FastRadialSum<Dimension>::IsWanted(const Cell& cell) const
+{
+  for (int c = 0; this->Grid && c < Dimension; ++c)
+  {
+    if (cell.Range[c][1] <= this->Part[c][0] || cell.Range[c][0] >= this->Part[c][1])
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
 void FastRadialSum<Dimension>::EvaluateLocal(
   const Cell& cell, const double* local, double* values) const
 {
@@ -209,7 +223,7 @@ void FastRadialSum<Dimension>::Evaluate(Execution& execution, double* values) co
       for (std::int64_t t = begin; t < end; ++t)
       {
         const Cell& cell = tree.Cells[t];
-        if (cell.Children > 0)
+        if (cell.Children > 0 || !this->IsWanted(cell))
         {
           continue;
         }
@@ -236,7 +250,7 @@ void FastRadialSum<Dimension>::SumDirectly(Execution& execution, double* values)
       for (std::int64_t t = begin; t < end; ++t)
       {
         const Cell& cell = tree.Cells[t];
-        if (cell.Children > 0)
+        if (cell.Children > 0 || !this->IsWanted(cell))
         {
           continue;
         }
@@ -259,6 +273,8 @@ void FastRadialSum<Dimension>::SumDirectly(Execution& execution, double* values)
     });
 }
 
+template bool FastRadialSum<2>::IsWanted(const Cell&) const;
+template bool FastRadialSum<3>::IsWanted(const Cell&) const;
 template void FastRadialSum<2>::Evaluate(Execution&, double*) const;
 template void FastRadialSum<3>::Evaluate(Execution&, double*) const;
 template void FastRadialSum<2>::SumDirectly(Execution&, double*) const;

@@ -124,7 +124,14 @@ public:
   /// s at the points of a grid, the first index fastest: by direct sums when Accuracy is 0, else
   /// with an error of at most Accuracy x GetRange. values has room for all points.
   void EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid, double* values,
-    int component = 0) const;
+    int component = 0) const
+  {
+    this->EvaluateGrid(execution, grid, WholeGrid(grid), values, component);
+  }
+  /// The same for a part of the grid, with the same bits; values, which has room for all points,
+  /// may be set next to it, too.
+  void EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid,
+    const GridPart<Dimension>& part, double* values, int component = 0) const;
 
   /// Coefficients of p for one component, up to the linear ones: constant, then one for each axis,
   /// for nodes in their own unit (the constant belongs to a thin plate r^2 log r with r in that

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace lacuna
 {
@@ -159,20 +160,34 @@ double RadialBasis<Dimension>::EvaluateWithin(Execution& execution, double toler
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-void RadialBasis<Dimension>::EvaluateGrid(
-  Execution& execution, const RegularGrid<Dimension>& grid, double* values, int component) const
+void RadialBasis<Dimension>::EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid,
+  const GridPart<Dimension>& part, double* values, int component) const
 {
-  const std::int64_t columns = grid.Size[0];
-  const std::int64_t rows = columns > 0 ? grid.GetNumberOfPoints() / columns : 0;
-  const auto getRowStart = [&](const RegularGrid<Dimension>& g, std::int64_t row)
+  const std::int64_t columns = part[0][1] - part[0][0];
+  std::int64_t rows = columns > 0 ? 1 : 0;
+  for (int c = 1; c < Dimension; ++c)
   {
-    Point p = g.Origin;
+    rows *= std::max<std::int64_t>(0, part[c][1] - part[c][0]);
+  }
+  if (rows == 0)
+  {
+    return;
+  }
+  // Where a row of the part starts, and its place among values.
+  const auto getRow = [&](const RegularGrid<Dimension>& g, std::int64_t row)
+  {
+    std::pair<Point, std::int64_t> start{ g.Origin, part[0][0] };
+    std::int64_t stride = g.Size[0];
     for (int c = 1; c < Dimension; ++c)
     {
-      p[c] += static_cast<double>(row % g.Size[c]) * g.Spacing[c];
-      row /= g.Size[c];
+      const std::int64_t size = part[c][1] - part[c][0];
+      const std::int64_t index = part[c][0] + row % size;
+      start.first[c] += static_cast<double>(index) * g.Spacing[c];
+      start.second += index * stride;
+      stride *= g.Size[c];
+      row /= size;
     }
-    return p;
+    return start;
   };
   if (!(this->Options.Accuracy > 0) || !(this->Ranges[component] > 0))
   {
@@ -182,7 +197,7 @@ void RadialBasis<Dimension>::EvaluateGrid(
         Point points[RadialBlock];
         for (std::int64_t row = begin; row < end; ++row)
         {
-          const Point start = getRowStart(grid, row);
+          const auto [start, place] = getRow(grid, row);
           for (std::int64_t first = 0; first < columns; first += RadialBlock)
           {
             const auto count =
@@ -190,9 +205,9 @@ void RadialBasis<Dimension>::EvaluateGrid(
             for (std::size_t i = 0; i < count; ++i)
             {
               points[i] = start;
-              points[i][0] += static_cast<double>(first + i) * grid.Spacing[0];
+              points[i][0] += static_cast<double>(part[0][0] + first + i) * grid.Spacing[0];
             }
-            this->EvaluateBlock(component, points, count, values + row * columns + first, nullptr);
+            this->EvaluateBlock(component, points, count, values + place + first, nullptr);
           }
         }
       });
@@ -210,6 +225,7 @@ void RadialBasis<Dimension>::EvaluateGrid(
   const auto n = static_cast<std::ptrdiff_t>(this->GetCenters().GetSize());
   const std::vector<double>& coefficients = this->Coefficients[component];
   FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
+  sum.SetPart(part);
   sum.ApplyOnce(execution, { coefficients.begin(), coefficients.begin() + n },
     this->Options.Accuracy * this->Ranges[component], values);
   execution.SetStage(0.9, 1);
@@ -218,11 +234,11 @@ void RadialBasis<Dimension>::EvaluateGrid(
     {
       for (std::int64_t row = begin; row < end; ++row)
       {
-        Point u = getRowStart(scaled, row);
+        auto [u, place] = getRow(scaled, row);
         for (std::int64_t i = 0; i < columns; ++i)
         {
-          u[0] = scaled.Origin[0] + static_cast<double>(i) * scaled.Spacing[0];
-          values[row * columns + i] +=
+          u[0] = scaled.Origin[0] + static_cast<double>(part[0][0] + i) * scaled.Spacing[0];
+          values[place + i] +=
             this->Means[component] + this->EvaluatePolynomial(coefficients.data() + n, u, nullptr);
         }
       }
@@ -236,7 +252,8 @@ template void RadialBasis<2>::Evaluate(
   Execution&, const std::vector<Point>&, std::vector<double>&, std::vector<Point>&, int) const;
 template double RadialBasis<2>::EvaluateWithin(
   Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
-template void RadialBasis<2>::EvaluateGrid(Execution&, const RegularGrid<2>&, double*, int) const;
+template void RadialBasis<2>::EvaluateGrid(
+  Execution&, const RegularGrid<2>&, const GridPart<2>&, double*, int) const;
 template double RadialBasis<3>::EvaluatePolynomial(const double*, const Point&, Point*) const;
 template void RadialBasis<3>::Evaluate(
   Execution&, const std::vector<Point>&, std::vector<double>&, int) const;
@@ -244,5 +261,6 @@ template void RadialBasis<3>::Evaluate(
   Execution&, const std::vector<Point>&, std::vector<double>&, std::vector<Point>&, int) const;
 template double RadialBasis<3>::EvaluateWithin(
   Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
-template void RadialBasis<3>::EvaluateGrid(Execution&, const RegularGrid<3>&, double*, int) const;
+template void RadialBasis<3>::EvaluateGrid(
+  Execution&, const RegularGrid<3>&, const GridPart<3>&, double*, int) const;
 }

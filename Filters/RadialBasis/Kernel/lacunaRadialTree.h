@@ -35,6 +35,22 @@ struct RegularGrid
   }
 };
 
+/// Part of a grid: first index and the one after the last, along each axis.
+template <int Dimension>
+using GridPart = std::array<std::array<std::int64_t, 2>, Dimension>;
+
+/// All of it.
+template <int Dimension>
+GridPart<Dimension> WholeGrid(const RegularGrid<Dimension>& grid)
+{
+  GridPart<Dimension> part;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    part[c] = { 0, grid.Size[c] };
+  }
+  return part;
+}
+
 /// The cube that the trees divide.
 template <int Dimension>
 struct RootCube

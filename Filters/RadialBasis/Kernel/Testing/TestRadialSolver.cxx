@@ -289,6 +289,60 @@ TEST(RadialSolver, GridsAboutAHoleKeepTheBound)
   }
 }
 
+// Ranks share a grid: together they have the bits of all of it, from fast sums and direct ones.
+TEST(RadialSolver, PartsOfAGridAreTheWhole)
+{
+  lacuna::ThreadExecution execution(2);
+  const Points<2> flat = Scatter<2>(2500);
+  const lacuna::RegularGrid<2> square{ { 3, -2 }, { 0.21, 0.19 }, { 410, 520 } };
+  const Points<3> nodes = Scatter<3>(2500);
+  const lacuna::RegularGrid<3> cube{ { 0, 1, 2 }, { 1.7, 1.8, 1.9 }, { 57, 53, 51 } };
+  for (const double accuracy : { 1e-4, 0.0 })
+  {
+    const auto check = [&](const auto& s, const auto& grid)
+    {
+      const double unset = -1e300;
+      std::vector<double> whole(grid.GetNumberOfPoints());
+      s.EvaluateGrid(execution, grid, whole.data());
+      const auto all = lacuna::WholeGrid(grid);
+      const std::int64_t middle = grid.Size[1] / 3;
+      const std::int64_t column = grid.Size[0] / 2;
+      for (int quarter = 0; quarter < 4; ++quarter)
+      {
+        auto part = all;
+        part[0][quarter % 2] = column;
+        part[1][quarter / 2] = middle;
+        std::vector<double> values(whole.size(), unset);
+        s.EvaluateGrid(execution, grid, part, values.data());
+        std::int64_t left = 0;
+        for (std::size_t i = 0; i < whole.size(); ++i)
+        {
+          const auto x = static_cast<std::int64_t>(i) % grid.Size[0];
+          const auto y = static_cast<std::int64_t>(i) / grid.Size[0] % grid.Size[1];
+          const bool inside =
+            x >= part[0][0] && x < part[0][1] && y >= part[1][0] && y < part[1][1];
+          ASSERT_TRUE(!inside || values[i] == whole[i]) << accuracy << " at " << i;
+          left += values[i] == unset;
+        }
+        EXPECT_GT(left, static_cast<std::int64_t>(whole.size() / 5)) << "all was computed";
+      }
+      auto nothing = all;
+      nothing[1] = { 4, 4 };
+      std::vector<double> values(whole.size(), unset);
+      s.EvaluateGrid(execution, grid, nothing, values.data());
+      EXPECT_EQ(values, std::vector<double>(whole.size(), unset));
+    };
+    check(RadialBasis<2>(execution, flat, Values<2>(flat),
+            Options(RadialKernel::ThinPlate,
+              accuracy > 0 ? RadialSolver::Fast : RadialSolver::Direct, accuracy)),
+      square);
+    check(RadialBasis<3>(execution, nodes, Values<3>(nodes),
+            Options(RadialKernel::Linear, accuracy > 0 ? RadialSolver::Fast : RadialSolver::Direct,
+              accuracy)),
+      cube);
+  }
+}
+
 TEST(RadialSolver, IsTheSameForAnyNumberOfThreads)
 {
   const Points<2> nodes = Scatter<2>(3000);
