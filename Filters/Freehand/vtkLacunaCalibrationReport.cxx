@@ -196,9 +196,9 @@ bool vtkLacunaCalibrationReport::MayReplace(
   std::ifstream file(fileName, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(file), {});
   const std::size_t line = text.find(HashLine);
-  if (text.empty() || line == std::string::npos)
+  if (!file || text.empty() || line == std::string::npos)
   {
-    return text.empty();
+    return file && text.empty();
   }
   const std::string hash = text.substr(line + std::strlen(HashLine), 16);
   text.erase(line, std::strlen(HashLine) + hash.size());

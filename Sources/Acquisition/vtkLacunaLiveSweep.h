@@ -18,7 +18,7 @@
 struct vtkLacunaLiveSweep
 {
   static constexpr const char* WaitingText =
-    "The devices are changed at the next update after Stop";
+    "The devices, and a calibration chosen with them, are changed at the next update after Stop";
 
   lacuna::AcquisitionState GetState() const
   {
@@ -51,10 +51,11 @@ struct vtkLacunaLiveSweep
   std::string Tried;   // what was configured last, rightly or not
   std::string Trouble; // why it could not be
   std::int64_t LimitBytes = 0;
-  std::int64_t FreeBytes = 0;              // of memory, when the devices were opened
-  std::deque<lacuna::AcquiredSlice> Taken; // slices that wait for memory
-  bool IsShortOfMemory = false;
+  std::int64_t FreeBytes = 0;                 // of memory, when the devices were opened
+  std::deque<lacuna::AcquiredSlice> Taken;    // slices that wait for memory
+  std::string MemoryTrouble;                  // of these
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
+  lacuna::SweepFrame Calibration;             // that is in force; without a window
   std::string TakenBy;                        // devices and rules, for its provenance
   bool StackIsOfOthers = false;               // of devices that are not these
   lacuna::AcquisitionState Past;              // at the end of those, then

@@ -49,6 +49,12 @@ std::string DescribeVersion(const std::string& fileName)
   return none ? "" : std::to_string(time) + " " + std::to_string(size);
 }
 
+// At least enough for some slices.
+std::int64_t GetFreeBytes()
+{
+  return std::max(static_cast<std::int64_t>(lacuna::GetAvailableMemory()), 128 * Mebibyte);
+}
+
 // What a message is about, without its numbers.
 std::string GetSubject(std::string message)
 {
@@ -122,7 +128,7 @@ void vtkLacunaPolhemusVideoSource::Open()
   now.Tracker = this->DescribeTracker();
   now.Video = this->DescribeVideo();
   now.Crop = this->DescribeCrop();
-  now.FreeBytes = std::max(static_cast<std::int64_t>(lacuna::GetAvailableMemory()), 128 * Mebibyte);
+  now.FreeBytes = GetFreeBytes();
 }
 
 //------------------------------------------------------------------------------
@@ -134,10 +140,11 @@ void vtkLacunaPolhemusVideoSource::Close()
   {
     return;
   }
-  this->Stop();
+  const lacuna::AcquisitionState past = now.Acquisition->Finish();
+  this->GetNeedsUpdate(); // the last slices: after Finish there are no more
   if (now.Stack && !now.StackIsOfOthers)
   {
-    now.Past = now.Acquisition->Finish();
+    now.Past = past;
     now.StackIsOfOthers = true;
     if (const std::int64_t unwritten = now.GetUnwritten(); unwritten > 0)
     {
@@ -219,6 +226,13 @@ void vtkLacunaPolhemusVideoSource::Configure()
       rules.ImageToProbe = frames.ImageToProbe;
       rules.TrackerToReference = frames.TrackerToReference;
     }
+    // One that is chosen together with other devices is theirs.
+    const bool keepsCalibration = wait && now.Calibration.Calibrated;
+    if (keepsCalibration)
+    {
+      rules.ImageToProbe = now.Calibration.ImageToProbe;
+      rules.TrackerToReference = now.Calibration.TrackerToReference;
+    }
     rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
     rules.MovementThreshold = this->MovementThreshold;
     rules.SpeedLimit = this->SpeedLimit;
@@ -235,17 +249,16 @@ void vtkLacunaPolhemusVideoSource::Configure()
     rules.MemoryLimit = this->MemoryLimit > 0 ? this->MemoryLimit * Mebibyte : now.FreeBytes / 2;
     now.Acquisition->SetRules(rules);
     now.LimitBytes = rules.MemoryLimit;
-    if (!now.StackIsOfOthers)
+    now.Calibration.Calibrated = rules.ImageToProbe.has_value();
+    now.Calibration.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
+    now.Calibration.TrackerToReference = rules.TrackerToReference;
+    if (!now.StackIsOfOthers && !keepsCalibration) // else another probe may have taken them
     {
       now.TakenBy = now.DescribeDevices() + " " + this->DescribeRules();
-    }
-    if (now.Stack && !now.StackIsOfOthers) // another probe may have taken those
-    {
-      lacuna::SweepFrame frame;
-      frame.Calibrated = rules.ImageToProbe.has_value();
-      frame.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
-      frame.TrackerToReference = rules.TrackerToReference;
-      now.Stack->Calibrate(frame);
+      if (now.Stack)
+      {
+        now.Stack->Calibrate(now.Calibration);
+      }
     }
     if (calibration.empty() && !now.ToldUncalibrated)
     {
@@ -288,11 +301,10 @@ void vtkLacunaPolhemusVideoSource::Start()
   {
     this->Connect();
   }
-  if (!this->Now->Trouble.empty())
+  else
   {
-    this->Now->Tried.clear(); // asked for: tries again what failed
+    this->Configure();
   }
-  this->Configure();
   if (!this->Now->Acquisition || !this->Now->Trouble.empty())
   {
     return; // it was said why
@@ -327,6 +339,10 @@ void vtkLacunaPolhemusVideoSource::Clear()
     {
       throw std::runtime_error(now.Past.File.Trouble);
     }
+    if (!now.Taken.empty() && !now.MayDiscard)
+    {
+      throw std::runtime_error(now.MemoryTrouble);
+    }
     if (now.Acquisition)
     {
       now.Acquisition->BeginSweep(now.MayDiscard);
@@ -334,6 +350,8 @@ void vtkLacunaPolhemusVideoSource::Clear()
     now.MayDiscard = false;
     now.Stack.reset();
     now.Taken.clear();
+    now.MemoryTrouble.clear();
+    now.FreeBytes = GetFreeBytes();
     now.StackIsOfOthers = false;
     now.Subjects.clear();
     now.Tried.clear(); // the button may start again
@@ -362,16 +380,18 @@ bool vtkLacunaPolhemusVideoSource::TakeOver()
   const bool grows = !now.Taken.empty();
   if (grows && !now.Stack)
   {
-    const auto sweep = now.Acquisition->GetSweep();
+    // The frame of the last slice may have been calibrated in another way than slices are now.
+    lacuna::SweepFrame frame = now.Calibration;
+    frame.Window = now.Acquisition->GetSweep()->Window;
     const auto size = static_cast<std::int64_t>(now.Taken.front().Pixels->size());
     const std::int64_t most = std::max<std::int64_t>(now.LimitBytes / size, 1);
     try
     {
-      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, most * size);
+      now.Stack = std::make_unique<vtkLacunaSliceStack>(frame, most * size);
     }
     catch (const std::bad_alloc&) // a system that gives no memory in advance
     {
-      now.Stack = std::make_unique<vtkLacunaSliceStack>(*sweep, 0);
+      now.Stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
     }
   }
   for (; !now.Taken.empty(); now.Taken.pop_front())
@@ -401,20 +421,16 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
   try
   {
     changed = this->TakeOver();
-    if (std::exchange(this->Now->IsShortOfMemory, false))
-    {
-      this->Now->Trouble.clear();
-    }
+    this->Now->MemoryTrouble.clear();
   }
   catch (const std::bad_alloc&)
   {
     this->Now->Acquisition->Stop();
-    this->Now->IsShortOfMemory = true;
     const std::string trouble = "There is no memory for " +
       std::to_string(this->Now->Taken.size()) +
       " slices, which wait for it; the capture has ended. Close what needs memory, then Start, or "
       "save the others; and set a lower MemoryLimit";
-    if (std::exchange(this->Now->Trouble, trouble) != trouble)
+    if (std::exchange(this->Now->MemoryTrouble, trouble) != trouble)
     {
       this->Now->News.push_back(trouble);
     }

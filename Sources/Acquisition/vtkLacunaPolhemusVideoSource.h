@@ -117,7 +117,7 @@ public:
   void Disconnect();
   /// Takes slices from now on, after Connect if need be.
   void Start();
-  /// Ends the capture, within a second.
+  /// Ends the capture, within a second and a TimeOffset above 0.
   void Stop();
   /// Begins a new sweep without slices. When slices could not be recorded, also those of devices that
   /// have been closed since, that is an error at first; a second call drops them, if none has been

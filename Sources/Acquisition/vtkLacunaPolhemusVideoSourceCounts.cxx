@@ -174,6 +174,7 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   { text += (text.empty() || line.empty() ? "" : "\n") + line; };
   add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
   add(this->DevicesWait() ? vtkLacunaLiveSweep::WaitingText : "");
+  add(now.MemoryTrouble);
   add(this->DescribeKept());
   const lacuna::AcquisitionState state = now.GetState();
   std::for_each(state.Messages.begin(), state.Messages.end(), add);

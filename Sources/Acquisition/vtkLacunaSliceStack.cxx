@@ -134,13 +134,20 @@ void vtkLacunaSliceStack::AppendPose(const lacuna::Matrix4& probeToTracker)
 //------------------------------------------------------------------------------
 void vtkLacunaSliceStack::Calibrate(const lacuna::SweepFrame& frame)
 {
+  // outputs that were made keep the old ones
+  auto tracker = MakeMatrices(TrackerToReferenceName);
+  auto image =
+    frame.Calibrated ? MakeMatrices(vtkLacunaTrackedSlices::ImageToReferenceName) : nullptr;
+  tracker->MakeRoom(this->GetNumberOfSlices());
+  if (image)
+  {
+    image->MakeRoom(this->GetNumberOfSlices());
+  }
   const std::array<int, 4> window = this->Frame.Window;
   this->Frame = frame;
   this->Frame.Window = window;
-  // outputs that were made keep the old ones
-  this->TrackerToReference = MakeMatrices(TrackerToReferenceName);
-  this->ImageToReference =
-    frame.Calibrated ? MakeMatrices(vtkLacunaTrackedSlices::ImageToReferenceName) : nullptr;
+  this->TrackerToReference = std::move(tracker);
+  this->ImageToReference = std::move(image);
   for (vtkIdType i = 0; i < this->GetNumberOfSlices(); ++i)
   {
     this->AppendPose(lacuna::Matrix4(static_cast<const double*>(this->ProbeToTracker.GetTuple(i))));

@@ -29,7 +29,8 @@ public:
 
   /// Takes the slice as a whole or, throwing std::bad_alloc, nothing of it.
   void Append(const lacuna::AcquiredSlice& slice);
-  /// Takes the calibration of a frame for all slices, those that are there too.
+  /// Takes the calibration of a frame for all slices, those that are there too; or, throwing
+  /// std::bad_alloc, for none.
   void Calibrate(const lacuna::SweepFrame& frame);
 
   vtkIdType GetNumberOfSlices() const { return this->Status.GetNumberOfTuples(); }

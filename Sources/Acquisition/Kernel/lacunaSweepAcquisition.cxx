@@ -4,6 +4,7 @@
 #include "lacunaDeviceThread.h"
 
 #include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -14,9 +15,9 @@ namespace lacuna
 {
 namespace
 {
-constexpr int ManyFrames = 10;                              // without a pose: half a second
-constexpr double LongestSilence = 3;                        // s of a tracker that worked
-constexpr std::chrono::milliseconds LongestSettling{ 800 }; // of the last frames of a capture
+constexpr int ManyFrames = 10;                                  // without a pose: half a second
+constexpr double LongestSilence = 3;                            // s of a tracker that worked
+constexpr std::chrono::duration<double> LongestSettling{ 0.8 }; // of a capture's last frames
 
 PoseCounts Sum(const PoseCounts& a, const PoseCounts& b)
 {
@@ -55,6 +56,7 @@ struct SweepAcquisition::Core
   void LosePoses();
   void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
   void Process();
+  void HeedStart();
   void Publish(std::int64_t processed, std::vector<AcquiredSlice> slices);
   std::uint64_t CountFlipped() const
   {
@@ -73,6 +75,7 @@ struct SweepAcquisition::Core
   AcquisitionRules Rules;
   FramePairing Pairing;
   bool Capturing = false;
+  bool Started = false;   // and Taking does not know it yet
   bool PosesCome = false; // a tracker is connected and has measured
   bool ButtonDown = false;
   bool ButtonBefore = false; // what the last record said
@@ -258,6 +261,7 @@ void SweepAcquisition::Core::Process()
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
     ready = this->Pairing.Take(this->Time.Now());
+    this->HeedStart();
   }
   if (ready.empty())
   {
@@ -279,8 +283,18 @@ void SweepAcquisition::Core::Process()
 }
 
 // With both locks.
+void SweepAcquisition::Core::HeedStart()
+{
+  if (std::exchange(this->Started, false))
+  {
+    this->Taking.Resume();
+  }
+}
+
+// With both locks.
 void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<AcquiredSlice> slices)
 {
+  this->HeedStart();
   this->Slices.insert(this->Slices.end(), std::make_move_iterator(slices.begin()),
     std::make_move_iterator(slices.end()));
   this->Pending -= processed;
@@ -378,13 +392,17 @@ void SweepAcquisition::Start()
 {
   const std::lock_guard<std::mutex> lock(this->Work->Mutex);
   this->Work->Capturing = true;
+  this->Work->Started = true;
 }
 
 void SweepAcquisition::Stop()
 {
   std::unique_lock<std::mutex> lock(this->Work->Mutex);
   this->Work->Capturing = false;
-  this->Work->Settled.wait_for(lock, LongestSettling, [this] { return this->Work->Pending == 0; });
+  // frames that are late by their clock wait for poses to come
+  const std::chrono::duration<double> late{ std::max(this->Work->Rules.TimeOffset, 0.0) };
+  this->Work->Settled.wait_for(
+    lock, LongestSettling + late, [this] { return this->Work->Pending == 0; });
 }
 
 AcquisitionState SweepAcquisition::Finish()
@@ -393,6 +411,8 @@ AcquisitionState SweepAcquisition::Finish()
   {
     const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
     this->Work->Taking.Finish();
+    const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+    this->Work->Publish(0, {});
   }
   return this->GetState();
 }

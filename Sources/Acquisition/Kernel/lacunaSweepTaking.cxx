@@ -168,8 +168,15 @@ void SweepTaking::SetRules(const AcquisitionRules& rules)
   if (this->File && !rules.RecordFileName.empty())
   {
     this->File->Rename(rules.RecordFileName, rules.RecordCompressionLevel);
+    this->File->Retry();
   }
+  this->Resume();
+}
+
+void SweepTaking::Resume()
+{
   this->Full = false; // unless the next slice finds it so
+  this->OutOfMemory = false;
 }
 
 void SweepTaking::RenewRule()
@@ -196,9 +203,19 @@ void SweepTaking::Finish()
 
 void SweepTaking::BeginSweep(bool discard)
 {
-  if (this->File && !discard)
+  try
   {
-    this->File->Finish();
+    if (this->File)
+    {
+      this->File->Finish(); // it may be possible by now
+    }
+  }
+  catch (const FileError&)
+  {
+    if (!discard)
+    {
+      throw;
+    }
   }
   if (this->IsUnrecorded() && !discard)
   {
@@ -208,7 +225,7 @@ void SweepTaking::BeginSweep(bool discard)
   this->Counts = {};
   this->Sweep.reset();
   this->LargestResidual = 0;
-  this->Full = false;
+  this->Resume();
   this->Rule.BeginSweep();
 }
 
@@ -320,10 +337,6 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
     ++this->Counts.PastLimit;
     return;
   }
-  if (frame.Pose)
-  {
-    this->Rule.Take();
-  }
   try
   {
     slices.push_back(MakeSlice(frame, *window, this->Epoch));
@@ -331,8 +344,13 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   catch (const std::bad_alloc&) // MemoryLimit was set too high
   {
     this->Full = true;
+    this->OutOfMemory = true;
     ++this->Counts.PastLimit;
     return;
+  }
+  if (frame.Pose)
+  {
+    this->Rule.Take();
   }
   AcquiredSlice& slice = slices.back();
   slice.Speed = verdict.Speed.value_or(NaN);
@@ -373,9 +391,13 @@ std::vector<std::string> SweepTaking::GetMessages() const
   std::vector<std::string> messages;
   if (this->Full)
   {
-    messages.push_back("The capture has ended at MemoryLimit; all " +
-      std::to_string(this->Counts.Slices) +
-      " slices are kept. Save them and begin a new sweep, or set a higher limit and start again");
+    const std::string kept = "; all " + std::to_string(this->Counts.Slices) + " slices are kept. ";
+    messages.push_back(this->OutOfMemory
+        ? "The capture has ended, there is no memory for more" + kept +
+          "Close what needs memory and start again, or save them and begin a new sweep; and set a "
+          "lower MemoryLimit"
+        : "The capture has ended at MemoryLimit" + kept +
+          "Save them and begin a new sweep, or set a higher limit and start again");
   }
   if (!this->SizeTrouble.empty())
   {

@@ -75,6 +75,8 @@ public:
   /// The window that would be taken of a frame; nothing when the crop does not fit it.
   std::optional<SweepFrame> GetWindow(const VideoFrame& frame) const;
   bool IsFull() const { return this->Full; }
+  /// Tries again what was full.
+  void Resume();
   double GetLargestResidual() const { return this->LargestResidual; }
   std::optional<double> GetSpeed() const { return this->Speed; }
   SweepFile::State GetFile() const;
@@ -106,6 +108,7 @@ private:
   std::unique_ptr<SweepFile> File;
   bool Finished = false;
   bool Full = false;
+  bool OutOfMemory = false;   ///< why it is
   std::string SizeTrouble;    ///< of the newest frame
   std::string SpacingTrouble; ///< the same
   int FramesSincePose = 0;

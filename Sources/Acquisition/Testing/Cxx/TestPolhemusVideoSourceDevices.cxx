@@ -6,9 +6,11 @@
 #include "vtkImageData.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSlices.h"
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <thread>
@@ -232,6 +234,93 @@ void TestKeptSlicesStayAsTheyWere()
   LACUNA_CHECK(has(0, 50) && names(0, "32x24"));
 }
 
+// Neither the moment of a poll nor what is chosen for the next devices changes where slices are.
+void TestCalibrationsAndMoments()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  const auto calibrate = [&](double x)
+  {
+    source->SetCalibrationFileName(bench
+                                     .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
+                                       lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
+                                     .c_str());
+  };
+  const auto check = [&](int port, double x)
+  {
+    source->Update();
+    vtkImageData* output = source->GetOutput(port);
+    const vtkIdType count = output->GetDimensions()[2];
+    LACUNA_CHECK(output->GetFieldData()->GetArray("ImageToProbe")->GetComponent(0, 3) == x);
+    vtkDataArray* poses = vtkLacunaFieldData::Get(output, "ImageToReference", 16, count);
+    vtkDataArray* probes = vtkLacunaFieldData::Get(output, "ProbeToTracker", 16, count);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const lacuna::Matrix4 pose = vtkLacunaFieldData::GetMatrix(poses, i);
+      LACUNA_CHECK(!pose.IsFinite() ||
+        lacuna::Norm(pose.Point({ 0, 0, 0 }) -
+          vtkLacunaFieldData::GetMatrix(probes, i).Point({ x, 0, 0 })) < 1e-9);
+    }
+  };
+  source->Connect();
+  LACUNA_CHECK(bench.IsConnected());
+  source->Start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500)); // slices that nobody polls
+  calibrate(5);
+  source->Update();
+  LACUNA_CHECK(bench.PollFor(5));
+  check(0, 5);
+  // for the next devices, which wait
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  calibrate(50);
+  source->Update();
+  LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "a calibration chosen with them");
+  LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
+  check(0, 5);
+  source->Stop();
+  source->Update();
+  LACUNA_CHECK(bench.IsConnected());
+  LACUNA_CHECK(bench.PollUntil(
+    [&]
+    {
+      source->Update();
+      return source->GetOutput(1)->GetDimensions()[0] == 32;
+    }));
+  check(0, 5);
+  LACUNA_CHECK(
+    source->GetOutput(1)->GetFieldData()->GetArray("ImageToProbe")->GetComponent(0, 3) == 50);
+}
+
+// What is taken is there after Disconnect, however late it came.
+void TestLastSlices()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetTimeOffset(0.95); // slices wait for poses
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(3));
+  source->Disconnect();
+  LACUNA_CHECK(source->GetTakenSlices() == source->GetSliceCount());
+  LACUNA_CHECK(source->GetFrameCount() == source->GetSliceCount());
+  source->Clear();
+  source->SetTimeOffset(0);
+  // a Clear that may drop them records what it can by then
+  const std::string file = bench.Folder + "/late/sweep.mhd";
+  source->SetRecordFileName(file.c_str());
+  source->Start();
+  LACUNA_CHECK(bench.PollFor(5));
+  source->Clear();
+  LACUNA_CHECK(bench.Messages->HasError("Clear again"));
+  bench.Messages->Errors.clear();
+  const vtkIdType count = source->GetSliceCount();
+  std::filesystem::create_directory(bench.Folder + "/late");
+  source->Clear();
+  vtkNew<vtkLacunaTrackedSliceReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  LACUNA_CHECK(reader->GetOutput()->GetDimensions()[2] == count);
+}
+
 // Half of the memory that was free when the devices were opened, whatever is changed later.
 void TestMemoryLimitOfItsOwn()
 {
@@ -440,6 +529,8 @@ int TestPolhemusVideoSourceDevices(int, char*[])
   TestUnwrittenSlicesAreKept();
   TestRecordFileNameDuringASweep();
   TestKeptSlicesStayAsTheyWere();
+  TestCalibrationsAndMoments();
+  TestLastSlices();
   TestMemoryLimitOfItsOwn();
   TestButtonWithoutPolls();
   TestFormats();
