@@ -55,6 +55,7 @@ struct vtkLacunaLiveSweep
   std::deque<lacuna::AcquiredSlice> Taken;    // slices that wait for memory
   std::string MemoryTrouble;                  // of these
   std::unique_ptr<vtkLacunaSliceStack> Stack; // null before the first slice
+  lacuna::AcquisitionRules Rules;             // that are in force
   lacuna::SweepFrame Calibration;             // that is in force; without a window
   std::string TakenBy;                        // devices and rules, for its provenance
   bool StackIsOfOthers = false;               // of devices that are not these

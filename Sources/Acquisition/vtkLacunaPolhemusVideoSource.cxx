@@ -211,7 +211,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
   const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
   const std::string calibration = Text(this->CalibrationFileName);
   const std::string tried = (wait ? now.DescribeDevices() : this->DescribeDevices()) +
-    this->DescribeRules() + DescribeVersion(calibration);
+    this->DescribeRules() + DescribeVersion(calibration) + (wait ? " wait" : "");
   if (tried == now.Tried && (now.Acquisition || !now.Trouble.empty()))
   {
     return;
@@ -248,6 +248,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
     rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
     rules.MemoryLimit = this->MemoryLimit > 0 ? this->MemoryLimit * Mebibyte : now.FreeBytes / 2;
     now.Acquisition->SetRules(rules);
+    now.Rules = rules;
     now.LimitBytes = rules.MemoryLimit;
     now.Calibration.Calibrated = rules.ImageToProbe.has_value();
     now.Calibration.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
@@ -272,6 +273,11 @@ void vtkLacunaPolhemusVideoSource::Configure()
   {
     now.Trouble = e.what();
     vtkErrorMacro(<< now.Trouble);
+    if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
+    {
+      now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted
+      now.Acquisition->SetRules(now.Rules);
+    }
   }
 }
 

@@ -174,6 +174,9 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   { text += (text.empty() || line.empty() ? "" : "\n") + line; };
   add(now.Acquisition ? "" : "The devices are not open: Connect, or Start");
   add(this->DevicesWait() ? vtkLacunaLiveSweep::WaitingText : "");
+  add(this->ButtonStarts && now.Acquisition && !now.Trouble.empty()
+      ? "Mend that before you start; the button does nothing now"
+      : "");
   add(now.MemoryTrouble);
   add(this->DescribeKept());
   const lacuna::AcquisitionState state = now.GetState();

@@ -3,10 +3,11 @@
 
 #include "lacunaDeviceThread.h"
 
-#include <atomic>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -269,10 +270,18 @@ void SweepAcquisition::Core::Process()
   }
   std::vector<AcquiredSlice> slices;
   std::int64_t processed = 0;
+  std::exception_ptr error; // slices that were taken are told all the same
   for (const PairedFrame& frame : ready)
   {
-    this->Taking.Add(frame, this->Time.Now(), slices);
     processed += frame.Wanted ? 1 : 0;
+    try
+    {
+      this->Taking.Add(frame, this->Time.Now(), slices);
+    }
+    catch (...)
+    {
+      error = std::current_exception();
+    }
   }
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (const auto window = this->Taking.GetWindow(*ready.back().Frame))
@@ -280,6 +289,10 @@ void SweepAcquisition::Core::Process()
     this->Live = std::pair(std::move(ready.back()), *window);
   }
   this->Publish(processed, std::move(slices));
+  if (error)
+  {
+    std::rethrow_exception(error);
+  }
 }
 
 // With both locks.

@@ -212,7 +212,8 @@ void SweepTaking::BeginSweep(bool discard)
   }
   catch (const FileError&)
   {
-    if (!discard)
+    const SweepFile::State state = this->File->GetState();
+    if (!discard && state.Synced < state.Added) // all else can be read
     {
       throw;
     }

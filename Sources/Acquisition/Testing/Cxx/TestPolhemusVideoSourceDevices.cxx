@@ -205,6 +205,7 @@ void TestKeptSlicesStayAsTheyWere()
                                      .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
                                        lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
                                      .c_str());
+    source->Modified(); // as a poll does: of the same name
   };
   const auto has = [&](int port, double x)
   {
@@ -245,6 +246,7 @@ void TestCalibrationsAndMoments()
                                      .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
                                        lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
                                      .c_str());
+    source->Modified(); // as a poll does: of the same name
   };
   const auto check = [&](int port, double x)
   {
@@ -276,6 +278,15 @@ void TestCalibrationsAndMoments()
   source->Update();
   LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "a calibration chosen with them");
   LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
+  check(0, 5);
+  // for these, after all
+  source->SetVideoURL("lavfi:testsrc2=size=64x48:rate=25");
+  source->Update();
+  check(0, 50);
+  calibrate(5);
+  check(0, 5);
+  source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
+  calibrate(50);
   check(0, 5);
   source->Stop();
   source->Update();
@@ -362,12 +373,28 @@ void TestButtonWithoutPolls()
   const vtkIdType count = source->GetSliceCount();
   LACUNA_CHECK(count > 0);
   LACUNA_CHECK(bench.IsConnected());
-  press();
-  LACUNA_CHECK(!source->GetCapturing());
+  const auto ignored = [&](const std::string& words)
+  {
+    LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), words);
+    press();
+    LACUNA_CHECK(!source->GetCapturing());
+  };
+  ignored("the button does nothing");
   source->Poll();
   source->Update();
   LACUNA_CHECK(source->GetSliceCount() == count);
   LACUNA_CHECK(source->GetOutput(0)->GetNumberOfPoints() == count * 64 * 48);
+  // nor slices of rules that are not wanted any more
+  source->Clear();
+  source->Update();
+  source->SetCalibrationFileName("/nowhere.xml");
+  source->Update();
+  ignored("the button does nothing now");
+  LACUNA_CHECK(source->GetSliceCount() == 0);
+  source->SetCalibrationFileName(nullptr);
+  source->Update();
+  press();
+  LACUNA_CHECK(source->GetCapturing());
 }
 
 // What the newest slice says of the probe; not a number while it has no pose.
