@@ -56,7 +56,7 @@ public:
     DicomTag group, DicomTag tag, std::size_t count, const char* name) const
   {
     const DicomDataSet& values = this->Get(group);
-    const auto numbers = values.GetNumbers(tag, count);
+    auto numbers = values.GetNumbers(tag, count);
     const auto others = this->File.GetNumbers(tag, count);
     if (!numbers || !others || this->IsOfOneOfSeveral(group))
     {

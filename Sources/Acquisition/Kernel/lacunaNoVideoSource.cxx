@@ -8,6 +8,7 @@ struct VideoSource::Stream
 {
 };
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): declared for those that keep it
 VideoSource::VideoSource(const VideoSettings& settings, const Clock&, std::function<bool()>)
 {
   throw VideoError(VideoError::Kind::Unsupported,

@@ -8,6 +8,7 @@ struct VideoSender::Stream
 {
 };
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): declared for those that keep it
 VideoSender::VideoSender(const VideoSenderSettings& settings, std::function<bool()>)
 {
   throw VideoError(VideoError::Kind::Unsupported,
