@@ -194,33 +194,34 @@ void TestRecordFileNameDuringASweep()
   LACUNA_CHECK_THAT(bench.Messages->Errors.empty(), bench.Messages->Errors);
 }
 
+// The probe is where x says; mm.
+void Calibrate(const Bench& bench, double x)
+{
+  const std::string file = bench.WriteCalibration(
+    lacuna::Matrix4::Translation({ x, 0, 0 }) * lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }));
+  bench.Source->SetCalibrationFileName(file.c_str());
+  bench.Source->Modified(); // as a poll does: of the same name
+}
+
 // Slices belong to the probe and the devices that took them.
 void TestKeptSlicesStayAsTheyWere()
 {
   Bench bench([](double, int) { return Still; });
   vtkLacunaPolhemusVideoSource* source = bench.Source;
-  const auto calibrate = [&](double x)
-  {
-    source->SetCalibrationFileName(bench
-                                     .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
-                                       lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
-                                     .c_str());
-    source->Modified(); // as a poll does: of the same name
-  };
   const auto has = [&](int port, double x)
   {
     source->Update();
     vtkDataArray* matrices = source->GetOutput(port)->GetFieldData()->GetArray("ImageToProbe");
     return matrices && matrices->GetComponent(0, 3) == x;
   };
-  calibrate(5);
+  Calibrate(bench, 5);
   source->Start();
   LACUNA_CHECK(bench.PollFor(3));
-  calibrate(6); // rewritten at once: of the same length, in the same second
+  Calibrate(bench, 6); // rewritten at once: of the same length, in the same second
   LACUNA_CHECK(has(0, 6));
   source->Disconnect();
   source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
-  calibrate(50);
+  Calibrate(bench, 50);
   source->Connect();
   LACUNA_CHECK(bench.PollUntil([&] { return has(1, 50); }));
   LACUNA_CHECK(has(0, 6));
@@ -240,14 +241,6 @@ void TestCalibrationsAndMoments()
 {
   Bench bench([](double, int) { return Still; });
   vtkLacunaPolhemusVideoSource* source = bench.Source;
-  const auto calibrate = [&](double x)
-  {
-    source->SetCalibrationFileName(bench
-                                     .WriteCalibration(lacuna::Matrix4::Translation({ x, 0, 0 }) *
-                                       lacuna::Matrix4::Scaling({ 0.5, 0.5, 0.5 }))
-                                     .c_str());
-    source->Modified(); // as a poll does: of the same name
-  };
   const auto check = [&](int port, double x)
   {
     source->Update();
@@ -268,13 +261,13 @@ void TestCalibrationsAndMoments()
   LACUNA_CHECK(bench.IsConnected());
   source->Start();
   std::this_thread::sleep_for(std::chrono::milliseconds(500)); // slices that nobody polls
-  calibrate(5);
+  Calibrate(bench, 5);
   source->Update();
   LACUNA_CHECK(bench.PollFor(5));
   check(0, 5);
   // for the next devices, which wait
   source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
-  calibrate(50);
+  Calibrate(bench, 50);
   source->Update();
   LACUNA_CHECK_CONTAINS(std::string(source->GetMessage()), "a calibration chosen with them");
   LACUNA_CHECK(bench.PollFor(source->GetSliceCount() + 3));
@@ -283,10 +276,10 @@ void TestCalibrationsAndMoments()
   source->SetVideoURL("lavfi:testsrc2=size=64x48:rate=25");
   source->Update();
   check(0, 50);
-  calibrate(5);
+  Calibrate(bench, 5);
   check(0, 5);
   source->SetVideoURL("lavfi:testsrc2=size=32x24:rate=25");
-  calibrate(50);
+  Calibrate(bench, 50);
   check(0, 5);
   source->Stop();
   source->Update();
