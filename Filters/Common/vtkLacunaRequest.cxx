@@ -169,6 +169,20 @@ void vtkLacunaRequest::Whole(
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaRequest::WholeOnFirst(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
+{
+  if (vtkLacunaRanks().GetRank() == 0)
+  {
+    Whole(filter, input, outputs);
+  }
+  else
+  {
+    Nothing(filter, input);
+  }
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaRequest::WholeIfItFits(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {

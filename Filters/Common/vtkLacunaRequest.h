@@ -36,6 +36,11 @@ VTKLACUNAFILTERSCOMMON_EXPORT int WholeIfItFits(
 /// This very extent of an image.
 VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);
 
+/// The same on the first rank and nothing on the others, for filters that answer all requests by what
+/// the first rank has made.
+VTKLACUNAFILTERSCOMMON_EXPORT void WholeOnFirst(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
+
 /// What Whole asks for when nothing is wanted.
 VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
 

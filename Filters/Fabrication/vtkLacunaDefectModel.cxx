@@ -177,15 +177,7 @@ int vtkLacunaDefectModel::RequestInformation(
 int vtkLacunaDefectModel::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkInformation* info = inputVector[0]->GetInformationObject(0);
-  if (vtkLacunaRanks().GetRank() == 0)
-  {
-    vtkLacunaRequest::Whole(this, info, outputVector);
-  }
-  else
-  {
-    vtkLacunaRequest::Nothing(this, info); // whoever asks: it is on the first rank
-  }
+  vtkLacunaRequest::WholeOnFirst(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }
 
