@@ -42,9 +42,13 @@ std::vector<PairedFrame> FramePairing::Take(double now)
   return ready;
 }
 
-bool FramePairing::HasWanted() const
+std::optional<double> FramePairing::GetLatestInstant() const
 {
-  return std::any_of(this->Frames.begin(), this->Frames.end(),
-    [](const Waiting& waiting) { return waiting.Frame.Wanted; });
+  std::optional<double> latest;
+  for (const Waiting& waiting : this->Frames)
+  {
+    latest = std::max(latest.value_or(waiting.Frame.Instant), waiting.Frame.Instant);
+  }
+  return latest;
 }
 }

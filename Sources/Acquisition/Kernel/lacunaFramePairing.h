@@ -42,7 +42,8 @@ public:
   void Abandon();
   /// The frames that have their pose or are let go.
   std::vector<PairedFrame> Take(double now);
-  bool HasWanted() const;
+  /// Of the frames that wait; nothing when none do.
+  std::optional<double> GetLatestInstant() const;
 
 private:
   struct Waiting

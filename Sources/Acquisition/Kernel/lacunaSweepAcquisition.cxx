@@ -55,6 +55,7 @@ struct SweepAcquisition::Core
     const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
   void HeedButton(const TrackedPose& pose);
   void LosePoses();
+  void AbandonFrames();
   void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
   void Process();
   void HeedStart();
@@ -185,6 +186,15 @@ void SweepAcquisition::Core::LosePoses()
     this->TrackerWarning.clear();
     this->PosesCome = false;
     this->ButtonDown = this->ButtonBefore = false;
+  }
+  this->AbandonFrames();
+}
+
+// Those that wait for poses go without.
+void SweepAcquisition::Core::AbandonFrames()
+{
+  {
+    const std::lock_guard<std::mutex> lock(this->Mutex);
     this->Pairing.Abandon();
   }
   this->Process();
@@ -413,7 +423,8 @@ void SweepAcquisition::Stop()
   std::unique_lock<std::mutex> lock(this->Work->Mutex);
   this->Work->Capturing = false;
   // frames that are late by their clock wait for poses to come
-  const std::chrono::duration<double> late{ std::max(this->Work->Rules.TimeOffset, 0.0) };
+  const double instant = this->Work->Pairing.GetLatestInstant().value_or(0);
+  const std::chrono::duration<double> late{ std::max(instant - this->Work->Time.Now(), 0.0) };
   this->Work->Settled.wait_for(
     lock, LongestSettling + late, [this] { return this->Work->Pending == 0; });
 }
@@ -421,6 +432,7 @@ void SweepAcquisition::Stop()
 AcquisitionState SweepAcquisition::Finish()
 {
   this->Stop();
+  this->Work->AbandonFrames();
   {
     const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
     this->Work->Taking.Finish();
@@ -433,6 +445,7 @@ AcquisitionState SweepAcquisition::Finish()
 void SweepAcquisition::BeginSweep(bool discard)
 {
   this->Stop();
+  this->Work->AbandonFrames(); // they are of this sweep
   const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
   this->Work->Taking.BeginSweep(discard);
   const std::lock_guard<std::mutex> lock(this->Work->Mutex);

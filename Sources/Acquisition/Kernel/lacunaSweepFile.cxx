@@ -7,7 +7,9 @@
 #include "lacunaSweep.h"
 
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 namespace lacuna
@@ -110,24 +112,24 @@ void SweepFile::Rename(const std::string& fileName, int compressionLevel)
 
 void SweepFile::Retry()
 {
-  if (this->Recorder || this->Unopened.empty() || this->Clock.Now() < this->RetryTime)
+  if (this->Waiting.empty() || this->Clock.Now() < this->RetryTime)
   {
     return;
   }
   try
   {
-    const std::string name = FindFreeSweepName(this->FileName, this->CompressionLevel);
-    this->Recorder =
-      std::make_unique<SweepRecorder>(name, this->Description, this->CompressionLevel);
-    this->Now.FileName = name;
-    this->Now.Trouble.clear();
-    for (Entry& entry : this->Unopened)
+    if (!this->Recorder)
     {
-      this->Recorder->Add(std::move(entry.Pixels), std::move(entry.Fields));
+      this->Open();
     }
-    this->Unopened.clear();
+    while (!this->Waiting.empty())
+    {
+      this->Recorder->Add(this->Waiting.front().Pixels, this->Waiting.front().Fields);
+      this->Waiting.pop_front();
+    }
+    this->Now.Trouble.clear();
   }
-  catch (const FileError& e)
+  catch (const std::exception& e) // of the disk, or of a system that has nothing left to give
   {
     this->Now.Trouble = e.what() +
       std::string(". The capture goes on, its slices wait in memory: mend that, then they are "
@@ -136,20 +138,24 @@ void SweepFile::Retry()
   }
 }
 
+void SweepFile::Open()
+{
+  const std::string name = FindFreeSweepName(this->FileName, this->CompressionLevel);
+  this->Recorder = std::make_unique<SweepRecorder>(name, this->Description, this->CompressionLevel);
+  this->Now.FileName = name;
+}
+
 void SweepFile::Add(const AcquiredSlice& slice, const SweepFrame& frame)
 {
-  SequenceFields fields = MakeSliceFields(slice, frame);
-  ++this->Now.Added;
-  if (this->Recorder)
+  if (!this->Recorder)
   {
-    this->Recorder->Add(slice.Pixels, std::move(fields));
-    return;
+    this->Description.Columns = frame.Window[2];
+    this->Description.Rows = frame.Window[3];
+    this->Description.CustomFields = { { FirstColumnField, std::to_string(frame.Window[0]) },
+      { FirstRowField, std::to_string(frame.Window[1]) } };
   }
-  this->Description.Columns = frame.Window[2];
-  this->Description.Rows = frame.Window[3];
-  this->Description.CustomFields = { { FirstColumnField, std::to_string(frame.Window[0]) },
-    { FirstRowField, std::to_string(frame.Window[1]) } };
-  this->Unopened.push_back({ slice.Pixels, std::move(fields) });
+  this->Waiting.push_back({ slice.Pixels, MakeSliceFields(slice, frame) });
+  ++this->Now.Added;
   this->Retry();
 }
 
@@ -162,9 +168,9 @@ SweepFile::State SweepFile::GetState() const
     state.Synced = recorded.Synced;
     state.WaitingBytes = recorded.WaitingBytes;
     state.FreeBytes = recorded.FreeBytes;
-    state.Trouble = recorded.Trouble;
+    state.Trouble = state.Trouble.empty() ? recorded.Trouble : state.Trouble;
   }
-  for (const Entry& entry : this->Unopened)
+  for (const Entry& entry : this->Waiting)
   {
     state.WaitingBytes += static_cast<std::int64_t>(entry.Pixels->size());
   }
@@ -175,7 +181,7 @@ void SweepFile::Finish()
 {
   this->RetryTime = 0;
   this->Retry();
-  if (!this->Unopened.empty())
+  if (!this->Waiting.empty())
   {
     throw FileError(FileError::Kind::CannotOpen, this->Now.Trouble);
   }

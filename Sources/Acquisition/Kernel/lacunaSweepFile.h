@@ -47,15 +47,18 @@ public:
   /// Another name for a file that is not open yet; of an open one nothing changes. Throws as the
   /// constructor does.
   void Rename(const std::string& fileName, int compressionLevel);
-  /// Takes a slice of the frame's window.
+  /// Takes a slice of the frame's window. Throws std::bad_alloc, and has not taken it.
   void Add(const AcquiredSlice& slice, const SweepFrame& frame);
-  /// Tries again to open the file, when there is something to write and it is time.
+  /// Tries again to open the file and to hand over what waits, when it is time. Whatever fails is
+  /// told by the state.
   void Retry();
   State GetState() const;
   /// Tries to write all that waits and ends the file. Throws FileError; the slices still wait.
   void Finish();
 
 private:
+  void Open();
+
   struct Entry
   {
     SweepRecorder::Pixels Pixels;
@@ -66,9 +69,9 @@ private:
   int CompressionLevel;
   SteadyClock Clock;
   SequenceDescription Description;
-  std::deque<Entry> Unopened; ///< slices while there is no file
+  std::deque<Entry> Waiting; ///< slices that the recorder does not have
   double RetryTime = 0;
-  State Now;
+  State Now; ///< Trouble: of what waits here
   std::unique_ptr<SweepRecorder> Recorder;
 };
 }

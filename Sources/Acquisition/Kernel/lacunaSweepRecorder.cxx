@@ -12,7 +12,9 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -40,11 +42,11 @@ std::string Advise(const std::string& reason)
 
 struct SweepRecorder::Work
 {
+  // Begins the thread, which waits for the first slice.
   Work(const std::string& fileName, const SequenceDescription& description, int level)
     : FileName(fileName)
     , Kind(fileName, level > 0)
     , Bytes(static_cast<std::size_t>(description.Columns * description.Rows))
-    , Recorder(fileName, description, level)
     , Thread([this] { this->Run(); })
   {
   }
@@ -97,7 +99,7 @@ struct SweepRecorder::Work
   const std::string FileName;
   const SequenceKind Kind;
   const std::size_t Bytes;
-  SequenceRecorder Recorder; // used by the thread alone until that has ended
+  std::optional<SequenceRecorder> Recorder; // used by the thread alone until that has ended
 
   mutable std::mutex Mutex;
   std::condition_variable Changed;
@@ -169,7 +171,7 @@ bool SweepRecorder::Work::Try(
 void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
 {
   const Slice& slice = this->Queue.front(); // stays where it is while others are added
-  if (this->Try(lock, [&] { this->Recorder.Append(slice.Pixels->data(), slice.Fields); }))
+  if (this->Try(lock, [&] { this->Recorder->Append(slice.Pixels->data(), slice.Fields); }))
   {
     this->Now.Trouble.clear();
     ++this->Now.Written;
@@ -181,7 +183,7 @@ void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
 
 void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
 {
-  if (this->Try(lock, [&] { this->Recorder.Sync(); }))
+  if (this->Try(lock, [&] { this->Recorder->Sync(); }))
   {
     this->Now.LongestDelay =
       std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front());
@@ -207,7 +209,16 @@ SweepRecorder::SweepRecorder(
   {
     throw std::invalid_argument("A sweep is recorded with 8-bit pixels");
   }
-  this->Job = std::make_unique<Work>(fileName, description, compressionLevel);
+  try // before there is a file
+  {
+    this->Job = std::make_unique<Work>(fileName, description, compressionLevel);
+  }
+  catch (const std::system_error& e)
+  {
+    throw FileError(FileError::Kind::Other,
+      "No thread can be started that writes '" + fileName + "': " + e.code().message());
+  }
+  this->Job->Recorder.emplace(fileName, description, compressionLevel);
 }
 
 SweepRecorder::~SweepRecorder() = default;
@@ -258,6 +269,19 @@ void SweepRecorder::Finish()
     job.Finished = true;
   }
   job.End();
-  job.Recorder.Close();
+  try
+  {
+    job.Recorder->Close();
+  }
+  catch (const FileError& e)
+  {
+    const std::lock_guard<std::mutex> lock(job.Mutex);
+    job.Now.Trouble = e.what() +
+      std::string(". All its slices can be read, but it lacks its end: make room on that disk "
+                  "before the next sweep is begun, which tries again");
+    throw;
+  }
+  const std::lock_guard<std::mutex> lock(job.Mutex);
+  job.Now.Trouble.clear();
 }
 }

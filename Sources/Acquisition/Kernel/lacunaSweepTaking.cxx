@@ -272,7 +272,7 @@ bool SweepTaking::HasRoom()
 
 void SweepTaking::Record(const AcquiredSlice& slice, const SweepFrame& window)
 {
-  if (!this->File && this->Counts.Slices == 1 && !this->Rules.RecordFileName.empty())
+  if (!this->File && this->Counts.Slices == 0 && !this->Rules.RecordFileName.empty())
   {
     this->File =
       std::make_unique<SweepFile>(this->Rules.RecordFileName, this->Rules.RecordCompressionLevel);
@@ -338,12 +338,19 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
     ++this->Counts.PastLimit;
     return;
   }
+  const std::size_t before = slices.size();
   try
   {
     slices.push_back(MakeSlice(frame, *window, this->Epoch));
+    AcquiredSlice& slice = slices.back();
+    slice.Speed = verdict.Speed.value_or(NaN);
+    slice.Status |= verdict.TooFast ? Sweep::TooFast : 0;
+    slice.Delay = now - frame.Frame->Arrival;
+    this->Record(slice, *window);
   }
   catch (const std::bad_alloc&) // MemoryLimit was set too high
   {
+    slices.resize(before); // as the recording, which has not taken it either
     this->Full = true;
     this->OutOfMemory = true;
     ++this->Counts.PastLimit;
@@ -353,15 +360,10 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   {
     this->Rule.Take();
   }
-  AcquiredSlice& slice = slices.back();
-  slice.Speed = verdict.Speed.value_or(NaN);
-  slice.Status |= verdict.TooFast ? Sweep::TooFast : 0;
-  slice.Delay = now - frame.Frame->Arrival;
   ++this->Counts.Slices;
   this->Counts.TooFast += verdict.TooFast ? 1 : 0;
   this->Counts.Damaged += frame.Frame->Damaged ? 1 : 0;
-  this->LargestResidual = std::fmax(this->LargestResidual, slice.Residual);
-  this->Record(slice, *window);
+  this->LargestResidual = std::fmax(this->LargestResidual, slices.back().Residual);
 }
 
 bool SweepTaking::IsUnrecorded() const

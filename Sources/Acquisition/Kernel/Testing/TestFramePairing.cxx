@@ -32,7 +32,7 @@ TEST(FramePairing, AFrameGetsThePoseOfItsInstantAndWaitsForIt)
   pairing.AddFrame(MakeFrame(0, 1.01), 1.02);
   pairing.AddFrame(MakeFrame(1, 1.03), 1.03);
   EXPECT_TRUE(pairing.Take(1.03).empty()); // nothing is extrapolated
-  EXPECT_TRUE(pairing.HasWanted());
+  EXPECT_EQ(pairing.GetLatestInstant(), 1.03);
   pairing.AddPose(MakePose(1.02, 12));
   std::vector<PairedFrame> ready = pairing.Take(1.04);
   ASSERT_EQ(ready.size(), 1u);
@@ -45,7 +45,7 @@ TEST(FramePairing, AFrameGetsThePoseOfItsInstantAndWaitsForIt)
   ready = pairing.Take(1.05);
   ASSERT_EQ(ready.size(), 1u);
   EXPECT_NEAR(ready[0].Pose->ReceiverToTransmitter(0, 3), 13, 1e-9);
-  EXPECT_FALSE(pairing.HasWanted());
+  EXPECT_FALSE(pairing.GetLatestInstant());
 }
 
 TEST(FramePairing, OneWhosePoseDoesNotComeIsLetGoAndKeepsItsPlace)

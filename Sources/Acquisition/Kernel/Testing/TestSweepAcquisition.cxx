@@ -342,6 +342,44 @@ TEST(SweepAcquisition, AtTheMemoryLimitItStopsAndKeepsAll)
   EXPECT_FALSE(HasMessage(acquisition.GetState(), "MemoryLimit"));
 }
 
+TEST(SweepAcquisition, FramesThatStillWaitForPosesAreKeptAtTheEnd)
+{
+  for (const double lowered : { 1.0, 0.0 })
+  {
+    AcquisitionRules rules = EveryFrame();
+    rules.TimeOffset = 1;
+    Scene scene(rules);
+    SweepAcquisition& acquisition = scene.Open();
+    acquisition.Start();
+    scene.Place.RunTo(60); // and time stands still
+    EXPECT_GT(acquisition.GetState().Pending, 20);
+    rules.TimeOffset = lowered;
+    acquisition.SetRules(rules);
+    const AcquisitionState state = acquisition.Finish();
+    EXPECT_EQ(state.Pending, 0);
+    ExpectNoneForgotten(state, false);
+    const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+    ASSERT_EQ(slices.size(), 60u);
+    EXPECT_EQ(slices.front().Status & lacuna::Sweep::PoseInvalid, 0);
+    EXPECT_NE(slices.back().Status & lacuna::Sweep::PoseInvalid, 0); // it did not come
+  }
+}
+
+TEST(SweepAcquisition, FramesThatWaitAtTheEndOfASweepAreNotOfTheNext)
+{
+  AcquisitionRules rules = EveryFrame();
+  rules.TimeOffset = 1;
+  Scene scene(rules);
+  SweepAcquisition& acquisition = scene.Open();
+  acquisition.Start();
+  scene.Place.RunTo(60);
+  acquisition.BeginSweep();
+  EXPECT_EQ(acquisition.GetState().Pending, 0);
+  scene.Place.RunTo(120);
+  EXPECT_EQ(acquisition.GetState().Counts.Frames, 0);
+  EXPECT_TRUE(acquisition.TakeSlices().empty());
+}
+
 TEST(SweepAcquisition, FramesOfAnotherSizeAreLeftOutAndCounted)
 {
   Scene scene(EveryFrame(),

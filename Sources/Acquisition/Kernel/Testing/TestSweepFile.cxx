@@ -14,6 +14,8 @@
 #include <fstream>
 #include <limits>
 
+#include <pthread.h>
+
 using namespace lacuna;
 using namespace lacunaTest;
 
@@ -43,6 +45,29 @@ SweepFrame MakeFrame(bool calibrated)
   frame.TrackerToReference = Matrix4::Translation({ 0, 0, 50 });
   return frame;
 }
+
+// The system refuses all new threads: none has room for such a stack.
+class NoThreads
+{
+public:
+  NoThreads()
+  {
+    pthread_getattr_default_np(&this->Before);
+    pthread_attr_t huge = this->Before;
+    pthread_attr_setstacksize(&huge, std::size_t{ 1 } << 47);
+    pthread_setattr_default_np(&huge);
+  }
+  ~NoThreads()
+  {
+    pthread_setattr_default_np(&this->Before);
+    pthread_attr_destroy(&this->Before);
+  }
+  NoThreads(const NoThreads&) = delete;
+  NoThreads& operator=(const NoThreads&) = delete;
+
+private:
+  pthread_attr_t Before{};
+};
 
 lacuna::Sweep ReadSweep(const std::string& path)
 {
@@ -206,6 +231,27 @@ TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
   const ReadBack read(path);
   ASSERT_EQ(read.Frames.size(), 4u);
   EXPECT_EQ(read.Frames[3], MakePixels(3));
+}
+
+TEST(SweepFile, WhileNoThreadCanBeStartedSlicesWaitAndNoFileIsLeft)
+{
+  const TemporaryFolder folder;
+  SweepFile file(folder / "sweep.mhd", 0);
+  {
+    const NoThreads none;
+    file.Add(MakeSlice(0), MakeFrame(true));
+    EXPECT_THROW(file.Finish(), FileError);
+    file.Add(MakeSlice(1), MakeFrame(true));
+    const SweepFile::State state = file.GetState();
+    EXPECT_NE(state.Trouble.find("No thread"), std::string::npos) << state.Trouble;
+    EXPECT_NE(state.Trouble.find("wait in memory"), std::string::npos) << state.Trouble;
+    EXPECT_EQ(state.WaitingBytes, 2 * 20);
+    EXPECT_FALSE(std::filesystem::exists(folder / "sweep.mhd"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "sweep.raw"));
+  }
+  file.Finish();
+  EXPECT_EQ(file.GetState().Trouble, "");
+  EXPECT_EQ(ReadBack(folder / "sweep.mhd").Frames.size(), 2u);
 }
 
 TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <random>
@@ -138,6 +139,30 @@ TEST(SweepRecorder, OnAFullDiskSlicesWaitInMemoryAndAreWrittenLater)
     recorder.Finish();
     ExpectBeginning(path, 51);
   }
+}
+
+TEST(SweepRecorder, SaysWhenOnlyItsEndDoesNotFit)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "sweep.mhd";
+  SweepRecorder recorder(path, MakeDescription(), 6);
+  for (int i = 0; i < 30; ++i)
+  {
+    Add(recorder, i);
+  }
+  ASSERT_TRUE(Becomes(recorder, [](const auto& state) { return state.Synced == 30; }));
+  {
+    const FileSizeLimit limit(std::filesystem::file_size(folder / "sweep.zraw"));
+    EXPECT_THROW(recorder.Finish(), FileError);
+    const std::string trouble = recorder.GetState().Trouble;
+    EXPECT_NE(trouble.find("All its slices can be read"), std::string::npos) << trouble;
+    EXPECT_NE(trouble.find("sweep.zraw"), std::string::npos) << trouble;
+    ExpectBeginning(path, 30);
+  }
+  recorder.Finish();
+  EXPECT_EQ(recorder.GetState().Trouble, "");
+  ExpectBeginning(path, 30);
+  EXPECT_EQ(ReadBack(path).Warning, "");
 }
 
 TEST(SweepRecorder, EndsOnAFullDisk)
