@@ -32,8 +32,7 @@ void MakeImages(vtkImageData* angle, vtkImageData* data)
     image->SetSpacing(0.5, 0.5, 0.5);
     image->SetOrigin(10, -20, 30);
     // columns: x to y, y to z, z to x
-    const double direction[9] = { 0, 0, 1, 1, 0, 0, 0, 1, 0 };
-    image->GetDirectionMatrix()->DeepCopy(direction);
+    image->SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0);
   }
   vtkNew<vtkFloatArray> theta;
   theta->SetName("OccludedAngle");
