@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Phantoms. Readers have fuzz targets of their own (Testing/Fuzz).
+// Phantoms.
 #include "lacunaRandomData.h"
 #include "lacunaSubject.h"
 #include "vtkImageData.h"

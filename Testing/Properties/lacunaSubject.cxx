@@ -40,6 +40,7 @@ const std::vector<Subject>& GetSubjects()
   {
     std::vector<Subject> all;
     AddSourceSubjects(all);
+    AddReaderSubjects(all);
     AddImageSubjects(all);
     AddFreehandSubjects(all);
     AddSurfaceSubjects(all);

@@ -54,6 +54,7 @@ void AddImageSubjects(std::vector<Subject>& subjects);
 void AddFreehandSubjects(std::vector<Subject>& subjects);
 void AddSurfaceSubjects(std::vector<Subject>& subjects);
 void AddSourceSubjects(std::vector<Subject>& subjects);
+void AddReaderSubjects(std::vector<Subject>& subjects);
 
 template <class T>
 vtkSmartPointer<vtkAlgorithm> NewOf()

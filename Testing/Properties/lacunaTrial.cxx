@@ -85,6 +85,12 @@ void SetOutputFolder(const std::string& folder)
 }
 
 //------------------------------------------------------------------------------
+const std::string& GetOutputFolder()
+{
+  return OutputFolder();
+}
+
+//------------------------------------------------------------------------------
 Trial::Trial(const Subject& subject, std::uint64_t seed, bool isSound)
   : What(subject)
 {

@@ -60,7 +60,8 @@ private:
   std::string Story;
 };
 
-/// The folder for files that writers make.
+/// The folder for files that writers make and readers read.
 void SetOutputFolder(const std::string& folder);
+const std::string& GetOutputFolder();
 }
 #endif
