@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -108,7 +109,13 @@ SerialPort::SerialPort(const std::string& name, int baud)
   sp_return result = sp_get_port_by_name(name.c_str(), &this->Port->Port);
   if (result == SP_ERR_ARG)
   {
-    throw ChannelError(ChannelError::Kind::NotFound, "There is no port " + name + "." + ListText());
+    std::error_code none;
+    const char* const hint = name.rfind("/dev/", 0) != 0 && std::filesystem::exists(name, none)
+      ? ": such a file is there, but ports are below /dev; the user guide's page on emulated "
+        "devices says how a pseudo-terminal is opened."
+      : ".";
+    throw ChannelError(
+      ChannelError::Kind::NotFound, "There is no port " + name + hint + ListText());
   }
   if (result == SP_OK)
   {

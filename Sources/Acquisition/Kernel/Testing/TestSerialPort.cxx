@@ -193,6 +193,7 @@ TEST(SerialPort, SaysWhyItCannotBeOpened)
     const std::string text =
       Complaint<ChannelError>(ChannelError::Kind::NotFound, [&] { SerialPort port(name, 19200); });
     EXPECT_HAS(text, "There is no port " + std::string(name));
+    EXPECT_EQ(text.find("such a file is there") != text.npos, name == std::string("/etc/passwd"));
     EXPECT_HAS(text, SerialPort::List().empty() ? "no serial port now" : SerialPort::List()[0]);
   }
   const Folder folder;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The threads are real, the time is simulated.
+#include "WrittenSequence.h"
 #include "lacunaSweep.h"
 #include "lacunaTestScene.h"
 
@@ -8,6 +9,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+
+#include <malloc.h>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -378,6 +382,34 @@ TEST(SweepAcquisition, FramesThatWaitAtTheEndOfASweepAreNotOfTheNext)
   scene.Place.RunTo(120);
   EXPECT_EQ(acquisition.GetState().Counts.Frames, 0);
   EXPECT_TRUE(acquisition.TakeSlices().empty());
+}
+
+TEST(SweepAcquisition, CreatedRunAndDeletedItLeavesNothing)
+{
+  const TemporaryFolder folder;
+  const auto run = [&](int cycles)
+  {
+    for (int i = 0; i < cycles; ++i)
+    {
+      AcquisitionRules rules = EveryFrame();
+      rules.RecordFileName = folder / "sweep.mhd";
+      {
+        Scene scene(rules);
+        SweepAcquisition& acquisition = scene.Open();
+        acquisition.Start();
+        scene.Place.RunTo(20);
+        acquisition.Finish();
+        ASSERT_EQ(acquisition.TakeSlices().size(), 20u);
+      }
+      std::filesystem::remove(folder / "sweep.mhd");
+      std::filesystem::remove(folder / "sweep.raw");
+    }
+  };
+  const auto getBytes = [] { return mallinfo2().uordblks + mallinfo2().hblkhd; };
+  run(20);
+  const auto before = getBytes();
+  run(150);
+  EXPECT_LT(getBytes(), before + 12000); // what the threads' allocators keep is half of that
 }
 
 TEST(SweepAcquisition, FramesOfAnotherSizeAreLeftOutAndCounted)
