@@ -127,7 +127,8 @@ const std::vector<std::string>& GetSeries()
     series.MultiFrame = true;
     series.Places = {};
     const std::string file = series.Write(InFolder("frames")).at(0);
-    return std::vector<std::string>{ InFolder("series"), InFolder("tilted"), InFolder("gap"), file };
+    return std::vector<std::string>{ InFolder("series"), InFolder("tilted"), InFolder("gap"),
+      file };
   }();
   return files;
 }
