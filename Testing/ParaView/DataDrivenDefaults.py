@@ -4,6 +4,7 @@
 Each proxy is made as a user makes it: of data that are there, without setting anything.
 """
 import lacuna.plugin
+import numpy as np
 
 lacuna.plugin.load()
 from lacuna.data import fetch
@@ -58,5 +59,25 @@ for proxy, name, data in ((bone, "CutAway", skull), (filler, "DefectRegion", bon
         setattr(proxy, name, kind)
         check_region(getattr(proxy, name), kind, bounds)
     setattr(proxy, name, "None")
+
+# A loop: around the middle of the map, in its plane
+for direction in ([0, 0, -1], [-1, 0.1, 0.2], [-0.4, 0.2, -0.9]):
+    seen = BSplineIsoRayCaster(Input=skull, ViewDirection=direction, PixelSpacing=4)
+    seen.UpdatePipeline()
+    filler = RBFHoleFiller(Input=seen, NodeSpacing=4, DefectRegion="Spline Loop")
+    columns, rows, _ = fetch(seen).GetDimensions()
+    world = np.reshape(fetch(seen).GetFieldData().GetArray("ImageToWorld").GetTuple(0), (4, 4))
+    points = np.array(filler.DefectRegion.Points).reshape(-1, 3)
+    middle = world @ [(columns - 1) / 2, (rows - 1) / 2, 0, 1]
+    assert np.allclose(points.mean(0), middle[:3]), (direction, points)
+    assert np.allclose((points - middle[:3]) @ direction, 0), (direction, points)
+    inside = np.linalg.solve(world, np.c_[points, np.ones(4)].T)[:2].T / [columns - 1, rows - 1]
+    assert np.allclose(inside, [[1 / 3, 1 / 3], [2 / 3, 1 / 3], [2 / 3, 2 / 3], [1 / 3, 2 / 3]]), (direction, inside)
+with raising(warnings):
+    filler.UpdatePipeline()  # the last direction looks into the hole
+assert not warnings, warnings
+assert fetch(filler).GetPointData().GetArray("FilledMask").GetRange() == (0, 1)
+loop = RBFHoleFiller(Input=BSplineIsoRayCaster(Input=skull), DefectRegion="Spline Loop").DefectRegion
+assert list(loop.Points) == [0, 0, 0, 10, 0, 0, 10, 10, 0, 0, 10, 0], "of no data yet"
 mirror = Mirror(Input=bone)
 check_region(mirror, "Plane", bone.GetDataInformation().GetBounds())

@@ -96,13 +96,17 @@ def test(window):
     window.menu("Filters/Lacuna/RBF Hole Filler")
     window.type(PANEL + "NodeSpacing/DoubleLineEdit0", 5)
     filler = GetActiveSource()
-    filler.DefectRegion = "Spline Loop"
+    window.choose(PANEL + "DefectRegion/comboBox", "Spline Loop")
+    window.apply()
     loop = filler.DefectRegion
+    corners = [place(view, point) for point in np.reshape(loop.Points, (4, 3))]
+    width, height = view.ViewSize
+    assert all(0 < x < width and 0 < y < height for x, y in corners) and np.ptp(corners, 0).min() > 50, "does not begin in the map"
     center = np.array([0.4, -0.2, 0.9]) / np.linalg.norm([0.4, -0.2, 0.9])
     across = np.cross(center, [0, 1, 0])
     around = [74 * center + 50 * (np.cos(a) * across + np.sin(a) * np.cross(center, across)) for a in np.arange(6) * np.pi / 3]
     loop.Points = np.concatenate(around).tolist()
-    window.apply()
+    Render()
     view.InteractionMode = "3D"
     window.compare("HandlesLoop")
     before, after = drag(loop, loop.Points[:3], "Points", way=SMALL)
