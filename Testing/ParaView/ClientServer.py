@@ -14,6 +14,30 @@ from lacuna_test import mpi_environment, output, program
 PLUGINS = os.path.join(os.path.dirname(os.path.dirname(os.environ["LACUNA_PLUGIN"])), "lacuna.plugins.xml")
 
 
+def seen(proxy, direction, up, name):
+    """Where a picture of the proxy alone, seen so, is not of the background's colour."""
+    import numpy as np
+    from lacuna import pictures
+    from paraview.simple import GetActiveViewOrCreate, Hide, SaveScreenshot, Show
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
+    view = GetActiveViewOrCreate("RenderView")
+    view.UseColorPaletteForBackground, view.Background, view.OrientationAxesVisibility = 0, [0, 1, 0], 0
+    display = Show(proxy, view)
+    display.SetScalarBarVisibility(view, False)
+    pictures.look(view, direction, up)
+    view.CameraFocalPoint, view.CameraParallelProjection, view.CameraParallelScale = [0, 0, 0], 1, 150
+    view.CameraPosition = [-500 * component for component in direction]
+    path = output(name)
+    SaveScreenshot(path, view, ImageResolution=[200, 200])
+    Hide(proxy, view)
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+    return (picture != [0, 255, 0]).any(axis=1)
+
+
 def client(port):
     import paraview.simple
     if port:
@@ -24,7 +48,7 @@ def client(port):
     from lacuna import coordinates
     from lacuna.data import fetch
     from lacuna.errors import raising
-    from paraview.simple import BSplineIsoRayCaster, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom, SweptVolume
+    from paraview.simple import BSplineIsoRayCaster, DepthMapSurface, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom, SweptVolume
     for view, up in (((0, 1, 0), (0, 0, 1)), ((0.4, 0.3, -0.8), (0, 1, 0))):
         depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500], ViewDirection=view, ViewUp=up)
         matrix, record = fetch(depth).GetDirectionMatrix(), depth.FieldData.GetArray("ImageToWorld")
@@ -32,6 +56,10 @@ def client(port):
             for column in range(3):
                 own = record.GetRange(4 * row + column)[0] / (depth.PixelSpacing or 3, depth.PixelSpacing or 3, 1)[column]
                 assert abs(matrix.GetElement(row, column) - own) < 1e-6, (row, column, matrix, own)
+        # and is seen there: right before its surface, which is sent as points
+        pixels = [seen(proxy, view, up, f"ClientServer-{port}.png") for proxy in (depth, DepthMapSurface(Input=depth))]
+        common, either = (pixels[0] & pixels[1]).sum(), (pixels[0] | pixels[1]).sum()
+        assert either > 2000 and common > 0.95 * either, (port, view, common, either)
     with raising():
         volume = SweptVolume(Input=PhantomSweep(NumberOfSlices=20))
         volume.UpdatePipeline()
