@@ -38,6 +38,8 @@ public:
   /// Takes a frame at a time of the clock.
   void AddFrame(PairedFrame frame, double now);
   void AddPose(const TrackedPose& pose) { this->Track.Add(pose); }
+  /// Poses that come next are another tracker's.
+  void Break() { this->Track.Break(); }
   /// No poses will come for the frames there are: all may leave.
   void Abandon();
   /// The frames that have their pose or are let go.

@@ -4,6 +4,7 @@
 #include "lacunaPoseTable.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace lacuna
 {
@@ -19,8 +20,8 @@ void PoseTrack::Add(const TrackedPose& pose)
   {
     return;
   }
-  this->Poses.push_back(pose);
-  while (this->Poses.front().Time < pose.Time - this->Seconds)
+  this->Poses.push_back({ pose, !std::exchange(this->Broken, false) });
+  while (this->Poses.front().Pose.Time < pose.Time - this->Seconds)
   {
     this->Poses.pop_front();
   }
@@ -28,33 +29,34 @@ void PoseTrack::Add(const TrackedPose& pose)
 
 bool PoseTrack::IsAhead(double time) const
 {
-  return this->Poses.empty() || time > this->Poses.back().Time;
+  return this->Poses.empty() || time > this->Poses.back().Pose.Time;
 }
 
 std::optional<PoseAtInstant> PoseTrack::At(double time) const
 {
   const auto after = std::lower_bound(this->Poses.begin(), this->Poses.end(), time,
-    [](const TrackedPose& pose, double t) { return pose.Time < t; });
+    [](const Measurement& measurement, double t) { return measurement.Pose.Time < t; });
   if (after == this->Poses.end())
   {
     return std::nullopt;
   }
-  if (after->Time == time)
+  const TrackedPose& next = after->Pose;
+  if (next.Time == time)
   {
-    return PoseAtInstant{ after->ReceiverToTransmitter, 0, 0 };
+    return PoseAtInstant{ next.ReceiverToTransmitter, 0, 0 };
   }
-  if (after == this->Poses.begin())
+  if (after == this->Poses.begin() || !after->Joined)
   {
     return std::nullopt;
   }
-  const TrackedPose& before = *std::prev(after);
-  const double gap = after->Time - before.Time;
+  const TrackedPose& before = std::prev(after)->Pose;
+  const double gap = next.Time - before.Time;
   if (gap > this->MaximumGap)
   {
     return std::nullopt;
   }
-  return PoseAtInstant{ InterpolatePose(before.ReceiverToTransmitter, after->ReceiverToTransmitter,
+  return PoseAtInstant{ InterpolatePose(before.ReceiverToTransmitter, next.ReceiverToTransmitter,
                           (time - before.Time) / gap),
-    gap, std::min(time - before.Time, after->Time - time) };
+    gap, std::min(time - before.Time, next.Time - time) };
 }
 }

@@ -28,6 +28,8 @@ public:
   explicit PoseTrack(double seconds = 10, double maximumGap = 0.25);
   /// Poses that are not later than the newest or not Usable are left out.
   void Add(const TrackedPose& pose);
+  /// The next measurements are another tracker's: nothing lies between those before and these.
+  void Break() { this->Broken = true; }
   /// Nothing when there is no measurement on one side (yet), or the gap is too wide.
   std::optional<PoseAtInstant> At(double time) const;
   /// Whether a pose at that time can still come: it is later than the newest measurement.
@@ -36,7 +38,13 @@ public:
 private:
   double Seconds;
   double MaximumGap;
-  std::deque<TrackedPose> Poses;
+  struct Measurement
+  {
+    TrackedPose Pose;
+    bool Joined; ///< to the one before
+  };
+  std::deque<Measurement> Poses;
+  bool Broken = false;
 };
 }
 #endif

@@ -54,7 +54,9 @@ struct SweepAcquisition::Core
   void AddPoses(
     const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
   void HeedButton(const TrackedPose& pose);
+  void SetCapturing(bool on);
   void LosePoses();
+  void BreakPoses();
   void AbandonFrames();
   void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
   void Process();
@@ -77,7 +79,8 @@ struct SweepAcquisition::Core
   AcquisitionRules Rules;
   FramePairing Pairing;
   bool Capturing = false;
-  bool Started = false;   // and Taking does not know it yet
+  bool Started = false; // and Taking does not know it yet
+  bool Finished = false;
   bool PosesCome = false; // a tracker is connected and has measured
   bool ButtonDown = false;
   bool ButtonBefore = false; // what the last record said
@@ -172,9 +175,17 @@ void SweepAcquisition::Core::HeedButton(const TrackedPose& pose)
   if (*pose.Button == this->ButtonBefore && *pose.Button != this->ButtonDown)
   {
     this->ButtonDown = *pose.Button;
-    this->Capturing = this->Capturing != (this->ButtonDown && this->Rules.ButtonStarts);
+    if (this->ButtonDown && this->Rules.ButtonStarts)
+    {
+      this->SetCapturing(!this->Capturing);
+    }
   }
   this->ButtonBefore = *pose.Button;
+}
+
+void SweepAcquisition::Core::SetCapturing(bool on)
+{
+  this->Started = this->Capturing = on && !this->Finished;
 }
 
 void SweepAcquisition::Core::LosePoses()
@@ -188,6 +199,12 @@ void SweepAcquisition::Core::LosePoses()
     this->ButtonDown = this->ButtonBefore = false;
   }
   this->AbandonFrames();
+}
+
+void SweepAcquisition::Core::BreakPoses()
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Pairing.Break();
 }
 
 // Those that wait for poses go without.
@@ -386,6 +403,7 @@ void SweepAcquisition::ReplaceTracker(const AcquisitionDevices& devices)
   const std::lock_guard<std::mutex> lock(this->DevicesMutex);
   this->Tracker.reset();
   this->Work->LosePoses();
+  this->Work->BreakPoses();
   this->OpenTracker(devices);
 }
 
@@ -414,14 +432,13 @@ void SweepAcquisition::SetRules(const AcquisitionRules& rules)
 void SweepAcquisition::Start()
 {
   const std::lock_guard<std::mutex> lock(this->Work->Mutex);
-  this->Work->Capturing = true;
-  this->Work->Started = true;
+  this->Work->SetCapturing(true);
 }
 
 void SweepAcquisition::Stop()
 {
   std::unique_lock<std::mutex> lock(this->Work->Mutex);
-  this->Work->Capturing = false;
+  this->Work->SetCapturing(false);
   // frames that are late by their clock wait for poses to come
   const double instant = this->Work->Pairing.GetLatestInstant().value_or(0);
   const std::chrono::duration<double> late{ std::max(instant - this->Work->Time.Now(), 0.0) };
@@ -431,6 +448,10 @@ void SweepAcquisition::Stop()
 
 AcquisitionState SweepAcquisition::Finish()
 {
+  {
+    const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+    this->Work->Finished = true;
+  }
   this->Stop();
   this->Work->AbandonFrames();
   {

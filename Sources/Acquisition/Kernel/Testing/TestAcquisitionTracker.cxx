@@ -103,6 +103,33 @@ TEST(AcquisitionTracker, AReceiverInTheOtherHalfOfSpaceIsFollowedAndSaid)
   EXPECT_FALSE(HasMessage(acquisition.GetState(), "other half of space"));
 }
 
+// Also when its state is asked for between the press and the next frame.
+TEST(AcquisitionTracker, TheButtonStartsAgainWhatWasFull)
+{
+  AcquisitionRules rules = EveryFrame();
+  rules.ButtonStarts = true;
+  rules.MemoryLimit = 12 * 10;
+  Scene scene(rules, Room::NumberedFrame,
+    [](double time, std::vector<TrackedPose>& poses)
+    {
+      TrackedPose pose = Room::MakePose(time);
+      pose.Button = std::fmod(time, 2) < 0.2;
+      poses.push_back(pose);
+    });
+  SweepAcquisition& acquisition = scene.Open();
+  for (int frame = 1; frame < 200; ++frame) // presses at 0, 2, 4, 6 and 8 s
+  {
+    scene.Place.RunTo(frame);
+    acquisition.GetState();
+  }
+  EXPECT_EQ(acquisition.GetState().Counts.Slices, 10);
+  EXPECT_EQ(acquisition.GetState().Counts.PastLimit, 5);
+  acquisition.Finish();
+  scene.Place.RunTo(300);
+  EXPECT_EQ(acquisition.GetState().Counts.PastLimit, 5);
+  EXPECT_FALSE(acquisition.GetState().Capturing);
+}
+
 // The FASTRAK's protocol at its pace, one byte in a hundred damaged: every frame becomes a slice and
 // every pose is right.
 class AcquisitionSoak : public testing::TestWithParam<double>

@@ -71,6 +71,26 @@ TEST(FramePairing, OneWhosePoseDoesNotComeIsLetGoAndKeepsItsPlace)
   EXPECT_FALSE(ready[0].Pose);
 }
 
+TEST(FramePairing, NothingLiesBetweenTwoTrackers)
+{
+  FramePairing pairing;
+  pairing.AddPose(MakePose(1.00, 10));
+  pairing.AddPose(MakePose(1.02, 12));
+  pairing.Break();
+  pairing.AddPose(MakePose(1.04, 500));
+  pairing.AddPose(MakePose(1.06, 502));
+  const double instants[] = { 1.01, 1.03, 1.05 };
+  for (int i = 0; i < 3; ++i)
+  {
+    pairing.AddFrame(MakeFrame(i, instants[i]), 1.06);
+  }
+  const std::vector<PairedFrame> ready = pairing.Take(1.06);
+  ASSERT_EQ(ready.size(), 3u);
+  EXPECT_NEAR(ready[0].Pose->ReceiverToTransmitter(0, 3), 11, 1e-9);
+  EXPECT_FALSE(ready[1].Pose);
+  EXPECT_NEAR(ready[2].Pose->ReceiverToTransmitter(0, 3), 501, 1e-9);
+}
+
 TEST(FramePairing, PatienceBeginsAtTheInstant)
 {
   FramePairing pairing(0.5);
