@@ -106,15 +106,17 @@ public:
     };
   }
 
-  /// Lets so many frames come since the beginning, no more, and waits until what they cause is done.
+  /// Lets so many frames come since the beginning, no more, and waits until what they cause is done
+  /// and the tracker has measured what it can before the next one.
   void RunTo(int frames)
   {
     std::unique_lock<std::mutex> lock(this->Mutex);
     this->LastFrame = frames;
+    this->Held = false;
     this->Changed.notify_all();
     // a test that hangs fails
-    EXPECT_TRUE(this->Changed.wait_for(
-      lock, std::chrono::minutes(5), [&] { return this->NextFrame >= frames && this->Asking; }));
+    EXPECT_TRUE(this->Changed.wait_for(lock, std::chrono::minutes(5),
+      [&] { return this->NextFrame >= frames && this->Asking && this->Held; }));
   }
   /// Lets time go on without an end.
   void Run()
@@ -205,6 +207,10 @@ private:
         {
           return;
         }
+        if (!std::exchange(this->Held, true))
+        {
+          this->Changed.notify_all();
+        }
         this->Changed.wait_for(lock, std::chrono::milliseconds(20));
         continue;
       }
@@ -245,6 +251,7 @@ private:
   int NextFrame = 0;
   int LastFrame = 0;   ///< the frame from which on time stands still
   bool Asking = false; ///< the video waits for its next frame
+  bool Held = false;   ///< the tracker waits until more frames may come
 };
 }
 #endif
