@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -90,9 +91,19 @@ void DeviceThread::State::Loop(Session session, double retryTime)
 
 DeviceThread::DeviceThread(Session session, double retryTime)
   : Shared(std::make_shared<State>())
-  , Thread([state = this->Shared, session = std::move(session), retryTime]() mutable
-      { state->Loop(std::move(session), retryTime); })
 {
+  try
+  {
+    this->Thread =
+      std::thread([state = this->Shared, session = std::move(session), retryTime]() mutable
+        { state->Loop(std::move(session), retryTime); });
+  }
+  catch (const std::system_error& e) // a capture that goes on with another device shall not end
+  {
+    this->Shared->Fail("No thread can be started for the device: " + e.code().message() +
+      ". Close other programs, Disconnect, and Connect");
+    this->Shared->Ended = true;
+  }
 }
 
 DeviceThread::~DeviceThread()
@@ -102,7 +113,10 @@ DeviceThread::~DeviceThread()
   const bool ended = this->Shared->Changed.wait_until(
     lock, this->Shared->Told + LongestEnd, [this] { return this->Shared->Ended; });
   lock.unlock();
-  ended ? this->Thread.join() : this->Thread.detach();
+  if (this->Thread.joinable())
+  {
+    ended ? this->Thread.join() : this->Thread.detach();
+  }
 }
 
 void DeviceThread::Stop()

@@ -43,6 +43,7 @@ public:
   /// final. It is called from the thread, and must own what it uses.
   using Session = std::function<void(Control&)>;
 
+  /// Where the system gives no thread the health says so.
   DeviceThread(Session session, double retryTime);
   /// Tells the session to stop and waits for it, but no longer than 0.8 s since it was told first:
   /// one that a call of the system holds (the look-up of a host's name) ends by itself later.

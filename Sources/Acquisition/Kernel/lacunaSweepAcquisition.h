@@ -72,7 +72,7 @@ struct LiveFrame
 /// Frames that come during a capture are all accounted for, see CaptureCounts.
 ///
 /// All functions may be called from any thread. They never wait for a device, and for the disk only
-/// while a recording's file is opened; Stop waits for the poses of the last frames, at most 0.8 s.
+/// at the end of a recording; Stop waits for the poses of the last frames, at most 0.8 s.
 class SweepAcquisition
 {
 public:

@@ -6,17 +6,20 @@
 #include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
 
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace lacuna
 {
 namespace
 {
-constexpr double RetryInterval = 1; // s
+constexpr double RetryInterval = 1;                  // s
+constexpr std::chrono::milliseconds ShortWait{ 10 }; // enough for most disks, and no device is late
 
 bool Exists(const std::string& path)
 {
@@ -99,6 +102,14 @@ SweepFile::SweepFile(const std::string& fileName, int compressionLevel)
   MakeKind(fileName, compressionLevel);
 }
 
+SweepFile::~SweepFile()
+{
+  if (this->Opening.valid())
+  {
+    this->HandOver(true);
+  }
+}
+
 void SweepFile::Rename(const std::string& fileName, int compressionLevel)
 {
   if (!this->Recorder && fileName != this->FileName)
@@ -112,15 +123,19 @@ void SweepFile::Rename(const std::string& fileName, int compressionLevel)
 
 void SweepFile::Retry()
 {
-  if (this->Waiting.empty() || this->Clock.Now() < this->RetryTime)
+  if (this->Clock.Now() >= this->RetryTime)
   {
-    return;
+    this->HandOver(false);
   }
+}
+
+void SweepFile::HandOver(bool patiently)
+{
   try
   {
-    if (!this->Recorder)
+    if (this->Waiting.empty() || !this->IsOpen(patiently))
     {
-      this->Open();
+      return;
     }
     while (!this->Waiting.empty())
     {
@@ -138,11 +153,47 @@ void SweepFile::Retry()
   }
 }
 
-void SweepFile::Open()
+// Throws why it cannot be opened.
+bool SweepFile::IsOpen(bool patiently)
 {
-  const std::string name = FindFreeSweepName(this->FileName, this->CompressionLevel);
-  this->Recorder = std::make_unique<SweepRecorder>(name, this->Description, this->CompressionLevel);
-  this->Now.FileName = name;
+  if (this->Recorder)
+  {
+    return true;
+  }
+  const bool begins = !this->Opening.valid();
+  if (begins)
+  {
+    this->BeginToOpen();
+  }
+  const auto patience = begins ? ShortWait : std::chrono::milliseconds(0);
+  if (!patiently && this->Opening.wait_for(patience) != std::future_status::ready)
+  {
+    return false;
+  }
+  Opened opened = this->Opening.get();
+  this->Recorder = std::move(opened.Recorder);
+  this->Now.FileName = std::move(opened.FileName);
+  return true;
+}
+
+void SweepFile::BeginToOpen()
+{
+  try
+  {
+    this->Opening = std::async(std::launch::async,
+      [fileName = this->FileName, level = this->CompressionLevel, description = this->Description]
+      {
+        Opened opened;
+        opened.FileName = FindFreeSweepName(fileName, level);
+        opened.Recorder = std::make_unique<SweepRecorder>(opened.FileName, description, level);
+        return opened;
+      });
+  }
+  catch (const std::system_error& e)
+  {
+    throw FileError(FileError::Kind::Other,
+      "No thread can be started that opens '" + this->FileName + "': " + e.code().message());
+  }
 }
 
 void SweepFile::Add(const AcquiredSlice& slice, const SweepFrame& frame)
@@ -179,8 +230,12 @@ SweepFile::State SweepFile::GetState() const
 
 void SweepFile::Finish()
 {
-  this->RetryTime = 0;
-  this->Retry();
+  const bool began = this->Opening.valid(); // and may have failed for what has been mended since
+  this->HandOver(true);
+  if (began)
+  {
+    this->HandOver(true);
+  }
   if (!this->Waiting.empty())
   {
     throw FileError(FileError::Kind::CannotOpen, this->Now.Trouble);

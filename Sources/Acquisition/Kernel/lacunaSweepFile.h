@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,8 +27,9 @@ std::string FindFreeSweepName(const std::string& fileName, int compressionLevel)
 /// Speed.
 SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame);
 
-/// Opens its file by a free name with the first slice, since only then the size is known. While that
-/// fails, slices wait in memory and it is tried again every second.
+/// Opens its file by a free name with the first slice, since only then the size is known, on a thread
+/// of its own: devices must not wait for a disk. While that lasts slices wait in memory; when it
+/// fails it is tried again every second.
 class SweepFile
 {
 public:
@@ -43,8 +45,12 @@ public:
 
   /// Throws std::invalid_argument for a name by which no sweep can be recorded.
   SweepFile(const std::string& fileName, int compressionLevel);
+  /// Writes what waits, unless that fails.
+  ~SweepFile();
+  SweepFile(const SweepFile&) = delete;
+  SweepFile& operator=(const SweepFile&) = delete;
 
-  /// Another name for a file that is not open yet; of an open one nothing changes. Throws as the
+  /// Another name for a file that cannot be opened; of an open one nothing changes. Throws as the
   /// constructor does.
   void Rename(const std::string& fileName, int compressionLevel);
   /// Takes a slice of the frame's window. Throws std::bad_alloc, and has not taken it.
@@ -57,7 +63,14 @@ public:
   void Finish();
 
 private:
-  void Open();
+  struct Opened
+  {
+    std::string FileName;
+    std::unique_ptr<SweepRecorder> Recorder;
+  };
+  void BeginToOpen();
+  bool IsOpen(bool patiently);
+  void HandOver(bool patiently);
 
   struct Entry
   {
@@ -72,6 +85,7 @@ private:
   std::deque<Entry> Waiting; ///< slices that the recorder does not have
   double RetryTime = 0;
   State Now; ///< Trouble: of what waits here
+  std::future<Opened> Opening;
   std::unique_ptr<SweepRecorder> Recorder;
 };
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A capture that goes on with other devices, in simulated time.
 #include "lacunaSweep.h"
+#include "lacunaTestNoThreads.h"
 #include "lacunaTestScene.h"
 
 #include <gtest/gtest.h>
@@ -64,6 +65,24 @@ TEST(AcquisitionDevices, ABrokenTrackerIsReplacedDuringACapture)
   EXPECT_GT(second, 90);
   EXPECT_LE(slices.size() - static_cast<std::size_t>(first + second), 5u);
   EXPECT_EQ(first + second, valid); // no pose between the two
+}
+
+TEST(AcquisitionDevices, WithoutAThreadForAnotherOneTheCaptureStays)
+{
+  Scene scene(EveryFrame());
+  SweepAcquisition& acquisition = scene.Open();
+  acquisition.Start();
+  scene.Place.RunTo(20);
+  {
+    const NoThreads none;
+    acquisition.ReplaceTracker(scene.Devices);
+  }
+  EXPECT_TRUE(HasMessage(acquisition.GetState(), "No thread can be started"));
+  acquisition.ReplaceTracker(scene.Devices);
+  scene.Place.RunTo(40);
+  EXPECT_TRUE(acquisition.GetState().TrackerWorks);
+  acquisition.Stop();
+  EXPECT_EQ(acquisition.TakeSlices().size(), 40u);
 }
 
 TEST(AcquisitionDevices, ABrokenVideoIsReplacedDuringACapture)

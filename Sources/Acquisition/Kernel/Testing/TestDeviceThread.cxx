@@ -2,6 +2,7 @@
 #include "lacunaClock.h"
 #include "lacunaDeviceThread.h"
 #include "lacunaExecution.h"
+#include "lacunaTestNoThreads.h"
 
 #include <gtest/gtest.h>
 
@@ -137,4 +138,13 @@ TEST(DeviceThread, AWaitForTheNextTrialEndsAtOnce)
     begin = clock.Now();
   }
   EXPECT_LT(clock.Now() - begin, 5);
+}
+
+TEST(DeviceThread, WithoutAThreadItDoesNotWorkAndSaysSo)
+{
+  const lacunaTest::NoThreads none;
+  const DeviceThread device([](DeviceThread::Control&) {}, 0.001);
+  EXPECT_FALSE(device.GetHealth().Working);
+  EXPECT_EQ(device.GetHealth().Failures, 1);
+  EXPECT_NE(device.GetHealth().Trouble.find("No thread can be started"), std::string::npos);
 }

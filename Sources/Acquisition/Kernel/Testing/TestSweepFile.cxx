@@ -5,16 +5,22 @@
 #include "lacunaSweep.h"
 #include "lacunaSweepFile.h"
 #include "lacunaSweepTransforms.h"
+#include "lacunaTestNoThreads.h"
 #include "lacunaTestRoom.h"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <limits>
+#include <thread>
 
-#include <pthread.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -46,33 +52,19 @@ SweepFrame MakeFrame(bool calibrated)
   return frame;
 }
 
-// The system refuses all new threads: none has room for such a stack.
-class NoThreads
-{
-public:
-  NoThreads()
-  {
-    pthread_getattr_default_np(&this->Before);
-    pthread_attr_t huge = this->Before;
-    pthread_attr_setstacksize(&huge, std::size_t{ 1 } << 47);
-    pthread_setattr_default_np(&huge);
-  }
-  ~NoThreads()
-  {
-    pthread_setattr_default_np(&this->Before);
-    pthread_attr_destroy(&this->Before);
-  }
-  NoThreads(const NoThreads&) = delete;
-  NoThreads& operator=(const NoThreads&) = delete;
-
-private:
-  pthread_attr_t Before{};
-};
+// What the system takes to make files and folders safe.
+std::atomic<int> Milliseconds{ 0 };
 
 lacuna::Sweep ReadSweep(const std::string& path)
 {
   return BuildSweep(ReadSequenceHeader(path), {});
 }
+}
+
+extern "C" int fsync(int file)
+{
+  std::this_thread::sleep_for(std::chrono::milliseconds(Milliseconds));
+  return static_cast<int>(syscall(SYS_fsync, file));
 }
 
 TEST(SweepFile, IsReadAsItWasTaken)
@@ -252,6 +244,39 @@ TEST(SweepFile, WhileNoThreadCanBeStartedSlicesWaitAndNoFileIsLeft)
   file.Finish();
   EXPECT_EQ(file.GetState().Trouble, "");
   EXPECT_EQ(ReadBack(folder / "sweep.mhd").Frames.size(), 2u);
+}
+
+// Frames that wait for a disk would be given the time at which it is ready.
+TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
+{
+  const TemporaryFolder folder;
+  const SteadyClock clock;
+  for (const bool finish : { true, false })
+  {
+    const std::string path = folder / (finish ? "finished.mhd" : "left.mhd");
+    {
+      Milliseconds = 400;
+      SweepFile file(path, 0);
+      const double begin = clock.Now();
+      for (int i = 0; i < 5; ++i)
+      {
+        file.Add(MakeSlice(i), MakeFrame(true));
+      }
+      const double taken = clock.Now() - begin;
+      std::cout << "five slices were taken in " << taken << " s\n";
+      EXPECT_LT(taken, 0.3);
+      EXPECT_EQ(file.GetState().WaitingBytes, 5 * 20);
+      EXPECT_EQ(file.GetState().Trouble, "");
+      Milliseconds = 0; // but for the opening, which goes on
+      if (finish)
+      {
+        file.Finish();
+        EXPECT_EQ(file.GetState().FileName, path);
+        EXPECT_EQ(file.GetState().Synced, 5);
+      }
+    }
+    EXPECT_EQ(ReadBack(path).Frames.size(), 5u);
+  }
 }
 
 TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)
