@@ -196,7 +196,7 @@ void SweepAcquisition::Core::LosePoses()
     this->NewestPoses = {};
     this->TrackerWarning.clear();
     this->PosesCome = false;
-    this->ButtonDown = this->ButtonBefore = false;
+    this->ButtonBefore = this->ButtonDown; // one that is held is not pressed again
   }
   this->AbandonFrames();
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -128,6 +129,30 @@ TEST(AcquisitionTracker, TheButtonStartsAgainWhatWasFull)
   scene.Place.RunTo(300);
   EXPECT_EQ(acquisition.GetState().Counts.PastLimit, 5);
   EXPECT_FALSE(acquisition.GetState().Capturing);
+}
+
+TEST(AcquisitionTracker, AButtonThatIsHeldWhileTheTrackerComesBackIsNotPressedAgain)
+{
+  AcquisitionRules rules = EveryFrame();
+  rules.ButtonStarts = true;
+  std::atomic<bool> gone{ false };
+  Scene scene(rules, Room::NumberedFrame,
+    [&](double time, std::vector<TrackedPose>& poses)
+    {
+      if (time > 2.5 && !gone.exchange(true))
+      {
+        throw std::runtime_error("gone");
+      }
+      TrackedPose pose = Room::MakePose(time);
+      pose.Button = (time > 2 && time < 3) || time > 4;
+      poses.push_back(pose);
+    });
+  SweepAcquisition& acquisition = scene.Open();
+  scene.Place.RunTo(70);
+  EXPECT_TRUE(gone);
+  EXPECT_TRUE(acquisition.GetState().Capturing);
+  scene.Place.RunTo(90);
+  EXPECT_FALSE(acquisition.GetState().Capturing); // the next press
 }
 
 // The FASTRAK's protocol at its pace, one byte in a hundred damaged: every frame becomes a slice and
