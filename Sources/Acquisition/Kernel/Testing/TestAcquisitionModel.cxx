@@ -275,5 +275,5 @@ TEST_P(AcquisitionModel, WhateverIsDoneNothingIsLostOrWrong)
   EXPECT_FALSE(HasFailure()) << trial.Log;
 }
 
-INSTANTIATE_TEST_SUITE_P(Short, AcquisitionModel, testing::Range(0, 30));
+INSTANTIATE_TEST_SUITE_P(Short, AcquisitionModel, testing::Range(0, 25));
 INSTANTIATE_TEST_SUITE_P(Soak, AcquisitionModel, testing::Range(100, 2100));

@@ -75,7 +75,7 @@ void Trial::Run(int frames, std::optional<bool> wanted)
 // real time is waited for them.
 void Trial::WhileTimeGoesOn(const std::function<void()>& end)
 {
-  const bool waits = this->Work->GetState().Pending > 0 && this->Random.Chance(0.93);
+  const bool waits = this->Work->GetState().Pending > 0 && this->Random.Chance(0.97);
   auto ended = std::async(std::launch::async, end);
   this->Capturing = false;
   while (this->Work->GetState().Capturing)
