@@ -1,376 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweepAcquisition.h"
 
-#include "lacunaDeviceThread.h"
+#include "lacunaSweepAcquisitionCore.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <mutex>
-#include <stdexcept>
 #include <utility>
 
 namespace lacuna
 {
 namespace
 {
-constexpr int ManyFrames = 10;                                  // without a pose: half a second
-constexpr double LongestSilence = 3;                            // s of a tracker that worked
 constexpr std::chrono::duration<double> LongestSettling{ 0.8 }; // of a capture's last frames
-
-PoseCounts Sum(const PoseCounts& a, const PoseCounts& b)
-{
-  return { a.Poses + b.Poses, a.Missing + b.Missing, a.Damaged + b.Damaged,
-    a.Implausible + b.Implausible, a.Flipped + b.Flipped };
-}
-
-VideoSource::Counts Sum(const VideoSource::Counts& a, const VideoSource::Counts& b)
-{
-  VideoSource::Counts sum;
-  sum.Frames = a.Frames + b.Frames;
-  sum.Damaged = a.Damaged + b.Damaged;
-  sum.Undecodable = a.Undecodable + b.Undecodable;
-  sum.Missing = a.Missing + b.Missing;
-  return sum;
-}
-}
-
-// Shared with the threads, which may outlive the acquisition. TakeMutex before Mutex.
-struct SweepAcquisition::Core
-{
-  Core(const AcquisitionDevices& devices, const AcquisitionRules& rules, const Clock& clock)
-    : Time(clock)
-    , Epoch(clock.Now())
-    , Taking(devices.Crop, rules, this->Epoch)
-    , Rules(rules)
-    , Pairing(devices.Patience)
-  {
-  }
-
-  void TrackPoses(const AcquisitionDevices& devices, DeviceThread::Control& control);
-  void ReadFrames(const AcquisitionDevices& devices, DeviceThread::Control& control);
-  void AddPoses(
-    const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
-  void HeedButton(const TrackedPose& pose);
-  void SetCapturing(bool on);
-  void LosePoses();
-  void BreakPoses();
-  void AbandonFrames();
-  void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
-  void Process();
-  void HeedStart();
-  void Publish(std::int64_t processed, std::vector<AcquiredSlice> slices);
-  std::uint64_t CountFlipped() const
-  {
-    return this->EarlierPoses.Flipped + this->NewestPoses.Flipped;
-  }
-  std::vector<std::string> DescribePoses() const;
-
-  const Clock& Time;
-  const double Epoch;
-
-  std::mutex TakeMutex; // keeps frames in order; guards
-  SweepTaking Taking;
-
-  mutable std::mutex Mutex; // held for moments only; guards all below
-  std::condition_variable Settled;
-  AcquisitionRules Rules;
-  FramePairing Pairing;
-  bool Capturing = false;
-  bool Started = false; // and Taking does not know it yet
-  bool Finished = false;
-  bool PosesCome = false; // a tracker is connected and has measured
-  bool ButtonDown = false;
-  bool ButtonBefore = false; // what the last record said
-  std::int64_t NextNumber = 0;
-  std::int64_t Pending = 0;
-  std::int64_t Missing = 0;
-  PoseCounts EarlierPoses; // of connections that ended
-  PoseCounts NewestPoses;
-  std::uint64_t FlippedBefore = 0; // the sweep
-  VideoSource::Counts EarlierVideo;
-  VideoSource::Counts NewestVideo;
-  std::string TrackerWarning;
-  std::string VideoWarning;
-  std::optional<std::pair<PairedFrame, SweepFrame>> Live;
-  int FramesSincePose = 0;
-  std::vector<AcquiredSlice> Slices;
-  AcquisitionState State; // of what Taking knows
-  std::optional<SweepFrame> Sweep;
-};
-
-void SweepAcquisition::Core::TrackPoses(
-  const AcquisitionDevices& devices, DeviceThread::Control& control)
-{
-  const auto device = devices.Poses([&control] { return control.IsStopped(); });
-  device->SetUp();
-  try
-  {
-    double last = this->Time.Now();
-    std::vector<TrackedPose> poses;
-    while (!control.IsStopped())
-    {
-      poses.clear();
-      const bool came = device->Poll(poses);
-      if (control.IsStopped())
-      {
-        return; // there may be another tracker
-      }
-      this->AddPoses(poses, came, *device, devices.Station);
-      if (came)
-      {
-        control.SetWorking();
-        last = this->Time.Now();
-      }
-      if (this->Time.Now() - last > LongestSilence)
-      {
-        const std::string why = device->GetWarning();
-        throw std::runtime_error(!why.empty()
-            ? why
-            : "The tracker sends nothing any more: is it switched on and its cable plugged in?");
-      }
-    }
-  }
-  catch (...)
-  {
-    if (!control.IsStopped())
-    {
-      this->LosePoses();
-    }
-    throw;
-  }
-}
-
-void SweepAcquisition::Core::AddPoses(
-  const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station)
-{
-  const PoseCounts counts = device.GetCounts();
-  std::string warning = device.GetWarning();
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->NewestPoses = counts;
-    this->TrackerWarning = std::move(warning);
-    this->PosesCome = this->PosesCome || came;
-    for (const TrackedPose& pose : poses)
-    {
-      if (pose.Station == station)
-      {
-        this->HeedButton(pose);
-        this->Pairing.AddPose(pose);
-      }
-    }
-  }
-  this->Process();
-}
-
-void SweepAcquisition::Core::HeedButton(const TrackedPose& pose)
-{
-  if (!pose.Button)
-  {
-    return;
-  }
-  // two records must agree: a damaged one presses nothing
-  if (*pose.Button == this->ButtonBefore && *pose.Button != this->ButtonDown)
-  {
-    this->ButtonDown = *pose.Button;
-    if (this->ButtonDown && this->Rules.ButtonStarts)
-    {
-      this->SetCapturing(!this->Capturing);
-    }
-  }
-  this->ButtonBefore = *pose.Button;
-}
-
-void SweepAcquisition::Core::SetCapturing(bool on)
-{
-  this->Started = this->Capturing = on && !this->Finished;
-}
-
-void SweepAcquisition::Core::LosePoses()
-{
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->EarlierPoses = Sum(this->EarlierPoses, this->NewestPoses);
-    this->NewestPoses = {};
-    this->TrackerWarning.clear();
-    this->PosesCome = false;
-    this->ButtonBefore = this->ButtonDown; // one that is held is not pressed again
-  }
-  this->AbandonFrames();
-}
-
-void SweepAcquisition::Core::BreakPoses()
-{
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  this->Pairing.Break();
-}
-
-// Those that wait for poses go without.
-void SweepAcquisition::Core::AbandonFrames()
-{
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->Pairing.Abandon();
-  }
-  this->Process();
-}
-
-void SweepAcquisition::Core::ReadFrames(
-  const AcquisitionDevices& devices, DeviceThread::Control& control)
-{
-  const auto device = devices.Frames([&control] { return control.IsStopped(); });
-  const double latency = devices.VideoLatency.value_or(device->GetLatency());
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    if (control.IsStopped())
-    {
-      return; // it took long to open, and another one counts by now
-    }
-    this->EarlierVideo = Sum(this->EarlierVideo, this->NewestVideo);
-    this->NewestVideo = {};
-    this->VideoWarning.clear();
-  }
-  while (!control.IsStopped())
-  {
-    auto frame = std::make_shared<VideoFrame>();
-    if (device->Read(*frame) == VideoEvent::End)
-    {
-      const std::string text = "The video has ended";
-      if (devices.ReopenEndedVideo)
-      {
-        throw std::runtime_error(
-          text + ": does its sender still run? It is opened again when it does");
-      }
-      throw DeviceEnded(text + ": no more frames come");
-    }
-    if (control.IsStopped())
-    {
-      return; // there may be another video
-    }
-    control.SetWorking();
-    this->AddFrame(std::move(frame), latency, *device);
-  }
-}
-
-void SweepAcquisition::Core::AddFrame(FramePointer frame, double latency, const FrameDevice& device)
-{
-  const VideoSource::Counts counts = device.GetCounts();
-  std::string warning = device.GetWarning();
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    PairedFrame paired;
-    paired.Instant = frame->Arrival - latency + this->Rules.TimeOffset;
-    paired.Frame = std::move(frame);
-    paired.Number = this->NextNumber++;
-    paired.Wanted = this->Capturing;
-    if (this->Capturing)
-    {
-      ++this->Pending;
-      this->Missing += static_cast<std::int64_t>(counts.Missing - this->NewestVideo.Missing +
-        counts.Undecodable - this->NewestVideo.Undecodable);
-    }
-    this->NewestVideo = counts;
-    this->VideoWarning = std::move(warning);
-    this->Pairing.AddFrame(std::move(paired), this->Time.Now());
-    if (!this->PosesCome)
-    {
-      this->Pairing.Abandon();
-    }
-  }
-  this->Process();
-}
-
-void SweepAcquisition::Core::Process()
-{
-  const std::lock_guard<std::mutex> taking(this->TakeMutex);
-  std::vector<PairedFrame> ready;
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    ready = this->Pairing.Take(this->Time.Now());
-    this->HeedStart();
-  }
-  if (ready.empty())
-  {
-    return;
-  }
-  std::vector<AcquiredSlice> slices;
-  std::int64_t processed = 0;
-  std::exception_ptr error; // slices that were taken are told all the same
-  for (const PairedFrame& frame : ready)
-  {
-    processed += frame.Wanted ? 1 : 0;
-    try
-    {
-      this->Taking.Add(frame, this->Time.Now(), slices);
-    }
-    catch (...)
-    {
-      error = std::current_exception();
-    }
-  }
-  const std::lock_guard<std::mutex> lock(this->Mutex);
-  if (const auto window = this->Taking.GetWindow(*ready.back().Frame))
-  {
-    this->Live = std::pair(std::move(ready.back()), *window);
-  }
-  this->Publish(processed, std::move(slices));
-  if (error)
-  {
-    std::rethrow_exception(error);
-  }
-}
-
-// With both locks.
-void SweepAcquisition::Core::HeedStart()
-{
-  if (std::exchange(this->Started, false))
-  {
-    this->Taking.Resume();
-  }
-}
-
-// With both locks.
-void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<AcquiredSlice> slices)
-{
-  this->HeedStart();
-  this->Slices.insert(this->Slices.end(), std::make_move_iterator(slices.begin()),
-    std::make_move_iterator(slices.end()));
-  this->Pending -= processed;
-  this->Capturing = this->Capturing && !this->Taking.IsFull();
-  this->State.Counts = this->Taking.GetCounts();
-  this->State.Speed = this->Taking.GetSpeed();
-  this->State.LargestResidual = this->Taking.GetLargestResidual();
-  this->State.File = this->Taking.GetFile();
-  this->State.Memory = this->Taking.GetMemory();
-  this->FramesSincePose = this->Taking.GetFramesSincePose();
-  this->State.Messages = this->Taking.GetMessages();
-  this->Sweep = this->Taking.GetSweep();
-  this->Settled.notify_all();
-}
-
-std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
-{
-  std::vector<std::string> messages;
-  if (!this->TrackerWarning.empty())
-  {
-    messages.push_back(this->TrackerWarning);
-  }
-  if (this->FramesSincePose >= ManyFrames && this->PosesCome)
-  {
-    messages.push_back(
-      "The newest frames have no pose: no two measurements of the tracker, at most "
-      "0.25 s apart, are around their instants");
-  }
-  const std::uint64_t flipped = this->CountFlipped() - this->FlippedBefore;
-  if (flipped > 0)
-  {
-    messages.push_back("The receiver was in the other half of space (" + std::to_string(flipped) +
-      " records), and the signs of its position were set right. Keep it on the side of the "
-      "transmitter that Hemisphere points to");
-  }
-  return messages;
 }
 
 SweepAcquisition::SweepAcquisition(
@@ -423,10 +65,14 @@ SweepAcquisition::~SweepAcquisition()
 void SweepAcquisition::SetRules(const AcquisitionRules& rules)
 {
   CheckRules(rules);
-  const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
-  this->Work->Taking.SetRules(rules);
-  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
-  this->Work->Rules = rules;
+  {
+    const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+    this->Work->TakeReady(); // by the rules of their time
+    this->Work->Taking.SetRules(rules);
+    const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+    this->Work->Rules = rules;
+  }
+  this->Work->CatchUp();
 }
 
 void SweepAcquisition::Start()
@@ -453,9 +99,9 @@ AcquisitionState SweepAcquisition::Finish()
     this->Work->Finished = true;
   }
   this->Stop();
-  this->Work->AbandonFrames();
   {
     const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+    this->Work->TakeLast();
     this->Work->Taking.Finish();
     const std::lock_guard<std::mutex> lock(this->Work->Mutex);
     this->Work->Publish(0, {});
@@ -466,15 +112,18 @@ AcquisitionState SweepAcquisition::Finish()
 void SweepAcquisition::BeginSweep(bool discard)
 {
   this->Stop();
-  this->Work->AbandonFrames(); // they are of this sweep
-  const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
-  this->Work->Taking.BeginSweep(discard);
-  const std::lock_guard<std::mutex> lock(this->Work->Mutex);
-  this->Work->Slices.clear();
-  this->Work->Missing = 0;
-  this->Work->FlippedBefore = this->Work->CountFlipped();
-  this->Work->Publish(0, {});
-  this->Work->Sweep.reset();
+  {
+    const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
+    this->Work->TakeLast(); // they are of this sweep
+    this->Work->Taking.BeginSweep(discard);
+    const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+    this->Work->Slices.clear();
+    this->Work->Missing = 0;
+    this->Work->FlippedBefore = this->Work->CountFlipped();
+    this->Work->Publish(0, {});
+    this->Work->Sweep.reset();
+  }
+  this->Work->CatchUp();
 }
 
 std::vector<AcquiredSlice> SweepAcquisition::TakeSlices()
@@ -508,13 +157,17 @@ AcquisitionState SweepAcquisition::GetState() const
   const DeviceThread::Health video = this->Video->GetHealth();
   devices.unlock();
   Core& core = *this->Work;
-  // the disk goes on when no frames come
-  std::unique_lock<std::mutex> taking(core.TakeMutex, std::try_to_lock);
-  const std::lock_guard<std::mutex> lock(core.Mutex);
-  if (taking.owns_lock())
   {
-    core.Publish(0, {});
+    // the disk goes on when no frames come
+    const std::unique_lock<std::mutex> taking(core.TakeMutex, std::try_to_lock);
+    const std::lock_guard<std::mutex> lock(core.Mutex);
+    if (taking.owns_lock())
+    {
+      core.Publish(0, {});
+    }
   }
+  core.CatchUp();
+  const std::lock_guard<std::mutex> lock(core.Mutex);
   AcquisitionState state = core.State;
   state.Capturing = core.Capturing;
   state.TrackerWorks = tracker.Working;
@@ -522,8 +175,8 @@ AcquisitionState SweepAcquisition::GetState() const
   state.Pending = core.Pending;
   state.Missing = core.Missing;
   state.Counts.Frames += core.Pending;
-  state.Poses = Sum(core.EarlierPoses, core.NewestPoses);
-  state.Video = Sum(core.EarlierVideo, core.NewestVideo);
+  state.Poses = core.CountPoses();
+  state.Video = core.CountVideo();
   std::vector<std::string> messages;
   const auto describe = [&](const DeviceThread::Health& health, const char* waiting)
   {

@@ -279,6 +279,42 @@ TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
   }
 }
 
+TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
+{
+  const TemporaryFolder folder;
+  Room room;
+  AcquisitionDevices devices;
+  devices.Frames = room.MakeVideo();
+  devices.Poses = room.MakeTracker();
+  AcquisitionRules rules;
+  rules.Mode = CaptureMode::EveryFrame;
+  rules.RecordFileName = folder / "sweep.mhd";
+  SweepAcquisition acquisition(devices, rules, room);
+  acquisition.Start();
+  room.RunTo(20);
+  acquisition.Stop();
+  Milliseconds = 1000;
+  std::atomic<bool> begun{ false };
+  std::thread user(
+    [&]
+    {
+      acquisition.BeginSweep();
+      begun = true;
+    });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  room.RunTo(40);
+  acquisition.GetState();
+  EXPECT_FALSE(begun);
+  Milliseconds = 0;
+  user.join();
+  acquisition.Start();
+  room.RunTo(60);
+  acquisition.Stop();
+  EXPECT_EQ(acquisition.GetState().Counts.Frames, 20);
+  EXPECT_EQ(acquisition.TakeSlices().size(), 20u);
+  EXPECT_EQ(ReadBack(folder / "sweep.mhd").Frames.size(), 20u);
+}
+
 TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)
 {
   const TemporaryFolder folder;
