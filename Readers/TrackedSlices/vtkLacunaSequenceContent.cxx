@@ -29,7 +29,6 @@ namespace
 constexpr const char* TransformSuffix = "Transform";
 constexpr const char* StatusSuffix = "TransformStatus";
 constexpr const char* ImageStatus = "ImageStatus";
-constexpr std::size_t LongestLine = 990; // PLUS reads 1000 characters at a time
 constexpr double MostPixels = 1e9;
 
 // Arrays that are written in a way of their own.
@@ -63,7 +62,7 @@ vtkLacunaSequenceContent::vtkLacunaSequenceContent(vtkImageData* stack,
   : Stack(stack)
   , Whole(stream ? Place{ stream->GetExtent(), stream->GetOrigin(), stream->GetSpacing() }
                  : Place{ stack->GetExtent(), stack->GetOrigin(), stack->GetSpacing() })
-  , Kind(kind)
+  , Fields(kind, this->Content, this->Warnings)
 {
   this->FindSlices();
   this->FindPixels();
@@ -80,7 +79,7 @@ vtkLacunaSequenceContent::vtkLacunaSequenceContent(vtkImageData* stack,
   this->AddStates();
   this->AddPoses();
   this->AddProvenance();
-  this->CheckLines();
+  this->Fields.CheckLines();
 }
 
 //------------------------------------------------------------------------------
@@ -126,9 +125,9 @@ void vtkLacunaSequenceContent::SayWindow()
     lacuna::IsNear(this->PixelToImage, lacuna::Matrix4::Translation(first));
   if (this->Windowed)
   {
-    this->AddHeaderField(
+    this->Fields.AddToHeader(
       lacuna::FirstColumnField, std::to_string(static_cast<std::int64_t>(first[0])));
-    this->AddHeaderField(
+    this->Fields.AddToHeader(
       lacuna::FirstRowField, std::to_string(static_cast<std::int64_t>(first[1])));
   }
 }
@@ -175,7 +174,7 @@ void vtkLacunaSequenceContent::AddArrays()
   }
   vtkDataArray* imageToProbe =
     vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::ImageToProbeName, 16, 1);
-  if (imageToProbe && !this->FindText(0, this->ImageFrame + "ToProbeTransform"))
+  if (imageToProbe && !this->Fields.Find(0, this->ImageFrame + "ToProbeTransform"))
   {
     this->AddTransform(imageToProbe);
   }
@@ -222,7 +221,7 @@ void vtkLacunaSequenceContent::AddStrings(vtkStringArray* array)
   const std::string name = array->GetName();
   if (array->GetNumberOfValues() != this->Count)
   {
-    this->AddHeaderField(name, array->GetValue(0));
+    this->Fields.AddToHeader(name, array->GetValue(0));
     return;
   }
   if (lacuna::EndsWithIgnoringCase(name, StatusSuffix))
@@ -248,7 +247,7 @@ void vtkLacunaSequenceContent::AddStrings(vtkStringArray* array)
       }
     }
   }
-  this->AddFrameField(name, texts);
+  this->Fields.AddToFrames(name, texts);
 }
 
 //------------------------------------------------------------------------------
@@ -256,7 +255,7 @@ void vtkLacunaSequenceContent::AddNumbers(vtkDataArray* array)
 {
   if (array->GetNumberOfTuples() != this->Count)
   {
-    this->AddHeaderField(array->GetName(), FormatTuple(array, 0));
+    this->Fields.AddToHeader(array->GetName(), FormatTuple(array, 0));
     return;
   }
   std::vector<std::string> texts;
@@ -264,7 +263,7 @@ void vtkLacunaSequenceContent::AddNumbers(vtkDataArray* array)
   {
     texts.push_back(FormatTuple(array, slice));
   }
-  this->AddFrameField(array->GetName(), texts);
+  this->Fields.AddToFrames(array->GetName(), texts);
 }
 
 //------------------------------------------------------------------------------
@@ -294,8 +293,8 @@ void vtkLacunaSequenceContent::AddTransform(vtkDataArray* array)
       states[i] = "INVALID";
     }
   }
-  this->AddFrameField(name + TransformSuffix, matrices);
-  this->AddFrameField(name + StatusSuffix, states);
+  this->Fields.AddToFrames(name + TransformSuffix, matrices);
+  this->Fields.AddToFrames(name + StatusSuffix, states);
 }
 
 //------------------------------------------------------------------------------
@@ -339,15 +338,15 @@ void vtkLacunaSequenceContent::AddStates()
       imageTexts[i] = invalid ? "INVALID" : "OK";
     }
   }
-  this->AddFrameField(vtkLacunaTrackedSlices::TimestampName, timeTexts);
+  this->Fields.AddToFrames(vtkLacunaTrackedSlices::TimestampName, timeTexts);
   if (ownNumbers) // a frame without one is numbered by its place
   {
-    this->AddFrameField(vtkLacunaTrackedSlices::FrameNumberName, numberTexts);
+    this->Fields.AddToFrames(vtkLacunaTrackedSlices::FrameNumberName, numberTexts);
   }
-  this->AddFrameField(vtkLacunaTrackedSlices::SliceStatusName, flagTexts);
+  this->Fields.AddToFrames(vtkLacunaTrackedSlices::SliceStatusName, flagTexts);
   if (!this->PosesOnly)
   {
-    this->AddFrameField(ImageStatus, imageTexts);
+    this->Fields.AddToFrames(ImageStatus, imageTexts);
   }
 }
 
@@ -385,16 +384,10 @@ void vtkLacunaSequenceContent::AddPoses()
     matrices.push_back(pose.IsFinite() ? lacuna::FormatMatrix(pose) : std::string());
     states.emplace_back(pose.IsFinite() ? "OK" : "INVALID");
   }
-  for (lacuna::SequenceFields& fields : this->Content.Frames)
-  {
-    fields.erase(
-      std::remove_if(fields.begin(), fields.end(),
-        [&](const auto& field)
-        { return field.first == name + TransformSuffix || field.first == name + StatusSuffix; }),
-      fields.end());
-  }
-  this->AddFrameField(name + TransformSuffix, matrices);
-  this->AddFrameField(name + StatusSuffix, states);
+  this->Fields.RemoveFromFrames(name + TransformSuffix);
+  this->Fields.RemoveFromFrames(name + StatusSuffix);
+  this->Fields.AddToFrames(name + TransformSuffix, matrices);
+  this->Fields.AddToFrames(name + StatusSuffix, states);
 }
 
 //------------------------------------------------------------------------------
@@ -403,73 +396,9 @@ void vtkLacunaSequenceContent::AddProvenance()
   std::size_t number = 0;
   for (const std::string& step : vtkLacunaProvenance::Get(this->Stack))
   {
-    this->AddHeaderField(vtkLacunaSequenceNames::ProvenancePrefix + std::to_string(number++), step);
+    this->Fields.AddToHeader(
+      vtkLacunaSequenceNames::ProvenancePrefix + std::to_string(number++), step);
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSequenceContent::CheckLines()
-{
-  std::set<std::string> names;
-  const auto check = [&](const lacuna::SequenceFields& fields)
-  {
-    for (const auto& [name, text] : fields)
-    {
-      if (name.size() + text.size() > LongestLine)
-      {
-        names.insert(name);
-      }
-    }
-  };
-  check(this->Content.Description.CustomFields);
-  std::for_each(this->Content.Frames.begin(), this->Content.Frames.end(), check);
-  if (!names.empty())
-  {
-    this->Warnings.push_back("fields are longer than 1000 characters; PLUS would cut them: " +
-      lacuna::JoinSome({ names.begin(), names.end() }));
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSequenceContent::AddHeaderField(const std::string& name, const std::string& text)
-{
-  if (this->Accepts(name, { text }, false))
-  {
-    this->Content.Description.CustomFields.emplace_back(name, text);
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaSequenceContent::AddFrameField(
-  const std::string& name, const std::vector<std::string>& texts)
-{
-  if (!this->Accepts(name, texts, true))
-  {
-    return;
-  }
-  for (std::size_t i = 0; i < texts.size(); ++i)
-  {
-    if (!texts[i].empty())
-    {
-      this->Content.Frames[i].emplace_back(name, texts[i]);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-bool vtkLacunaSequenceContent::Accepts(
-  const std::string& name, const std::vector<std::string>& texts, bool ofFrame)
-{
-  for (const std::string& text : texts)
-  {
-    const std::string problem = this->Kind.GetProblem(name, text, ofFrame);
-    if (!problem.empty())
-    {
-      this->Warnings.push_back("field '" + name + "' is not written: " + problem);
-      return false;
-    }
-  }
-  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -486,16 +415,6 @@ lacuna::Matrix4 vtkLacunaSequenceContent::ToPixels(
     return matrix * this->PixelToImage;
   }
   return readings[0].second == this->ImageFrame ? this->PixelToImage.Inverse() * matrix : matrix;
-}
-
-//------------------------------------------------------------------------------
-const std::string* vtkLacunaSequenceContent::FindText(
-  std::size_t frame, const std::string& field) const
-{
-  const lacuna::SequenceFields& fields = this->Content.Frames.at(frame);
-  const auto found = std::find_if(
-    fields.begin(), fields.end(), [&](const auto& other) { return other.first == field; });
-  return found == fields.end() ? nullptr : &found->second;
 }
 
 //------------------------------------------------------------------------------

@@ -5,7 +5,7 @@
 #define vtkLacunaSequenceContent_h
 
 #include "lacunaMatrix4.h"
-#include "lacunaSequenceWriter.h"
+#include "lacunaSequenceFieldList.h"
 #include "vtkType.h"
 
 #include <string>
@@ -35,6 +35,9 @@ public:
   /// What cannot be written, one sentence each.
   const std::vector<std::string>& GetWarnings() const { return this->Warnings; }
 
+  vtkLacunaSequenceContent(const vtkLacunaSequenceContent&) = delete;
+  void operator=(const vtkLacunaSequenceContent&) = delete;
+
 private:
   void FindSlices();
   void SayWindow();
@@ -47,14 +50,9 @@ private:
   void AddStates();
   void AddPoses();
   void AddProvenance();
-  void CheckLines();
 
-  void AddHeaderField(const std::string& name, const std::string& text);
-  void AddFrameField(const std::string& name, const std::vector<std::string>& texts);
-  bool Accepts(const std::string& name, const std::vector<std::string>& texts, bool ofFrame);
   /// A transform of the given name as it is between the pixels of the file.
   lacuna::Matrix4 ToPixels(const std::string& name, const lacuna::Matrix4& matrix) const;
-  const std::string* FindText(std::size_t frame, const std::string& field) const;
   std::vector<std::string> GetTexts(const std::string& name) const;
 
   /// Where the stack lies, or that of all slices.
@@ -66,11 +64,11 @@ private:
   };
   vtkImageData* Stack;
   Place Whole;
-  const lacuna::SequenceKind& Kind;
   lacuna::SequenceContent Content;
   std::vector<std::string> Warnings;
-  vtkIdType Count = 0;           ///< slices of the sweep
-  std::vector<vtkIdType> Slices; ///< those in the stack
+  lacuna::SequenceFieldList Fields; ///< of Content
+  vtkIdType Count = 0;              ///< slices of the sweep
+  std::vector<vtkIdType> Slices;    ///< those in the stack
   std::vector<unsigned char> Status;
   bool PosesOnly = false;
   std::string ImageFrame = "Image";
