@@ -39,6 +39,7 @@ std::string Deflate(const unsigned char* bytes, std::size_t size, const unsigned
   zlib.avail_out = static_cast<uInt>(output.size());
   deflate(&zlib, Z_SYNC_FLUSH);
   output.resize(zlib.total_out);
+  output.shrink_to_fit(); // else blocks that wait take what they would without compression
   deflateEnd(&zlib);
   return output;
 }
