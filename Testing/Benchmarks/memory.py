@@ -5,21 +5,28 @@
     pvpython Testing/Benchmarks/memory.py [name ...]
 
 Each is measured in a process of its own (Linux): resident memory over that before the filter runs, plus its input, divided
-by input and output. 1 is the least that can be, below 1 what shares arrays with the input. Prints the table of the guide's page on memory.
+by input and output. 1 is the least that can be, below 1 what shares arrays with the input. A file that is written is no output: it is
+on the disk. Prints the table of the guide's page on memory.
 """
 import os
+import struct
 import sys
 import tempfile
 
 import lacuna.plugin
+import numpy as np
 
 lacuna.plugin.load()
+from lacuna import occlusion
 from lacuna.errors import raising
 from paraview import servermanager
 from paraview.simple import *
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Examples", "04-calibration"))
+import scans
+
 MEBIBYTE = 1048576
-FOLDER = tempfile.gettempdir()
+FOLDER = None  # for files of the filter that is measured
 
 
 def sweep(slices, **settings):
@@ -46,26 +53,77 @@ def filled(spacing):
     return fill
 
 
+def path(name):
+    return os.path.join(FOLDER, name)
+
+
 def reader(slices):
-    name = os.path.join(FOLDER, f"lacuna-memory-{os.getpid()}.mha")
     source = sweep(slices)
-    SaveData(name, source, CompressionLevel=0)
+    SaveData(path("sweep.mha"), source, CompressionLevel=0)
     Delete(source)
-    made = OpenDataFile(name)
-    made.UpdatePipelineInformation()
-    os.remove(name)  # it is open
-    return made
+    return OpenDataFile(path("sweep.mha"))
+
+
+def series(slices):
+    """A CT series of 512 x 512 pixels, explicit little endian."""
+    def element(tag, vr, value):
+        value = value.encode() if isinstance(value, str) else value
+        value += (b"\0" if vr == "UI" else b" ") * (len(value) % 2)
+        length = struct.pack("<HI", 0, len(value)) if vr == "OW" else struct.pack("<H", len(value))
+        return struct.pack("<HH2s", tag >> 16, tag & 0xFFFF, vr.encode()) + length + value
+    short = struct.Struct("<H").pack
+    storage, syntax = "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.1.2.1"
+    pixels = np.arange(512 * 512, dtype="<i2").tobytes()
+    os.makedirs(path("series"))
+    for n in range(slices):
+        meta = element(0x20002, "UI", storage) + element(0x20003, "UI", f"1.2.3.{n}") + element(0x20010, "UI", syntax)
+        data = b"".join(element(*one) for one in (
+            (0x80016, "UI", storage), (0x80018, "UI", f"1.2.3.{n}"), (0x80060, "CS", "CT"), (0x20000D, "UI", "1.2.4"),
+            (0x20000E, "UI", "1.2.5"), (0x200013, "IS", str(n)), (0x200032, "DS", f"0\\0\\{n}"), (0x200037, "DS", "1\\0\\0\\0\\1\\0"),
+            (0x280002, "US", short(1)), (0x280004, "CS", "MONOCHROME2"), (0x280010, "US", short(512)), (0x280011, "US", short(512)),
+            (0x280030, "DS", "0.5\\0.5"), (0x280100, "US", short(16)), (0x280101, "US", short(16)), (0x280102, "US", short(15)),
+            (0x280103, "US", short(1)), (0x281052, "DS", "0"), (0x281053, "DS", "1"), (0x7FE00010, "OW", pixels)))
+        with open(path(f"series/{n}.dcm"), "wb") as file:
+            file.write(bytes(128) + b"DICM" + element(0x20000, "UL", struct.pack("<I", len(meta))) + meta + data)
+    return CTSeriesReader(FileName=path("series"))
+
+
+def floor(slices, degrees):
+    """Hundreds of scans of the floor of a bath, to and fro and tilted to all sides by so many degrees."""
+    random = np.random.default_rng(1)
+    places = [scans.pose(scans.looking_down(random, degrees), [*random.uniform(-20, 20, 2), 35 + 8 * np.sin(0.2 * np.pi * n)]) for n in range(100)]
+    pictures = np.array([scans.floor_picture(place, random) for place in places])
+    poses = [scans.probe_to_tracker(place) for place in places]
+    return scans.slices(np.tile(pictures, (slices // 100, 1, 1)), np.tile(poses, (slices // 100, 1, 1)))
+
+
+def receivers(rows):
+    """Poses of two receivers that are fixed to each other."""
+    random = np.random.default_rng(1)
+    moments = np.arange(rows) // 2
+    places = random.uniform([20, -25, -15], [50, 20, 15], (rows, 3))
+    places[1::2] = places[::2] + [20, 1, 2]
+    columns = {"Time": 30.0 * moments, "Station": 1 + np.arange(rows) % 2, **{name: places[:, n] for n, name in enumerate("xyz")}}
+    return scans.table(columns | {name: np.zeros(rows) for name in ("azimuth", "elevation", "roll")})
+
+
+def written(name, source, **settings):
+    writer = CreateWriter(path(name), source)
+    for key, value in settings.items():
+        setattr(writer, key, value)
+    return writer
+
+
+def milled(spacing, **settings):
+    return MillingToolPath(Input=PressOrientation(Input=filled(spacing)), **settings)
 
 
 def assembled(slices):
-    name = os.path.join(FOLDER, f"lacuna-memory-{os.getpid()}.csv")
-    with open(name, "w", encoding="ascii") as file:
+    with open(path("poses.csv"), "w", encoding="ascii") as file:
         file.write("Slice," + ",".join(f"m{n}" for n in range(16)) + "\n")
         for n in range(slices):
             file.write(f"{n},1,0,0,0,0,1,0,0,0,0,1,{0.1 * n},0,0,0,1\n")
-    table = CSVReader(FileName=[name])
-    table.UpdatePipeline()
-    os.remove(name)
+    table = CSVReader(FileName=[path("poses.csv")])
     images = Wavelet(WholeExtent=[0, 639, 0, 479, 0, slices - 1])
     return AssembleTrackedSlices(Input=images, Poses=table, PoseFormat="Matrix", PoseColumns=["m"], PixelSpacing=0.1)
 
@@ -93,14 +151,25 @@ def angle(n):
     return OccludedAngle(Input=shape(n), NumberOfDirections=6, ThresholdsOverPi=[1.9, 1.7])
 
 
-# name: (what makes the filter of a size, small size, large size)
+def occlusion_surface(n):
+    sparse = dict(Shape="Sphere", Dimensions=[n] * 3, PresentFraction=0.1, Seed=3)
+    seen = OccludedAngle(Input=IncompleteShape(**sparse), NumberOfDirections=100, **occlusion.GROW_AND_SNAP)
+    return OcclusionSurface(Input=seen, Data=IncompleteShape(**sparse))
+
+
+# label of the proxy, and which one of it: (what makes it of a size, small size, large size)
 CASES = {
     "Skull Phantom": (skull, 1, 0.5),
     "Phantom Sweep": (sweep, 100, 400),
     "Incomplete Shape": (shape, 200, 400),
     "Tracked Slice Reader": (reader, 100, 400),
+    "CT Series Reader": (series, 60, 240),
     "Assemble Tracked Slices": (assembled, 50, 200),
     "Gate Slices": (lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6), 100, 400),
+    "Scan Region": (lambda n: ScanRegion(Input=floor(n, 25)), 400, 1600),
+    "Probe Calibration": (lambda n: ProbeCalibration(Input=floor(n, 25), Method="SingleWall", PixelSpacing=scans.SPACING), 400, 1600),
+    "Temporal Calibration": (lambda n: TemporalCalibration(Input=floor(n, 0)), 400, 1600),
+    "Tracker Self Test": (lambda n: TrackerSelfTest(Input=receivers(n)), 50000, 200000),
     "Slice Planes": (lambda n: SlicePlanes(Input=sweep(n)), 10, 40),
     "Swept Volume": (lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3), 100, 400),
     "Swept Volume, footprints across slices": (lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3,
@@ -121,9 +190,15 @@ CASES = {
     "RBF Interpolator": (interpolate, 0.5, 0.3),
     "RBF Image Warp": (warp, 160, 256),
     "Occluded Angle": (angle, 160, 320),
+    "Occlusion Surface": (occlusion_surface, 100, 160),
     "Implant Plate": (lambda n: ImplantPlate(Input=filled(n), Thickness=2, EdgeClearance=0.5), 0.3, 0.15),
     "Defect Model": (lambda n: DefectModel(Input=filled(n)), 0.3, 0.15),
     "Press Orientation": (lambda n: PressOrientation(Input=filled(n)), 0.3, 0.15),
+    "Milling Tool Path": (milled, 0.6, 0.3),
+    "IGES Writer": (lambda n: written("fit.igs", filled(n)), 0.3, 0.15),
+    "G-Code Writer": (lambda n: written("path.nc", milled(1, StepOver=n, MapSpacing=2)), 0.5, 0.1),
+    "Tracked Slice Writer, raw": (lambda n: written("sweep.mha", sweep(n), CompressionLevel=0), 100, 400),
+    "Tracked Slice Writer, compressed": (lambda n: written("sweep.mha", sweep(n), CompressionLevel=1), 100, 400),
 }
 
 
@@ -132,25 +207,29 @@ def status(key):
         return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
 
 
-def size_of(proxy):
+def size_of(proxy, *ports):
+    """Bytes of what it makes at these ports, or at all."""
     algorithm = proxy.GetClientSideObject()
-    return sum(1024 * algorithm.GetOutputDataObject(port).GetActualMemorySize() for port in range(algorithm.GetNumberOfOutputPorts())
-               if algorithm.GetOutputDataObject(port))
+    outputs = [algorithm.GetOutputDataObject(port) for port in ports or range(algorithm.GetNumberOfOutputPorts())]
+    return sum(1024 * output.GetActualMemorySize() for output in outputs if output)
 
 
 def inputs_of(proxy):
+    """The outputs that it takes."""
     found = []
     for name in ("Input", "Data", "Poses", "Landmarks", "Targets"):
-        if proxy.GetProperty(name) is not None and getattr(proxy, name, None):
-            value = getattr(proxy, name)
-            found += list(value) if isinstance(value, (list, servermanager.InputProperty)) else [value]
+        inputs = proxy.GetProperty(name)
+        for n in range(inputs.SMProperty.GetNumberOfProxies() if inputs is not None else 0):
+            source = servermanager._getPyProxy(inputs.SMProperty.GetProxy(n))
+            found.append(servermanager.OutputPort(source, inputs.SMProperty.GetOutputPortForConnection(n)))
     return found
 
 
-def measure(make, size):
+def measure(name, make, size):
     """(input, output, peak over what was there before) in bytes."""
     with raising():
         proxy = make(size)
+        assert name.split(",")[0] == proxy.SMProxy.GetXMLLabel(), proxy.SMProxy.GetXMLLabel()
         inputs = inputs_of(proxy)
         for each in inputs:
             each.UpdatePipeline()
@@ -158,44 +237,52 @@ def measure(make, size):
             file.write("5")
         before = status("VmRSS")
         proxy.UpdatePipeline()
-        return sum(size_of(each) for each in inputs), size_of(proxy), status("VmHWM") - before
+        return sum(size_of(each, each.Port) for each in inputs), size_of(proxy), status("VmHWM") - before
 
 
-def apart(make, size):
+def apart(*what):
     """measure in a child process."""
+    global FOLDER
     receive, send = os.pipe()
-    child = os.fork()
-    if child == 0:
-        try:
-            os.write(send, " ".join(map(str, measure(make, size))).encode())
-        except BaseException as error:  # told by the parent
-            os.write(send, f"error: {error}".encode())
-        os._exit(0)
-    os.close(send)
-    with os.fdopen(receive) as stream:
-        said = stream.read()
-    os.waitpid(child, 0)
+    with tempfile.TemporaryDirectory(prefix="lacuna-memory-") as FOLDER:
+        child = os.fork()
+        if child == 0:
+            try:
+                os.write(send, " ".join(map(str, measure(*what))).encode())
+            except BaseException as error:  # told by the parent
+                os.write(send, f"error: {error}".encode())
+            os._exit(0)
+        os.close(send)
+        with os.fdopen(receive) as stream:
+            said = stream.read()
+        os.waitpid(child, 0)
     if not said or said.startswith("error"):
         raise RuntimeError(said or "the child process died")
     return map(int, said.split())
 
 
-print("| source or filter | input | output | peak beyond these | all / (input + output) | the same, larger: input | output "
-      "| peak beyond | all / (input + output) |")
-print("|---|---|---|---|---|---|---|---|---|", flush=True)
-failed = False
-for name in sys.argv[1:] or CASES:
-    make, *sizes = CASES[name]
-    cells = [name]
-    for size in sizes:
-        try:
-            taken, made, peak = apart(make, size)
-        except RuntimeError as error:
-            print(f"{name}: {error}", file=sys.stderr)
-            failed = True
-            break
-        cells += [f"{taken / MEBIBYTE:.0f}", f"{made / MEBIBYTE:.0f}", f"{max(0, peak - made) / MEBIBYTE:.0f}",
-                  f"{(peak + taken) / max(1, taken + made):.2f}"]
-    else:
-        print("| " + " | ".join(cells) + " |", flush=True)
-sys.exit(failed)
+def main(names):
+    """Returns whether a row is missing."""
+    print("| source, filter or writer | input | output | peak beyond these | all / (input + output) | the same, larger: input | output "
+          "| peak beyond | all / (input + output) |")
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
+    failed = False
+    for name in names or CASES:
+        make, *sizes = CASES[name]
+        cells = [name]
+        for size in sizes:
+            try:
+                taken, made, peak = apart(name, make, size)
+            except RuntimeError as error:
+                print(f"{name}: {error}", file=sys.stderr)
+                failed = True
+                break
+            cells += [f"{taken / MEBIBYTE:.0f}", f"{made / MEBIBYTE:.0f}", f"{max(0, peak - made) / MEBIBYTE:.0f}",
+                      f"{(peak + taken) / max(1, taken + made):.2f}"]
+        else:
+            print("| " + " | ".join(cells) + " |", flush=True)
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
