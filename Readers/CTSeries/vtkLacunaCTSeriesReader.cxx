@@ -38,8 +38,10 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <optional>
+#include <utility>
 
 namespace
 {
@@ -103,18 +105,26 @@ std::string AddNotes(const std::string& message, const std::vector<std::string>&
     : text;
 }
 
-bool IsSameImage(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
+// Keeps its memory from pair to pair.
+class ImageComparison
 {
-  if (a.RescaleSlope != b.RescaleSlope || a.RescaleIntercept != b.RescaleIntercept)
+public:
+  bool operator()(const lacuna::CTFrame& a, const lacuna::CTFrame& b)
   {
-    return false;
+    if (a.RescaleSlope != b.RescaleSlope || a.RescaleIntercept != b.RescaleIntercept)
+    {
+      return false;
+    }
+    lacuna::ReadDicomPixels(a, this->First);
+    lacuna::ReadDicomPixels(b, this->Second);
+    return this->First.Format.Signed == this->Second.Format.Signed &&
+      this->First.Bytes == this->Second.Bytes;
   }
-  lacuna::CTPixels first;
-  lacuna::CTPixels second;
-  lacuna::ReadDicomPixels(a, first);
-  lacuna::ReadDicomPixels(b, second);
-  return first.Format.Signed == second.Format.Signed && first.Bytes == second.Bytes;
-}
+
+private:
+  lacuna::CTPixels First;
+  lacuna::CTPixels Second;
+};
 
 // An error that is on the screen already: tells only who listens.
 void RepeatError(vtkAlgorithm* algorithm, const std::string& text)
@@ -135,6 +145,9 @@ void RepeatError(vtkAlgorithm* algorithm, const std::string& text)
 
 struct vtkLacunaCTSeriesReader::Content
 {
+  // The header is another object when the file has changed.
+  using Image = std::pair<std::shared_ptr<const lacuna::CTFileHeader>, int>;
+
   lacuna::DicomFolder Folder;
   vtkNew<vtkStringArray> SeriesList;
   vtkNew<vtkStringArray> Notes;
@@ -146,6 +159,7 @@ struct vtkLacunaCTSeriesReader::Content
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
   lacuna::ScalarType Type = lacuna::ScalarType::Int16;
+  std::map<std::pair<Image, Image>, bool> SameImages; // whose pixels were compared
 };
 
 vtkStandardNewMacro(vtkLacunaCTSeriesReader);
@@ -247,7 +261,18 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
   options.InterpolateMissing = this->MissingSlices == MISSING_SLICES_INTERPOLATE;
   options.CorrectTilt = this->GantryTilt == GANTRY_TILT_CORRECT;
   options.PositionTolerance = this->PositionTolerance;
-  options.SameImage = IsSameImage;
+  // each change of a property comes here, and a series may be there twice as a whole
+  const auto known = std::exchange(found.SameImages, {});
+  ImageComparison isSame;
+  options.SameImage = [&](const lacuna::CTFrame& a, const lacuna::CTFrame& b)
+  {
+    const std::pair<Content::Image, Content::Image> pair{ { a.Header, a.Number },
+      { b.Header, b.Number } };
+    const auto before = known.find(pair);
+    const bool same = before == known.end() ? isSame(a, b) : before->second;
+    found.SameImages.emplace(pair, same);
+    return same;
+  };
   found.Geometry = lacuna::FindCTGeometry(frames, options);
 }
 
