@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <set>
 #include <thread>
 
@@ -264,13 +265,20 @@ class AcquisitionModel : public testing::TestWithParam<int>
 TEST_P(AcquisitionModel, WhateverIsDoneNothingIsLostOrWrong)
 {
   Trial trial(GetParam());
-  for (int i = 0; i < 60 && !HasFailure(); ++i)
+  try
   {
-    trial.Step();
+    for (int i = 0; i < 60 && !HasFailure(); ++i)
+    {
+      trial.Step();
+    }
+    if (!HasFailure())
+    {
+      trial.End();
+    }
   }
-  if (!HasFailure())
+  catch (const std::exception& e)
   {
-    trial.End();
+    ADD_FAILURE() << e.what();
   }
   EXPECT_FALSE(HasFailure()) << trial.Log;
 }

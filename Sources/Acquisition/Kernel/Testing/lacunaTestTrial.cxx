@@ -257,6 +257,23 @@ void Trial::ChangeDisk()
   }
 }
 
+// Of the names that recordings have, the last for which there is a file.
+std::string Trial::FindNewestFile() const
+{
+  const std::filesystem::path name(this->FileName);
+  std::string newest = this->FileName;
+  for (int i = 2;; ++i)
+  {
+    const std::filesystem::path next = name.parent_path() /
+      (name.stem().string() + "-" + std::to_string(i) + name.extension().string());
+    if (!std::filesystem::exists(next))
+    {
+      return newest;
+    }
+    newest = next.string();
+  }
+}
+
 void Trial::BeginSweep()
 {
   if (this->Random.Chance(0.7) && this->Capturing)
@@ -272,11 +289,6 @@ void Trial::BeginSweep()
     (open || this->FolderIsThere || this->FileName != this->Folder / "folder/c.mhd");
   const bool late =
     this->FileName.empty() && !this->Slices.empty() && !this->Rules->RecordFileName.empty();
-  std::string path = state.File.FileName;
-  if (!open && !this->FileName.empty())
-  {
-    path = FindFreeSweepName(this->FileName, this->CompressionLevel);
-  }
   const double now = this->Scenery.Place.Now();
   bool begun = true;
   try
@@ -296,9 +308,10 @@ void Trial::BeginSweep()
     this->Log += "(refused)";
     return;
   }
-  if (!path.empty() && !discard)
+  if (!this->FileName.empty() && !discard)
   {
-    this->CheckFile(path, static_cast<std::size_t>(state.Pending));
+    this->CheckFile(
+      open ? state.File.FileName : this->FindNewestFile(), static_cast<std::size_t>(state.Pending));
   }
   this->FirstFrame = this->Frames.size();
   this->Wanted = this->Doubtful = 0;
@@ -371,7 +384,6 @@ void Trial::End()
   }
   const double now = this->Scenery.Place.Now();
   this->Abandoned.push_back({ now, now });
-  std::string path = this->Work->GetState().File.FileName;
   const AcquisitionState state = this->Work->Finish();
   this->Check();
   EXPECT_EQ(state.Pending, 0);

@@ -103,6 +103,7 @@ private:
   void PressButton();
   void ChangeDisk();
   void BeginSweep();
+  std::string FindNewestFile() const;
   void WhileTimeGoesOn(const std::function<void()>& end);
 
   // What must hold.
