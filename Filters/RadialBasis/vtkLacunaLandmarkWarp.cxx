@@ -102,8 +102,8 @@ vtkLacunaLandmarkWarp<Dimension>::vtkLacunaLandmarkWarp(vtkLacunaExecution& exec
       low = std::min(low, targets[i][axis]);
       high = std::max(high, targets[i][axis]);
     }
-    this->Box[2 * axis] = std::floor(low / space.Spacing[axis]);
-    this->Box[2 * axis + 1] = std::ceil(high / space.Spacing[axis]);
+    this->Targets[2 * axis] = std::floor(low / space.Spacing[axis]);
+    this->Targets[2 * axis + 1] = std::ceil(high / space.Spacing[axis]);
     const auto range = std::minmax_element(values[c].begin(), values[c].end());
     largest = targets.empty() ? 0 : std::max(largest, *range.second - *range.first);
   }
@@ -111,55 +111,130 @@ vtkLacunaLandmarkWarp<Dimension>::vtkLacunaLandmarkWarp(vtkLacunaExecution& exec
   const double wanted = accuracy * smallest / std::sqrt(Dimension);
   options.Accuracy = largest > 0 ? std::min(0.5, wanted / largest) : 0.5;
   execution.SetStage(0, 0.3);
-  const lacuna::RadialBasis<Dimension> function(execution, nodes, values, options);
-  this->Report = function.GetReport();
+  this->Fit = std::make_unique<const Function>(execution, nodes, values, options);
   this->Mirrored = TurnsOver(space.Axes, landmarks, targets);
-  if (this->Mirrored)
-  {
-    return; // such a warp is not used
-  }
+}
 
+//------------------------------------------------------------------------------
+template <int Dimension>
+std::vector<std::array<int, 6>> vtkLacunaLandmarkWarp<Dimension>::Divide(const Box& part)
+{
+  constexpr int largest = Dimension == 3 ? 96 : 1024; // 20 MB
+  std::array<int, 3> number{};
+  std::array<int, 3> size{};
+  for (int c = 0; c < 3; ++c)
+  {
+    size[c] = part[2 * c + 1] - part[2 * c] + 1;
+    number[c] = (size[c] + largest - 1) / largest;
+  }
+  std::vector<Box> blocks;
+  for (int k = 0; k < number[2]; ++k)
+  {
+    for (int j = 0; j < number[1]; ++j)
+    {
+      for (int i = 0; i < number[0]; ++i)
+      {
+        const int at[3] = { i, j, k };
+        Box block;
+        for (int c = 0; c < 3; ++c)
+        {
+          const auto begin = [&](std::int64_t n)
+          { return part[2 * c] + static_cast<int>(n * size[c] / number[c]); };
+          block[2 * c] = begin(at[c]);
+          block[2 * c + 1] = begin(at[c] + 1) - 1;
+        }
+        blocks.push_back(block);
+      }
+    }
+  }
+  return blocks;
+}
+
+template <int Dimension>
+lacuna::GridPart<Dimension> vtkLacunaLandmarkWarp<Dimension>::GetReach(const Box& block) const
+{
+  lacuna::GridPart<Dimension> reach;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    const int axis = this->Space.Axes[c];
+    const int size = this->Space.Size[axis];
+    reach[c] = { std::min(block[2 * axis], size - 2), std::min(block[2 * axis + 1] + 2, size) };
+  }
+  return reach;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+void vtkLacunaLandmarkWarp<Dimension>::SetPart(vtkLacunaExecution& execution, const Box& part)
+{
   lacuna::RegularGrid<Dimension> grid;
   for (int c = 0; c < Dimension; ++c)
   {
-    grid.Spacing[c] = space.Spacing[space.Axes[c]];
-    grid.Size[c] = space.Size[space.Axes[c]];
+    grid.Spacing[c] = this->Space.Spacing[this->Space.Axes[c]];
+    grid.Size[c] = this->Space.Size[this->Space.Axes[c]];
   }
+  const lacuna::Execution::NestedStages stages(execution);
+  this->Components.clear();
   for (int c = 0; c < Dimension; ++c)
   {
-    execution.SetStage(0.3 + 0.3 * c / Dimension, 0.3 + 0.3 * (c + 1) / Dimension);
-    this->Way[c].resize(grid.GetNumberOfPoints());
-    function.EvaluateGrid(execution, grid, this->Way[c].data(), c);
+    execution.SetStage(1.0 * c / Dimension, (c + 1.0) / Dimension);
+    this->Components.emplace_back(execution, *this->Fit, grid, this->GetReach(part), c);
+  }
+}
+
+template <int Dimension>
+void vtkLacunaLandmarkWarp<Dimension>::SetBlock(vtkLacunaExecution& execution, const Box& block)
+{
+  this->Reach = this->GetReach(block);
+  std::int64_t count = 1;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    this->Stride[c] = count;
+    count *= this->Reach[c][1] - this->Reach[c][0];
+  }
+  const lacuna::Execution::NestedStages stages(execution);
+  for (int c = 0; c < Dimension; ++c)
+  {
+    execution.SetStage(1.0 * c / Dimension, (c + 1.0) / Dimension);
+    this->Way[c].resize(count);
+    this->Components[c].Evaluate(execution, this->Reach, this->Way[c].data());
   }
 }
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-void vtkLacunaLandmarkWarp<Dimension>::GetIndex(std::int64_t voxel, double* index) const
+std::int64_t vtkLacunaLandmarkWarp<Dimension>::GetPlace(const int* voxel) const
 {
-  std::int64_t rest = voxel;
-  for (std::size_t c = 0; c < 3; ++c)
+  std::int64_t place = 0;
+  for (int c = 0; c < Dimension; ++c)
   {
-    index[c] = static_cast<double>(this->Space.Extent[2 * c] + rest % this->Space.Size[c]);
-    rest /= this->Space.Size[c];
+    place += (voxel[this->Space.Axes[c]] - this->Reach[c][0]) * this->Stride[c];
+  }
+  return place;
+}
+
+template <int Dimension>
+void vtkLacunaLandmarkWarp<Dimension>::GetIndex(const int* voxel, double* index) const
+{
+  const std::int64_t place = this->GetPlace(voxel);
+  for (int c = 0; c < 3; ++c)
+  {
+    index[c] = static_cast<double>(this->Space.Extent[2 * c] + voxel[c]);
   }
   for (int c = 0; c < Dimension; ++c)
   {
     const int axis = this->Space.Axes[c];
-    index[axis] += this->Way[c][voxel] / this->Space.Spacing[axis];
+    index[axis] += this->Way[c][place] / this->Space.Spacing[axis];
   }
 }
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-bool vtkLacunaLandmarkWarp<Dimension>::IsInBox(std::int64_t voxel) const
+bool vtkLacunaLandmarkWarp<Dimension>::IsInBox(const int* voxel) const
 {
-  std::int64_t rest = voxel;
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < 3; ++axis)
   {
-    const auto i = static_cast<double>(rest % this->Space.Size[axis]);
-    rest /= this->Space.Size[axis];
-    if (i < this->Box[2 * axis] || i > this->Box[2 * axis + 1])
+    if (voxel[axis] < this->Targets[2 * axis] || voxel[axis] > this->Targets[2 * axis + 1])
     {
       return false;
     }
@@ -169,29 +244,21 @@ bool vtkLacunaLandmarkWarp<Dimension>::IsInBox(std::int64_t voxel) const
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-bool vtkLacunaLandmarkWarp<Dimension>::IsFolded(std::int64_t voxel) const
+bool vtkLacunaLandmarkWarp<Dimension>::IsFolded(const int* voxel) const
 {
   // derivatives by forward differences, backward at the last voxel
+  const std::int64_t place = this->GetPlace(voxel);
   double jacobian[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-  std::int64_t stride = 1;
-  std::int64_t rest = voxel;
-  int d = 0;
-  for (int axis = 0; axis < 3; ++axis)
+  for (int d = 0; d < Dimension; ++d)
   {
-    const std::int64_t size = this->Space.Size[axis];
-    const std::int64_t i = rest % size;
-    rest /= size;
-    if (size > 1)
+    const int axis = this->Space.Axes[d];
+    const std::int64_t from =
+      voxel[axis] + 1 < this->Space.Size[axis] ? place : place - this->Stride[d];
+    for (int c = 0; c < Dimension; ++c)
     {
-      const std::int64_t from = i + 1 < size ? voxel : voxel - stride;
-      for (int c = 0; c < Dimension; ++c)
-      {
-        jacobian[c][d] +=
-          (this->Way[c][from + stride] - this->Way[c][from]) / this->Space.Spacing[axis];
-      }
-      ++d;
+      jacobian[c][d] +=
+        (this->Way[c][from + this->Stride[d]] - this->Way[c][from]) / this->Space.Spacing[axis];
     }
-    stride *= size;
   }
   return vtkMatrix3x3::Determinant(&jacobian[0][0]) <= 0;
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 class vtkDataSet;
@@ -30,31 +31,53 @@ struct vtkLacunaVoxelSpace
 };
 
 /// Where the voxels of the warped image come from, by a radial basis function through the landmarks.
+/// Voxels are counted from the image's first one.
 template <int Dimension>
 class vtkLacunaLandmarkWarp
 {
 public:
   using Points = std::vector<std::array<double, 3>>;
+  /// First and last voxel along each axis.
+  using Box = std::array<int, 6>;
+
   /// accuracy: in voxels. The space must live longer. Throws for what the function throws for.
   vtkLacunaLandmarkWarp(vtkLacunaExecution& execution, const vtkLacunaVoxelSpace& space,
     const Points& landmarks, const Points& targets, lacuna::RadialBasisOptions options,
     double accuracy);
 
-  const lacuna::RadialBasisReport& GetReport() const { return this->Report; }
+  const lacuna::RadialBasisReport& GetReport() const { return this->Fit->GetReport(); }
   /// Whether the affine map that fits best turns the landmarks' space over, or flattens it.
   bool IsMirrored() const { return this->Mirrored; }
+
+  /// The blocks into which a part is divided: of the whole image the working set would be several
+  /// times the image.
+  static std::vector<Box> Divide(const Box& part);
+  /// What all blocks of a part have in common.
+  void SetPart(vtkLacunaExecution& execution, const Box& part);
+  /// The block whose voxels are asked for below; of the part. The bits do not depend on it.
+  void SetBlock(vtkLacunaExecution& execution, const Box& block);
+
   /// The voxel's place in the input, as an index of the image.
-  void GetIndex(std::int64_t voxel, double* index) const;
+  void GetIndex(const int* voxel, double* index) const;
   /// Whether a voxel is in the box that encloses the targets.
-  bool IsInBox(std::int64_t voxel) const;
+  bool IsInBox(const int* voxel) const;
   /// Whether the mapping turns the cell at a voxel inside out.
-  bool IsFolded(std::int64_t voxel) const;
+  bool IsFolded(const int* voxel) const;
 
 private:
+  using Function = lacuna::RadialBasis<Dimension>;
+
+  /// What the cells at the voxels of a block need: a voxel more along each axis.
+  lacuna::GridPart<Dimension> GetReach(const Box& block) const;
+  std::int64_t GetPlace(const int* voxel) const;
+
   const vtkLacunaVoxelSpace& Space;
-  lacuna::RadialBasisReport Report;
+  std::unique_ptr<const Function> Fit;
   bool Mirrored = false;
+  std::array<double, 6> Targets{}; // first and last voxel of each axis, also outside of the image
+  std::vector<typename Function::OnGrid> Components;
+  lacuna::GridPart<Dimension> Reach{};          // of the block
+  std::array<std::int64_t, Dimension> Stride{}; // of Way
   std::array<std::vector<double>, Dimension> Way;
-  std::array<double, 6> Box{}; // first and last voxel of each axis, also outside of the image
 };
 #endif

@@ -8,6 +8,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkImageInterpolator.h"
 #include "vtkInformation.h"
@@ -18,6 +19,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaLandmarkWarp.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
@@ -27,10 +29,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -47,13 +51,6 @@ constexpr double RoundOff = 1e-9;
 // of which most is mirrored within a frame of landmarks that stay where they are, a quarter. Beyond
 // the box the smoother kernels swing, and any share may be folded.
 constexpr double FoldedLimit = 0.05;
-
-// What of the voxels is folded.
-struct Folds
-{
-  double Image = 0; // share of all voxels
-  double Box = 0;   // share of those in the box around the targets
-};
 
 // what: "the image", or a part of it; hint: what else it may be
 [[noreturn]] void ThrowMirrored(const std::string& what, const std::string& hint = {})
@@ -143,97 +140,243 @@ struct Sampling
   double OutsideValue;
 };
 
-template <class Mapping>
-Folds Sample(vtkLacunaExecution& execution, vtkImageData* image, vtkDataArray* scalars,
-  const Mapping& mapping, const Sampling& sampling, vtkImageData* output)
-{
-  const vtkIdType count = image->GetNumberOfPoints();
-  const int components = scalars->GetNumberOfComponents();
-  const auto warped = vtkSmartPointer<vtkDataArray>::Take(scalars->NewInstance());
-  warped->SetName(scalars->GetName());
-  warped->SetNumberOfComponents(components);
-  warped->SetNumberOfTuples(count);
-  vtkNew<vtkCharArray> valid;
-  valid->SetName(vtkLacunaDepthMap::MaskName);
-  valid->SetNumberOfTuples(count);
+// First and last voxel along each axis, counted from the image's first one.
+using Box = std::array<int, 6>;
 
-  vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
-  input->ShallowCopy(image);
-  input->GetPointData()->SetScalars(GetInterpolable(scalars));
-  vtkNew<vtkImageInterpolator> interpolator;
-  interpolator->SetInterpolationMode(sampling.Interpolation);
-  interpolator->SetOutValue(sampling.OutsideValue);
-  interpolator->Initialize(input);
-  interpolator->Update();
-  const ValidPlaces places(image, sampling.Interpolation);
-  const bool integral = scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE;
-  const double low = scalars->GetDataTypeMin();
-  const double high = scalars->GetDataTypeMax();
-  constexpr std::int64_t grain = 4096;
-  struct Count
+bool IsEmpty(const Box& box)
+{
+  return box[0] > box[1] || box[2] > box[3] || box[4] > box[5];
+}
+
+// The smallest box around two, of which one may be empty.
+Box Join(const Box& a, const Box& b)
+{
+  if (IsEmpty(a) || IsEmpty(b))
   {
-    std::int64_t Folded = 0;
-    std::int64_t InBox = 0;
-    std::int64_t FoldedInBox = 0;
-  };
-  std::vector<Count> counts((count + grain - 1) / grain);
-  execution.SetStage(0.6, 1);
-  execution.For(static_cast<std::int64_t>(counts.size()), 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      std::vector<double> tuple(components);
-      for (std::int64_t block = begin; block < end; ++block)
-      {
-        for (std::int64_t i = block * grain; i < std::min<std::int64_t>((block + 1) * grain, count);
-             ++i)
-        {
-          double index[3];
-          mapping.GetIndex(i, index);
-          for (double& place : index)
-          {
-            const double voxel = std::floor(place + 0.5);
-            place = std::abs(place - voxel) <= RoundOff ? voxel : place;
-          }
-          bool known = interpolator->CheckBoundsIJK(index) && places.Has(index);
-          if (known)
-          {
-            interpolator->InterpolateIJK(index, tuple.data());
-            known =
-              std::none_of(tuple.begin(), tuple.end(), [](double v) { return std::isnan(v); });
-          }
-          else
-          {
-            std::fill(tuple.begin(), tuple.end(), sampling.OutsideValue);
-          }
-          for (int k = 0; k < components; ++k)
-          {
-            const double value =
-              integral ? std::floor(std::min(std::max(tuple[k], low), high) + 0.5) : tuple[k];
-            warped->SetComponent(i, k, value);
-          }
-          valid->SetValue(i, known ? 1 : 0);
-          const int folded = mapping.IsFolded(i) ? 1 : 0;
-          const int inBox = mapping.IsInBox(i) ? 1 : 0;
-          counts[block].Folded += folded;
-          counts[block].InBox += inBox;
-          counts[block].FoldedInBox += folded * inBox;
-        }
-      }
-    });
-  output->GetPointData()->Initialize(); // other arrays are not warped
-  output->GetCellData()->Initialize();
-  output->GetPointData()->SetScalars(warped);
-  output->GetPointData()->AddArray(valid);
-  Count sum;
-  for (const Count& block : counts)
-  {
-    sum.Folded += block.Folded;
-    sum.InBox += block.InBox;
-    sum.FoldedInBox += block.FoldedInBox;
+    return IsEmpty(a) ? b : a;
   }
-  return { static_cast<double>(sum.Folded) / static_cast<double>(count),
-    static_cast<double>(sum.FoldedInBox) /
-      static_cast<double>(std::max<std::int64_t>(1, sum.InBox)) };
+  Box both;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    both[2 * c] = std::min(a[2 * c], b[2 * c]);
+    both[2 * c + 1] = std::max(a[2 * c + 1], b[2 * c + 1]);
+  }
+  return both;
+}
+
+// Of an image; not below the first voxel or beyond the last one.
+Box GetBox(const int* extent, const vtkLacunaVoxelSpace& space)
+{
+  Box box;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    box[2 * c] = std::max(extent[2 * c] - space.Extent[2 * c], 0);
+    box[2 * c + 1] = std::min(extent[2 * c + 1], space.Extent[2 * c + 1]) - space.Extent[2 * c];
+  }
+  return box;
+}
+
+// The voxels of the image of which a rank says whether they are folded: those that ParaView asks of
+// it, so that they are computed once, but each of one rank only.
+Box GetShare(const vtkLacunaVoxelSpace& space, const lacuna::Ranks& ranks)
+{
+  int whole[6];
+  std::copy_n(space.Extent, 6, whole);
+  int extent[6];
+  vtkNew<vtkExtentTranslator> translator;
+  if (!translator->PieceToExtentThreadSafe(
+        ranks.GetRank(), ranks.GetNumber(), 0, whole, extent, vtkExtentTranslator::BLOCK_MODE, 0))
+  {
+    return { 0, -1, 0, -1, 0, -1 };
+  }
+  Box share = GetBox(extent, space);
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    share[2 * c] += share[2 * c] > 0 ? 1 : 0; // neighbours both have the voxels between them
+  }
+  return share;
+}
+
+// A part of the warped image.
+class WarpedPart
+{
+public:
+  WarpedPart(vtkImageData* image, vtkDataArray* scalars, const Sampling& sampling, const Box& part)
+    : Settings(sampling)
+    , Part(part)
+    , Components(scalars->GetNumberOfComponents())
+    , Low(scalars->GetDataTypeMin())
+    , High(scalars->GetDataTypeMax())
+    , Integral(scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE)
+    , Warped(vtkSmartPointer<vtkDataArray>::Take(scalars->NewInstance()))
+    , Places(image, sampling.Interpolation)
+  {
+    vtkIdType count = 1;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      this->Stride[c] = count;
+      count *= part[2 * c + 1] - part[2 * c] + 1;
+    }
+    this->Warped->SetName(scalars->GetName());
+    this->Warped->SetNumberOfComponents(this->Components);
+    this->Warped->SetNumberOfTuples(count);
+    this->Valid->SetName(vtkLacunaDepthMap::MaskName);
+    this->Valid->SetNumberOfTuples(count);
+    vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
+    input->ShallowCopy(image);
+    input->GetPointData()->SetScalars(GetInterpolable(scalars));
+    this->Interpolator->SetInterpolationMode(sampling.Interpolation);
+    this->Interpolator->SetOutValue(sampling.OutsideValue);
+    this->Interpolator->Initialize(input);
+    this->Interpolator->Update();
+  }
+
+  // Sets a voxel to the grey level at a place of the input, an index; tuple is room for one.
+  void Set(const int* voxel, double* index, std::vector<double>& tuple)
+  {
+    vtkIdType i = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      const double nearest = std::floor(index[c] + 0.5);
+      index[c] = std::abs(index[c] - nearest) <= RoundOff ? nearest : index[c];
+      i += (voxel[c] - this->Part[2 * c]) * this->Stride[c];
+    }
+    bool known = this->Interpolator->CheckBoundsIJK(index) && this->Places.Has(index);
+    if (known)
+    {
+      this->Interpolator->InterpolateIJK(index, tuple.data());
+      known = std::none_of(tuple.begin(), tuple.end(), [](double v) { return std::isnan(v); });
+    }
+    else
+    {
+      std::fill(tuple.begin(), tuple.end(), this->Settings.OutsideValue);
+    }
+    for (int k = 0; k < this->Components; ++k)
+    {
+      const double value = this->Integral
+        ? std::floor(std::min(std::max(tuple[k], this->Low), this->High) + 0.5)
+        : tuple[k];
+      this->Warped->SetComponent(i, k, value);
+    }
+    this->Valid->SetValue(i, known ? 1 : 0);
+  }
+
+  int GetNumberOfComponents() const { return this->Components; }
+  // Whether voxels may be set by several threads.
+  bool IsParallel() const { return this->Warped->GetDataType() != VTK_BIT; }
+  vtkDataArray* GetWarped() const { return this->Warped; }
+  vtkDataArray* GetValid() const { return this->Valid; }
+
+private:
+  Sampling Settings;
+  Box Part;
+  vtkIdType Stride[3];
+  int Components;
+  double Low;
+  double High;
+  bool Integral;
+  vtkSmartPointer<vtkDataArray> Warped;
+  vtkNew<vtkCharArray> Valid;
+  vtkNew<vtkImageInterpolator> Interpolator;
+  ValidPlaces Places;
+};
+
+// How many voxels are folded, and are in the box around the targets.
+struct Counts
+{
+  std::uint64_t Folded = 0;
+  std::uint64_t InBox = 0;
+  std::uint64_t FoldedInBox = 0;
+};
+
+// Goes through the voxels of a box, of the part that the mapping has: sets those of part (may be
+// null) and adds up those in counted (may be empty).
+template <class Mapping>
+void Pass(vtkLacunaExecution& execution, Mapping& mapping, const Box& box, WarpedPart* part,
+  const Box& counted, Counts& sum)
+{
+  std::atomic<std::uint64_t> folded{ 0 };
+  std::atomic<std::uint64_t> inBox{ 0 };
+  std::atomic<std::uint64_t> foldedInBox{ 0 };
+  const std::vector<Box> blocks = Mapping::Divide(box);
+  const lacuna::Execution::NestedStages stages(execution);
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+  {
+    const Box& block = blocks[b];
+    const double begin = static_cast<double>(b) / static_cast<double>(blocks.size());
+    const double share = 1 / static_cast<double>(blocks.size());
+    execution.SetStage(begin, begin + 0.3 * share);
+    mapping.SetBlock(execution, block);
+    execution.SetStage(begin + 0.3 * share, begin + share);
+    const std::int64_t columns = block[1] - block[0] + 1;
+    const std::int64_t height = block[3] - block[2] + 1;
+    const std::int64_t rows = height * (block[5] - block[4] + 1);
+    const std::int64_t grain =
+      part && !part->IsParallel() ? rows : std::max<std::int64_t>(1, 4096 / columns);
+    execution.For(rows, grain,
+      [&](std::int64_t first, std::int64_t last)
+      {
+        std::vector<double> tuple(part ? part->GetNumberOfComponents() : 0);
+        Counts own;
+        for (std::int64_t row = first; row < last; ++row)
+        {
+          int voxel[3] = { 0, block[2] + static_cast<int>(row % height),
+            block[4] + static_cast<int>(row / height) };
+          const bool mayCount = voxel[1] >= counted[2] && voxel[1] <= counted[3] &&
+            voxel[2] >= counted[4] && voxel[2] <= counted[5];
+          for (voxel[0] = block[0]; voxel[0] <= block[1]; ++voxel[0])
+          {
+            if (part)
+            {
+              double index[3];
+              mapping.GetIndex(voxel, index);
+              part->Set(voxel, index, tuple);
+            }
+            if (mayCount && voxel[0] >= counted[0] && voxel[0] <= counted[1])
+            {
+              const int isFolded = mapping.IsFolded(voxel) ? 1 : 0;
+              const int isInBox = mapping.IsInBox(voxel) ? 1 : 0;
+              own.Folded += isFolded;
+              own.InBox += isInBox;
+              own.FoldedInBox += isFolded * isInBox;
+            }
+          }
+        }
+        folded += own.Folded;
+        inBox += own.InBox;
+        foldedInBox += own.FoldedInBox;
+      });
+  }
+  sum.Folded += folded;
+  sum.InBox += inBox;
+  sum.FoldedInBox += foldedInBox;
+}
+
+// Makes part (may be null) of box made, and counts what is folded in box counted; both may be empty.
+template <class Mapping>
+Counts Warp(vtkLacunaExecution& execution, Mapping& mapping, const Box& made, WarpedPart* part,
+  const Box& counted)
+{
+  const Box both = Join(made, counted);
+  Counts sum;
+  if (IsEmpty(both))
+  {
+    return sum;
+  }
+  const bool apart = !IsEmpty(counted) && made != both;
+  execution.SetStage(0.3, 0.4);
+  mapping.SetPart(execution, both);
+  if (part)
+  {
+    execution.SetStage(0.4, apart ? 0.8 : 1);
+    Pass(execution, mapping, made, part, apart ? Box{ 0, -1, 0, -1, 0, -1 } : counted, sum);
+  }
+  if (apart)
+  {
+    execution.SetStage(part ? 0.8 : 0.4, 1);
+    Pass(execution, mapping, counted, nullptr, counted, sum);
+  }
+  return sum;
 }
 }
 
@@ -254,11 +397,13 @@ int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* in
 int vtkLacunaRBFImageWarp::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  // Any voxel may show any place, and each depends on all landmarks.
+  // Any voxel may show any place, and each depends on all landmarks. All ranks say together what is
+  // folded.
+  vtkInformationVector* wanted = vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputs;
   int fits = 1;
   for (int port = 0; port < 3; ++port)
   {
-    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0), outputs);
+    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0), wanted);
   }
   return fits;
 }
@@ -269,7 +414,9 @@ int vtkLacunaRBFImageWarp::RequestData(
 {
   vtkImageData* image = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputs);
-  if (!image || image->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputs))
+  const vtkLacunaRanks ranks;
+  const bool wanted = vtkLacunaRequest::IsWanted(outputs);
+  if (!image || image->GetNumberOfPoints() == 0 || (!wanted && ranks.GetNumber() == 1))
   {
     return 1; // empty in, empty out
   }
@@ -312,82 +459,145 @@ int vtkLacunaRBFImageWarp::RequestData(
         throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
       }
       const vtkLacunaVoxelSpace space(image);
-      lacuna::RequireMemory(
-        "the warped image", static_cast<double>(image->GetNumberOfPoints()) * 8 * 5);
       const std::vector<std::array<double, 3>> from = space.GetPoints(landmarks);
       const std::vector<std::array<double, 3>> to = space.GetPoints(targets);
       lacuna::RadialBasisOptions options;
       options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
       options.Smoothing = this->Smoothing;
 
-      vtkNew<vtkImageData> whole;
-      whole->ShallowCopy(image);
-      const Sampling sampling{ this->Interpolation, this->OutsideValue };
-      Folds folded;
+      // What is folded is known while what the mapping depends on stays the same, on all ranks.
+      std::vector<double> key{ static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy };
+      key.insert(key.end(), space.Extent, space.Extent + 6);
+      key.insert(key.end(), space.Spacing, space.Spacing + 3);
+      for (const auto* points : { &from, &to })
+      {
+        for (const std::array<double, 3>& x : *points)
+        {
+          key.insert(key.end(), x.begin(), x.end());
+        }
+      }
+      const bool known = key == this->FoldsOf;
+      if (known && !wanted)
+      {
+        return;
+      }
+      vtkInformation* info = outputs->GetInformationObject(0);
+      Box made{ 0, -1, 0, -1, 0, -1 };
+      if (wanted)
+      {
+        made = GetBox(info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
+            ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
+            : space.Extent,
+          space);
+      }
+      const Box counted = known ? Box{ 0, -1, 0, -1, 0, -1 } : GetShare(space, ranks);
+      std::unique_ptr<WarpedPart> part;
       lacuna::RadialBasisReport report;
-      const auto run = [&](const auto& mapping)
+      Counts counts;
+      const auto run = [&](auto mapping)
       {
         if (mapping.IsMirrored())
         {
           ThrowMirrored("the image");
         }
         report = mapping.GetReport();
-        folded = Sample(execution, image, scalars, mapping, sampling, whole);
+        counts = Warp(execution, mapping, made, part.get(), counted);
       };
-      switch (space.Axes.size())
+      const auto warp = [&]
       {
-        case 3:
-          run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
-          break;
-        case 2:
-          run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
-          break;
-        default:
-          throw std::runtime_error("the image is but a row of voxels; warps are two- or "
-                                   "three-dimensional");
+        if (!IsEmpty(made))
+        {
+          double points = 1;
+          for (std::size_t c = 0; c < 3; ++c)
+          {
+            points *= static_cast<double>(made[2 * c + 1]) - made[2 * c] + 1;
+          }
+          lacuna::RequireMemory("the warped image",
+            points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
+          part = std::make_unique<WarpedPart>(
+            image, scalars, Sampling{ this->Interpolation, this->OutsideValue }, made);
+        }
+        switch (space.Axes.size())
+        {
+          case 3:
+            run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
+            break;
+          case 2:
+            run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
+            break;
+          default:
+            throw std::runtime_error("the image is but a row of voxels; warps are two- or "
+                                     "three-dimensional");
+        }
+      };
+      if (known)
+      {
+        warp();
+      }
+      else
+      {
+        ranks.Together(warp);
+        std::uint64_t sums[3] = { counts.Folded, counts.InBox, counts.FoldedInBox };
+        ranks.Sum(sums, 3);
+        this->FoldedFraction =
+          static_cast<double>(sums[0]) / static_cast<double>(image->GetNumberOfPoints());
+        this->FoldedInBox =
+          static_cast<double>(sums[2]) / static_cast<double>(std::max<std::uint64_t>(1, sums[1]));
+        this->FoldsOf = key;
       }
       const bool swings = this->Kernel == Triharmonic || this->Kernel == Cubic;
       const std::string name = this->Kernel == Cubic ? "Cubic" : "Triharmonic";
-      if (folded.Box > FoldedLimit)
+      if (this->FoldedInBox > FoldedLimit)
       {
         ThrowMirrored(
-          std::to_string(std::lround(100 * folded.Box)) + " % of the box around the targets",
+          std::to_string(std::lround(100 * this->FoldedInBox)) + " % of the box around the targets",
           swings ? "; or " + name + " swings there: take ThinPlate or Linear, or add Smoothing"
                  : "");
       }
-      if (folded.Image > 0)
+      if (!part)
+      {
+        return; // the others have their parts
+      }
+      if (this->FoldedFraction > 0)
       {
         std::string reasons;
-        if (folded.Box > 0)
+        if (this->FoldedInBox > 0)
         {
           reasons +=
             "landmarks cross or contradict one another; check the pairs, or add Smoothing. ";
         }
-        if (folded.Image > folded.Box && swings)
+        if (this->FoldedFraction > this->FoldedInBox && swings)
         {
           reasons += "Far from landmarks " + name +
             " swings: take ThinPlate or Linear, add Smoothing, or crop the image. ";
         }
-        vtkWarningMacro(<< "the mapping folds in " << 100 * folded.Image << " % of the voxels, "
-                        << 100 * folded.Box << " % of those in the box around the targets, and "
+        vtkWarningMacro(<< "the mapping folds in " << 100 * this->FoldedFraction
+                        << " % of the voxels, " << 100 * this->FoldedInBox
+                        << " % of those in the box around the targets, and "
                         << "the image is mirrored there. " << reasons);
       }
-      vtkLacunaFieldData::Set(whole, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
-      vtkLacunaFieldData::Set(whole, "Residual", { report.Residual }, 1);
-      vtkLacunaFieldData::Set(whole, "FoldedFraction", { folded.Image }, 1);
+      output->ShallowCopy(image);
+      output->GetPointData()->Initialize(); // other arrays are not warped
+      output->GetCellData()->Initialize();
+      int extent[6];
+      for (std::size_t c = 0; c < 6; ++c)
+      {
+        extent[c] = space.Extent[c / 2 * 2] + made[c];
+      }
+      output->SetExtent(extent);
+      output->GetPointData()->SetScalars(part->GetWarped());
+      output->GetPointData()->AddArray(part->GetValid());
+      vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
+      vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
+      vtkLacunaFieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
       lacuna::ParameterText parameters;
       parameters.Add("Kernel", this->Kernel)
         .Add("Smoothing", this->Smoothing)
         .Add("Interpolation", this->Interpolation)
         .Add("OutsideValue", this->OutsideValue)
         .Add("Accuracy", this->Accuracy);
-      vtkLacunaProvenance::Record(whole, this, { image, landmarks, targets }, parameters.Get());
-      vtkLacunaCoordinates::Clear(whole); // the targets may be anyone's
-      output->ShallowCopy(whole);
-      int piece[6];
-      outputs->GetInformationObject(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
-      output->Crop(piece);
+      vtkLacunaProvenance::Record(output, this, { image, landmarks, targets }, parameters.Get());
+      vtkLacunaCoordinates::Clear(output); // the targets may be anyone's
     });
 }
 

@@ -28,6 +28,10 @@
  * affine map that fits the landmarks best is a reflection, or more than 5 % of the voxels in the
  * box around the targets are folded, that is an error, so that no patient is mirrored.
  *
+ * A part of the output is made in the memory of the part and some 20 MB; the input is needed as a
+ * whole. What is folded is a property of the whole image: it is counted once for a set of landmarks, by
+ * all ranks together.
+ *
  * Source: Carr 1996, section 6.1; Bookstein 1989.
  */
 #ifndef vtkLacunaRBFImageWarp_h
@@ -35,6 +39,8 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+
+#include <vector>
 
 class vtkAlgorithmOutput;
 
@@ -114,5 +120,10 @@ private:
   int Interpolation = LinearInterpolation;
   double OutsideValue = 0;
   double Accuracy = 0.01;
+
+  // Of the whole image, whatever part of it is made, and what that was found for
+  double FoldedFraction = 0;
+  double FoldedInBox = 0;
+  std::vector<double> FoldsOf;
 };
 #endif

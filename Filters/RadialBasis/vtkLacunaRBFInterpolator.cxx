@@ -99,18 +99,25 @@ struct OutputGrid
       this->Grid.Size[c] = static_cast<std::int64_t>(steps) + 1;
       count *= steps + 1;
     }
-    this->Count = count;
-    this->RequireMemory(1);
+    RequireMemory(count, 1);
   }
 
-  // A double for each component, and one more for that which is being computed.
-  void RequireMemory(int components) const
+  // Of a part: a double for each component, and one more for that which is being computed.
+  static void RequireMemory(const int piece[6], int components)
   {
-    lacuna::RequireMemory("the interpolated image", 8 * this->Count * (components + 1.0));
+    double count = 1;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      count *= static_cast<double>(piece[2 * c + 1]) - piece[2 * c] + 1;
+    }
+    RequireMemory(count, components);
   }
 
 private:
-  double Count = 0; // of the grid's points, which integers may not hold
+  static void RequireMemory(double count, int components)
+  {
+    lacuna::RequireMemory("the interpolated image", 8 * count * (components + 1.0));
+  }
 };
 
 vtkDataArray* FindArray(vtkDataSet* points, const std::string& name, const char* property)
@@ -189,7 +196,11 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     part[c] = { piece[2 * to.Axes[c]],
       std::min<std::int64_t>(piece[2 * to.Axes[c] + 1] + 1, grid.Size[c]) };
   }
-  const std::int64_t count = grid.GetNumberOfPoints();
+  std::int64_t count = 1;
+  for (const auto& range : part)
+  {
+    count *= range[1] - range[0];
+  }
   image->SetNumberOfComponents(components);
   image->SetNumberOfTuples(count);
   std::vector<double> one(components > 1 ? count : 0);
@@ -323,7 +334,6 @@ int vtkLacunaRBFInterpolator::RequestData(
       }
       const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);
       vtkDataArray* array = FindArray(points, this->ScalarArray, "ScalarArray");
-      to.RequireMemory(array->GetNumberOfComponents());
       lacuna::RadialBasisOptions options;
       options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
       options.Shape = this->KernelLength;
@@ -341,28 +351,32 @@ int vtkLacunaRBFInterpolator::RequestData(
       int piece[6]; // of ranks, which share the evaluation: each fits for itself
       outputs->GetInformationObject(0)->Get(
         vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
-      vtkNew<vtkImageData> whole;
-      whole->SetExtent(0, static_cast<int>(to.Grid.Size[0]) - 1, 0,
-        static_cast<int>(to.Grid.Size[1]) - 1, 0, static_cast<int>(to.Grid.Size[2]) - 1);
-      whole->SetOrigin(to.Grid.Origin.data());
-      whole->SetSpacing(to.Grid.Spacing.data());
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        piece[2 * c] = std::max(piece[2 * c], 0);
+        piece[2 * c + 1] = std::min(piece[2 * c + 1], static_cast<int>(to.Grid.Size[c]) - 1);
+      }
+      to.RequireMemory(piece, array->GetNumberOfComponents());
+      output->SetExtent(piece);
+      output->SetOrigin(to.Grid.Origin.data());
+      output->SetSpacing(to.Grid.Spacing.data());
       vtkNew<vtkDoubleArray> image;
       image->SetName(array->GetName() ? array->GetName() : "Values");
       switch (to.Axes.size())
       {
         case 3:
           Interpolate<3>(
-            execution, points, array, to, piece, options, this->CenterTolerance, image, whole);
+            execution, points, array, to, piece, options, this->CenterTolerance, image, output);
           break;
         case 2:
           Interpolate<2>(
-            execution, points, array, to, piece, options, this->CenterTolerance, image, whole);
+            execution, points, array, to, piece, options, this->CenterTolerance, image, output);
           break;
         default:
           throw std::runtime_error("all points lie at one place or on one line along an axis: that "
                                    "does not determine a function in two or three dimensions");
       }
-      whole->GetPointData()->SetScalars(image);
+      output->GetPointData()->SetScalars(image);
 
       lacuna::ParameterText parameters;
       parameters.Add("ScalarArray", this->ScalarArray)
@@ -375,9 +389,7 @@ int vtkLacunaRBFInterpolator::RequestData(
         .Add("CenterTolerance", this->CenterTolerance)
         .Add("OutputSpacing", this->OutputSpacing)
         .Add("OutputBounds", this->OutputBounds);
-      vtkLacunaProvenance::Record(whole, this, { points }, parameters.Get());
-      output->ShallowCopy(whole);
-      output->Crop(piece);
+      vtkLacunaProvenance::Record(output, this, { points }, parameters.Get());
     });
 }
 

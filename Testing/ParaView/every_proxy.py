@@ -165,6 +165,9 @@ def radial_basis():
         moved.Transform.Rotate = [0, 0, 10]
         moved.Transform.Scale = [1.1, 1, 1.05]
     RBFImageWarp(registrationName="Warped", Input=volume, Landmarks=sphere, Targets=moved, Kernel="Linear", Smoothing=0.5)
+    waves = Calculator(registrationName="Waves", Input=sphere, CoordinateResults=1,
+                       Function="(coordsX + 14*sin(coordsY/6))*iHat + coordsY*jHat + coordsZ*kHat")
+    RBFImageWarp(registrationName="Folded", Input=volume, Landmarks=sphere, Targets=waves, Kernel="Linear")  # in 2 % of the voxels
 
 
 def every_kind():

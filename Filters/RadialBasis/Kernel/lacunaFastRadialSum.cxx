@@ -132,14 +132,54 @@ template <int Dimension>
 double FastRadialSum<Dimension>::ApplyOnce(
   Execution& execution, const std::vector<double>& weights, double tolerance, double* values)
 {
-  const double evaluations =
-    static_cast<double>(weights.size()) * static_cast<double>(this->GetNumberOfPoints());
+  return this->ApplyWithin(this->GetLargestOrder(), execution, weights, tolerance, values);
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::SetUpOnce(
+  Execution& execution, const std::vector<double>& weights, double tolerance)
+{
+  return this->SetUpWithin(this->GetLargestOrder(), execution, weights, tolerance);
+}
+
+template <int Dimension>
+int FastRadialSum<Dimension>::GetLargestOrder() const
+{
   int order = MaximumOrder;
-  while (order > 1 && this->GetSetUpEvaluations(order) > evaluations)
+  while (order > 1 && this->GetSetUpEvaluations(order) > this->GetDirectEvaluations())
   {
     --order;
   }
-  return this->ApplyWithin(order, execution, weights, tolerance, values);
+  return order;
+}
+
+template <int Dimension>
+double FastRadialSum<Dimension>::SetUpWithin(
+  int order, Execution& execution, const std::vector<double>& weights, double tolerance)
+{
+  const Execution::NestedStages stages(execution);
+  const SingleBlasThread single;
+  this->SortWeights(weights);
+  execution.SetStage(0, 0.15);
+  double bound = std::numeric_limits<double>::infinity();
+  if (order > 1)
+  {
+    bound = this->ChooseOrder(execution, tolerance, order);
+  }
+  this->Direct = !(bound <= tolerance);
+  if (!this->Direct)
+  {
+    this->SetUpInterpolants(execution);
+    return bound;
+  }
+  if (!(this->GetDirectEvaluations() <= MaximumDirect))
+  {
+    std::ostringstream message;
+    message << "a fast sum cannot be sure of an error below " << tolerance << ", only of one below "
+            << bound << "; raise Accuracy";
+    throw std::runtime_error(message.str());
+  }
+  return 0;
 }
 
 template <int Dimension>
@@ -147,31 +187,11 @@ double FastRadialSum<Dimension>::ApplyWithin(int order, Execution& execution,
   const std::vector<double>& weights, double tolerance, double* values)
 {
   const Execution::NestedStages stages(execution);
-  const SingleBlasThread single;
-  this->SortWeights(weights);
-  execution.SetStage(0, 0.1);
-  double bound = std::numeric_limits<double>::infinity();
-  if (order > 1)
-  {
-    bound = this->ChooseOrder(execution, tolerance, order);
-  }
-  if (bound <= tolerance)
-  {
-    this->SumByInterpolants(execution, values);
-    return bound;
-  }
-  const double evaluations =
-    static_cast<double>(weights.size()) * static_cast<double>(this->GetNumberOfPoints());
-  if (!(evaluations <= MaximumDirect))
-  {
-    std::ostringstream message;
-    message << "a fast sum cannot be sure of an error below " << tolerance << ", only of one below "
-            << bound << "; raise Accuracy";
-    throw std::runtime_error(message.str());
-  }
-  execution.SetStage(0.1, 1);
-  this->SumDirectly(execution, values);
-  return 0;
+  execution.SetStage(0, 0.65);
+  const double bound = this->SetUpWithin(order, execution, weights, tolerance);
+  execution.SetStage(this->Direct ? 0.1 : 0.65, 1);
+  this->EvaluatePart(execution, this->Part, values);
+  return bound;
 }
 
 template <int Dimension>
@@ -183,7 +203,11 @@ double FastRadialSum<Dimension>::ApplyUpTo(int order, Execution& execution,
   this->SortWeights(weights);
   execution.SetStage(0, 0.1);
   const double bound = this->ChooseOrder(execution, tolerance, order);
-  this->SumByInterpolants(execution, values);
+  this->Direct = false;
+  execution.SetStage(0.1, 0.65);
+  this->SetUpInterpolants(execution);
+  execution.SetStage(0.65, 1);
+  this->EvaluatePart(execution, this->Part, values);
   return bound;
 }
 
@@ -199,16 +223,15 @@ void FastRadialSum<Dimension>::SortWeights(const std::vector<double>& weights)
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::SumByInterpolants(Execution& execution, double* values)
+void FastRadialSum<Dimension>::SetUpInterpolants(Execution& execution)
 {
-  execution.SetStage(0.1, 0.3);
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0.15, 0.45);
   this->Upward(execution);
-  execution.SetStage(0.3, 0.6);
+  execution.SetStage(0.45, 0.9);
   this->Across(execution);
-  execution.SetStage(0.6, 0.65);
+  execution.SetStage(0.9, 1);
   this->Downward(execution);
-  execution.SetStage(0.65, 1);
-  this->Evaluate(execution, values);
 }
 
 //------------------------------------------------------------------------------
@@ -333,9 +356,14 @@ void FastRadialSum<Dimension>::ApplyPairs(const typename InteractionLists<Dimens
     this->Far->Get(level, op).Apply(in.data(), static_cast<int>(last - first), out.data(), scratch);
     for (std::size_t p = first; p < last; ++p)
     {
+      const std::int32_t slot = this->Slots[pairs[p].Target];
+      if (slot < 0)
+      {
+        continue;
+      }
       const std::int32_t* to = this->Permutations[pairs[p].Symmetry].data();
       const double* column = out.data() + (p - first) * size;
-      double* local = this->Locals.data() + pairs[p].Target * size;
+      double* local = this->Locals.data() + slot * size;
       for (std::size_t k = 0; k < size; ++k)
       {
         local[k] += scale * column[to[k]];
@@ -351,7 +379,7 @@ void FastRadialSum<Dimension>::PointsToLocal(int target)
   const CellLists<std::int32_t>& lists = this->Lists->PointsToLocal;
   const CellTree<Dimension>& tree = this->GetTargets();
   const Cell& cell = tree.Cells[target];
-  if (lists.Begin[target] == lists.Begin[target + 1] || !this->IsWanted(cell))
+  if (lists.Begin[target] == lists.Begin[target + 1] || this->Slots[target] < 0)
   {
     return;
   }
@@ -359,7 +387,7 @@ void FastRadialSum<Dimension>::PointsToLocal(int target)
   NodeLattice<Dimension> nodes;
   nodes.Set(
     this->Far->GetBasis().GetRoots(), tree.GetCellSize(cell.Level) / 2, tree.GetCenter(cell), size);
-  double* local = this->Locals.data() + static_cast<std::size_t>(target) * size;
+  double* local = this->Locals.data() + static_cast<std::size_t>(this->Slots[target]) * size;
   alignas(64) double sums[RadialBlock];
   for (std::size_t i = lists.Begin[target]; i < lists.Begin[target + 1]; ++i)
   {
@@ -380,16 +408,22 @@ template <int Dimension>
 void FastRadialSum<Dimension>::Across(Execution& execution)
 {
   const auto cells = static_cast<std::int64_t>(this->GetTargets().Cells.size());
-  this->Locals.assign(static_cast<std::size_t>(cells) * this->Far->GetSize(), 0.0);
+  this->Slots.assign(cells, -1);
+  std::int32_t wanted = 0;
+  for (std::int64_t t = 0; t < cells; ++t)
+  {
+    this->Slots[t] = this->IsWanted(this->GetTargets().Cells[t]) ? wanted++ : -1;
+  }
+  this->Locals.assign(static_cast<std::size_t>(wanted) * this->Far->GetSize(), 0.0);
   execution.For(static_cast<std::int64_t>(this->Lists->Blocks.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t b = begin; b < end; ++b)
       {
         const typename InteractionLists<Dimension>::Block& block = this->Lists->Blocks[b];
-        const auto first = this->GetTargets().Cells.begin();
+        const auto first = this->Slots.begin();
         if (std::any_of(first + block.FirstTarget, first + block.LastTarget,
-              [this](const Cell& cell) { return this->IsWanted(cell); }))
+              [](std::int32_t slot) { return slot >= 0; }))
         {
           this->ApplyPairs(block);
         }
@@ -420,6 +454,10 @@ void FastRadialSum<Dimension>::Downward(Execution& execution)
     std::vector<double> moved(size);
     for (std::int64_t t = begin; t < end; ++t)
     {
+      if (this->Slots[t] < 0)
+      {
+        continue;
+      }
       const Cell& cell = tree.Cells[t];
       std::array<const double*, Dimension> halves;
       for (int c = 0; c < Dimension; ++c)
@@ -427,8 +465,8 @@ void FastRadialSum<Dimension>::Downward(Execution& execution)
         halves[c] = basis.GetHalfTransposed(static_cast<int>(cell.Index[c] & 1U));
       }
       TransformTensor<Dimension>(halves, RepeatSize<Dimension>(this->Order), this->Order,
-        this->Locals.data() + cell.Parent * size, moved.data(), scratch);
-      double* local = this->Locals.data() + t * size;
+        this->Locals.data() + this->Slots[cell.Parent] * size, moved.data(), scratch);
+      double* local = this->Locals.data() + this->Slots[t] * size;
       for (std::size_t k = 0; k < size; ++k)
       {
         local[k] += moved[k];

@@ -44,19 +44,22 @@ public:
 
   std::int64_t GetNumberOfPoints() const;
 
-  /// The part of the grid where values are wanted, by default all: others may be left as they are.
-  /// Those of the part have the same bits.
+  /// The part of the grid where values are wanted, by default all. They have the same bits.
   void SetPart(const GridPart<Dimension>& part) { this->Part = part; }
 
-  /// values[k] = u(x_k) within tolerance (> 0, in the unit of weight x phi); the grid's points with
-  /// the first index fastest. Returns the bound of the error. Throws std::runtime_error when
-  /// doubles cannot give the tolerance.
+  /// values[k] = u(x_k) within tolerance (> 0, in the unit of weight x phi); the points of the grid's
+  /// part with the first index fastest. Returns the bound of the error. Throws std::runtime_error
+  /// when doubles cannot give the tolerance.
   double Apply(
     Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
   /// The same for one sum only: by direct sums (bound 0) where the interpolants that the tolerance
   /// needs would take longer to set up.
   double ApplyOnce(
     Execution& execution, const std::vector<double>& weights, double tolerance, double* values);
+  /// ApplyOnce in two steps: what all parts of a grid have in common, then values of parts of the
+  /// part, any number of them.
+  double SetUpOnce(Execution& execution, const std::vector<double>& weights, double tolerance);
+  void EvaluatePart(Execution& execution, const GridPart<Dimension>& part, double* values) const;
   /// The same with interpolants of at most some order, whatever bound they have.
   double ApplyUpTo(int order, Execution& execution, const std::vector<double>& weights,
     double tolerance, double* values);
@@ -72,14 +75,24 @@ private:
 
   void Prepare();
   const CellTree<Dimension>& GetTargets() const;
+  /// Evaluations of the kernel that direct sums take.
+  double GetDirectEvaluations() const
+  {
+    return static_cast<double>(this->Sources->Cells[0].Count) *
+      static_cast<double>(this->GetNumberOfPoints());
+  }
   /// What it takes to set up interpolants of an order, in evaluations of the kernel.
   double GetSetUpEvaluations(int order) const;
+  /// For a sum that is made once.
+  int GetLargestOrder() const;
+  double SetUpWithin(
+    int order, Execution& execution, const std::vector<double>& weights, double tolerance);
   double ApplyWithin(int order, Execution& execution, const std::vector<double>& weights,
     double tolerance, double* values);
   FarField<Dimension>& GetFarField(Execution& execution, int order);
   /// Returns the bound of the error.
   double ChooseOrder(Execution& execution, double tolerance, int maximum);
-  void SumByInterpolants(Execution& execution, double* values);
+  void SetUpInterpolants(Execution& execution);
   void SortWeights(const std::vector<double>& weights);
   double GetBound(const FarField<Dimension>& far) const;
   void SumMagnitudes();
@@ -89,16 +102,20 @@ private:
   void ApplyPairs(const typename InteractionLists<Dimension>::Block& block);
   void PointsToLocal(int target);
   void Downward(Execution& execution);
-  void Evaluate(Execution& execution, double* values) const;
   void EvaluateLocal(const Cell& cell, const double* local, double* values) const;
-  void EvaluateDirect(int target, double* values) const;
+  /// At points of a target: the points of cell.
+  void EvaluateDirect(int target, const Cell& cell, double* values) const;
+  void SumDirectly(const Cell& cell, double* values) const;
   /// The points of a box without children, the last repeated up to padded.
   void GetTargetPoints(
     const Cell& cell, std::size_t padded, std::array<std::vector<double>, Dimension>& axis) const;
-  void Store(const Cell& cell, const double* from, double* values) const;
-  void SumDirectly(Execution& execution, double* values) const;
+  /// Boxes without children that have points of the part; of scattered points all.
+  std::vector<int> GetLeaves(const GridPart<Dimension>& part) const;
+  /// What is left of a box in the part.
+  Cell Clip(const Cell& cell, const GridPart<Dimension>& part) const;
+  static bool IsWithin(const Cell& cell, const GridPart<Dimension>& part);
   /// Whether a box of points has some of the part.
-  bool IsWanted(const Cell& cell) const;
+  bool IsWanted(const Cell& cell) const { return !this->Grid || IsWithin(cell, this->Part); }
   static void ForCells(Execution& execution, int first, int last,
     const std::function<void(std::int64_t, std::int64_t)>& body);
 
@@ -115,12 +132,16 @@ private:
   std::vector<std::vector<std::int32_t>> Permutations;         // for Order
 
   // of the sum at hand
+  bool Direct = false; // without interpolants
   int Order = 0;
   const FarField<Dimension>* Far = nullptr;
   std::vector<double> Weights;    // in the order of Sources
   std::vector<double> Magnitudes; // sum of |w| in each box of sources
   std::vector<double> Multipoles; // each box's weights of the nodes of its interpolant
-  std::vector<double> Locals;     // each target box's values at the nodes of its interpolant
+  // Of target boxes with points of the part: which they are among these, else -1, and values at the
+  // nodes of their interpolants
+  std::vector<std::int32_t> Slots;
+  std::vector<double> Locals;
 };
 }
 #endif

@@ -4,6 +4,7 @@
 
 #include "lacunaBoxInterpolant.h"
 #include "lacunaExecution.h"
+#include "lacunaSingleBlasThread.h"
 
 #include <cblas.h>
 
@@ -11,18 +12,95 @@
 
 namespace lacuna
 {
+namespace
+{
+// Copies the points of range between two boxes of a grid that contain it, each box with the first
+// index fastest.
+template <int Dimension, class FromBox, class ToBox>
+void CopyRows(const std::array<std::array<std::int32_t, 2>, Dimension>& range, const double* from,
+  const FromBox& fromBox, double* to, const ToBox& toBox)
+{
+  std::int64_t rows = 1;
+  for (int c = 1; c < Dimension; ++c)
+  {
+    rows *= range[c][1] - range[c][0];
+  }
+  const auto getPlace = [&](const auto& box, std::int64_t row)
+  {
+    std::int64_t place = range[0][0] - box[0][0];
+    std::int64_t stride = box[0][1] - box[0][0];
+    for (int c = 1; c < Dimension; ++c)
+    {
+      const std::int64_t size = range[c][1] - range[c][0];
+      place += (range[c][0] + row % size - box[c][0]) * stride;
+      stride *= box[c][1] - box[c][0];
+      row /= size;
+    }
+    return place;
+  };
+  for (std::int64_t row = 0; row < rows; ++row)
+  {
+    std::copy_n(
+      from + getPlace(fromBox, row), range[0][1] - range[0][0], to + getPlace(toBox, row));
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 template <int Dimension>
-bool FastRadialSum<Dimension>::IsWanted(const Cell& cell) const
+bool FastRadialSum<Dimension>::IsWithin(const Cell& cell, const GridPart<Dimension>& part)
 {
-  for (int c = 0; this->Grid && c < Dimension; ++c)
+  for (int c = 0; c < Dimension; ++c)
   {
-    if (cell.Range[c][1] <= this->Part[c][0] || cell.Range[c][0] >= this->Part[c][1])
+    if (cell.Range[c][1] <= part[c][0] || cell.Range[c][0] >= part[c][1])
     {
       return false;
     }
   }
   return true;
+}
+
+template <int Dimension>
+TreeCell<Dimension> FastRadialSum<Dimension>::Clip(
+  const Cell& cell, const GridPart<Dimension>& part) const
+{
+  Cell clipped = cell;
+  if (this->Grid)
+  {
+    clipped.Count = 1;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      clipped.Range[c][0] = static_cast<int>(std::max<std::int64_t>(cell.Range[c][0], part[c][0]));
+      clipped.Range[c][1] = static_cast<int>(std::min<std::int64_t>(cell.Range[c][1], part[c][1]));
+      clipped.Count *= clipped.Range[c][1] - clipped.Range[c][0];
+    }
+  }
+  return clipped;
+}
+
+template <int Dimension>
+std::vector<int> FastRadialSum<Dimension>::GetLeaves(const GridPart<Dimension>& part) const
+{
+  const std::vector<Cell>& cells = this->GetTargets().Cells;
+  std::vector<int> leaves;
+  std::vector<int> open{ 0 };
+  for (std::size_t i = 0; i < open.size(); ++i)
+  {
+    const Cell& cell = cells[open[i]];
+    if (this->Grid && !IsWithin(cell, part))
+    {
+      continue;
+    }
+    if (cell.Children == 0)
+    {
+      leaves.push_back(open[i]);
+    }
+    for (int child = 0; child < cell.Children; ++child)
+    {
+      open.push_back(cell.FirstChild + child);
+    }
+  }
+  return leaves;
 }
 
 //------------------------------------------------------------------------------
@@ -83,9 +161,8 @@ void FastRadialSum<Dimension>::EvaluateLocal(
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::EvaluateDirect(int target, double* values) const
+void FastRadialSum<Dimension>::EvaluateDirect(int target, const Cell& cell, double* values) const
 {
-  const Cell& cell = this->GetTargets().Cells[target];
   const auto count = static_cast<std::size_t>(cell.Count);
   const std::size_t padded = (count + RadialBlock - 1) / RadialBlock * RadialBlock;
   std::array<std::vector<double>, Dimension> axis;
@@ -182,101 +259,86 @@ void FastRadialSum<Dimension>::GetTargetPoints(
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::Store(const Cell& cell, const double* from, double* values) const
+void FastRadialSum<Dimension>::SumDirectly(const Cell& cell, double* values) const
 {
-  if (!this->Grid)
+  const auto count = static_cast<std::size_t>(cell.Count);
+  const std::size_t padded = (count + RadialBlock - 1) / RadialBlock * RadialBlock;
+  std::array<std::vector<double>, Dimension> axis;
+  this->GetTargetPoints(cell, padded, axis);
+  alignas(64) double sums[RadialBlock];
+  for (std::size_t first = 0; first < count; first += RadialBlock)
   {
-    const PointTree<Dimension>& points = this->SameTree ? *this->Sources : *this->Points;
-    for (std::int64_t i = 0; i < cell.Count; ++i)
+    Coordinates<Dimension> at;
+    for (int c = 0; c < Dimension; ++c)
     {
-      values[points.Order[cell.First + i]] = from[i];
+      at.Axis[c] = axis[c].data() + first;
     }
-    return;
-  }
-  const auto& size = this->Grid->Grid.Size;
-  const std::int64_t columns = cell.Range[0][1] - cell.Range[0][0];
-  for (std::int64_t row = 0; row < cell.Count / columns; ++row)
-  {
-    std::int64_t at = cell.Range[0][0];
-    std::int64_t rest = row;
-    std::int64_t stride = size[0];
-    for (int c = 1; c < Dimension; ++c)
-    {
-      const std::int64_t n = cell.Range[c][1] - cell.Range[c][0];
-      at += (cell.Range[c][0] + rest % n) * stride;
-      rest /= n;
-      stride *= size[c];
-    }
-    std::copy_n(from + row * columns, columns, values + at);
+    this->Loops.Sum(
+      this->Sources->GetCoordinates(0), this->Weights.data(), this->Weights.size(), at, sums);
+    std::copy_n(sums, std::min(RadialBlock, count - first), values + first);
   }
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::Evaluate(Execution& execution, double* values) const
+void FastRadialSum<Dimension>::EvaluatePart(
+  Execution& execution, const GridPart<Dimension>& part, double* values) const
 {
+  const SingleBlasThread single;
   const CellTree<Dimension>& tree = this->GetTargets();
-  const auto size = static_cast<std::size_t>(this->Far->GetSize());
-  execution.For(static_cast<std::int64_t>(tree.Cells.size()), 8,
+  const auto size = static_cast<std::size_t>(this->Direct ? 0 : this->Far->GetSize());
+  const std::vector<int> leaves = this->GetLeaves(part);
+  execution.For(static_cast<std::int64_t>(leaves.size()), this->Direct ? 1 : 8,
     [&](std::int64_t begin, std::int64_t end)
     {
+      std::vector<double> all;
       std::vector<double> results;
-      for (std::int64_t t = begin; t < end; ++t)
+      for (std::int64_t leaf = begin; leaf < end; ++leaf)
       {
+        const int t = leaves[leaf];
         const Cell& cell = tree.Cells[t];
-        if (cell.Children > 0 || !this->IsWanted(cell))
+        const Cell clipped = this->Clip(cell, part);
+        results.assign(clipped.Count, 0.0);
+        if (this->Direct)
         {
-          continue;
+          this->SumDirectly(clipped, results.data());
         }
-        results.assign(cell.Count, 0.0);
-        if (cell.Level > 1)
+        else
         {
-          this->EvaluateLocal(cell, this->Locals.data() + t * size, results.data());
-        }
-        this->EvaluateDirect(static_cast<int>(t), results.data());
-        this->Store(cell, results.data(), values);
-      }
-    });
-}
-
-template <int Dimension>
-void FastRadialSum<Dimension>::SumDirectly(Execution& execution, double* values) const
-{
-  const CellTree<Dimension>& tree = this->GetTargets();
-  execution.For(static_cast<std::int64_t>(tree.Cells.size()), 1,
-    [&](std::int64_t begin, std::int64_t end)
-    {
-      std::array<std::vector<double>, Dimension> axis;
-      std::vector<double> results;
-      for (std::int64_t t = begin; t < end; ++t)
-      {
-        const Cell& cell = tree.Cells[t];
-        if (cell.Children > 0 || !this->IsWanted(cell))
-        {
-          continue;
-        }
-        const std::size_t padded =
-          (static_cast<std::size_t>(cell.Count) + RadialBlock - 1) / RadialBlock * RadialBlock;
-        this->GetTargetPoints(cell, padded, axis);
-        results.resize(padded);
-        for (std::size_t first = 0; first < padded; first += RadialBlock)
-        {
-          Coordinates<Dimension> at;
-          for (int c = 0; c < Dimension; ++c)
+          if (cell.Level > 1)
           {
-            at.Axis[c] = axis[c].data() + first;
+            // Of all points whatever is wanted: rounding of matrix products depends on their size.
+            all.resize(cell.Count);
+            this->EvaluateLocal(cell, this->Locals.data() + this->Slots[t] * size, all.data());
+            if (this->Grid)
+            {
+              CopyRows<Dimension>(
+                clipped.Range, all.data(), cell.Range, results.data(), clipped.Range);
+            }
+            else
+            {
+              results.swap(all);
+            }
           }
-          this->Loops.Sum(this->Sources->GetCoordinates(0), this->Weights.data(),
-            this->Weights.size(), at, results.data() + first);
+          this->EvaluateDirect(t, clipped, results.data());
         }
-        this->Store(cell, results.data(), values);
+        if (this->Grid)
+        {
+          CopyRows<Dimension>(clipped.Range, results.data(), clipped.Range, values, part);
+        }
+        else
+        {
+          const PointTree<Dimension>& points = this->SameTree ? *this->Sources : *this->Points;
+          for (std::int64_t i = 0; i < cell.Count; ++i)
+          {
+            values[points.Order[cell.First + i]] = results[i];
+          }
+        }
       }
     });
 }
 
-template bool FastRadialSum<2>::IsWanted(const Cell&) const;
-template bool FastRadialSum<3>::IsWanted(const Cell&) const;
-template void FastRadialSum<2>::Evaluate(Execution&, double*) const;
-template void FastRadialSum<3>::Evaluate(Execution&, double*) const;
-template void FastRadialSum<2>::SumDirectly(Execution&, double*) const;
-template void FastRadialSum<3>::SumDirectly(Execution&, double*) const;
+template bool FastRadialSum<2>::IsWithin(const Cell&, const GridPart<2>&);
+template bool FastRadialSum<3>::IsWithin(const Cell&, const GridPart<3>&);
+template void FastRadialSum<2>::EvaluatePart(Execution&, const GridPart<2>&, double*) const;
+template void FastRadialSum<3>::EvaluatePart(Execution&, const GridPart<3>&, double*) const;
 }

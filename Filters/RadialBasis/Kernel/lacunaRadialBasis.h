@@ -17,6 +17,8 @@
 namespace lacuna
 {
 class Execution;
+template <int Dimension>
+class FastRadialSum;
 
 /// How the equations are solved and sums are evaluated.
 enum class RadialSolver
@@ -128,10 +130,27 @@ public:
   {
     this->EvaluateGrid(execution, grid, WholeGrid(grid), values, component);
   }
-  /// The same for a part of the grid, with the same bits; values, which has room for all points,
-  /// may be set next to it, too.
+  /// The same for a part of the grid, with the same bits; values has room for the part's points.
   void EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid,
     const GridPart<Dimension>& part, double* values, int component = 0) const;
+
+  /// The same for many parts, with the same bits: what these have in common is computed once. The
+  /// function must live longer.
+  class OnGrid
+  {
+  public:
+    /// region: contains the parts that will be asked for.
+    OnGrid(Execution& execution, const RadialBasis& function, const RegularGrid<Dimension>& grid,
+      const GridPart<Dimension>& region, int component = 0);
+    void Evaluate(Execution& execution, const GridPart<Dimension>& part, double* values) const;
+
+  private:
+    const RadialBasis& Function;
+    RegularGrid<Dimension> Grid;
+    int Component;
+    RegularGrid<Dimension> Scaled;
+    std::shared_ptr<const FastRadialSum<Dimension>> Sum; // none: by direct sums
+  };
 
   /// Coefficients of p for one component, up to the linear ones: constant, then one for each axis,
   /// for nodes in their own unit (the constant belongs to a thin plate r^2 log r with r in that

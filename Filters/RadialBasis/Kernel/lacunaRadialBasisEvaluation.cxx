@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <memory>
 
 namespace lacuna
 {
@@ -14,6 +14,13 @@ namespace
 {
 // Direct sums of so many functions take less time than to set up fast ones.
 constexpr double FewEvaluations = 2e8;
+
+template <class Part>
+bool IsEmpty(const Part& part)
+{
+  return std::any_of(
+    part.begin(), part.end(), [](const auto& range) { return range[0] >= range[1]; });
+}
 }
 
 //------------------------------------------------------------------------------
@@ -163,33 +170,72 @@ template <int Dimension>
 void RadialBasis<Dimension>::EvaluateGrid(Execution& execution, const RegularGrid<Dimension>& grid,
   const GridPart<Dimension>& part, double* values, int component) const
 {
-  const std::int64_t columns = part[0][1] - part[0][0];
-  std::int64_t rows = columns > 0 ? 1 : 0;
-  for (int c = 1; c < Dimension; ++c)
-  {
-    rows *= std::max<std::int64_t>(0, part[c][1] - part[c][0]);
-  }
-  if (rows == 0)
+  if (IsEmpty(part))
   {
     return;
   }
-  // Where a row of the part starts, and its place among values.
-  const auto getRow = [&](const RegularGrid<Dimension>& g, std::int64_t row)
+  const Execution::NestedStages stages(execution);
+  execution.SetStage(0, 0.6);
+  const OnGrid on(execution, *this, grid, part, component);
+  execution.SetStage(0.6, 1);
+  on.Evaluate(execution, part, values);
+}
+
+template <int Dimension>
+RadialBasis<Dimension>::OnGrid::OnGrid(Execution& execution, const RadialBasis& function,
+  const RegularGrid<Dimension>& grid, const GridPart<Dimension>& region, int component)
+  : Function(function)
+  , Grid(grid)
+  , Component(component)
+  , Scaled(grid)
+{
+  this->Scaled.Origin = function.Frame.ToScaled(grid.Origin);
+  for (double& spacing : this->Scaled.Spacing)
   {
-    std::pair<Point, std::int64_t> start{ g.Origin, part[0][0] };
-    std::int64_t stride = g.Size[0];
+    spacing *= function.Frame.Scale;
+  }
+  const double tolerance = function.Options.Accuracy * function.Ranges[component];
+  if (!(tolerance > 0) || IsEmpty(region))
+  {
+    return;
+  }
+  const auto n = static_cast<std::ptrdiff_t>(function.GetCenters().GetSize());
+  const std::vector<double>& coefficients = function.Coefficients[component];
+  const auto sum = std::make_shared<FastRadialSum<Dimension>>(
+    function.Options.Kernel, function.GetCenters().Nodes, this->Scaled);
+  sum->SetPart(region);
+  sum->SetUpOnce(execution, { coefficients.begin(), coefficients.begin() + n }, tolerance);
+  this->Sum = sum;
+}
+
+template <int Dimension>
+void RadialBasis<Dimension>::OnGrid::Evaluate(
+  Execution& execution, const GridPart<Dimension>& part, double* values) const
+{
+  if (IsEmpty(part))
+  {
+    return;
+  }
+  const std::int64_t columns = part[0][1] - part[0][0];
+  std::int64_t rows = 1;
+  for (int c = 1; c < Dimension; ++c)
+  {
+    rows *= part[c][1] - part[c][0];
+  }
+  // Where a row of the part starts.
+  const auto getRow = [&](const RegularGrid<Dimension>& grid, std::int64_t row)
+  {
+    Point start = grid.Origin;
     for (int c = 1; c < Dimension; ++c)
     {
       const std::int64_t size = part[c][1] - part[c][0];
-      const std::int64_t index = part[c][0] + row % size;
-      start.first[c] += static_cast<double>(index) * g.Spacing[c];
-      start.second += index * stride;
-      stride *= g.Size[c];
+      start[c] += static_cast<double>(part[c][0] + row % size) * grid.Spacing[c];
       row /= size;
     }
     return start;
   };
-  if (!(this->Options.Accuracy > 0) || !(this->Ranges[component] > 0))
+  const RadialBasis& function = this->Function;
+  if (!this->Sum)
   {
     execution.For(rows, 1,
       [&](std::int64_t begin, std::int64_t end)
@@ -197,7 +243,7 @@ void RadialBasis<Dimension>::EvaluateGrid(Execution& execution, const RegularGri
         Point points[RadialBlock];
         for (std::int64_t row = begin; row < end; ++row)
         {
-          const auto [start, place] = getRow(grid, row);
+          const Point start = getRow(this->Grid, row);
           for (std::int64_t first = 0; first < columns; first += RadialBlock)
           {
             const auto count =
@@ -205,41 +251,33 @@ void RadialBasis<Dimension>::EvaluateGrid(Execution& execution, const RegularGri
             for (std::size_t i = 0; i < count; ++i)
             {
               points[i] = start;
-              points[i][0] += static_cast<double>(part[0][0] + first + i) * grid.Spacing[0];
+              points[i][0] += static_cast<double>(part[0][0] + first + i) * this->Grid.Spacing[0];
             }
-            this->EvaluateBlock(component, points, count, values + place + first, nullptr);
+            function.EvaluateBlock(
+              this->Component, points, count, values + row * columns + first, nullptr);
           }
         }
       });
     return;
   }
-
-  RegularGrid<Dimension> scaled = grid;
-  scaled.Origin = this->Frame.ToScaled(grid.Origin);
-  for (double& spacing : scaled.Spacing)
-  {
-    spacing *= this->Frame.Scale;
-  }
   const Execution::NestedStages stages(execution);
-  execution.SetStage(0, 0.9);
-  const auto n = static_cast<std::ptrdiff_t>(this->GetCenters().GetSize());
-  const std::vector<double>& coefficients = this->Coefficients[component];
-  FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
-  sum.SetPart(part);
-  sum.ApplyOnce(execution, { coefficients.begin(), coefficients.begin() + n },
-    this->Options.Accuracy * this->Ranges[component], values);
-  execution.SetStage(0.9, 1);
+  execution.SetStage(0, 0.8);
+  this->Sum->EvaluatePart(execution, part, values);
+  execution.SetStage(0.8, 1);
+  const double* polynomial =
+    function.Coefficients[this->Component].data() + function.GetCenters().GetSize();
   execution.For(rows, 16,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t row = begin; row < end; ++row)
       {
-        auto [u, place] = getRow(scaled, row);
+        Point u = getRow(this->Scaled, row);
         for (std::int64_t i = 0; i < columns; ++i)
         {
-          u[0] = scaled.Origin[0] + static_cast<double>(part[0][0] + i) * scaled.Spacing[0];
-          values[place + i] +=
-            this->Means[component] + this->EvaluatePolynomial(coefficients.data() + n, u, nullptr);
+          u[0] =
+            this->Scaled.Origin[0] + static_cast<double>(part[0][0] + i) * this->Scaled.Spacing[0];
+          values[row * columns + i] +=
+            function.Means[this->Component] + function.EvaluatePolynomial(polynomial, u, nullptr);
         }
       }
     });
@@ -254,6 +292,7 @@ template double RadialBasis<2>::EvaluateWithin(
   Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
 template void RadialBasis<2>::EvaluateGrid(
   Execution&, const RegularGrid<2>&, const GridPart<2>&, double*, int) const;
+template class RadialBasis<2>::OnGrid;
 template double RadialBasis<3>::EvaluatePolynomial(const double*, const Point&, Point*) const;
 template void RadialBasis<3>::Evaluate(
   Execution&, const std::vector<Point>&, std::vector<double>&, int) const;
@@ -263,4 +302,5 @@ template double RadialBasis<3>::EvaluateWithin(
   Execution&, double, const std::vector<Point>&, std::vector<double>&, int) const;
 template void RadialBasis<3>::EvaluateGrid(
   Execution&, const RegularGrid<3>&, const GridPart<3>&, double*, int) const;
+template class RadialBasis<3>::OnGrid;
 }

@@ -8,6 +8,7 @@
 #include "vtkMinimalStandardRandomSequence.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 namespace
@@ -191,10 +192,104 @@ void CheckHandedness()
     }
   }
 }
+
+// Grey levels are places, all of them inside: what is folded can be seen in them. Blocks into which the
+// image is divided do not show.
+double CountFolds(vtkImageData* output)
+{
+  vtkDataArray* places = output->GetPointData()->GetScalars();
+  int size[3];
+  output->GetDimensions(size);
+  const vtkIdType stride[3] = { 1, size[0], static_cast<vtkIdType>(size[0]) * size[1] };
+  vtkIdType folded = 0;
+  for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+  {
+    double sides[3][3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool last = i / stride[axis] % size[axis] + 1 == size[axis];
+      const vtkIdType from = last ? i - stride[axis] : i;
+      for (int c = 0; c < 3; ++c)
+      {
+        sides[axis][c] =
+          places->GetComponent(from + stride[axis], c) - places->GetComponent(from, c);
+      }
+    }
+    folded += vtkMath::Determinant3x3(sides[0], sides[1], sides[2]) <= 0 ? 1 : 0;
+  }
+  return static_cast<double>(folded);
+}
+
+// A part of the output is that part of the whole, and says of the whole what is folded, whether it
+// was asked for first or later; of an image of several blocks.
+void CheckParts()
+{
+  vtkNew<vtkImageData> image;
+  image->SetExtent(-20, 204, 3, 32, 1, 110);
+  image->SetSpacing(0.5, 1, 1);
+  vtkNew<vtkDoubleArray> place;
+  place->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    place->InsertNextTuple(image->GetPoint(i));
+  }
+  image->GetPointData()->SetScalars(place);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 40, landmarks, targets);
+  for (vtkIdType i = 0; i < 40; ++i) // all is seen enlarged, so that every voxel shows a place
+  {
+    double middle[3];
+    double x[3];
+    image->GetCenter(middle);
+    landmarks->GetPoint(i, x);
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] += x[c] - middle[c] + (i % 11 == 7 && c == 0 ? 60 : 0); // some are wrong
+    }
+    targets->GetPoints()->SetPoint(i, x);
+  }
+  WatchedWarp whole(image, landmarks, targets);
+  whole.Filter->SetKernel(vtkLacunaRBFImageWarp::Linear);
+  whole.Filter->Update();
+  LACUNA_CHECK_THAT(whole.Messages->Errors.empty(), whole.Messages->Errors);
+  vtkImageData* all = whole.Filter->GetOutput();
+  vtkDataArray* valid = all->GetPointData()->GetArray("vtkValidPointMask");
+  LACUNA_CHECK(valid && valid->GetRange(0)[0] == 1);
+  const auto getFolds = [](vtkImageData* data)
+  { return data->GetFieldData()->GetArray("FoldedFraction")->GetComponent(0, 0); };
+  const double folded = getFolds(all) * static_cast<double>(all->GetNumberOfPoints());
+  LACUNA_CHECK(folded > 100);
+  LACUNA_CHECK_NEAR(folded, CountFolds(all), 0.5);
+
+  WatchedWarp parts(image, landmarks, targets);
+  parts.Filter->SetKernel(vtkLacunaRBFImageWarp::Linear);
+  for (const std::array<int, 6>& part : { std::array<int, 6>{ 60, 95, 20, 32, 50, 60 },
+         { -20, 204, 10, 10, 1, 110 }, { 204, 204, 32, 32, 110, 110 } })
+  {
+    parts.Filter->UpdateExtent(part.data());
+    vtkImageData* output = parts.Filter->GetOutput();
+    LACUNA_CHECK(std::equal(part.begin(), part.end(), output->GetExtent()));
+    LACUNA_CHECK(getFolds(output) == getFolds(all));
+    bool same = true;
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      const vtkIdType k = all->FindPoint(output->GetPoint(i));
+      for (int c = 0; c < 3; ++c)
+      {
+        same = same &&
+          output->GetPointData()->GetScalars()->GetComponent(i, c) ==
+            all->GetPointData()->GetScalars()->GetComponent(k, c);
+      }
+    }
+    LACUNA_CHECK(same);
+  }
+}
 }
 
 int TestRBFImageWarpFolds(int, char*[])
 {
+  CheckParts();
   CheckFolds();
   CheckPatch();
   CheckHandedness();
