@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Readers under MPI read only their part: each rank the slices in which its part lies, and of a CT series opens no other file for pixels.
+
+Run without arguments it is the test; it runs itself in pvbatch on all ranks at once, with the folder of files.
+"""
+import os
+import shutil
+import struct
+import sys
+
+import lacuna_test
+import numpy as np
+
+RANKS = 1, 2, 4
+# ParaView divides images along their longest axis: here across the slices, also twice
+SLICES, ROWS, COLUMNS = 320, 90, 120
+CT_SLICES, CT_ROWS, CT_COLUMNS = 280, 100, 110
+SLACK = 4096  # bytes that are read beside pixels, /proc/self/io for one: less than a slice
+
+
+def write_sequence(folder, separate):
+    """Slices, slice n of grey level n, as .mha or as .mhd with a file of pixels."""
+    fields = "".join(f"Seq_Frame{n:04}_ImageToReferenceTransform = 1 0 0 0 0 1 0 0 0 0 1 {0.1 * n:.1f} 0 0 0 1\n"
+                     f"Seq_Frame{n:04}_ImageToReferenceTransformStatus = OK\nSeq_Frame{n:04}_Timestamp = {n / 25}\n" for n in range(SLICES))
+    header = (f"ObjectType = Image\nNDims = 3\nDimSize = {COLUMNS} {ROWS} {SLICES}\nElementSpacing = 1 1 1\nElementType = MET_USHORT\n"
+              f"BinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nUltrasoundImageOrientation = MF\n{fields}"
+              f"ElementDataFile = {'slices.raw' if separate else 'LOCAL'}\n").encode("ascii")
+    pixels = np.repeat(np.arange(SLICES, dtype=np.uint16), ROWS * COLUMNS).tobytes()
+    for name, content in (("slices.mhd", header), ("slices.raw", pixels)) if separate else (("slices.mha", header + pixels),):
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write(content)
+
+
+def element(group, number, kind, value):
+    if isinstance(value, str):
+        value = value.encode("ascii")
+        value += (b"\0" if kind == "UI" else b" ") * (len(value) % 2)
+    if kind in ("OB", "OW"):
+        return struct.pack("<HH2sHI", group, number, kind.encode("ascii"), 0, len(value)) + value
+    return struct.pack("<HH2sH", group, number, kind.encode("ascii"), len(value)) + value
+
+
+def write_series(folder):
+    """A CT series, uncompressed, 1 mm from slice to slice; slice n is n everywhere."""
+    def number(value):
+        return struct.pack("<H", value)
+    for n in range(CT_SLICES):
+        own = f"1.2.3.4.{n + 1}"
+        meta = b"".join([element(2, 1, "OB", b"\0\1"), element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2"), element(2, 3, "UI", own),
+                         element(2, 0x10, "UI", "1.2.840.10008.1.2.1"), element(2, 0x12, "UI", "1.2.3")])
+        data = b"".join([
+            element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"), element(8, 0x18, "UI", own), element(8, 0x60, "CS", "CT"),
+            element(0x18, 0x50, "DS", "1"), element(0x18, 0x5100, "CS", "HFS"), element(0x20, 0xD, "UI", "1.2.3.5"),
+            element(0x20, 0xE, "UI", "1.2.3.6"), element(0x20, 0x13, "IS", str(n + 1)), element(0x20, 0x32, "DS", f"0\\0\\{n}"),
+            element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"), element(0x20, 0x52, "UI", "1.2.3.7"), element(0x28, 2, "US", number(1)),
+            element(0x28, 4, "CS", "MONOCHROME2"), element(0x28, 0x10, "US", number(CT_ROWS)), element(0x28, 0x11, "US", number(CT_COLUMNS)),
+            element(0x28, 0x30, "DS", "1\\1"), element(0x28, 0x100, "US", number(16)), element(0x28, 0x101, "US", number(16)),
+            element(0x28, 0x102, "US", number(15)), element(0x28, 0x103, "US", number(1)), element(0x28, 0x1052, "DS", "0"),
+            element(0x28, 0x1053, "DS", "1"), element(0x28, 0x1054, "LO", "HU"),
+            element(0x7FE0, 0x10, "OW", np.full(CT_ROWS * CT_COLUMNS, n, np.int16).tobytes())])
+        with open(os.path.join(folder, f"{n:03}.dcm"), "wb") as file:
+            file.write(bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data)
+
+
+# --- in pvbatch, on every rank for itself ---
+
+
+def bytes_read():
+    """That this process has read so far, from files or whatever else."""
+    with open("/proc/self/io", encoding="ascii") as file:
+        return int(next(line for line in file if line.startswith("rchar:")).split()[1])
+
+
+def read_part(reader, rank, ranks, prepare=None):
+    """The first and last slice of the rank's part, and how many bytes were read for it behind the headers."""
+    reader.UpdateInformation()
+    if prepare:
+        prepare()
+    before = bytes_read()
+    reader.UpdatePiece(rank, ranks, 0)
+    read = bytes_read() - before
+    image = reader.GetOutputDataObject(0)
+    extent = image.GetExtent()
+    whole = reader.GetOutputInformation(0).Get(reader.GetExecutive().WHOLE_EXTENT())
+    assert extent[:4] == tuple(whole[:4]), (extent, "this is no division across the slices")
+    scalars = image.GetPointData().GetScalars()
+    values = {image.GetScalarComponentAsDouble(extent[0], extent[2], k, 0) - k for k in range(extent[4], extent[5] + 1)}
+    assert values == {0}, values
+    assert scalars.GetNumberOfTuples() == (extent[1] + 1) * (extent[3] + 1) * (extent[5] - extent[4] + 1)
+    return extent[4], extent[5], read
+
+
+def check_part(name, part, rank, ranks, slices, size):
+    """The parts meet at shared slices; read: the pixels of a part, slices of so many bytes, and no more."""
+    first, last, read = part
+    steps = slices - 1
+    assert abs(first - steps * rank / ranks) <= 1 and abs(last - steps * (rank + 1) / ranks) <= 1, (name, first, last)
+    count = last - first + 1
+    assert 0 <= read - count * size < SLACK, f"{name}, rank {rank} of {ranks}: {read} bytes for {count} slices"
+    print(f"{name}, rank {rank} of {ranks}: slices {first} to {last}, {read} bytes", flush=True)
+
+
+def run(folder, ranks):
+    from lacuna.vtkLacunaReadersCTSeries import vtkLacunaCTSeriesReader
+    from lacuna.vtkLacunaReadersTrackedSlices import vtkLacunaTrackedSliceReader
+    from vtkmodules.vtkParallelCore import vtkMultiProcessController
+    controller = vtkMultiProcessController.GetGlobalController()
+    rank = controller.GetLocalProcessId()
+    assert controller.GetNumberOfProcesses() == ranks
+    bytes_read()
+    for name in ("slices.mha", "slices.mhd"):
+        reader = vtkLacunaTrackedSliceReader()
+        reader.SetFileName(os.path.join(folder, name))
+        part = read_part(reader, rank, ranks)
+        check_part(name, part, rank, ranks, SLICES, 2 * ROWS * COLUMNS)
+
+    own = os.path.join(folder, f"series-{ranks}-{rank}")  # of this rank, which takes others' files away
+    shutil.copytree(os.path.join(folder, "series"), own)
+    first = (CT_SLICES - 1) * rank // ranks - 1
+    last = -(-(CT_SLICES - 1) * (rank + 1) // ranks) + 1
+
+    def take_away():
+        for n in range(CT_SLICES):
+            if not first <= n <= last:
+                os.remove(os.path.join(own, f"{n:03}.dcm"))
+
+    reader = vtkLacunaCTSeriesReader()
+    reader.SetFileName(own)
+    part = read_part(reader, rank, ranks, take_away)
+    check_part("CT series", part, rank, ranks, CT_SLICES, 2 * CT_ROWS * CT_COLUMNS)
+    print("rank done", flush=True)
+
+
+def main():
+    folder = lacuna_test.output("ReadersRanks")
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(os.path.join(folder, "series"))
+    write_sequence(folder, False)
+    write_sequence(folder, True)
+    write_series(os.path.join(folder, "series"))
+    for ranks in RANKS:
+        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", folder, str(ranks), options=["--symmetric"])
+        assert printed.count("rank done") == ranks and "ERR|" not in printed, printed
+
+
+if sys.argv[1:2] == ["in pvbatch"]:
+    run(sys.argv[2], int(sys.argv[3]))
+else:
+    main()
