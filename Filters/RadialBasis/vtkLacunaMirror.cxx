@@ -10,6 +10,7 @@
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -21,6 +22,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -37,8 +39,10 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaMirror);
@@ -112,6 +116,22 @@ public:
     double Median = std::numeric_limits<double>::quiet_NaN();
   };
 
+  Result Found;
+  std::vector<double> Times; // at which that was so
+
+  // Of the pipeline: data may change on one rank alone, when that rank is asked for another part.
+  static std::vector<double> GetTimes(vtkLacunaMirror* self, vtkInformation* info)
+  {
+    auto* executive = vtkDemandDrivenPipeline::SafeDownCast(self->GetExecutive());
+    std::vector<double> times{ static_cast<double>(
+      executive ? executive->GetPipelineMTime() : self->GetMTime()) };
+    vtkInformation* data = vtkDataObject::GetData(info)->GetInformation();
+    times.push_back(
+      data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0);
+    times.push_back(info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0);
+    return times;
+  }
+
   template <class Data>
   static void ChoosePlane(
     vtkLacunaMirror* self, const Data& data, Result& result, vtkLacunaExecution& execution)
@@ -149,8 +169,9 @@ public:
     execution.SetStage(0.5, 1);
   }
 
-  static void MirrorVolume(
-    vtkLacunaMirror* self, vtkImageData* output, Result& result, vtkLacunaExecution& execution)
+  // Leaves of output, the input, the mirror image of a piece; isKnown: result is.
+  static void MirrorVolume(vtkLacunaMirror* self, vtkImageData* output, const int* piece,
+    bool isKnown, Result& result, vtkLacunaExecution& execution)
   {
     vtkLacunaVolumeDirection::Check(output);
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
@@ -176,17 +197,30 @@ public:
         given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
       }
     }
-    ChoosePlane(self, given, result, execution);
+    const vtkLacunaRanks ranks;
+    if (!isKnown)
+    {
+      ranks.Together([&] { ChoosePlane(self, given, result, execution); });
+    }
+    lacuna::VolumePart part;
+    for (std::size_t c = 0; c < 6; ++c)
+    {
+      part[c] = piece[c] - extent[c / 2 * 2];
+    }
     const lacuna::MirroredVolume mirrored = lacuna::MirrorVolume(given, result.Plane,
-      static_cast<lacuna::MirrorInterpolation>(self->Interpolation), execution);
-    if (mirrored.Overlap == 0)
+      static_cast<lacuna::MirrorInterpolation>(self->Interpolation), part, !isKnown, ranks,
+      execution);
+    if (!isKnown)
+    {
+      result.Score = mirrored.Score;
+      result.Overlap = mirrored.Overlap;
+      result.RMS = mirrored.RMS;
+    }
+    if (result.Overlap == 0)
     {
       throw std::runtime_error("no valid voxel has its mirror image within the volume: the plane "
                                "does not pass through the data");
     }
-    result.Score = mirrored.Score;
-    result.Overlap = mirrored.Overlap;
-    result.RMS = mirrored.RMS;
 
     vtkSmartPointer<vtkDataArray> image;
     image.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
@@ -196,6 +230,7 @@ public:
     std::memcpy(image->GetVoidPointer(0), mirrored.Voxels.data(), mirrored.Voxels.size());
     vtkPointData* points = output->GetPointData();
     points->Initialize();
+    output->SetExtent(piece[0], piece[1], piece[2], piece[3], piece[4], piece[5]);
     points->SetScalars(image);
     points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, mirrored.Valid));
     points->AddArray(MakeArray<vtkFloatArray>(AsymmetryName, mirrored.Asymmetry));
@@ -344,9 +379,9 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkLacunaMirror::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  // Any voxel may be the image of any other, and the plane depends on all.
-  return vtkLacunaRequest::WholeIfItFits(
-    this, inputVector[0]->GetInformationObject(0), outputVector);
+  // Any voxel may be the image of any other, and the plane depends on all. All ranks judge together.
+  return vtkLacunaRequest::WholeIfItFits(this, inputVector[0]->GetInformationObject(0),
+    vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputVector);
 }
 
 //------------------------------------------------------------------------------
@@ -354,7 +389,9 @@ int vtkLacunaMirror::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-  if (!input || input->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  const bool isShared = vtkLacunaRanks().GetNumber() > 1;
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector);
+  if (!input || input->GetNumberOfPoints() == 0 || (!isWanted && (!isShared || IsDepthMap(input))))
   {
     return 1; // empty in, empty out
   }
@@ -375,12 +412,47 @@ int vtkLacunaMirror::RequestData(
       throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
                                "the original");
     }
-    vtkNew<vtkImageData> whole;
-    whole->ShallowCopy(input);
-    whole->GetCellData()->Initialize();
-    Internals::Result result;
     const bool isMap = IsDepthMap(input);
-    (isMap ? Internals::MirrorMap : Internals::MirrorVolume)(this, whole, result, execution);
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    const int* extent = input->GetExtent();
+    int piece[6];
+    for (int c = 0; c < 3; ++c)
+    {
+      const int* asked =
+        info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
+      piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
+      piece[2 * c + 1] =
+        isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
+    }
+    vtkNew<vtkImageData> mirrored;
+    mirrored->ShallowCopy(input);
+    mirrored->GetCellData()->Initialize();
+    Internals::Result result;
+    if (isMap)
+    {
+      Internals::MirrorMap(this, mirrored, result, execution);
+      mirrored->Crop(piece);
+    }
+    else
+    {
+      std::vector<double> times =
+        Internals::GetTimes(this, inputVector[0]->GetInformationObject(0));
+      const bool isKnown = isShared && this->Kept && this->Kept->Times == times;
+      if (isKnown && !isWanted)
+      {
+        return;
+      }
+      result = isKnown ? this->Kept->Found : result;
+      Internals::MirrorVolume(this, mirrored, piece, isKnown, result, execution);
+      if (isShared && !isKnown)
+      {
+        this->Kept = std::make_shared<const Internals>(Internals{ result, std::move(times) });
+      }
+      if (!isWanted)
+      {
+        return; // the others have their parts
+      }
+    }
     Internals::Warn(this, result);
 
     const lacuna::Vec3 origin = Internals::OriginOf(input, result.Plane);
@@ -399,21 +471,14 @@ int vtkLacunaMirror::RequestData(
     }
     vtkLacunaVolumeDirection::Remove(plane);
     for (vtkDataObject* data :
-      { static_cast<vtkDataObject*>(whole), static_cast<vtkDataObject*>(plane) })
+      { static_cast<vtkDataObject*>(mirrored), static_cast<vtkDataObject*>(plane) })
     {
       Internals::AddFieldData(data, result);
       vtkLacunaProvenance::Record(data, this, { input }, parameters.Get());
     }
-    vtkLacunaMirrored::Mark(whole, origin, result.Plane.Normal);
+    vtkLacunaMirrored::Mark(mirrored, origin, result.Plane.Normal);
     vtkImageData* output = vtkImageData::GetData(outputVector, 0);
-    output->ShallowCopy(whole);
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    if (info->Has(SDDP::UPDATE_EXTENT()))
-    {
-      int piece[6];
-      info->Get(SDDP::UPDATE_EXTENT(), piece);
-      output->Crop(piece);
-    }
+    output->ShallowCopy(mirrored);
   };
   return vtkLacunaExecution::Run(this, outputVector, body);
 }

@@ -40,6 +40,8 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
 
+#include <memory>
+
 class vtkLacunaExecution;
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror : public vtkImageAlgorithm
@@ -106,5 +108,6 @@ private:
   double Origin[3] = { 0, 0, 0 };
   double Normal[3] = { 1, 0, 0 };
   int Interpolation = BSpline;
+  std::shared_ptr<const Internals> Kept; // what several ranks have found of a volume
 };
 #endif

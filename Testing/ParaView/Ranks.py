@@ -42,7 +42,7 @@ REFUSED = {"PolhemusVideoSource"}
 # Provenance has the hash of what a rank was given, which for these is a part
 HASHED_PARTS = {"AssembleTrackedSlices", "GateSlices", "SpeckleFilter"}
 # Have their whole input on every rank, whatever is asked of them: the size of their output is in it, or all ranks work for it
-ALWAYS_ASK = {"BSplineIsoRayCaster", "OccludedAngle", "RBFImageWarp", "RBFInterpolator", "SliceRayCaster", "SweptVolume"}
+ALWAYS_ASK = {"BSplineIsoRayCaster", "Mirror", "OccludedAngle", "RBFImageWarp", "RBFInterpolator", "SliceRayCaster", "SweptVolume"}
 
 # In ParaView's Programmable Filter, on each rank: its piece as a file, and how much of its inputs it has.
 WRITE = """

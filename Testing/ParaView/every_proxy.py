@@ -130,6 +130,7 @@ def implant():
         opened.CutAway.Rotation = [0, 0, 20]
     DepthMapShader(registrationName="Shaded", Input=opened, Volume=skull, NormalMethod="Gordon", Shading="Phong", DepthCue=0.3)
     Mirror(registrationName="Mirror", Input=depth, PlaneMethod="Given", Origin=[1, 0, 0], Normal=[1, 0.02, 0])
+    Mirror(registrationName="Mirrored skull", Input=skull)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[2, 2, 3], DefectRadius=0)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
     filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=10, NodeSpacing=2, DefectRegion="Sphere")

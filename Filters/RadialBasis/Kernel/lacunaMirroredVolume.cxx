@@ -20,6 +20,14 @@ namespace
 // Indices this close to the border (by rounding) are on it.
 constexpr double Slack = 1e-6;
 
+// Rows of voxels that are judged one after the other.
+constexpr std::int64_t BlockRows = 16;
+
+std::int64_t GetNumberOfBlocks(const std::array<int, 3>& size)
+{
+  return (static_cast<std::int64_t>(size[1]) * size[2] + BlockRows - 1) / BlockRows;
+}
+
 // Where a voxel's image lies between voxels: lower corner and fractions. An axis of one voxel, or an
 // image on its last one, has fraction 0 or 1 there, and no step.
 struct Cell
@@ -282,48 +290,74 @@ public:
     }
   }
 
+  // Sets what result has of part, and judges the blocks from firstJudged on; result is one for each block.
   template <class Sampler>
-  void Run(const Sampler& sample, MirroredVolume& result)
+  std::vector<Concordance> Run(const Sampler& sample, const VolumePart& part,
+    std::int64_t firstJudged, std::int64_t endJudged, MirroredVolume& result)
   {
     const auto& size = this->Given.Volume.Size;
     const Validity validity(this->Mask, size);
     const T outside = this->Range.Count > 0 ? static_cast<T>(this->Range.Low) : T(0);
     auto* mirrored = reinterpret_cast<T*>(result.Voxels.data());
     const double origin = 0.5 * (this->Range.Low + this->Range.High);
-    const Concordance sum =
-      SumOverBlocks<Concordance>(this->Execute, static_cast<std::int64_t>(size[1]) * size[2], 16,
-        [&](std::int64_t begin, std::int64_t end)
+    std::vector<Concordance> judged(GetNumberOfBlocks(size));
+    const auto makeRow = [&](std::int64_t row, bool judges, Concordance& pairs)
+    {
+      const auto y = static_cast<int>(row % size[1]);
+      const auto z = static_cast<int>(row / size[1]);
+      const bool isMade = y >= part[2] && y <= part[3] && z >= part[4] && z <= part[5];
+      if (!isMade && !judges)
+      {
+        return;
+      }
+      // of the part's first column
+      const std::int64_t place = (part[1] - part[0] + 1) *
+        (y - part[2] + static_cast<std::int64_t>(z - part[4]) * (part[3] - part[2] + 1));
+      const Vec3 start = this->First + static_cast<double>(y) * this->Steps[1] +
+        static_cast<double>(z) * this->Steps[2];
+      Cell cell{};
+      for (int i = judges ? 0 : part[0]; i <= (judges ? size[0] - 1 : part[1]); ++i)
+      {
+        const std::int64_t voxel = row * size[0] + i;
+        const bool valid = FindCell(start + static_cast<double>(i) * this->Steps[0], size, cell) &&
+          validity.Of(cell);
+        const T value = valid ? ToVoxel(sample(cell)) : outside;
+        const bool both = valid && (this->Mask.empty() || this->Mask[voxel]);
+        const auto here = static_cast<double>(this->Voxels[voxel]);
+        const auto there = static_cast<double>(value);
+        if (both && judges)
+        {
+          pairs.Add(here, there);
+        }
+        if (isMade && i >= part[0] && i <= part[1])
+        {
+          const std::int64_t to = place + i - part[0];
+          result.Valid[to] = valid;
+          mirrored[to] = value;
+          result.Asymmetry[to] =
+            both ? static_cast<float>(here - there) : std::numeric_limits<float>::quiet_NaN();
+        }
+      }
+    };
+    const std::int64_t rows = static_cast<std::int64_t>(size[1]) * size[2];
+    this->Execute.For(static_cast<std::int64_t>(judged.size()), 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t block = begin; block < end; ++block)
         {
           Concordance pairs(origin);
-          Cell cell{};
-          for (std::int64_t row = begin; row < end; ++row)
+          for (std::int64_t row = block * BlockRows; row < std::min(rows, (block + 1) * BlockRows);
+               ++row)
           {
-            const Vec3 start = this->First + static_cast<double>(row % size[1]) * this->Steps[1] +
-              static_cast<double>(row / size[1]) * this->Steps[2];
-            for (int i = 0; i < size[0]; ++i)
-            {
-              const std::int64_t voxel = row * size[0] + i;
-              const bool valid =
-                FindCell(start + static_cast<double>(i) * this->Steps[0], size, cell) &&
-                validity.Of(cell);
-              result.Valid[voxel] = valid;
-              mirrored[voxel] = valid ? ToVoxel(sample(cell)) : outside;
-              result.Asymmetry[voxel] = std::numeric_limits<float>::quiet_NaN();
-              if (valid && (this->Mask.empty() || this->Mask[voxel]))
-              {
-                const auto here = static_cast<double>(this->Voxels[voxel]);
-                const auto there = static_cast<double>(mirrored[voxel]);
-                pairs.Add(here, there);
-                result.Asymmetry[voxel] = static_cast<float>(here - there);
-              }
-            }
+            makeRow(row, block >= firstJudged && block < endJudged, pairs);
           }
-          return pairs;
-        });
-    result.Score = sum.GetScore();
-    result.RMS = sum.GetRMS();
-    result.Overlap = this->Range.Count > 0 ? sum.GetCount() / this->Range.Count : 0;
+          judged[block] = pairs;
+        }
+      });
+    return judged;
   }
+
+  double GetNumberOfGiven() const { return this->Range.Count; }
 
 private:
   template <class Value>
@@ -372,47 +406,106 @@ private:
   Vec3 First{ 0, 0, 0 };
   std::array<Vec3, 3> Steps{};
 };
+
+// Each block has been judged by the rank before whose end it lies: adds them up in their order, so that
+// the sum does not depend on the number of ranks.
+Concordance SumOverRanks(
+  std::vector<Concordance>& judged, std::int64_t first, std::int64_t end, const Ranks& ranks)
+{
+  static_assert(
+    std::is_trivially_copyable_v<Concordance> && sizeof(Concordance) % sizeof(std::uint64_t) == 0);
+  if (ranks.GetNumber() > 1)
+  {
+    // of the other ranks' blocks there are zeros, so that the sum has the bits of one
+    constexpr std::size_t words = sizeof(Concordance) / sizeof(std::uint64_t);
+    std::vector<std::uint64_t> bits(judged.size() * words, 0);
+    std::memcpy(bits.data() + first * words, judged.data() + first,
+      static_cast<std::size_t>(end - first) * sizeof(Concordance));
+    ranks.Sum(bits.data(), static_cast<std::int64_t>(bits.size()));
+    std::memcpy(static_cast<void*>(judged.data()), bits.data(), bits.size() * sizeof(bits[0]));
+  }
+  Concordance sum;
+  for (const Concordance& block : judged)
+  {
+    sum += block;
+  }
+  return sum;
+}
 }
 
 //------------------------------------------------------------------------------
 MirroredVolume MirrorVolume(const MaskedVolume& volume, const MirrorPlane& plane,
   MirrorInterpolation interpolation, Execution& execution)
 {
+  const auto& size = volume.Volume.Size;
+  return MirrorVolume(volume, plane, interpolation,
+    { 0, size[0] - 1, 0, size[1] - 1, 0, size[2] - 1 }, true, Ranks(), execution);
+}
+
+//------------------------------------------------------------------------------
+MirroredVolume MirrorVolume(const MaskedVolume& volume, const MirrorPlane& plane,
+  MirrorInterpolation interpolation, const VolumePart& part, bool judges, const Ranks& ranks,
+  Execution& execution)
+{
   const Execution::NestedStages nested(execution);
-  const auto count = static_cast<std::size_t>(volume.Volume.NumberOfVoxels());
-  const std::size_t bytes = GetScalarSize(volume.Volume.Type);
-  const bool spline = interpolation == MirrorInterpolation::BSpline;
-  RequireMemory("the mirrored volume",
-    static_cast<double>(count) * static_cast<double>(bytes + 5 + (spline ? 4 : 0)));
+  std::size_t count = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    count *= static_cast<std::size_t>(std::max(0, part[2 * a + 1] - part[2 * a] + 1));
+  }
+  const std::int64_t blocks = GetNumberOfBlocks(volume.Volume.Size);
+  const std::int64_t first = judges ? blocks * ranks.GetRank() / ranks.GetNumber() : 0;
+  const std::int64_t end = judges ? blocks * (ranks.GetRank() + 1) / ranks.GetNumber() : 0;
+  std::vector<Concordance> judged;
+  double given = 0;
   MirroredVolume result;
-  result.Voxels.resize(count * bytes);
-  result.Valid.resize(count);
-  result.Asymmetry.resize(count);
-  DispatchScalars(volume.Volume.Type, volume.Volume.Voxels,
-    [&](const auto* voxels)
-    {
-      using T = std::remove_cv_t<std::remove_pointer_t<decltype(voxels)>>;
-      execution.SetStage(0, 0.1);
-      Mirror<T> mirror(volume, voxels, plane, execution);
-      if (spline)
+  const auto mirror = [&]
+  {
+    const std::size_t bytes = GetScalarSize(volume.Volume.Type);
+    const bool spline = interpolation == MirrorInterpolation::BSpline;
+    RequireMemory("the mirrored volume",
+      static_cast<double>(count) * static_cast<double>(bytes + 5) +
+        (spline ? 4.0 : 0.0) * static_cast<double>(volume.Volume.NumberOfVoxels()));
+    result.Voxels.resize(count * bytes);
+    result.Valid.resize(count);
+    result.Asymmetry.resize(count);
+    DispatchScalars(volume.Volume.Type, volume.Volume.Voxels,
+      [&](const auto* voxels)
       {
-        execution.SetStage(0.1, 0.3);
-        const SplineCoefficients coefficients =
-          FilterToCoefficients(volume.Volume, true, execution);
-        execution.SetStage(0.3, 1);
-        mirror.Run(SplineSampler(volume.Volume, coefficients), result);
-      }
-      else if (interpolation == MirrorInterpolation::Linear)
-      {
-        execution.SetStage(0.1, 1);
-        mirror.Run(LinearSampler<T>(volume.Volume, voxels), result);
-      }
-      else
-      {
-        execution.SetStage(0.1, 1);
-        mirror.Run(NearestSampler<T>(volume.Volume, voxels), result);
-      }
-    });
+        using T = std::remove_cv_t<std::remove_pointer_t<decltype(voxels)>>;
+        execution.SetStage(0, 0.1);
+        Mirror<T> mirror(volume, voxels, plane, execution);
+        given = mirror.GetNumberOfGiven();
+        if (spline)
+        {
+          execution.SetStage(0.1, 0.3);
+          const SplineCoefficients coefficients =
+            FilterToCoefficients(volume.Volume, true, execution);
+          execution.SetStage(0.3, 1);
+          judged = mirror.Run(SplineSampler(volume.Volume, coefficients), part, first, end, result);
+        }
+        else if (interpolation == MirrorInterpolation::Linear)
+        {
+          execution.SetStage(0.1, 1);
+          judged = mirror.Run(LinearSampler<T>(volume.Volume, voxels), part, first, end, result);
+        }
+        else
+        {
+          execution.SetStage(0.1, 1);
+          judged = mirror.Run(NearestSampler<T>(volume.Volume, voxels), part, first, end, result);
+        }
+      });
+  };
+  if (!judges)
+  {
+    mirror();
+    return result;
+  }
+  ranks.Together(mirror);
+  const Concordance sum = SumOverRanks(judged, first, end, ranks);
+  result.Score = sum.GetScore();
+  result.RMS = sum.GetRMS();
+  result.Overlap = given > 0 ? sum.GetCount() / given : 0;
   return result;
 }
 }

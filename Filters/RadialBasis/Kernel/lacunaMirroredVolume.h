@@ -6,8 +6,10 @@
 
 #include "lacunaExecution.h"
 #include "lacunaMirrorPlane.h"
+#include "lacunaRanks.h"
 #include "lacunaVolumeSymmetry.h"
 
+#include <array>
 #include <vector>
 
 namespace lacuna
@@ -20,6 +22,10 @@ enum class MirrorInterpolation
   Nearest ///< for labels
 };
 
+/// First and last voxel along each axis; none where a first one is beyond its last one.
+using VolumePart = std::array<int, 6>;
+
+/// A part of a mirror image, and what is found of all of it.
 struct MirroredVolume
 {
   /// In the type of the volume, one per voxel; the lowest finite value where Valid is 0.
@@ -28,6 +34,7 @@ struct MirroredVolume
   std::vector<char> Valid;
   /// Given minus mirrored; NaN where there is none of both.
   std::vector<float> Asymmetry;
+  // of the whole volume, unless nothing was to be found
   double Score = 0;   ///< Concordance of given and mirrored voxels where there are both; may be NaN
   double RMS = 0;     ///< of Asymmetry
   double Overlap = 0; ///< part of the valid voxels where there are both
@@ -38,5 +45,12 @@ struct MirroredVolume
 /// the voxels and up to 10 bytes per voxel besides.
 MirroredVolume MirrorVolume(const MaskedVolume& volume, const MirrorPlane& plane,
   MirrorInterpolation interpolation, Execution& execution);
+
+/// The same for a part, with the same bits; of the memory, 5 bytes per voxel are for the whole volume.
+/// judges: whether to find the score, RMS and overlap of the whole, which ranks do together: all of
+/// them must call this, whatever part they want.
+MirroredVolume MirrorVolume(const MaskedVolume& volume, const MirrorPlane& plane,
+  MirrorInterpolation interpolation, const VolumePart& part, bool judges, const Ranks& ranks,
+  Execution& execution);
 }
 #endif

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -255,6 +256,96 @@ TEST(MirroredVolume, SameForAnyNumberOfThreads)
     EXPECT_EQ(std::memcmp(r.Asymmetry.data(), results[0].Asymmetry.data(),
                 r.Asymmetry.size() * sizeof(float)),
       0);
+  }
+}
+
+namespace
+{
+// One of several ranks that run one after the other, twice: first each leaves what it has to add, then
+// it gets the sums.
+struct RankInTurn : lacuna::Ranks
+{
+  int Rank = 0;
+  int Number = 1;
+  bool First = true;
+  std::vector<std::uint64_t>* Sums = nullptr;
+
+  int GetRank() const override { return this->Rank; }
+  int GetNumber() const override { return this->Number; }
+  using lacuna::Ranks::Sum;
+  void Sum(std::uint64_t* values, std::int64_t count) const override
+  {
+    this->Sums->resize(count);
+    for (std::int64_t i = 0; this->First && i < count; ++i)
+    {
+      (*this->Sums)[i] += values[i];
+    }
+    std::copy(this->Sums->begin(), this->Sums->end(), values);
+  }
+};
+}
+
+// Ranks make their parts of the image, and find together what one rank finds, bit for bit.
+TEST(MirroredVolume, PartsOnSeveralRanksAreTheWhole)
+{
+  const lacuna::Matrix4 pose = Oblique();
+  Volume<std::int16_t> volume(pose);
+  std::mt19937 random(3);
+  volume.Fill([&](int, int, int, const Vec3&) { return random() % 4000; });
+  volume.Masked.Valid.assign(volume.Voxels.size(), 1);
+  volume.Masked.Valid[200] = 0;
+  MirrorPlane plane;
+  plane.Normal = Normalized(pose.Column(0) + 0.2 * pose.Column(2));
+  plane.Offset = Dot(plane.Normal, pose.Point({ 6.2, 4.1, 3.3 }));
+  lacuna::ThreadExecution execution(2);
+  for (const auto interpolation :
+    { MirrorInterpolation::BSpline, MirrorInterpolation::Linear, MirrorInterpolation::Nearest })
+  {
+    const auto whole = MirrorVolume(volume.Masked, plane, interpolation, execution);
+    const auto voxels = volume.Mirrored(whole);
+    for (int number = 1; number < 6; ++number)
+    {
+      std::vector<std::uint64_t> sums;
+      for (int turn = 0; turn < 2 * number; ++turn)
+      {
+        RankInTurn ranks;
+        ranks.Rank = turn % number;
+        ranks.Number = number;
+        ranks.First = turn < number;
+        ranks.Sums = &sums;
+        // along the first axis, across what they judge; of one none, and some rows are nobody's
+        const lacuna::VolumePart part{ 2 * ranks.Rank,
+          2 * ranks.Rank + 2 - (ranks.Rank == 3 ? 5 : 0), 1, Size[1] - 1, 2, 4 };
+        const auto own =
+          MirrorVolume(volume.Masked, plane, interpolation, part, true, ranks, execution);
+        if (ranks.First && number > 1)
+        {
+          continue;
+        }
+        EXPECT_EQ(own.Score, whole.Score);
+        EXPECT_EQ(own.RMS, whole.RMS);
+        EXPECT_EQ(own.Overlap, whole.Overlap);
+        const auto later = MirrorVolume(
+          volume.Masked, plane, interpolation, part, false, lacuna::Ranks(), execution);
+        EXPECT_EQ(later.Voxels, own.Voxels);
+        const auto made = volume.Mirrored(own);
+        std::size_t at = 0;
+        for (int k = part[4]; k <= part[5]; ++k)
+        {
+          for (int j = part[2]; j <= part[3]; ++j)
+          {
+            for (int i = part[0]; i <= part[1]; ++i, ++at)
+            {
+              const std::size_t from = volume.Index(i, j, k);
+              EXPECT_EQ(made[at], voxels[from]);
+              EXPECT_EQ(own.Valid[at], whole.Valid[from]);
+              EXPECT_EQ(std::memcmp(&own.Asymmetry[at], &whole.Asymmetry[from], sizeof(float)), 0);
+            }
+          }
+        }
+        EXPECT_EQ(own.Valid.size(), at);
+      }
+    }
   }
 }
 
