@@ -4,13 +4,10 @@
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "vtkCellData.h"
-#include "vtkCharArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkDoubleArray.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
-#include "vtkImageInterpolator.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaCoordinates.h"
@@ -22,6 +19,7 @@
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
+#include "vtkLacunaWarpedPart.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -43,9 +41,6 @@ vtkStandardNewMacro(vtkLacunaRBFImageWarp);
 
 namespace
 {
-// Of a voxel: so near to one a place is on it, and its neighbours have no say.
-constexpr double RoundOff = 1e-9;
-
 // Share of folded voxels in the box around the targets from which on they are no accident: noise of
 // landmarks folds a tenth of a per cent there, and a third of all pairs on the wrong side 3 %; a head
 // of which most is mirrored within a frame of landmarks that stay where they are, a quarter. Beyond
@@ -61,87 +56,8 @@ constexpr double FoldedLimit = 0.05;
     hint);
 }
 
-// Which places of the image have grey levels that count, by its vtkValidPointMask.
-class ValidPlaces
-{
-public:
-  ValidPlaces(vtkImageData* image, int interpolation)
-    : Interpolation(interpolation)
-  {
-    image->GetDimensions(this->Size);
-    image->GetExtent(this->Extent);
-    vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
-    for (vtkIdType i = 0; mask && i < mask->GetNumberOfTuples(); ++i)
-    {
-      this->Mask.push_back(mask->GetComponent(i, 0) != 0 ? 1 : 0);
-    }
-  }
-
-  // Whether all voxels that interpolation at a place needs are valid: those whose weight is not 0.
-  bool Has(const double* index) const
-  {
-    if (this->Mask.empty())
-    {
-      return true;
-    }
-    int first[3];
-    int last[3];
-    for (int c = 0; c < 3; ++c)
-    {
-      const double place = index[c] - this->Extent[2 * c];
-      const bool nearest = this->Interpolation == vtkLacunaRBFImageWarp::Nearest;
-      const double below = std::floor(nearest ? place + 0.5 : place);
-      const int wide = this->Interpolation == vtkLacunaRBFImageWarp::CubicInterpolation ? 1 : 0;
-      const bool between = !nearest && place > below;
-      first[c] = this->Clamp(static_cast<int>(below) - (between ? wide : 0), c);
-      last[c] = this->Clamp(static_cast<int>(below) + (between ? 1 + wide : 0), c);
-    }
-    for (std::int64_t k = first[2]; k <= last[2]; ++k)
-    {
-      for (std::int64_t j = first[1]; j <= last[1]; ++j)
-      {
-        const std::int64_t row = (k * this->Size[1] + j) * this->Size[0];
-        for (std::int64_t i = first[0]; i <= last[0]; ++i)
-        {
-          if (this->Mask[row + i] == 0)
-          {
-            return false;
-          }
-        }
-      }
-    }
-    return true;
-  }
-
-private:
-  int Clamp(int i, int axis) const { return std::min(std::max(i, 0), this->Size[axis] - 1); }
-
-  int Interpolation;
-  int Size[3];
-  int Extent[6];
-  std::vector<char> Mask; // empty: all are valid
-};
-
-// vtkImageInterpolator knows no integers of 64 bits, and leaves grey levels undefined then.
-vtkSmartPointer<vtkDataArray> GetInterpolable(vtkDataArray* scalars)
-{
-  if (scalars->GetDataTypeSize() < 8 || scalars->GetDataType() == VTK_DOUBLE)
-  {
-    return scalars;
-  }
-  auto doubles = vtkSmartPointer<vtkDoubleArray>::New();
-  doubles->DeepCopy(scalars);
-  return doubles;
-}
-
-struct Sampling
-{
-  int Interpolation;
-  double OutsideValue;
-};
-
-// First and last voxel along each axis, counted from the image's first one.
-using Box = std::array<int, 6>;
+using WarpedPart = vtkLacunaWarpedPart;
+using Box = WarpedPart::Box;
 
 bool IsEmpty(const Box& box)
 {
@@ -196,90 +112,6 @@ Box GetShare(const vtkLacunaVoxelSpace& space, const lacuna::Ranks& ranks)
   }
   return share;
 }
-
-// A part of the warped image.
-class WarpedPart
-{
-public:
-  WarpedPart(vtkImageData* image, vtkDataArray* scalars, const Sampling& sampling, const Box& part)
-    : Settings(sampling)
-    , Part(part)
-    , Components(scalars->GetNumberOfComponents())
-    , Low(scalars->GetDataTypeMin())
-    , High(scalars->GetDataTypeMax())
-    , Integral(scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE)
-    , Warped(vtkSmartPointer<vtkDataArray>::Take(scalars->NewInstance()))
-    , Places(image, sampling.Interpolation)
-  {
-    vtkIdType count = 1;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      this->Stride[c] = count;
-      count *= part[2 * c + 1] - part[2 * c] + 1;
-    }
-    this->Warped->SetName(scalars->GetName());
-    this->Warped->SetNumberOfComponents(this->Components);
-    this->Warped->SetNumberOfTuples(count);
-    this->Valid->SetName(vtkLacunaDepthMap::MaskName);
-    this->Valid->SetNumberOfTuples(count);
-    vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
-    input->ShallowCopy(image);
-    input->GetPointData()->SetScalars(GetInterpolable(scalars));
-    this->Interpolator->SetInterpolationMode(sampling.Interpolation);
-    this->Interpolator->SetOutValue(sampling.OutsideValue);
-    this->Interpolator->Initialize(input);
-    this->Interpolator->Update();
-  }
-
-  // Sets a voxel to the grey level at a place of the input, an index; tuple is room for one.
-  void Set(const int* voxel, double* index, std::vector<double>& tuple)
-  {
-    vtkIdType i = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-    {
-      const double nearest = std::floor(index[c] + 0.5);
-      index[c] = std::abs(index[c] - nearest) <= RoundOff ? nearest : index[c];
-      i += (voxel[c] - this->Part[2 * c]) * this->Stride[c];
-    }
-    bool known = this->Interpolator->CheckBoundsIJK(index) && this->Places.Has(index);
-    if (known)
-    {
-      this->Interpolator->InterpolateIJK(index, tuple.data());
-      known = std::none_of(tuple.begin(), tuple.end(), [](double v) { return std::isnan(v); });
-    }
-    else
-    {
-      std::fill(tuple.begin(), tuple.end(), this->Settings.OutsideValue);
-    }
-    for (int k = 0; k < this->Components; ++k)
-    {
-      const double value = this->Integral
-        ? std::floor(std::min(std::max(tuple[k], this->Low), this->High) + 0.5)
-        : tuple[k];
-      this->Warped->SetComponent(i, k, value);
-    }
-    this->Valid->SetValue(i, known ? 1 : 0);
-  }
-
-  int GetNumberOfComponents() const { return this->Components; }
-  // Whether voxels may be set by several threads.
-  bool IsParallel() const { return this->Warped->GetDataType() != VTK_BIT; }
-  vtkDataArray* GetWarped() const { return this->Warped; }
-  vtkDataArray* GetValid() const { return this->Valid; }
-
-private:
-  Sampling Settings;
-  Box Part;
-  vtkIdType Stride[3];
-  int Components;
-  double Low;
-  double High;
-  bool Integral;
-  vtkSmartPointer<vtkDataArray> Warped;
-  vtkNew<vtkCharArray> Valid;
-  vtkNew<vtkImageInterpolator> Interpolator;
-  ValidPlaces Places;
-};
 
 // How many voxels are folded, and are in the box around the targets.
 struct Counts
@@ -515,7 +347,7 @@ int vtkLacunaRBFImageWarp::RequestData(
           lacuna::RequireMemory("the warped image",
             points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
           part = std::make_unique<WarpedPart>(
-            image, scalars, Sampling{ this->Interpolation, this->OutsideValue }, made);
+            image, scalars, this->Interpolation, this->OutsideValue, made);
         }
         switch (space.Axes.size())
         {
