@@ -89,7 +89,8 @@ void MoveNode(benchmark::State& state)
     {
       const lacuna::RadialBasis<2> fresh(
         execution, problem.Nodes, problem.Values, MakeOptions(ThinPlate));
-      benchmark::DoNotOptimize(fresh.GetReport().Residual);
+      double residual = fresh.GetReport().Residual;
+      benchmark::DoNotOptimize(residual);
     });
   state.counters["new_fit/move"] = fit / seconds;
 }
@@ -106,7 +107,8 @@ void WarpSetUp(benchmark::State& state)
   for (auto _ : state)
   {
     const lacuna::RadialBasis<3> s(execution, problem.Nodes, ways, options);
-    benchmark::DoNotOptimize(s.GetReport().Residual);
+    double residual = s.GetReport().Residual;
+    benchmark::DoNotOptimize(residual);
   }
   memory.Report(state);
 }

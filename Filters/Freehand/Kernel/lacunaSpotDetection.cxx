@@ -140,7 +140,7 @@ std::vector<Peak> FindPeaks(const Levels& levels, float least)
   }
   std::stable_sort(
     peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) { return a.Level > b.Level; });
-  peaks.resize(std::min(peaks.size(), MostPeaks));
+  peaks.erase(peaks.begin() + std::min(peaks.size(), MostPeaks), peaks.end());
   return peaks;
 }
 
@@ -288,7 +288,7 @@ std::vector<Spot> FindSpots(const GreyImage& image)
   }
   std::stable_sort(spots.begin(), spots.end(),
     [](const Spot& a, const Spot& b) { return a.Score * a.Level > b.Score * b.Level; });
-  spots.resize(std::min(spots.size(), MostSpots));
+  spots.erase(spots.begin() + std::min(spots.size(), MostSpots), spots.end());
   return spots;
 }
 }

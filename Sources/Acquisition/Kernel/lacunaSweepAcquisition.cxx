@@ -160,9 +160,10 @@ AcquisitionState SweepAcquisition::GetState() const
   {
     // the disk goes on when no frames come
     const std::unique_lock<std::mutex> taking(core.TakeMutex, std::try_to_lock);
-    const std::lock_guard<std::mutex> lock(core.Mutex);
     if (taking.owns_lock())
     {
+      core.Taking.RetryFile();
+      const std::lock_guard<std::mutex> lock(core.Mutex);
       core.Publish(0, {});
     }
   }

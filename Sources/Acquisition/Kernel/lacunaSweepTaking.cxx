@@ -173,6 +173,14 @@ void SweepTaking::SetRules(const AcquisitionRules& rules)
   this->Resume();
 }
 
+void SweepTaking::RetryFile()
+{
+  if (this->File)
+  {
+    this->File->Retry();
+  }
+}
+
 void SweepTaking::Resume()
 {
   this->Full = false; // unless the next slice finds it so
@@ -289,10 +297,7 @@ void SweepTaking::Add(const PairedFrame& frame, double now, std::vector<Acquired
   {
     return;
   }
-  if (this->File)
-  {
-    this->File->Retry();
-  }
+  this->RetryFile();
   this->SizeTrouble.clear();
   this->SpacingTrouble = CompareSpacings(*frame.Frame, this->Rules.ImageToProbe);
   this->FramesSincePose = frame.Pose ? 0 : this->FramesSincePose + 1;

@@ -74,6 +74,8 @@ public:
   const std::optional<SweepFrame>& GetSweep() const { return this->Sweep; }
   /// The window that would be taken of a frame; nothing when the crop does not fit it.
   std::optional<SweepFrame> GetWindow(const VideoFrame& frame) const;
+  /// Hands over to the file what waits for it, if that can be.
+  void RetryFile();
   bool IsFull() const { return this->Full; }
   /// Tries again what was full.
   void Resume();

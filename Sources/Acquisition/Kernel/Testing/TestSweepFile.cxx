@@ -279,6 +279,32 @@ TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
   }
 }
 
+TEST(SweepAcquisition, WhatWaitsForTheDiskIsWrittenAlsoWhenNoFramesCome)
+{
+  const TemporaryFolder folder;
+  Room room;
+  AcquisitionDevices devices;
+  devices.Frames = room.MakeVideo();
+  devices.Poses = room.MakeTracker();
+  AcquisitionRules rules;
+  rules.Mode = CaptureMode::EveryFrame;
+  rules.RecordFileName = folder / "missing/sweep.mhd";
+  SweepAcquisition acquisition(devices, rules, room);
+  acquisition.Start();
+  room.RunTo(20);
+  acquisition.Stop();
+  EXPECT_EQ(acquisition.GetState().File.Synced, 0);
+  std::filesystem::create_directory(folder / "missing");
+  AcquisitionState state;
+  for (int i = 0; i < 1000 && state.File.Synced < 20; ++i) // it is tried again after a second
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    state = acquisition.GetState();
+  }
+  EXPECT_EQ(state.File.Synced, 20);
+  EXPECT_EQ(state.File.Trouble, "");
+}
+
 TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
 {
   const TemporaryFolder folder;
@@ -344,7 +370,12 @@ TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)
     acquisition.Stop();
     const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
     EXPECT_EQ(slices.size(), 30u);
-    const std::string name = acquisition.GetState().File.FileName;
+    std::string name;
+    for (int i = 0; i < 1000 && name.empty(); ++i) // opened beside all else
+    {
+      name = acquisition.GetState().File.FileName;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     EXPECT_EQ(name, folder / (sweep == 1 ? "sweep.mhd" : "sweep-2.mhd"));
     acquisition.BeginSweep();
     const ReadBack read(name);

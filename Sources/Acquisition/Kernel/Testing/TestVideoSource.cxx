@@ -5,6 +5,7 @@
 #include "lacunaTestDevice.h"
 #include "lacunaTestVideo.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
