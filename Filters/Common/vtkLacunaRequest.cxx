@@ -5,6 +5,7 @@
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -202,6 +203,16 @@ int vtkLacunaRequest::WholeIfItFits(
   }
   Whole(filter, input, outputs);
   return 1;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformation* input)
+{
+  auto* executive = vtkDemandDrivenPipeline::SafeDownCast(filter->GetExecutive());
+  vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
+  return { static_cast<double>(executive ? executive->GetPipelineMTime() : filter->GetMTime()),
+    data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0,
+    input->Has(SDDP::UPDATE_TIME_STEP()) ? input->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }
 
 //------------------------------------------------------------------------------

@@ -6,6 +6,8 @@
 
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
+#include <vector> // for times
+
 class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
@@ -46,6 +48,12 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation*
 
 /// Data of any kind as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
+
+/// For filters that keep a result: changes when what a filter is, or is given by input, changes; the
+/// pipeline's time, and the time steps asked for and given. On all ranks alike, other than the time
+/// of data, which are made anew on one rank alone when that rank is asked for another part.
+VTKLACUNAFILTERSCOMMON_EXPORT std::vector<double> GetTimes(
+  vtkAlgorithm* filter, vtkInformation* input);
 
 /// For RequestInformation of filters whose output's size depends on their data: executes now, as a
 /// whole, what is connected to an input port. When it is up to date, as it usually is, this does

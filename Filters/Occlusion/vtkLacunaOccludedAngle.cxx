@@ -410,13 +410,19 @@ int vtkLacunaOccludedAngle::RequestData(
     {
       vtkImageData* input = vtkImageData::GetData(inputVector[0]);
       vtkImageData* space = vtkImageData::GetData(inputVector[1]);
-      vtkMTimeType time = std::max(this->GetMTime(), input->GetMTime());
-      time = space ? std::max(time, space->GetMTime()) : time;
+      std::vector<double> times =
+        vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
+      if (space)
+      {
+        const std::vector<double> more =
+          vtkLacunaRequest::GetTimes(this, inputVector[1]->GetInformationObject(0));
+        times.insert(times.end(), more.begin(), more.end());
+      }
       std::vector<vtkSmartPointer<vtkImageData>> iterations;
       const vtkLacunaRanks ranks;
       // Ranks meet when something has changed. Later they may be asked for other parts one by one.
       const bool keep = this->KeepIterations || ranks.GetNumber() > 1;
-      if (keep && !this->Iterations.empty() && this->IterationsTime == time)
+      if (keep && !this->Iterations.empty() && this->IterationsTimes == times)
       {
         iterations = this->Iterations;
       }
@@ -430,7 +436,7 @@ int vtkLacunaOccludedAngle::RequestData(
       if (keep)
       {
         this->Iterations = iterations;
-        this->IterationsTime = time;
+        this->IterationsTimes = times;
       }
       std::size_t chosen = iterations.size() - 1;
       vtkInformation* info = outputVector->GetInformationObject(0);

@@ -198,6 +198,6 @@ private:
 
   /// The iterations kept (the last one for ranks), and what they were made from.
   std::vector<vtkSmartPointer<vtkImageData>> Iterations;
-  vtkMTimeType IterationsTime = 0;
+  std::vector<double> IterationsTimes; ///< see vtkLacunaRequest::GetTimes
 };
 #endif

@@ -10,7 +10,6 @@
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
-#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
@@ -118,19 +117,6 @@ public:
 
   Result Found;
   std::vector<double> Times; // at which that was so
-
-  // Of the pipeline: data may change on one rank alone, when that rank is asked for another part.
-  static std::vector<double> GetTimes(vtkLacunaMirror* self, vtkInformation* info)
-  {
-    auto* executive = vtkDemandDrivenPipeline::SafeDownCast(self->GetExecutive());
-    std::vector<double> times{ static_cast<double>(
-      executive ? executive->GetPipelineMTime() : self->GetMTime()) };
-    vtkInformation* data = vtkDataObject::GetData(info)->GetInformation();
-    times.push_back(
-      data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0);
-    times.push_back(info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0);
-    return times;
-  }
 
   template <class Data>
   static void ChoosePlane(
@@ -436,7 +422,7 @@ int vtkLacunaMirror::RequestData(
     else
     {
       std::vector<double> times =
-        Internals::GetTimes(this, inputVector[0]->GetInformationObject(0));
+        vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
       const bool isKnown = isShared && this->Kept && this->Kept->Times == times;
       if (isKnown && !isWanted)
       {
