@@ -6,6 +6,11 @@
 
 namespace lacuna
 {
+namespace
+{
+constexpr double LongestDelay = 1; // s of who takes the frames, after which those are dropped
+}
+
 FramePairing::FramePairing(double patience)
   : Patience(patience)
 {
@@ -14,7 +19,25 @@ FramePairing::FramePairing(double patience)
 void FramePairing::AddFrame(PairedFrame frame, double now)
 {
   const double deadline = std::max(now, frame.Instant) + this->Patience;
-  this->Frames.push_back({ std::move(frame), deadline });
+  this->Frames.erase(
+    std::remove_if(this->Frames.begin(), this->Frames.end(),
+      [now](const Waiting& waiting) { return !waiting.Frame.Wanted && now > waiting.Expiry; }),
+    this->Frames.end());
+  this->Frames.push_back({ std::move(frame), deadline, deadline + LongestDelay });
+}
+
+// The track does not reach back to frames that are taken late.
+void FramePairing::AddPose(const TrackedPose& pose)
+{
+  this->Track.Add(pose);
+  for (Waiting& waiting : this->Frames)
+  {
+    if (!waiting.Settled && !this->Track.IsAhead(waiting.Frame.Instant))
+    {
+      waiting.Frame.Pose = this->Track.At(waiting.Frame.Instant);
+      waiting.Settled = true;
+    }
+  }
 }
 
 void FramePairing::Abandon()
@@ -31,11 +54,14 @@ std::vector<PairedFrame> FramePairing::Take(double now)
   while (!this->Frames.empty())
   {
     Waiting& first = this->Frames.front();
-    if (this->Track.IsAhead(first.Frame.Instant) && now < first.Deadline)
+    if (!first.Settled)
     {
-      break;
+      if (this->Track.IsAhead(first.Frame.Instant) && now < first.Deadline)
+      {
+        break;
+      }
+      first.Frame.Pose = this->Track.At(first.Frame.Instant);
     }
-    first.Frame.Pose = this->Track.At(first.Frame.Instant);
     ready.push_back(std::move(first.Frame));
     this->Frames.pop_front();
   }

@@ -28,7 +28,8 @@ struct PairedFrame
 
 /// Frames wait until a measurement later than their instant has come, so that they get a pose
 /// between two; nothing is extrapolated. One whose pose does not come within the patience gets none.
-/// Frames leave in the order in which they came.
+/// Frames leave in the order in which they came. They may be taken late, while a disk is slow for
+/// instance: a frame keeps its pose, and one that is not wanted does not wait in memory for long.
 class FramePairing
 {
 public:
@@ -37,7 +38,7 @@ public:
 
   /// Takes a frame at a time of the clock.
   void AddFrame(PairedFrame frame, double now);
-  void AddPose(const TrackedPose& pose) { this->Track.Add(pose); }
+  void AddPose(const TrackedPose& pose);
   /// Poses that come next are another tracker's.
   void Break() { this->Track.Break(); }
   /// No poses will come for the frames there are: all may leave.
@@ -52,6 +53,8 @@ private:
   {
     PairedFrame Frame;
     double Deadline;
+    double Expiry;        ///< until then it is kept though nobody wants it
+    bool Settled = false; ///< its pose is known, or known to be none
   };
   double Patience;
   PoseTrack Track;

@@ -91,6 +91,31 @@ TEST(FramePairing, NothingLiesBetweenTwoTrackers)
   EXPECT_NEAR(ready[2].Pose->ReceiverToTransmitter(0, 3), 501, 1e-9);
 }
 
+// While a slow disk ends a recording nobody takes frames.
+TEST(FramePairing, FramesThatAreTakenLateKeepTheirPosesAndTheUnwantedAreDropped)
+{
+  FramePairing pairing;
+  for (int i = 0; i < 1500; ++i) // a minute
+  {
+    const double time = 1 + 0.04 * i;
+    pairing.AddPose(MakePose(time - 0.01, time - 0.01));
+    PairedFrame frame = MakeFrame(i, time);
+    frame.Wanted = i < 200;
+    pairing.AddFrame(std::move(frame), time);
+    pairing.AddPose(MakePose(time + 0.01, time + 0.01));
+  }
+  const std::vector<PairedFrame> ready = pairing.Take(61);
+  ASSERT_GE(ready.size(), 200u);
+  EXPECT_LE(ready.size(), 200u + 25 * 2); // of the others only the newest
+  EXPECT_EQ(ready.back().Number, 1499);
+  for (std::size_t i = 0; i < ready.size(); ++i)
+  {
+    EXPECT_TRUE(i >= 200 || ready[i].Number == static_cast<std::int64_t>(i));
+    ASSERT_TRUE(ready[i].Pose) << i;
+    EXPECT_NEAR(ready[i].Pose->ReceiverToTransmitter(0, 3), ready[i].Instant, 1e-9);
+  }
+}
+
 TEST(FramePairing, PatienceBeginsAtTheInstant)
 {
   FramePairing pairing(0.5);

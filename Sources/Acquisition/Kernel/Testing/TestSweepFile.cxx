@@ -341,6 +341,44 @@ TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
   EXPECT_EQ(ReadBack(folder / "sweep.mhd").Frames.size(), 20u);
 }
 
+// The button starts again before the disk is ready: longer than the track of poses reaches back.
+TEST(SweepAcquisition, WhatIsCapturedWhileASlowDiskEndsTheRecordingHasItsPoses)
+{
+  const TemporaryFolder folder;
+  Room room;
+  AcquisitionDevices devices;
+  devices.Frames = room.MakeVideo();
+  devices.Poses = room.MakeTracker();
+  AcquisitionRules rules;
+  rules.Mode = CaptureMode::EveryFrame;
+  rules.RecordFileName = folder / "sweep.mhd";
+  SweepAcquisition acquisition(devices, rules, room);
+  acquisition.Start();
+  room.RunTo(20);
+  acquisition.Stop();
+  Milliseconds = 2000;
+  std::atomic<bool> begun{ false };
+  std::thread user(
+    [&]
+    {
+      acquisition.BeginSweep();
+      begun = true;
+    });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  acquisition.Start();
+  room.RunTo(520);
+  EXPECT_FALSE(begun);
+  Milliseconds = 0;
+  user.join();
+  acquisition.Stop();
+  const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+  EXPECT_EQ(slices.size(), 500u);
+  for (const AcquiredSlice& slice : slices)
+  {
+    ASSERT_TRUE(slice.ProbeToTracker.IsFinite()) << slice.FrameNumber;
+  }
+}
+
 TEST(SweepAcquisition, RecordsWhatItTakesAndBeginsNewFiles)
 {
   const TemporaryFolder folder;
