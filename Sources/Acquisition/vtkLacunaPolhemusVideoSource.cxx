@@ -129,6 +129,7 @@ void vtkLacunaPolhemusVideoSource::Open()
   now.Video = this->DescribeVideo();
   now.Crop = this->DescribeCrop();
   now.FreeBytes = GetFreeBytes();
+  now.NewestNumber = -1; // frames are counted anew
 }
 
 //------------------------------------------------------------------------------

@@ -433,6 +433,31 @@ void TestFormats()
   LACUNA_CHECK(bench.Messages->Errors.empty());
 }
 
+// The only frame of a picture has the number of the one before's.
+void TestOnePictureAfterAnother()
+{
+  Bench bench([](double, int) { return Still; });
+  vtkLacunaPolhemusVideoSource* source = bench.Source;
+  source->SetTrackerConnection("");
+  for (const int columns : { 40, 56 })
+  {
+    const std::string url =
+      "lavfi:testsrc2=rate=25:duration=0.04:size=" + std::to_string(columns) + "x24";
+    source->SetVideoURL(url.c_str());
+    source->Connect();
+    LACUNA_CHECK(bench.PollUntil(
+      [&]
+      {
+        source->Update();
+        return source->GetOutput(1)->GetDimensions()[0] == columns ||
+          std::string(source->GetMessage()).find("has ended") != std::string::npos;
+      }));
+    source->Poll();
+    source->Update();
+    LACUNA_CHECK(source->GetOutput(1)->GetDimensions()[0] == columns);
+  }
+}
+
 // Each is a command that the unit gets when it is set, and only then.
 void TestSettingsReachTheTracker()
 {
@@ -554,6 +579,7 @@ int TestPolhemusVideoSourceDevices(int, char*[])
   TestMemoryLimitOfItsOwn();
   TestButtonWithoutPolls();
   TestFormats();
+  TestOnePictureAfterAnother();
   TestSettingsReachTheTracker();
   TestTrackerThatComesLate();
   TestBrokenDevicesAreReplaced();
