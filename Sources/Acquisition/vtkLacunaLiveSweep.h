@@ -4,9 +4,11 @@
 #ifndef vtkLacunaLiveSweep_h
 #define vtkLacunaLiveSweep_h
 
+#include "lacunaMemory.h"
 #include "lacunaSweepAcquisition.h"
 #include "vtkLacunaSliceStack.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -19,6 +21,20 @@ struct vtkLacunaLiveSweep
 {
   static constexpr const char* WaitingText =
     "The devices, and a calibration chosen with them, are changed at the next update after Stop";
+
+  // Threads that a call of the system holds may need it to the end of the program.
+  static const lacuna::Clock& GetClock()
+  {
+    static const auto* clock = new lacuna::SteadyClock;
+    return *clock;
+  }
+
+  // At least enough for some slices.
+  static std::int64_t FindFreeBytes()
+  {
+    constexpr std::int64_t some = 128 * 1024 * 1024;
+    return std::max(static_cast<std::int64_t>(lacuna::GetAvailableMemory()), some);
+  }
 
   lacuna::AcquisitionState GetState() const
   {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPolhemusVideoSource.h"
 
-#include "lacunaMemory.h"
-#include "lacunaParameterText.h"
-#include "lacunaProbeFrames.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -17,7 +14,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -25,35 +21,6 @@
 namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
-
-std::string Text(const char* s)
-{
-  return s ? s : "";
-}
-
-constexpr std::int64_t Mebibyte = 1024 * 1024;
-
-// Threads that a call of the system holds may need it to the end of the program.
-const lacuna::Clock& GetClock()
-{
-  static const auto* clock = new lacuna::SteadyClock;
-  return *clock;
-}
-
-// Changes when the file does.
-std::string DescribeVersion(const std::string& fileName)
-{
-  std::error_code none;
-  const auto time = std::filesystem::last_write_time(fileName, none).time_since_epoch().count();
-  const std::uintmax_t size = std::filesystem::file_size(fileName, none);
-  return none ? "" : std::to_string(time) + " " + std::to_string(size);
-}
-
-// At least enough for some slices.
-std::int64_t GetFreeBytes()
-{
-  return std::max(static_cast<std::int64_t>(lacuna::GetAvailableMemory()), 128 * Mebibyte);
-}
 
 // What a message is about, without its numbers.
 std::string GetSubject(std::string message)
@@ -100,205 +67,6 @@ int vtkLacunaPolhemusVideoSource::FillOutputPortInformation(int, vtkInformation*
 {
   info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkImageData");
   return 1;
-}
-
-//------------------------------------------------------------------------------
-std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
-{
-  return lacuna::ParameterText()
-    .Add("CalibrationFileName", this->CalibrationFileName)
-    .Add("PixelSpacing", this->PixelSpacing)
-    .Add("TimeOffset", this->TimeOffset)
-    .Add("CaptureMode", this->CaptureMode)
-    .Add("MovementThreshold", this->MovementThreshold)
-    .Add("SpeedLimit", this->SpeedLimit)
-    .Add("MemoryLimit", this->MemoryLimit)
-    .Add("RecordFileName", this->RecordFileName)
-    .Add("RecordCompression", this->RecordCompression)
-    .Get();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaPolhemusVideoSource::Open()
-{
-  vtkLacunaLiveSweep& now = *this->Now;
-  this->Close(); // ports are free for the next
-  now.Acquisition = std::make_unique<lacuna::SweepAcquisition>(
-    this->MakeDevices(GetClock()), lacuna::AcquisitionRules(), GetClock());
-  now.Tracker = this->DescribeTracker();
-  now.Video = this->DescribeVideo();
-  now.Crop = this->DescribeCrop();
-  now.FreeBytes = GetFreeBytes();
-  now.NewestNumber = -1; // frames are counted anew
-}
-
-//------------------------------------------------------------------------------
-// The slices stay, and what is told of them.
-void vtkLacunaPolhemusVideoSource::Close()
-{
-  vtkLacunaLiveSweep& now = *this->Now;
-  if (!now.Acquisition)
-  {
-    return;
-  }
-  const lacuna::AcquisitionState past = now.Acquisition->Finish();
-  this->GetNeedsUpdate(); // the last slices: after Finish there are no more
-  if (now.Stack && !now.StackIsOfOthers)
-  {
-    now.Past = past;
-    now.StackIsOfOthers = true;
-    if (const std::int64_t unwritten = now.GetUnwritten(); unwritten > 0)
-    {
-      now.Past.File.Trouble = std::to_string(unwritten) + " of " +
-        std::to_string(now.Past.File.Added) +
-        " slices could not be recorded and are only in memory: save the sweep (Save Data)";
-      vtkWarningMacro(<< now.Past.File.Trouble);
-    }
-  }
-  now.Acquisition.reset();
-}
-
-//------------------------------------------------------------------------------
-// Whether others were chosen.
-bool vtkLacunaPolhemusVideoSource::DevicesDiffer() const
-{
-  const vtkLacunaLiveSweep& now = *this->Now;
-  return this->DescribeTracker() != now.Tracker || this->DescribeVideo() != now.Video ||
-    this->DescribeCrop() != now.Crop;
-}
-
-//------------------------------------------------------------------------------
-// And a capture does not change them.
-bool vtkLacunaPolhemusVideoSource::DevicesWait() const
-{
-  const vtkLacunaLiveSweep& now = *this->Now;
-  return now.Acquisition && this->DevicesDiffer() && now.Acquisition->GetState().Capturing;
-}
-
-//------------------------------------------------------------------------------
-// A capture goes on with another device in the place of one that does not work: a plug that came
-// back by another name, a wrong baud rate.
-void vtkLacunaPolhemusVideoSource::ReplaceBrokenDevices()
-{
-  vtkLacunaLiveSweep& now = *this->Now;
-  const lacuna::AcquisitionState state = now.GetState();
-  if (!state.Capturing)
-  {
-    return; // they are opened anew
-  }
-  if (!state.TrackerWorks && this->DescribeTracker() != now.Tracker)
-  {
-    now.Acquisition->ReplaceTracker(this->MakeDevices(GetClock()));
-    now.Tracker = this->DescribeTracker();
-  }
-  if (!state.VideoWorks && this->DescribeVideo() != now.Video)
-  {
-    now.Acquisition->ReplaceVideo(this->MakeDevices(GetClock()));
-    now.Video = this->DescribeVideo();
-  }
-}
-
-//------------------------------------------------------------------------------
-// Makes the acquisition what the properties say; an error says why it cannot be, once.
-void vtkLacunaPolhemusVideoSource::Configure()
-{
-  vtkLacunaLiveSweep& now = *this->Now;
-  this->ReplaceBrokenDevices();
-  const bool wait = this->DevicesWait();
-  if (wait && now.Subjects.try_emplace("devices", 0).second)
-  {
-    vtkWarningMacro(<< vtkLacunaLiveSweep::WaitingText);
-  }
-  const bool reopen = !now.Acquisition || (this->DevicesDiffer() && !wait);
-  const std::string calibration = Text(this->CalibrationFileName);
-  const std::string tried = (wait ? now.DescribeDevices() : this->DescribeDevices()) +
-    this->DescribeRules() + DescribeVersion(calibration) + (wait ? " wait" : "");
-  if (tried == now.Tried && (now.Acquisition || !now.Trouble.empty()))
-  {
-    return;
-  }
-  now.Tried = tried;
-  try
-  {
-    lacuna::AcquisitionRules rules;
-    if (!calibration.empty())
-    {
-      const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
-      rules.ImageToProbe = frames.ImageToProbe;
-      rules.TrackerToReference = frames.TrackerToReference;
-    }
-    // One that is chosen together with other devices is theirs.
-    const bool keepsCalibration = wait && now.Calibration.Calibrated;
-    if (keepsCalibration)
-    {
-      rules.ImageToProbe = now.Calibration.ImageToProbe;
-      rules.TrackerToReference = now.Calibration.TrackerToReference;
-    }
-    rules.Mode = static_cast<lacuna::CaptureMode>(this->CaptureMode);
-    rules.MovementThreshold = this->MovementThreshold;
-    rules.SpeedLimit = this->SpeedLimit;
-    rules.TimeOffset = this->TimeOffset;
-    rules.RecordFileName = Text(this->RecordFileName);
-    rules.RecordCompressionLevel = this->RecordCompression;
-    lacuna::CheckRules(rules);
-    if (reopen)
-    {
-      this->Open();
-    }
-    // of the devices that are open now
-    rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
-    rules.MemoryLimit = this->MemoryLimit > 0 ? this->MemoryLimit * Mebibyte : now.FreeBytes / 2;
-    now.Acquisition->SetRules(rules);
-    now.Rules = rules;
-    now.LimitBytes = rules.MemoryLimit;
-    now.Calibration.Calibrated = rules.ImageToProbe.has_value();
-    now.Calibration.ImageToProbe = rules.ImageToProbe.value_or(lacuna::Matrix4());
-    now.Calibration.TrackerToReference = rules.TrackerToReference;
-    if (!now.StackIsOfOthers && !keepsCalibration) // else another probe may have taken them
-    {
-      now.TakenBy = now.DescribeDevices() + " " + this->DescribeRules();
-      if (now.Stack)
-      {
-        now.Stack->Calibrate(now.Calibration);
-      }
-    }
-    if (calibration.empty() && !now.ToldUncalibrated)
-    {
-      vtkWarningMacro("The probe is not calibrated: slices have no ImageToReference. Set "
-                      "CalibrationFileName, also later");
-    }
-    now.ToldUncalibrated = calibration.empty();
-    now.Trouble.clear();
-  }
-  catch (const std::exception& e)
-  {
-    now.Trouble = e.what();
-    vtkErrorMacro(<< now.Trouble);
-    if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
-    {
-      now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted
-      now.Acquisition->SetRules(now.Rules);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaPolhemusVideoSource::Connect()
-{
-  this->Now->Tried.clear(); // asked for: tries again what failed
-  this->Configure();
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaPolhemusVideoSource::Disconnect()
-{
-  if (this->Now->Acquisition)
-  {
-    this->Close();
-    this->Now->Subjects.clear();
-    this->Modified();
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -358,7 +126,7 @@ void vtkLacunaPolhemusVideoSource::Clear()
     now.Stack.reset();
     now.Taken.clear();
     now.MemoryTrouble.clear();
-    now.FreeBytes = GetFreeBytes();
+    now.FreeBytes = now.FindFreeBytes();
     now.StackIsOfOthers = false;
     now.Subjects.clear();
     now.Tried.clear(); // the button may start again
@@ -457,7 +225,7 @@ bool vtkLacunaPolhemusVideoSource::GetNeedsUpdate()
 void vtkLacunaPolhemusVideoSource::CollectNews()
 {
   constexpr double longAgo = 5; // s; what comes and goes is said once
-  const double time = GetClock().Now();
+  const double time = this->Now->GetClock().Now();
   for (const std::string& message : this->Now->Acquisition->GetState().Messages)
   {
     const auto [subject, fresh] = this->Now->Subjects.try_emplace(GetSubject(message), time);
