@@ -17,7 +17,8 @@ FastrakDevice::FastrakDevice(std::unique_ptr<ByteChannel> channel, const Clock& 
 PoseCounts FastrakDevice::GetCounts() const
 {
   const FastrakTracker::Counts counts = this->Tracker.GetCounts();
-  return { counts.Records, counts.Silent, counts.Damaged, counts.Implausible, counts.Flipped };
+  return { counts.Records, counts.Silent + counts.Late, counts.Damaged, counts.Implausible,
+    counts.Flipped };
 }
 
 FastrakLayout ChooseFastrakLayout(int baud, bool withButton, bool binary)

@@ -349,6 +349,11 @@ FastrakTracker::Outcome FastrakTracker::Request(std::vector<TrackedPose>& measur
   if (!damaged && !early && received == expected &&
     std::adjacent_find(measured.begin(), measured.end(), same) == measured.end())
   {
+    if (this->Trips.IsLate(measured.back().Arrival - request))
+    {
+      ++this->Count.Late;
+      measured.clear();
+    }
     this->Count.Records += measured.size();
     return Outcome::Records;
   }

@@ -8,6 +8,7 @@
 #include "lacunaClock.h"
 #include "lacunaFastrakParser.h"
 #include "lacunaMotionCheck.h"
+#include "lacunaRoundTrips.h"
 
 #include <array>
 #include <cstdint>
@@ -78,6 +79,7 @@ public:
     std::uint64_t Silent = 0;      ///< requests without any byte for an answer
     std::uint64_t Damaged = 0;     ///< requests whose answer was incomplete or no record
     std::uint64_t Early = 0;       ///< of which sooner than the line can carry: an older answer
+    std::uint64_t Late = 0;        ///< right answers that are left out, see RoundTrips
     std::uint64_t Implausible = 0; ///< records that no motion explains
     std::uint64_t Flipped = 0;     ///< records whose hemisphere was set right
     std::uint64_t StrayBytes = 0;  ///< that came without being asked for
@@ -94,7 +96,7 @@ public:
   void SetUp();
 
   /// Asks for one record of each station and adds the poses that are taken now (see MotionCheck).
-  /// False when no right record came. After failures it first makes sure of the unit's state; one
+  /// One that came too late is left out. False when no right record came. After failures it first makes sure of the unit's state; one
   /// that was restarted is set up again (TrackerError when that fails). Takes at most a second and a
   /// half otherwise.
   bool Poll(std::vector<TrackedPose>& poses);
@@ -134,6 +136,7 @@ private:
   FastrakStatus Status;
   Counts Count;
   std::array<MotionCheck, FastrakStations> Motions;
+  RoundTrips Trips;
   std::string Warning;
   double WarnedAt = 0;
   std::string LastComplaint;

@@ -16,9 +16,9 @@ namespace lacuna
 {
 struct PoseCounts
 {
-  std::uint64_t Poses = 0;       ///< right measurements that came
-  std::uint64_t Missing = 0;     ///< that were asked for, or announced, and did not come
-  std::uint64_t Damaged = 0;     ///< that came incomplete or spoilt
+  std::uint64_t Poses = 0;   ///< right measurements that came
+  std::uint64_t Missing = 0; ///< that were asked for, or announced, and did not come, or too late
+  std::uint64_t Damaged = 0; ///< that came incomplete or spoilt
   std::uint64_t Implausible = 0; ///< that no motion explains (see MotionCheck)
   std::uint64_t Flipped = 0;     ///< whose hemisphere was set right
 };

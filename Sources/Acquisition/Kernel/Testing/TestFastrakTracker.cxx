@@ -76,6 +76,56 @@ TEST(FastrakTracker, FollowsTheProbeAtTheRateOfTheThesis)
   }
 }
 
+// A line on which some requests wait in the computer.
+class BusyLine : public ByteChannel
+{
+public:
+  explicit BusyLine(EmulatedChannel& line)
+    : Line(line)
+  {
+  }
+  std::size_t Read(char* bytes, std::size_t size, double seconds) override
+  {
+    return this->Line.Read(bytes, size, seconds);
+  }
+  void Write(std::string_view bytes) override
+  {
+    if (bytes == "P" && ++this->Requests % 10 == 0)
+    {
+      char none[1];
+      this->Line.Read(none, 1, this->Wait);
+    }
+    this->Line.Write(bytes);
+  }
+  std::string GetName() const override { return this->Line.GetName(); }
+  int GetBaud() const override { return this->Line.GetBaud(); }
+
+  double Wait = 0.06; // s
+
+private:
+  EmulatedChannel& Line;
+  int Requests = 0;
+};
+
+TEST(FastrakTracker, AnswersThatComeLateAreLeftOut)
+{
+  Bench bench(Baud(115200));
+  BusyLine line(bench.Channel);
+  FastrakTracker tracker(line, bench.Channel);
+  tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  for (int i = 0; i < 1000; ++i)
+  {
+    EXPECT_TRUE(tracker.Poll(poses)); // the line is in order
+  }
+  EXPECT_NEAR(tracker.GetCounts().Late, 100, 2);
+  EXPECT_EQ(tracker.GetCounts().Records, 1001 - tracker.GetCounts().Late); // one by SetUp
+  for (const TrackedPose& pose : poses)
+  {
+    EXPECT_LT(Distance(pose.ReceiverToTransmitter, Sweep(pose.Time, 1)), 2e-4);
+  }
+}
+
 TEST(FastrakTracker, TwoReceiversAndAQuaternion)
 {
   FastrakEmulatorOptions options = Baud(115200);
