@@ -93,16 +93,18 @@ const std::vector<std::string>& GetSequences()
   return files;
 }
 
+using MakeDamage = std::string (*)(const std::string& sound, Dice& dice);
+
 /// A property of readers: one of the sound files, or what is none.
 template <class T>
-Property FileName(const std::function<const std::vector<std::string>&()>& getFiles)
+Property FileName(const std::vector<std::string>& (*getFiles)(), MakeDamage makeDamage)
 {
   return Other<T>("FileName",
     [=](T* reader, Dice& dice, bool isHostile)
     {
       const std::string& sound = dice.Pick(getFiles());
       const std::string name = !isHostile ? sound
-        : dice.Chance(0.7)                ? MakeDamaged(sound, dice)
+        : dice.Chance(0.7)                ? makeDamage(sound, dice)
                                           : GetStrangeFile(dice);
       reader->SetFileName(name.c_str());
       return name;
@@ -158,17 +160,7 @@ Subject MakeCTSeriesReader()
 {
   using T = vtkLacunaCTSeriesReader;
   Subject subject{ "CTSeriesReader", NewOf<T>, [](Dice&) -> Inputs { return {}; },
-    { Other<T>("FileName",
-        [](T* reader, Dice& dice, bool isHostile)
-        {
-          const std::string& sound = dice.Pick(GetSeries());
-          const std::string name = !isHostile ? sound
-            : dice.Chance(0.7)                ? MakeDamagedSeries(sound, dice)
-                                              : GetStrangeFile(dice);
-          reader->SetFileName(name.c_str());
-          return name;
-        }),
-      Whole("MissingSlices", &T::SetMissingSlices, 0, 1),
+    { FileName<T>(GetSeries, MakeDamagedSeries), Whole("MissingSlices", &T::SetMissingSlices, 0, 1),
       Whole("GantryTilt", &T::SetGantryTilt, 0, 1), Whole("Acquisition", &T::SetAcquisition, -1, 2),
       Real("PositionTolerance", &T::SetPositionTolerance, 1e-6, 10),
       Real("PaddingValue", &T::SetPaddingValue, -2000, 2000),
@@ -186,7 +178,8 @@ void AddReaderSubjects(std::vector<Subject>& subjects)
 {
   using T = vtkLacunaTrackedSliceReader;
   Subject subject{ "TrackedSliceReader", NewOf<T>, [](Dice&) -> Inputs { return {}; },
-    { FileName<T>(GetSequences), Word("ImageFrame", &T::SetImageFrame, { "Image", "Probe" }),
+    { FileName<T>(GetSequences, MakeDamaged),
+      Word("ImageFrame", &T::SetImageFrame, { "Image", "Probe" }),
       Word("ReferenceFrame", &T::SetReferenceFrame, { "Reference", "Tracker", "Probe" }),
       Wholes<2>("FrameRange", &T::SetFrameRange, -1, 7),
       Whole("FrameStride", &T::SetFrameStride, 1, 4),
