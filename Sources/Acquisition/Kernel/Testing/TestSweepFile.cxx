@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <thread>
 
 #include <sys/syscall.h>
@@ -59,6 +60,40 @@ lacuna::Sweep ReadSweep(const std::string& path)
 {
   return BuildSweep(ReadSequenceHeader(path), {});
 }
+
+// An acquisition that has taken twenty frames and been stopped.
+struct Recorded
+{
+  explicit Recorded(const std::string& name)
+  {
+    AcquisitionDevices devices;
+    devices.Frames = this->Place.MakeVideo();
+    devices.Poses = this->Place.MakeTracker();
+    AcquisitionRules rules;
+    rules.Mode = CaptureMode::EveryFrame;
+    rules.RecordFileName = this->Folder / name;
+    this->Work = std::make_unique<SweepAcquisition>(devices, rules, this->Place);
+    this->Work->Start();
+    this->Place.RunTo(20);
+    this->Work->Stop();
+  }
+  // Begun some time ago when this returns; the flag is set when it has ended.
+  std::thread BeginSweepBeside(std::atomic<bool>& ended)
+  {
+    std::thread user(
+      [this, &ended]
+      {
+        this->Work->BeginSweep();
+        ended = true;
+      });
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return user;
+  }
+
+  const TemporaryFolder Folder;
+  Room Place;
+  std::unique_ptr<SweepAcquisition> Work;
+};
 }
 
 extern "C" int fsync(int file)
@@ -281,20 +316,10 @@ TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
 
 TEST(SweepAcquisition, WhatWaitsForTheDiskIsWrittenAlsoWhenNoFramesCome)
 {
-  const TemporaryFolder folder;
-  Room room;
-  AcquisitionDevices devices;
-  devices.Frames = room.MakeVideo();
-  devices.Poses = room.MakeTracker();
-  AcquisitionRules rules;
-  rules.Mode = CaptureMode::EveryFrame;
-  rules.RecordFileName = folder / "missing/sweep.mhd";
-  SweepAcquisition acquisition(devices, rules, room);
-  acquisition.Start();
-  room.RunTo(20);
-  acquisition.Stop();
+  Recorded recorded("missing/sweep.mhd");
+  SweepAcquisition& acquisition = *recorded.Work;
   EXPECT_EQ(acquisition.GetState().File.Synced, 0);
-  std::filesystem::create_directory(folder / "missing");
+  std::filesystem::create_directory(recorded.Folder / "missing");
   AcquisitionState state;
   for (int i = 0; i < 1000 && state.File.Synced < 20; ++i) // it is tried again after a second
   {
@@ -307,66 +332,34 @@ TEST(SweepAcquisition, WhatWaitsForTheDiskIsWrittenAlsoWhenNoFramesCome)
 
 TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
 {
-  const TemporaryFolder folder;
-  Room room;
-  AcquisitionDevices devices;
-  devices.Frames = room.MakeVideo();
-  devices.Poses = room.MakeTracker();
-  AcquisitionRules rules;
-  rules.Mode = CaptureMode::EveryFrame;
-  rules.RecordFileName = folder / "sweep.mhd";
-  SweepAcquisition acquisition(devices, rules, room);
-  acquisition.Start();
-  room.RunTo(20);
-  acquisition.Stop();
+  Recorded recorded("sweep.mhd");
+  SweepAcquisition& acquisition = *recorded.Work;
   Milliseconds = 1000;
   std::atomic<bool> begun{ false };
-  std::thread user(
-    [&]
-    {
-      acquisition.BeginSweep();
-      begun = true;
-    });
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  room.RunTo(40);
+  std::thread user = recorded.BeginSweepBeside(begun);
+  recorded.Place.RunTo(40);
   acquisition.GetState();
   EXPECT_FALSE(begun);
   Milliseconds = 0;
   user.join();
   acquisition.Start();
-  room.RunTo(60);
+  recorded.Place.RunTo(60);
   acquisition.Stop();
   EXPECT_EQ(acquisition.GetState().Counts.Frames, 20);
   EXPECT_EQ(acquisition.TakeSlices().size(), 20u);
-  EXPECT_EQ(ReadBack(folder / "sweep.mhd").Frames.size(), 20u);
+  EXPECT_EQ(ReadBack(recorded.Folder / "sweep.mhd").Frames.size(), 20u);
 }
 
 // The button starts again before the disk is ready: longer than the track of poses reaches back.
 TEST(SweepAcquisition, WhatIsCapturedWhileASlowDiskEndsTheRecordingHasItsPoses)
 {
-  const TemporaryFolder folder;
-  Room room;
-  AcquisitionDevices devices;
-  devices.Frames = room.MakeVideo();
-  devices.Poses = room.MakeTracker();
-  AcquisitionRules rules;
-  rules.Mode = CaptureMode::EveryFrame;
-  rules.RecordFileName = folder / "sweep.mhd";
-  SweepAcquisition acquisition(devices, rules, room);
-  acquisition.Start();
-  room.RunTo(20);
-  acquisition.Stop();
+  Recorded recorded("sweep.mhd");
+  SweepAcquisition& acquisition = *recorded.Work;
   Milliseconds = 2000;
   std::atomic<bool> begun{ false };
-  std::thread user(
-    [&]
-    {
-      acquisition.BeginSweep();
-      begun = true;
-    });
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::thread user = recorded.BeginSweepBeside(begun);
   acquisition.Start();
-  room.RunTo(520);
+  recorded.Place.RunTo(520);
   EXPECT_FALSE(begun);
   Milliseconds = 0;
   user.join();
