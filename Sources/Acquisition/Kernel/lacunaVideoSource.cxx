@@ -2,6 +2,7 @@
 #include "lacunaVideoSource.h"
 
 #include "lacunaExecution.h"
+#include "lacunaFrameClock.h"
 #include "lacunaVideoGrey.h"
 
 #include <algorithm>
@@ -199,6 +200,7 @@ struct VideoSource::Stream
   std::deque<std::pair<std::int64_t, double>> Arrivals; ///< packets' times and when they came
   std::optional<double> FirstTurn;                      ///< clock's time of stream time 0
   std::optional<double> LastTime;
+  FrameClock FrameTimes;
   int Columns = 0;
   int Rows = 0;
 };
@@ -398,6 +400,11 @@ void VideoSource::Stream::Fill(VideoFrame& frame, Counts& count)
     {
       this->WaitForTurn(time);
       frame.Arrival = this->Time.Now();
+    }
+    // some formats have no times, FFmpeg counts frames; one that was lost would seem to be late
+    if (this->Paced || (this->Format->iformat->flags & AVFMT_NOTIMESTAMPS) == 0)
+    {
+      frame.Arrival = this->FrameTimes.FindArrival(frame.Arrival, time);
     }
     frame.StreamTime = time;
     this->LastTime = time;

@@ -63,7 +63,7 @@ struct VideoFrame
   int Rows = 0;
   std::vector<std::uint8_t> Grey;   ///< the top line first (see lacunaVideoGrey.h for the rule)
   double PixelAspect = 1;           ///< width of a pixel by its height, where the stream says so
-  double Arrival = 0;               ///< when all its bytes were there, s of the clock
+  double Arrival = 0;               ///< when its bytes were there, s of the clock; see FrameClock
   std::optional<double> StreamTime; ///< s of the stream's own clock
   bool Damaged = false;             ///< the decoder had to guess parts
   std::optional<Vec2> PixelSpacing; ///< mm of a column and a row, where and as the stream says

@@ -27,6 +27,13 @@ namespace
 using Image = std::vector<std::uint8_t>;
 const SteadyClock TheClock;
 
+class ManualClock : public Clock
+{
+public:
+  double Now() const override { return this->Time; }
+  double Time = 0;
+};
+
 VideoSettings AtOnce(const std::string& url)
 {
   VideoSettings settings;
@@ -308,6 +315,41 @@ TEST(VideoSource, StopsWhileItWaits)
   settings.OpenTime = 1000;
   EXPECT_THROW(VideoSource(settings, TheClock, stopped), Aborted);
   EXPECT_LT(TheClock.Now(), *end + 10);
+}
+
+// A computer that stands still for 90 ms at the 60th of 80 frames of a file: seconds by which the
+// frames' arrivals are later than they would have been.
+std::vector<double> ReadWhileTheComputerStandsStill(const std::string& path)
+{
+  ManualClock clock;
+  VideoSource source(AtOnce(path), clock);
+  std::vector<double> late;
+  VideoFrame frame;
+  for (int i = 0; i < 80; ++i)
+  {
+    const double punctual = 10 + 0.04 * i;
+    clock.Time = std::max(punctual, i < 60 ? 0 : 10 + 0.04 * 60 + 0.09);
+    EXPECT_EQ(source.Read(frame), VideoEvent::Frame);
+    late.push_back(frame.Arrival - punctual);
+  }
+  return late;
+}
+
+TEST(VideoSource, FramesThatTheComputerHeldUpAreGivenTheirTimesByStreamsThatHaveTimes)
+{
+  const Folder folder;
+  const std::vector<Image> images = MakeImages(80, 40, 30);
+  EncodeVideo(folder / "a.mkv", {}, 40, 30, images, Times(80));
+  for (const double late : ReadWhileTheComputerStandsStill(folder / "a.mkv"))
+  {
+    EXPECT_NEAR(late, 0, 1e-9);
+  }
+  const EncoderSettings jpeg{ "mjpeg", "mjpeg", AV_PIX_FMT_YUVJ420P, 0 }; // has no times
+  EncodeVideo(folder / "a.mjpeg", jpeg, 40, 30, images, Times(80));
+  const std::vector<double> late = ReadWhileTheComputerStandsStill(folder / "a.mjpeg");
+  EXPECT_NEAR(late[60], 0.09, 1e-9);
+  EXPECT_NEAR(late[61], 0.05, 1e-9);
+  EXPECT_NEAR(late[63], 0, 1e-9);
 }
 
 TEST(VideoSource, StreamsThatSendNothingTimeOut)

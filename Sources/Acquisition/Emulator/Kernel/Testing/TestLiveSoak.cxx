@@ -46,8 +46,8 @@ struct Account
 {
   std::atomic<bool> Ready{ false };
   std::atomic<bool> Ended{ false };
-  std::atomic<std::int64_t> Sent{ 0 };                     // frames
-  std::array<std::atomic<double>, MostFrames> SendTimes{}; // when they began to be sent
+  std::atomic<std::int64_t> Sent{ 0 };                    // frames
+  std::array<std::atomic<double>, MostFrames> DueTimes{}; // when they were to be sent
   std::atomic<double> Stall{ 0 };
 };
 
@@ -99,7 +99,7 @@ void SendVideo(const std::string& url, Account& account)
     {
       std::this_thread::sleep_for(std::chrono::duration<double>(due - clock.Now()));
     }
-    account.SendTimes[static_cast<std::size_t>(number)] = clock.Now();
+    account.DueTimes[static_cast<std::size_t>(number)] = due;
     if (!sender.Send(pixels.data(), number))
     {
       return;
@@ -298,7 +298,7 @@ TEST_P(LiveSoak, NoFrameIsLostOrMispaired)
   int mispaired = 0;
   Spread delays;   // ms from a frame's arrival to its slice
   Spread requests; // ms from the request for the first measurement that its pose needs
-  Spread late;     // ms from the sending of a frame to its arrival
+  Spread late;     // ms from when a frame was due to its arrival
   Spread off;      // ms of the motion between a slice's instant and its pose
   acquisition->Start();
   const auto take = [&]
@@ -315,9 +315,9 @@ TEST_P(LiveSoak, NoFrameIsLostOrMispaired)
         continue;
       }
       const double instant = epoch + slice.Timestamp;
-      const double sent = process.GetAccount().SendTimes[static_cast<std::size_t>(number)];
+      const double due = process.GetAccount().DueTimes[static_cast<std::size_t>(number)];
       const PoseCheck check = Check(slice, instant);
-      const double arrived = instant + Latency - sent;
+      const double arrived = instant + Latency - due;
       const bool right = std::abs(arrived) < HalfFrame && check.Off < 0.2 + HalfFrame * check.Speed;
       mispaired += right ? 0 : 1;
       delays.Values.push_back(1000 * slice.Delay);
@@ -349,7 +349,7 @@ TEST_P(LiveSoak, NoFrameIsLostOrMispaired)
             << " mispaired; " << records / time << " records a second, "
             << 100 * damaged / (records + damaged)
             << " % of the answers damaged; ms: slice after frame " << delays
-            << ", after the request " << requests << ", frame after its sending " << late
+            << ", after the request " << requests << ", frame after it was due " << late
             << ", pose off by the motion of " << off << "; " << used
             << " % of one core; longest stall of this computer " << 1000 * stall << " ms\n";
   if ((lost > 0 || mispaired > 0) && stall > HalfFrame)

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaFrameClock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+using namespace lacuna;
+
+namespace
+{
+constexpr double Period = 0.04; // s
+constexpr double Way = 0.0123;  // s from the end of a frame to its arrival
+constexpr double Start = 1234.5;
+
+// Frames whose way takes up to a millisecond longer, at the rate that their stream says or another.
+struct Stream
+{
+  double Rate = 1; ///< by what the stream says
+  double Jitter = 0.001;
+  std::mt19937 Random{ 5 };
+
+  double GetTime(int frame) const { return 77 + frame * Period; }
+  double GetEnd(int frame) const { return Start + frame * Period / this->Rate; }
+  double GetArrival(int frame)
+  {
+    return this->GetEnd(frame) + Way +
+      std::uniform_real_distribution<double>(0, this->Jitter)(this->Random);
+  }
+};
+}
+
+TEST(FrameClock, FramesThatWereHeldUpGetTheTimesThatTheyWouldHaveHad)
+{
+  FrameClock clock;
+  Stream stream;
+  double free = 0; // until then the computer stands still
+  double before = 0;
+  int late = 0;
+  for (int frame = 0; frame < 2000; ++frame)
+  {
+    const double punctual = stream.GetArrival(frame);
+    if (frame > 50 && frame % 37 == 0)
+    {
+      free = punctual + 0.01 * (frame % 23); // up to five frames
+    }
+    const double arrival = std::max(punctual, free);
+    const double found = clock.FindArrival(arrival, stream.GetTime(frame));
+    EXPECT_LE(found, arrival);
+    EXPECT_GT(found, before);
+    before = found;
+    if (arrival > punctual + 0.009)
+    {
+      ++late;
+      EXPECT_NEAR(found, stream.GetEnd(frame) + Way + 0.0005, 0.0005) << frame;
+    }
+    else if (arrival == punctual)
+    {
+      EXPECT_EQ(found, arrival) << frame;
+    }
+    else
+    {
+      EXPECT_NEAR(found, punctual, 0.009) << frame;
+    }
+  }
+  EXPECT_GT(late, 80);
+}
+
+TEST(FrameClock, StreamsOfAnotherRateThanTheySayKeepTheirArrivals)
+{
+  for (const double rate : { 0.5, 0.8, 0.99, 0.995, 0.998, 0.999, 0.9999, 1.001, 1.01, 1.2, 2.0 })
+  {
+    FrameClock clock;
+    Stream stream;
+    stream.Rate = rate;
+    for (int frame = 0; frame < 1000; ++frame)
+    {
+      const double arrival = stream.GetArrival(frame);
+      ASSERT_EQ(clock.FindArrival(arrival, stream.GetTime(frame)), arrival) << rate << " " << frame;
+    }
+  }
+}
+
+TEST(FrameClock, StreamsThatComeInBurstsKeepTheirArrivals)
+{
+  FrameClock clock;
+  Stream stream;
+  for (int frame = 0; frame < 1000; ++frame)
+  {
+    const double arrival = stream.GetArrival(frame + 1 - frame % 2) + 0.0001 * (frame % 2);
+    ASSERT_EQ(clock.FindArrival(arrival, stream.GetTime(frame)), arrival) << frame;
+  }
+}
+
+TEST(FrameClock, AWayThatBecomesLongerIsTheUsualOneSoon)
+{
+  FrameClock clock;
+  Stream stream;
+  for (int frame = 0; frame < 200; ++frame)
+  {
+    const double arrival = stream.GetArrival(frame) + (frame < 100 ? 0 : 0.03);
+    const double found = clock.FindArrival(arrival, stream.GetTime(frame));
+    if (frame < 100 || frame > 113)
+    {
+      ASSERT_EQ(found, arrival) << frame;
+    }
+    else
+    {
+      ASSERT_LE(found, arrival) << frame;
+    }
+  }
+}
+
+TEST(FrameClock, AStreamThatBeginsAnewIsLearntAnew)
+{
+  FrameClock clock;
+  Stream stream;
+  for (int frame = 0; frame < 400; ++frame)
+  {
+    const double time = stream.GetTime(frame) - (frame < 200 ? 0 : 7);
+    const bool late = frame == 201 || frame == 300;
+    const double arrival = stream.GetArrival(frame) + (late ? 0.03 : 0);
+    const double found = clock.FindArrival(arrival, time);
+    if (frame == 300)
+    {
+      EXPECT_NEAR(found, stream.GetEnd(frame) + Way, 0.001);
+    }
+    else
+    {
+      ASSERT_EQ(found, arrival) << frame; // 201: nothing is known yet
+    }
+  }
+}
