@@ -2,6 +2,7 @@
 #include "lacunaFramePairing.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace lacuna
@@ -19,10 +20,17 @@ FramePairing::FramePairing(double patience)
 void FramePairing::AddFrame(PairedFrame frame, double now)
 {
   const double deadline = std::max(now, frame.Instant) + this->Patience;
-  this->Frames.erase(
-    std::remove_if(this->Frames.begin(), this->Frames.end(),
-      [now](const Waiting& waiting) { return !waiting.Frame.Wanted && now > waiting.Expiry; }),
-    this->Frames.end());
+  // the one before a wanted frame tells the speed at that
+  auto kept = this->Frames.begin();
+  for (auto i = kept; i != this->Frames.end(); ++i)
+  {
+    const auto next = std::next(i);
+    if (i->Frame.Wanted || now <= i->Expiry || (next != this->Frames.end() && next->Frame.Wanted))
+    {
+      std::iter_swap(kept++, i);
+    }
+  }
+  this->Frames.erase(kept, this->Frames.end());
   this->Frames.push_back({ std::move(frame), deadline, deadline + LongestDelay });
 }
 

@@ -29,7 +29,8 @@ struct PairedFrame
 /// Frames wait until a measurement later than their instant has come, so that they get a pose
 /// between two; nothing is extrapolated. One whose pose does not come within the patience gets none.
 /// Frames leave in the order in which they came. They may be taken late, while a disk is slow for
-/// instance: a frame keeps its pose, and one that is not wanted does not wait in memory for long.
+/// instance: a frame keeps its pose, and one that is not wanted, nor just before such a one, does
+/// not wait in memory for long.
 class FramePairing
 {
 public:

@@ -116,6 +116,29 @@ TEST(FramePairing, FramesThatAreTakenLateKeepTheirPosesAndTheUnwantedAreDropped)
   }
 }
 
+// By which the speed at the first frame of a capture is known.
+TEST(FramePairing, TheOneBeforeAWantedFrameIsNotDropped)
+{
+  FramePairing pairing;
+  for (int i = 0; i < 500; ++i)
+  {
+    const double time = 1 + 0.04 * i;
+    PairedFrame frame = MakeFrame(i, time);
+    frame.Wanted = i == 100 || i == 101 || i == 200;
+    pairing.AddFrame(std::move(frame), time);
+    pairing.AddPose(MakePose(time + 0.01, time + 0.01));
+  }
+  const std::vector<PairedFrame> ready = pairing.Take(21);
+  ASSERT_GT(ready.size(), 5u);
+  const std::int64_t expected[] = { 99, 100, 101, 199, 200 };
+  for (int i = 0; i < 5; ++i)
+  {
+    EXPECT_EQ(ready[i].Number, expected[i]);
+    EXPECT_TRUE(ready[i].Frame == nullptr && ready[i].Pose);
+  }
+  EXPECT_GT(ready[5].Number, 450);
+}
+
 TEST(FramePairing, PatienceBeginsAtTheInstant)
 {
   FramePairing pairing(0.5);
