@@ -115,11 +115,15 @@ void SweepAcquisition::BeginSweep(bool discard)
   {
     const std::lock_guard<std::mutex> taking(this->Work->TakeMutex);
     this->Work->TakeLast(); // they are of this sweep
-    this->Work->Taking.BeginSweep(discard);
-    const std::lock_guard<std::mutex> lock(this->Work->Mutex);
+    std::unique_lock<std::mutex> lock(this->Work->Mutex);
+    const std::int64_t missing = this->Work->Missing;
+    const std::uint64_t flipped = this->Work->CountFlipped();
+    lock.unlock();
+    this->Work->Taking.BeginSweep(discard); // a capture may begin while the disk is slow
+    lock.lock();
     this->Work->Slices.clear();
-    this->Work->Missing = 0;
-    this->Work->FlippedBefore = this->Work->CountFlipped();
+    this->Work->Missing -= missing;
+    this->Work->FlippedBefore = flipped;
     this->Work->Publish(0, {});
     this->Work->Sweep.reset();
   }

@@ -19,6 +19,7 @@
 #include <limits>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -61,13 +62,32 @@ lacuna::Sweep ReadSweep(const std::string& path)
   return BuildSweep(ReadSequenceHeader(path), {});
 }
 
+// A video that leaves out a frame before each.
+struct GappyVideo : public FrameDevice
+{
+  explicit GappyVideo(std::unique_ptr<FrameDevice> video)
+    : Whole(std::move(video))
+  {
+  }
+  VideoEvent Read(VideoFrame& frame) override { return this->Whole->Read(frame); }
+  double GetLatency() const override { return this->Whole->GetLatency(); }
+  VideoSource::Counts GetCounts() const override
+  {
+    VideoSource::Counts counts = this->Whole->GetCounts();
+    counts.Missing = counts.Frames;
+    return counts;
+  }
+  std::unique_ptr<FrameDevice> Whole;
+};
+
 // An acquisition that has taken twenty frames and been stopped.
 struct Recorded
 {
   explicit Recorded(const std::string& name)
   {
     AcquisitionDevices devices;
-    devices.Frames = this->Place.MakeVideo();
+    devices.Frames = [video = this->Place.MakeVideo()](const auto& stopped)
+    { return std::make_unique<GappyVideo>(video(stopped)); };
     devices.Poses = this->Place.MakeTracker();
     AcquisitionRules rules;
     rules.Mode = CaptureMode::EveryFrame;
@@ -346,6 +366,7 @@ TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
   recorded.Place.RunTo(60);
   acquisition.Stop();
   EXPECT_EQ(acquisition.GetState().Counts.Frames, 20);
+  EXPECT_EQ(acquisition.GetState().Missing, 20);
   EXPECT_EQ(acquisition.TakeSlices().size(), 20u);
   EXPECT_EQ(ReadBack(recorded.Folder / "sweep.mhd").Frames.size(), 20u);
 }
@@ -364,6 +385,7 @@ TEST(SweepAcquisition, WhatIsCapturedWhileASlowDiskEndsTheRecordingHasItsPoses)
   Milliseconds = 0;
   user.join();
   acquisition.Stop();
+  EXPECT_EQ(acquisition.GetState().Missing, 500);
   const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
   EXPECT_EQ(slices.size(), 500u);
   for (const AcquiredSlice& slice : slices)
