@@ -176,7 +176,7 @@ def main():
     parser.add_argument("--in-pvbatch", nargs=2, metavar=("RANKS", "OUT"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.in_pvbatch:
-        measure(0.5 if options.quick else 1, int(options.in_pvbatch[0]), 1 if options.quick else 2, options.in_pvbatch[1])
+        measure(0.5 if options.quick else 1, int(options.in_pvbatch[0]), 1 if options.quick else 5, options.in_pvbatch[1])
     else:
         run(options)
 

@@ -349,12 +349,9 @@ FastrakTracker::Outcome FastrakTracker::Request(std::vector<TrackedPose>& measur
   if (!damaged && !early && received == expected &&
     std::adjacent_find(measured.begin(), measured.end(), same) == measured.end())
   {
-    if (this->Trips.IsLate(measured.back().Arrival - request))
-    {
-      ++this->Count.Late;
-      measured.clear();
-    }
-    this->Count.Records += measured.size();
+    this->IsLate = this->Trips.IsLate(measured.back().Arrival - request);
+    this->Count.Late += this->IsLate ? 1 : 0;
+    this->Count.Records += this->IsLate ? 0 : measured.size();
     return Outcome::Records;
   }
   measured.clear();
@@ -384,13 +381,14 @@ bool FastrakTracker::Poll(std::vector<TrackedPose>& poses)
   {
     this->Warning.clear();
   }
-  for (const TrackedPose& pose : measured)
+  for (TrackedPose& pose : measured)
   {
     if (!pose.Usable)
     {
       this->Warn("The FASTRAK reports for station " + std::to_string(pose.Station) + ": " +
         DescribeFastrakError(pose.Error));
     }
+    pose.Usable = pose.Usable && !this->IsLate;
     this->Motions[pose.Station - 1].Judge(pose, poses);
   }
   return true;

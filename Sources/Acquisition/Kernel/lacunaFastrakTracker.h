@@ -79,7 +79,7 @@ public:
     std::uint64_t Silent = 0;      ///< requests without any byte for an answer
     std::uint64_t Damaged = 0;     ///< requests whose answer was incomplete or no record
     std::uint64_t Early = 0;       ///< of which sooner than the line can carry: an older answer
-    std::uint64_t Late = 0;        ///< right answers that are left out, see RoundTrips
+    std::uint64_t Late = 0;        ///< right answers whose poses are not used, see RoundTrips
     std::uint64_t Implausible = 0; ///< records that no motion explains
     std::uint64_t Flipped = 0;     ///< records whose hemisphere was set right
     std::uint64_t StrayBytes = 0;  ///< that came without being asked for
@@ -96,9 +96,9 @@ public:
   void SetUp();
 
   /// Asks for one record of each station and adds the poses that are taken now (see MotionCheck).
-  /// One that came too late is left out. False when no right record came. After failures it first makes sure of the unit's state; one
-  /// that was restarted is set up again (TrackerError when that fails). Takes at most a second and a
-  /// half otherwise.
+  /// One that came too late is not Usable, but tells of the button. False when no right record
+  /// came. After failures it first makes sure of the unit's state; one that was restarted is set up
+  /// again (TrackerError when that fails). Takes at most a second and a half otherwise.
   bool Poll(std::vector<TrackedPose>& poses);
 
   /// Of the unit, once set up.
@@ -137,6 +137,7 @@ private:
   Counts Count;
   std::array<MotionCheck, FastrakStations> Motions;
   RoundTrips Trips;
+  bool IsLate = false; ///< the newest answer
   std::string Warning;
   double WarnedAt = 0;
   std::string LastComplaint;

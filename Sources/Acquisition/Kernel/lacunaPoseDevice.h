@@ -38,8 +38,8 @@ public:
   /// Makes it measure; called once, before Poll. May take some seconds.
   virtual void SetUp() = 0;
   /// Waits for the next measurements and adds those that are taken now, in order of Time for each
-  /// Station, with the times of the acquisition's clock. False when none came: after at most a
-  /// second and a half it returns, however silent the device is.
+  /// Station but for those that are not Usable, with the times of the acquisition's clock. False
+  /// when none came: after at most a second and a half it returns, however silent the device is.
   virtual bool Poll(std::vector<TrackedPose>& poses) = 0;
   virtual PoseCounts GetCounts() const = 0;
   /// What is wrong with the measurements now though they come, and what to do; empty: nothing.

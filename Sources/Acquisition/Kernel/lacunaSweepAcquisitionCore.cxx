@@ -95,10 +95,11 @@ void SweepAcquisition::Core::AddPoses(
 
 void SweepAcquisition::Core::HeedButton(const TrackedPose& pose)
 {
-  if (!pose.Button)
+  if (!pose.Button || pose.Arrival < this->ButtonTime)
   {
-    return;
+    return; // it waited, see MotionCheck, and newer ones did not
   }
+  this->ButtonTime = pose.Arrival;
   // two records must agree: a damaged one presses nothing
   if (*pose.Button == this->ButtonBefore && *pose.Button != this->ButtonDown)
   {

@@ -65,6 +65,7 @@ struct SweepAcquisition::Core
   bool PosesCome = false; // a tracker is connected and has measured
   bool ButtonDown = false;
   bool ButtonBefore = false; // what the last record said
+  double ButtonTime = 0;     // when that came
   std::int64_t NextNumber = 0;
   std::int64_t Pending = 0;
   std::int64_t Missing = 0;

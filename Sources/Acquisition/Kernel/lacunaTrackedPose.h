@@ -19,7 +19,7 @@ struct TrackedPose
   int Station = 1;
   Matrix4 ReceiverToTransmitter; ///< mm
   char Error = ' ';              ///< the unit's error code
-  bool Usable = true;            ///< false: the code says not to rely on the pose
+  bool Usable = true;            ///< false: its code says not to rely on it, or it came too late
   bool Flipped = false;          ///< signs were set right for the other hemisphere
   std::optional<bool> Button;
 };

@@ -155,6 +155,37 @@ TEST(AcquisitionTracker, AButtonThatIsHeldWhileTheTrackerComesBackIsNotPressedAg
   EXPECT_FALSE(acquisition.GetState().Capturing); // the next press
 }
 
+// Those that are not Usable do not wait with others for a new motion.
+TEST(AcquisitionTracker, AButtonInPosesThatComeOutOfOrderIsPressedOnce)
+{
+  AcquisitionRules rules = EveryFrame();
+  rules.ButtonStarts = true;
+  std::vector<TrackedPose> waiting;
+  Scene scene(rules, Room::NumberedFrame,
+    [&](double time, std::vector<TrackedPose>& poses)
+    {
+      TrackedPose pose = Room::MakePose(time);
+      pose.Arrival = time;
+      pose.Button = time > 2 && time < 2.3;
+      pose.Usable = time < 1.95 || time > 2.09;
+      if (time > 1.95 && time < 1.99)
+      {
+        waiting.push_back(pose);
+        return;
+      }
+      if (pose.Usable)
+      {
+        poses.insert(poses.end(), waiting.begin(), waiting.end());
+        waiting.clear();
+      }
+      poses.push_back(pose);
+    });
+  SweepAcquisition& acquisition = scene.Open();
+  scene.Place.RunTo(80);
+  EXPECT_TRUE(acquisition.GetState().Capturing);
+  EXPECT_GT(acquisition.GetState().Counts.Frames, 40);
+}
+
 // The FASTRAK's protocol at its pace, one byte in a hundred damaged: every frame becomes a slice and
 // every pose is right.
 class AcquisitionSoak : public testing::TestWithParam<double>

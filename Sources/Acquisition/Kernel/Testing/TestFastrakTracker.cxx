@@ -90,7 +90,7 @@ public:
   }
   void Write(std::string_view bytes) override
   {
-    if (bytes == "P" && ++this->Requests % 10 == 0)
+    if (bytes == "P" && ++this->Requests % this->Every == 0)
     {
       char none[1];
       this->Line.Read(none, 1, this->Wait);
@@ -101,6 +101,7 @@ public:
   int GetBaud() const override { return this->Line.GetBaud(); }
 
   double Wait = 0.06; // s
+  int Every = 10;     // request waits
 
 private:
   EmulatedChannel& Line;
@@ -120,9 +121,39 @@ TEST(FastrakTracker, AnswersThatComeLateAreLeftOut)
   }
   EXPECT_NEAR(tracker.GetCounts().Late, 100, 2);
   EXPECT_EQ(tracker.GetCounts().Records, 1001 - tracker.GetCounts().Late); // one by SetUp
+  std::uint64_t late = 0;
   for (const TrackedPose& pose : poses)
   {
-    EXPECT_LT(Distance(pose.ReceiverToTransmitter, Sweep(pose.Time, 1)), 2e-4);
+    late += pose.Usable ? 0 : 1;
+    EXPECT_TRUE(!pose.Usable || Distance(pose.ReceiverToTransmitter, Sweep(pose.Time, 1)) < 2e-4);
+  }
+  EXPECT_EQ(poses.size(), 1000u);
+  EXPECT_EQ(late, tracker.GetCounts().Late);
+  EXPECT_EQ(tracker.GetWarning(), ""); // the unit has nothing to report
+}
+
+TEST(FastrakTracker, AButtonIsPressedInAnswersThatComeLateToo)
+{
+  FastrakSettings settings;
+  settings.Layout = ChooseFastrakLayout(115200, true);
+  Bench bench(Baud(115200), settings);
+  BusyLine line(bench.Channel);
+  FastrakTracker tracker(line, bench.Channel, settings);
+  tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  for (int i = 0; i < 5; ++i)
+  {
+    ASSERT_TRUE(tracker.Poll(poses));
+  }
+  line.Every = 1;
+  poses.clear();
+  for (const bool pressed : { true, false })
+  {
+    bench.Emulator.SetButton(pressed, bench.Channel.Now());
+    ASSERT_TRUE(tracker.Poll(poses));
+    ASSERT_FALSE(poses.empty());
+    EXPECT_FALSE(poses.back().Usable);
+    EXPECT_EQ(poses.back().Button, pressed);
   }
 }
 

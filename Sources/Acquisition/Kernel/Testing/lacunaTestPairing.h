@@ -49,6 +49,10 @@ inline Pairing PairFrames(
     tracker.Poll(poses);
     for (const lacuna::TrackedPose& pose : poses)
     {
+      if (!pose.Usable)
+      {
+        continue; // it came late
+      }
       track.Add(pose);
       quickest = std::min(quickest, pose.Arrival - pose.Request);
       slowest = std::max(slowest, pose.Arrival - pose.Request);
