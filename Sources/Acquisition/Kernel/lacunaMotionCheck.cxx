@@ -58,6 +58,19 @@ bool MotionCheck::Fits(
   return true;
 }
 
+// Of a new motion's first pose. A tracker that was silent for a moment, or a jerk, hides how the
+// receiver went on: it has hardly gone round the transmitter.
+bool MotionCheck::IsInOtherHemisphere(const TrackedPose& first) const
+{
+  if (this->Track.empty() || !this->Track.back().Flipped)
+  {
+    return false;
+  }
+  const Vec3 last = this->Track.back().ReceiverToTransmitter.Column(3);
+  const Vec3 position = first.ReceiverToTransmitter.Column(3);
+  return Norm(-1 * position - last) < Norm(position - last);
+}
+
 void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accepted)
 {
   if (!pose.Usable)
@@ -67,15 +80,11 @@ void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accep
   }
   const auto isOld = [&](const TrackedPose& earlier)
   { return pose.Time - earlier.Time > this->Limits.MaximumGap; };
-  if (!this->Track.empty() && isOld(this->Track.back()))
-  {
-    this->Track.clear();
-  }
   const auto firstYoung = std::find_if_not(this->Waiting.begin(), this->Waiting.end(), isOld);
   this->Dropped += static_cast<std::uint64_t>(firstYoung - this->Waiting.begin());
   this->Waiting.erase(this->Waiting.begin(), firstYoung);
 
-  if (this->Track.size() == 2)
+  if (this->Track.size() == 2 && !isOld(this->Track.back()))
   {
     const TrackedPose flipped = Flip(pose);
     const bool fits = this->Fits(this->Track[0], this->Track[1], pose);
@@ -93,9 +102,14 @@ void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accep
   {
     if (this->Fits(this->Waiting[0], this->Waiting[1], pose))
     {
-      this->Track = { this->Waiting[1], pose };
+      this->Waiting.push_back(pose);
+      if (this->IsInOtherHemisphere(this->Waiting.front()))
+      {
+        std::transform(this->Waiting.begin(), this->Waiting.end(), this->Waiting.begin(), Flip);
+        this->Flipped += this->Waiting.size();
+      }
       accepted.insert(accepted.end(), this->Waiting.begin(), this->Waiting.end());
-      accepted.push_back(pose);
+      this->Track = { this->Waiting[1], this->Waiting[2] };
       this->Waiting.clear();
       return;
     }

@@ -26,7 +26,8 @@ struct MotionLimits
 /// fits with all three signs changed is taken with them changed: the FASTRAK's field is the same at
 /// opposite places, so that there the orientation is right and the position mirrored through the
 /// origin. Others wait; three in a row that fit each other are a new motion and are taken together,
-/// late; those that do not are dropped when one fits the motion before. What remains undetected is
+/// late; those that do not are dropped when one fits the motion before. A new motion after one that
+/// was in the other hemisphere is on the side that is nearer to its end. What remains undetected is
 /// within the limits: at 50 poses a second 1.2 mm and three times the noise.
 class MotionCheck
 {
@@ -43,9 +44,10 @@ public:
 
 private:
   bool Fits(const TrackedPose& first, const TrackedPose& second, const TrackedPose& third) const;
+  bool IsInOtherHemisphere(const TrackedPose& first) const;
 
   MotionLimits Limits;
-  std::vector<TrackedPose> Track;   ///< the last two that were taken
+  std::vector<TrackedPose> Track;   ///< the last two that were taken, however old
   std::vector<TrackedPose> Waiting; ///< up to two that may begin a new motion
   std::uint64_t Dropped = 0;
   std::uint64_t Flipped = 0;

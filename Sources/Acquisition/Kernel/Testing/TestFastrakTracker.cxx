@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace lacuna;
 using namespace lacunaTest;
 
@@ -155,6 +157,43 @@ TEST(FastrakTracker, AButtonIsPressedInAnswersThatComeLateToo)
     EXPECT_FALSE(poses.back().Usable);
     EXPECT_EQ(poses.back().Button, pressed);
   }
+}
+
+// So many that the motion before says nothing of the next poses, but for the half of space.
+TEST(FastrakTracker, AReceiverInTheOtherHalfOfSpaceIsThereStillAfterLateAnswers)
+{
+  const auto script = [](double time, int) {
+    return Matrix4::Translation({ 100 * std::cos(0.3 * time), 200 + 20 * time / 60, 50 });
+  };
+  Bench bench(Baud(115200), {}, script);
+  BusyLine line(bench.Channel);
+  FastrakTracker tracker(line, bench.Channel);
+  tracker.SetUp();
+  std::vector<TrackedPose> poses;
+  while (bench.Channel.Now() < 6) // x changes its sign after 5.2 s
+  {
+    tracker.Poll(poses);
+  }
+  line.Every = 1;
+  const double begin = bench.Channel.Now();
+  while (bench.Channel.Now() < begin + 1)
+  {
+    tracker.Poll(poses);
+    EXPECT_FALSE(poses.back().Usable);
+  }
+  line.Every = 10;
+  while (bench.Channel.Now() < 10)
+  {
+    tracker.Poll(poses);
+  }
+  int late = 0;
+  for (const TrackedPose& pose : poses)
+  {
+    late += pose.Usable ? 0 : 1;
+    ASSERT_TRUE(!pose.Usable || Distance(pose.ReceiverToTransmitter, script(pose.Time, 1)) < 2e-4)
+      << pose.Time;
+  }
+  EXPECT_LT(10 * late, static_cast<int>(poses.size()) * 2);
 }
 
 TEST(FastrakTracker, TwoReceiversAndAQuaternion)

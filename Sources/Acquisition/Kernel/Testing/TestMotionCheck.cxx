@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+
 using namespace lacuna;
 using namespace lacunaTest;
 
@@ -108,6 +111,41 @@ TEST(MotionCheck, PassageIntoTheOtherHemisphereIsSetRight)
     EXPECT_EQ(accepted[i].Flipped, i > 25);
     EXPECT_NEAR(accepted[i].ReceiverToTransmitter.Determinant3(), 1, 1e-12);
   }
+}
+
+// A tracker that is silent for a while, and a jerk, after which a new motion begins.
+TEST(MotionCheck, TheHemisphereIsKnownAfterAGap)
+{
+  const auto truth = [](int i)
+  {
+    const double x = i < 140 ? 100 - 4.0 * i : -460 + 4.0 * (i - 140); // back over x = 0 at 255
+    return Vec3{ x, 150, i < 190 ? -80.0 : -20.0 };                    // a jerk
+  };
+  MotionCheck check;
+  std::vector<TrackedPose> accepted;
+  for (int i = 0; i < 300; ++i)
+  {
+    if ((i > 50 && i < 120) || (i > 240 && i < 270)) // returns in the second
+    {
+      continue;
+    }
+    TrackedPose pose;
+    pose.Time = 0.02 * i;
+    const Vec3 position = truth(i);
+    pose.ReceiverToTransmitter = Matrix4::Translation((position[0] < 0 ? -1 : 1) * position) *
+      FastrakRotation(Vec3{ 10, 20, 30 });
+    check.Judge(pose, accepted);
+  }
+  ASSERT_EQ(accepted.size(), 300u - 69 - 29);
+  std::uint64_t flipped = 0;
+  for (const TrackedPose& pose : accepted)
+  {
+    const Vec3 position = truth(static_cast<int>(std::lround(pose.Time / 0.02)));
+    EXPECT_LT(Norm(pose.ReceiverToTransmitter.Column(3) - position), 1e-9) << pose.Time;
+    EXPECT_EQ(pose.Flipped, position[0] < 0);
+    flipped += pose.Flipped ? 1 : 0;
+  }
+  EXPECT_EQ(check.GetNumberOfFlipped(), flipped);
 }
 
 TEST(PoseTrack, InterpolatesButDoesNotGuess)
