@@ -260,6 +260,10 @@ int vtkLacunaSpeckleFilter::RequestData(
       else
       {
         outData->CopyAllOn();
+        if (chosen->GetName())
+        {
+          outData->CopyFieldOff(chosen->GetName()); // it would be half of the time
+        }
         outData->CopyAllocate(inData, output->GetNumberOfPoints());
         outData->CopyStructuredData(inData, input->GetExtent(), output->GetExtent());
       }
