@@ -4,6 +4,7 @@
 #ifndef lacunaCTFrame_h
 #define lacunaCTFrame_h
 
+#include "lacunaFileBytes.h"
 #include "lacunaVector.h"
 
 #include <array>
@@ -15,8 +16,6 @@
 
 namespace lacuna
 {
-struct InflatedBytes;
-
 /// How a pixel is stored (DICOM group 0028).
 struct CTPixelFormat
 {
@@ -46,6 +45,7 @@ struct DicomFragment
 struct CTFileHeader
 {
   std::string File; ///< its path
+  FileState State;  ///< when this was read
   std::string SopClassUid;
   std::string SopInstanceUid;
   std::string Modality;

@@ -367,6 +367,7 @@ DicomFile DicomParser::Parse()
     this->Bytes.Inflate(begin);
     file.Inflated = this->Bytes.GetInflated();
   }
+  file.State = this->Bytes.GetState();
   file.FileSize = this->Bytes.GetSize();
   this->BigEndian = file.BigEndian = file.TransferSyntax == BigEndianSyntax;
   Element pixels;

@@ -6,6 +6,7 @@
 #define lacunaDicomDataSet_h
 
 #include "lacunaCTFrame.h"
+#include "lacunaFileBytes.h"
 
 #include <cstdint>
 #include <map>
@@ -60,6 +61,7 @@ struct DicomFile
   std::vector<DicomFragment> Fragments;
   std::vector<std::int64_t> FrameOffsets; ///< basic offset table, from the first fragment's item
   bool FragmentsComplete = false;
+  FileState State;
   std::int64_t FileSize = 0; ///< with the data set inflated
   bool IsBare = false;       ///< neither preamble nor transfer syntax; that is as its bytes show
   /// The data set of a file that is deflated; offsets count as if it were in the file.

@@ -254,6 +254,7 @@ std::shared_ptr<CTFileHeader> ReadHeader(const std::string& path, const DicomFil
   const auto text = [&](DicomTag tag) { return DicomTextToUtf8(data.GetBytes(tag), characters); };
   auto header = std::make_shared<CTFileHeader>();
   header->File = path;
+  header->State = file.State;
   header->TransferSyntax = file.TransferSyntax;
   header->SopClassUid = text(0x00080016);
   header->SopInstanceUid = text(0x00080018);
@@ -398,6 +399,12 @@ void ReadDicomBytes(const CTFrame& frame, unsigned char* bytes)
 {
   const CTFileHeader& header = *frame.Header;
   FileBytes file(header.File);
+  if (!(file.GetState() == header.State))
+  {
+    // other pixels would stand at the place and in the unit of the old ones
+    throw std::runtime_error(header.File +
+      ": has changed since its header was read; open it anew (ParaView: File > Reload Files)");
+  }
   if (header.Inflated)
   {
     file.SetInflated(header.Inflated);

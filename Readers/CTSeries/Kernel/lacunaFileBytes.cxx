@@ -54,6 +54,8 @@ FileBytes::FileBytes(const std::string& path)
     throw std::runtime_error(path + ": cannot be read");
   }
   this->Size = state.st_size;
+  this->State = { this->Size,
+    std::int64_t{ state.st_mtim.tv_sec } * 1000000000 + state.st_mtim.tv_nsec };
 }
 
 //------------------------------------------------------------------------------

@@ -19,6 +19,18 @@ struct InflatedBytes
   std::vector<unsigned char> Bytes;
 };
 
+/// By which a file is known to be the same as before.
+struct FileState
+{
+  std::int64_t Size = -1; ///< bytes
+  std::int64_t Time = 0;  ///< of the last change, ns
+
+  bool operator==(const FileState& other) const
+  {
+    return this->Size == other.Size && this->Time == other.Time;
+  }
+};
+
 class FileBytes
 {
 public:
@@ -30,6 +42,8 @@ public:
   FileBytes(const FileBytes&) = delete;
   FileBytes& operator=(const FileBytes&) = delete;
 
+  /// When it was opened.
+  const FileState& GetState() const { return this->State; }
   /// Bytes at hand, with what was inflated.
   std::int64_t GetSize() const { return this->Size; }
   /// count bytes from offset on, valid until the next call; nullptr when the file has not so many.
@@ -48,6 +62,7 @@ public:
 private:
   std::string Path;
   int File = -1; // descriptor
+  FileState State;
   std::int64_t Size = 0;
   std::int64_t First = 0; // of the bytes at hand
   std::vector<unsigned char> Window;

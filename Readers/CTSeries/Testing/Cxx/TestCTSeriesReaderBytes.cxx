@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How much vtkLacunaCTSeriesReader reads of folders with many files and of large ones: beginnings
-// once, and pixels once, of the images that are asked for.
+// once, and pixels once, of the images that are asked for; and no pixels of a file that is another one
+// since.
 #include "CTSeriesReaderTesting.h"
 #include "lacunaProcessMemory.h"
 #include "vtkInformation.h"
@@ -131,6 +132,33 @@ void TestCopies()
   test.ExpectError("1 slices are there twice with different images");
 }
 
+// Files are written over after the reader has looked at them: by another scan with images of the same
+// size, which would come where the old ones were.
+void TestChangedFiles()
+{
+  CTTestSeries series;
+  series.Slices = 6;
+  ReaderOf test(series);
+  test.Reader->UpdateInformation();
+  const int first[6] = { 0, series.Columns - 1, 0, series.Rows - 1, 0, 2 };
+  test.Reader->UpdateExtent(first);
+  LACUNA_CHECK_THAT(test.Errors.empty(), test.Errors);
+  const auto time = std::filesystem::last_write_time(test.Files[0]);
+  series.Edits = { { 0x0028, 0x1052, "DS", "-24", {} } };
+  series.Write(test.Folder);
+  for (const std::string& file : test.Files)
+  {
+    std::filesystem::last_write_time(file, time + std::chrono::seconds(1));
+  }
+  const int second[6] = { 0, series.Columns - 1, 0, series.Rows - 1, 4, 4 };
+  test.Reader->UpdateExtent(second);
+  LACUNA_CHECK_CONTAINS(test.Errors, "has changed since its header was read");
+  LACUNA_CHECK_CONTAINS(test.Errors, "IM00");
+  LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
+  test.Reader->Modified(); // as Reload Files does
+  test.ExpectGood();
+}
+
 // One file of many frames.
 void TestManyFrames()
 {
@@ -151,10 +179,11 @@ void TestManyFrames()
 
 int TestCTSeriesReaderBytes(int, char*[])
 {
+  TestChangedFiles();
   if (GetBytesRead() <= 0)
   {
     std::cout << "the system does not tell how much is read\n";
-    return 0;
+    return lacunaCheck::Result();
   }
   TestManyFiles();
   TestCopies();
