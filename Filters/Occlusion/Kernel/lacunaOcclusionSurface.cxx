@@ -176,6 +176,7 @@ void OcclusionSurface::Fit(
   options.Smoothing = SmoothingUnit * this->Options.Smoothing;
   options.Accuracy = std::min(0.5, this->Options.Tolerance / range);
   options.Errors = std::move(all.Errors);
+  options.Words.Accuracy = "Tolerance";
   this->Function = std::make_unique<RadialBasis<3>>(execution, all.Nodes, all.Values, options);
 }
 

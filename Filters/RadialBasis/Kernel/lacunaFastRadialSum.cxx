@@ -176,7 +176,7 @@ double FastRadialSum<Dimension>::SetUpWithin(
   {
     std::ostringstream message;
     message << "a fast sum cannot be sure of an error below " << tolerance << ", only of one below "
-            << bound << "; raise Accuracy";
+            << bound << "; raise " << this->Words.Accuracy;
     throw std::runtime_error(message.str());
   }
   return 0;

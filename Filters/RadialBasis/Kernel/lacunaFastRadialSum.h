@@ -47,6 +47,9 @@ public:
   /// The part of the grid where values are wanted, by default all. They have the same bits.
   void SetPart(const GridPart<Dimension>& part) { this->Part = part; }
 
+  /// For errors. By default the options' own names.
+  void SetWords(const RadialWords& words) { this->Words = words; }
+
   /// values[k] = u(x_k) within tolerance (> 0, in the unit of weight x phi); the points of the grid's
   /// part with the first index fastest. Returns the bound of the error. Throws std::runtime_error
   /// when doubles cannot give the tolerance.
@@ -120,6 +123,7 @@ private:
     const std::function<void(std::int64_t, std::int64_t)>& body);
 
   RadialKernel Kernel;
+  RadialWords Words;
   RadialLoops<Dimension> Loops;
   std::unique_ptr<PointTree<Dimension>> Sources;
   std::unique_ptr<PointTree<Dimension>> Points;

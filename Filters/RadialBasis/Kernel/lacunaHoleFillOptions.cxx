@@ -130,6 +130,7 @@ RadialBasisOptions GetFitOptions(
   const HoleFillOptions& options, double areaPerNode, bool controllable)
 {
   RadialBasisOptions fit;
+  fit.Words.Smoothing = "Smoothing or CutoffWavelength";
   fit.Kernel = options.Kernel;
   fit.Shape = options.KernelLength;
   fit.Smoothing = options.CutoffWavelength > 0

@@ -94,6 +94,7 @@ void RadialBasis<Dimension>::SetNodes(
   this->Centers = this->System;
   RadialSystem<Dimension>& system = *this->System;
   system.Kernel = this->Options.Kernel;
+  system.Words = this->Options.Words;
   system.Polynomial.Degree = GetRadialDegree(system.Kernel);
   const std::vector<std::size_t> distinct =
     FindDistinctNodes<Dimension>(nodes, values, system.Polynomial.GetCount());

@@ -52,6 +52,7 @@ struct RadialBasisOptions
   std::vector<double> Errors;
   /// Keeps what control points need after the fit: the factorized matrix or the preconditioner.
   bool Controllable = false;
+  RadialWords Words;
 };
 
 /// What a fit found out about itself.

@@ -154,6 +154,7 @@ double RadialBasis<Dimension>::EvaluateWithin(Execution& execution, double toler
   values.resize(points.size());
   const std::vector<double>& coefficients = this->Coefficients[component];
   FastRadialSum<Dimension> sum(this->Options.Kernel, this->GetCenters().Nodes, scaled);
+  sum.SetWords(this->Options.Words);
   const double bound = sum.ApplyOnce(execution,
     { coefficients.begin(), coefficients.begin() + static_cast<std::ptrdiff_t>(n) }, tolerance,
     values.data());
@@ -203,6 +204,7 @@ RadialBasis<Dimension>::OnGrid::OnGrid(Execution& execution, const RadialBasis& 
   const std::vector<double>& coefficients = function.Coefficients[component];
   const auto sum = std::make_shared<FastRadialSum<Dimension>>(
     function.Options.Kernel, function.GetCenters().Nodes, this->Scaled);
+  sum->SetWords(function.Options.Words);
   sum->SetPart(region);
   sum->SetUpOnce(execution, { coefficients.begin(), coefficients.begin() + n }, tolerance);
   this->Sum = sum;

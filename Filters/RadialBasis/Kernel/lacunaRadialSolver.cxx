@@ -69,6 +69,7 @@ public:
     , Sum(system.Kernel, system.Nodes, system.Nodes)
     , Projection(system.Polynomial, system.Nodes)
   {
+    this->Sum.SetWords(system.Words);
     const auto n = static_cast<double>(system.GetSize());
     RequireMemory("the fast solution of " + std::to_string(system.GetSize()) + " equations",
       SchwarzPreconditioner<Dimension>::EstimateBytes(system.GetSize()) +
@@ -114,9 +115,8 @@ public:
     {
       std::ostringstream message;
       message << "the interpolation equations could only be solved to " << norm << ", not to "
-              << this->Tolerance << "; raise Accuracy, "
-              << (this->System.IsSmoothed() ? "change Smoothing or CutoffWavelength"
-                                            : "add Smoothing")
+              << this->Tolerance << "; raise " << this->System.Words.Accuracy << ", "
+              << (this->System.IsSmoothed() ? "change " : "add ") << this->System.Words.Smoothing
               << (IsRadialShaped(this->System.Kernel) ? ", or lower KernelLength" : "");
       throw std::runtime_error(message.str());
     }

@@ -9,9 +9,17 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace lacuna
 {
+/// What the user knows as the accuracy and the smoothing, for messages that say what would help.
+struct RadialWords
+{
+  std::string Accuracy = "Accuracy";
+  std::string Smoothing = "Smoothing";
+};
+
 /// The radial functions; the numbers are those of the filters' Kernel property.
 enum class RadialKernel
 {

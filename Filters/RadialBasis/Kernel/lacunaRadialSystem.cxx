@@ -64,12 +64,11 @@ std::string GetRemedy(const RadialSystem<Dimension>& system)
   const bool isShaped = IsRadialShaped(system.Kernel);
   if (system.IsSmoothed())
   {
-    return std::string("lower Smoothing or CutoffWavelength") +
-      (isShaped ? ", or change KernelLength" : "");
+    return "lower " + system.Words.Smoothing + (isShaped ? ", or change KernelLength" : "");
   }
-  return isShaped
-    ? "change KernelLength to about the distance of nodes, use fewer nodes, or add Smoothing"
-    : "nodes lie too close together for their extent, use fewer or add Smoothing";
+  return (isShaped ? "change KernelLength to about the distance of nodes, use fewer nodes, or add "
+                   : "nodes lie too close together for their extent, use fewer or add ") +
+    system.Words.Smoothing;
 }
 
 template <int Dimension>

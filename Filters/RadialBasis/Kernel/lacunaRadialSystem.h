@@ -59,6 +59,7 @@ struct RadialSystem
   std::array<std::vector<double>, Dimension> Axis; ///< the same by coordinate
   std::vector<double> Diagonal;                    ///< >= 0, one for each node
   std::vector<std::vector<double>> Values;         ///< one for each right-hand side
+  RadialWords Words;
 
   std::size_t GetSize() const { return this->Nodes.size(); }
   bool IsSmoothed() const; ///< whether any node has a diagonal above 0

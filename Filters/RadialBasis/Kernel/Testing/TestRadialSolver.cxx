@@ -433,6 +433,9 @@ TEST(RadialSolver, SaysWhatItCannotDo)
   const std::string below =
     fit(Options(RadialKernel::ThinPlate, RadialSolver::Fast, 1e-16)); // than round-off
   expect(below, "raise Accuracy, add Smoothing");
+  RadialBasisOptions named = Options(RadialKernel::ThinPlate, RadialSolver::Fast, 1e-16);
+  named.Words = { "Tolerance", "Stiffness" };
+  expect(fit(named), "raise Tolerance, add Stiffness");
   const std::string reached = "could only be solved to ";
   const std::size_t at = below.find(reached);
   ASSERT_NE(at, std::string::npos) << below;
