@@ -99,7 +99,15 @@ struct OutputGrid
       this->Grid.Size[c] = static_cast<std::int64_t>(steps) + 1;
       count *= steps + 1;
     }
-    RequireMemory(count, 1);
+    // It need not fit into the memory as a whole, but its points must have numbers.
+    const double bytes = sizeof(double) * count;
+    if (bytes >= static_cast<double>(std::numeric_limits<std::int64_t>::max()))
+    {
+      throw std::runtime_error(
+        "OutputSpacing is too small for OutputBounds: the interpolated image "
+        "would need " +
+        lacuna::DescribeBytes(bytes) + ", more than there can be");
+    }
   }
 
   // Of a part: a double for each component, and one more for that which is being computed.
@@ -110,13 +118,7 @@ struct OutputGrid
     {
       count *= static_cast<double>(piece[2 * c + 1]) - piece[2 * c] + 1;
     }
-    RequireMemory(count, components);
-  }
-
-private:
-  static void RequireMemory(double count, int components)
-  {
-    lacuna::RequireMemory("the interpolated image", 8 * count * (components + 1.0));
+    lacuna::RequireMemory("the interpolated image", sizeof(double) * count * (components + 1.0));
   }
 };
 

@@ -149,6 +149,23 @@ def pieces():
         interpolator.SetInputData(points(100))
         interpolator.SetOutputSpacing(spacing, spacing, spacing)
         check_refused(f"RBF Interpolator {spacing}", interpolator)
+    # as a whole 15.8 GiB, and an accuracy that takes fast sums over the whole grid
+    interpolator = lacuna.vtkLacunaRBFInterpolator()
+    interpolator.SetInputData(points(100))
+    interpolator.SetOutputBounds(0, 100, 0, 100, 0, 100)
+    interpolator.SetOutputSpacing(100 / 1019, 100 / 1019, 100 / 1019)
+    check_refused("RBF Interpolator", interpolator)
+    check_piece("RBF Interpolator", interpolator, (500, 519, 510, 529, 800, 809), 4000)
+    step = interpolator.GetOutput().GetSpacing()[0]
+    low = [step * first for first in (500, 510, 800)]
+    exact = lacuna.vtkLacunaRBFInterpolator()
+    exact.SetInputData(points(100))
+    exact.SetAccuracy(0)
+    exact.SetOutputBounds(low[0], low[0] + 19 * step, low[1], low[1] + 19 * step, low[2], low[2] + 9 * step)
+    exact.SetOutputSpacing(step, step, step)
+    exact.Update()
+    values, expected = (dsa.WrapDataObject(each.GetOutput()).PointData["Value"] for each in (interpolator, exact))
+    assert len(values) == 4000 and np.abs(values - expected).max() < 2 * interpolator.GetAccuracy() * 29, np.abs(values - expected).max()
     for size in ((200000, 200000), (2**31 - 1, 2**31 - 1)):
         caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), wavelet(64))
         caster.SetImageSize(*size)

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaRadialTree.h"
 
+#include "lacunaMemory.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace lacuna
@@ -207,11 +210,46 @@ Coordinates<Dimension> PointTree<Dimension>::GetCoordinates(std::int64_t first) 
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+// Throws when a grid is divided into more boxes than there is memory, or numbers, for. Counted level by
+// level: boxes at the borders of a level's boxes may have a point more than others.
+template <int Dimension>
+void RequireBoxes(const RootCube<Dimension>& root, const RegularGrid<Dimension>& grid, int capacity)
+{
+  double all = 0;
+  double most = std::numeric_limits<double>::infinity(); // points of a box
+  for (int level = 0; level <= RootCube<Dimension>::MaximumLevel && most > capacity; ++level)
+  {
+    const double edge = std::ldexp(root.Size, -level);
+    double boxes = 1;
+    most = 1;
+    for (int c = 0; c < Dimension; ++c)
+    {
+      const auto size = static_cast<double>(grid.Size[c]);
+      boxes *= std::min(size, 1 + std::ceil(size * grid.Spacing[c] / edge));
+      most *= std::min(size, std::floor(edge / grid.Spacing[c]) + 1);
+    }
+    all += boxes;
+  }
+  // a list grows by twice its size, and others have some numbers for each box
+  const double bytes = all * (3.0 * sizeof(TreeCell<Dimension>) + 64);
+  const std::string what = "the boxes of a grid of " + std::to_string(grid.GetNumberOfPoints()) +
+    " points, of which all parts need all,";
+  if (all > std::numeric_limits<std::int32_t>::max())
+  {
+    throw std::length_error(what + " would need " + DescribeBytes(bytes) + "; take a coarser grid");
+  }
+  RequireMemory(what, bytes);
+}
+}
+
 template <int Dimension>
 GridTree<Dimension>::GridTree(
   const RootCube<Dimension>& root, const RegularGrid<Dimension>& grid, int capacity)
   : Grid(grid)
 {
+  RequireBoxes(root, grid, capacity);
   this->Root = root;
   std::array<std::vector<std::uint32_t>, Dimension> index;
   this->Cells.emplace_back();

@@ -115,7 +115,7 @@ struct GridTree : CellTree<Dimension>
 {
   RegularGrid<Dimension> Grid;
 
-  /// Divides boxes of more than capacity points.
+  /// Divides boxes of more than capacity points. Throws when there is no memory for the boxes.
   GridTree(const RootCube<Dimension>& root, const RegularGrid<Dimension>& grid, int capacity);
 };
 

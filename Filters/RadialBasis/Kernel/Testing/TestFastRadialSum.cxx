@@ -328,6 +328,28 @@ TEST(FastRadialSum, RefusesWhatCannotBeSummed)
 }
 
 // A landmark warp of a small volume: interpolants of a high order would take seconds to set up.
+// The boxes are those of the whole grid, of which parts may be wanted that fit.
+TEST(FastRadialSum, RefusesGridsWithoutRoomForTheirBoxes)
+{
+  const Points<3> nodes = Make<3>(Shape::Uniform, 100);
+  for (const std::int64_t size : { 100000, 1000000, 2000000 })
+  {
+    lacuna::RegularGrid<3> grid;
+    grid.Size = { size, size, size };
+    grid.Spacing.fill(1.0 / static_cast<double>(size));
+    try
+    {
+      const lacuna::FastRadialSum<3> sum(RadialKernel::Linear, nodes, grid);
+      ADD_FAILURE() << "boxes of " << size << "^3 points are there";
+    }
+    catch (const std::exception& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("the boxes of a grid of"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("bytes"), std::string::npos);
+    }
+  }
+}
+
 TEST(FastRadialSum, SumsOnceDirectlyWhereThatIsLessWork)
 {
   lacuna::ThreadExecution execution(2);
