@@ -184,7 +184,7 @@ void vtkLacunaRequest::WholeOnFirst(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRequest::WholeIfItFits(
+std::string vtkLacunaRequest::WholeOrNothing(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {
   try
@@ -196,13 +196,23 @@ int vtkLacunaRequest::WholeIfItFits(
   }
   catch (const std::runtime_error& error)
   {
-    // VTK goes on with the request of before although this one fails: let it be for nothing
     AskForNothing(input);
-    vtkErrorWithObjectMacro(filter, << error.what());
-    return 0;
+    return error.what();
   }
   Whole(filter, input, outputs);
-  return 1;
+  return {};
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRequest::WholeIfItFits(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
+{
+  const std::string refusal = WholeOrNothing(filter, input, outputs);
+  if (!refusal.empty())
+  {
+    vtkErrorWithObjectMacro(filter, << refusal);
+  }
+  return refusal.empty();
 }
 
 //------------------------------------------------------------------------------
@@ -218,10 +228,16 @@ std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformat
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
 {
-  RequireMemoryFor(filter->GetInputInformation(port, 0));
-  Whole(filter, filter->GetInputInformation(port, 0), nullptr);
-  vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
-  connection->GetProducer()->Update(connection->GetIndex());
+  const std::string refusal = WholeOrNothing(filter, filter->GetInputInformation(port, 0), nullptr);
+  if (refusal.empty() || vtkLacunaRanks().GetNumber() > 1) // which may meet there
+  {
+    vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
+    connection->GetProducer()->Update(connection->GetIndex());
+  }
+  if (!refusal.empty())
+  {
+    throw std::runtime_error(refusal);
+  }
   vtkLacunaInputs::Check(filter, port);
 }
 

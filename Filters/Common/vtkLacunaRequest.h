@@ -6,6 +6,7 @@
 
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
+#include <string>
 #include <vector> // for times
 
 class vtkAlgorithm;
@@ -29,10 +30,15 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
 VTKLACUNAFILTERSCOMMON_EXPORT void Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
-/// The same for filters that cannot do with less: returns 1, or 0 after an error of filter that names
-/// the bytes, when the input is an image that is not in memory yet and does not fit into it. Then
-/// nothing is asked for, so nobody tries to load it. What RequestUpdateExtent returns.
-VTKLACUNAFILTERSCOMMON_EXPORT int WholeIfItFits(
+/// The same for filters that cannot do with less: returns true, or false after an error of filter that
+/// names the bytes, when the input is an image that is not in memory yet and does not fit into it. Then
+/// nothing is asked for. RequestUpdateExtent shall return 1 all the same: VTK goes on to execute, and
+/// only so passes on to all that lie upstream that nothing is wanted, so that nobody tries to load it.
+VTKLACUNAFILTERSCOMMON_EXPORT bool WholeIfItFits(
+  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
+
+/// The same, but without an error: returns its text instead, empty when all is asked for.
+VTKLACUNAFILTERSCOMMON_EXPORT std::string WholeOrNothing(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
 /// This very extent of an image.

@@ -16,6 +16,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaMeeting.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
@@ -232,6 +233,7 @@ private:
 
 //------------------------------------------------------------------------------
 vtkLacunaOccludedAngle::vtkLacunaOccludedAngle()
+  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
   this->SetNumberOfInputPorts(2);
 }
@@ -377,13 +379,12 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  int fits = 1;
+  this->Meeting->AskForWhole(this, inputVector);
   for (int port : { 0, 1 })
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
       vtkInformation* info = inputVector[port]->GetInformationObject(i);
-      fits &= vtkLacunaRequest::WholeIfItFits(this, info, nullptr);
       if (this->KeepIterations) // the time asked for is an iteration, not the input's time
       {
         info->Remove(Pipeline::UPDATE_TIME_STEP());
@@ -398,7 +399,7 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
       }
     }
   }
-  return fits;
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -418,25 +419,29 @@ int vtkLacunaOccludedAngle::RequestData(
           vtkLacunaRequest::GetTimes(this, inputVector[1]->GetInformationObject(0));
         times.insert(times.end(), more.begin(), more.end());
       }
-      std::vector<vtkSmartPointer<vtkImageData>> iterations;
       const vtkLacunaRanks ranks;
       // Ranks meet when something has changed. Later they may be asked for other parts one by one.
       const bool keep = this->KeepIterations || ranks.GetNumber() > 1;
-      if (keep && !this->Iterations.empty() && this->IterationsTimes == times)
+      if (!keep)
       {
-        iterations = this->Iterations;
+        this->Meeting->Forget();
       }
-      else
+      std::vector<vtkSmartPointer<vtkImageData>> iterations;
+      const bool hasData = input && input->GetNumberOfPoints() > 0;
+      const auto make = [&]
       {
         this->Iterations.clear();
         std::unique_ptr<Run> run;
         ranks.Together([&] { run = std::make_unique<Run>(this, input, space, execution); });
         iterations = run->GetIterations(execution, ranks);
+      };
+      if (!this->Meeting->Hold(times, hasData, ranks, make))
+      {
+        iterations = this->Iterations;
       }
       if (keep)
       {
         this->Iterations = iterations;
-        this->IterationsTimes = times;
       }
       std::size_t chosen = iterations.size() - 1;
       vtkInformation* info = outputVector->GetInformationObject(0);

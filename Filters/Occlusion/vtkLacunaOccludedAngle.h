@@ -35,11 +35,13 @@
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
 #include "vtkSmartPointer.h"                 // for ownership
 
+#include <memory> // for ownership
 #include <string> // for the array's name
 #include <vector> // for the schedule
 
 class vtkImageData;
 class vtkImplicitFunction;
+class vtkLacunaMeeting;
 class vtkPiecewiseFunction;
 
 class VTKLACUNAFILTERSOCCLUSION_EXPORT vtkLacunaOccludedAngle : public vtkImageAlgorithm
@@ -196,8 +198,8 @@ private:
 
   class Run;
 
-  /// The iterations kept (the last one for ranks), and what they were made from.
+  /// The iterations kept (the last one for ranks), and when they were made.
   std::vector<vtkSmartPointer<vtkImageData>> Iterations;
-  std::vector<double> IterationsTimes; ///< see vtkLacunaRequest::GetTimes
+  std::unique_ptr<vtkLacunaMeeting> Meeting;
 };
 #endif

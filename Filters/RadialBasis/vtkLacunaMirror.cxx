@@ -19,13 +19,13 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaMaskedVolume.h"
+#include "vtkLacunaMeeting.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
-#include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -70,29 +70,6 @@ bool IsDepthMap(vtkImageData* image)
     image->GetFieldData()->GetArray(vtkLacunaDepthMap::ImageToWorldName);
 }
 
-// One component per point in plain memory; copies what is not so into keep.
-vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
-{
-  if (array->HasStandardMemoryLayout())
-  {
-    return array;
-  }
-  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
-  keep->DeepCopy(array);
-  return keep;
-}
-
-vtkDataArray* GetMask(vtkImageData* image)
-{
-  vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
-  if (mask && mask->GetNumberOfComponents() != 1)
-  {
-    throw std::runtime_error(
-      std::string("point array '") + vtkLacunaDepthMap::MaskName + "' must have one component");
-  }
-  return mask;
-}
-
 std::string Rounded(double value)
 {
   return lacuna::FormatNumber(std::round(1000 * value) / 1000);
@@ -116,7 +93,6 @@ public:
   };
 
   Result Found;
-  std::vector<double> Times; // at which that was so
 
   template <class Data>
   static void ChoosePlane(
@@ -155,39 +131,30 @@ public:
     execution.SetStage(0.5, 1);
   }
 
-  // Leaves of output, the input, the mirror image of a piece; isKnown: result is.
+  // Leaves of output, the input, the mirror image of a piece; result: is found, unless it is known.
   static void MirrorVolume(vtkLacunaMirror* self, vtkImageData* output, const int* piece,
     bool isKnown, Result& result, vtkLacunaExecution& execution)
   {
-    vtkLacunaVolumeDirection::Check(output);
-    vtkDataArray* scalars = output->GetPointData()->GetScalars();
-    if (!scalars || scalars->GetNumberOfComponents() != 1)
-    {
-      throw std::runtime_error("the image has no active point scalars with one component; colours "
-                               "and vectors cannot be mirrored");
-    }
+    const vtkLacunaRanks ranks;
     lacuna::MaskedVolume given;
     vtkSmartPointer<vtkDataArray> keep;
-    given.Volume.Type = vtkLacunaScalarType::Get(scalars);
-    given.Volume.Voxels = GetPlain(scalars, keep)->GetVoidPointer(0);
-    output->GetDimensions(given.Volume.Size.data());
-    const int* extent = output->GetExtent();
-    given.Volume.IndexToWorld = lacuna::Matrix4(output->GetIndexToPhysicalMatrix()->GetData()) *
-      lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
-        static_cast<double>(extent[4]) });
-    if (vtkDataArray* mask = GetMask(output))
+    const auto prepare = [&]
     {
-      given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
-      for (std::size_t i = 0; i < given.Valid.size(); ++i)
+      given = vtkLacunaMaskedVolume::Get(output, keep);
+      if (!isKnown)
       {
-        given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+        ChoosePlane(self, given, result, execution);
       }
-    }
-    const vtkLacunaRanks ranks;
-    if (!isKnown)
+    };
+    if (isKnown)
     {
-      ranks.Together([&] { ChoosePlane(self, given, result, execution); });
+      prepare();
     }
+    else
+    {
+      ranks.Together(prepare);
+    }
+    const int* extent = output->GetExtent();
     lacuna::VolumePart part;
     for (std::size_t c = 0; c < 6; ++c)
     {
@@ -208,6 +175,7 @@ public:
                                "does not pass through the data");
     }
 
+    vtkDataArray* scalars = output->GetPointData()->GetScalars();
     vtkSmartPointer<vtkDataArray> image;
     image.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
     image->SetName(
@@ -231,7 +199,7 @@ public:
       throw std::runtime_error("this is a perspective depth map; only parallel ones are mirrored");
     }
     std::vector<double> depth(static_cast<std::size_t>(output->GetNumberOfPoints()));
-    vtkDataArray* mask = GetMask(output);
+    vtkDataArray* mask = vtkLacunaMaskedVolume::GetMask(output);
     for (std::size_t i = 0; i < depth.size(); ++i)
     {
       const auto p = static_cast<vtkIdType>(i);
@@ -350,9 +318,12 @@ public:
 
 //------------------------------------------------------------------------------
 vtkLacunaMirror::vtkLacunaMirror()
+  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
   this->SetNumberOfOutputPorts(2);
 }
+
+vtkLacunaMirror::~vtkLacunaMirror() = default;
 
 //------------------------------------------------------------------------------
 int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
@@ -366,107 +337,129 @@ int vtkLacunaMirror::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // Any voxel may be the image of any other, and the plane depends on all. All ranks judge together.
-  return vtkLacunaRequest::WholeIfItFits(this, inputVector[0]->GetInformationObject(0),
-    vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputVector);
+  this->Meeting->AskForWhole(
+    this, inputVector, vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputVector);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaMirror::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-  const bool isShared = vtkLacunaRanks().GetNumber() > 1;
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector);
-  if (!input || input->GetNumberOfPoints() == 0 || (!isWanted && (!isShared || IsDepthMap(input))))
+  const vtkLacunaRanks ranks;
+  if (ranks.GetNumber() == 1)
   {
-    return 1; // empty in, empty out
+    this->Meeting->Forget();
+    if (!vtkLacunaRequest::IsWanted(outputVector))
+    {
+      return 1;
+    }
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
-    if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+    vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+    const bool hasData = input && input->GetNumberOfPoints() > 0;
+    const auto make = [&](bool ranksMeet)
     {
-      throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
-        "; it must be 0 (BestSymmetry) or 1 (Given)");
-    }
-    if (this->Interpolation < BSpline || this->Interpolation > Nearest)
-    {
-      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-        "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
-    }
-    if (vtkLacunaMirrored::IsMarked(input))
-    {
-      throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
-                               "the original");
-    }
-    const bool isMap = IsDepthMap(input);
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    const int* extent = input->GetExtent();
-    int piece[6];
-    for (int c = 0; c < 3; ++c)
-    {
-      const int* asked =
-        info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
-      piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
-      piece[2 * c + 1] =
-        isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
-    }
-    vtkNew<vtkImageData> mirrored;
-    mirrored->ShallowCopy(input);
-    mirrored->GetCellData()->Initialize();
-    Internals::Result result;
-    if (isMap)
-    {
-      Internals::MirrorMap(this, mirrored, result, execution);
-      mirrored->Crop(piece);
-    }
-    else
-    {
-      std::vector<double> times =
-        vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
-      const bool isKnown = isShared && this->Kept && this->Kept->Times == times;
-      if (isKnown && !isWanted)
+      if (hasData) // empty in, empty out
       {
-        return;
+        this->Make(inputVector, outputVector, ranksMeet, execution);
       }
-      result = isKnown ? this->Kept->Found : result;
-      Internals::MirrorVolume(this, mirrored, piece, isKnown, result, execution);
-      if (isShared && !isKnown)
-      {
-        this->Kept = std::make_shared<const Internals>(Internals{ result, std::move(times) });
-      }
-      if (!isWanted)
-      {
-        return; // the others have their parts
-      }
-    }
-    Internals::Warn(this, result);
-
-    const lacuna::Vec3 origin = Internals::OriginOf(input, result.Plane);
-    lacuna::ParameterText parameters;
-    parameters.Add("PlaneMethod", this->PlaneMethod)
-      .Add("Origin", origin.Elements)
-      .Add("Normal", result.Plane.Normal.Elements);
-    if (!isMap)
+    };
+    const auto times = vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
+    if (!this->Meeting->Hold(times, hasData, ranks, [&] { make(true); }))
     {
-      parameters.Add("Interpolation", this->Interpolation);
+      make(false);
     }
-    vtkPolyData* plane = vtkPolyData::GetData(outputVector, 1);
-    if (vtkLacunaRequest::IsFirst(outputVector))
-    {
-      Internals::MakeSquare(input, result.Plane, plane); // one is enough
-    }
-    vtkLacunaVolumeDirection::Remove(plane);
-    for (vtkDataObject* data :
-      { static_cast<vtkDataObject*>(mirrored), static_cast<vtkDataObject*>(plane) })
-    {
-      Internals::AddFieldData(data, result);
-      vtkLacunaProvenance::Record(data, this, { input }, parameters.Get());
-    }
-    vtkLacunaMirrored::Mark(mirrored, origin, result.Plane.Normal);
-    vtkImageData* output = vtkImageData::GetData(outputVector, 0);
-    output->ShallowCopy(mirrored);
   };
   return vtkLacunaExecution::Run(this, outputVector, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* outputs,
+  bool ranksMeet, vtkLacunaExecution& execution)
+{
+  vtkImageData* input = vtkImageData::GetData(inputs[0]);
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+  {
+    throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
+      "; it must be 0 (BestSymmetry) or 1 (Given)");
+  }
+  if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+  {
+    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+      "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+  }
+  if (vtkLacunaMirrored::IsMarked(input))
+  {
+    throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
+                             "the original");
+  }
+  const bool isMap = IsDepthMap(input);
+  vtkInformation* info = outputs->GetInformationObject(0);
+  const int* extent = input->GetExtent();
+  int piece[6];
+  for (int c = 0; c < 3; ++c)
+  {
+    const int* asked = info->Has(SDDP::UPDATE_EXTENT()) ? info->Get(SDDP::UPDATE_EXTENT()) : extent;
+    piece[2 * c] = isWanted ? std::max(asked[2 * c], extent[2 * c]) : extent[2 * c];
+    piece[2 * c + 1] = isWanted ? std::min(asked[2 * c + 1], extent[2 * c + 1]) : extent[2 * c] - 1;
+  }
+  vtkNew<vtkImageData> mirrored;
+  mirrored->ShallowCopy(input);
+  mirrored->GetCellData()->Initialize();
+  Internals::Result result;
+  if (isMap && isWanted)
+  {
+    Internals::MirrorMap(this, mirrored, result, execution);
+    mirrored->Crop(piece);
+  }
+  else if (!isMap)
+  {
+    if (!ranksMeet)
+    {
+      result = this->Kept->Found;
+    }
+    if (ranksMeet || isWanted)
+    {
+      Internals::MirrorVolume(this, mirrored, piece, !ranksMeet, result, execution);
+    }
+    if (ranksMeet)
+    {
+      this->Kept = std::make_shared<const Internals>(Internals{ result });
+    }
+  }
+  if (!isWanted)
+  {
+    return; // the others have their parts
+  }
+  Internals::Warn(this, result);
+
+  const lacuna::Vec3 origin = Internals::OriginOf(input, result.Plane);
+  lacuna::ParameterText parameters;
+  parameters.Add("PlaneMethod", this->PlaneMethod)
+    .Add("Origin", origin.Elements)
+    .Add("Normal", result.Plane.Normal.Elements);
+  if (!isMap)
+  {
+    parameters.Add("Interpolation", this->Interpolation);
+  }
+  vtkPolyData* plane = vtkPolyData::GetData(outputs, 1);
+  if (vtkLacunaRequest::IsFirst(outputs))
+  {
+    Internals::MakeSquare(input, result.Plane, plane); // one is enough
+  }
+  vtkLacunaVolumeDirection::Remove(plane);
+  for (vtkDataObject* data :
+    { static_cast<vtkDataObject*>(mirrored), static_cast<vtkDataObject*>(plane) })
+  {
+    Internals::AddFieldData(data, result);
+    vtkLacunaProvenance::Record(data, this, { input }, parameters.Get());
+  }
+  vtkLacunaMirrored::Mark(mirrored, origin, result.Plane.Normal);
+  vtkImageData* output = vtkImageData::GetData(outputs, 0);
+  output->ShallowCopy(mirrored);
 }
 
 //------------------------------------------------------------------------------

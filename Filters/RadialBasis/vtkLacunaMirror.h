@@ -43,6 +43,7 @@
 #include <memory>
 
 class vtkLacunaExecution;
+class vtkLacunaMeeting;
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaMirror : public vtkImageAlgorithm
 {
@@ -93,7 +94,7 @@ public:
 
 protected:
   vtkLacunaMirror();
-  ~vtkLacunaMirror() override = default;
+  ~vtkLacunaMirror() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -104,10 +105,14 @@ private:
 
   class Internals;
 
+  void Make(vtkInformationVector** inputs, vtkInformationVector* outputs, bool ranksMeet,
+    vtkLacunaExecution& execution);
+
   int PlaneMethod = BestSymmetry;
   double Origin[3] = { 0, 0, 0 };
   double Normal[3] = { 1, 0, 0 };
   int Interpolation = BSpline;
+  std::unique_ptr<vtkLacunaMeeting> Meeting;
   std::shared_ptr<const Internals> Kept; // what several ranks have found of a volume
 };
 #endif

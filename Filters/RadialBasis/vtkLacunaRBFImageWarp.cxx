@@ -15,6 +15,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaLandmarkWarp.h"
+#include "vtkLacunaMeeting.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
@@ -214,9 +215,12 @@ Counts Warp(vtkLacunaExecution& execution, Mapping& mapping, const Box& made, Wa
 
 //------------------------------------------------------------------------------
 vtkLacunaRBFImageWarp::vtkLacunaRBFImageWarp()
+  : Meeting(std::make_unique<vtkLacunaMeeting>())
 {
   this->SetNumberOfInputPorts(3);
 }
+
+vtkLacunaRBFImageWarp::~vtkLacunaRBFImageWarp() = default;
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* info)
@@ -231,206 +235,229 @@ int vtkLacunaRBFImageWarp::RequestUpdateExtent(
 {
   // Any voxel may show any place, and each depends on all landmarks. All ranks say together what is
   // folded.
-  vtkInformationVector* wanted = vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputs;
-  int fits = 1;
-  for (int port = 0; port < 3; ++port)
-  {
-    fits &= vtkLacunaRequest::WholeIfItFits(this, inputs[port]->GetInformationObject(0), wanted);
-  }
-  return fits;
+  this->Meeting->AskForWhole(this, inputs, vtkLacunaRanks().GetNumber() > 1 ? nullptr : outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFImageWarp::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkImageData* image = vtkImageData::GetData(inputs[0]);
-  vtkImageData* output = vtkImageData::GetData(outputs);
   const vtkLacunaRanks ranks;
-  const bool wanted = vtkLacunaRequest::IsWanted(outputs);
-  if (!image || image->GetNumberOfPoints() == 0 || (!wanted && ranks.GetNumber() == 1))
+  if (ranks.GetNumber() == 1)
   {
-    return 1; // empty in, empty out
+    this->Meeting->Forget();
+    if (!vtkLacunaRequest::IsWanted(outputs))
+    {
+      return 1;
+    }
   }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
-      vtkLacunaVolumeDirection::Check(image);
-      vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
-      vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
-      vtkDataArray* scalars = image->GetPointData()->GetScalars();
-      if (!scalars)
+      vtkImageData* image = vtkImageData::GetData(inputs[0]);
+      const bool hasData = image && image->GetNumberOfPoints() > 0;
+      const auto make = [&](bool ranksMeet)
       {
-        throw std::runtime_error("the image has no active point scalars");
-      }
-      if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
-      {
-        throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
-                                 "array that shall be warped as the active one");
-      }
-      if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
-      {
-        std::ostringstream message;
-        message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
-                << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
-                << "equal index";
-        throw std::runtime_error(message.str());
-      }
-      if (this->Kernel < ThinPlate || this->Kernel > Cubic)
-      {
-        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-          "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
-      }
-      if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
-      {
-        throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-          "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
-      }
-      if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
-      {
-        throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
-      }
-      const vtkLacunaVoxelSpace space(image);
-      const std::vector<std::array<double, 3>> from = space.GetPoints(landmarks);
-      const std::vector<std::array<double, 3>> to = space.GetPoints(targets);
-      lacuna::RadialBasisOptions options;
-      options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
-      options.Smoothing = this->Smoothing;
-
-      // What is folded is known while what the mapping depends on stays the same, on all ranks.
-      std::vector<double> key{ static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy };
-      key.insert(key.end(), space.Extent, space.Extent + 6);
-      key.insert(key.end(), space.Spacing, space.Spacing + 3);
-      for (const auto* points : { &from, &to })
-      {
-        for (const std::array<double, 3>& x : *points)
+        if (hasData) // empty in, empty out
         {
-          key.insert(key.end(), x.begin(), x.end());
-        }
-      }
-      const bool known = key == this->FoldsOf;
-      if (known && !wanted)
-      {
-        return;
-      }
-      vtkInformation* info = outputs->GetInformationObject(0);
-      Box made{ 0, -1, 0, -1, 0, -1 };
-      if (wanted)
-      {
-        made = GetBox(info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
-            ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
-            : space.Extent,
-          space);
-      }
-      const Box counted = known ? Box{ 0, -1, 0, -1, 0, -1 } : GetShare(space, ranks);
-      std::unique_ptr<WarpedPart> part;
-      lacuna::RadialBasisReport report;
-      Counts counts;
-      const auto run = [&](auto mapping)
-      {
-        if (mapping.IsMirrored())
-        {
-          ThrowMirrored("the image");
-        }
-        report = mapping.GetReport();
-        counts = Warp(execution, mapping, made, part.get(), counted);
-      };
-      const auto warp = [&]
-      {
-        if (!IsEmpty(made))
-        {
-          double points = 1;
-          for (std::size_t c = 0; c < 3; ++c)
-          {
-            points *= static_cast<double>(made[2 * c + 1]) - made[2 * c] + 1;
-          }
-          lacuna::RequireMemory("the warped image",
-            points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
-          part = std::make_unique<WarpedPart>(
-            image, scalars, this->Interpolation, this->OutsideValue, made);
-        }
-        switch (space.Axes.size())
-        {
-          case 3:
-            run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
-            break;
-          case 2:
-            run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
-            break;
-          default:
-            throw std::runtime_error("the image is but a row of voxels; warps are two- or "
-                                     "three-dimensional");
+          this->Make(inputs, outputs, ranksMeet, execution);
         }
       };
-      if (known)
+      std::vector<double> times;
+      for (int port = 0; port < 3; ++port)
       {
-        warp();
+        const std::vector<double> more =
+          vtkLacunaRequest::GetTimes(this, inputs[port]->GetInformationObject(0));
+        times.insert(times.end(), more.begin(), more.end());
       }
-      else
+      if (!this->Meeting->Hold(times, hasData, ranks, [&] { make(true); }))
       {
-        ranks.Together(warp);
-        std::uint64_t sums[3] = { counts.Folded, counts.InBox, counts.FoldedInBox };
-        ranks.Sum(sums, 3);
-        this->FoldedFraction =
-          static_cast<double>(sums[0]) / static_cast<double>(image->GetNumberOfPoints());
-        this->FoldedInBox =
-          static_cast<double>(sums[2]) / static_cast<double>(std::max<std::uint64_t>(1, sums[1]));
-        this->FoldsOf = key;
+        make(false);
       }
-      const bool swings = this->Kernel == Triharmonic || this->Kernel == Cubic;
-      const std::string name = this->Kernel == Cubic ? "Cubic" : "Triharmonic";
-      if (this->FoldedInBox > FoldedLimit)
-      {
-        ThrowMirrored(
-          std::to_string(std::lround(100 * this->FoldedInBox)) + " % of the box around the targets",
-          swings ? "; or " + name + " swings there: take ThinPlate or Linear, or add Smoothing"
-                 : "");
-      }
-      if (!part)
-      {
-        return; // the others have their parts
-      }
-      if (this->FoldedFraction > 0)
-      {
-        std::string reasons;
-        if (this->FoldedInBox > 0)
-        {
-          reasons +=
-            "landmarks cross or contradict one another; check the pairs, or add Smoothing. ";
-        }
-        if (this->FoldedFraction > this->FoldedInBox && swings)
-        {
-          reasons += "Far from landmarks " + name +
-            " swings: take ThinPlate or Linear, add Smoothing, or crop the image. ";
-        }
-        vtkWarningMacro(<< "the mapping folds in " << 100 * this->FoldedFraction
-                        << " % of the voxels, " << 100 * this->FoldedInBox
-                        << " % of those in the box around the targets, and "
-                        << "the image is mirrored there. " << reasons);
-      }
-      output->ShallowCopy(image);
-      output->GetPointData()->Initialize(); // other arrays are not warped
-      output->GetCellData()->Initialize();
-      int extent[6];
-      for (std::size_t c = 0; c < 6; ++c)
-      {
-        extent[c] = space.Extent[c / 2 * 2] + made[c];
-      }
-      output->SetExtent(extent);
-      output->GetPointData()->SetScalars(part->GetWarped());
-      output->GetPointData()->AddArray(part->GetValid());
-      vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
-      vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
-      vtkLacunaFieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
-      lacuna::ParameterText parameters;
-      parameters.Add("Kernel", this->Kernel)
-        .Add("Smoothing", this->Smoothing)
-        .Add("Interpolation", this->Interpolation)
-        .Add("OutsideValue", this->OutsideValue)
-        .Add("Accuracy", this->Accuracy);
-      vtkLacunaProvenance::Record(output, this, { image, landmarks, targets }, parameters.Get());
-      vtkLacunaCoordinates::Clear(output); // the targets may be anyone's
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVector* outputs,
+  bool ranksMeet, vtkLacunaExecution& execution)
+{
+  const vtkLacunaRanks ranks;
+  vtkImageData* image = vtkImageData::GetData(inputs[0]);
+  vtkImageData* output = vtkImageData::GetData(outputs);
+  const bool wanted = vtkLacunaRequest::IsWanted(outputs);
+  vtkLacunaVolumeDirection::Check(image);
+  vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
+  vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars)
+  {
+    throw std::runtime_error("the image has no active point scalars");
+  }
+  if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
+  {
+    throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
+                             "array that shall be warped as the active one");
+  }
+  if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
+  {
+    std::ostringstream message;
+    message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
+            << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
+            << "equal index";
+    throw std::runtime_error(message.str());
+  }
+  if (this->Kernel < ThinPlate || this->Kernel > Cubic)
+  {
+    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
+  }
+  if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
+  {
+    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+      "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
+  }
+  if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
+  {
+    throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
+  }
+  const vtkLacunaVoxelSpace space(image);
+  const std::vector<std::array<double, 3>> from = space.GetPoints(landmarks);
+  const std::vector<std::array<double, 3>> to = space.GetPoints(targets);
+  lacuna::RadialBasisOptions options;
+  options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
+  options.Smoothing = this->Smoothing;
+
+  // What is folded is known while what the mapping depends on stays the same, on all ranks.
+  std::vector<double> key{ static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy };
+  key.insert(key.end(), space.Extent, space.Extent + 6);
+  key.insert(key.end(), space.Spacing, space.Spacing + 3);
+  for (const auto* points : { &from, &to })
+  {
+    for (const std::array<double, 3>& x : *points)
+    {
+      key.insert(key.end(), x.begin(), x.end());
+    }
+  }
+  const bool known = !ranksMeet || key == this->FoldsOf;
+  if (known && !wanted)
+  {
+    return;
+  }
+  vtkInformation* info = outputs->GetInformationObject(0);
+  Box made{ 0, -1, 0, -1, 0, -1 };
+  if (wanted)
+  {
+    made = GetBox(info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
+        ? info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT())
+        : space.Extent,
+      space);
+  }
+  const Box counted = known ? Box{ 0, -1, 0, -1, 0, -1 } : GetShare(space, ranks);
+  std::unique_ptr<WarpedPart> part;
+  lacuna::RadialBasisReport report;
+  Counts counts;
+  const auto run = [&](auto mapping)
+  {
+    if (mapping.IsMirrored())
+    {
+      ThrowMirrored("the image");
+    }
+    report = mapping.GetReport();
+    counts = Warp(execution, mapping, made, part.get(), counted);
+  };
+  const auto warp = [&]
+  {
+    if (!IsEmpty(made))
+    {
+      double points = 1;
+      for (std::size_t c = 0; c < 3; ++c)
+      {
+        points *= static_cast<double>(made[2 * c + 1]) - made[2 * c] + 1;
+      }
+      lacuna::RequireMemory("the warped image",
+        points * (1.0 + scalars->GetDataTypeSize() * scalars->GetNumberOfComponents()));
+      part =
+        std::make_unique<WarpedPart>(image, scalars, this->Interpolation, this->OutsideValue, made);
+    }
+    switch (space.Axes.size())
+    {
+      case 3:
+        run(vtkLacunaLandmarkWarp<3>(execution, space, from, to, options, this->Accuracy));
+        break;
+      case 2:
+        run(vtkLacunaLandmarkWarp<2>(execution, space, from, to, options, this->Accuracy));
+        break;
+      default:
+        throw std::runtime_error("the image is but a row of voxels; warps are two- or "
+                                 "three-dimensional");
+    }
+  };
+  if (known)
+  {
+    warp();
+  }
+  else
+  {
+    ranks.Together(warp);
+    std::uint64_t sums[3] = { counts.Folded, counts.InBox, counts.FoldedInBox };
+    ranks.Sum(sums, 3);
+    this->FoldedFraction =
+      static_cast<double>(sums[0]) / static_cast<double>(image->GetNumberOfPoints());
+    this->FoldedInBox =
+      static_cast<double>(sums[2]) / static_cast<double>(std::max<std::uint64_t>(1, sums[1]));
+    this->FoldsOf = key;
+  }
+  const bool swings = this->Kernel == Triharmonic || this->Kernel == Cubic;
+  const std::string name = this->Kernel == Cubic ? "Cubic" : "Triharmonic";
+  if (this->FoldedInBox > FoldedLimit)
+  {
+    ThrowMirrored(
+      std::to_string(std::lround(100 * this->FoldedInBox)) + " % of the box around the targets",
+      swings ? "; or " + name + " swings there: take ThinPlate or Linear, or add Smoothing" : "");
+  }
+  if (!part)
+  {
+    return; // the others have their parts
+  }
+  if (this->FoldedFraction > 0)
+  {
+    std::string reasons;
+    if (this->FoldedInBox > 0)
+    {
+      reasons += "landmarks cross or contradict one another; check the pairs, or add Smoothing. ";
+    }
+    if (this->FoldedFraction > this->FoldedInBox && swings)
+    {
+      reasons += "Far from landmarks " + name +
+        " swings: take ThinPlate or Linear, add Smoothing, or crop the image. ";
+    }
+    vtkWarningMacro(<< "the mapping folds in " << 100 * this->FoldedFraction << " % of the voxels, "
+                    << 100 * this->FoldedInBox << " % of those in the box around the targets, and "
+                    << "the image is mirrored there. " << reasons);
+  }
+  output->ShallowCopy(image);
+  output->GetPointData()->Initialize(); // other arrays are not warped
+  output->GetCellData()->Initialize();
+  int extent[6];
+  for (std::size_t c = 0; c < 6; ++c)
+  {
+    extent[c] = space.Extent[c / 2 * 2] + made[c];
+  }
+  output->SetExtent(extent);
+  output->GetPointData()->SetScalars(part->GetWarped());
+  output->GetPointData()->AddArray(part->GetValid());
+  vtkLacunaFieldData::Set(output, "NodeCount", { static_cast<double>(report.NodeCount) }, 1);
+  vtkLacunaFieldData::Set(output, "Residual", { report.Residual }, 1);
+  vtkLacunaFieldData::Set(output, "FoldedFraction", { this->FoldedFraction }, 1);
+  lacuna::ParameterText parameters;
+  parameters.Add("Kernel", this->Kernel)
+    .Add("Smoothing", this->Smoothing)
+    .Add("Interpolation", this->Interpolation)
+    .Add("OutsideValue", this->OutsideValue)
+    .Add("Accuracy", this->Accuracy);
+  vtkLacunaProvenance::Record(output, this, { image, landmarks, targets }, parameters.Get());
+  vtkLacunaCoordinates::Clear(output); // the targets may be anyone's
 }
 
 //------------------------------------------------------------------------------

@@ -40,9 +40,12 @@
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
 
+#include <memory>
 #include <vector>
 
 class vtkAlgorithmOutput;
+class vtkLacunaExecution;
+class vtkLacunaMeeting;
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFImageWarp : public vtkImageAlgorithm
 {
@@ -106,7 +109,7 @@ public:
 
 protected:
   vtkLacunaRBFImageWarp();
-  ~vtkLacunaRBFImageWarp() override = default;
+  ~vtkLacunaRBFImageWarp() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -121,6 +124,10 @@ private:
   double OutsideValue = 0;
   double Accuracy = 0.01;
 
+  void Make(vtkInformationVector** inputs, vtkInformationVector* outputs, bool ranksMeet,
+    vtkLacunaExecution& execution);
+
+  std::unique_ptr<vtkLacunaMeeting> Meeting;
   // Of the whole image, whatever part of it is made, and what that was found for
   double FoldedFraction = 0;
   double FoldedInBox = 0;

@@ -220,16 +220,18 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
   const float opaque = static_cast<float>(GetAttenuation(field, options.ObjectOpacity));
   const float half = static_cast<float>(GetAttenuation(field, 0.5));
   std::vector<bool> kept;
-  if (options.KeepData)
-  {
-    kept.reserve(field.GetNumberOfVoxels());
-    for (std::int64_t r = 0; r < n[1] * n[2]; ++r)
+  // when one rank is stopped, or lacks memory, between meetings, the others shall not wait for it
+  ranks.Together(
+    [&]
     {
-      const float* row = field.Row(r % n[1], r / n[1]);
-      std::transform(
-        row, row + n[0], std::back_inserter(kept), [half](float value) { return value >= half; });
-    }
-  }
+      kept.reserve(options.KeepData ? field.GetNumberOfVoxels() : 0);
+      for (std::int64_t r = 0; options.KeepData && r < n[1] * n[2]; ++r)
+      {
+        const float* row = field.Row(r % n[1], r / n[1]);
+        std::transform(
+          row, row + n[0], std::back_inserter(kept), [half](float value) { return value >= half; });
+      }
+    });
   std::vector<std::int64_t> histogram;
   for (int iteration = 0; iteration < count; ++iteration)
   {
@@ -242,26 +244,30 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
     seeing.LastProgress = (iteration + 0.9) / count;
     ComputeOccludedAngle(field, seeing, angle, execution, ranks);
     execution.SetStage(seeing.LastProgress, (iteration + 1.0) / count);
-    if (options.MedianKernel > 1)
-    {
-      FilterMedian(field, options.MedianKernel, angle, execution);
-    }
-    GrowthStatistics statistics =
-      Threshold(field, options.Steps[iteration].Threshold, kept, angle, object, histogram);
-    statistics.SuggestedThreshold = SuggestThreshold(histogram, GetFullAngle(field));
-    ForRows(field, execution,
-      [&](std::int64_t j, std::int64_t k, std::int64_t first)
+    ranks.Together(
+      [&]
       {
-        float* row = field.Row(j, k);
-        for (std::int64_t i = 0; i < n[0]; ++i)
+        if (options.MedianKernel > 1)
         {
-          if (!AttenuationField::IsOutsideSpace(row[i]))
-          {
-            row[i] = object[first + i] ? opaque : 0.0F;
-          }
+          FilterMedian(field, options.MedianKernel, angle, execution);
         }
+        GrowthStatistics statistics =
+          Threshold(field, options.Steps[iteration].Threshold, kept, angle, object, histogram);
+        statistics.SuggestedThreshold = SuggestThreshold(histogram, GetFullAngle(field));
+        ForRows(field, execution,
+          [&](std::int64_t j, std::int64_t k, std::int64_t first)
+          {
+            float* row = field.Row(j, k);
+            for (std::int64_t i = 0; i < n[0]; ++i)
+            {
+              if (!AttenuationField::IsOutsideSpace(row[i]))
+              {
+                row[i] = object[first + i] ? opaque : 0.0F;
+              }
+            }
+          });
+        observer(iteration, statistics);
       });
-    observer(iteration, statistics);
   }
 }
 }

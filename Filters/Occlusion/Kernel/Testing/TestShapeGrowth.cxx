@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace lacuna
 {
@@ -197,6 +200,46 @@ TEST(ShapeGrowth, SuggestsTheMiddleBetweenTwoPeaks)
   std::fill(counts.begin(), counts.end(), 0);
   counts[20] = 50;
   EXPECT_EQ(SuggestThreshold(counts, 100), 0);
+}
+
+// One rank is stopped by turns at all places, also after the last sum over ranks of an iteration: nobody
+// waits for it.
+TEST(ShapeGrowth, StopsOnAllRanks)
+{
+  GrowthOptions options;
+  options.Directions = 60; // some for each rank
+  options.Steps = { { Pi, 0 }, { Pi, 0 }, { Pi, 0 } };
+  options.MedianKernel = 3;
+  for (int place = 0; place < 30; ++place)
+  {
+    std::atomic<int> stopped(0);
+    std::atomic<int> told(0);
+    ThreadRanks::Run(2,
+      [&](const Ranks& ranks)
+      {
+        AttenuationField field = MakeCube(0.5, 1);
+        std::vector<float> angle(field.GetNumberOfVoxels());
+        std::vector<unsigned char> object(field.GetNumberOfVoxels());
+        ThreadExecution execution(
+          1, [&](double done) { return ranks.GetRank() == 0 || done < (place + 0.5) / 30; });
+        try
+        {
+          GrowShape(
+            field, options, angle.data(), object.data(), [](int, const GrowthStatistics&) {},
+            execution, ranks);
+        }
+        catch (const Aborted&)
+        {
+          ++stopped;
+        }
+        catch (const std::runtime_error& error)
+        {
+          told += std::string(error.what()).find("another rank") != std::string::npos;
+        }
+      });
+    EXPECT_EQ(stopped, 1) << place;
+    EXPECT_EQ(told, 1) << place;
+  }
 }
 
 TEST(ShapeGrowth, RefusesBadOptions)

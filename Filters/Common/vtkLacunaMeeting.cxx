@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaMeeting.h"
+
+#include "lacunaExecution.h"
+#include "lacunaRanks.h"
+#include "vtkAlgorithm.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaRequest.h"
+
+#include <cstdint>
+#include <new>
+#include <stdexcept>
+
+//------------------------------------------------------------------------------
+void vtkLacunaMeeting::AskForWhole(
+  vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* wanted)
+{
+  this->Refusal.clear();
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      const std::string refusal =
+        vtkLacunaRequest::WholeOrNothing(filter, inputs[port]->GetInformationObject(i), wanted);
+      this->Refusal = this->Refusal.empty() ? refusal : this->Refusal;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaMeeting::Hold(const std::vector<double>& times, bool hasData,
+  const lacuna::Ranks& ranks, const std::function<void()>& body)
+{
+  const auto requireInput = [this]
+  {
+    if (!this->Refusal.empty())
+    {
+      throw std::runtime_error(this->Refusal);
+    }
+  };
+  if (!this->Times.empty() && this->Times == times)
+  {
+    if (!this->Error.empty())
+    {
+      throw std::runtime_error(this->Error + " (change a property to try again)");
+    }
+    requireInput();
+    return false;
+  }
+  this->Times = times;
+  this->Error.clear();
+  const auto fail = [&](const std::string& error)
+  {
+    this->Error = error;
+    if (ranks.GetNumber() == 1)
+    {
+      this->Forget();
+    }
+  };
+  try
+  {
+    ranks.Together(requireInput);
+    std::uint64_t number = hasData ? 1 : 0;
+    ranks.Sum(&number, 1);
+    if (number > 0 && number < static_cast<std::uint64_t>(ranks.GetNumber()))
+    {
+      throw std::runtime_error(hasData ? "another rank has no input; its own messages say why"
+                                       : "this rank has no input, though others have");
+    }
+    body();
+  }
+  catch (const lacuna::Aborted&)
+  {
+    fail("it was stopped");
+    throw;
+  }
+  catch (const std::bad_alloc&)
+  {
+    fail("out of memory");
+    throw;
+  }
+  catch (const std::exception& error)
+  {
+    fail(error.what());
+    throw;
+  }
+  return true;
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaMaskedVolume.h"
+
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkMatrix4x4.h"
+#include "vtkPointData.h"
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace
+{
+// One component per point in plain memory; copies what is not so into keep.
+vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
+{
+  if (array->HasStandardMemoryLayout())
+  {
+    return array;
+  }
+  keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
+  keep->DeepCopy(array);
+  return keep;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* vtkLacunaMaskedVolume::GetMask(vtkImageData* image)
+{
+  vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
+  if (mask && mask->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(
+      std::string("point array '") + vtkLacunaDepthMap::MaskName + "' must have one component");
+  }
+  return mask;
+}
+
+//------------------------------------------------------------------------------
+lacuna::MaskedVolume vtkLacunaMaskedVolume::Get(
+  vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
+{
+  vtkLacunaVolumeDirection::Check(image);
+  vtkDataArray* scalars = image->GetPointData()->GetScalars();
+  if (!scalars || scalars->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("the image has no active point scalars with one component; colours "
+                             "and vectors cannot be mirrored");
+  }
+  lacuna::MaskedVolume given;
+  given.Volume.Type = vtkLacunaScalarType::Get(scalars);
+  given.Volume.Voxels = GetPlain(scalars, keep)->GetVoidPointer(0);
+  image->GetDimensions(given.Volume.Size.data());
+  const int* extent = image->GetExtent();
+  given.Volume.IndexToWorld = lacuna::Matrix4(image->GetIndexToPhysicalMatrix()->GetData()) *
+    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
+      static_cast<double>(extent[4]) });
+  if (vtkDataArray* mask = GetMask(image))
+  {
+    given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
+    for (std::size_t i = 0; i < given.Valid.size(); ++i)
+    {
+      given.Valid[i] = mask->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
+    }
+  }
+  return given;
+}

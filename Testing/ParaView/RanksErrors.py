@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Errors under MPI: what goes wrong on one rank is everybody's error in filters that all ranks make together, and none waits for ever.
+
+Run without arguments it is the test; it runs itself in pvbatch on two ranks, each of which has a time to end in.
+"""
+import resource
+import signal
+import sys
+
+import lacuna_test
+
+SECONDS = 100
+NOTHING = 0, -1, 0, -1, 0, -1
+
+
+def status(key):
+    with open("/proc/self/status", encoding="ascii") as file:
+        return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
+
+
+# --- in pvbatch, on every rank for itself ---
+
+
+def wavelet(edge):
+    from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+    source = vtkRTAnalyticSource()
+    source.SetWholeExtent(0, edge - 1, 0, edge - 1, 0, edge - 1)
+    return source
+
+
+def landmarks(edge, turned):
+    """Corners of a cube; turned: mirrored, which is an error of all ranks."""
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    points = vtkPoints()
+    for corner in range(8):
+        x, y, z = (edge * (0.2 + 0.6 * (corner >> axis & 1)) for axis in range(3))
+        points.InsertNextPoint(edge - x if turned else x, y, z)
+    data = vtkPolyData()
+    data.SetPoints(points)
+    return data
+
+
+def occluded_angle(source, wrong):
+    from lacuna.vtkLacunaFiltersOcclusion import vtkLacunaOccludedAngle
+    made = vtkLacunaOccludedAngle()
+    made.SetInputConnection(source.GetOutputPort())
+    made.SetNumberOfDirections(40)
+    made.SetNumberOfThresholdsOverPi(6)
+    made.SetMedianKernel(3)
+    made.SetLocalRadii(0, 1e-3 if wrong else 0)
+    return made
+
+
+def mirror(source, wrong):
+    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaMirror
+    made = vtkLacunaMirror()
+    made.SetInputConnection(source.GetOutputPort())
+    made.SetPlaneMethod(made.Given)
+    made.SetOrigin(1e6 if wrong else 10, 0, 0)
+    return made
+
+
+def warp(source, wrong):
+    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFImageWarp
+    made = vtkLacunaRBFImageWarp()
+    made.SetInputConnection(source.GetOutputPort())
+    made.SetInputData(1, landmarks(30, False))
+    made.SetInputData(2, landmarks(30, wrong))
+    return made
+
+
+def update(filter, extent=None):
+    """The errors of an update; an extent of its own, or all."""
+    said = []
+
+    def listen(_, __, text):
+        said.append(text)
+    listen.CallDataType = "string0"
+    heard = filter.AddObserver("ErrorEvent", listen)
+    silent = filter.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    filter.UpdateInformation()
+    if extent:
+        filter.UpdateExtent(extent)
+    else:
+        filter.UpdateWholeExtent()
+    filter.RemoveObserver(heard)
+    filter.GetExecutive().RemoveObserver(silent)
+    return "\n".join(said)
+
+
+def refused(make, rank):
+    """The input does not fit into the memory of the second rank alone."""
+    source = wavelet(400)
+    filter = make(source, False)
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    if rank == 1:
+        resource.setrlimit(resource.RLIMIT_AS, (status("VmSize") + (150 << 20), before[1]))
+    text = update(filter, (0, 9, 0, 9, 0, 9))
+    resource.setrlimit(resource.RLIMIT_AS, before)
+    assert ("256000000 bytes" if rank == 1 else "another rank has stopped") in text, text
+    # there is room now, but nobody knows on which ranks
+    assert "change a property" in update(filter, (0, 9, 0, 9, 0, 9))
+    source.SetWholeExtent(0, 20, 0, 20, 0, 20)
+    text = update(filter)
+    assert not text and filter.GetOutput().GetNumberOfPoints() == 21**3, text
+
+
+def again(make, rank):
+    """An error on all ranks, of which one wants nothing; when VTK asks again only the other one comes."""
+    source = wavelet(20)
+    filter = make(source, True)
+    extent = (0, 9, 0, 9, 0, 9) if rank == 0 else NOTHING
+    first = update(filter, extent)
+    assert first, "no error"
+    second = update(filter, extent)
+    assert rank == 1 or first.strip()[-60:] in second or "change a property" in second, second
+    text = update(make(source, False))
+    assert not text, text
+
+
+def stopped(make, rank):
+    """Stopped on one rank, at some moment."""
+    source = wavelet(48)
+    for moment in (0.0, 0.1, 0.16, 0.2, 0.32, 0.45, 0.6, 0.8, 0.95):
+        filter = make(source, False)
+
+        def stop(caller, _, moment=moment):
+            if caller.GetProgress() >= moment:
+                caller.AbortExecuteOn()
+        if rank == 1:
+            filter.AddObserver("ProgressEvent", stop)
+        update(filter)
+
+
+def run():
+    from vtkmodules.vtkParallelCore import vtkMultiProcessController
+    controller = vtkMultiProcessController.GetGlobalController()
+    assert controller.GetNumberOfProcesses() == 2
+    rank = controller.GetLocalProcessId()
+    for make in (occluded_angle, mirror, warp):
+        for what in (refused, again, stopped):
+            signal.alarm(SECONDS)  # ends a rank that waits for ever
+            print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
+            what(make, rank)
+            controller.Barrier()
+    signal.alarm(0)
+    print("rank done", flush=True)
+
+
+def main():
+    printed = lacuna_test.run_ranks(2, __file__, "in pvbatch", options=["--symmetric"])
+    assert printed.count("rank done") == 2, printed
+
+
+if sys.argv[1:2] == ["in pvbatch"]:
+    run()
+else:
+    main()
