@@ -204,7 +204,8 @@ int vtkLacunaProbeCalibration::RequestUpdateExtent(
   {
     vtkLacunaRequest::OnePiece(table);
   }
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -283,7 +283,8 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 int vtkLacunaScanRegion::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

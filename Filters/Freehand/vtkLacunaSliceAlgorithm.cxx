@@ -30,24 +30,23 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
 int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return this->AskForSlices(inputs, outputs);
+  this->AskForSlices(inputs, outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceAlgorithm::AskForSlices(
+bool vtkLacunaSliceAlgorithm::AskForSlices(
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  bool fits = true;
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* info = inputs[0]->GetInformationObject(i);
     const bool isStream =
       this->TakesStreams() && vtkLacunaSliceStream::RequestFields(this, info, 0, i);
-    if (!isStream && !vtkLacunaRequest::WholeIfItFits(this, info, outputs))
-    {
-      return 0;
-    }
+    fits = (isStream || vtkLacunaRequest::WholeIfItFits(this, info, outputs)) && fits;
   }
-  return 1;
+  return fits;
 }
 
 //------------------------------------------------------------------------------

@@ -56,7 +56,8 @@ int vtkLacunaTemporalCalibration::FillInputPortInformation(int, vtkInformation* 
 int vtkLacunaTemporalCalibration::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

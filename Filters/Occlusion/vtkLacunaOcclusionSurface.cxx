@@ -198,13 +198,11 @@ int vtkLacunaOcclusionSurface::FillInputPortInformation(int, vtkInformation* inf
 int vtkLacunaOcclusionSurface::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  int fits = 1;
   for (int port : { 0, 1 })
   {
-    fits &= vtkLacunaRequest::WholeIfItFits(
-      this, inputVector[port]->GetInformationObject(0), outputVector);
+    vtkLacunaRequest::WholeIfItFits(this, inputVector[port]->GetInformationObject(0), outputVector);
   }
-  return fits;
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -365,13 +365,15 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
 {
   // Any pixel's ray may go anywhere in the volume. Of the start depths all are asked for: a map of
   // another size must be seen to be one.
-  int fits = 1;
   for (int port = 0; port < 2; ++port)
   {
-    vtkInformation* input = inputVector[port]->GetInformationObject(0); // null: none is connected
-    fits &= input ? vtkLacunaRequest::WholeIfItFits(this, input, outputVector) : 1;
+    if (vtkInformation* input =
+          inputVector[port]->GetInformationObject(0)) // else none is connected
+    {
+      vtkLacunaRequest::WholeIfItFits(this, input, outputVector);
+    }
   }
-  return fits;
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -327,7 +327,7 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
   vtkLacunaRequest::Extent(inInfo, extent);
   if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
   {
-    return vtkLacunaRequest::WholeIfItFits(this, volumeInfo, outputVector);
+    vtkLacunaRequest::WholeIfItFits(this, volumeInfo, outputVector);
   }
   return 1;
 }

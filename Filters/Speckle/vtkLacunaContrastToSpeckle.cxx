@@ -159,7 +159,8 @@ int vtkLacunaContrastToSpeckle::FillInputPortInformation(int, vtkInformation* in
 int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
+from vtkmodules.vtkImagingCore import vtkImageShiftScale, vtkRTAnalyticSource
 
 GIBIBYTE = 1 << 30
 N = 2048
@@ -137,6 +137,10 @@ def whole_inputs():
     surface = behind(lacuna.vtkLacunaOcclusionSurface())
     behind(surface, port=1)
     check_refused("Occlusion Surface", surface, "34359738368 bytes")
+    # nor what lies before the filter upstream, which has had no request yet and would make all of it
+    for made in (lacuna.vtkLacunaOccludedAngle(), lacuna.vtkLacunaMirror(), lacuna.vtkLacunaBSplineIsoRayCaster(),
+                 lacuna.vtkLacunaContrastToSpeckle(), lacuna.vtkLacunaSweptVolume()):
+        check_refused(f"{made.GetClassName()} behind another filter", behind(made, behind(vtkImageShiftScale())), "34359738368 bytes")
 
 
 def pieces():
