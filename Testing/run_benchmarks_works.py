@@ -106,6 +106,21 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([sys.executable, RUN, f"--redraw={output}/results.json", f"--output={folder}/again"], check=True)
     with open(os.path.join(folder, "again", "README.md"), encoding="utf-8") as file:
         assert file.read() == page
+    # a suite that was measured again takes the place of the first one, if all else is the same
+    with open(os.path.join(output, "results.json"), encoding="utf-8") as file:
+        again = json.load(file)
+    again["suites"] = {"tool-path": again["suites"]["iso-ray-caster"]}
+    parts = [os.path.join(output, "results.json"), os.path.join(folder, "part.json")]
+    for changed, refused in ((again, False), ({**again, "rounds": 9}, True), ({**again, "machine": {**again["machine"], "Lacuna": "other"}}, True)):
+        with open(parts[1], "w", encoding="utf-8") as file:
+            json.dump(changed, file)
+        done = subprocess.run([sys.executable, RUN, "--redraw", *parts, f"--output={folder}/joined"], check=False, stderr=subprocess.PIPE)
+        assert (done.returncode != 0) == refused, done
+    with open(os.path.join(folder, "joined", "results.json"), encoding="utf-8") as file:
+        joined = json.load(file)
+    assert joined["suites"]["tool-path"] == joined["suites"]["iso-ray-caster"] and "iges" in joined["suites"]
+    with open(os.path.join(folder, "joined", "README.md"), encoding="utf-8") as file:
+        assert "All figures are of 2 runs of" in file.read()
     pictures = sorted(name for name in os.listdir(output) if name.endswith(".svg"))
     try:
         import matplotlib  # noqa: F401

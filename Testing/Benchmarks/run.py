@@ -146,6 +146,29 @@ def write(results, folder, suites):
         file.write("\n")
 
 
+def join(files):
+    """Results of several runs as those of one; all of one build, machine and kind."""
+    whole = None
+    for name in files:
+        with open(name, encoding="utf-8") as file:
+            part = json.load(file)
+        if whole is None:
+            whole = part
+            continue
+        for fact in set(whole["machine"]) - {"Date", "Versions"}:
+            if part["machine"].get(fact) != whole["machine"][fact]:
+                raise SystemExit(f"{name}: {fact} is another: {part['machine'].get(fact)}, not {whole['machine'][fact]}")
+        if any(part[kind] != whole[kind] for kind in ("quick", "rounds")):
+            raise SystemExit(f"{name}: it was measured with other rounds")
+        whole["machine"] = part["machine"]  # peers that were installed since
+        whole["suites"].update(part["suites"])
+        whole["ranks"] = part.get("ranks") or whole.get("ranks")
+        whole["runs"] = whole.get("runs", 1) + part.get("runs", 1)
+        whole["minutes"] += part["minutes"]
+        whole["load"] = {"mean": max(whole["load"]["mean"], part["load"]["mean"]), "largest": max(each["others"] for each in whole["suites"].values())}
+    return whole
+
+
 def parse_arguments(arguments):
     names = [suite.name for suite in cases.SUITES]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -155,7 +178,8 @@ def parse_arguments(arguments):
     parser.add_argument("--build", default=os.path.join(ROOT, "build", "release"), metavar="FOLDER", help="default: build/release")
     parser.add_argument("--rounds", type=int, metavar="N", help="default: 5; 2 with --quick")
     parser.add_argument("--minutes", type=float, default=MINUTES, help=f"no new suite or round after so many; default: {MINUTES}")
-    parser.add_argument("--redraw", metavar="FILE", help="measure nothing, write page and plots of a results.json")
+    parser.add_argument("--redraw", nargs="+", metavar="FILE", help="measure nothing, write page and plots of a results.json; the suites of "
+                        "further ones, of the same build on the same machine, take the place of the first one's")
     options = parser.parse_args(arguments)
     if options.rounds is not None and options.rounds < 1:
         parser.error("--rounds must be 1 or more")
@@ -168,8 +192,7 @@ def parse_arguments(arguments):
 def main(arguments=None):
     options = parse_arguments(arguments)
     if options.redraw:
-        with open(options.redraw, encoding="utf-8") as file:
-            write(json.load(file), options.output, cases.SUITES)
+        write(join(options.redraw), options.output, cases.SUITES)
         return 0
     runner = Runner(options)
     suites = [suite for suite in cases.SUITES if not options.only or suite.name in options.only]
