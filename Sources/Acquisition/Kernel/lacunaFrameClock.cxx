@@ -24,27 +24,51 @@ double FindMedian(const std::deque<double>& values)
 
 double FrameClock::FindArrival(double arrival, double streamTime)
 {
-  const double offset = arrival - streamTime;
-  double found = arrival;
+  Frame frame{ streamTime, arrival - streamTime, arrival, false };
+  bool catchingUp = false;
+  if (this->Before && streamTime < this->Before->StreamTime)
+  {
+    this->Offsets.clear(); // set anew
+  }
   if (!this->Offsets.empty())
   {
     const double median = FindMedian(this->Offsets);
-    const double late = offset - median;
+    const double late = frame.Offset - median;
+    frame.Late = late > this->Tolerance;
     if (std::abs(late) > LongestStall)
     {
       this->Offsets.clear();
+      this->HeldUp = false;
     }
-    else if (late > this->Tolerance && this->IsSteady(median))
+    else if (frame.Late)
     {
-      found = streamTime + median;
+      const double change = frame.Offset - this->Before->Offset;
+      const double pace = this->FindPace(streamTime);
+      catchingUp = this->Before->Late && change < -pace;
+      // as long as they are late: one that kept its arrival would be followed by an earlier one
+      this->HeldUp = this->IsSteady(median) &&
+        (!this->Before->Late || (this->HeldUp && std::abs(change) > pace));
+      if (this->HeldUp)
+      {
+        frame.Found = std::min(arrival, std::max(streamTime + median, this->Before->Found));
+      }
     }
   }
-  this->Offsets.push_back(offset);
+  if (!catchingUp) // they tell nothing of the way, and may be many
+  {
+    this->Offsets.push_back(frame.Offset);
+  }
   if (this->Offsets.size() > Window)
   {
     this->Offsets.pop_front();
   }
-  return found;
+  this->Before = frame;
+  return frame.Found;
+}
+
+double FrameClock::FindPace(double streamTime) const
+{
+  return std::min(this->Tolerance / 2, (streamTime - this->Before->StreamTime) / 4);
 }
 
 // Three of four within half the tolerance: a rate that is wrong by more than 0.5 % at 25 Hz spreads
