@@ -181,6 +181,7 @@ struct VideoSource::Stream
   void OpenDecoder();
   bool ReadPacket(Counts& count);
   void Fill(VideoFrame& frame, Counts& count);
+  void HeedOrder();
   double FindArrival() const;
   void WaitForTurn(double streamTime);
 
@@ -198,6 +199,7 @@ struct VideoSource::Stream
   bool Ended = false;
   VideoGrey Grey;
   std::deque<std::pair<std::int64_t, double>> Arrivals; ///< packets' times and when they came
+  bool Reordered = false;                               ///< packets, which are not as frames are
   std::optional<double> FirstTurn;                      ///< clock's time of stream time 0
   std::optional<double> LastTime;
   FrameClock FrameTimes;
@@ -336,6 +338,7 @@ bool VideoSource::Stream::ReadPacket(Counts& count)
   }
   if (this->Packet->stream_index == this->Index)
   {
+    this->HeedOrder();
     this->Arrivals.emplace_back(this->Packet->pts, this->Time.Now());
     if (this->Arrivals.size() > DeepestDecoder)
     {
@@ -348,8 +351,27 @@ bool VideoSource::Stream::ReadPacket(Counts& count)
   return true;
 }
 
+// Whether packets come in another order than their frames (B frames): one is earlier than the packet
+// before it, but not than the frames that were given.
+void VideoSource::Stream::HeedOrder()
+{
+  const std::int64_t time = this->Packet->pts;
+  const std::int64_t before = this->Arrivals.empty() ? AV_NOPTS_VALUE : this->Arrivals.back().first;
+  this->Reordered = this->Reordered ||
+    (time != AV_NOPTS_VALUE && before != AV_NOPTS_VALUE &&
+      time<before&& this->LastTime&& static_cast<double>(time) *
+        av_q2d(this->Format->streams[this->Index]->time_base)> *
+        this->LastTime);
+}
+
 double VideoSource::Stream::FindArrival() const
 {
+  if (this->Reordered)
+  {
+    // a frame that others are made from was sent before those that are shown before it: the decoder
+    // gives one for each packet, all as long after what they show
+    return this->Arrivals.back().second;
+  }
   const auto found = std::find_if(this->Arrivals.begin(), this->Arrivals.end(),
     [this](const auto& arrival)
     { return arrival.first != AV_NOPTS_VALUE && arrival.first == this->Picture->pts; });

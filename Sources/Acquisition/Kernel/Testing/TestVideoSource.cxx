@@ -352,6 +352,34 @@ TEST(VideoSource, FramesThatTheComputerHeldUpAreGivenTheirTimesByStreamsThatHave
   EXPECT_NEAR(late[63], 0, 1e-9);
 }
 
+// Packets that come every 40 ms; a frame that others are made from comes before those.
+TEST(VideoSource, FramesOfWhichOthersAreMadeAreNotTakenForEarlierOnes)
+{
+  const Folder folder;
+  for (const int between : { 0, 1, 2, 3 })
+  {
+    for (const char* container : { "matroska", "mpegts" })
+    {
+      const EncoderSettings settings{ container, "mpeg2video", AV_PIX_FMT_YUV420P, between };
+      EncodeVideo(folder / "b", settings, 64, 48, MakeImages(80, 64, 48), Times(80));
+      ManualClock clock;
+      VideoSource source(AtOnce(folder / "b"), clock);
+      VideoFrame frame;
+      double late = 0;
+      for (int i = 0; i < 75; ++i)
+      {
+        clock.Time = 10 + 0.04 * i;
+        ASSERT_EQ(source.Read(frame), VideoEvent::Frame);
+        late = i == 4 ? frame.Arrival - clock.Time : late;
+        if (i > 4)
+        {
+          EXPECT_NEAR(frame.Arrival - clock.Time, late, 1e-9) << between << container << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(VideoSource, StreamsThatSendNothingTimeOut)
 {
   const Server server;
