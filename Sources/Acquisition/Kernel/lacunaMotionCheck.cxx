@@ -59,16 +59,23 @@ bool MotionCheck::Fits(
 }
 
 // Of a new motion's first pose. A tracker that was silent for a moment, or a jerk, hides how the
-// receiver went on: it has hardly gone round the transmitter.
+// receiver went on: it has hardly gone round the transmitter. Into the other hemisphere it has gone
+// only when it would come out near where it was, and soon.
 bool MotionCheck::IsInOtherHemisphere(const TrackedPose& first) const
 {
-  if (this->Track.empty() || !this->Track.back().Flipped)
+  constexpr double near = 3; // times nearer
+  constexpr double soon = 2; // s
+  if (this->Track.empty())
   {
     return false;
   }
   const Vec3 last = this->Track.back().ReceiverToTransmitter.Column(3);
   const Vec3 position = first.ReceiverToTransmitter.Column(3);
-  return Norm(-1 * position - last) < Norm(position - last);
+  const double there = Norm(-1 * position - last);
+  const double here = Norm(position - last);
+  return this->Track.back().Flipped
+    ? there < here
+    : near * there < here && first.Time - this->Track.back().Time < soon;
 }
 
 void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accepted)

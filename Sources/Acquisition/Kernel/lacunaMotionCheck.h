@@ -27,7 +27,8 @@ struct MotionLimits
 /// opposite places, so that there the orientation is right and the position mirrored through the
 /// origin. Others wait; three in a row that fit each other are a new motion and are taken together,
 /// late; those that do not are dropped when one fits the motion before. A new motion after one that
-/// was in the other hemisphere is on the side that is nearer to its end. What remains undetected is
+/// was in the other hemisphere is on the side that is nearer to its end; one within 2 s of one that
+/// was not is in the other hemisphere when it is three times nearer there. What remains undetected is
 /// within the limits: at 50 poses a second 1.2 mm and three times the noise.
 class MotionCheck
 {

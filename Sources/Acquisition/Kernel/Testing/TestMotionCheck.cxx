@@ -148,6 +148,65 @@ TEST(MotionCheck, TheHemisphereIsKnownAfterAGap)
   EXPECT_EQ(check.GetNumberOfFlipped(), flipped);
 }
 
+// The plane is crossed, both ways, while the tracker is silent or in a jerk.
+TEST(MotionCheck, APassageIntoTheOtherHemisphereThatNobodySawIsSetRight)
+{
+  for (const double way : { -1.0, 1.0 })
+  {
+    for (const int silent : { 0, 30, 80 })
+    {
+      MotionCheck check;
+      std::vector<TrackedPose> accepted;
+      const auto truth = [&](int i) {
+        return Vec3{ way * (i - 50.5), 150, i > 50 ? -60.0 : -80.0 };
+      };
+      for (int i = 0; i < 200; ++i)
+      {
+        if (i < 50 - silent / 2 || i > 50 + silent / 2)
+        {
+          TrackedPose pose;
+          pose.Time = 0.02 * i;
+          const Vec3 position = truth(i);
+          // the hemisphere is that in which it begins
+          pose.ReceiverToTransmitter =
+            Matrix4::Translation((position[0] * way > 0 ? -1 : 1) * position) *
+            FastrakRotation(Vec3{ 10, 20, 30 });
+          check.Judge(pose, accepted);
+        }
+      }
+      ASSERT_EQ(accepted.size(), 199u - silent);
+      for (const TrackedPose& pose : accepted)
+      {
+        const Vec3 position = truth(static_cast<int>(std::lround(pose.Time / 0.02)));
+        ASSERT_LT(Norm(pose.ReceiverToTransmitter.Column(3) - position), 1e-9)
+          << way << " " << silent << " " << pose.Time;
+      }
+    }
+  }
+}
+
+// It was laid aside on the other side of the transmitter, or moved there.
+TEST(MotionCheck, AReceiverThatMovedFarInItsHemisphereIsThere)
+{
+  MotionCheck check;
+  std::vector<TrackedPose> accepted;
+  for (int i = 0; i < 300; ++i)
+  {
+    if ((i < 50 || i > 100) && (i < 150 || i > 280))
+    {
+      TrackedPose pose;
+      pose.Time = 0.02 * i;
+      pose.ReceiverToTransmitter = Matrix4::Translation(i < 50 ? Vec3{ 200, 150, -80 }
+                                       : i < 150               ? Vec3{ 200, -150, 80 }
+                                                               : Vec3{ 5, 250, -80 }) *
+        FastrakRotation(Vec3{ 10, 20, 30 });
+      check.Judge(pose, accepted);
+    }
+  }
+  EXPECT_EQ(accepted.size(), 300u - 51 - 131);
+  EXPECT_EQ(check.GetNumberOfFlipped(), 0u);
+}
+
 TEST(PoseTrack, InterpolatesButDoesNotGuess)
 {
   PoseTrack track(1, 0.25);
