@@ -356,12 +356,15 @@ bool VideoSource::Stream::ReadPacket(Counts& count)
 void VideoSource::Stream::HeedOrder()
 {
   const std::int64_t time = this->Packet->pts;
-  const std::int64_t before = this->Arrivals.empty() ? AV_NOPTS_VALUE : this->Arrivals.back().first;
-  this->Reordered = this->Reordered ||
-    (time != AV_NOPTS_VALUE && before != AV_NOPTS_VALUE &&
-      time<before&& this->LastTime&& static_cast<double>(time) *
-        av_q2d(this->Format->streams[this->Index]->time_base)> *
-        this->LastTime);
+  if (this->Arrivals.empty() || !this->LastTime || time == AV_NOPTS_VALUE)
+  {
+    return;
+  }
+  const std::int64_t before = this->Arrivals.back().first;
+  const double seconds =
+    static_cast<double>(time) * av_q2d(this->Format->streams[this->Index]->time_base);
+  const bool earlier = before != AV_NOPTS_VALUE && time < before;
+  this->Reordered = this->Reordered || (earlier && seconds > *this->LastTime);
 }
 
 double VideoSource::Stream::FindArrival() const
