@@ -18,7 +18,7 @@ struct Decoder
 // It stands beside the library that this is in.
 std::string FindLibrary()
 {
-  const std::string name = "libLacunaGDCMDecoder.so";
+  std::string name = "libLacunaGDCMDecoder.so";
   Dl_info here{};
   if (dladdr(reinterpret_cast<void*>(&DecodeWithGDCM), &here) == 0 || !here.dli_fname)
   {
