@@ -58,9 +58,9 @@ bool MotionCheck::Fits(
   return true;
 }
 
-// Of a new motion's first pose. A tracker that was silent for a moment, or a jerk, hides how the
-// receiver went on: it has hardly gone round the transmitter. Into the other hemisphere it has gone
-// only when it would come out near where it was, and soon.
+// Of the first pose after a gap or of a new motion. A tracker that was silent for a moment, or a
+// jerk, hides how the receiver went on: it has hardly gone round the transmitter. Into the other
+// hemisphere it has gone only when it would come out near where it was, and soon.
 bool MotionCheck::IsInOtherHemisphere(const TrackedPose& first) const
 {
   constexpr double near = 3; // times nearer
@@ -94,11 +94,14 @@ void MotionCheck::Judge(const TrackedPose& pose, std::vector<TrackedPose>& accep
   if (this->Track.size() == 2 && !isOld(this->Track.back()))
   {
     const TrackedPose flipped = Flip(pose);
-    const bool fits = this->Fits(this->Track[0], this->Track[1], pose);
-    if (fits || this->Fits(this->Track[0], this->Track[1], flipped))
+    const bool here = this->Fits(this->Track[0], this->Track[1], pose);
+    const bool there = this->Fits(this->Track[0], this->Track[1], flipped);
+    if (here || there)
     {
-      this->Flipped += fits ? 0 : 1;
-      accepted.push_back(fits ? pose : flipped);
+      // after some tenths of a second both may fit near the transmitter
+      const bool flip = there && (!here || this->IsInOtherHemisphere(pose));
+      this->Flipped += flip ? 1 : 0;
+      accepted.push_back(flip ? flipped : pose);
       this->Track = { this->Track[1], accepted.back() };
       this->Dropped += this->Waiting.size();
       this->Waiting.clear();

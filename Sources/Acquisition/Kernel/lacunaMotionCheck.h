@@ -28,8 +28,9 @@ struct MotionLimits
 /// origin. Others wait; three in a row that fit each other are a new motion and are taken together,
 /// late; those that do not are dropped when one fits the motion before. A new motion after one that
 /// was in the other hemisphere is on the side that is nearer to its end; one within 2 s of one that
-/// was not is in the other hemisphere when it is three times nearer there. What remains undetected is
-/// within the limits: at 50 poses a second 1.2 mm and three times the noise.
+/// was not is in the other hemisphere when it is three times nearer there. So is a pose that fits
+/// with either sign, as after 0.3 s without any within 8 cm of the transmitter. What remains
+/// undetected is within the limits: at 50 poses a second 1.2 mm and three times the noise.
 class MotionCheck
 {
 public:

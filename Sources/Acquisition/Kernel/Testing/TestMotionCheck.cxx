@@ -185,6 +185,53 @@ TEST(MotionCheck, APassageIntoTheOtherHemisphereThatNobodySawIsSetRight)
   }
 }
 
+// After some tenths of a second without poses, near the transmitter, those of both sides fit.
+TEST(MotionCheck, TheHemisphereIsKnownAfterAShortGapNearTheTransmitter)
+{
+  struct Case
+  {
+    double Begin; // mm along the hemisphere's zenith
+    double Speed; // mm/s along it
+  };
+  // goes over before the gap, in it, back in it, not at all
+  for (const Case& path : { Case{ 34, -20 }, Case{ 42, -20 }, Case{ 30, 0 } })
+  {
+    for (const bool back : { false, true })
+    {
+      for (const int silent : { 0, 5, 10, 15, 20, 23 })
+      {
+        MotionCheck check;
+        std::vector<TrackedPose> accepted;
+        const auto truth = [&](int i)
+        {
+          const double turn = back && i > 100 ? 200 - i : i;
+          return Vec3{ path.Begin + path.Speed * 0.02 * turn, 60, 8 };
+        };
+        for (int i = 0; i < 200; ++i)
+        {
+          if (i > 100 && i <= 100 + silent)
+          {
+            continue;
+          }
+          TrackedPose pose;
+          pose.Time = 0.02 * i;
+          const Vec3 position = truth(i);
+          pose.ReceiverToTransmitter = Matrix4::Translation((position[0] < 0 ? -1 : 1) * position) *
+            FastrakRotation(Vec3{ 10, 20, 30 });
+          check.Judge(pose, accepted);
+        }
+        ASSERT_EQ(accepted.size(), 200u - silent);
+        for (const TrackedPose& pose : accepted)
+        {
+          const Vec3 position = truth(static_cast<int>(std::lround(pose.Time / 0.02)));
+          ASSERT_LT(Norm(pose.ReceiverToTransmitter.Column(3) - position), 1e-9)
+            << path.Begin << " " << back << " " << silent << " " << pose.Time;
+        }
+      }
+    }
+  }
+}
+
 // It was laid aside on the other side of the transmitter, or moved there.
 TEST(MotionCheck, AReceiverThatMovedFarInItsHemisphereIsThere)
 {
