@@ -375,10 +375,11 @@ double VideoSource::Stream::FindArrival() const
     // gives one for each packet, all as long after what they show
     return this->Arrivals.back().second;
   }
-  const auto found = std::find_if(this->Arrivals.begin(), this->Arrivals.end(),
+  // the newest: a sender that began anew has the times of before
+  const auto found = std::find_if(this->Arrivals.rbegin(), this->Arrivals.rend(),
     [this](const auto& arrival)
     { return arrival.first != AV_NOPTS_VALUE && arrival.first == this->Picture->pts; });
-  if (found != this->Arrivals.end())
+  if (found != this->Arrivals.rend())
   {
     return found->second;
   }

@@ -380,6 +380,24 @@ TEST(VideoSource, FramesOfWhichOthersAreMadeAreNotTakenForEarlierOnes)
   }
 }
 
+// Its frames had the arrivals of those that bore their times before.
+TEST(VideoSource, FramesOfASenderThatBeginsAnewHaveTheirOwnArrivals)
+{
+  const SteadyClock clock;
+  VideoSource video(
+    AtOnce("lavfi:testsrc2=size=64x48:rate=25:duration=4,setpts=mod(N\\,20)"), clock);
+  VideoFrame frame;
+  double before = 0;
+  int frames = 0;
+  while (video.Read(frame) != VideoEvent::End)
+  {
+    EXPECT_GE(frame.Arrival, before) << frames;
+    before = frame.Arrival;
+    ++frames;
+  }
+  EXPECT_EQ(frames, 100);
+}
+
 TEST(VideoSource, StreamsThatSendNothingTimeOut)
 {
   const Server server;
