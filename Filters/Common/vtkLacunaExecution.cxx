@@ -53,6 +53,21 @@ std::string ErrorOf(const std::function<void()>& body)
     return e.what();
   }
 }
+
+// Calls body where VTK's loops run on all cores.
+template <typename Callable>
+void Parallel(const Callable& body)
+{
+  const bool sequential = std::string(vtkSMPTools::GetBackend()) == "Sequential";
+  if (sequential && !std::getenv("VTK_SMP_BACKEND_IN_USE"))
+  {
+    vtkSMPTools::LocalScope(vtkSMPTools::Config{ std::string("STDThread") }, body);
+  }
+  else
+  {
+    body();
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -109,16 +124,15 @@ int vtkLacunaExecution::RunInformation(
 //------------------------------------------------------------------------------
 void vtkLacunaExecution::Launch(std::int64_t count, std::int64_t grain, const Body& body)
 {
-  const auto loop = [&] { vtkSMPTools::For(0, count, grain, body); };
-  const bool sequential = std::string(vtkSMPTools::GetBackend()) == "Sequential";
-  if (sequential && !std::getenv("VTK_SMP_BACKEND_IN_USE"))
-  {
-    vtkSMPTools::LocalScope(vtkSMPTools::Config{ std::string("STDThread") }, loop);
-  }
-  else
-  {
-    loop();
-  }
+  Parallel([&] { vtkSMPTools::For(0, count, grain, body); });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::GetNumberOfThreads() const
+{
+  int threads = 1;
+  Parallel([&] { threads = vtkSMPTools::GetEstimatedNumberOfThreads(); });
+  return threads;
 }
 
 //------------------------------------------------------------------------------

@@ -36,6 +36,8 @@ public:
   static int RunInformation(
     vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body);
 
+  int GetNumberOfThreads() const override;
+
 protected:
   void Launch(std::int64_t count, std::int64_t grain, const Body& body) override;
   bool OnProgress(double fraction) override;

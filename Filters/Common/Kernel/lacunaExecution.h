@@ -33,6 +33,9 @@ public:
   /// exception of body. The set-up costs some 50 microseconds: for loops of a millisecond or more.
   void For(std::int64_t count, std::int64_t grain, const Body& body);
 
+  /// Threads that work on a loop at most.
+  virtual int GetNumberOfThreads() const = 0;
+
   /// The next loops and reports cover this part of the whole progress, 0 <= first <= last <= 1; of
   /// the caller's stage while a NestedStages lives.
   void SetStage(double first, double last);
@@ -80,7 +83,7 @@ class ThreadExecution : public Execution
 public:
   /// Threads to use; 0 means all cores. progress may be empty; it returns false to stop.
   explicit ThreadExecution(int threads = 0, std::function<bool(double)> progress = {});
-  int GetNumberOfThreads() const { return this->Threads; }
+  int GetNumberOfThreads() const override { return this->Threads; }
 
 protected:
   void Launch(std::int64_t count, std::int64_t grain, const Body& body) override;

@@ -158,7 +158,7 @@ double FastRadialSum<Dimension>::SetUpWithin(
   int order, Execution& execution, const std::vector<double>& weights, double tolerance)
 {
   const Execution::NestedStages stages(execution);
-  const SingleBlasThread single;
+  const SingleBlasThread single(execution.GetNumberOfThreads());
   this->SortWeights(weights);
   execution.SetStage(0, 0.15);
   double bound = std::numeric_limits<double>::infinity();
@@ -199,7 +199,7 @@ double FastRadialSum<Dimension>::ApplyUpTo(int order, Execution& execution,
   const std::vector<double>& weights, double tolerance, double* values)
 {
   const Execution::NestedStages stages(execution);
-  const SingleBlasThread single;
+  const SingleBlasThread single(execution.GetNumberOfThreads());
   this->SortWeights(weights);
   execution.SetStage(0, 0.1);
   const double bound = this->ChooseOrder(execution, tolerance, order);

@@ -283,7 +283,7 @@ template <int Dimension>
 void FastRadialSum<Dimension>::EvaluatePart(
   Execution& execution, const GridPart<Dimension>& part, double* values) const
 {
-  const SingleBlasThread single;
+  const SingleBlasThread single(execution.GetNumberOfThreads());
   const CellTree<Dimension>& tree = this->GetTargets();
   const auto size = static_cast<std::size_t>(this->Direct ? 0 : this->Far->GetSize());
   const std::vector<int> leaves = this->GetLeaves(part);

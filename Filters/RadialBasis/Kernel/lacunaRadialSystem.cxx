@@ -2,6 +2,7 @@
 #include "lacunaRadialSystem.h"
 
 #include "lacunaExecution.h"
+#include "lacunaSingleBlasThread.h"
 #include "lacunaSymmetricFactorization.h"
 
 #include <algorithm>
@@ -208,6 +209,7 @@ std::unique_ptr<RadialEquations<Dimension>> PrepareDirectly(
             << maximumBytes << " bytes";
     throw std::length_error(message.str());
   }
+  const SingleBlasThread single; // no room for BLAS says nothing about the equations
   try
   {
     return std::make_unique<DirectEquations<Dimension>>(execution, system);

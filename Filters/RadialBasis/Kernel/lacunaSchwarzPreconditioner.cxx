@@ -133,7 +133,7 @@ SchwarzPreconditioner<Dimension>::SchwarzPreconditioner(
   : System(system)
 {
   const Execution::NestedStages stages(execution);
-  const SingleBlasThread single;
+  const SingleBlasThread single(execution.GetNumberOfThreads());
   this->Levels.emplace_back();
   this->Levels[0].Nodes = system.Nodes;
   this->Levels[0].Diagonal = system.Diagonal;
@@ -378,7 +378,7 @@ std::vector<double> SchwarzPreconditioner<Dimension>::Apply(
   // Of the residual that is passed on: it need not be exact.
   constexpr double accuracy = 0.05;
   constexpr int MaximumOrder = Dimension == 2 ? 10 : 7;
-  const SingleBlasThread single;
+  const SingleBlasThread single(execution.GetNumberOfThreads());
   std::vector<std::vector<double>> weights;
   std::vector<double> rest = residual;
   for (std::size_t l = 0; l + 1 < this->Levels.size(); ++l)
