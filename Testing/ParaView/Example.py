@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """An example of Documentation/Examples: Example.py <folder> <script> [arguments of the script before the folder to write to].
 
-Its script runs without an error and writes a picture that looks like the one in the folder. The state file that it
-writes, and the one in the folder, load without an error into what the script made, value by value, and show the picture.
-All of them warn of nothing but what the folder's README.md tells.
+Its script runs without an error and writes a picture that looks like the one in the folder, and a state file. The state
+file in the folder loads without an error into what the script made, value by value, and shows the picture. All of them
+warn of nothing but what the folder's README.md tells.
 """
 import glob
 import os
@@ -39,7 +39,6 @@ for name in pictures:
     error = picture_error(os.path.join(written, name), os.path.join(folder, name))
     assert error <= TOLERANCE, f"look at {written}/{name}: it differs from the one in {folder} by {error:.0f}"
 
-warnings = []
 for place in (written, folder):
     state = os.path.join(place, names[0])
     assert os.path.getsize(state) < 250000, f"{state}: write it by lacuna.states.save"
@@ -47,13 +46,15 @@ for place in (written, folder):
         text = file.read()
     for path in (ROOT, written, os.path.expanduser("~") + os.sep):
         assert path not in text, f"{state} belongs to this computer: {path}"
-    with raising(warnings):
-        states.load(state)
-        pipelines.check_same(made, pipelines.outputs(), state)
-        shown = [view for view in GetRenderViews() if GetLayout(view) is not None]
-        assert shown, f"{state} has no view in a layout"
-        for view in shown:
-            Render(view)
-            assert any(display.Visibility for display in view.Representations), f"a view of {state} shows nothing"
-    print(f"{os.path.relpath(state, ROOT)}: {len(made)} outputs as the script made them, {len(shown)} views", flush=True)
+
+warnings = []
+with raising(warnings):
+    states.load(state)
+    pipelines.check_same(made, pipelines.outputs(), state)
+    shown = [view for view in GetRenderViews() if GetLayout(view) is not None]
+    assert shown, f"{state} has no view in a layout"
+    for view in shown:
+        Render(view)
+        assert any(display.Visibility for display in view.Representations), f"a view of {state} shows nothing"
+print(f"{os.path.relpath(state, ROOT)}: {len(made)} outputs as the script made them, {len(shown)} views")
 check_warnings(warnings, os.path.join(folder, "README.md"))

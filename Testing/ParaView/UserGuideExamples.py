@@ -1,21 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs every Python example of README.md and the user guide as printed: each in a process and an empty folder of its own.
 
-An example that only the user's data can run says so in its first line; it is compiled and not run.
+UserGuideExamples.py NUMBER OF PROCESSES AT A TIME
+
+The processes are forks of this one, which has ParaView loaded, without Lacuna: half the time of the examples is ParaView's start. An
+example that only the user's data can run says so in its first line; it is compiled and not run.
 """
-import concurrent.futures
 import glob
 import os
 import re
 import shutil
-import subprocess
+import signal
 import sys
 import time
+import traceback
 
+import paraview.simple  # noqa: F401
 from lacuna_test import ROOT, check_warnings, output
 
-PVPYTHON = sys.argv[1]  # sys.executable is not the program that runs in pvpython
 OWN_FILES = "# needs your own files"
+SECONDS = 120  # for one example
 
 
 def examples():
@@ -29,39 +33,73 @@ def examples():
             yield f"{os.path.relpath(page, ROOT)}:{line}", block[1]
 
 
-def run(name, source):
-    """What is wrong with an example; empty when it runs without an error."""
+def run_here(folder, name, code):
+    """Runs an example in this process, which ends with it."""
+    printed = os.open(folder + ".txt", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(printed, 1)
+    os.dup2(printed, 2)
+    os.chdir(folder)
+    sys.path[0] = os.path.dirname(folder)
+    sys.argv = [name]
+    signal.alarm(SECONDS)
+    status = 0
     try:
-        compile(source, name, "exec")
-    except SyntaxError as error:
-        return str(error)
-    if source.startswith(OWN_FILES):
-        print(f"{name}: compiled only", flush=True)
-        return ""
+        exec(code, {"__name__": "__main__", "__file__": folder + ".py"})
+    except BaseException:
+        traceback.print_exc()
+        status = 1
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
+
+
+def start(name, source):
+    """The process that runs an example, and its folder."""
+    code = compile(source, name, "exec")
     folder = os.path.abspath(output(os.path.join("UserGuideExamples", re.sub(r"\W+", "-", name))))
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
-    start = time.monotonic()
-    script = folder + ".py"
-    with open(script, "w", encoding="utf-8") as file:
-        file.write(source)
-    done = subprocess.run(
-        [PVPYTHON, "--force-offscreen-rendering", script], cwd=folder, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=120)
-    print(f"{name}: exit code {done.returncode}, {time.monotonic() - start:.1f} s", flush=True)
+    process = os.fork()
+    if not process:
+        run_here(folder, name, code)
+    return process, folder
+
+
+def check(name, source, folder, status):
+    """What is wrong with an example that has ended; empty when it ran without an error."""
+    with open(folder + ".txt", encoding="utf-8") as file:
+        printed = file.read()
     # VTK reports an error and goes on; an example of raising() makes one on purpose
-    reported = re.search(r"ERR\||ERROR: In ", done.stdout) and "raising()" not in source
-    warnings = re.findall(r"WARN\| (.*)", done.stdout)
+    reported = re.search(r"ERR\||ERROR: In ", printed) and "raising()" not in source
     try:
-        check_warnings(warnings, os.path.join(ROOT, name.split(":")[0]))
+        check_warnings(re.findall(r"WARN\| (.*)", printed), os.path.join(ROOT, name.split(":")[0]))
     except AssertionError as error:
         return str(error)
-    return done.stdout if done.returncode or reported else ""
+    return printed + f"status {status}" if status or reported else ""
 
 
-blocks = list(examples())
-assert len(blocks) >= 10, blocks
-with concurrent.futures.ThreadPoolExecutor(min(4, os.cpu_count() or 1)) as pool:
-    failures = {name: text for (name, _), text in zip(blocks, pool.map(lambda block: run(*block), blocks)) if text}
-for name, text in failures.items():
-    print(f"--- {name} ---\n{text}")
-sys.exit(1 if failures else 0)
+def main():
+    waiting = list(examples())
+    assert len(waiting) >= 10, waiting
+    running, failures = {}, {}
+    while waiting or running:
+        if waiting and len(running) < int(sys.argv[1]):
+            name, source = waiting.pop(0)
+            if source.startswith(OWN_FILES):
+                compile(source, name, "exec")
+                print(f"{name}: compiled only", flush=True)
+            else:
+                process, folder = start(name, source)
+                running[process] = name, source, folder, time.monotonic()
+            continue
+        process, status = os.wait()
+        name, source, folder, since = running.pop(process)
+        print(f"{name}: status {status}, {time.monotonic() - since:.1f} s", flush=True)
+        failures[name] = check(name, source, folder, status)
+    failures = {name: text for name, text in failures.items() if text}
+    for name, text in failures.items():
+        print(f"--- {name} ---\n{text}")
+    sys.exit(1 if failures else 0)
+
+
+main()

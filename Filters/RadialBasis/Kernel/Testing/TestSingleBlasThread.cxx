@@ -80,10 +80,8 @@ TEST_F(SingleBlasThread, FitsWhereThereIsRoom)
 
 TEST_F(SingleBlasThread, EndsWhateverRoomThereIs)
 {
-  const auto ended = [](int status)
-  {
-    return WIFEXITED(status) &&
-      (WEXITSTATUS(status) == Fitted || WEXITSTATUS(status) == Refused);
+  const auto ended = [](int status) {
+    return WIFEXITED(status) && (WEXITSTATUS(status) == Fitted || WEXITSTATUS(status) == Refused);
   };
   for (rlim_t room = 112; room < 160; room += 4)
   {

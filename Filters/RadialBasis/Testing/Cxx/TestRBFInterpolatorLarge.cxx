@@ -147,7 +147,7 @@ int TestRBFInterpolatorLarge(int argc, char* argv[])
     LACUNA_CHECK(lacuna::GetProcessMemory("VmHWM") < 8e9);
     return lacunaCheck::Result();
   }
-  Check(100000, true, 1e-4, 0.05);
-  Check(100000, false, 1e-3, 0.05);
+  Check(30000, true, 1e-4, 0.05);
+  Check(50000, false, 1e-3, 0.05); // more than are on the grid
   return lacunaCheck::Result();
 }
