@@ -5,29 +5,25 @@
 #include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkAlgorithmOutput.h"
-#include "vtkBox.h"
-#include "vtkCylinder.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
-#include "vtkHomogeneousTransform.h"
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaFunctionText.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPiecewiseFunction.h"
 #include "vtkPointData.h"
-#include "vtkSphere.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -36,52 +32,13 @@
 #include <memory>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 vtkStandardNewMacro(vtkLacunaOccludedAngle);
 
 namespace
 {
 const double Pi = 3.14159265358979323846;
-
-// Grey level, opacity, midpoint and sharpness of each node.
-std::vector<double> GetNodes(vtkPiecewiseFunction* function)
-{
-  std::vector<double> nodes(4 * static_cast<std::size_t>(function->GetSize()));
-  for (int i = 0; i < function->GetSize(); ++i)
-  {
-    function->GetNodeValue(i, nodes.data() + 4 * static_cast<std::size_t>(i));
-  }
-  return nodes;
-}
-
-// The class of an implicit function and, of those offered in ParaView, its numbers.
-void AddFunction(lacuna::ParameterText& text, vtkImplicitFunction* function)
-{
-  text.Add("ReconstructionSpace", function->GetClassName());
-  const auto add = [&text](const char* name, const double* values, int count)
-  { text.Add(name, std::vector<double>(values, values + count)); };
-  if (auto* sphere = vtkSphere::SafeDownCast(function))
-  {
-    add("Center", sphere->GetCenter(), 3);
-    text.Add("Radius", sphere->GetRadius());
-  }
-  else if (auto* cylinder = vtkCylinder::SafeDownCast(function))
-  {
-    add("Center", cylinder->GetCenter(), 3);
-    add("Axis", cylinder->GetAxis(), 3);
-    text.Add("Radius", cylinder->GetRadius());
-  }
-  else if (auto* box = vtkBox::SafeDownCast(function))
-  {
-    double bounds[6];
-    box->GetBounds(bounds);
-    add("Bounds", bounds, 6);
-  }
-  if (auto* transform = vtkHomogeneousTransform::SafeDownCast(function->GetTransform()))
-  {
-    add("Transform", transform->GetMatrix()->GetData(), 16);
-  }
-}
 }
 
 //------------------------------------------------------------------------------
@@ -152,6 +109,31 @@ public:
                     << options.Steps[empty - all.begin()].Threshold / Pi << " pi");
     }
     return images;
+  }
+
+  /// For the record of how the output was made.
+  static std::string GetParameters(const vtkLacunaOccludedAngle& self)
+  {
+    lacuna::ParameterText parameters;
+    parameters.Add("ScalarArray", self.ScalarArray)
+      .Add("Mode", self.Mode == BINARY ? "Binary" : "Continuous")
+      .Add("Attenuation", self.Attenuation)
+      .Add("NumberOfDirections", self.NumberOfDirections)
+      .Add("ThresholdsOverPi", self.ThresholdsOverPi)
+      .Add("LocalRadii", self.LocalRadii)
+      .Add("ObjectOpacity", self.ObjectOpacity)
+      .Add("Dilation", self.Dilation)
+      .Add("KeepData", self.KeepData)
+      .Add("MedianKernel", self.MedianKernel);
+    if (self.Attenuation == OPACITY_FUNCTION)
+    {
+      vtkLacunaFunctionText::Add(parameters, "OpacityFunction", self.OpacityFunction);
+    }
+    if (self.ReconstructionSpace)
+    {
+      vtkLacunaFunctionText::Add(parameters, "ReconstructionSpace", self.ReconstructionSpace);
+    }
+    return parameters.Get();
   }
 
 private:
@@ -469,31 +451,12 @@ int vtkLacunaOccludedAngle::RequestData(
       int extent[6];
       info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
       output->Crop(extent);
-      lacuna::ParameterText parameters;
-      parameters.Add("ScalarArray", this->ScalarArray)
-        .Add("Mode", this->Mode == BINARY ? "Binary" : "Continuous")
-        .Add("Attenuation", this->Attenuation)
-        .Add("NumberOfDirections", this->NumberOfDirections)
-        .Add("ThresholdsOverPi", this->ThresholdsOverPi)
-        .Add("LocalRadii", this->LocalRadii)
-        .Add("ObjectOpacity", this->ObjectOpacity)
-        .Add("Dilation", this->Dilation)
-        .Add("KeepData", this->KeepData)
-        .Add("MedianKernel", this->MedianKernel);
-      if (this->Attenuation == OPACITY_FUNCTION)
-      {
-        parameters.Add("OpacityFunction", GetNodes(this->OpacityFunction));
-      }
-      if (this->ReconstructionSpace)
-      {
-        AddFunction(parameters, this->ReconstructionSpace);
-      }
       std::vector<vtkDataObject*> inputs{ input };
       if (space)
       {
         inputs.push_back(space);
       }
-      vtkLacunaProvenance::Record(output, this, inputs, parameters.Get());
+      vtkLacunaProvenance::Record(output, this, inputs, Run::GetParameters(*this));
     });
 }
 
