@@ -68,14 +68,13 @@ void RequireRoom(int count)
   }
 }
 
-// Has OpenBLAS make its buffers while there is room for them.
-void MakeBuffers(int count)
+// Has OpenBLAS make as many buffers, while there is room for them.
+void MakeBuffers(std::vector<void*>& buffers)
 {
   if (!blas_memory_alloc || !blas_memory_free)
   {
     return;
   }
-  std::vector<void*> buffers(count);
   for (void*& buffer : buffers)
   {
     buffer = blas_memory_alloc(0);
@@ -91,21 +90,22 @@ SingleBlasThread::SingleBlasThread(int callers)
 {
   Users& users = GetUsers();
   const std::lock_guard<std::mutex> lock(users.Mutex);
-  const bool isShort = users.Buffers < callers;
-  if (isShort)
+  std::vector<void*> buffers;
+  if (users.Buffers < callers)
   {
     // Its own threads, which it starts below, take one each.
     const int others = users.Buffers == 0 ? openblas_get_num_threads() - 1 : 0;
     RequireRoom(callers - users.Buffers + others);
+    buffers.resize(callers);
   }
   if (users.Count++ == 0)
   {
     users.Threads = openblas_get_num_threads();
     openblas_set_num_threads(1);
   }
-  if (isShort)
+  if (!buffers.empty())
   {
-    MakeBuffers(callers);
+    MakeBuffers(buffers);
     users.Buffers = callers;
   }
 }
