@@ -4,6 +4,7 @@
 #include "lacunaDepthMapMesher.h"
 #include "lacunaDepthNormals.h"
 
+#include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -160,6 +161,13 @@ int vtkLacunaDepthMapSurface::RequestData(
 
       execution.SetStage(0.6, 0.8);
       const vtkIdType numberOfPoints = mesher.GetNumberOfPoints();
+      // coordinates, three numbers of the pixel, what is carried over; corners and offsets
+      const double pixelBytes = 1024.0 *
+        static_cast<double>(input->GetPointData()->GetActualMemorySize()) /
+        static_cast<double>(input->GetNumberOfPoints());
+      lacuna::RequireMemory("the surface of " + std::to_string(numberOfPoints) + " pixels",
+        (48 + pixelBytes) * static_cast<double>(numberOfPoints) +
+          32.0 * static_cast<double>(mesher.GetNumberOfTriangles()));
       vtkNew<vtkDoubleArray> coordinates;
       coordinates->SetNumberOfComponents(3);
       coordinates->SetNumberOfTuples(numberOfPoints);

@@ -36,6 +36,7 @@
 #include <cstring>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 namespace
 {
@@ -109,11 +110,7 @@ int vtkLacunaTrackedSliceReader::CanReadFile(const char* fileName)
 double vtkLacunaTrackedSliceReader::GetMostBytes() const
 {
   constexpr double mebibyte = 1048576;
-  constexpr double unlimited = 9e18;
-  const double machine = lacuna::GetPhysicalMemory();
-  return this->MemoryLimit > 0 ? this->MemoryLimit * mebibyte
-    : machine > 0              ? machine / 4
-                               : unlimited;
+  return this->MemoryLimit > 0 ? this->MemoryLimit * mebibyte : lacuna::GetPhysicalMemory() / 4;
 }
 
 //------------------------------------------------------------------------------
@@ -301,7 +298,10 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
   Sequence& sequence = *this->Opened;
   int extent[6];
   output->GetExtent(extent);
-  output->AllocateScalars(vtkLacunaScalarType::ToVTK(sequence.File->Pixels->GetScalarType()), 1);
+  const int type = vtkLacunaScalarType::ToVTK(sequence.File->Pixels->GetScalarType());
+  lacuna::RequireMemory("the pixels of " + std::to_string(extent[5] - extent[4] + 1) + " slices",
+    static_cast<double>(output->GetNumberOfPoints()) * vtkDataArray::GetDataTypeSize(type));
+  output->AllocateScalars(type, 1);
   vtkDataArray* scalars = output->GetPointData()->GetScalars();
   scalars->SetName(IntensityName);
   auto* pixels = static_cast<unsigned char*>(output->GetScalarPointer());

@@ -3,11 +3,13 @@
 
 The address space is limited, so that what cannot be had is not had on any machine.
 """
+import os
 import resource
 import sys
 
 import lacuna
 import numpy as np
+from lacuna_test import output
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -143,6 +145,43 @@ def whole_inputs():
         check_refused(f"{made.GetClassName()} behind another filter", behind(made, behind(vtkImageShiftScale())), "34359738368 bytes")
 
 
+def files():
+    """A sweep that the limit allows and the memory does not, and the preview by default."""
+    width, height, slices = 640, 480, 8000
+    frames = "".join(f"Seq_Frame{k:04}_ImageToReferenceTransform = 1 0 0 0 0 1 0 0 0 0 1 {k} 0 0 0 1\nSeq_Frame{k:04}_ImageToReferenceTransformStatus = OK\n"
+                     for k in range(slices))
+    header = (f"ObjectType = Image\nNDims = 3\nDimSize = {width} {height} {slices}\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\n"
+              f"UltrasoundImageOrientation = MF\n{frames}ElementDataFile = LOCAL\n").encode()
+    path = output("HugeRequests.mha")
+    with open(path, "wb") as file:
+        file.write(header)
+        file.truncate(len(header) + width * height * slices)  # sparse
+    reader = lacuna.vtkLacunaTrackedSliceReader()
+    reader.SetFileName(path)
+    reader.SetMemoryLimit(4000)
+    check_refused("Tracked Slice Reader", reader, f"{width * height * slices} bytes")
+    reader.SetMemoryLimit(0)
+    assert not errors_of(reader) and 0 < reader.GetOutput().GetNumberOfPoints() < width * height * slices
+    os.remove(path)
+
+
+def mesh():
+    """The surface of a map takes several times the map."""
+    skull = lacuna.vtkLacunaSkullPhantom()
+    skull.SetSpacing(4, 4, 4)
+    caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), skull)
+    caster.SetIsoValue(0, 500)
+    caster.SetPixelSpacing(0.1)
+    caster.Update()
+    limit = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (status("VmSize") + GIBIBYTE // 8, limit[1]))
+    surface = behind(lacuna.vtkLacunaDepthMapSurface(), caster)
+    check_refused("Depth Map Surface", surface, "pixels would need")
+    resource.setrlimit(resource.RLIMIT_AS, limit)
+    surface.Modified()
+    assert not errors_of(surface) and surface.GetOutput().GetNumberOfPoints() > 1e6
+
+
 def pieces():
     for kernel in ((5, 5, 1), (5, 5, 5)):
         speckle = behind(lacuna.vtkLacunaSpeckleFilter())
@@ -183,7 +222,7 @@ def pieces():
 
 if __name__ == "__main__":
     limit = status("VmSize") + 2 * GIBIBYTE
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-    for part in (sources, freehand, whole_inputs, pieces):
+    resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
+    for part in (sources, freehand, whole_inputs, files, mesh, pieces):
         if len(sys.argv) < 2 or part.__name__ in sys.argv[1:]:
             part()

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaMemory.h"
 
+#include "lacunaControlGroup.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,72 +18,52 @@ namespace lacuna
 {
 namespace
 {
-constexpr double Unlimited = 9e18; // of 64-bit sizes
+constexpr double Unlimited = std::numeric_limits<double>::infinity();
 
-// A number that stands alone in a file; Unlimited when there is none ("max").
-double ReadNumber(const std::string& fileName)
-{
-  std::ifstream file(fileName);
-  double number = 0;
-  return file >> number ? number : Unlimited;
-}
-
-// Folder of this process' control group (version 2), by which containers are limited.
-std::string GetControlGroup()
-{
-  std::ifstream file("/proc/self/cgroup");
-  for (std::string line; std::getline(file, line);)
-  {
-    if (line.rfind("0::", 0) == 0)
-    {
-      return "/sys/fs/cgroup" + line.substr(3) + "/";
-    }
-  }
-  return {};
-}
-
-// What is left of the address space that ulimit -v allows.
+// What ulimit -v allows this process in all.
 double GetAddressSpace()
 {
   rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-  {
-    return Unlimited;
-  }
-  const double used = ReadNumber("/proc/self/statm") * static_cast<double>(sysconf(_SC_PAGESIZE));
-  // not 0, which means that nobody tells
-  return std::max(1.0, static_cast<double>(limit.rlim_cur) - (used < Unlimited ? used : 0));
-}
+  return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY
+    ? Unlimited
+    : static_cast<double>(limit.rlim_cur);
 }
 
-double GetPhysicalMemory()
+// What is left of that.
+double GetFreeAddressSpace()
 {
-  const long pages = sysconf(_SC_PHYS_PAGES);
-  const long pageSize = sysconf(_SC_PAGESIZE);
-  const double machine =
-    pages > 0 && pageSize > 0 ? static_cast<double>(pages) * static_cast<double>(pageSize) : 0;
-  return std::min(machine, ReadNumber(GetControlGroup() + "memory.max"));
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return std::max(0.0, GetAddressSpace() - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
 }
 
-double GetAvailableMemory()
+// What Linux says can be had without swapping.
+double GetFreeMachine()
 {
-  // Linux says how much can be had without swapping; elsewhere all there is must do.
-  double machine = GetPhysicalMemory();
   std::ifstream file("/proc/meminfo");
   std::string name;
   for (double kibibytes = 0; file >> name >> kibibytes; file.ignore(1000, '\n'))
   {
     if (name == "MemAvailable:")
     {
-      machine = 1024 * kibibytes;
-      break;
+      return 1024 * kibibytes;
     }
   }
-  const std::string group = GetControlGroup();
-  const double limit = ReadNumber(group + "memory.max");
-  const double left =
-    limit < Unlimited ? std::max(0.0, limit - ReadNumber(group + "memory.current")) : Unlimited;
-  return std::min({ machine, left, GetAddressSpace() });
+  return Unlimited;
+}
+}
+
+double GetPhysicalMemory()
+{
+  const double machine =
+    static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::min({ machine, ReadControlGroupMemory().Limit, GetAddressSpace() });
+}
+
+double GetAvailableMemory()
+{
+  return std::min({ GetPhysicalMemory(), GetFreeMachine(), ReadControlGroupMemory().Free,
+    GetFreeAddressSpace() });
 }
 
 std::string DescribeBytes(double bytes)
@@ -104,12 +87,12 @@ std::string DescribeBytes(double bytes)
 void RequireMemory(const std::string& what, double bytes)
 {
   const double available = GetAvailableMemory();
-  if (available <= 0 || bytes <= available)
+  if (bytes <= available)
   {
     return;
   }
   throw std::runtime_error(what + " would need " + DescribeBytes(bytes) +
-    (GetAddressSpace() <= available
+    (GetFreeAddressSpace() <= available
         ? ", this process may have (ulimit -v) " + DescribeBytes(available) + " more"
         : ", this machine has " + DescribeBytes(available) + " of memory free"));
 }

@@ -9,13 +9,12 @@
 
 namespace lacuna
 {
-/// Bytes of memory of the machine, or of the container this process runs in; 0 when the system does
-/// not tell.
+/// Bytes of memory of the machine, or what the container this process runs in (cgroup) or the limit of
+/// its address space (ulimit -v) allows, if that is less.
 double GetPhysicalMemory();
 
-/// Bytes of memory that this process can have now without swapping: what is free, as far as limits
-/// of containers (cgroup) and of the address space (ulimit -v) allow. 0 when the system does not
-/// tell.
+/// Bytes of memory that this process can have now without swapping: what is free, as far as the same
+/// limits allow. Files that the system keeps in memory count as free.
 double GetAvailableMemory();
 
 /// In full, and in a unit that can be read: "20000000000 bytes (18.6 GiB)".
