@@ -5,7 +5,7 @@
 ///
 /// Counters: slices a second, records a second of the tracker; delay, ms from a frame's arrival until
 /// its slice with its pose is there (median, 99 %, most); request, the same from the request for the
-/// earliest measurement that its pose needs, at the latest; cpu, % of one core of all threads but the
+/// earliest measurement that its pose needs, at the latest; load, % of one core of all threads but the
 /// emulator's, with the making of the test signal (signal: 0 a grey field, which costs next to
 /// nothing as a frame grabber does, 1 a picture that FFmpeg draws); lost, frames without a pose.
 #include "lacunaBenchmark.h"
@@ -113,7 +113,7 @@ void Live(benchmark::State& state)
       state.counters["delayMost"] = delays.back();
       state.counters["request50"] = at(requests, 0.5);
       state.counters["request99"] = at(requests, 0.99);
-      state.counters["cpu"] = 100 * cpu / time;
+      state.counters["load"] = 100 * cpu / time;
       state.counters["lost"] = static_cast<double>(after.Counts.WithoutPose);
     }
   }

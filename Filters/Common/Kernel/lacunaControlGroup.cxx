@@ -47,8 +47,8 @@ void Restrict(ControlGroupMemory& memory, const std::string& folder, const Names
   double used = 0;
   std::ifstream(folder + names.Used) >> used;
   memory.Limit = std::min(memory.Limit, limit);
-  memory.Free = std::min(memory.Free,
-    std::max(0.0, limit - std::max(0.0, used - ReadFilesInMemory(folder, names))));
+  memory.Free = std::min(
+    memory.Free, std::max(0.0, limit - std::max(0.0, used - ReadFilesInMemory(folder, names))));
 }
 }
 

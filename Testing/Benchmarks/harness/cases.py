@@ -319,7 +319,7 @@ def probe_calibration():
 
 def live_acquisition():
     own = "LiveAcquisition"
-    columns = (("slices", "slices/s", ".1f"), ("lost", "without pose", ".0f"), ("delay50", "delay, ms", ".1f"), ("delay99", "99 %, ms", ".1f"), ("cpu", "of one core, %", ".1f"))
+    columns = (("slices", "slices/s", ".1f"), ("lost", "without pose", ".0f"), ("delay50", "delay, ms", ".1f"), ("delay99", "99 %, ms", ".1f"), ("load", "of one core, %", ".1f"))
     return Suite("live-acquisition", "Polhemus Video Source", "An emulated FASTRAK at 115200 baud and 768 × 576 at 25 frames a second, every frame a slice, for 30 s (in a quick run 1 s).",
                  figures=(Figures("Live", columns, (("30 s", Row(own, "Live/seconds:30/signal:0")),), quick=False), Figures("Live, short", columns, (("1 s", Row(own, "Live/seconds:1/signal:0")),))), rounds=1)
 

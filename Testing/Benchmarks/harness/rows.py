@@ -40,6 +40,10 @@ class Row:
         return {"wall": self.wall, "cpu": self.cpu}.get(what, self.counters.get(what))
 
 
+class Failure(Exception):
+    """A program that gave no rows; says why."""
+
+
 def parse(text):
     """Rows by name of what a program wrote."""
     found = {}
@@ -50,14 +54,12 @@ def parse(text):
             row = Row(error=each.get("error_message") or "an error without a message")
         else:
             scale = UNITS[each["time_unit"]]
+            if each.keys() & {"wall", "cpu"}:
+                raise Failure(f"{each['name']} has a counter by the name of a time: {sorted(each.keys() & {'wall', 'cpu'})}")
             counters = {key: value for key, value in each.items() if key not in KNOWN and isinstance(value, (int, float))}
             row = Row(scale * each["real_time"], scale * each["cpu_time"], counters, each.get("label", ""))
         found[SUFFIXES.sub("", each["name"])] = row
     return found
-
-
-class Failure(Exception):
-    """A program that gave no rows; says why."""
 
 
 def pattern(names):

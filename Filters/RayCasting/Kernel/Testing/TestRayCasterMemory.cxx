@@ -84,12 +84,6 @@ namespace
 {
 using namespace lacuna;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool Sanitized = true; // by red zones and shadows, which the system counts
-#else
-constexpr bool Sanitized = false;
-#endif
-
 constexpr int N = 384;
 
 /// A shell of bone in noise; slices of noise make every block mixed, which asks for most.
