@@ -74,12 +74,23 @@ void Parallel(const Callable& body)
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
+  return vtkLacunaExecution::RunTogether(algorithm, outputs,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkLacunaInputs::Check(algorithm);
+      body(execution);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+  const std::function<void(vtkLacunaExecution&)>& body)
+{
   try
   {
     const std::string error = ErrorOf(
       [&]
       {
-        vtkLacunaInputs::Check(algorithm);
         vtkLacunaExecution execution(algorithm);
         body(execution);
       });

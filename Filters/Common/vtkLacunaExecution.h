@@ -30,6 +30,11 @@ public:
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 
+  /// The same without a look at the inputs, for algorithms that all ranks make together: there an
+  /// input that is not sound on one rank is an error of all of them (vtkLacunaMeeting).
+  static int RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+    const std::function<void(vtkLacunaExecution&)>& body);
+
   /// Runs the body of algorithm's RequestInformation, with the same rules. After an exception the
   /// outputs are empty, have an empty whole extent and no remembered request, so that the next
   /// update starts afresh when the cause is mended.

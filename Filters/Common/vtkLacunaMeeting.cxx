@@ -5,6 +5,7 @@
 #include "lacunaRanks.h"
 #include "vtkAlgorithm.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 
 #include <cstdint>
@@ -28,15 +29,16 @@ void vtkLacunaMeeting::AskForWhole(
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaMeeting::Hold(const std::vector<double>& times, bool hasData,
+bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& times, bool hasData,
   const lacuna::Ranks& ranks, const std::function<void()>& body)
 {
-  const auto requireInput = [this]
+  const auto requireInput = [&]
   {
     if (!this->Refusal.empty())
     {
       throw std::runtime_error(this->Refusal);
     }
+    vtkLacunaInputs::Check(filter);
   };
   if (!this->Times.empty() && this->Times == times)
   {

@@ -32,11 +32,12 @@ public:
 
   /// For RequestData, on every rank, whatever it has and is asked for: calls body, in which ranks may
   /// meet, and returns true; or returns false when they have met at these times. Throws what body
-  /// throws, and std::runtime_error on all ranks when one was refused its input, or has data and another
-  /// one has none. Several ranks have the same error later at the same times, without body; one rank
+  /// throws, and std::runtime_error on all ranks when one was refused its input, has one that is not
+  /// sound (vtkLacunaInputs; so the filter runs by vtkLacunaExecution::RunTogether), or has data and
+  /// another one has none. Several ranks have the same error later at the same times, without body; one rank
   /// alone tries again.
-  bool Hold(const std::vector<double>& times, bool hasData, const lacuna::Ranks& ranks,
-    const std::function<void()>& body);
+  bool Hold(vtkAlgorithm* filter, const std::vector<double>& times, bool hasData,
+    const lacuna::Ranks& ranks, const std::function<void()>& body);
 
   /// The next Hold calls body.
   void Forget() { this->Times.clear(); }

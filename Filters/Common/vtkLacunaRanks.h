@@ -21,8 +21,6 @@ public:
   int GetNumber() const override;
   void Sum(std::uint32_t* values, std::int64_t count) const override;
   void Sum(std::uint64_t* values, std::int64_t count) const override;
-
-protected:
   bool AllFine(bool fine) const override;
 
 private:

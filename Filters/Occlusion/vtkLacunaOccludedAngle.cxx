@@ -388,7 +388,7 @@ int vtkLacunaOccludedAngle::RequestUpdateExtent(
 int vtkLacunaOccludedAngle::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
+  return vtkLacunaExecution::RunTogether(this, outputVector,
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* input = vtkImageData::GetData(inputVector[0]);
@@ -417,7 +417,7 @@ int vtkLacunaOccludedAngle::RequestData(
         ranks.Together([&] { run = std::make_unique<Run>(this, input, space, execution); });
         iterations = run->GetIterations(execution, ranks);
       };
-      if (!this->Meeting->Hold(times, hasData, ranks, make))
+      if (!this->Meeting->Hold(this, times, hasData, ranks, make))
       {
         iterations = this->Iterations;
       }

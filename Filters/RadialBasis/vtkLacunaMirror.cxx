@@ -367,12 +367,12 @@ int vtkLacunaMirror::RequestData(
       }
     };
     const auto times = vtkLacunaRequest::GetTimes(this, inputVector[0]->GetInformationObject(0));
-    if (!this->Meeting->Hold(times, hasData, ranks, [&] { make(true); }))
+    if (!this->Meeting->Hold(this, times, hasData, ranks, [&] { make(true); }))
     {
       make(false);
     }
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunTogether(this, outputVector, body);
 }
 
 //------------------------------------------------------------------------------
@@ -381,22 +381,37 @@ void vtkLacunaMirror::Make(vtkInformationVector** inputs, vtkInformationVector* 
 {
   vtkImageData* input = vtkImageData::GetData(inputs[0]);
   const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
-  if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+  const vtkLacunaRanks ranks;
+  bool isMap = false;
+  const auto check = [&]
   {
-    throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
-      "; it must be 0 (BestSymmetry) or 1 (Given)");
-  }
-  if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+    if (this->PlaneMethod != BestSymmetry && this->PlaneMethod != Given)
+    {
+      throw std::runtime_error("PlaneMethod is " + std::to_string(this->PlaneMethod) +
+        "; it must be 0 (BestSymmetry) or 1 (Given)");
+    }
+    if (this->Interpolation < BSpline || this->Interpolation > Nearest)
+    {
+      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+        "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+    }
+    if (vtkLacunaMirrored::IsMarked(input))
+    {
+      throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
+                               "the original");
+    }
+    isMap = IsDepthMap(input);
+  };
+  // What is wrong on one rank only may not keep the others waiting.
+  if (ranksMeet)
   {
-    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-      "; it must be 0 (BSpline), 1 (Linear) or 2 (Nearest)");
+    ranks.Together(check);
+    isMap = !ranks.AllFine(!isMap);
   }
-  if (vtkLacunaMirrored::IsMarked(input))
+  else
   {
-    throw std::runtime_error("the input is a mirror image already (field data Mirrored); mirror "
-                             "the original");
+    check();
   }
-  const bool isMap = IsDepthMap(input);
   vtkInformation* info = outputs->GetInformationObject(0);
   const int* extent = input->GetExtent();
   int piece[6];

@@ -34,6 +34,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -252,7 +253,7 @@ int vtkLacunaRBFImageWarp::RequestData(
       return 1;
     }
   }
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunTogether(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* image = vtkImageData::GetData(inputs[0]);
@@ -271,7 +272,7 @@ int vtkLacunaRBFImageWarp::RequestData(
           vtkLacunaRequest::GetTimes(this, inputs[port]->GetInformationObject(0));
         times.insert(times.end(), more.begin(), more.end());
       }
-      if (!this->Meeting->Hold(times, hasData, ranks, [&] { make(true); }))
+      if (!this->Meeting->Hold(this, times, hasData, ranks, [&] { make(true); }))
       {
         make(false);
       }
@@ -286,44 +287,61 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
   vtkImageData* image = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputs);
   const bool wanted = vtkLacunaRequest::IsWanted(outputs);
-  vtkLacunaVolumeDirection::Check(image);
   vtkDataSet* landmarks = vtkDataSet::GetData(inputs[1]);
   vtkDataSet* targets = vtkDataSet::GetData(inputs[2]);
-  vtkDataArray* scalars = image->GetPointData()->GetScalars();
-  if (!scalars)
+  vtkDataArray* scalars = nullptr;
+  std::optional<vtkLacunaVoxelSpace> found;
+  std::vector<std::array<double, 3>> from;
+  std::vector<std::array<double, 3>> to;
+  const auto prepare = [&]
   {
-    throw std::runtime_error("the image has no active point scalars");
-  }
-  if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
+    vtkLacunaVolumeDirection::Check(image);
+    scalars = image->GetPointData()->GetScalars();
+    if (!scalars)
+    {
+      throw std::runtime_error("the image has no active point scalars");
+    }
+    if (scalars->GetName() && !std::strcmp(scalars->GetName(), vtkLacunaDepthMap::MaskName))
+    {
+      throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
+                               "array that shall be warped as the active one");
+    }
+    if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
+    {
+      std::ostringstream message;
+      message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
+              << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
+              << "equal index";
+      throw std::runtime_error(message.str());
+    }
+    if (this->Kernel < ThinPlate || this->Kernel > Cubic)
+    {
+      throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+        "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
+    }
+    if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
+    {
+      throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
+        "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
+    }
+    if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
+    {
+      throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
+    }
+    found.emplace(image);
+    from = found->GetPoints(landmarks);
+    to = found->GetPoints(targets);
+  };
+  // What is wrong on one rank only may not keep the others waiting.
+  if (ranksMeet)
   {
-    throw std::runtime_error("the image's active scalars are its vtkValidPointMask; choose the "
-                             "array that shall be warped as the active one");
+    ranks.Together(prepare);
   }
-  if (landmarks->GetNumberOfPoints() != targets->GetNumberOfPoints())
+  else
   {
-    std::ostringstream message;
-    message << "there are " << landmarks->GetNumberOfPoints() << " landmarks but "
-            << targets->GetNumberOfPoints() << " targets; they must be as many, in pairs of "
-            << "equal index";
-    throw std::runtime_error(message.str());
+    prepare();
   }
-  if (this->Kernel < ThinPlate || this->Kernel > Cubic)
-  {
-    throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
-      "; it must be 0 (ThinPlate), 1 (Linear), 2 (Triharmonic) or 3 (Cubic)");
-  }
-  if (this->Interpolation < Nearest || this->Interpolation > CubicInterpolation)
-  {
-    throw std::runtime_error("Interpolation is " + std::to_string(this->Interpolation) +
-      "; it must be 0 (Nearest), 1 (Linear) or 2 (Cubic)");
-  }
-  if (!(this->Accuracy > 0) || !(this->Accuracy < 1))
-  {
-    throw std::runtime_error("Accuracy must be a number of voxels above 0 and below 1");
-  }
-  const vtkLacunaVoxelSpace space(image);
-  const std::vector<std::array<double, 3>> from = space.GetPoints(landmarks);
-  const std::vector<std::array<double, 3>> to = space.GetPoints(targets);
+  const vtkLacunaVoxelSpace& space = *found;
   lacuna::RadialBasisOptions options;
   options.Kernel = static_cast<lacuna::RadialKernel>(this->Kernel);
   options.Smoothing = this->Smoothing;
@@ -339,7 +357,7 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
       key.insert(key.end(), x.begin(), x.end());
     }
   }
-  const bool known = !ranksMeet || key == this->FoldsOf;
+  const bool known = !ranksMeet || ranks.AllFine(key == this->FoldsOf);
   if (known && !wanted)
   {
     return;

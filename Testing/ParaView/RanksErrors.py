@@ -3,6 +3,7 @@
 
 Run without arguments it is the test; it runs itself in pvbatch on two ranks, each of which has a time to end in.
 """
+import math
 import resource
 import signal
 import sys
@@ -28,12 +29,12 @@ def wavelet(edge):
     return source
 
 
-def landmarks(edge, turned):
+def landmarks(edge, turned, count=8):
     """Corners of a cube; turned: mirrored, which is an error of all ranks."""
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkPolyData
     points = vtkPoints()
-    for corner in range(8):
+    for corner in range(count):
         x, y, z = (edge * (0.2 + 0.6 * (corner >> axis & 1)) for axis in range(3))
         points.InsertNextPoint(edge - x if turned else x, y, z)
     data = vtkPolyData()
@@ -106,6 +107,38 @@ def refused(make, rank):
     assert not text and filter.GetOutput().GetNumberOfPoints() == 21**3, text
 
 
+def unsound(make, rank):
+    """What the second rank has is not sound, and then fewer than the first rank has."""
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    for wrong in ("spacing", "nothing", "short"):
+        source = wavelet(20)
+        filter = make(source, False)
+        source.Update()
+        image = vtkImageData()
+        image.DeepCopy(source.GetOutput())
+        if rank == 1 and wrong == "spacing":
+            image.SetSpacing(math.nan, 1, 1)
+        elif rank == 1 and wrong == "nothing":
+            image = vtkImageData()
+        elif rank == 1:
+            image.GetPointData().GetScalars().SetNumberOfTuples(100)
+        elif wrong == "nothing":
+            image.SetSpacing(1, math.nan, 1)
+        filter.SetInputData(image)
+        text = update(filter)
+        own = "sound" if rank == (0 if wrong == "nothing" else 1) else "another rank has stopped"
+        assert own in text or (wrong == "short" and "100" in text), (rank, wrong, text)
+
+
+def unpaired(rank):
+    """Landmarks that only one rank has, without partners."""
+    filter = warp(wavelet(20), False)
+    if rank == 1:
+        filter.SetInputData(2, landmarks(30, False, 7))
+    text = update(filter)
+    assert ("8 landmarks but 7 targets" if rank == 1 else "another rank has stopped") in text, text
+
+
 def again(make, rank):
     """An error on all ranks, of which one wants nothing; when VTK asks again only the other one comes."""
     source = wavelet(20)
@@ -139,11 +172,12 @@ def run():
     assert controller.GetNumberOfProcesses() == 2
     rank = controller.GetLocalProcessId()
     for make in (occluded_angle, mirror, warp):
-        for what in (refused, again, stopped):
+        for what in (refused, unsound, again, stopped):
             signal.alarm(SECONDS)  # ends a rank that waits for ever
             print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
             what(make, rank)
             controller.Barrier()
+    unpaired(rank)
     signal.alarm(0)
     print("rank done", flush=True)
 

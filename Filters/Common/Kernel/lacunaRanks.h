@@ -13,7 +13,7 @@ namespace lacuna
 /// the work, by its rank; its result must not depend on how many ranks there are. This class is one
 /// rank alone.
 ///
-/// Together and Sum wait for all ranks: each of them must call the same in the same order.
+/// Together, Sum and AllFine wait for all ranks: each of them must call the same in the same order.
 class Ranks
 {
 public:
@@ -31,7 +31,6 @@ public:
   virtual void Sum(std::uint32_t* values, std::int64_t count) const;
   virtual void Sum(std::uint64_t* values, std::int64_t count) const;
 
-protected:
   /// Whether fine is true on all ranks.
   virtual bool AllFine(bool fine) const { return fine; }
 };

@@ -9,6 +9,7 @@
 #include "vtkNew.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTrivialProducer.h"
 
 #include <functional>
 #include <new>
@@ -65,23 +66,25 @@ const std::vector<double> After{ 2, 0, 0 };
 
 void TestTimes()
 {
+  vtkNew<vtkTrivialProducer> filter; // without inputs
   Half ranks;
   vtkLacunaMeeting meeting;
   int calls = 0;
   const auto body = [&] { ++calls; };
-  LACUNA_CHECK(meeting.Hold(Before, true, ranks, body));
-  LACUNA_CHECK(!meeting.Hold(Before, true, ranks, body));
+  LACUNA_CHECK(meeting.Hold(filter, Before, true, ranks, body));
+  LACUNA_CHECK(!meeting.Hold(filter, Before, true, ranks, body));
   LACUNA_CHECK(calls == 1 && ranks.Met == 1);
-  LACUNA_CHECK(meeting.Hold(After, true, ranks, body));
+  LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, body));
   LACUNA_CHECK(calls == 2 && ranks.Met == 2);
   meeting.Forget();
-  LACUNA_CHECK(meeting.Hold(After, true, ranks, body));
+  LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, body));
   LACUNA_CHECK(calls == 3 && ranks.Met == 3);
 }
 
 // VTK asks again for what an error has left empty, on those ranks only that have been asked for a part.
 void TestErrors()
 {
+  vtkNew<vtkTrivialProducer> filter; // without inputs
   const std::vector<std::function<void()>> bodies{ [] { throw std::runtime_error("wrong"); },
     [] { throw std::bad_alloc(); }, [] { throw lacuna::Aborted(); } };
   const std::vector<std::string> texts{ "wrong", "out of memory", "it was stopped" };
@@ -89,41 +92,42 @@ void TestErrors()
   {
     Half ranks;
     vtkLacunaMeeting meeting;
-    LACUNA_CHECK(!ErrorOf([&] { meeting.Hold(Before, true, ranks, bodies[i]); }).empty());
+    LACUNA_CHECK(!ErrorOf([&] { meeting.Hold(filter, Before, true, ranks, bodies[i]); }).empty());
     LACUNA_CHECK(ranks.Met == 1);
     const std::string again =
-      ErrorOf([&] { meeting.Hold(Before, true, ranks, [] { LACUNA_CHECK(false); }); });
+      ErrorOf([&] { meeting.Hold(filter, Before, true, ranks, [] { LACUNA_CHECK(false); }); });
     LACUNA_CHECK_CONTAINS(again, texts[i]);
     LACUNA_CHECK_CONTAINS(again, "change a property");
     LACUNA_CHECK(ranks.Met == 1);
-    LACUNA_CHECK(meeting.Hold(After, true, ranks, [] {}));
+    LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, [] {}));
     LACUNA_CHECK(ranks.Met == 2);
 
     // one rank alone waits for nobody, and what was wrong may be right now
     const lacuna::Ranks alone;
     vtkLacunaMeeting own;
-    LACUNA_CHECK(!ErrorOf([&] { own.Hold(Before, true, alone, bodies[i]); }).empty());
-    LACUNA_CHECK(own.Hold(Before, true, alone, [] {}));
+    LACUNA_CHECK(!ErrorOf([&] { own.Hold(filter, Before, true, alone, bodies[i]); }).empty());
+    LACUNA_CHECK(own.Hold(filter, Before, true, alone, [] {}));
   }
 }
 
 void TestOtherRank()
 {
+  vtkNew<vtkTrivialProducer> filter; // without inputs
   Half ranks;
   vtkLacunaMeeting meeting;
   const auto never = [] { LACUNA_CHECK(false); };
   ranks.OtherIsFine = false;
   LACUNA_CHECK_CONTAINS(
-    ErrorOf([&] { meeting.Hold(Before, true, ranks, never); }), "another rank has stopped");
+    ErrorOf([&] { meeting.Hold(filter, Before, true, ranks, never); }), "another rank has stopped");
   ranks.OtherIsFine = true;
   ranks.OtherHasData = false;
   LACUNA_CHECK_CONTAINS(
-    ErrorOf([&] { meeting.Hold(After, true, ranks, never); }), "another rank has no input");
+    ErrorOf([&] { meeting.Hold(filter, After, true, ranks, never); }), "another rank has no input");
   ranks.OtherHasData = true;
   LACUNA_CHECK_CONTAINS(
-    ErrorOf([&] { meeting.Hold(Before, false, ranks, never); }), "this rank has no input");
+    ErrorOf([&] { meeting.Hold(filter, Before, false, ranks, never); }), "this rank has no input");
   ranks.OtherHasData = false;
-  LACUNA_CHECK(meeting.Hold(After, false, ranks, [] {})); // empty in, empty out
+  LACUNA_CHECK(meeting.Hold(filter, After, false, ranks, [] {})); // empty in, empty out
 }
 
 // An input that does not fit: nobody loads it, and all ranks hear of it when they meet.
@@ -141,7 +145,7 @@ void TestRefusal()
   const int* asked = info->Get(SDDP::UPDATE_EXTENT());
   LACUNA_CHECK(asked[0] > asked[1]);
   const std::string error =
-    ErrorOf([&] { meeting.Hold(Before, false, ranks, [] { LACUNA_CHECK(false); }); });
+    ErrorOf([&] { meeting.Hold(filter, Before, false, ranks, [] { LACUNA_CHECK(false); }); });
   LACUNA_CHECK_CONTAINS(error, "32000000000000 bytes");
   LACUNA_CHECK(ranks.Met == 1);
 
@@ -150,14 +154,15 @@ void TestRefusal()
   meeting.AskForWhole(filter, filter->GetExecutive()->GetInputInformation());
   asked = info->Get(SDDP::UPDATE_EXTENT());
   LACUNA_CHECK(asked[0] == 0 && asked[1] == 9);
-  LACUNA_CHECK(meeting.Hold(After, true, ranks, [] {}));
+  LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, [] {}));
 
   // asked alone for another part later: the others do not wait
   source->SetWholeExtent(0, 19999, 0, 19999, 0, 19999);
   filter->UpdateInformation();
   meeting.AskForWhole(filter, filter->GetExecutive()->GetInputInformation());
   const int met = ranks.Met;
-  LACUNA_CHECK_CONTAINS(ErrorOf([&] { meeting.Hold(After, false, ranks, [] {}); }), "bytes");
+  LACUNA_CHECK_CONTAINS(
+    ErrorOf([&] { meeting.Hold(filter, After, false, ranks, [] {}); }), "bytes");
   LACUNA_CHECK(ranks.Met == met);
 }
 }
