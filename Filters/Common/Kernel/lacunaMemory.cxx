@@ -37,6 +37,11 @@ double GetFreeAddressSpace()
   return std::max(0.0, GetAddressSpace() - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
 }
 
+double GetMachine()
+{
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 // What Linux says can be had without swapping.
 double GetFreeMachine()
 {
@@ -55,15 +60,13 @@ double GetFreeMachine()
 
 double GetPhysicalMemory()
 {
-  const double machine =
-    static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::min({ machine, ReadControlGroupMemory().Limit, GetAddressSpace() });
+  return std::min({ GetMachine(), ReadControlGroupMemory().Limit, GetAddressSpace() });
 }
 
 double GetAvailableMemory()
 {
-  return std::min({ GetPhysicalMemory(), GetFreeMachine(), ReadControlGroupMemory().Free,
-    GetFreeAddressSpace() });
+  return std::min(
+    { GetMachine(), GetFreeMachine(), ReadControlGroupMemory().Free, GetFreeAddressSpace() });
 }
 
 std::string DescribeBytes(double bytes)
