@@ -67,13 +67,25 @@ It is research software, not a medical device.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME lacuna-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-# besides paraview-dev, what ParaView's CMake package looks for with the components that Lacuna's names
+# besides paraview-dev, what ParaView's CMake package looks for with the components that Lacuna's names;
+# then what kernels are linked with
+set(kernel_libraries libopenblas-dev)
+if (LACUNA_HAS_OPENIGTLINK)
+  list(APPEND kernel_libraries libopenigtlink-dev)
+endif ()
+if (LACUNA_HAS_SERIALPORT)
+  list(APPEND kernel_libraries libserialport-dev)
+endif ()
+if (LACUNA_HAS_FFMPEG)
+  list(APPEND kernel_libraries libavformat-dev libavcodec-dev libswscale-dev libavutil-dev)
+endif ()
 math(EXPR next_paraview "${ParaView_VERSION_MINOR} + 1")
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
   "lacuna (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})"
   "paraview-dev (>= ${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR})"
   "paraview-dev (<< ${ParaView_VERSION_MAJOR}.${next_paraview}~)"
-  libopenmpi-dev libdouble-conversion-dev libpugixml-dev zlib1g-dev)
+  libopenmpi-dev libdouble-conversion-dev libpugixml-dev zlib1g-dev
+  ${kernel_libraries})
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, lacuna-doc")
 set(CPACK_DEBIAN_DEV_DESCRIPTION
 "ParaView plugin: C++ headers and CMake package of Lacuna

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # cmake -DBUILD=... -DSOURCE=... -DEXAMPLE=... -DWORK=... [-DPVPYTHON=...] -P embed.cmake
 # Configures, builds and runs the example that embeds Lacuna: first against the build tree, then
-# against an installation that was moved since, a proof that the package is relocatable. With
-# PVPYTHON, ParaView's Python loads the plugin from there, too.
+# against an installation that was moved since, a proof that the package is relocatable; then a program of
+# kernels alone against that. With PVPYTHON, ParaView's Python loads the plugin from there, too.
 function (run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if (NOT result EQUAL 0)
@@ -37,6 +37,12 @@ foreach (text IN LISTS texts)
   endif ()
 endforeach ()
 build_and_run(of-installation "${WORK}/moved")
+file(GLOB_RECURSE config "${WORK}/moved/LacunaConfig.cmake")
+get_filename_component(config "${config}" DIRECTORY)
+run("${CMAKE_COMMAND}" -GNinja -S "${SOURCE}/kernels" -B "${WORK}/kernels" "-DLacuna_DIR=${config}"
+  -DCMAKE_BUILD_TYPE=Release)
+run("${CMAKE_COMMAND}" --build "${WORK}/kernels")
+run("${WORK}/kernels/Kernels" "${WORK}/kernels/calibration.xml")
 execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/of-build/embedding.png"
   "${WORK}/of-installation/embedding.png" RESULT_VARIABLE differ)
 if (differ)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs, uses and purges the Debian packages beside this script (Testing/Tools/chroot.sh FOLDER
 # package runs it in a clean Debian, as root).
-#   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/
+#   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/, kernels/
 set -euo pipefail
 cd "$(dirname "$0")"
 version=$1
@@ -16,7 +16,7 @@ files() {
 }
 as_user() { (cd "$work" && setpriv --reuid=nobody --regid=nogroup --clear-groups env HOME="$work" "$@"); }
 work=$(mktemp -d)
-cp -r 18-embedding installed.py in_window.py "$work"
+cp -r 18-embedding kernels installed.py in_window.py "$work"
 chown -R nobody "$work"
 apt-get -qq update
 
@@ -33,6 +33,9 @@ as_user cmake -S 18-embedding -B embedding >"$work/cmake.log" || { cat "$work/cm
 as_user cmake --build embedding >"$work/build.log" || { cat "$work/build.log"; exit 1; }
 as_user embedding/Embedding "$work"
 test "$(stat -c %s "$work/embedding.igs")" -gt 10000
+as_user cmake -S kernels -B of-kernels >"$work/cmake.log" || { cat "$work/cmake.log"; exit 1; }
+as_user cmake --build of-kernels >"$work/build.log" || { cat "$work/build.log"; exit 1; }
+as_user of-kernels/Kernels "$work/calibration.xml"
 
 echo "== in ParaView's window"
 as_user timeout 120 xvfb-run -a -s -noreset paraview --script=in_window.py >"$work/window.log" 2>&1 || cat "$work/window.log"

@@ -76,7 +76,8 @@ case $what in
     version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
     rm -rf "$folder/packages"
     cp -r "$source/Testing/Package" "$folder/packages"
-    cp -r "$source/Documentation/Examples/18-embedding" "$source/build/package"/lacuna*.deb "$folder/packages"
+    cp -r "$source/Documentation/Examples/18-embedding" "$source/Testing/Embedding/kernels" \
+      "$source/build/package"/lacuna*.deb "$folder/packages"
     inside "/packages/check.sh $version"
     ;;
   *)
