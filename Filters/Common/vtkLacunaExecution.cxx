@@ -71,6 +71,13 @@ void Parallel(const Callable& body)
 }
 
 //------------------------------------------------------------------------------
+vtkLacunaExecution::vtkLacunaExecution(vtkAlgorithm* algorithm)
+  : Algorithm(algorithm)
+{
+  vtkLacunaForgetAbort(algorithm);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
@@ -113,10 +120,18 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
 int vtkLacunaExecution::RunInformation(
   vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body)
 {
-  const std::string error = ErrorOf(body);
-  if (error.empty())
+  std::string error;
+  try
   {
-    return 1;
+    error = ErrorOf(body);
+    if (error.empty())
+    {
+      return 1;
+    }
+  }
+  catch (const lacuna::Aborted&)
+  {
+    // not an error, see RunTogether: there is nothing, as it was before
   }
   EmptyOutputs(outputs);
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
@@ -127,6 +142,10 @@ int vtkLacunaExecution::RunInformation(
     info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
     info->Remove(SDDP::UPDATE_EXTENT());
     info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
+  }
+  if (error.empty())
+  {
+    return 1;
   }
   vtkErrorWithObjectMacro(algorithm, << error);
   return 0;

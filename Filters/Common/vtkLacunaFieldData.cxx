@@ -5,6 +5,7 @@
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkNew.h"
 
 #include <sstream>
@@ -63,7 +64,7 @@ void Set(
   vtkNew<vtkDoubleArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()) / components);
   for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
   {
     array->SetValue(i, values[i]);

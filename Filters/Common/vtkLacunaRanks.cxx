@@ -13,13 +13,15 @@ namespace
 constexpr std::int64_t Chunk = 1 << 22; // MPI counts in int, and the copy shall be small
 
 template <class Value>
-void SumIn(vtkMultiProcessController* controller, Value* values, std::int64_t count)
+void SumIn(const vtkLacunaRanks& ranks, vtkMultiProcessController* controller, Value* values,
+  std::int64_t count)
 {
-  if (!controller || controller->GetNumberOfProcesses() == 1)
+  if (ranks.GetNumber() == 1)
   {
     return;
   }
-  std::vector<Value> own(std::min(count, Chunk));
+  std::vector<Value> own;
+  ranks.Together([&] { own.resize(std::min(count, Chunk)); });
   for (std::int64_t first = 0; first < count; first += Chunk)
   {
     const std::int64_t size = std::min(Chunk, count - first);
@@ -51,13 +53,13 @@ int vtkLacunaRanks::GetNumber() const
 //------------------------------------------------------------------------------
 void vtkLacunaRanks::Sum(std::uint32_t* values, std::int64_t count) const
 {
-  SumIn(this->Controller, values, count);
+  SumIn(*this, this->Controller, values, count);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRanks::Sum(std::uint64_t* values, std::int64_t count) const
 {
-  SumIn(this->Controller, values, count);
+  SumIn(*this, this->Controller, values, count);
 }
 
 //------------------------------------------------------------------------------

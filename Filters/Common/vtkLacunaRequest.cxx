@@ -23,6 +23,11 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+bool IsEmpty(const int extent[6])
+{
+  return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
 // Throws when the whole of an announced image does not fit into the memory.
 void RequireMemoryFor(vtkInformation* input)
 {
@@ -116,22 +121,34 @@ bool vtkLacunaRequest::IsFirst(vtkInformationVector* outputs)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaRequest::ForgetEmpty(vtkInformationVector* outputs)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* info = outputs->GetInformationObject(i);
+    const int* whole = info->Get(SDDP::WHOLE_EXTENT());
+    if (whole && IsEmpty(whole))
+    {
+      info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 {
   if (!vtkImageData::GetData(outputs, 0))
   {
     return IsFirst(outputs);
   }
-  const auto isEmpty = [](const int* extent)
-  { return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5]; };
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* info = outputs->GetInformationObject(i);
     const int* whole = info->Get(SDDP::WHOLE_EXTENT());
     const int* extent = info->Get(SDDP::UPDATE_EXTENT());
-    const bool asked = extent && !isEmpty(extent);
+    const bool asked = extent && !IsEmpty(extent);
     // of a first image that is empty as a whole there may be something to say
-    const bool unknown = i == 0 && (!whole || !extent || isEmpty(whole));
+    const bool unknown = i == 0 && (!whole || !extent || IsEmpty(whole));
     if (vtkImageData::GetData(info) && (asked || unknown))
     {
       return true;

@@ -49,6 +49,10 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int exten
 VTKLACUNAFILTERSCOMMON_EXPORT void WholeOnFirst(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
+/// For outputs whose whole extent may be empty for the time being, as after a stop while it was sought:
+/// VTK would go on to ask for nothing, whatever is announced then.
+VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);
+
 /// What Whole asks for when nothing is wanted.
 VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
 

@@ -16,4 +16,15 @@ inline bool vtkLacunaCheckAbort(vtkAlgorithm* algorithm)
   return algorithm->GetAbortExecute() != 0;
 #endif
 }
+
+/// Forgets that the last execution was stopped, which VTK itself does only before the next one: what
+/// asks vtkLacunaCheckAbort earlier would be stopped, too.
+inline void vtkLacunaForgetAbort(vtkAlgorithm* algorithm)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  algorithm->SetAbortOutput(false);
+#else
+  static_cast<void>(algorithm);
+#endif
+}
 #endif

@@ -4,12 +4,11 @@
 #include "lacunaDefectModel.h"
 #include "lacunaParameterText.h"
 #include "lacunaReliefSurface.h"
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
@@ -19,6 +18,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaSolidMesh.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -78,30 +78,6 @@ struct Input
 };
 
 //------------------------------------------------------------------------------
-void SetMesh(vtkPolyData* output, const lacuna::DefectModel& model, const lacuna::Matrix4& toWorld)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(model.Points.size()));
-  for (std::size_t k = 0; k < model.Points.size(); ++k)
-  {
-    points->SetPoint(static_cast<vtkIdType>(k), toWorld.Point(model.Points[k]).data());
-  }
-  vtkNew<vtkCellArray> triangles;
-  vtkNew<vtkUnsignedCharArray> faces;
-  faces->SetName(vtkLacunaDefectModel::ModelFaceName);
-  for (std::size_t k = 0; k < model.Triangles.size(); ++k)
-  {
-    const auto& t = model.Triangles[k];
-    triangles->InsertNextCell({ t[0], t[1], t[2] });
-    faces->InsertNextValue(static_cast<unsigned char>(model.Faces[k]));
-  }
-  output->SetPoints(points);
-  output->SetPolys(triangles);
-  output->GetCellData()->SetScalars(faces);
-}
-
-//------------------------------------------------------------------------------
 // The pixels of the upper side; rows run towards +y, which is up for the viewer.
 void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
   const lacuna::DefectScene& scene, const lacuna::Matrix4& toPress)
@@ -110,8 +86,11 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
   output->SetDimensions(static_cast<int>(size.Columns), static_cast<int>(size.Rows), 1);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
+  vtkLacunaArrays::SetNumberOfPoints(points, size.Columns * size.Rows);
   vtkNew<vtkUnsignedCharArray> faces;
   faces->SetName(vtkLacunaDefectModel::ModelFaceName);
+  vtkLacunaArrays::SetNumberOfTuples(faces, size.Columns * size.Rows);
+  vtkIdType point = 0;
   for (std::int64_t j = size.Rows - 1; j >= 0; --j)
   {
     for (std::int64_t i = 0; i < size.Columns; ++i)
@@ -119,8 +98,8 @@ void SetTop(vtkStructuredGrid* output, const lacuna::DefectModel& model,
       const std::int64_t k = i + size.Columns * j;
       const lacuna::Vec3 p{ scene.Spacing[0] * static_cast<double>(model.Column + i - scene.Column),
         scene.Spacing[1] * static_cast<double>(model.Row + j - scene.Row), model.Top[k] };
-      points->InsertNextPoint(toPress.Point(p).data());
-      faces->InsertNextValue(static_cast<unsigned char>(model.TopFaces[k]));
+      points->SetPoint(point, toPress.Point(p).data());
+      faces->SetValue(point++, static_cast<unsigned char>(model.TopFaces[k]));
     }
   }
   output->SetPoints(points);
@@ -221,7 +200,7 @@ int vtkLacunaDefectModel::RequestData(
       lacuna::Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 },
         { middle(model.Column, input.Scene.Column, model.TopSize.Columns, spacing[0]),
           middle(model.Row, input.Scene.Row, model.TopSize.Rows, spacing[1]), model.Highest });
-    SetMesh(solid, model, input.ToWorld);
+    vtkLacunaSolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
     SetTop(top, model, input.Scene, fromPress.Inverse());
 
     vtkLacunaCoordinates::MarkPress(map, top);

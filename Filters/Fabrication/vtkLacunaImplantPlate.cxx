@@ -3,25 +3,22 @@
 
 #include "lacunaImplantPlate.h"
 #include "lacunaParameterText.h"
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFittedPart.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
-#include "vtkNew.h"
+#include "vtkLacunaSolidMesh.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,33 +127,6 @@ std::vector<lacuna::Vec3> GetMarkedHoles(vtkPointSet* marks, double distance)
     holes.push_back((1 / static_cast<double>(cluster.size())) * sum);
   }
   return holes;
-}
-
-//------------------------------------------------------------------------------
-void SetMesh(vtkPolyData* output, const lacuna::ImplantPlate& plate, const lacuna::Matrix4& toWorld)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(plate.Points.size()));
-  for (std::size_t k = 0; k < plate.Points.size(); ++k)
-  {
-    points->SetPoint(static_cast<vtkIdType>(k), toWorld.Point(plate.Points[k]).data());
-  }
-  vtkNew<vtkCellArray> triangles;
-  triangles->AllocateExact(static_cast<vtkIdType>(plate.Triangles.size()),
-    3 * static_cast<vtkIdType>(plate.Triangles.size()));
-  vtkNew<vtkUnsignedCharArray> faces;
-  faces->SetName(vtkLacunaImplantPlate::PlateFaceName);
-  faces->SetNumberOfTuples(static_cast<vtkIdType>(plate.Faces.size()));
-  for (std::size_t k = 0; k < plate.Triangles.size(); ++k)
-  {
-    const auto& t = plate.Triangles[k];
-    triangles->InsertNextCell({ t[0], t[1], t[2] });
-    faces->SetValue(static_cast<vtkIdType>(k), static_cast<unsigned char>(plate.Faces[k]));
-  }
-  output->SetPoints(points);
-  output->SetPolys(triangles);
-  output->GetCellData()->SetScalars(faces);
 }
 }
 
@@ -299,7 +269,7 @@ int vtkLacunaImplantPlate::RequestData(
                       "so its rim lies within the bone; use Side Outward, or prepare a seat");
     }
 
-    SetMesh(output, plate, toWorld);
+    vtkLacunaSolidMesh::Set(output, plate, toWorld, PlateFaceName);
     std::vector<double> centers;
     std::vector<double> axes;
     std::vector<double> bone;

@@ -7,10 +7,10 @@
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -26,6 +26,7 @@
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
+#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ vtkSmartPointer<vtkPoints> MakePoints(const std::vector<lacuna::Vec3>& source)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(source.size()));
+  vtkLacunaArrays::SetNumberOfPoints(points, static_cast<vtkIdType>(source.size()));
   double* to = vtkDoubleArray::SafeDownCast(points->GetData())->GetPointer(0);
   for (const lacuna::Vec3& p : source)
   {
@@ -60,7 +61,7 @@ Array* AddArray(vtkPolyData* output, const char* name)
 {
   vtkNew<Array> array;
   array->SetName(name);
-  array->SetNumberOfTuples(output->GetNumberOfPoints());
+  vtkLacunaArrays::SetNumberOfTuples(array, output->GetNumberOfPoints());
   output->GetPointData()->AddArray(array);
   return array;
 }
@@ -145,9 +146,9 @@ void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
   output->GetPointData()->SetActiveScalars("LeftOver");
   const vtkIdType columns = map.Size.Columns;
   const vtkIdType cells = 2 * (columns - 1) * (map.Size.Rows - 1);
-  vtkNew<vtkIdTypeArray> connectivity;
-  connectivity->SetNumberOfValues(3 * cells);
-  vtkIdType* to = connectivity->GetPointer(0);
+  vtkNew<vtkTypeInt64Array> corners;
+  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * cells);
+  vtkTypeInt64* to = corners->GetPointer(0);
   // seen from the mill's side they turn to the left
   const lacuna::Vec3 a = map.Points[1] - map.Points[0];
   const lacuna::Vec3 b = map.Points[columns] - map.Points[0];
@@ -167,15 +168,7 @@ void SetMap(vtkPolyData* output, const lacuna::LeftOverMap& map)
       }
     }
   }
-  vtkNew<vtkIdTypeArray> offsets;
-  offsets->SetNumberOfValues(cells + 1);
-  for (vtkIdType k = 0; k <= cells; ++k)
-  {
-    offsets->SetValue(k, 3 * k);
-  }
-  vtkNew<vtkCellArray> triangles;
-  triangles->SetData(offsets, connectivity);
-  output->SetPolys(triangles);
+  vtkLacunaArrays::SetTriangles(output, corners);
 }
 
 //------------------------------------------------------------------------------

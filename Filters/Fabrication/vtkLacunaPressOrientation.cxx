@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -212,16 +213,16 @@ void SetNodes(vtkStructuredGrid* output, const lacuna::PressSurface& surface, in
   const auto count = static_cast<vtkIdType>(surface.Points.size());
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(count);
+  vtkLacunaArrays::SetNumberOfPoints(points, count);
   vtkNew<vtkUnsignedCharArray> regions;
   regions->SetName(vtkLacunaPressOrientation::PressRegionName);
-  regions->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(regions, count);
   vtkNew<vtkCharArray> defect;
   defect->SetName(vtkLacunaPressOrientation::DefectMaskName);
-  defect->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(defect, count);
   vtkNew<vtkDoubleArray> angles;
   angles->SetName(vtkLacunaPressOrientation::WallAngleName);
-  angles->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(angles, count);
   for (vtkIdType k = 0; k < count; ++k)
   {
     points->SetPoint(k, surface.Points[k].data());
@@ -257,6 +258,7 @@ int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* inf
 int vtkLacunaPressOrientation::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  vtkLacunaRequest::ForgetEmpty(outputVector);
   vtkLacunaRequest::WholeOnFirst(this, inputVector[0]->GetInformationObject(0), outputVector);
   return 1;
 }

@@ -3,6 +3,7 @@
 
 #include "lacunaParameterText.h"
 #include "vtkDoubleArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -38,7 +39,7 @@ void vtkLacunaPressPosition::Record(vtkPointSet* data)
   vtkNew<vtkDoubleArray> positions;
   positions->SetName(ArrayName);
   positions->SetNumberOfComponents(4);
-  positions->SetNumberOfTuples(data->GetNumberOfPoints());
+  vtkLacunaArrays::SetNumberOfTuples(positions, data->GetNumberOfPoints());
   for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
   {
     double p[4] = { 0, 0, 0, 1 };

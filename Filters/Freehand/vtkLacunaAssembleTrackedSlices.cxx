@@ -155,8 +155,14 @@ int vtkLacunaAssembleTrackedSlices::RequestInformation(
       out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
       out->Remove(vtkDataObject::DIRECTION());
       out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      if (vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-            in, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS))
+      vtkImageData* stack = vtkImageData::GetData(in);
+      if (stack && stack->GetNumberOfPoints() > 0 && !stack->GetPointData()->GetScalars())
+      {
+        // VTK announces double where no array is active; the only one is taken, whatever its type
+        out->Remove(vtkDataObject::POINT_DATA_VECTOR());
+      }
+      else if (vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+                 in, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS))
       {
         vtkDataObject::SetPointDataActiveScalarInfo(
           out, scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()), 1);

@@ -5,6 +5,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -205,11 +206,12 @@ void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, v
   map->SetExtent(0, grid.Extent[1], 0, grid.Extent[3], 0, 0);
   vtkNew<vtkDoubleArray> error;
   error->SetName("ExpectedError");
+  vtkLacunaArrays::SetNumberOfTuples(error, map->GetNumberOfPoints());
   for (vtkIdType i = 0; i < map->GetNumberOfPoints(); ++i)
   {
     double pixel[3];
     map->GetPoint(i, pixel);
-    error->InsertNextValue(found.GetExpectedError({ pixel[0], pixel[1] }));
+    error->SetValue(i, found.GetExpectedError({ pixel[0], pixel[1] }));
   }
   map->GetPointData()->SetScalars(error);
 }

@@ -9,6 +9,7 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
@@ -52,7 +53,7 @@ vtkSmartPointer<Array> MakeArray(const char* name, vtkIdType count, const char* 
 {
   auto array = vtkSmartPointer<Array>::New();
   array->SetName(name);
-  array->SetNumberOfValues(count);
+  vtkLacunaArrays::SetNumberOfTuples(array, count);
   if (unit)
   {
     array->SetComponentName(0, unit);
@@ -310,8 +311,8 @@ void vtkLacunaSlicePlaneBuilder::MakePolygons(
   const vtkIdType count = perSlice * static_cast<vtkIdType>(firstPoints.size());
   vtkNew<Array> offsets;
   vtkNew<Array> points;
-  offsets->SetNumberOfValues(count + 1);
-  points->SetNumberOfValues(4 * count);
+  vtkLacunaArrays::SetNumberOfTuples(offsets, count + 1);
+  vtkLacunaArrays::SetNumberOfTuples(points, 4 * count);
   offsets->SetValue(count, static_cast<Value>(4 * count));
   execution.For(static_cast<std::int64_t>(firstPoints.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
@@ -406,7 +407,7 @@ void vtkLacunaSlicePlaneBuilder::Build(vtkPolyData* output, vtkLacunaExecution& 
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
-  points->SetNumberOfPoints(this->NumberOfPoints);
+  vtkLacunaArrays::SetNumberOfPoints(points, this->NumberOfPoints);
   auto* coordinates = static_cast<float*>(points->GetVoidPointer(0));
   const bool grey = !this->Settings.OutlineOnly;
   const bool calibrated = this->Calibrated;

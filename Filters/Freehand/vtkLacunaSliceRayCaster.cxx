@@ -14,6 +14,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -270,14 +271,14 @@ int vtkLacunaSliceRayCaster::RequestData(
         static_cast<double>(pixels) * static_cast<double>(arrays + work));
       vtkNew<vtkDoubleArray> depth;
       depth->SetName(vtkLacunaDepthMap::DepthName);
-      depth->SetNumberOfTuples(pixels);
+      vtkLacunaArrays::SetNumberOfTuples(depth, pixels);
       vtkNew<vtkCharArray> mask;
       mask->SetName(vtkLacunaDepthMap::MaskName);
-      mask->SetNumberOfTuples(pixels);
+      vtkLacunaArrays::SetNumberOfTuples(mask, pixels);
       vtkNew<vtkFloatArray> normals;
       normals->SetName(vtkLacunaDepthMap::NormalsName);
       normals->SetNumberOfComponents(3);
-      normals->SetNumberOfTuples(pixels);
+      vtkLacunaArrays::SetNumberOfTuples(normals, pixels);
       if (pixels > 0)
       {
         const std::array<int, 4> part{ extent[0], extent[1], extent[2], extent[3] };

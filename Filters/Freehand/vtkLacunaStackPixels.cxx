@@ -5,6 +5,7 @@
 #include "lacunaMemory.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkPointData.h"
 
@@ -77,7 +78,7 @@ vtkSmartPointer<vtkDataArray> Allocate(vtkDataArray* pixels, const std::array<in
   lacuna::RequireMemory("the stack of slices", size * pixels->GetDataTypeSize());
   vtkSmartPointer<vtkDataArray> grey;
   grey.TakeReference(vtkDataArray::CreateDataArray(pixels->GetDataType()));
-  grey->SetNumberOfTuples(static_cast<vtkIdType>(size));
+  vtkLacunaArrays::SetNumberOfTuples(grey, static_cast<vtkIdType>(size));
   return grey;
 }
 

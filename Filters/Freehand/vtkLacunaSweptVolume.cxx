@@ -11,6 +11,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaInputs.h"
@@ -283,13 +284,13 @@ int vtkLacunaSweptVolume::RequestData(
       vtkSmartPointer<vtkDataArray> intensity;
       intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
       intensity->SetName("Intensity");
-      intensity->SetNumberOfTuples(size);
+      vtkLacunaArrays::SetNumberOfTuples(intensity, size);
       vtkNew<vtkUnsignedIntArray> contributions;
       contributions->SetName("Contributions");
-      contributions->SetNumberOfTuples(size);
+      vtkLacunaArrays::SetNumberOfTuples(contributions, size);
       vtkNew<vtkCharArray> mask;
       mask->SetName("vtkValidPointMask");
-      mask->SetNumberOfTuples(size);
+      vtkLacunaArrays::SetNumberOfTuples(mask, size);
 
       if (HasPoints(updateExtent))
       {

@@ -11,6 +11,7 @@
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
@@ -70,9 +71,9 @@ public:
     vtkLacunaOcclusionInput::CutSpace(
       *this->Field, this->Input, this->Space, self->ReconstructionSpace);
     this->Angle->SetName("OccludedAngle");
-    this->Angle->SetNumberOfTuples(this->Grid.GetSize());
+    vtkLacunaArrays::SetNumberOfTuples(this->Angle, this->Grid.GetSize());
     this->Object->SetName("Object");
-    this->Object->SetNumberOfTuples(this->Grid.GetSize());
+    vtkLacunaArrays::SetNumberOfTuples(this->Object, this->Grid.GetSize());
   }
 
   /// The last iteration, or all of them when they are kept.

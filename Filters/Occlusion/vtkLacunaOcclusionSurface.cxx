@@ -12,6 +12,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaOccludedAngle.h"
@@ -151,11 +152,11 @@ void SetPoints(vtkPolyData* surface, const std::vector<Point>& points,
 {
   vtkNew<vtkPoints> moved;
   moved->SetDataTypeToFloat();
-  moved->SetNumberOfPoints(static_cast<vtkIdType>(points.size()));
+  vtkLacunaArrays::SetNumberOfPoints(moved, static_cast<vtkIdType>(points.size()));
   vtkNew<vtkFloatArray> array;
   array->SetName("Normals");
   array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(points.size()));
+  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     double index[3];

@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkImplicitSelectionLoop.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -97,8 +98,8 @@ private:
     const auto count = static_cast<vtkIdType>(this->Pixels.size());
     const lacuna::MapGrid& grid = this->Input.Grid;
     this->Points->SetNumberOfComponents(3);
-    this->Points->SetNumberOfTuples(count);
-    this->Values->SetNumberOfTuples(count);
+    vtkLacunaArrays::SetNumberOfTuples(this->Points, count);
+    vtkLacunaArrays::SetNumberOfTuples(this->Values, count);
     for (vtkIdType k = 0; k < count; ++k)
     {
       const std::size_t i = this->Pixels[k];

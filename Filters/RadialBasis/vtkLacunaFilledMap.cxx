@@ -8,6 +8,7 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkNew.h"
@@ -28,7 +29,7 @@ void AddArray(vtkImageData* map, const char* name, const std::vector<double>& va
 {
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()));
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   map->GetPointData()->AddArray(array);
 }
@@ -37,7 +38,7 @@ void AddMask(vtkImageData* map, const char* name, const lacuna::MapMask& mask)
 {
   vtkNew<vtkCharArray> array;
   array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(mask.size()));
+  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(mask.size()));
   std::copy(mask.begin(), mask.end(), array->GetPointer(0));
   map->GetPointData()->AddArray(array);
 }
@@ -49,7 +50,7 @@ vtkSmartPointer<vtkAbstractArray> Pick(
   auto picked = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
   picked->SetName(array->GetName());
   picked->SetNumberOfComponents(array->GetNumberOfComponents());
-  picked->SetNumberOfTuples(static_cast<vtkIdType>(nearest.size()));
+  vtkLacunaArrays::SetNumberOfTuples(picked, static_cast<vtkIdType>(nearest.size()));
   auto* numbers = vtkDataArray::SafeDownCast(picked);
   const bool real =
     numbers && (numbers->GetDataType() == VTK_FLOAT || numbers->GetDataType() == VTK_DOUBLE);

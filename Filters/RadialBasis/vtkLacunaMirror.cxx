@@ -16,6 +16,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -59,7 +60,7 @@ vtkSmartPointer<Array> MakeArray(
   auto array = vtkSmartPointer<Array>::New();
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
+  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()) / components);
   std::copy(values.begin(), values.end(), array->GetPointer(0));
   return array;
 }
@@ -180,7 +181,7 @@ public:
     image.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
     image->SetName(
       (std::string("Mirrored") + (scalars->GetName() ? scalars->GetName() : "")).c_str());
-    image->SetNumberOfTuples(static_cast<vtkIdType>(mirrored.Valid.size()));
+    vtkLacunaArrays::SetNumberOfTuples(image, static_cast<vtkIdType>(mirrored.Valid.size()));
     std::memcpy(image->GetVoidPointer(0), mirrored.Voxels.data(), mirrored.Voxels.size());
     vtkPointData* points = output->GetPointData();
     points->Initialize();

@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaInputs.h"
@@ -204,7 +205,7 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
     count *= range[1] - range[0];
   }
   image->SetNumberOfComponents(components);
-  image->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(image, count);
   std::vector<double> one(components > 1 ? count : 0);
   for (int k = 0; k < components; ++k)
   {

@@ -5,6 +5,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkImageInterpolator.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaRBFImageWarp.h"
 #include "vtkPointData.h"
@@ -114,9 +115,9 @@ vtkLacunaWarpedPart::vtkLacunaWarpedPart(vtkImageData* image, vtkDataArray* scal
   }
   this->Warped->SetName(scalars->GetName());
   this->Warped->SetNumberOfComponents(this->Components);
-  this->Warped->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(this->Warped, count);
   this->Valid->SetName(vtkLacunaDepthMap::MaskName);
-  this->Valid->SetNumberOfTuples(count);
+  vtkLacunaArrays::SetNumberOfTuples(this->Valid, count);
   vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
   input->ShallowCopy(image);
   input->GetPointData()->SetScalars(GetInterpolable(scalars));

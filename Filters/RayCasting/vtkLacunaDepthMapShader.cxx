@@ -11,6 +11,7 @@
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCasterView.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
@@ -170,7 +171,7 @@ public:
     auto normals = vtkSmartPointer<vtkFloatArray>::New();
     normals->SetName(name.c_str());
     normals->SetNumberOfComponents(3);
-    normals->SetNumberOfTuples(output->GetNumberOfPoints());
+    vtkLacunaArrays::SetNumberOfTuples(normals, output->GetNumberOfPoints());
     const lacuna::DepthNormalMethod methods[] = { lacuna::DepthNormalMethod::CentralDifference,
       lacuna::DepthNormalMethod::Gordon, lacuna::DepthNormalMethod::Predicate };
     lacuna::EstimateNormals(grid, methods[self->NormalMethod - CentralDifference],
@@ -179,7 +180,7 @@ public:
     {
       vtkNew<vtkFloatArray> difference;
       difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
-      difference->SetNumberOfTuples(output->GetNumberOfPoints());
+      vtkLacunaArrays::SetNumberOfTuples(difference, output->GetNumberOfPoints());
       lacuna::AnglesBetween(stored->GetPointer(0), normals->GetPointer(0),
         output->GetNumberOfPoints(), difference->GetPointer(0), execution);
       output->GetPointData()->AddArray(difference);
@@ -392,7 +393,7 @@ int vtkLacunaDepthMapShader::RequestData(
       vtkNew<vtkUnsignedCharArray> colors;
       colors->SetName(vtkLacunaDepthMap::ColorName);
       colors->SetNumberOfComponents(3);
-      colors->SetNumberOfTuples(output->GetNumberOfPoints());
+      vtkLacunaArrays::SetNumberOfTuples(colors, output->GetNumberOfPoints());
       lacuna::ShadeDepths(grid, normals ? normals->GetPointer(0) : nullptr, settings, shadows,
         { extent[0], extent[1], extent[2], extent[3] }, colors->GetPointer(0), execution);
       output->GetPointData()->AddArray(colors);

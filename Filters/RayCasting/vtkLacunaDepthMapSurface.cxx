@@ -6,7 +6,6 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkIdList.h"
@@ -14,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaMapDepths.h"
@@ -63,7 +63,7 @@ void CarryArrays(vtkPointData* from, vtkIdList* ids, vtkPointData* to)
     const auto carried = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
     carried->SetName(array->GetName());
     carried->SetNumberOfComponents(array->GetNumberOfComponents());
-    carried->SetNumberOfTuples(ids->GetNumberOfIds());
+    vtkLacunaArrays::SetNumberOfTuples(carried, ids->GetNumberOfIds());
     array->GetTuples(ids, carried);
     to->AddArray(carried);
   }
@@ -85,12 +85,12 @@ vtkSmartPointer<vtkFloatArray> DifferenceOfNormals(vtkImageData* map, const std:
   const vtkIdType pixels = map->GetNumberOfPoints();
   vtkNew<vtkFloatArray> estimated;
   estimated->SetNumberOfComponents(3);
-  estimated->SetNumberOfTuples(pixels);
+  vtkLacunaArrays::SetNumberOfTuples(estimated, pixels);
   lacuna::EstimateNormals(grid, lacuna::DepthNormalMethod::Predicate, limits, grid.Extent,
     estimated->GetPointer(0), execution);
   auto difference = vtkSmartPointer<vtkFloatArray>::New();
   difference->SetName(vtkLacunaDepthMap::NormalDifferenceName);
-  difference->SetNumberOfTuples(pixels);
+  vtkLacunaArrays::SetNumberOfTuples(difference, pixels);
   lacuna::AnglesBetween(
     stored->GetPointer(0), estimated->GetPointer(0), pixels, difference->GetPointer(0), execution);
   return difference;
@@ -170,7 +170,7 @@ int vtkLacunaDepthMapSurface::RequestData(
           32.0 * static_cast<double>(mesher.GetNumberOfTriangles()));
       vtkNew<vtkDoubleArray> coordinates;
       coordinates->SetNumberOfComponents(3);
-      coordinates->SetNumberOfTuples(numberOfPoints);
+      vtkLacunaArrays::SetNumberOfTuples(coordinates, numberOfPoints);
       std::vector<long long> pixels(numberOfPoints);
       mesher.FillPoints(coordinates->GetPointer(0), pixels.data(), execution);
       vtkNew<vtkPoints> points;
@@ -179,23 +179,15 @@ int vtkLacunaDepthMapSurface::RequestData(
 
       execution.SetStage(0.8, 1);
       vtkNew<vtkTypeInt64Array> corners;
-      corners->SetNumberOfValues(3 * mesher.GetNumberOfTriangles());
+      vtkLacunaArrays::SetNumberOfTuples(corners, 3 * mesher.GetNumberOfTriangles());
       mesher.FillTriangles(corners->GetPointer(0), execution);
-      vtkNew<vtkTypeInt64Array> offsets;
-      offsets->SetNumberOfValues(mesher.GetNumberOfTriangles() + 1);
-      for (vtkIdType i = 0; i < offsets->GetNumberOfValues(); ++i)
-      {
-        offsets->SetValue(i, 3 * i);
-      }
-      vtkNew<vtkCellArray> triangles;
-      triangles->SetData(offsets, corners);
-      output->SetPolys(triangles);
+      vtkLacunaArrays::SetTriangles(output, corners);
 
       vtkNew<vtkIdList> ids;
       ids->SetNumberOfIds(numberOfPoints);
       vtkNew<vtkIdTypeArray> pixelIds;
       pixelIds->SetName(vtkLacunaDepthMap::PixelIdName);
-      pixelIds->SetNumberOfValues(numberOfPoints);
+      vtkLacunaArrays::SetNumberOfTuples(pixelIds, numberOfPoints);
       const std::int64_t columns = std::int64_t(extent[1]) - extent[0] + 1;
       const std::int64_t wholeColumns = std::int64_t(whole[1]) - whole[0] + 1;
       for (vtkIdType i = 0; i < numberOfPoints; ++i)
@@ -215,7 +207,7 @@ int vtkLacunaDepthMapSurface::RequestData(
           DifferenceOfNormals(input, normals, depths.GetGrid(), limits, execution);
         vtkNew<vtkFloatArray> carried;
         carried->SetName(difference->GetName());
-        carried->SetNumberOfTuples(numberOfPoints);
+        vtkLacunaArrays::SetNumberOfTuples(carried, numberOfPoints);
         difference->GetTuples(ids, carried);
         pointData->AddArray(carried);
       }

@@ -10,6 +10,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -246,7 +247,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       auto to = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
       to->SetName(from->GetName());
       to->SetNumberOfComponents(from->GetNumberOfComponents());
-      to->SetNumberOfTuples(lacuna::NumberOfSamples(box));
+      vtkLacunaArrays::SetNumberOfTuples(to, lacuna::NumberOfSamples(box));
       lacuna::DispatchScalars(scalarType, from->GetVoidPointer(0),
         [&](const auto* samples) { FilterArray(samples, inBox, to, box, parameters, execution); });
 

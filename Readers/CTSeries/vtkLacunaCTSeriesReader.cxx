@@ -22,6 +22,7 @@
 #include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -446,13 +447,9 @@ int vtkLacunaCTSeriesReader::RequestData(
         lacuna::RequireMemory("The CT volume",
           static_cast<double>(output->GetNumberOfPoints()) *
             static_cast<double>(lacuna::GetScalarSize(found.Type)));
-        output->AllocateScalars(vtkLacunaScalarType::ToVTK(found.Type), 1);
-        output->GetPointData()->GetScalars()->SetName(ScalarsName);
-        void* voxels = output->GetScalarPointer();
-        if (!voxels)
-        {
-          throw std::bad_alloc();
-        }
+        void* voxels =
+          vtkLacunaArrays::AddScalars(output, vtkLacunaScalarType::ToVTK(found.Type), ScalarsName)
+            ->GetVoidPointer(0);
         lacuna::PreferLargePages(voxels,
           static_cast<std::size_t>(output->GetNumberOfPoints()) *
             lacuna::GetScalarSize(found.Type));

@@ -15,9 +15,11 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSequenceFile.h"
 #include "vtkLacunaSequenceNames.h"
@@ -110,7 +112,12 @@ int vtkLacunaTrackedSliceReader::CanReadFile(const char* fileName)
 double vtkLacunaTrackedSliceReader::GetMostBytes() const
 {
   constexpr double mebibyte = 1048576;
-  return this->MemoryLimit > 0 ? this->MemoryLimit * mebibyte : lacuna::GetPhysicalMemory() / 4;
+  if (this->MemoryLimit > 0)
+  {
+    return this->MemoryLimit * mebibyte;
+  }
+  // ranks show the same slices, whatever memory their computers have
+  return vtkLacunaRanks().GetNumber() > 1 ? 4096 * mebibyte : lacuna::GetPhysicalMemory() / 4;
 }
 
 //------------------------------------------------------------------------------
@@ -301,14 +308,8 @@ void vtkLacunaTrackedSliceReader::ReadPixels(
   const int type = vtkLacunaScalarType::ToVTK(sequence.File->Pixels->GetScalarType());
   lacuna::RequireMemory("the pixels of " + std::to_string(extent[5] - extent[4] + 1) + " slices",
     static_cast<double>(output->GetNumberOfPoints()) * vtkDataArray::GetDataTypeSize(type));
-  output->AllocateScalars(type, 1);
-  vtkDataArray* scalars = output->GetPointData()->GetScalars();
-  scalars->SetName(IntensityName);
-  auto* pixels = static_cast<unsigned char*>(output->GetScalarPointer());
-  if (!pixels)
-  {
-    throw std::bad_alloc();
-  }
+  vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, type, IntensityName);
+  auto* pixels = static_cast<unsigned char*>(scalars->GetVoidPointer(0));
 
   // A replay goes on where it was.
   const auto sliceSize = static_cast<std::size_t>(extent[1] - extent[0] + 1) *

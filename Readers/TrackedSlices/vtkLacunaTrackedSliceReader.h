@@ -133,7 +133,8 @@ public:
 
   ///@{
   /// Most memory that the pixels may take, in MiB; of more slices, the output is a preview. Default:
-  /// 0, a quarter of the machine's memory, or of what its container or ulimit -v allows.
+  /// 0, a quarter of the machine's memory, or of what its container or ulimit -v allows; 4096 with several
+  /// ranks, which show the same slices.
   vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
   vtkGetMacro(MemoryLimit, int);
   ///@}

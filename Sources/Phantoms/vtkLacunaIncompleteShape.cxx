@@ -7,6 +7,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -105,7 +106,7 @@ int vtkLacunaIncompleteShape::RequestData(
       output->SetDimensions(n.data());
       vtkNew<vtkUnsignedCharArray> data;
       data->SetName("Data");
-      data->SetNumberOfTuples(static_cast<vtkIdType>(voxels.size()));
+      vtkLacunaArrays::SetNumberOfTuples(data, static_cast<vtkIdType>(voxels.size()));
       std::copy(voxels.begin(), voxels.end(), data->GetPointer(0));
       output->GetPointData()->SetScalars(data);
       // what is missing is chosen from the whole, so the whole is made and cut to what was asked

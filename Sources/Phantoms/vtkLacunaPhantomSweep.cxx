@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -233,9 +234,8 @@ int vtkLacunaPhantomSweep::RequestData(
       output->SetOrigin(0, 0, 0);
       output->SetSpacing(1, 1, 1);
       output->SetExtent(extent.data());
-      output->AllocateScalars(this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
-      vtkDataArray* scalars = output->GetPointData()->GetScalars();
-      scalars->SetName("Intensity");
+      vtkDataArray* scalars = vtkLacunaArrays::AddScalars(
+        output, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, "Intensity");
 
       const lacuna::Matrix4 imageToProbe =
         lacuna::MakeImageToProbe(this->ImageSize[0], this->PixelSpacing);
@@ -319,7 +319,7 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
     lacuna::RequireMemory("array Truth", 4.0 * static_cast<double>(grid->GetNumberOfPoints()));
     vtkNew<vtkFloatArray> truth;
     truth->SetName("Truth");
-    truth->SetNumberOfTuples(grid->GetNumberOfPoints());
+    vtkLacunaArrays::SetNumberOfTuples(truth, grid->GetNumberOfPoints());
     std::array<int, 3> dimensions;
     grid->GetDimensions(dimensions.data());
     const int* extent = grid->GetExtent();

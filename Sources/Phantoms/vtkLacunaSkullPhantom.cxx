@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
@@ -91,9 +92,7 @@ int vtkLacunaSkullPhantom::RequestData(
       output->SetOrigin(skull.GetOrigin().data());
       output->SetSpacing(this->Spacing);
       output->SetExtent(extent.data());
-      output->AllocateScalars(VTK_SHORT, 1);
-      vtkDataArray* scalars = output->GetPointData()->GetScalars();
-      scalars->SetName("HounsfieldUnits");
+      vtkDataArray* scalars = vtkLacunaArrays::AddScalars(output, VTK_SHORT, "HounsfieldUnits");
       skull.Sample(execution, extent, static_cast<short*>(scalars->GetVoidPointer(0)));
       vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
       vtkLacunaVolumeDirection::Record(output);

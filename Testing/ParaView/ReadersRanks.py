@@ -4,6 +4,7 @@
 Run without arguments it is the test; it runs itself in pvbatch on all ranks at once, with the folder of files.
 """
 import os
+import resource
 import shutil
 import struct
 import sys
@@ -19,12 +20,17 @@ SLACK = 4096  # bytes that are read beside pixels and the system's memory, /proc
 
 
 def write_sequence(folder, separate, name="slices", rows=ROWS, columns=COLUMNS):
-    """Slices, slice n of grey level n, as .mha or as .mhd with a file of pixels."""
+    """Slices, slice n of grey level n, as .mha or as .mhd with a file of pixels; sparse and all 0 when it is large."""
     fields = "".join(f"Seq_Frame{n:04}_ImageToReferenceTransform = 1 0 0 0 0 1 0 0 0 0 1 {0.1 * n:.1f} 0 0 0 1\n"
                      f"Seq_Frame{n:04}_ImageToReferenceTransformStatus = OK\nSeq_Frame{n:04}_Timestamp = {n / 25}\n" for n in range(SLICES))
     header = (f"ObjectType = Image\nNDims = 3\nDimSize = {columns} {rows} {SLICES}\nElementSpacing = 1 1 1\nElementType = MET_USHORT\n"
               f"BinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nUltrasoundImageOrientation = MF\n{fields}"
               f"ElementDataFile = {f'{name}.raw' if separate else 'LOCAL'}\n").encode("ascii")
+    if rows * columns > 1e6:
+        with open(os.path.join(folder, f"{name}.mha"), "wb") as file:
+            file.write(header)
+            file.truncate(len(header) + 2 * SLICES * rows * columns)
+        return
     pixels = np.repeat(np.arange(SLICES, dtype=np.uint16), rows * columns).tobytes()
     for ending, content in (("mhd", header), ("raw", pixels)) if separate else (("mha", header + pixels),):
         with open(os.path.join(folder, f"{name}.{ending}"), "wb") as file:
@@ -118,6 +124,16 @@ def run(folder, ranks):
         part = read_part(reader, rank, ranks)
         check_part(name, part, rank, ranks, SLICES, 2 * ROWS * COLUMNS, beside)
 
+    # A preview depends on no rank's memory: on all of it, the last rank would take every second slice.
+    if ranks > 1:
+        if rank == ranks - 1:
+            resource.setrlimit(resource.RLIMIT_AS, (2 ** 33, resource.RLIM_INFINITY))
+        reader = vtkLacunaTrackedSliceReader()
+        reader.SetFileName(os.path.join(folder, "large.mha"))
+        reader.UpdateInformation()
+        assert reader.GetOutputInformation(0).Get(reader.GetExecutive().WHOLE_EXTENT())[5] == SLICES - 1, reader.GetPreview()
+        resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+
     own = os.path.join(folder, f"series-{ranks}-{rank}")  # of this rank, which takes others' files away
     shutil.copytree(os.path.join(folder, "series"), own)
     first = (CT_SLICES - 1) * rank // ranks - 1
@@ -142,6 +158,7 @@ def main():
     write_sequence(folder, False)
     write_sequence(folder, True)
     write_sequence(folder, False, "tiny", 1, 2)
+    write_sequence(folder, False, "large", 2000, 2400)
     write_series(os.path.join(folder, "series"))
     for ranks in RANKS:
         printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", folder, str(ranks), options=["--symmetric"])

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests of what every algorithm promises, on random data and properties:
 //
-//   LacunaProperties outcome|abort|cycles [--seed N] [--count N] [--filter NAME]... [--output FOLDER]
+//   LacunaProperties outcome|abort|cycles|exhaustion [--seed N] [--count N] [--filter NAME]... [--output FOLDER]
 //
 // --seed: of the first case, the others follow; `clock` takes one from the time. --count: cases of
-// an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone.
+// an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone. It is
+// one, too, when an algorithm came to the point in no case: there are more then, up to 60.
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 #include "vtkLogger.h"
@@ -29,10 +30,13 @@ extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak))
 
 namespace
 {
+using lacunaProperties::Account;
 using lacunaProperties::Subject;
 
 constexpr int LongestCase = 120; // s of the processor's time; they take milliseconds
 constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes of address space; they take little
+
+constexpr int More = 60; ///< cases, where none has come to the point
 
 char Current[300] = ""; ///< the options that repeat the case at hand
 
@@ -103,7 +107,9 @@ bool Parse(int argc, char* argv[], Options& options)
       return false;
     }
   }
-  return argc % 2 == 0;
+  return argc % 2 == 0 &&
+    (options.Test == "outcome" || options.Test == "abort" || options.Test == "cycles" ||
+      options.Test == "exhaustion");
 }
 
 double GetProcessorTime()
@@ -113,32 +119,42 @@ double GetProcessorTime()
 
 // How many cases of the subject failed.
 int TestSubject(const Options& options, const Subject& subject, int count,
-  const std::function<std::string(std::uint64_t seed, std::string& story)>& test)
+  const std::function<std::string(std::uint64_t seed, Account& account)>& test)
 {
   const double start = GetProcessorTime();
+  const bool isRepeated = options.Count == 1; // a failure, to be looked at
+  bool succeeded = isRepeated;
   int failures = 0;
-  for (int i = 0; i < count; ++i)
+  int i = 0;
+  for (; i < count || (!succeeded && i < count + More); ++i)
   {
     const std::uint64_t seed = options.Seed + static_cast<std::uint64_t>(i);
     std::snprintf(Current, sizeof(Current), "%s --filter %s --seed %llu --count 1",
       options.Test.c_str(), subject.Name.c_str(), static_cast<unsigned long long>(seed));
     const struct itimerval limit = { { 0, 0 }, { LongestCase, 0 } };
     setitimer(ITIMER_PROF, &limit, nullptr);
-    std::string story;
-    Story = &story;
-    const std::string fault = test(seed, story);
+    Account account;
+    Story = &account.Story;
+    const std::string fault = test(seed, account);
     Story = nullptr;
+    succeeded = succeeded || account.Succeeded;
     if (!fault.empty())
     {
       ++failures;
-      std::cerr << "FAILED: " << Current << "\n" << story << "  " << fault << "\n";
+      std::cerr << "FAILED: " << Current << "\n" << account.Story << "  " << fault << "\n";
     }
-    else if (options.Count == 1)
+    else if (isRepeated)
     {
-      std::cout << story;
+      std::cout << account.Story;
     }
   }
-  std::cout << subject.Name << ": " << count << " cases, " << failures << " failed, "
+  if (!succeeded)
+  {
+    ++failures;
+    std::cerr << "FAILED: " << options.Test << " --filter " << subject.Name << " --seed "
+              << options.Seed << ": came to the point in no case\n";
+  }
+  std::cout << subject.Name << ": " << i << " cases, " << failures << " failed, "
             << GetProcessorTime() - start << " s" << std::endl;
   return failures;
 }
@@ -149,11 +165,16 @@ int main(int argc, char* argv[])
   Options options;
   if (!Parse(argc, argv, options))
   {
-    std::cerr << "usage: LacunaProperties outcome|abort|cycles [--seed N|clock] [--count N] "
-                 "[--filter NAME]... [--output FOLDER]\n";
+    std::cerr
+      << "usage: LacunaProperties outcome|abort|cycles|exhaustion [--seed N|clock] [--count N] "
+         "[--filter NAME]... [--output FOLDER]\n";
     return 2;
   }
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  if (options.Test == "abort")
+  {
+    setenv("LACUNA_REPORT_INTERVAL", "0", 1);
+  }
   std::signal(SIGPROF, TakesTooLong);
   if (__sanitizer_set_death_callback)
   {
@@ -183,13 +204,14 @@ int main(int argc, char* argv[])
     using namespace lacunaProperties;
     failures += options.Test == "cycles"
       ? TestSubject(options, subject, 1,
-          [&](std::uint64_t seed, std::string& story)
-          { return TestCycles(subject, seed, options.Count, story); })
+          [&](std::uint64_t seed, Account& account)
+          { return TestCycles(subject, seed, options.Count, account); })
       : TestSubject(options, subject, count,
-          [&](std::uint64_t seed, std::string& story)
+          [&](std::uint64_t seed, Account& account)
           {
-            return options.Test == "abort" ? TestAbort(subject, seed, story)
-                                           : TestOutcome(subject, seed, story);
+            return options.Test == "abort"   ? TestAbort(subject, seed, account)
+              : options.Test == "exhaustion" ? TestExhaustion(subject, seed, account)
+                                             : TestOutcome(subject, seed, account);
           });
   }
   if (found == 0)

@@ -26,18 +26,19 @@ public:
 }
 
 //------------------------------------------------------------------------------
-std::string TestAbort(const Subject& subject, std::uint64_t seed, std::string& story)
+std::string TestAbort(const Subject& subject, std::uint64_t seed, Account& account)
 {
   const Trial trial(subject, seed, true);
   Dice dice(seed + 1);
   vtkNew<Stopper> counter;
   const vtkSmartPointer<vtkAlgorithm> fresh = trial.Make();
   fresh->AddObserver(vtkCommand::ProgressEvent, counter);
-  const Run whole = trial.Execute(fresh, 0);
+  const Run whole = trial.Execute(fresh, 1);
+  std::string& story = account.Story;
   story = "  " + std::to_string(counter->Count) + " reports of progress\n" + whole.Errors;
   if (!whole.Errors.empty() || counter->Count == 0)
   {
-    return {}; // an error, or so short that nobody can stop it
+    return {}; // not a run that could be stopped
   }
   vtkNew<Stopper> stopper;
   stopper->StopAt = dice.Whole(1, counter->Count);
@@ -49,6 +50,7 @@ std::string TestAbort(const Subject& subject, std::uint64_t seed, std::string& s
   {
     return "messages when stopped: " + stopped.Errors + stopped.Stray;
   }
+  account.Succeeded = stopper->Count >= stopper->StopAt;
   // stopped at the last report it may have been ready
   bool isWhole = stopped.Outputs.size() == whole.Outputs.size();
   for (std::size_t port = 0; isWhole && port < whole.Outputs.size(); ++port)
@@ -72,7 +74,8 @@ std::string TestAbort(const Subject& subject, std::uint64_t seed, std::string& s
     const std::string difference = Compare(whole.Outputs[port], again.Outputs[port]);
     if (!difference.empty())
     {
-      return "after it was stopped output " + std::to_string(port) + " differs in " + difference;
+      return "after it was stopped output " + std::to_string(port) + " differs in " + difference +
+        again.Errors;
     }
   }
   return {};

@@ -3,6 +3,8 @@
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 
+#include <memory>
+
 #include <malloc.h>
 
 namespace lacunaProperties
@@ -18,9 +20,17 @@ double GetBytesInUse()
 }
 
 //------------------------------------------------------------------------------
-std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, std::string& story)
+std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, Account& account)
 {
-  const Trial trial(subject, seed, true);
+  constexpr int tries = 100;
+  std::unique_ptr<Trial> found;
+  for (int i = 0; i < tries && !account.Succeeded; ++i)
+  {
+    found = std::make_unique<Trial>(subject, seed + static_cast<std::uint64_t>(i), true);
+    const Run once = found->Execute(found->Make(), 0);
+    account.Succeeded = once.Errors.empty() && !once.IsEmpty;
+  }
+  const Trial& trial = *found;
   const auto run = [&](int count)
   {
     for (int i = 0; i < count; ++i)
@@ -34,7 +44,7 @@ std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, s
   run(cycles);
   const double grown = GetBytesInUse() - bytes;
   const double residentGrown = lacuna::GetProcessMemory("VmRSS") - resident;
-  story = "  in " + std::to_string(cycles) + " cycles " + std::to_string(grown) +
+  account.Story = "  in " + std::to_string(cycles) + " cycles " + std::to_string(grown) +
     " bytes in use more, " + std::to_string(residentGrown) + " in memory\n";
   // Tables of VTK grow a little now and then. What is lost in each cycle is 32 bytes at the least, so
   // that 1000 cycles show it.

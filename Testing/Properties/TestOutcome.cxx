@@ -146,9 +146,10 @@ std::string FindFaultInRun(const Trial& trial, vtkAlgorithm* algorithm, const Ru
 }
 
 //------------------------------------------------------------------------------
-std::string TestOutcome(const Subject& subject, std::uint64_t seed, std::string& story)
+std::string TestOutcome(const Subject& subject, std::uint64_t seed, Account& account)
 {
   const Trial trial(subject, seed, false);
+  std::string& story = account.Story;
   story = trial.GetStory();
   std::vector<Fingerprint> before;
   for (vtkDataObject* data : trial.GetInputs())
@@ -158,6 +159,7 @@ std::string TestOutcome(const Subject& subject, std::uint64_t seed, std::string&
   Dice dice(seed + 1);
   const vtkSmartPointer<vtkAlgorithm> algorithm = trial.Make();
   const Run first = trial.Execute(algorithm, 1);
+  account.Succeeded = first.Errors.empty() && !first.IsEmpty;
   story += first.Errors.empty() ? "" : "  -> " + first.Errors;
   story += first.Warnings.empty() ? "" : "  -> " + first.Warnings;
   std::string fault = FindFaultInRun(trial, algorithm, first);

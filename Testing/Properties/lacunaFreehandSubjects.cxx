@@ -17,6 +17,7 @@
 #include "vtkLacunaTrackedSliceWriter.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaTrackerSelfTest.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -101,8 +102,9 @@ Subject MakeAssembler()
     [](Dice& dice) -> Inputs
     {
       const int slices = dice.Whole(1, 6);
+      const int format = dice.Chance(0.6) ? T::Matrix : dice.Whole(0, 2);
       return { RandomStack(dice, slices),
-        RandomPoses(dice, dice.Chance(0.9) ? slices : dice.Whole(1, 6), dice.Whole(0, 2)) };
+        RandomPoses(dice, dice.Chance(0.9) ? slices : dice.Whole(1, 6), format) };
     },
     { Whole("PoseFormat", &T::SetPoseFormat, 0, 2),
       Whole("PoseTransform", &T::SetPoseTransform, 0, 3),
@@ -147,12 +149,59 @@ Subject MakeAssembler()
   return subject;
 }
 
+// A sweep over three wires at right angles, of which a slice shows one each, and the picks.
+Inputs MakeWireScan(Dice& dice)
+{
+  constexpr int slices = 45;
+  constexpr double pixel = 0.4;
+  auto stack = vtkSmartPointer<vtkImageData>::New();
+  stack->SetExtent(0, 9, 0, 11, 0, slices - 1);
+  AddScalars(
+    stack, VTK_UNSIGNED_CHAR, "Intensity", [&](const lacuna::Vec3&) { return dice.Real(0, 120); });
+  const lacuna::Matrix4 imageToProbe =
+    RandomPose(dice, 20) * lacuna::Matrix4::Scaling({ pixel, pixel, pixel });
+  const lacuna::Matrix4 phantom = RandomPose(dice, 100);
+  std::vector<lacuna::Matrix4> probe;
+  std::vector<double> times;
+  std::vector<double> columns[3];
+  vtkNew<vtkStringArray> wires;
+  wires->SetName("Wire");
+  for (int i = 0; i < slices; ++i)
+  {
+    const lacuna::Vec3 seen{ dice.Real(0, 9), dice.Real(0, 11), 0 };
+    lacuna::Vec3 place{};
+    place[i % 3] = dice.Real(-15, 15);
+    const lacuna::Matrix4 turned = RandomPose(dice, 0) * imageToProbe;
+    const lacuna::Matrix4 imageToPhantom =
+      lacuna::Matrix4::Translation(place - turned.Point(seen)) * turned;
+    probe.push_back(phantom * imageToPhantom * imageToProbe.Inverse());
+    times.push_back(0.04 * i);
+    columns[0].push_back(i);
+    columns[1].push_back(seen[0] + dice.Real(-0.3, 0.3));
+    columns[2].push_back(seen[1] + dice.Real(-0.3, 0.3));
+    wires->InsertNextValue(std::string(1, "XYZ"[i % 3]));
+  }
+  vtkLacunaTrackedSlices::Write(stack, {}, times,
+    std::vector<unsigned char>(slices, vtkLacunaTrackedSlices::Valid), std::vector<int>(slices, 1));
+  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", probe);
+  auto picks = vtkSmartPointer<vtkTable>::New();
+  AddColumn(picks, "Slice", columns[0]);
+  AddColumn(picks, "Column", columns[1]);
+  AddColumn(picks, "Row", columns[2]);
+  picks->AddColumn(wires);
+  return { stack, picks };
+}
+
 Subject MakeProbeCalibration()
 {
   using T = vtkLacunaProbeCalibration;
   Subject subject{ "ProbeCalibration", NewOf<T>,
     [](Dice& dice) -> Inputs
     {
+      if (dice.Chance(0.7))
+      {
+        return MakeWireScan(dice);
+      }
       const auto slices = RandomSlices(dice, dice.Chance(0.5));
       return { slices,
         dice.Chance(0.8) ? RandomPicks(dice, CountSlices(slices)) : vtkSmartPointer<vtkTable>() };
@@ -211,18 +260,35 @@ Inputs MakeScreen(Dice& dice)
   return { screen };
 }
 
+// Two receivers on a bar that is carried slowly along two sides of a field, with metal in its end.
 Inputs MakeReceivers(Dice& dice)
 {
-  const auto slices = RandomSlices(dice);
-  vtkDataArray* first = slices->GetFieldData()->GetArray("ProbeToTracker");
+  const int slices = dice.Chance(0.9) ? dice.Whole(60, 90) : dice.Whole(1, 12);
+  auto stack = vtkSmartPointer<vtkImageData>::New();
+  stack->SetExtent(0, 2, 0, 1, 0, slices - 1);
+  AddScalars(
+    stack, VTK_UNSIGNED_CHAR, "Intensity", [&](const lacuna::Vec3&) { return dice.Real(0, 120); });
+  const lacuna::Matrix4 bar = RandomPose(dice, 0) * lacuna::Matrix4::Translation({ 90, 10, 0 });
+  const lacuna::Matrix4 turned = RandomPose(dice, 0);
+  std::vector<lacuna::Matrix4> first;
   std::vector<lacuna::Matrix4> second;
-  const lacuna::Matrix4 bar = lacuna::Matrix4::Translation({ 300, 10, 0 });
-  for (vtkIdType i = 0; i < first->GetNumberOfTuples(); ++i)
+  std::vector<double> times;
+  for (int i = 0; i < slices; ++i)
   {
-    second.push_back(vtkLacunaFieldData::GetMatrix(first, i) * bar);
+    const lacuna::Vec3 place{ 150 + 4.0 * std::min(i, 40), -200 + 5.0 * std::max(0, i - 40),
+      40 + dice.Real(-0.5, 0.5) };
+    first.push_back(lacuna::Matrix4::Translation(place) * turned *
+      lacuna::Matrix4::Rotation({ 1, 2, 0.5 }, 0.02 * i));
+    const double metal = i > 50 ? 0.2 * (i - 50) : 0;
+    second.push_back(
+      lacuna::Matrix4::Translation({ metal, dice.Real(-0.5, 0.5), 0 }) * first.back() * bar);
+    times.push_back(0.2 * i);
   }
-  vtkLacunaFieldData::SetMatrices(slices, "PointerToTracker", second);
-  return { slices };
+  vtkLacunaTrackedSlices::Write(stack, {}, times,
+    std::vector<unsigned char>(slices, vtkLacunaTrackedSlices::Valid), std::vector<int>(slices, 1));
+  vtkLacunaFieldData::SetMatrices(stack, "ProbeToTracker", first);
+  vtkLacunaFieldData::SetMatrices(stack, "PointerToTracker", second);
+  return { stack };
 }
 }
 
@@ -262,8 +328,11 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
   subjects.push_back(MakeProbeCalibration());
   {
     using T = vtkLacunaTemporalCalibration;
-    subjects.push_back({ "TemporalCalibration", NewOf<T>, MakeFloor,
-      { Real("MaximumLag", &T::SetMaximumLag, 0.1, 2) }, 10 });
+    Subject subject{ "TemporalCalibration", NewOf<T>, MakeFloor,
+      { Real("MaximumLag", &T::SetMaximumLag, 0.1, 2) } };
+    subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetMaximumLag(0.3); };
+    subject.Cost = 10;
+    subjects.push_back(subject);
   }
   {
     using T = vtkLacunaTrackerSelfTest;

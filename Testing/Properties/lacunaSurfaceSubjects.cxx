@@ -193,7 +193,12 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
   }
   {
     using T = vtkLacunaPressOrientation;
-    subjects.push_back({ "PressOrientation", NewOf<T>, MakeFilledMap,
+    subjects.push_back({ "PressOrientation", NewOf<T>,
+      [](Dice& dice) -> Inputs
+      {
+        // flanges need a wide border
+        return { RandomDepthMap(dice, true, dice.Chance(0.2) ? 18 : 90) };
+      },
       { Whole("PlaneMethod", &T::SetPlaneMethod, 0, 1), Whole("Mould", &T::SetMould, 0, 1),
         Whole("Seating", &T::SetSeating, 0, 1),
         Real("PlateThickness", &T::SetPlateThickness, 0.3, 2),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaTrial.h"
 
+#include "lacunaAllocations.h"
 #include "lacunaCheck.h"
 #include "lacunaSpoiledData.h"
 #include "vtkAlgorithmOutput.h"
@@ -201,8 +202,9 @@ Run Trial::Execute(vtkAlgorithm* algorithm, int threads) const
   std::string file;
   if (this->What.SetFile)
   {
+    static const pid_t process = getpid(); // the same in all forks, as files have their names
     file = this->What.SetFile(
-      algorithm, OutputFolder() + "/" + this->What.Name + std::to_string(getpid()));
+      algorithm, OutputFolder() + "/" + this->What.Name + std::to_string(process));
     vtksys::SystemTools::RemoveFile(file);
   }
   GetWindow()->Take();
@@ -238,6 +240,7 @@ Run Trial::Execute(vtkAlgorithm* algorithm, int threads) const
   {
     run.Stray += std::string("an exception escaped: ") + e.what();
   }
+  GrantAllocations(-1); // what follows is the test's
   run.Stray += GetWindow()->Take();
   run.Errors = messages->Errors;
   run.Warnings = messages->Warnings;

@@ -118,10 +118,10 @@ std::uint64_t HashOf(vtkPolyData* mesh)
 bool MayBeNaN(const std::string& name)
 {
   static const std::set<std::string> names = { "Thickness", "Fitted", "Deviation", "Asymmetry",
-    "NormalDifference", "Gate", "RegistrationError", "Speed", "Timestamp", "ImageToReference",
-    "ProbeToReference", "HoleBoneThickness", "ExpectedError", "RunnerUpRms", "CSR", "InsideMean",
-    "OutsideMean", "InsideVariance", "OutsideVariance", "InsideSNR", "OutsideSNR", "Intensity",
-    "Residual" };
+    "NormalDifference", "Gate", "RegistrationError", "Repeatability", "Speed", "Timestamp",
+    "ImageToReference", "ProbeToReference", "HoleBoneThickness", "ExpectedError", "RunnerUpRms",
+    "CSR", "InsideMean", "OutsideMean", "InsideVariance", "OutsideVariance", "InsideSNR",
+    "OutsideSNR", "Intensity", "Residual" };
   return names.count(name) > 0 || name.rfind("Depth", 0) == 0;
 }
 
@@ -233,7 +233,8 @@ std::string FindFaultInImage(vtkImageData* image, vtkInformation* info)
   if (scalars && array && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()) &&
     scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) != array->GetDataType())
   {
-    return "the type of the scalars is not what was promised";
+    return "the type of the scalars, " + std::to_string(array->GetDataType()) + ", is not the " +
+      std::to_string(scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())) + " that was promised";
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <future>
 #include <mutex>
@@ -15,8 +16,17 @@ namespace lacuna
 {
 namespace
 {
-// Often enough for a progress bar and a prompt stop, rarely enough to cost nothing.
-constexpr std::chrono::milliseconds ReportInterval(50);
+// Often enough for a progress bar and a prompt stop, rarely enough to cost nothing; or ms that the
+// environment gives, as tests do that stop between any two ranges.
+std::chrono::milliseconds GetReportInterval()
+{
+  static const std::chrono::milliseconds interval = []
+  {
+    const char* given = std::getenv("LACUNA_REPORT_INTERVAL");
+    return std::chrono::milliseconds(given ? std::max(0, std::atoi(given)) : 50);
+  }();
+  return interval;
+}
 }
 
 Aborted::Aborted()
@@ -73,7 +83,8 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
   using Clock = std::chrono::steady_clock;
   const bool works = this->LaunchWorks();
   const std::thread::id caller = std::this_thread::get_id();
-  Clock::time_point next = Clock::now() + ReportInterval; // of the calling thread
+  const std::chrono::milliseconds interval = GetReportInterval();
+  Clock::time_point next = Clock::now() + interval; // of the calling thread
   const auto report = [&] { this->Report(static_cast<double>(done) / static_cast<double>(count)); };
   // Back ends hand out ranges as they like and let no exception through: divide and guard here.
   const Body guarded = [&](std::int64_t begin, std::int64_t end)
@@ -87,7 +98,7 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
         if (works && std::this_thread::get_id() == caller && Clock::now() >= next)
         {
           report();
-          next = Clock::now() + ReportInterval;
+          next = Clock::now() + interval;
         }
       }
       catch (...)
@@ -114,7 +125,7 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
     std::future<void> loop =
       std::async(std::launch::async, [&] { this->Launch(count, grain, guarded); });
     bool aborted = false;
-    while (loop.wait_for(ReportInterval) != std::future_status::ready)
+    while (loop.wait_for(interval) != std::future_status::ready)
     {
       if (aborted)
       {

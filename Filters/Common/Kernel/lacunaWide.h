@@ -4,6 +4,9 @@
 /// program starts. The same numbers come out, since products and sums stay apart
 /// (-ffp-contract=off). It is empty in builds with sanitizers, whose run-time is not ready yet when
 /// the loader chooses, and for clang, which says by other means that it builds with them.
+///
+/// Such a function must not throw, nor ask for memory: GCC 12 compiles calls of it as if it could
+/// not, so that the caller's objects are not destroyed, or the wrong ones.
 #ifndef lacunaWide_h
 #define lacunaWide_h
 

@@ -195,17 +195,15 @@ void CubicSplineFit::Factorise()
 
 //------------------------------------------------------------------------------
 LACUNA_WIDE void CubicSplineFit::SolveBlock(const double* samples, std::int64_t width,
-  std::int64_t first, std::int64_t count, int refinements, std::vector<double>& work,
-  double* coefficients) const
+  std::int64_t first, std::int64_t count, int refinements, double* work, double* coefficients) const
 {
   const std::int64_t size = this->Space.GetSize();
   const std::int64_t sites = this->GetNumberOfSites();
-  work.resize((size + 1) * count);
-  double* residual = work.data() + size * count;
+  double* residual = work + size * count;
   std::fill(coefficients, coefficients + size * count, 0.0);
   for (int pass = 0; pass <= refinements; ++pass)
   {
-    double* rhs = pass == 0 ? coefficients : work.data();
+    double* rhs = pass == 0 ? coefficients : work;
     if (pass > 0)
     {
       std::fill(rhs, rhs + size * count, 0.0);
@@ -287,9 +285,9 @@ void CubicSplineFit::Solve(Execution& execution, const std::vector<double>& samp
   ForBlocks(execution, width, this->GetNumberOfSites(),
     [&](std::int64_t first, std::int64_t count)
     {
-      std::vector<double> work;
+      std::vector<double> work((size + 1) * count);
       std::vector<double> block(size * count);
-      this->SolveBlock(samples.data(), width, first, count, 2, work, block.data());
+      this->SolveBlock(samples.data(), width, first, count, 2, work.data(), block.data());
       for (std::int64_t i = 0; i < size; ++i)
       {
         std::copy_n(block.data() + i * count, count, coefficients.data() + i * width + first);
@@ -354,9 +352,9 @@ std::vector<double> CubicSplineFit::Deviation(Execution& execution,
   ForBlocks(execution, width, sites,
     [&](std::int64_t first, std::int64_t count)
     {
-      std::vector<double> work;
+      std::vector<double> work((size + 1) * count);
       std::vector<double> block(size * count);
-      this->SolveBlock(samples.data(), width, first, count, 0, work, block.data());
+      this->SolveBlock(samples.data(), width, first, count, 0, work.data(), block.data());
       this->DeviationBlock(block.data(), samples.data() + first, width, count, components,
         squares.data() + (first / BlockWidth) * sites);
     });

@@ -81,8 +81,9 @@ public:
 private:
   using Row = std::array<double, 4>;
   void Factorise();
+  /// work: (size of the space + 1) count numbers.
   void SolveBlock(const double* samples, std::int64_t width, std::int64_t first, std::int64_t count,
-    int refinements, std::vector<double>& work, double* coefficients) const;
+    int refinements, double* work, double* coefficients) const;
   void DeviationBlock(const double* coefficients, const double* samples, std::int64_t width,
     std::int64_t count, int components, double* squares) const;
 

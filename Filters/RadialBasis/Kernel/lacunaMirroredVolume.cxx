@@ -418,7 +418,8 @@ Concordance SumOverRanks(
   {
     // of the other ranks' blocks there are zeros, so that the sum has the bits of one
     constexpr std::size_t words = sizeof(Concordance) / sizeof(std::uint64_t);
-    std::vector<std::uint64_t> bits(judged.size() * words, 0);
+    std::vector<std::uint64_t> bits;
+    ranks.Together([&] { bits.assign(judged.size() * words, 0); });
     std::memcpy(bits.data() + first * words, judged.data() + first,
       static_cast<std::size_t>(end - first) * sizeof(Concordance));
     ranks.Sum(bits.data(), static_cast<std::int64_t>(bits.size()));

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Sizes of arrays. Where there is no memory for one, VTK's arrays end the program; these functions
+/// throw std::runtime_error with the bytes instead.
+#ifndef vtkLacunaArrays_h
+#define vtkLacunaArrays_h
+
+#include "vtkLacunaFiltersCommonModule.h" // for export macro
+#include "vtkType.h"
+
+class vtkAbstractArray;
+class vtkDataArray;
+class vtkImageData;
+class vtkPoints;
+class vtkPolyData;
+class vtkTypeInt64Array;
+
+namespace vtkLacunaArrays
+{
+/// Gives array memory for so many tuples, whose values are not set. What it had is lost.
+VTKLACUNAFILTERSCOMMON_EXPORT void SetNumberOfTuples(vtkAbstractArray* array, vtkIdType tuples);
+
+/// The same for the coordinates of points.
+VTKLACUNAFILTERSCOMMON_EXPORT void SetNumberOfPoints(vtkPoints* points, vtkIdType count);
+
+/// Makes triangles the polygons of output: the three point numbers of one after those of the other.
+VTKLACUNAFILTERSCOMMON_EXPORT void SetTriangles(vtkPolyData* output, vtkTypeInt64Array* corners);
+
+/// Gives an image scalars of one component, one for each of its points, whose values are not set.
+VTKLACUNAFILTERSCOMMON_EXPORT vtkDataArray* AddScalars(
+  vtkImageData* image, int type, const char* name);
+}
+#endif
