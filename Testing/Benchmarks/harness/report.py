@@ -128,7 +128,10 @@ class Page:
         if not ranks:
             return ""
         text = "## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`).\n\n" + picture("ranks", "Speed-up by ranks", plots)
-        return text + (f"```\n{ranks['text']}\n```\n" if ranks.get("text") else "")
+        if not ranks.get("text"):
+            return text
+        return text + ranks["text"] + "\n\nThe repeated part follows from the difference of two times: below 2 % it is noise, " \
+            "and what the model makes of it an upper bound.\n"
 
     def exponents(self):
         rows = []
