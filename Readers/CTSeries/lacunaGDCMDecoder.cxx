@@ -20,7 +20,9 @@ std::string FindLibrary()
 {
   std::string name = "libLacunaGDCMDecoder.so";
   Dl_info here{};
-  if (dladdr(reinterpret_cast<void*>(&DecodeWithGDCM), &here) == 0 || !here.dli_fname)
+  // not the address of a function, which in some programs is one of their own
+  static const char anchor = 0;
+  if (dladdr(&anchor, &here) == 0 || !here.dli_fname)
   {
     return name;
   }

@@ -171,8 +171,10 @@ void Decode(const std::vector<CTFrame>& frames,
       {
         pixels.Stream = streams[i];
         pixels.Bytes.resize(static_cast<std::size_t>(frames[i].GetSize()));
-        if (!DecodeWithGDCM(frames[i], pixels).empty())
+        const std::string wrong = DecodeWithGDCM(frames[i], pixels);
+        if (!wrong.empty())
         {
+          std::fputs(("the pixels " + wrong + "\n").c_str(), stderr);
           std::abort();
         }
       }

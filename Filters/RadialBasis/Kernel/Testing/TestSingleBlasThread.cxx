@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaProcessMemory.h"
 #include "lacunaRadialBasisTest.h"
 
 #include <gtest/gtest.h>
@@ -54,6 +55,10 @@ class SingleBlasThread : public testing::Test
 protected:
   void SetUp() override
   {
+    if (lacuna::Sanitized)
+    {
+      GTEST_SKIP() << "the sanitizers have taken the address space";
+    }
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     setenv("OPENBLAS_NUM_THREADS", "1", 1);
   }
