@@ -12,7 +12,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkTypeInt64Array.h"
 
+#include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -29,18 +31,26 @@ void SetNumberOfTuples(vtkAbstractArray* array, vtkIdType tuples)
     array->SetNumberOfTuples(tuples);
     return;
   }
-  const vtkIdType values = tuples * numbers->GetNumberOfComponents();
-  const std::size_t bytes =
-    static_cast<std::size_t>(values) * static_cast<std::size_t>(numbers->GetDataTypeSize());
-  void* memory = std::malloc(bytes); // as VTK does, which frees it
+  const double bytes = static_cast<double>(tuples) * numbers->GetNumberOfComponents() *
+    static_cast<double>(numbers->GetDataTypeSize());
+  constexpr double most = static_cast<double>(std::numeric_limits<std::ptrdiff_t>::max());
+  const vtkIdType values = bytes < most ? tuples * numbers->GetNumberOfComponents() : 0;
+  void* memory = nullptr;
+  if (values > 0)
+  {
+    // as VTK does, which frees it
+    memory = std::malloc(
+      static_cast<std::size_t>(values) * static_cast<std::size_t>(numbers->GetDataTypeSize()));
+  }
   if (!memory)
   {
     throw std::runtime_error(
       (numbers->GetName() ? "'" + std::string(numbers->GetName()) + "'" : std::string("an array")) +
-      " would need " + lacuna::DescribeBytes(static_cast<double>(bytes)) +
-      ", for which there is no memory");
+      " would need " + lacuna::DescribeBytes(bytes) + ", for which there is no memory");
   }
   numbers->SetVoidArray(memory, values, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  numbers->DataChanged(); // ranges and lookups are of what it had
+  numbers->Modified();
 }
 
 //------------------------------------------------------------------------------
@@ -49,6 +59,39 @@ void SetNumberOfPoints(vtkPoints* points, vtkIdType count)
   points->GetData()->SetNumberOfComponents(3);
   SetNumberOfTuples(points->GetData(), count);
   points->Modified();
+}
+
+//------------------------------------------------------------------------------
+void Reserve(vtkAbstractArray* array, vtkIdType tuples)
+{
+  SetNumberOfTuples(array, tuples);
+  array->Reset();
+}
+
+//------------------------------------------------------------------------------
+void Reserve(vtkPoints* points, vtkIdType count)
+{
+  SetNumberOfPoints(points, count);
+  points->GetData()->Reset();
+}
+
+//------------------------------------------------------------------------------
+void Reserve(vtkCellArray* cells, vtkIdType count, vtkIdType points)
+{
+  vtkNew<vtkTypeInt64Array> offsets;
+  Reserve(offsets, count + 1);
+  offsets->InsertNextValue(0);
+  vtkNew<vtkTypeInt64Array> corners;
+  Reserve(corners, points);
+  cells->SetData(offsets, corners);
+}
+
+//------------------------------------------------------------------------------
+void Copy(vtkAbstractArray* from, vtkAbstractArray* to)
+{
+  to->SetNumberOfComponents(from->GetNumberOfComponents());
+  SetNumberOfTuples(to, from->GetNumberOfTuples());
+  to->DeepCopy(from); // into the memory that there is now
 }
 
 //------------------------------------------------------------------------------

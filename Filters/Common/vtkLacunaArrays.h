@@ -9,6 +9,7 @@
 #include "vtkType.h"
 
 class vtkAbstractArray;
+class vtkCellArray;
 class vtkDataArray;
 class vtkImageData;
 class vtkPoints;
@@ -22,6 +23,16 @@ VTKLACUNAFILTERSCOMMON_EXPORT void SetNumberOfTuples(vtkAbstractArray* array, vt
 
 /// The same for the coordinates of points.
 VTKLACUNAFILTERSCOMMON_EXPORT void SetNumberOfPoints(vtkPoints* points, vtkIdType count);
+
+///@{
+/// Empties what then takes so many tuples, points, or cells with so many points in all, one by one.
+VTKLACUNAFILTERSCOMMON_EXPORT void Reserve(vtkAbstractArray* array, vtkIdType tuples);
+VTKLACUNAFILTERSCOMMON_EXPORT void Reserve(vtkPoints* points, vtkIdType count);
+VTKLACUNAFILTERSCOMMON_EXPORT void Reserve(vtkCellArray* cells, vtkIdType count, vtkIdType points);
+///@}
+
+/// Copies name, components and values; the types may differ.
+VTKLACUNAFILTERSCOMMON_EXPORT void Copy(vtkAbstractArray* from, vtkAbstractArray* to);
 
 /// Makes triangles the polygons of output: the three point numbers of one after those of the other.
 VTKLACUNAFILTERSCOMMON_EXPORT void SetTriangles(vtkPolyData* output, vtkTypeInt64Array* corners);

@@ -71,19 +71,16 @@ void Parallel(const Callable& body)
 }
 
 //------------------------------------------------------------------------------
-vtkLacunaExecution::vtkLacunaExecution(vtkAlgorithm* algorithm)
-  : Algorithm(algorithm)
-{
-  vtkLacunaForgetAbort(algorithm);
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
   return vtkLacunaExecution::RunTogether(algorithm, outputs,
     [&](vtkLacunaExecution& execution)
     {
+      if (vtkLacunaCheckAbort(algorithm))
+      {
+        throw lacuna::Aborted();
+      }
       vtkLacunaInputs::Check(algorithm);
       body(execution);
     });
@@ -121,6 +118,7 @@ int vtkLacunaExecution::RunInformation(
   vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body)
 {
   std::string error;
+  vtkLacunaForgetAbort(algorithm);
   try
   {
     error = ErrorOf(body);

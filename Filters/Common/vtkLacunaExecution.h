@@ -19,8 +19,10 @@ class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaExecution : public lacuna::Executio
 {
 public:
   /// Reports the progress of algorithm and asks it whether to stop. Not owned.
-  /// Also where VTK does not execute algorithm at that moment, as in RequestInformation.
-  explicit vtkLacunaExecution(vtkAlgorithm* algorithm);
+  explicit vtkLacunaExecution(vtkAlgorithm* algorithm)
+    : Algorithm(algorithm)
+  {
+  }
 
   /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). Returns 1, or
   /// 0 after an exception, whose text becomes algorithm's error. When body fails or is stopped by the

@@ -7,6 +7,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
+#include "vtkLacunaVersionCompat.h"
 
 #include <cstdint>
 #include <new>
@@ -37,6 +38,10 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
     if (!this->Refusal.empty())
     {
       throw std::runtime_error(this->Refusal);
+    }
+    if (vtkLacunaCheckAbort(filter))
+    {
+      throw lacuna::Aborted();
     }
     vtkLacunaInputs::Check(filter);
   };

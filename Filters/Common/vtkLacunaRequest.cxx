@@ -15,6 +15,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -26,6 +27,26 @@ namespace
 bool IsEmpty(const int extent[6])
 {
   return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+}
+
+// Of the algorithm and all that lies upstream. Not the executive's, which is from before the request:
+// the first execution after a stop changes the time of its algorithm while it goes on, so that the
+// executive's would change with the next request, on that rank alone.
+vtkMTimeType GetNewestTime(vtkAlgorithm* algorithm, std::set<vtkAlgorithm*>& seen)
+{
+  vtkMTimeType newest = algorithm->GetMTime();
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkAlgorithm* upstream = algorithm->GetInputAlgorithm(port, i);
+      if (upstream && seen.insert(upstream).second)
+      {
+        newest = std::max(newest, GetNewestTime(upstream, seen));
+      }
+    }
+  }
+  return newest;
 }
 
 // Throws when the whole of an announced image does not fit into the memory.
@@ -235,9 +256,9 @@ bool vtkLacunaRequest::WholeIfItFits(
 //------------------------------------------------------------------------------
 std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformation* input)
 {
-  auto* executive = vtkDemandDrivenPipeline::SafeDownCast(filter->GetExecutive());
   vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
-  return { static_cast<double>(executive ? executive->GetPipelineMTime() : filter->GetMTime()),
+  std::set<vtkAlgorithm*> seen;
+  return { static_cast<double>(GetNewestTime(filter, seen)),
     data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0,
     input->Has(SDDP::UPDATE_TIME_STEP()) ? input->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }

@@ -7,18 +7,28 @@
 #include "vtkAlgorithm.h"
 #include "vtkVersionMacros.h"
 
-/// True when the user asked algorithm (or, where VTK can tell, one upstream) to stop.
+/// True when the user asked algorithm (or, where VTK can tell, one upstream) to stop, or its input is of
+/// one that was stopped.
 inline bool vtkLacunaCheckAbort(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
-  return algorithm->CheckAbort();
+  return algorithm->GetAbortOutput() || algorithm->CheckAbort();
 #else
   return algorithm->GetAbortExecute() != 0;
 #endif
 }
 
+/// Whether algorithms are told that one upstream was stopped, so that they give nothing, either.
+constexpr bool vtkLacunaTellsOfAbort =
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  true;
+#else
+  false;
+#endif
+
 /// Forgets that the last execution was stopped, which VTK itself does only before the next one: what
-/// asks vtkLacunaCheckAbort earlier would be stopped, too.
+/// asks vtkLacunaCheckAbort outside of executions would be stopped, too. Within one this would forget
+/// that an algorithm upstream was stopped, and algorithms downstream would take half for all.
 inline void vtkLacunaForgetAbort(vtkAlgorithm* algorithm)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)

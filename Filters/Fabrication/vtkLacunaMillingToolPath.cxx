@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -86,6 +87,9 @@ Totals SetPath(vtkPolyData* output, const lacuna::ToolPath& path, const FeedRate
   auto* rates = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::FeedRateName);
   auto* times = AddArray<vtkDoubleArray>(output, vtkLacunaMillingToolPath::TimeName);
   vtkNew<vtkCellArray> lines;
+  vtkLacunaArrays::Reserve(lines, static_cast<vtkIdType>(path.Runs.size()),
+    std::accumulate(path.Runs.begin(), path.Runs.end(), vtkIdType{ 0 },
+      [](vtkIdType sum, const lacuna::ToolPath::Run& run) { return sum + run.Count; }));
   Totals totals;
   for (const lacuna::ToolPath::Run& run : path.Runs)
   {

@@ -93,6 +93,12 @@ void FillPhantom(const Picks& picks, const lacuna::ProbeCalibration& found, vtkP
   vtkNew<vtkUnsignedCharArray> used;
   error->SetName("Error");
   used->SetName("Used");
+  constexpr vtkIdType corners = 20; // of wires and walls, at most
+  const vtkIdType count = static_cast<vtkIdType>(picks.size()) + corners;
+  vtkLacunaArrays::Reserve(points, count);
+  vtkLacunaArrays::Reserve(vertices, count, count);
+  vtkLacunaArrays::Reserve(error, count);
+  vtkLacunaArrays::Reserve(used, count);
   lacuna::Vec3 low{ 0, 0, 0 }, high{ 0, 0, 0 };
   for (std::size_t i = 0; i < picks.size(); ++i)
   {
@@ -160,6 +166,12 @@ void FillSlices(const Picks& picks, const lacuna::ProbeCalibration& found, vtkPo
   score->SetName("Score");
   used->SetName("Used");
   target->SetName("Target");
+  const auto count = static_cast<vtkIdType>(picks.size());
+  vtkLacunaArrays::Reserve(points, count);
+  vtkLacunaArrays::Reserve(vertices, count, count);
+  vtkLacunaArrays::Reserve(error, count);
+  vtkLacunaArrays::Reserve(score, count);
+  vtkLacunaArrays::Reserve(used, count);
   for (std::size_t i = 0; i < picks.size(); ++i)
   {
     const lacuna::CalibrationPick& pick = picks[i].Pick;

@@ -6,6 +6,7 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaScalarType.h"
@@ -143,7 +144,7 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
   {
     this->GreyLevels.TakeReference(
       vtkDataArray::CreateDataArray(tracked.GetGreyLevels()->GetDataType()));
-    this->GreyLevels->DeepCopy(tracked.GetGreyLevels());
+    vtkLacunaArrays::Copy(tracked.GetGreyLevels(), this->GreyLevels);
   }
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
   this->DropBadPoses(candidates, selection);

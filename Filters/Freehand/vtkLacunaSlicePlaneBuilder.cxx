@@ -95,7 +95,7 @@ vtkLacunaSlicePlaneBuilder::vtkLacunaSlicePlaneBuilder(
   if (!this->GreyLevels->HasStandardMemoryLayout())
   {
     this->GreyLevels.TakeReference(vtkDataArray::CreateDataArray(this->GreyLevels->GetDataType()));
-    this->GreyLevels->DeepCopy(this->Tracked.GetGreyLevels());
+    vtkLacunaArrays::Copy(this->Tracked.GetGreyLevels(), this->GreyLevels);
   }
   this->ReadSweep();
   this->ChooseSlices(first, last);
@@ -347,6 +347,8 @@ void vtkLacunaSlicePlaneBuilder::MakePolygons(
 void vtkLacunaSlicePlaneBuilder::MakeCells(vtkPolyData* output, vtkLacunaExecution& execution) const
 {
   vtkNew<vtkCellArray> lines;
+  const auto count = static_cast<vtkIdType>(this->Shown.size());
+  vtkLacunaArrays::Reserve(lines, count, 5 * count);
   for (const ShownSlice& slice : this->Shown)
   {
     if (slice.IsOutline)

@@ -91,7 +91,7 @@ void Copy(vtkImageData* image, int fromSlice, int count, bool flip, const std::a
   {
     vtkSmartPointer<vtkDataArray> plain;
     plain.TakeReference(vtkDataArray::CreateDataArray(pixels->GetDataType()));
-    plain->DeepCopy(pixels);
+    vtkLacunaArrays::Copy(pixels, plain);
     pixels = plain;
   }
   const int* from = image->GetExtent();

@@ -9,6 +9,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -23,6 +24,7 @@
 #include "vtkTable.h"
 
 #include <functional>
+#include <initializer_list>
 #include <stdexcept>
 #include <vector>
 
@@ -45,6 +47,14 @@ void FillPoints(const Test& found, vtkPolyData* output)
   distance->SetName("Distance");
   place->SetName("Place");
   record->SetName("Record");
+  const auto count = static_cast<vtkIdType>(found.Samples.size());
+  vtkLacunaArrays::Reserve(points, count);
+  vtkLacunaArrays::Reserve(vertices, count, count);
+  for (vtkDataArray* array : std::initializer_list<vtkDataArray*>{
+         position, separation, angle, deviation, distance, place, record })
+  {
+    vtkLacunaArrays::Reserve(array, count);
+  }
   for (const Test::Sample& sample : found.Samples)
   {
     const vtkIdType id = points->InsertNextPoint(sample.Middle.data());

@@ -90,9 +90,9 @@ public:
       if (this->Self->KeepIterations && !last)
       {
         vtkNew<vtkFloatArray> angleCopy;
-        angleCopy->DeepCopy(this->Angle);
+        vtkLacunaArrays::Copy(this->Angle, angleCopy);
         vtkNew<vtkUnsignedCharArray> objectCopy;
-        objectCopy->DeepCopy(this->Object);
+        vtkLacunaArrays::Copy(this->Object, objectCopy);
         images.push_back(this->MakeImage(angleCopy, objectCopy, options, all));
       }
     };

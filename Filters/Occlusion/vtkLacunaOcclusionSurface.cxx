@@ -136,6 +136,7 @@ struct Measures
 void ReverseTriangles(vtkPolyData* surface)
 {
   vtkNew<vtkCellArray> reversed;
+  vtkLacunaArrays::Reserve(reversed, surface->GetNumberOfCells(), 3 * surface->GetNumberOfCells());
   vtkNew<vtkIdList> cell;
   for (vtkIdType t = 0; t < surface->GetNumberOfCells(); ++t)
   {

@@ -87,7 +87,7 @@ void AddNormals(
       "' of the depth map must have three components");
   }
   vtkNew<vtkFloatArray> normals;
-  normals->DeepCopy(measured);
+  vtkLacunaArrays::Copy(measured, normals);
   const lacuna::Matrix4& toWorld = contract.GetImageToWorld();
   const lacuna::Vec3 right = lacuna::Normalized(toWorld.Column(0));
   const lacuna::Vec3 down = lacuna::Normalized(toWorld.Column(1));

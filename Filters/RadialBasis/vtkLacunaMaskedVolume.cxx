@@ -3,6 +3,7 @@
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
@@ -23,7 +24,7 @@ vtkDataArray* GetPlain(vtkDataArray* array, vtkSmartPointer<vtkDataArray>& keep)
     return array;
   }
   keep.TakeReference(vtkDataArray::CreateDataArray(array->GetDataType()));
-  keep->DeepCopy(array);
+  vtkLacunaArrays::Copy(array, keep);
   return keep;
 }
 }

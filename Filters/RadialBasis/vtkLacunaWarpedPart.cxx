@@ -28,7 +28,7 @@ vtkSmartPointer<vtkDataArray> GetInterpolable(vtkDataArray* scalars)
     return scalars;
   }
   auto doubles = vtkSmartPointer<vtkDoubleArray>::New();
-  doubles->DeepCopy(scalars);
+  vtkLacunaArrays::Copy(scalars, doubles);
   return doubles;
 }
 }

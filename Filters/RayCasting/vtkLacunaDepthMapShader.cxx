@@ -135,7 +135,7 @@ public:
       return nullptr;
     }
     auto normals = vtkSmartPointer<vtkFloatArray>::New();
-    normals->DeepCopy(stored);
+    vtkLacunaArrays::Copy(stored, normals);
     return normals;
   }
 

@@ -81,7 +81,7 @@ vtkSmartPointer<vtkFloatArray> DifferenceOfNormals(vtkImageData* map, const std:
       "' of three components to compare: turn ComputeNormalDifference off");
   }
   vtkNew<vtkFloatArray> stored;
-  stored->DeepCopy(array);
+  vtkLacunaArrays::Copy(array, stored);
   const vtkIdType pixels = map->GetNumberOfPoints();
   vtkNew<vtkFloatArray> estimated;
   estimated->SetNumberOfComponents(3);

@@ -2,6 +2,7 @@
 #include "vtkLacunaMapDepths.h"
 
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkPointData.h"
 
@@ -21,7 +22,7 @@ vtkLacunaMapDepths::vtkLacunaMapDepths(
   if (!this->Depths)
   {
     this->Depths = vtkSmartPointer<vtkDoubleArray>::New();
-    this->Depths->DeepCopy(array);
+    vtkLacunaArrays::Copy(array, this->Depths);
   }
   const int* extent = map->GetExtent();
   this->Grid.Depth = this->Depths->GetPointer(0);

@@ -2,6 +2,7 @@
 #include "vtkLacunaVolumeCaster.h"
 
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCasterView.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaScalarType.h"
@@ -32,7 +33,7 @@ const lacuna::IsoRayCaster& vtkLacunaVolumeCaster::Prepare(vtkImageData* volume,
     if (!scalars->HasStandardMemoryLayout())
     {
       this->Copy.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-      this->Copy->DeepCopy(scalars);
+      vtkLacunaArrays::Copy(scalars, this->Copy);
     }
     voxels.Voxels = (this->Copy ? this->Copy.Get() : scalars)->GetVoidPointer(0);
     this->Caster = std::make_unique<lacuna::IsoRayCaster>(voxels,

@@ -29,6 +29,42 @@ vtkStandardNewMacro(vtkLacunaSpeckleFilter);
 
 namespace
 {
+// All arrays of the input but the chosen one, at the points of the output, a part of it.
+void CopyOthers(vtkImageData* input, vtkDataArray* chosen, vtkImageData* output)
+{
+  vtkPointData* from = input->GetPointData();
+  const int* extent = output->GetExtent();
+  const vtkIdType width = extent[1] - extent[0] + 1;
+  for (int a = 0; a < from->GetNumberOfArrays(); ++a)
+  {
+    vtkAbstractArray* array = from->GetAbstractArray(a);
+    if (array == chosen)
+    {
+      continue;
+    }
+    const auto part = vtkSmartPointer<vtkAbstractArray>::Take(array->NewInstance());
+    part->SetName(array->GetName());
+    part->SetNumberOfComponents(array->GetNumberOfComponents());
+    part->CopyComponentNames(array);
+    vtkLacunaArrays::SetNumberOfTuples(part, output->GetNumberOfPoints());
+    vtkIdType to = 0;
+    for (int k = extent[4]; k <= extent[5]; ++k)
+    {
+      for (int j = extent[2]; j <= extent[3]; ++j, to += width)
+      {
+        int ijk[3] = { extent[0], j, k };
+        part->InsertTuples(to, width, input->ComputePointId(ijk), array);
+      }
+    }
+    const int index = output->GetPointData()->AddArray(part);
+    const int attribute = from->IsArrayAnAttribute(a);
+    if (attribute >= 0)
+    {
+      output->GetPointData()->SetActiveAttribute(index, attribute);
+    }
+  }
+}
+
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 const char* const OperationNames[] = { "Median", "Rank", "Minimum", "Maximum", "Opening", "Closing",
@@ -260,13 +296,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       }
       else
       {
-        outData->CopyAllOn();
-        if (chosen->GetName())
-        {
-          outData->CopyFieldOff(chosen->GetName()); // it would be half of the time
-        }
-        outData->CopyAllocate(inData, output->GetNumberOfPoints());
-        outData->CopyStructuredData(inData, input->GetExtent(), output->GetExtent());
+        CopyOthers(input, chosen, output); // the chosen one would be half of the time
       }
       const bool active = inData->GetScalars() == chosen;
       if (chosen->GetName())

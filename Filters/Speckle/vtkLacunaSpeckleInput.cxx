@@ -2,6 +2,7 @@
 #include "vtkLacunaSpeckleInput.h"
 
 #include "vtkImageData.h"
+#include "vtkLacunaArrays.h"
 #include "vtkPointData.h"
 
 #include <stdexcept>
@@ -34,7 +35,7 @@ vtkSmartPointer<vtkDataArray> MakeContiguous(vtkDataArray* array)
     return array;
   }
   auto copy = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(array->GetDataType()));
-  copy->DeepCopy(array);
+  vtkLacunaArrays::Copy(array, copy);
   return copy;
 }
 

@@ -69,7 +69,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME lacuna-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 # besides paraview-dev, what ParaView's CMake package looks for with the components that Lacuna's names;
 # then what kernels are linked with
-set(kernel_libraries libopenblas-dev)
+set(kernel_libraries libopenblas-pthread-dev) # whose path the targets name
 if (LACUNA_HAS_OPENIGTLINK)
   list(APPEND kernel_libraries libopenigtlink-dev)
 endif ()

@@ -345,7 +345,7 @@ void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) co
   const vtkIdType last = stack.First + (shown - 1) * stack.Stride;
   vtkDataArray* all = output->GetFieldData()->GetArray(vtkLacunaTrackedSlices::SliceStatusName);
   vtkNew<vtkUnsignedCharArray> status;
-  status->DeepCopy(all);
+  vtkLacunaArrays::Copy(all, status);
   for (vtkIdType i = last + 1; i < status->GetNumberOfTuples(); ++i)
   {
     status->SetValue(

@@ -20,6 +20,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVersionCompat.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -326,6 +327,7 @@ bool vtkLacunaPhantomSweep::AddTruth(vtkImageData* grid)
     const lacuna::Matrix4 toPhysical(*grid->GetIndexToPhysicalMatrix()->Element);
     const lacuna::Vec3 first{ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
       static_cast<double>(extent[4]) };
+    vtkLacunaForgetAbort(this);
     vtkLacunaExecution execution(this);
     lacuna::SampleGrid(execution, this->GetScene(), dimensions,
       toPhysical * lacuna::Matrix4::Translation(first), truth->GetPointer(0));

@@ -166,13 +166,32 @@ def stopped(make, rank):
         update(filter)
 
 
+def afterwards(make, rank):
+    """Stopped on both ranks, then made: another part of the result is there for one of them alone."""
+    source = wavelet(24)
+    filter = make(source, False)
+    stop = [True]
+    filter.AddObserver("ProgressEvent", lambda caller, _: stop[0] and caller.AbortExecuteOn())
+    parts = (0, 23, 0, 23, 0, 12), (0, 23, 0, 23, 12, 23)
+    update(filter, parts[rank])
+    stop[0] = False
+    filter.AbortExecuteOff()
+    filter.Modified()
+    text = update(filter, parts[rank])
+    assert not text, text
+    if rank == 0:
+        text = update(filter, parts[1])
+        assert not text, text
+        assert filter.GetOutput().GetNumberOfPoints() > 0
+
+
 def run():
     from vtkmodules.vtkParallelCore import vtkMultiProcessController
     controller = vtkMultiProcessController.GetGlobalController()
     assert controller.GetNumberOfProcesses() == 2
     rank = controller.GetLocalProcessId()
     for make in (occluded_angle, mirror, warp):
-        for what in (refused, unsound, again, stopped):
+        for what in (refused, unsound, again, stopped, afterwards):
             signal.alarm(SECONDS)  # ends a rank that waits for ever
             print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
             what(make, rank)

@@ -126,13 +126,14 @@ def run(folder, ranks):
 
     # A preview depends on no rank's memory: on all of it, the last rank would take every second slice.
     if ranks > 1:
+        before = resource.getrlimit(resource.RLIMIT_AS)
         if rank == ranks - 1:
-            resource.setrlimit(resource.RLIMIT_AS, (2 ** 33, resource.RLIM_INFINITY))
+            resource.setrlimit(resource.RLIMIT_AS, (2 ** 33, before[1]))
         reader = vtkLacunaTrackedSliceReader()
         reader.SetFileName(os.path.join(folder, "large.mha"))
         reader.UpdateInformation()
         assert reader.GetOutputInformation(0).Get(reader.GetExecutive().WHOLE_EXTENT())[5] == SLICES - 1, reader.GetPreview()
-        resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
     own = os.path.join(folder, f"series-{ranks}-{rank}")  # of this rank, which takes others' files away
     shutil.copytree(os.path.join(folder, "series"), own)

@@ -2,6 +2,11 @@
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 #include "vtkCommand.h"
+#include "vtkInformation.h"
+#include "vtkLacunaVersionCompat.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPassInputTypeAlgorithm.h"
 
 namespace lacunaProperties
 {
@@ -23,19 +28,72 @@ public:
   int Count = 0;
   int StopAt = 0;
 };
+
+// An algorithm upstream that is stopped.
+class Stopped : public vtkPassInputTypeAlgorithm
+{
+public:
+  static Stopped* New();
+  vtkTypeMacro(Stopped, vtkPassInputTypeAlgorithm);
+
+protected:
+  int FillInputPortInformation(int, vtkInformation* info) override
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override
+  {
+    this->AbortExecuteOn();
+    vtkLacunaCheckAbort(this);
+    return 1;
+  }
+};
+vtkStandardNewMacro(Stopped);
+
+// Of inputs of which one comes from such a one.
+std::string TestStoppedInput(const Trial& trial, Dice& dice)
+{
+  const vtkSmartPointer<vtkAlgorithm> algorithm = trial.Make();
+  std::vector<int> ports;
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    if (algorithm->GetNumberOfInputConnections(port) > 0)
+    {
+      ports.push_back(port);
+    }
+  }
+  if (ports.empty() || !vtkLacunaTellsOfAbort)
+  {
+    return {};
+  }
+  const int port = dice.Pick(ports);
+  vtkNew<Stopped> stopped;
+  stopped->SetInputConnection(algorithm->GetInputConnection(port, 0));
+  algorithm->SetInputConnection(port, stopped->GetOutputPort());
+  const Run run = trial.Execute(algorithm, 0);
+  // that there is no file is an error, whatever the reason
+  if (!trial.What.SetFile && (!run.Errors.empty() || !run.Stray.empty()))
+  {
+    return "messages when input " + std::to_string(port) + " was stopped: " + run.Errors +
+      run.Stray;
+  }
+  return run.IsEmpty ? "" : "an output though input " + std::to_string(port) + " was stopped";
+}
 }
 
 //------------------------------------------------------------------------------
 std::string TestAbort(const Subject& subject, std::uint64_t seed, Account& account)
 {
-  const Trial trial(subject, seed, true);
+  const Trial trial(subject, seed, Trial::Varied);
   Dice dice(seed + 1);
   vtkNew<Stopper> counter;
   const vtkSmartPointer<vtkAlgorithm> fresh = trial.Make();
   fresh->AddObserver(vtkCommand::ProgressEvent, counter);
   const Run whole = trial.Execute(fresh, 1);
   std::string& story = account.Story;
-  story = "  " + std::to_string(counter->Count) + " reports of progress\n" + whole.Errors;
+  story = trial.GetStory() + "  " + std::to_string(counter->Count) + " reports of progress\n" +
+    whole.Errors;
   if (!whole.Errors.empty() || counter->Count == 0)
   {
     return {}; // not a run that could be stopped
@@ -60,6 +118,11 @@ std::string TestAbort(const Subject& subject, std::uint64_t seed, Account& accou
   if (!stopped.IsEmpty && !isWhole)
   {
     return "stopped, and half an output";
+  }
+  const std::string fault = TestStoppedInput(trial, dice);
+  if (!fault.empty())
+  {
+    return fault;
   }
   stopper->StopAt = 0;
   algorithm->AbortExecuteOff();

@@ -26,7 +26,7 @@ std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, A
   std::unique_ptr<Trial> found;
   for (int i = 0; i < tries && !account.Succeeded; ++i)
   {
-    found = std::make_unique<Trial>(subject, seed + static_cast<std::uint64_t>(i), true);
+    found = std::make_unique<Trial>(subject, seed + static_cast<std::uint64_t>(i), Trial::Plain);
     const Run once = found->Execute(found->Make(), 0);
     account.Succeeded = once.Errors.empty() && !once.IsEmpty;
   }

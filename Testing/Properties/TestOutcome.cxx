@@ -148,7 +148,7 @@ std::string FindFaultInRun(const Trial& trial, vtkAlgorithm* algorithm, const Ru
 //------------------------------------------------------------------------------
 std::string TestOutcome(const Subject& subject, std::uint64_t seed, Account& account)
 {
-  const Trial trial(subject, seed, false);
+  const Trial trial(subject, seed, Trial::Hostile);
   std::string& story = account.Story;
   story = trial.GetStory();
   std::vector<Fingerprint> before;

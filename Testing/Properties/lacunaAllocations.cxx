@@ -10,6 +10,7 @@ namespace
 {
 std::atomic<long> Requests{ 0 };
 std::atomic<long> Granted{ LONG_MAX };
+std::atomic<bool> Refused{ false };
 }
 
 namespace lacunaProperties
@@ -24,6 +25,12 @@ long CountAllocations()
 void GrantAllocations(long first)
 {
   Granted = first < 0 ? LONG_MAX : first;
+}
+
+//------------------------------------------------------------------------------
+bool WereAllocationsRefused()
+{
+  return Refused;
 }
 }
 
@@ -49,6 +56,7 @@ extern "C"
       return true;
     }
     Granted = 0;
+    Refused = true;
     errno = ENOMEM;
     return false;
   }

@@ -10,7 +10,7 @@ namespace lacunaProperties
 {
 /// Requests of fewer bytes are granted always: nearly always there is room for them, and VTK does not
 /// survive without some of them, such as the tables of a data object's arrays.
-constexpr std::size_t LargeAllocation = 5000;
+constexpr std::size_t LargeAllocation = 9000; // more than the buffers of files
 
 /// Requests of LargeAllocation and more since the last call, on any thread. 0 where the sanitizers'
 /// allocator is used instead.
@@ -18,5 +18,8 @@ long CountAllocations();
 
 /// The `first` next large requests are granted, and none after them; below 0: all are.
 void GrantAllocations(long first);
+
+/// Whether one was not, so far.
+bool WereAllocationsRefused();
 }
 #endif

@@ -16,8 +16,10 @@ namespace lacunaProperties
 class Dice
 {
 public:
-  explicit Dice(std::uint64_t seed)
+  /// stretch: what Length multiplies.
+  explicit Dice(std::uint64_t seed, int stretch = 1)
     : Engine(seed)
+    , Stretch(stretch)
   {
   }
 
@@ -28,6 +30,8 @@ public:
     const auto count = static_cast<std::uint64_t>(static_cast<std::int64_t>(highest) - lowest) + 1;
     return static_cast<int>(lowest + static_cast<std::int64_t>(this->Engine() % count));
   }
+  /// The same, stretched: how many pixels, slices or points there are along an axis.
+  int Length(int lowest, int highest) { return this->Stretch * this->Whole(lowest, highest); }
   double Real(double lowest, double highest)
   {
     const double part = std::ldexp(static_cast<double>(this->Engine() >> 11), -53);
@@ -52,6 +56,7 @@ public:
 
 private:
   std::mt19937_64 Engine;
+  int Stretch;
 };
 }
 #endif

@@ -101,7 +101,7 @@ Subject MakeAssembler()
   Subject subject{ "AssembleTrackedSlices", NewOf<T>,
     [](Dice& dice) -> Inputs
     {
-      const int slices = dice.Whole(1, 6);
+      const int slices = dice.Length(1, 6);
       const int format = dice.Chance(0.6) ? T::Matrix : dice.Whole(0, 2);
       return { RandomStack(dice, slices),
         RandomPoses(dice, dice.Chance(0.9) ? slices : dice.Whole(1, 6), format) };
@@ -247,7 +247,7 @@ Inputs MakeFloor(Dice& dice)
 // A screen with a bright rectangle.
 Inputs MakeScreen(Dice& dice)
 {
-  const int dimensions[3] = { dice.Whole(8, 60), dice.Whole(8, 60), dice.Whole(1, 3) };
+  const int dimensions[3] = { dice.Length(8, 60), dice.Length(8, 60), dice.Whole(1, 3) };
   auto screen = vtkSmartPointer<vtkImageData>::New();
   screen->SetDimensions(dimensions);
   AddScalars(screen, RandomType(dice), "Screen",
@@ -263,7 +263,7 @@ Inputs MakeScreen(Dice& dice)
 // Two receivers on a bar that is carried slowly along two sides of a field, with metal in its end.
 Inputs MakeReceivers(Dice& dice)
 {
-  const int slices = dice.Chance(0.9) ? dice.Whole(60, 90) : dice.Whole(1, 12);
+  const int slices = dice.Chance(0.9) ? dice.Length(60, 90) : dice.Whole(1, 12);
   auto stack = vtkSmartPointer<vtkImageData>::New();
   stack->SetExtent(0, 2, 0, 1, 0, slices - 1);
   AddScalars(
@@ -309,6 +309,7 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
         Real("TimeOffset", &T::SetTimeOffset, -1, 1),
         Real("MaximumTimeGap", &T::SetMaximumTimeGap, 0, 1),
         Real("SpeedLimit", &T::SetSpeedLimit, 0, 50) } };
+    subject.IsFrugal = true;
     subject.KeepsGeometry = true;
     subjects.push_back(subject);
   }

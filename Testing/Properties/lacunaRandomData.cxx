@@ -148,7 +148,7 @@ void AddScalars(vtkImageData* image, int type, const char* name,
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> RandomVolume(Dice& dice)
 {
-  int dimensions[3] = { dice.Whole(2, 10), dice.Whole(2, 10), dice.Whole(2, 10) };
+  int dimensions[3] = { dice.Length(2, 10), dice.Length(2, 10), dice.Length(2, 10) };
   if (dice.Chance(0.25))
   {
     for (int& dimension : dimensions)
@@ -180,8 +180,8 @@ vtkSmartPointer<vtkImageData> RandomVolume(Dice& dice)
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> RandomLump(Dice& dice, int least, int most)
 {
-  const int dimensions[3] = { dice.Whole(least, most), dice.Whole(least, most),
-    dice.Whole(least, most) };
+  const int dimensions[3] = { dice.Length(least, most), dice.Length(least, most),
+    dice.Length(least, most) };
   auto image = vtkSmartPointer<vtkImageData>::New();
   PlaceImage(image, dimensions, dice);
   const int* extent = image->GetExtent();
@@ -201,9 +201,9 @@ vtkSmartPointer<vtkImageData> RandomLump(Dice& dice, int least, int most)
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> RandomSlices(Dice& dice, bool isCalibrated)
 {
-  const int slices = dice.Whole(2, 7);
+  const int slices = dice.Length(2, 7);
   auto stack = vtkSmartPointer<vtkImageData>::New();
-  int extent[6] = { 0, dice.Whole(3, 9), 0, dice.Whole(3, 9), 0, slices - 1 };
+  int extent[6] = { 0, dice.Length(3, 9), 0, dice.Length(3, 9), 0, slices - 1 };
   if (dice.Chance(0.2)) // a crop
   {
     extent[0] = dice.Whole(0, 2);
@@ -260,7 +260,7 @@ vtkSmartPointer<vtkImageData> RandomSlices(Dice& dice, bool isCalibrated)
 vtkSmartPointer<vtkImageData> RandomStack(Dice& dice, int slices)
 {
   auto stack = vtkSmartPointer<vtkImageData>::New();
-  const int dimensions[3] = { dice.Whole(2, 9), dice.Whole(2, 9), slices };
+  const int dimensions[3] = { dice.Length(2, 9), dice.Length(2, 9), slices };
   PlaceImage(stack, dimensions, dice);
   AddScalars(stack, RandomType(dice), dice.Pick({ "Grey", "PNGImage", "DICOMImage" }),
     [&](const lacuna::Vec3&) { return dice.Real(0, 120); });
@@ -356,8 +356,8 @@ vtkSmartPointer<vtkTable> RandomPicks(Dice& dice, int slices)
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkImageData> RandomDepthMap(Dice& dice, bool isFilled, int least)
 {
-  const int columns = dice.Whole(least, least + 10);
-  const int rows = dice.Whole(least, least + 10);
+  const int columns = dice.Length(least, least + 10);
+  const int rows = dice.Length(least, least + 10);
   const int first[2] = { dice.Chance(0.5) ? 0 : dice.Whole(-5, 20), dice.Chance(0.5) ? 0 : 3 };
   auto map = vtkSmartPointer<vtkImageData>::New();
   map->SetExtent(first[0], first[0] + columns - 1, first[1], first[1] + rows - 1, 0, 0);
@@ -407,7 +407,7 @@ vtkSmartPointer<vtkPolyData> RandomPoints(Dice& dice, int least, int most)
   vtkNew<vtkPoints> points;
   points->SetDataType(dice.Pick({ VTK_FLOAT, VTK_DOUBLE }));
   vtkNew<vtkCellArray> vertices;
-  const int count = dice.Whole(least, most);
+  const int count = dice.Length(least, most);
   const bool isFlat = dice.Chance(0.2);
   for (int i = 0; i < count; ++i)
   {
@@ -436,8 +436,8 @@ vtkSmartPointer<vtkPolyData> RandomPoints(Dice& dice, int least, int most)
 vtkSmartPointer<vtkStructuredGrid> RandomMould(Dice& dice)
 {
   auto grid = vtkSmartPointer<vtkStructuredGrid>::New();
-  const int columns = dice.Whole(3, 12);
-  const int rows = dice.Whole(3, 12);
+  const int columns = dice.Length(3, 12);
+  const int rows = dice.Length(3, 12);
   const int sizes[3][3] = { { 1, columns, rows }, { columns, 1, rows }, { columns, rows, 1 } };
   const lacuna::Vec2 spacing{ dice.Real(0.5, 2), dice.Real(0.5, 2) };
   const Relief relief(dice);

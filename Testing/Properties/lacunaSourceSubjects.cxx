@@ -30,8 +30,8 @@ void AddSourceSubjects(std::vector<Subject>& subjects)
         Whole("OutputScalarType", &T::SetOutputScalarType, 0, 1) } };
     subject.Prepare = [](vtkAlgorithm* algorithm)
     {
-      Cast<T>(algorithm)->SetNumberOfSlices(4);
-      Cast<T>(algorithm)->SetImageSize(12, 10);
+      Cast<T>(algorithm)->SetNumberOfSlices(6);
+      Cast<T>(algorithm)->SetImageSize(50, 40);
     };
     subjects.push_back(subject);
   }
@@ -56,7 +56,10 @@ void AddSourceSubjects(std::vector<Subject>& subjects)
         Real("OutlierFraction", &T::SetOutlierFraction, 0, 10),
         Whole("Seed", &T::SetSeed, -5, 5) } };
     subject.Prepare = [](vtkAlgorithm* algorithm)
-    { Cast<T>(algorithm)->SetDimensions(30, 30, 30); };
+    {
+      Cast<T>(algorithm)->SetShape(T::SPHERE);
+      Cast<T>(algorithm)->SetDimensions(30, 30, 30);
+    };
     subject.Cost = 4;
     subjects.push_back(subject);
   }

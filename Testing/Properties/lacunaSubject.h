@@ -41,6 +41,8 @@ struct Subject
   int Cost = 1;
   /// Whether output 0 has the extent, spacing, origin and direction of input 0.
   bool KeepsGeometry = false;
+  /// Whether it asks for no memory to speak of, however large its input is.
+  bool IsFrugal = false;
   /// What makes a run of it sensible that begins with the properties' defaults.
   std::function<void(vtkAlgorithm*)> Prepare = nullptr;
   /// A writer's file without extension; gives its whole name. None: no writer.

@@ -196,8 +196,9 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
     subjects.push_back({ "PressOrientation", NewOf<T>,
       [](Dice& dice) -> Inputs
       {
-        // flanges need a wide border
-        return { RandomDepthMap(dice, true, dice.Chance(0.2) ? 18 : 90) };
+        // flanges need a wide border: large as they are
+        Dice own(dice.Seed());
+        return { RandomDepthMap(own, true, dice.Chance(0.2) ? 18 : 90) };
       },
       { Whole("PlaneMethod", &T::SetPlaneMethod, 0, 1), Whole("Mould", &T::SetMould, 0, 1),
         Whole("Seating", &T::SetSeating, 0, 1),

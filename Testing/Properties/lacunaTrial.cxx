@@ -92,23 +92,26 @@ const std::string& GetOutputFolder()
 }
 
 //------------------------------------------------------------------------------
-Trial::Trial(const Subject& subject, std::uint64_t seed, bool isSound)
+Trial::Trial(const Subject& subject, std::uint64_t seed, Kind kind, int stretch)
   : What(subject)
 {
   GetWindow();
   Dice dice(seed);
   // twice the same, since data share nothing then
   const std::uint64_t inputSeed = dice.Seed();
-  Dice first(inputSeed);
-  Dice second(inputSeed);
+  Dice first(inputSeed, stretch);
+  Dice second(inputSeed, stretch);
   this->Sound = subject.MakeInputs(first);
   this->Given = subject.MakeInputs(second);
-  if (isSound)
+  if (kind == Plain)
   {
     return;
   }
-  this->SpoilInputs(dice);
-  const double hostility = dice.Pick({ 0.0, 0.0, 0.1, 0.4 });
+  if (kind == Hostile)
+  {
+    this->SpoilInputs(dice);
+  }
+  const double hostility = kind == Hostile ? dice.Pick({ 0.0, 0.0, 0.1, 0.4 }) : 0;
   const double share = dice.Pick({ 0.0, 0.2, 0.5, 0.9 });
   const vtkSmartPointer<vtkAlgorithm> probe = subject.New();
   for (const Property& property : subject.Properties)
@@ -117,7 +120,7 @@ Trial::Trial(const Subject& subject, std::uint64_t seed, bool isSound)
     if (dice.Chance(share))
     {
       this->Choices.push_back(choice);
-      this->Hostile = this->Hostile || choice.IsHostile;
+      this->HasHostile = this->HasHostile || choice.IsHostile;
       Dice values(choice.Seed);
       this->Story += "  " + property.Name + (choice.IsHostile ? " = (!) " : " = ") +
         property.Set(probe, values, choice.IsHostile) + "\n";
@@ -224,6 +227,7 @@ Run Trial::Execute(vtkAlgorithm* algorithm, int threads) const
       algorithm->Update();
     }
   };
+  CountAllocations();
   try
   {
     if (threads > 0)
@@ -240,6 +244,7 @@ Run Trial::Execute(vtkAlgorithm* algorithm, int threads) const
   {
     run.Stray += std::string("an exception escaped: ") + e.what();
   }
+  run.Allocations = CountAllocations();
   GrantAllocations(-1); // what follows is the test's
   run.Stray += GetWindow()->Take();
   run.Errors = messages->Errors;

@@ -20,6 +20,7 @@ struct Run
   std::string Warnings; ///< of the algorithm
   std::string Stray;    ///< messages of other objects, which a user could not place
   bool IsEmpty = true;  ///< no output has anything, no file was written
+  long Allocations = 0; ///< see CountAllocations
   std::vector<Fingerprint> Outputs;
 };
 
@@ -27,8 +28,15 @@ struct Run
 class Trial
 {
 public:
-  /// With isSound the inputs are as made, and the properties the defaults.
-  Trial(const Subject& subject, std::uint64_t seed, bool isSound);
+  enum Kind
+  {
+    Plain,  ///< inputs as made, the properties' defaults
+    Varied, ///< inputs as made, properties within their ranges
+    Hostile ///< inputs may be spoiled, properties be anything
+  };
+
+  /// stretch: see Dice.
+  Trial(const Subject& subject, std::uint64_t seed, Kind kind, int stretch = 1);
 
   /// An algorithm with them; sound: with the inputs before they were spoiled.
   vtkSmartPointer<vtkAlgorithm> Make(bool sound = false) const;
@@ -39,7 +47,7 @@ public:
   const Subject& What;
   const Inputs& GetInputs() const { return this->Given; }
   bool IsSpoiled() const { return this->Spoiled; }
-  bool IsHostile() const { return this->Hostile; }
+  bool IsHostile() const { return this->HasHostile; }
   /// What was chosen, to be read.
   const std::string& GetStory() const { return this->Story; }
 
@@ -56,7 +64,7 @@ private:
   Inputs Given;
   std::vector<Choice> Choices;
   bool Spoiled = false;
-  bool Hostile = false;
+  bool HasHostile = false;
   std::string Story;
 };
 

@@ -21,8 +21,8 @@ for file in $sources $(git ls-files '*.py' '*.sh' '*.cmake' '*CMakeLists.txt'); 
 done
 bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
 [ -z "$bad" ] || complain "kernels must not include VTK: $bad"
-bad=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -vE '/(Kernel|Testing)/|vtkLacuna(Arrays|SplineLoop)' |
-  xargs grep -nE -- '->(SetNumberOf(Tuples|Points)|AllocateScalars|AllocateExact)\(' || true)
+bad=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' 'Filters/*.h' 'Readers/*.h' 'Sources/*.h' | grep -vE '/(Kernel|Testing)/|vtkLacuna(Arrays|SplineLoop)' |
+  xargs grep -nE -- '->(SetNumberOf(Tuples|Points)|AllocateScalars|AllocateExact|CopyAllocate|DeepCopy)\(' || true)
 [ -z "$bad" ] || complain "VTK ends the program where there is no memory; use vtkLacunaArrays: $bad"
 bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"

@@ -17,7 +17,8 @@ namespace lacuna
 namespace
 {
 // Often enough for a progress bar and a prompt stop, rarely enough to cost nothing; or ms that the
-// environment gives, as tests do that stop between any two ranges.
+// environment gives. 0, for tests: after each range of a loop, which the calling thread does alone then,
+// so that a run repeats.
 std::chrono::milliseconds GetReportInterval()
 {
   static const std::chrono::milliseconds interval = []
@@ -81,9 +82,10 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
   std::exception_ptr error;
   std::mutex errorMutex;
   using Clock = std::chrono::steady_clock;
-  const bool works = this->LaunchWorks();
   const std::thread::id caller = std::this_thread::get_id();
   const std::chrono::milliseconds interval = GetReportInterval();
+  const bool alone = interval == std::chrono::milliseconds::zero();
+  const bool works = alone || this->LaunchWorks();
   Clock::time_point next = Clock::now() + interval; // of the calling thread
   const auto report = [&] { this->Report(static_cast<double>(done) / static_cast<double>(count)); };
   // Back ends hand out ranges as they like and let no exception through: divide and guard here.
@@ -114,7 +116,11 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
     }
   };
 
-  if (works)
+  if (alone)
+  {
+    guarded(0, count);
+  }
+  else if (works)
   {
     this->Launch(count, grain, guarded);
   }

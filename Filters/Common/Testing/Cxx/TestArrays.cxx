@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrays get their size, or an error that names the bytes; VTK's own functions end the program.
 #include "lacunaCheck.h"
+#include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaArrays.h"
@@ -54,9 +56,21 @@ int TestArrays(int, char*[])
   const vtkIdType many = vtkIdType{ 1 } << 56;
   const std::string error = ErrorOfSize(normals, many);
   LACUNA_CHECK(error.find("'Normals' would need 1.73e+18 bytes") != std::string::npos);
+  vtkNew<vtkDoubleArray> wide;
+  wide->SetNumberOfComponents(8);
+  LACUNA_CHECK(!ErrorOfSize(wide, vtkIdType{ 1 } << 58).empty()); // 2^64 bytes
   vtkNew<vtkUnsignedCharArray> unnamed;
   LACUNA_CHECK(ErrorOfSize(unnamed, many).find("an array would need") != std::string::npos);
   LACUNA_CHECK(unnamed->GetNumberOfTuples() == 0);
+
+  // what was known of the values is of those that it had
+  vtkNew<vtkDoubleArray> values;
+  values->InsertNextValue(1);
+  LACUNA_CHECK(values->GetRange()[1] == 1);
+  vtkLacunaArrays::SetNumberOfTuples(values, 2);
+  values->SetValue(0, 5);
+  values->SetValue(1, 7);
+  LACUNA_CHECK(values->GetRange()[0] == 5 && values->GetRange()[1] == 7);
 
   vtkNew<vtkSOADataArrayTemplate<float>> blocks;
   blocks->SetNumberOfComponents(2);
@@ -72,6 +86,27 @@ int TestArrays(int, char*[])
   vtkLacunaArrays::SetNumberOfPoints(points, 2);
   points->SetPoint(1, 1, 2, 3);
   LACUNA_CHECK(points->GetNumberOfPoints() == 2 && points->GetPoint(1)[2] == 3);
+
+  vtkNew<vtkFloatArray> copy;
+  blocks->SetName("Blocks");
+  blocks->SetComponentName(1, "second");
+  vtkLacunaArrays::Copy(blocks, copy);
+  LACUNA_CHECK(copy->GetNumberOfTuples() == 5 && copy->GetTypedComponent(4, 1) == 3);
+  LACUNA_CHECK(std::string(copy->GetName()) == "Blocks" && copy->HasAComponentName());
+
+  vtkNew<vtkCellArray> cells;
+  vtkLacunaArrays::Reserve(cells, 2, 5);
+  LACUNA_CHECK(cells->GetNumberOfCells() == 0);
+  cells->InsertNextCell({ 4, 5, 6 });
+  cells->InsertNextCell({ 7, 8 });
+  cells->InsertNextCell({ 9 }); // more than reserved
+  vtkIdType count = 0;
+  const vtkIdType* ids = nullptr;
+  cells->GetCellAtId(1, count, ids);
+  LACUNA_CHECK(cells->GetNumberOfCells() == 3 && count == 2 && ids[0] == 7 && ids[1] == 8);
+  vtkLacunaArrays::Reserve(points, 3);
+  LACUNA_CHECK(points->GetNumberOfPoints() == 0 && points->InsertNextPoint(1, 2, 3) == 0);
+  LACUNA_CHECK(points->GetNumberOfPoints() == 1);
 
   vtkNew<vtkImageData> image;
   image->SetExtent(-1, 2, 3, 5, 7, 7);
