@@ -33,6 +33,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"          // for stops
 #include "vtkSmartPointer.h"                 // for ownership
 
 #include <memory> // for ownership
@@ -50,6 +51,7 @@ public:
   static vtkLacunaOccludedAngle* New();
   vtkTypeMacro(vtkLacunaOccludedAngle, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum Modes
   {

@@ -39,6 +39,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <memory>
 
@@ -51,6 +52,7 @@ public:
   static vtkLacunaMirror* New();
   vtkTypeMacro(vtkLacunaMirror, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum PlaneMethodType
   {

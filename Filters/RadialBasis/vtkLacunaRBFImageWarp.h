@@ -39,6 +39,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <memory>
 #include <vector>
@@ -53,6 +54,7 @@ public:
   static vtkLacunaRBFImageWarp* New();
   vtkTypeMacro(vtkLacunaRBFImageWarp, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum KernelType
   {

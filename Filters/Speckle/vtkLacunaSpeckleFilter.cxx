@@ -46,6 +46,14 @@ void CopyOthers(vtkImageData* input, vtkDataArray* chosen, vtkImageData* output)
     part->SetName(array->GetName());
     part->SetNumberOfComponents(array->GetNumberOfComponents());
     part->CopyComponentNames(array);
+    if (array->HasInformation())
+    {
+      part->CopyInformation(array->GetInformation(), 1);
+    }
+    if (auto* numbers = vtkDataArray::SafeDownCast(array))
+    {
+      vtkDataArray::SafeDownCast(part)->SetLookupTable(numbers->GetLookupTable());
+    }
     vtkLacunaArrays::SetNumberOfTuples(part, output->GetNumberOfPoints());
     vtkIdType to = 0;
     for (int k = extent[4]; k <= extent[5]; ++k)

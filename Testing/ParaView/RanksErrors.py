@@ -158,12 +158,19 @@ def stopped(make, rank):
     for moment in (0.0, 0.1, 0.16, 0.2, 0.32, 0.45, 0.6, 0.8, 0.95):
         filter = make(source, False)
 
-        def stop(caller, _, moment=moment):
-            if caller.GetProgress() >= moment:
+        stops = [rank == 1]
+
+        def stop(caller, _, moment=moment, stops=stops):
+            if stops[0] and caller.GetProgress() >= moment:
                 caller.AbortExecuteOn()
-        if rank == 1:
-            filter.AddObserver("ProgressEvent", stop)
+        filter.AddObserver("ProgressEvent", stop)
         update(filter)
+        stops[0] = False
+        filter.AbortExecuteOff()
+        update(filter, (0, 47, 0, 47, 3, 9))  # of what all ranks know to have failed
+        filter.Modified()
+        text = update(filter)
+        assert not text and filter.GetOutput().GetNumberOfPoints() == 48 ** 3, text
 
 
 def afterwards(make, rank):
@@ -183,6 +190,14 @@ def afterwards(make, rank):
         text = update(filter, parts[1])
         assert not text, text
         assert filter.GetOutput().GetNumberOfPoints() > 0
+        for first in (3, 8):  # a stop of what one rank does alone is nothing to the others
+            stop[0] = True
+            update(filter, (0, 23, 0, 23, first, first + 1))
+            stop[0] = False
+            filter.AbortExecuteOff()
+            text = update(filter, (0, 23, 0, 23, first, first + 2))
+            assert not text, text
+            assert filter.GetOutput().GetNumberOfPoints() > 0
 
 
 def run():

@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkImageMedian3D.h"
 #include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSpeckleFilter.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -177,6 +178,50 @@ void TestHonoursRequestedExtents()
       std::cerr << "operation " << operation << "\n";
     }
   }
+}
+
+// Of other arrays: names, unit, colours, kind and values.
+void TestPartsKeepOtherArrays()
+{
+  const int extent[6] = { 0, 9, -2, 6, 3, 8 };
+  const auto image = MakeImage(VTK_FLOAT, extent);
+  vtkNew<vtkDoubleArray> flow;
+  flow->SetName("Flow");
+  flow->SetNumberOfComponents(3);
+  flow->SetComponentName(1, "along");
+  vtkNew<vtkStringArray> texts;
+  texts->SetName("Text");
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    flow->InsertNextTuple3(static_cast<double>(i), 2, 3);
+    texts->InsertNextValue(std::to_string(i));
+  }
+  flow->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), "mm/s");
+  flow->CreateDefaultLookupTable();
+  image->GetPointData()->SetVectors(flow);
+  image->GetPointData()->AddArray(texts);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  filter->SetInputData(image);
+  filter->UpdateInformation();
+  const int asked[6] = { 2, 7, 1, 4, 3, 5 };
+  filter->UpdateExtent(asked);
+  vtkImageData* part = filter->GetOutput();
+  LACUNA_CHECK(part->GetNumberOfPoints() == 6 * 4 * 3);
+  auto* found = vtkDoubleArray::SafeDownCast(part->GetPointData()->GetVectors());
+  auto* labels = vtkStringArray::SafeDownCast(part->GetPointData()->GetAbstractArray("Text"));
+  LACUNA_CHECK(found && labels && std::string(found->GetName()) == "Flow");
+  if (!found || !labels)
+  {
+    return;
+  }
+  LACUNA_CHECK(std::string(found->GetComponentName(1)) == "along");
+  LACUNA_CHECK(
+    found->HasInformation() && found->GetInformation()->Has(vtkDataArray::UNITS_LABEL()));
+  LACUNA_CHECK(found->GetLookupTable() == flow->GetLookupTable());
+  int corner[3] = { 7, 4, 5 };
+  const vtkIdType whole = image->ComputePointId(corner);
+  LACUNA_CHECK(found->GetComponent(part->ComputePointId(corner), 0) == static_cast<double>(whole));
+  LACUNA_CHECK(labels->GetValue(part->ComputePointId(corner)) == std::to_string(whole));
 }
 
 void TestAsksForNoMoreThanItNeeds()
@@ -511,6 +556,7 @@ int TestSpeckleFilter(int, char*[])
   TestEqualsVTKMedian();
   TestKeepsEverythingElse();
   TestHonoursRequestedExtents();
+  TestPartsKeepOtherArrays();
   TestAsksForNoMoreThanItNeeds();
   TestPieces();
   TestTypesAndComponents();
