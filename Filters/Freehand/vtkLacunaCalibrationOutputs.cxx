@@ -93,8 +93,8 @@ void FillPhantom(const Picks& picks, const lacuna::ProbeCalibration& found, vtkP
   vtkNew<vtkUnsignedCharArray> used;
   error->SetName("Error");
   used->SetName("Used");
-  constexpr vtkIdType corners = 20; // of wires and walls, at most
-  const vtkIdType count = static_cast<vtkIdType>(picks.size()) + corners;
+  constexpr vtkIdType spare = 20; // corners of wires and walls, at most
+  const vtkIdType count = static_cast<vtkIdType>(picks.size()) + spare;
   vtkLacunaArrays::Reserve(points, count);
   vtkLacunaArrays::Reserve(vertices, count, count);
   vtkLacunaArrays::Reserve(error, count);
