@@ -111,7 +111,7 @@ std::shared_ptr<const OpenIGTLinkArrival> OpenIGTLinkInbox::Wait(
   }
   if (this->Reason)
   {
-    std::rethrow_exception(this->Reason);
+    throw ChannelError(this->Reason->Kind, this->Reason->What);
   }
   return nullptr;
 }
@@ -150,10 +150,10 @@ void OpenIGTLinkInbox::NoteDamage(const std::string& fault)
   this->Fault = fault;
 }
 
-void OpenIGTLinkInbox::Break(std::exception_ptr reason)
+void OpenIGTLinkInbox::Break(const OpenIGTLinkBreak& reason)
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  this->Reason = std::move(reason);
+  this->Reason = reason;
   this->Changed.notify_all();
 }
 
@@ -177,7 +177,7 @@ void OpenIGTLinkConnection::Attach(OpenIGTLinkInbox& inbox)
   this->Inboxes.push_back(&inbox);
   if (this->Reason)
   {
-    inbox.Break(this->Reason);
+    inbox.Break(*this->Reason);
   }
 }
 
@@ -227,15 +227,24 @@ void OpenIGTLinkConnection::Run()
     {
     }
   }
-  catch (...)
+  catch (const ChannelError& e)
   {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->Reason = std::current_exception();
-    this->Broken = true;
-    for (OpenIGTLinkInbox* inbox : this->Inboxes)
-    {
-      inbox->Break(this->Reason);
-    }
+    this->Break({ e.GetKind(), e.what() });
+  }
+  catch (const std::exception& e)
+  {
+    this->Break({ ChannelError::Kind::Other, e.what() });
+  }
+}
+
+void OpenIGTLinkConnection::Break(const OpenIGTLinkBreak& reason)
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  this->Reason = reason;
+  this->Broken = true;
+  for (OpenIGTLinkInbox* inbox : this->Inboxes)
+  {
+    inbox->Break(reason);
   }
 }
 

@@ -14,7 +14,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -51,6 +50,14 @@ struct OpenIGTLinkClockState
   double OtherStep = 0;         ///< s that its stamps are apart from the device's
 };
 
+/// Why a connection ended. Each thread makes an exception of it for itself: one exception that several
+/// threads rethrow is counted inside the C++ library, where ThreadSanitizer does not see it.
+struct OpenIGTLinkBreak
+{
+  ChannelError::Kind Kind = ChannelError::Kind::Other;
+  std::string What;
+};
+
 /// Waits for messages that match on behalf of one device. Used by one thread, filled by another.
 class OpenIGTLinkInbox
 {
@@ -60,7 +67,7 @@ public:
   explicit OpenIGTLinkInbox(Filter filter);
 
   /// The next message; null when none comes in so many seconds. Throws Aborted when stopped,
-  /// which is asked every 50 ms, and what broke the connection.
+  /// which is asked every 50 ms, and ChannelError when the connection broke.
   std::shared_ptr<const OpenIGTLinkArrival> Wait(
     double seconds, const std::function<bool()>& stopped);
   OpenIGTLinkCounts GetCounts() const;
@@ -70,7 +77,7 @@ public:
   bool Wants(const OpenIGTLinkHeader& header) const { return this->Matches(header); }
   void Put(std::shared_ptr<const OpenIGTLinkArrival> arrival);
   void NoteDamage(const std::string& fault);
-  void Break(std::exception_ptr reason);
+  void Break(const OpenIGTLinkBreak& reason);
 
 private:
   static constexpr std::size_t MaximumBytes = std::size_t{ 64 } << 20;
@@ -82,7 +89,7 @@ private:
   std::size_t Bytes = 0;
   OpenIGTLinkCounts Counts;
   std::string Fault;
-  std::exception_ptr Reason;
+  std::optional<OpenIGTLinkBreak> Reason;
 };
 
 /// Reads messages on a thread of its own, until the line breaks or garbage comes.
@@ -115,6 +122,7 @@ public:
 
 private:
   void Run();
+  void Break(const OpenIGTLinkBreak& reason);
   bool Receive(char* bytes, std::size_t size, double patience);
   bool ReadMessage();
   bool Skip(std::uint64_t size);
@@ -131,7 +139,7 @@ private:
   std::vector<OpenIGTLinkInbox*> Inboxes;
   std::map<std::string, OpenIGTLinkHeader> Devices; ///< by key, the first message of each
   OpenIGTLinkClock Clocks;
-  std::exception_ptr Reason;
+  std::optional<OpenIGTLinkBreak> Reason;
   std::atomic<bool> Broken{ false };
   std::atomic<bool> Stop{ false };
   std::thread Reader;

@@ -13,6 +13,14 @@
 
 namespace lacunaTest
 {
+/// Whether frames and poses can be expected in time: ThreadSanitizer, which looks for races, makes
+/// the emulators late.
+#ifdef __SANITIZE_THREAD__
+constexpr bool KeepsTime = false;
+#else
+constexpr bool KeepsTime = true;
+#endif
+
 /// Measures for how long the computer lets a program stand still at the most, in s.
 class StallWatch
 {

@@ -324,6 +324,10 @@ TEST(VideoSender, FramesOfDatagramsComeInTheirTurn)
     const StallWatch watch;
     const double delay = FindDelay("udp://127.0.0.1:" + FreeAddress().substr(16), columns, rows);
     std::cout << columns << " x " << rows << ": " << delay << " frames late\n";
+    if (!KeepsTime)
+    {
+      continue;
+    }
     if (delay >= 0.5 && watch.GetLongest() > 0.02)
     {
       GTEST_SKIP() << "no verdict: this computer stood still for half a frame and longer";
