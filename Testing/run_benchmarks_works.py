@@ -150,6 +150,11 @@ if len(sys.argv) > 1:
             if listed.returncode != 0 and path.endswith(".py"):
                 continue  # scipy is not installed
             there = {rows.SUFFIXES.sub("", line.strip()) for line in listed.stdout.splitlines()}
-            missing += [f"{program}: {name}" for name in names if name not in there and (cases.Row(program, name).key in own or not program == "RadialBasis")]
+            functions = {name.split("/")[0] for name in there}
+            for name in names:
+                # VTK and OpenCASCADE may not be installed: then none of their rows is there
+                absent = program in ("IGESWriter", "RadialBasis") and cases.Row(program, name).key not in own and name.split("/")[0] not in functions
+                if name not in there and not absent:
+                    missing.append(f"{program}: {name}")
     assert not missing, missing
 print("ok")

@@ -18,6 +18,7 @@
 #include "vtkLacunaSpeckleInput.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
+#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -259,7 +260,7 @@ int vtkLacunaSpeckleFilter::RequestData(
       const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(asked);
       output->SetOrigin(input->GetOrigin());
       output->SetSpacing(input->GetSpacing());
-      output->SetDirectionMatrix(input->GetDirectionMatrix());
+      output->SetDirectionMatrix(input->GetDirectionMatrix()->GetData());
       output->GetFieldData()->PassData(input->GetFieldData());
       if (lacuna::IsEmpty(box))
       {

@@ -175,6 +175,11 @@ int main(int argc, char* argv[])
   {
     setenv("LACUNA_REPORT_INTERVAL", "0", 1);
   }
+  // It forks, and VTK 9.3 and later would wait for threads that a fork has not.
+  if (options.Test == "exhaustion")
+  {
+    setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1);
+  }
   std::signal(SIGPROF, TakesTooLong);
   if (__sanitizer_set_death_callback)
   {

@@ -35,7 +35,7 @@ std::string RunOut(const Trial& trial, const Run& whole, long granted)
 {
   const vtkSmartPointer<vtkAlgorithm> algorithm = trial.Make();
   GrantAllocations(granted);
-  const Run starved = trial.Execute(algorithm, 1);
+  const Run starved = trial.Execute(algorithm, 0);
   if (starved.Stray.find("an exception escaped") != std::string::npos)
   {
     return starved.Stray;
@@ -54,7 +54,7 @@ std::string RunOut(const Trial& trial, const Run& whole, long granted)
     }
   }
   algorithm->Modified();
-  const Run again = trial.Execute(algorithm, 1);
+  const Run again = trial.Execute(algorithm, 0);
   const std::string difference = CompareOutputs(whole.Outputs, again.Outputs);
   return difference.empty() ? "" : "afterwards the output differs by " + difference + again.Errors;
 }
@@ -66,8 +66,8 @@ std::string TestExhaustion(const Subject& subject, std::uint64_t seed, Account& 
   constexpr int stretch = 4;        // until arrays are large
   constexpr unsigned longest = 120; // s
   const Trial trial(subject, seed, Trial::Varied, stretch);
-  trial.Execute(trial.Make(), 1); // what is made once
-  const Run whole = trial.Execute(trial.Make(), 1);
+  trial.Execute(trial.Make(), 0); // what is made once
+  const Run whole = trial.Execute(trial.Make(), 0);
   account.Story = trial.GetStory() + "  " + std::to_string(whole.Allocations) +
     " large allocations\n" + whole.Errors;
   if (!whole.Errors.empty() || whole.IsEmpty || whole.Allocations == 0)

@@ -8,7 +8,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 namespace lacunaProperties
 {
@@ -50,11 +50,13 @@ bool IsPlain(const std::string& text)
 
 bool HasGeometryOf(vtkImageData* image, vtkImageData* other)
 {
+  const auto same = [](double a, double b) // -0 and 0, NaN and NaN
+  { return a == b || (std::isnan(a) && std::isnan(b)); };
+  const double* const direction = image->GetDirectionMatrix()->GetData();
   return std::equal(image->GetExtent(), image->GetExtent() + 6, other->GetExtent()) &&
     std::equal(image->GetSpacing(), image->GetSpacing() + 3, other->GetSpacing()) &&
     std::equal(image->GetOrigin(), image->GetOrigin() + 3, other->GetOrigin()) &&
-    std::memcmp(image->GetDirectionMatrix()->GetData(), other->GetDirectionMatrix()->GetData(),
-      9 * sizeof(double)) == 0;
+    std::equal(direction, direction + 9, other->GetDirectionMatrix()->GetData(), same);
 }
 
 // Any part of the extent is what the whole has there.

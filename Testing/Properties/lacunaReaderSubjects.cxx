@@ -11,6 +11,7 @@
 #include "vtkLacunaCTSeriesReader.h"
 #endif
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -66,8 +66,12 @@ int main(int argc, char* argv[])
   vtkNew<vtkLacunaDepthMapShader> shader;
   shader->SetInputConnection(filler->GetOutputPort());
   shader->SetBackgroundColor(1, 1, 1);
+  shader->Update();
+  vtkNew<vtkImageData> pixels;
+  pixels->ShallowCopy(shader->GetOutput());
+  pixels->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1); // VTK 9.6 turns them by that of the map
   vtkNew<vtkImageFlip> upright;
-  upright->SetInputConnection(shader->GetOutputPort());
+  upright->SetInputData(pixels);
   upright->SetFilteredAxis(1);
   vtkNew<vtkPNGWriter> picture;
   picture->SetInputConnection(upright->GetOutputPort());

@@ -130,6 +130,29 @@ void TestKeepsEverythingElse()
   LACUNA_CHECK(image->GetPointData()->GetScalars() != output->GetPointData()->GetScalars());
 }
 
+// VTK 9.6 shares the matrix that an image is given, and its pipeline writes into that of an output.
+void TestLeavesDirectionsOfInputs()
+{
+  const int extent[6] = { 0, 4, 0, 4, 0, 2 };
+  const auto first = MakeImage(VTK_SHORT, extent);
+  const auto second = MakeImage(VTK_SHORT, extent);
+  const double mirrored[9] = { 1, 0, 0, 0, 1, 0, 0, 0, -1 };
+  second->SetDirectionMatrix(mirrored);
+  vtkNew<vtkLacunaSpeckleFilter> filter;
+  for (vtkImageData* image : { first.Get(), second.Get(), first.Get() })
+  {
+    filter->SetInputData(image);
+    filter->Update();
+  }
+  for (int i = 0; i < 9; ++i)
+  {
+    const double* const output = filter->GetOutput()->GetDirectionMatrix()->GetData();
+    LACUNA_CHECK(output[i] == (i == 2 || i == 3 || i == 7 ? 1 : 0));
+    LACUNA_CHECK(first->GetDirectionMatrix()->GetData()[i] == output[i]);
+    LACUNA_CHECK(second->GetDirectionMatrix()->GetData()[i] == mirrored[i]);
+  }
+}
+
 void TestHonoursRequestedExtents()
 {
   const int extent[6] = { 0, 40, 0, 30, 0, 12 };
@@ -555,6 +578,7 @@ int TestSpeckleFilter(int, char*[])
 {
   TestEqualsVTKMedian();
   TestKeepsEverythingElse();
+  TestLeavesDirectionsOfInputs();
   TestHonoursRequestedExtents();
   TestPartsKeepOtherArrays();
   TestAsksForNoMoreThanItNeeds();
