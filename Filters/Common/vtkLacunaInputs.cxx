@@ -8,13 +8,17 @@
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkMatrix3x3.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+using SDDP = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
@@ -54,20 +58,38 @@ void CheckNumbers(const std::string& name, const char* what, const double* numbe
   throw std::runtime_error(message.str());
 }
 
+std::string Text(const int extent[6])
+{
+  std::string text = std::to_string(extent[0]);
+  for (int i = 1; i < 6; ++i)
+  {
+    text += " " + std::to_string(extent[i]);
+  }
+  return text;
+}
+
+// A part would be taken for all there is, and each rank would take another one.
+void CheckPart(const std::string& name, const int arrived[6], const int asked[6])
+{
+  for (int c = 0; c < 6; c += 2)
+  {
+    if (asked[c] <= asked[c + 1] && (arrived[c] > asked[c] || arrived[c + 1] < asked[c + 1]))
+    {
+      throw std::runtime_error("only the part " + Text(arrived) + " of the image in " + name +
+        " arrived, " + Text(asked) +
+        " is needed; the filter before this one does not give what it is asked for");
+    }
+  }
+}
+
 // Room for windows and margins around it, which are counted in the same type.
 void CheckExtent(const std::string& name, const int extent[6])
 {
   constexpr int limit = 1 << 30;
   if (std::any_of(extent, extent + 6, [](int index) { return index < -limit || index > limit; }))
   {
-    std::ostringstream message;
-    message << name << " is not sound: its extent is";
-    for (int i = 0; i < 6; ++i)
-    {
-      message << " " << extent[i];
-    }
-    message << "; indices must be from -2^30 to 2^30";
-    throw std::runtime_error(message.str());
+    throw std::runtime_error(name + " is not sound: its extent is " + Text(extent) +
+      "; indices must be from -2^30 to 2^30");
   }
 }
 }
@@ -116,6 +138,15 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
 {
   for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
   {
-    Check(algorithm->GetInputDataObject(port, i), "input " + std::to_string(port));
+    const std::string name = "input " + std::to_string(port);
+    Check(algorithm->GetInputDataObject(port, i), name);
+    auto* image = vtkImageData::SafeDownCast(algorithm->GetInputDataObject(port, i));
+    vtkInformation* info = algorithm->GetInputInformation(port, i);
+    // of several pieces this one is a part of what the extent says
+    if (image && image->GetNumberOfPoints() > 0 && info->Has(SDDP::UPDATE_EXTENT()) &&
+      info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) <= 1)
+    {
+      CheckPart(name, image->GetExtent(), info->Get(SDDP::UPDATE_EXTENT()));
+    }
   }
 }

@@ -231,6 +231,15 @@ int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaRBFImageWarp::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  // Each rank makes the extent that VTK turns its piece into.
+  outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaRBFImageWarp::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -347,9 +356,9 @@ void vtkLacunaRBFImageWarp::Make(vtkInformationVector** inputs, vtkInformationVe
   options.Smoothing = this->Smoothing;
 
   // What is folded is known while what the mapping depends on stays the same, on all ranks.
-  std::vector<double> key{ static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy };
-  key.insert(key.end(), space.Extent, space.Extent + 6);
+  std::vector<double> key(space.Extent, space.Extent + 6);
   key.insert(key.end(), space.Spacing, space.Spacing + 3);
+  key.insert(key.end(), { static_cast<double>(this->Kernel), this->Smoothing, this->Accuracy });
   for (const auto* points : { &from, &to })
   {
     for (const std::array<double, 3>& x : *points)

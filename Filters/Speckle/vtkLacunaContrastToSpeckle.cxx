@@ -19,7 +19,6 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -30,8 +29,6 @@ vtkStandardNewMacro(vtkLacunaContrastToSpeckle);
 
 namespace
 {
-using Pipeline = vtkStreamingDemandDrivenPipeline;
-
 const char* const RegionNames[2] = { "Inside", "Outside" };
 
 bool HasBounds(const double bounds[6])
@@ -75,21 +72,6 @@ void Mark(vtkImageData* image, const std::string& array, const double bounds[6],
   const lacuna::Matrix4 indexToWorld(image->GetIndexToPhysicalMatrix()->GetData());
   lacuna::MarkRegion(vtkLacunaSpeckleInput::GetExtent(image->GetExtent()), indexToWorld, rule,
     region, regions.data(), execution);
-}
-
-/// Regions may reach anywhere, and a part of an image would give the numbers of that part.
-void RequireWhole(vtkImageData* image, vtkInformation* info)
-{
-  int numbers[6];
-  info->Get(Pipeline::WHOLE_EXTENT(), numbers);
-  const lacuna::Extent whole = vtkLacunaSpeckleInput::GetExtent(numbers);
-  const lacuna::Extent extent = vtkLacunaSpeckleInput::GetExtent(image->GetExtent());
-  if (extent != whole)
-  {
-    throw std::runtime_error("only the part " + vtkLacunaSpeckleInput::Text(extent) +
-      " of the image " + vtkLacunaSpeckleInput::Text(whole) +
-      " arrived; the filter before this one does not give the whole of it when asked to");
-  }
 }
 
 /// A table of one row that grows column by column; of none when there shall be no row.
@@ -177,7 +159,6 @@ int vtkLacunaContrastToSpeckle::RequestData(
         return;
       }
       vtkImageData* image = vtkImageData::GetData(inputs[0]);
-      RequireWhole(image, inputs[0]->GetInformationObject(0));
       vtkDataArray* array = FindNumbers(image, this->ScalarArray);
       const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);
       const auto samples = vtkLacunaSpeckleInput::MakeContiguous(array);

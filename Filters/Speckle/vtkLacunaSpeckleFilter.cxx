@@ -159,17 +159,6 @@ lacuna::Extent GetAsked(vtkInformation* info)
   return vtkLacunaSpeckleInput::GetExtent(asked);
 }
 
-/// Without what is beyond its border a part of an image would be filtered as if it were all.
-void RequirePart(const lacuna::Extent& needed, const lacuna::Extent& arrived)
-{
-  if (!lacuna::Contains(arrived, needed))
-  {
-    throw std::runtime_error("only the part " + vtkLacunaSpeckleInput::Text(arrived) +
-      " of the image arrived, " + vtkLacunaSpeckleInput::Text(needed) +
-      " is needed; the filter before this one does not give what it is asked for");
-  }
-}
-
 /// from: the samples of a component after the other at each point of fromBox.
 template <class T>
 void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
@@ -268,9 +257,6 @@ int vtkLacunaSpeckleFilter::RequestData(
       }
       vtkLacunaVolumeDirection::Check(input);
       const lacuna::SpeckleParameters parameters = MakeParameters(this, input->GetSpacing());
-      RequirePart(lacuna::Intersect(lacuna::GetSpeckleInput(parameters, box),
-                    GetWhole(inputs[0]->GetInformationObject(0))),
-        inBox);
       vtkDataArray* chosen = vtkLacunaSpeckleInput::FindArray(input, this->ScalarArray);
       const lacuna::ScalarType scalarType = vtkLacunaScalarType::Get(chosen);
       const auto from = vtkLacunaSpeckleInput::MakeContiguous(chosen);

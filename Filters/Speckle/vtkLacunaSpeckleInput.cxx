@@ -49,14 +49,4 @@ lacuna::Extent GetExtent(const int extent[6])
 {
   return { extent[0], extent[1], extent[2], extent[3], extent[4], extent[5] };
 }
-
-std::string Text(const lacuna::Extent& extent)
-{
-  std::string text;
-  for (const int i : extent)
-  {
-    text += (text.empty() ? "" : " ") + std::to_string(i);
-  }
-  return text;
-}
 }

@@ -25,8 +25,5 @@ vtkSmartPointer<vtkDataArray> MakeContiguous(vtkDataArray* array);
 std::string Name(vtkDataArray* array);
 
 lacuna::Extent GetExtent(const int extent[6]);
-
-/// "0 9 0 9 0 0", for messages.
-std::string Text(const lacuna::Extent& extent);
 }
 #endif

@@ -285,4 +285,7 @@ def main(names):
 
 
 if __name__ == "__main__":
+    unknown = [name for name in sys.argv[1:] if name not in CASES]
+    if unknown:
+        sys.exit(f"no case {', '.join(unknown)}; there are: {', '.join(CASES)}")
     sys.exit(main(sys.argv[1:]))

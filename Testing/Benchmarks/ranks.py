@@ -175,6 +175,8 @@ def main():
     parser.add_argument("--benchmark_out", metavar="FILE", help="also write the rows as Google Benchmark's JSON")
     parser.add_argument("--in-pvbatch", nargs=2, metavar=("RANKS", "OUT"), help=argparse.SUPPRESS)
     options = parser.parse_args()
+    if options.ranks < 2:
+        parser.error("--ranks must be 2 or more: one rank is measured in any case")
     if options.in_pvbatch:
         measure(0.5 if options.quick else 1, int(options.in_pvbatch[0]), 1 if options.quick else 5, options.in_pvbatch[1])
     else:

@@ -8,6 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 seconds=${1:?seconds}
 shift
+[ "$seconds" -gt 0 ] || { echo "$0: SECONDS must be positive" >&2; exit 2; } # to libFuzzer 0 is for ever
 . Testing/Tools/setup.sh
 lacuna_install_packages packages-fuzzing.txt
 lacuna_build fuzz --target LacunaFuzzTargets
@@ -23,7 +24,6 @@ for target in "${targets[@]}"; do
   corpus=build/fuzz/corpus/$target
   mkdir -p "$corpus"
   options=(-max_total_time="$each" -timeout=60 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1)
-  if [ -f "Testing/Fuzz/$target.dict" ]; then options+=(-dict="Testing/Fuzz/$target.dict"); fi
   if "build/fuzz/bin/Fuzz$target" "${options[@]}" -artifact_prefix="$findings/$target-" \
     "$corpus" "Testing/Fuzz/Corpus/$target" >"build/fuzz/$target.log" 2>&1; then
     runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$target.log")

@@ -130,6 +130,26 @@ def unsound(make, rank):
         assert own in text or (wrong == "short" and "100" in text), (rank, wrong, text)
 
 
+def partial(make, rank):
+    """What comes before gives each rank a part of its own, whatever is asked of it, as ParaView's Resample To Image does."""
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkCommonExecutionModel import vtkTrivialProducer
+    source = wavelet(20)
+    source.UpdateExtent((0, 19, 0, 19, 0, 12) if rank == 0 else (0, 19, 0, 19, 12, 19))
+    part = vtkImageData()
+    part.DeepCopy(source.GetOutput())
+    producer = vtkTrivialProducer()
+    producer.SetOutput(part)
+    producer.SetWholeExtent(0, 19, 0, 19, 0, 19)
+    filter = make(source, False)
+    filter.SetInputConnection(producer.GetOutputPort())
+    text = update(filter)
+    assert "only the part 0 19 0 19 " in text or "another rank has stopped" in text, text
+    filter.SetInputConnection(source.GetOutputPort())
+    text = update(filter)
+    assert not text, text
+
+
 def unpaired(rank):
     """Landmarks that only one rank has, without partners."""
     filter = warp(wavelet(20), False)
@@ -206,7 +226,7 @@ def run():
     assert controller.GetNumberOfProcesses() == 2
     rank = controller.GetLocalProcessId()
     for make in (occluded_angle, mirror, warp):
-        for what in (refused, unsound, again, stopped, afterwards):
+        for what in (refused, unsound, partial, again, stopped, afterwards):
             signal.alarm(SECONDS)  # ends a rank that waits for ever
             print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
             what(make, rank)

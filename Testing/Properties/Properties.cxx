@@ -19,6 +19,7 @@
 #include <ctime>
 #include <functional>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -84,15 +85,20 @@ bool Parse(int argc, char* argv[], Options& options)
   {
     const std::string key = argv[i];
     const std::string value = argv[i + 1];
-    if (key == "--seed")
+    std::istringstream number(value);
+    bool isNumber = true;
+    if (key == "--seed" && value == "clock")
     {
-      options.Seed = value == "clock"
-        ? static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count())
-        : std::stoull(value);
+      options.Seed =
+        static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+    }
+    else if (key == "--seed")
+    {
+      isNumber = static_cast<bool>(number >> options.Seed);
     }
     else if (key == "--count")
     {
-      options.Count = std::stoi(value);
+      isNumber = number >> options.Count && options.Count > 0;
     }
     else if (key == "--filter")
     {
@@ -103,6 +109,10 @@ bool Parse(int argc, char* argv[], Options& options)
       lacunaProperties::SetOutputFolder(value);
     }
     else
+    {
+      return false;
+    }
+    if (!isNumber)
     {
       return false;
     }

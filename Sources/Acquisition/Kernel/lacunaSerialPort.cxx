@@ -52,6 +52,7 @@ std::string ListText()
           ": on Debian, as root run 'adduser USER dialout' with your name for USER, and log in "
           "again");
     case EBUSY:
+    case EWOULDBLOCK: // locked, since libserialport 0.1.2
       ThrowBusy(name);
     case ENOENT:
     case ENODEV:

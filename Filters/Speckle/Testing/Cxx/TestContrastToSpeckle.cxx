@@ -213,7 +213,7 @@ void TestErrors()
   const int whole[6] = { 0, 19, 0, 5, 0, 0 };
   producer->SetOutput(image);
   producer->SetWholeExtent(const_cast<int*>(whole));
-  fails("only the part 0 9 0 5 0 0 of the image 0 19 0 5 0 0 arrived",
+  fails("only the part 0 9 0 5 0 0 of the image in input 0 arrived, 0 19 0 5 0 0 is needed",
     [&](auto* c)
     {
       inside(c);

@@ -517,7 +517,7 @@ void TestErrors()
   producer->SetWholeExtent(const_cast<int*>(whole));
   LACUNA_CHECK(
     has(errors(image, [&](auto* f) { f->SetInputConnection(producer->GetOutputPort()); }),
-      "only the part 0 15 0 9 0 0 of the image arrived, 0 30 0 9 0 0 is needed"));
+      "only the part 0 15 0 9 0 0 of the image in input 0 arrived, 0 30 0 9 0 0 is needed"));
 
   // Nothing in, nothing out, no error.
   vtkNew<vtkImageData> empty;

@@ -15,7 +15,7 @@
 
 namespace lacunaTest
 {
-/// The library takes names only that begin with /dev/ and are links beside /sys/class/tty.
+/// The library takes names only that begin with /dev/.
 inline std::string GetPort(const std::string& link)
 {
   return "/dev/../../.." + link;
