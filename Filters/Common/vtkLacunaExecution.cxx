@@ -90,6 +90,11 @@ int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outpu
 int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
+  if (!vtkLacunaInputs::AreSingle(algorithm))
+  {
+    EmptyOutputs(outputs);
+    return 0;
+  }
   try
   {
     const std::string error = ErrorOf(
@@ -121,6 +126,10 @@ int vtkLacunaExecution::RunInformation(
   vtkLacunaForgetAbort(algorithm);
   try
   {
+    if (!vtkLacunaInputs::AreSingle(algorithm))
+    {
+      return 0;
+    }
     error = ErrorOf(body);
     if (error.empty())
     {

@@ -9,6 +9,8 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
+#include "vtkLacunaRequest.h"
 #include "vtkMatrix3x3.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -82,6 +84,25 @@ void CheckPart(const std::string& name, const int arrived[6], const int asked[6]
   }
 }
 
+bool TakesType(vtkAlgorithm* algorithm, int port, vtkDataObject* data)
+{
+  vtkInformation* taken = algorithm->GetInputPortInformation(port);
+  for (int t = 0; t < taken->Length(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE()); ++t)
+  {
+    if (data->IsA(taken->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), t)))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+// When algorithm or something upstream changed last.
+double GetTime(vtkAlgorithm* algorithm, int port, int connection)
+{
+  return vtkLacunaRequest::GetTimes(algorithm, algorithm->GetInputInformation(port, connection))[0];
+}
+
 // Room for windows and margins around it, which are counted in the same type.
 void CheckExtent(const std::string& name, const int extent[6])
 {
@@ -149,4 +170,42 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
       CheckPart(name, image->GetExtent(), info->Get(SDDP::UPDATE_EXTENT()));
     }
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaInputs::AreSingle(vtkAlgorithm* algorithm)
+{
+  // VTK goes on to execute block by block, and shows one only then.
+  static vtkInformationDoubleKey* const refused =
+    vtkInformationDoubleKey::MakeKey("TIME_OF_BLOCKS", "vtkLacunaInputs");
+  vtkInformation* own = algorithm->GetInformation();
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* data = algorithm->GetInputDataObject(port, i);
+      if (!data)
+      {
+        continue;
+      }
+      const double time = GetTime(algorithm, port, i);
+      const bool hasBlocks =
+        vtkCompositeDataSet::SafeDownCast(data) && !TakesType(algorithm, port, data);
+      if (hasBlocks || (own->Has(refused) && own->Get(refused) == time))
+      {
+        own->Set(refused, time);
+        vtkErrorWithObjectMacro(algorithm,
+          "input " << port
+                   << " has blocks, and this takes one "
+                      "data set: choose one by Extract "
+                      "Block, or use a filter for each");
+        return false;
+      }
+    }
+  }
+  if (own->Has(refused))
+  {
+    own->Remove(refused);
+  }
+  return true;
 }

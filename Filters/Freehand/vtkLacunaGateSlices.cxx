@@ -12,6 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSliceStream.h"
@@ -161,6 +162,10 @@ void vtkLacunaGateSlices::SetKeyColumn(const char* name)
 int vtkLacunaGateSlices::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   vtkLacunaSliceStream::Pass(this, outputs->GetInformationObject(0));
   return this->Superclass::RequestInformation(request, inputs, outputs);
 }

@@ -11,6 +11,7 @@
 #include "vtkLacunaCalibrationReport.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -170,6 +171,10 @@ void vtkLacunaProbeCalibration::SetWireRanges(const char* ranges)
 int vtkLacunaProbeCalibration::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   // The map of expected errors has a grid of its own; a request in that of the slices would never be
   // met and calculate everything anew each time.
   vtkInformation* slices = inputs[0]->GetInformationObject(0);

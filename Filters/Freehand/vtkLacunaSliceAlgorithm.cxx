@@ -4,6 +4,7 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSliceStream.h"
@@ -53,6 +54,10 @@ bool vtkLacunaSliceAlgorithm::AskForSlices(
 int vtkLacunaSliceAlgorithm::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
   // must be executed now. When they are up to date, as they usually are, this does nothing.
   if (!this->AskForSlices(inputs, nullptr))

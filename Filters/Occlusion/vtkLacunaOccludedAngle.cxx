@@ -15,6 +15,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
@@ -340,6 +341,10 @@ int vtkLacunaOccludedAngle::FillInputPortInformation(int port, vtkInformation* i
 int vtkLacunaOccludedAngle::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   vtkInformation* info = outputVector->GetInformationObject(0);
   vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
   if (this->KeepIterations) // instead of the input's time

@@ -20,6 +20,7 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaMaskedVolume.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaMirrored.h"
@@ -337,6 +338,10 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkLacunaMirror::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   // Each rank makes the extent that VTK turns its piece into.
   outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   return 1;

@@ -268,6 +268,10 @@ int vtkLacunaRBFInterpolator::RequestUpdateExtent(
 int vtkLacunaRBFInterpolator::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   // The grid follows from the points, and is asked for before any data are.
   vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), nullptr);
   this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());

@@ -16,6 +16,7 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -110,6 +111,10 @@ int vtkLacunaDepthMapSurface::FillInputPortInformation(int, vtkInformation* info
 int vtkLacunaDepthMapSurface::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
   return 1;
 }

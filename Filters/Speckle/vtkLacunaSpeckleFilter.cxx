@@ -12,6 +12,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
@@ -133,7 +134,7 @@ bool IsTrackedSlices(vtkDataObject* data)
 
 lacuna::Extent GetWhole(vtkInformation* info)
 {
-  int whole[6];
+  int whole[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(Pipeline::WHOLE_EXTENT(), whole);
   return vtkLacunaSpeckleInput::GetExtent(whole);
 }
@@ -142,7 +143,7 @@ lacuna::Extent GetWhole(vtkInformation* info)
 /// the algorithm, too late to ask the input for what their borders need: so here in the same way.
 lacuna::Extent GetAsked(vtkInformation* info)
 {
-  int asked[6];
+  int asked[6] = { 0, -1, 0, -1, 0, -1 };
   info->Get(Pipeline::UPDATE_EXTENT(), asked);
   const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   if (pieces > 1)
@@ -191,6 +192,10 @@ void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
 int vtkLacunaSpeckleFilter::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!vtkLacunaInputs::AreSingle(this))
+  {
+    return 0;
+  }
   // VTK turns the piece that a rank is asked for into its extent.
   outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   vtkInformation* scalars =
@@ -243,7 +248,7 @@ int vtkLacunaSpeckleFilter::RequestData(
     {
       vtkImageData* input = vtkImageData::GetData(inputs[0]);
       vtkImageData* output = vtkImageData::GetData(outputs);
-      int asked[6];
+      int asked[6] = { 0, -1, 0, -1, 0, -1 };
       outputs->GetInformationObject(0)->Get(Pipeline::UPDATE_EXTENT(), asked);
       const lacuna::Extent inBox = vtkLacunaSpeckleInput::GetExtent(input->GetExtent());
       const lacuna::Extent box = vtkLacunaSpeckleInput::GetExtent(asked);

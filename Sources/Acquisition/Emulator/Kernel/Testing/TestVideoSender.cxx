@@ -11,6 +11,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <thread>
 
 #include <netinet/tcp.h>
@@ -85,7 +86,7 @@ double FindDelay(const std::string& url, int columns, int rows)
   std::array<std::atomic<double>, count> sent{};
   std::atomic<bool> stopped{ false };
   VideoSender sender({ url, columns, rows, 25 }, [&] { return stopped.load(); });
-  std::thread server(
+  const auto server = std::async(std::launch::async,
     [&]
     {
       std::vector<std::uint8_t> image(static_cast<std::size_t>(columns * rows));
@@ -136,7 +137,7 @@ double FindDelay(const std::string& url, int columns, int rows)
     }
   }
   stopped = true;
-  server.join();
+  server.wait();
   EXPECT_GE(delays.size(), 30u);
   std::sort(delays.begin(), delays.end());
   return 25 * delays.at(delays.size() * 8 / 10);
