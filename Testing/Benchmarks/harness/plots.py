@@ -213,7 +213,7 @@ def ranks(rows, path, cores):
         axes.plot([1, can, most], [1, can, can] if kind == "strong" else [1, 1, can / most], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
         axes.set_title(words, fontsize=10.5)
         axes.set_xlabel("ranks")
-        axes.set_ylabel("times as fast as one rank" if kind == "strong" else "efficiency")
+        axes.set_ylabel("times as fast as one rank (processor time)" if kind == "strong" else "efficiency")
         axes.set_ylim(bottom=0)
         axes.xaxis.set_major_locator(ticker.MaxNLocator(integer=True))
         axes.grid(axis="x", visible=False)

@@ -127,10 +127,10 @@ class Page:
         ranks = self.results.get("ranks")
         if not ranks:
             return ""
-        text = "## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`).\n\n" + picture("ranks", "Speed-up by ranks", plots)
+        text = "## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.\n\n" + picture("ranks", "Speed-up by ranks", plots)
         if not ranks.get("text"):
             return text
-        return text + ranks["text"] + "\n\nThe repeated part follows from the difference of two times: below 2 % it is noise, " \
+        return text + ranks["text"] + "\n\nThe repeated part follows from the difference of two times: below 3 % it is noise, " \
             "and what the model makes of it an upper bound.\n"
 
     def exponents(self):
