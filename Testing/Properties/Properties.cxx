@@ -6,6 +6,7 @@
 // --seed: of the first case, the others follow; `clock` takes one from the time. --count: cases of
 // an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone. It is
 // one, too, when an algorithm came to the point in no case: there are more then, up to 60.
+#include "lacunaProcessMemory.h"
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 #include "vtkLogger.h"
@@ -34,7 +35,8 @@ namespace
 using lacunaProperties::Account;
 using lacunaProperties::Subject;
 
-constexpr int LongestCase = 120; // s of the processor's time; they take milliseconds
+// s of the processor's time; they take milliseconds, under a sanitizer seconds
+constexpr int LongestCase = lacuna::Sanitized ? 1200 : 120;
 constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes of address space; they take little
 
 constexpr int More = 60; ///< cases, where none has come to the point
