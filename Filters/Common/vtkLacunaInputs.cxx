@@ -24,6 +24,10 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
+constexpr char HasBlocks[] =
+  " has blocks, and this takes one data set: choose one by Extract Block, "
+  "or use a filter for each";
+
 void CheckLengths(
   vtkDataObject* data, const std::string& name, int type, const char* array, const char* of)
 {
@@ -194,11 +198,7 @@ bool vtkLacunaInputs::AreSingle(vtkAlgorithm* algorithm)
       if (hasBlocks || (own->Has(refused) && own->Get(refused) == time))
       {
         own->Set(refused, time);
-        vtkErrorWithObjectMacro(algorithm,
-          "input " << port
-                   << " has blocks, and this takes one "
-                      "data set: choose one by Extract "
-                      "Block, or use a filter for each");
+        vtkErrorWithObjectMacro(algorithm, "input " << port << HasBlocks);
         return false;
       }
     }

@@ -24,12 +24,12 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string&
 /// arrived than algorithm asked for, as behind ParaView's Resample To Image on several ranks.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
 
+/// Those of one port.
+VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm, int port);
+
 /// For RequestInformation, which shall return 0 otherwise: whether no input has blocks, unless algorithm
 /// takes them. An error of algorithm says so: VTK would execute it block by block, with what was
 /// announced for all of them. Also false for each block, where VTK goes on.
 VTKLACUNAFILTERSCOMMON_EXPORT bool AreSingle(vtkAlgorithm* algorithm);
-
-/// Those of one port.
-VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm, int port);
 }
 #endif

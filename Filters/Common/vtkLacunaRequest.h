@@ -60,8 +60,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation*
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
 
 /// For filters that keep a result: changes when what a filter is, or is given by input, changes; the
-/// newest time of it and all upstream, and the time steps asked for and given. On all ranks alike, other than the time
-/// of data, which are made anew on one rank alone when that rank is asked for another part.
+/// newest time of it and all upstream, and the time steps asked for and given. On all ranks alike, other
+/// than the time of data, which are made anew on one rank alone when that rank is asked for another
+/// part.
 VTKLACUNAFILTERSCOMMON_EXPORT std::vector<double> GetTimes(
   vtkAlgorithm* filter, vtkInformation* input);
 
