@@ -146,68 +146,6 @@ void CalibrationModel::GetDerivatives(
   }
 }
 
-bool CalibrationModel::SolveLengths(CalibrationState& state) const
-{
-  // Image origin, phantom origin, spacing; what is not determined is held at zero.
-  constexpr int Lengths = 8;
-  using Matrix = Eigen::Matrix<double, Lengths, Lengths>;
-  using Vector = Eigen::Matrix<double, Lengths, 1>;
-  Matrix normal = Matrix::Zero();
-  Vector right = Vector::Zero();
-  for (std::size_t pick = 0; pick < this->Picks.size(); ++pick)
-  {
-    const Pose& pose = this->Poses[pick];
-    const Vec2& pixel = this->Picks[pick].Pixel;
-    const Eigen::Matrix3d toPhantom = state.PhantomRotation * pose.Rotation;
-    const Eigen::Vector3d x = toPhantom * (pixel[0] * state.ImageRotation.col(0));
-    const Eigen::Vector3d y = toPhantom * (pixel[1] * state.ImageRotation.col(1));
-    const Eigen::Vector3d known = state.PhantomRotation * pose.Origin;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (!IsZeroAt(this->Picks[pick].Target, axis))
-      {
-        continue;
-      }
-      Vector row = Vector::Zero();
-      row.head<3>() = toPhantom.row(axis);
-      row[3 + axis] = 1;
-      double constant = known[axis];
-      if (this->EstimateScale)
-      {
-        row[6] = x[axis];
-        row[7] = y[axis];
-      }
-      else
-      {
-        constant += state.Spacing[0] * x[axis] + state.Spacing[1] * y[axis];
-      }
-      normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-      right -= constant * row;
-    }
-  }
-  for (int length = 0; length < Lengths; ++length)
-  {
-    if (normal(length, length) == 0)
-    {
-      normal(length, length) = 1;
-    }
-  }
-  // A hint of zero decides where the picks do not.
-  normal.diagonal() *= 1 + 1e-9;
-  const Vector solution = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  if (!solution.allFinite() || (this->EstimateScale && !(solution.tail<2>().minCoeff() > 0)))
-  {
-    return false;
-  }
-  state.ImageOrigin = solution.head<3>();
-  state.PhantomOrigin = solution.segment<3>(3);
-  if (this->EstimateScale)
-  {
-    state.Spacing = solution.tail<2>();
-  }
-  return true;
-}
-
 std::vector<double> CalibrationModel::GetCauchyWeights(const CalibrationState& state) const
 {
   std::vector<double> squares(this->Picks.size());

@@ -38,10 +38,19 @@ public:
     UnknownCount = 14
   };
 
+  /// Of the receiver in the tracker's coordinate system, when a pick was made.
+  struct Pose
+  {
+    Eigen::Matrix3d Rotation;
+    Eigen::Vector3d Origin; ///< mm
+  };
+
   /// Keeps a reference to the picks.
   CalibrationModel(const std::vector<CalibrationPick>& picks, bool estimateScale);
 
   std::size_t GetNumberOfPicks() const { return this->Picks.size(); }
+  const CalibrationPick& GetPick(std::size_t pick) const { return this->Picks[pick]; }
+  const Pose& GetPose(std::size_t pick) const { return this->Poses[pick]; }
   /// Those of Unknown that the picks' targets can tell: a wall says nothing about its own axes.
   const std::vector<int>& GetUnknowns() const { return this->Unknowns; }
   int GetNumberOfEquations(std::size_t pick) const;
@@ -53,10 +62,6 @@ public:
   void GetDerivatives(
     const CalibrationState& state, std::size_t pick, Eigen::MatrixXd& derivatives) const;
 
-  /// Best translations, and spacing if it is sought, for the rotations of state, picks all alike; the
-  /// equations are linear in them. False when these are not determined or a spacing is not positive.
-  bool SolveLengths(CalibrationState& state) const;
-
   /// Levenberg-Marquardt from state. Weights are of each pick; without them, a pick counts the less
   /// the further it is off (Cauchy), by the scale of all errors. Returns the weighted mean square.
   double Refine(CalibrationState& state, const std::vector<double>* weights) const;
@@ -66,11 +71,6 @@ public:
     const CalibrationState& state, const std::vector<double>& weights) const;
 
 private:
-  struct Pose
-  {
-    Eigen::Matrix3d Rotation;
-    Eigen::Vector3d Origin;
-  };
   std::vector<double> GetCauchyWeights(const CalibrationState& state) const;
   double GetCost(const CalibrationState& state, const std::vector<double>& weights) const;
   CalibrationState Move(const CalibrationState& state, const Eigen::VectorXd& step) const;

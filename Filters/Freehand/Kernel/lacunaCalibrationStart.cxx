@@ -49,21 +49,118 @@ std::vector<Eigen::Matrix3d> GetPlanes(int count)
   return rotations;
 }
 
-double GetMeanAbsoluteError(const CalibrationModel& model, const CalibrationState& state)
+// The equations of all picks for one orientation of the phantom. They are linear in the image's axes and
+// in all lengths, so that their products are summed once for every orientation of the image.
+class StartEquations
 {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t pick = 0; pick < model.GetNumberOfPicks(); ++pick)
+public:
+  StartEquations(const CalibrationModel& model, const Eigen::Matrix3d& phantom)
   {
-    double errors[3];
-    model.GetErrors(state, pick, errors);
-    for (int e = 0; e < model.GetNumberOfEquations(pick); ++e, ++count)
+    std::vector<Row> rows;
+    for (std::size_t pick = 0; pick < model.GetNumberOfPicks(); ++pick)
     {
-      sum += std::abs(errors[e]);
+      const CalibrationModel::Pose& pose = model.GetPose(pick);
+      const Vec2& pixel = model.GetPick(pick).Pixel;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (IsZeroAt(model.GetPick(pick).Target, axis))
+        {
+          const Eigen::RowVector3d direction = phantom.row(axis) * pose.Rotation;
+          Row row = Row::Zero();
+          row.segment<3>(ImageOrigin) = direction;
+          row.segment<3>(ImageX) = pixel[0] * direction;
+          row.segment<3>(ImageY) = pixel[1] * direction;
+          row[PhantomOrigin + axis] = 1;
+          row[One] = phantom.row(axis) * pose.Origin;
+          rows.push_back(row);
+        }
+      }
     }
+    this->Rows.resize(static_cast<Eigen::Index>(rows.size()), FactorCount);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+    {
+      this->Rows.row(static_cast<Eigen::Index>(i)) = rows[i];
+    }
+    this->Products.noalias() = this->Rows.transpose() * this->Rows;
   }
-  return sum / count;
-}
+
+  // Best translations, and spacing if it is sought, for the rotations of state. False when these are
+  // not determined or a spacing is not positive.
+  bool SolveLengths(CalibrationState& state, bool seeksScale) const
+  {
+    // of image origin, phantom origin, spacing
+    constexpr int Lengths = 8;
+    Eigen::Matrix<double, FactorCount, Lengths> factors;
+    factors.setZero();
+    factors.block<3, 3>(ImageOrigin, 0).setIdentity();
+    factors.block<3, 3>(PhantomOrigin, 3).setIdentity();
+    if (seeksScale)
+    {
+      factors.block<3, 1>(ImageX, 6) = state.ImageRotation.col(0);
+      factors.block<3, 1>(ImageY, 7) = state.ImageRotation.col(1);
+      state.Spacing.setZero();
+    }
+    state.ImageOrigin.setZero();
+    state.PhantomOrigin.setZero();
+    const Eigen::Matrix<double, Lengths, FactorCount> products =
+      factors.transpose() * this->Products;
+    Eigen::Matrix<double, Lengths, Lengths> normal = products * factors;
+    for (int length = 0; length < Lengths; ++length)
+    {
+      // what is not determined is held at zero
+      if (normal(length, length) == 0)
+      {
+        normal(length, length) = 1;
+      }
+    }
+    // A hint of zero decides where the picks do not.
+    normal.diagonal() *= 1 + 1e-9;
+    const Eigen::Matrix<double, Lengths, 1> solution =
+      normal.selfadjointView<Eigen::Lower>().ldlt().solve(-products * GetFactors(state));
+    if (!solution.allFinite() || (seeksScale && !(solution.tail<2>().minCoeff() > 0)))
+    {
+      return false;
+    }
+    state.ImageOrigin = solution.head<3>();
+    state.PhantomOrigin = solution.segment<3>(3);
+    if (seeksScale)
+    {
+      state.Spacing = solution.tail<2>();
+    }
+    return true;
+  }
+
+  // mm
+  double GetMeanAbsoluteError(const CalibrationState& state) const
+  {
+    return (this->Rows * GetFactors(state)).cwiseAbs().mean();
+  }
+
+private:
+  // What a row is multiplied by.
+  enum Factor
+  {
+    ImageOrigin = 0,
+    ImageX = 3, // of a column's width
+    ImageY = 6,
+    PhantomOrigin = 9,
+    One = 12,
+    FactorCount = 13
+  };
+  using Row = Eigen::Matrix<double, 1, FactorCount>;
+  using Factors = Eigen::Matrix<double, FactorCount, 1>;
+
+  static Factors GetFactors(const CalibrationState& state)
+  {
+    Factors factors;
+    factors << state.ImageOrigin, state.Spacing[0] * state.ImageRotation.col(0),
+      state.Spacing[1] * state.ImageRotation.col(1), state.PhantomOrigin, 1;
+    return factors;
+  }
+
+  Eigen::Matrix<double, Eigen::Dynamic, FactorCount> Rows;
+  Eigen::Matrix<double, FactorCount, FactorCount> Products;
+};
 }
 
 std::vector<CalibrationState> FindCalibrationStarts(
@@ -90,15 +187,16 @@ std::vector<CalibrationState> FindCalibrationStarts(
     CalibrationState State;
   };
   std::vector<Start> starts;
-  for (const Eigen::Matrix3d& image : images)
+  for (const Eigen::Matrix3d& phantom : phantoms)
   {
-    for (const Eigen::Matrix3d& phantom : phantoms)
+    const StartEquations equations(model, phantom);
+    for (const Eigen::Matrix3d& image : images)
     {
       CalibrationState state{ image, Eigen::Vector3d::Zero(), spacing, phantom,
         Eigen::Vector3d::Zero() };
-      if (model.SolveLengths(state))
+      if (equations.SolveLengths(state, seeks(CalibrationModel::Scale)))
       {
-        starts.push_back({ GetMeanAbsoluteError(model, state), state });
+        starts.push_back({ equations.GetMeanAbsoluteError(state), state });
       }
     }
   }
