@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracked sequences, MetaImage and NRRD: header, pixels, poses.
+// Tracked sequences, MetaImage and NRRD: header, pixels, poses. Of a header that names pixels.raw, the
+// bytes behind the first zero are also read as that file.
 #include "lacunaFuzzTarget.h"
 #include "lacunaPixelSource.h"
 #include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
 
+#include <algorithm>
 #include <vector>
 
 using namespace lacuna;
@@ -43,19 +45,34 @@ void ReadEverything(const std::string& path)
     ReadSliceStack(header, *pixels, region, stack.data(), execution);
   }
 }
-}
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+void Read(const std::string& path)
 {
-  const MemoryFile file(data, size);
-  IsTrackedSequence(file.GetPath());
+  IsTrackedSequence(path);
   try
   {
-    ReadEverything(file.GetPath());
+    ReadEverything(path);
   }
   catch (const std::runtime_error& error)
   {
     RequireSentence(error);
+  }
+}
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  Read(MemoryFile(data, size).GetPath());
+
+  const std::uint8_t *end = data + size, *zero = std::find(data, end, 0);
+  std::string header(data, zero);
+  const std::string pixelsName = "pixels.raw";
+  const std::size_t name = header.find(pixelsName);
+  if (zero != end && name != std::string::npos)
+  {
+    const MemoryFile pixels(zero + 1, static_cast<std::size_t>(end - zero - 1));
+    header.replace(name, pixelsName.size(), pixels.GetPath());
+    Read(MemoryFile(header.data(), header.size()).GetPath());
   }
   return 0;
 }
