@@ -82,10 +82,10 @@ def swept_distance(points, steps):
     cuts = np.flatnonzero(steps[1:, 3] > 0)
     up = np.array([0, 0, RADIUS])
     a, b = steps[cuts, :3] + up, steps[cuts + 1, :3] + up
-    low, high = np.minimum(a, b)[:, :2] - RADIUS - 1, np.maximum(a, b)[:, :2] + RADIUS + 1
+    (left, front), (right, back) = (np.minimum(a, b)[:, :2] - RADIUS - 1).T.copy(), (np.maximum(a, b)[:, :2] + RADIUS + 1).T.copy()
     result = []
     for p in points:
-        near = ((low <= p[:2]) & (p[:2] <= high)).all(axis=1)
+        near = (left <= p[0]) & (p[0] <= right) & (front <= p[1]) & (p[1] <= back)
         start, d = a[near], (b - a)[near]
         t = np.clip(np.sum((p - start) * d, 1) / np.maximum(np.sum(d * d, 1), 1e-30), 0, 1)
         result.append(np.sqrt(np.sum((start + t[:, None] * d - p) ** 2, 1).min()) - RADIUS)

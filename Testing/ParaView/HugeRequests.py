@@ -9,7 +9,7 @@ import sys
 
 import lacuna
 import numpy as np
-from lacuna_test import output
+from lacuna_test import memory_of_process, output
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
@@ -18,11 +18,6 @@ from vtkmodules.vtkImagingCore import vtkImageShiftScale, vtkRTAnalyticSource
 
 GIBIBYTE = 1 << 30
 N = 2048
-
-
-def status(key):
-    with open("/proc/self/status", encoding="ascii") as file:
-        return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
 
 
 def errors_of(filter, update=None):
@@ -40,23 +35,23 @@ def errors_of(filter, update=None):
 
 
 def check_refused(name, filter, *parts):
-    before = status("VmHWM")
+    before = memory_of_process("VmHWM")
     text = errors_of(filter)
     print(f"{name}: {text.strip()[:220]}", flush=True)
     assert "bytes" in text and all(part in text for part in parts), (name, text)
     output = filter.GetOutputDataObject(0)
     assert not hasattr(output, "GetNumberOfPoints") or output.GetNumberOfPoints() == 0, name
-    assert status("VmHWM") - before < GIBIBYTE / 4, name
+    assert memory_of_process("VmHWM") - before < GIBIBYTE / 4, name
 
 
 def check_piece(name, filter, extent, points):
-    before = status("VmRSS")
+    before = memory_of_process("VmRSS")
     with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
         file.write("5")
     texts = errors_of(filter, lambda: filter.UpdateExtent(extent))
     assert not texts, (name, texts)
     output = filter.GetOutput()
-    used = status("VmHWM") - before
+    used = memory_of_process("VmHWM") - before
     print(f"{name}: piece {extent} of {points} points, {used / 2**20:.0f} MiB", flush=True)
     assert output.GetNumberOfPoints() >= points, (name, output.GetExtent())
     assert used < GIBIBYTE / 2, (name, used)
@@ -174,7 +169,7 @@ def mesh():
     caster.SetPixelSpacing(0.1)
     caster.Update()
     limit = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (status("VmSize") + GIBIBYTE // 8, limit[1]))
+    resource.setrlimit(resource.RLIMIT_AS, (memory_of_process("VmSize") + GIBIBYTE // 8, limit[1]))
     surface = behind(lacuna.vtkLacunaDepthMapSurface(), caster)
     check_refused("Depth Map Surface", surface, "pixels would need")
     resource.setrlimit(resource.RLIMIT_AS, limit)
@@ -221,7 +216,7 @@ def pieces():
 
 
 if __name__ == "__main__":
-    limit = status("VmSize") + 2 * GIBIBYTE
+    limit = memory_of_process("VmSize") + 2 * GIBIBYTE
     resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
     for part in (sources, freehand, whole_inputs, files, mesh, pieces):
         if len(sys.argv) < 2 or part.__name__ in sys.argv[1:]:

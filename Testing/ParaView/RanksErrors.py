@@ -14,11 +14,6 @@ SECONDS = 100
 NOTHING = 0, -1, 0, -1, 0, -1
 
 
-def status(key):
-    with open("/proc/self/status", encoding="ascii") as file:
-        return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
-
-
 # --- in pvbatch, on every rank for itself ---
 
 
@@ -96,7 +91,7 @@ def refused(make, rank):
     filter = make(source, False)
     before = resource.getrlimit(resource.RLIMIT_AS)
     if rank == 1:
-        resource.setrlimit(resource.RLIMIT_AS, (status("VmSize") + (150 << 20), before[1]))
+        resource.setrlimit(resource.RLIMIT_AS, (lacuna_test.memory_of_process("VmSize") + (150 << 20), before[1]))
     text = update(filter, (0, 9, 0, 9, 0, 9))
     resource.setrlimit(resource.RLIMIT_AS, before)
     assert ("256000000 bytes" if rank == 1 else "another rank has stopped") in text, text

@@ -36,6 +36,12 @@ def program(name):
     return path
 
 
+def memory_of_process(key):
+    """Bytes of this process: VmRSS now, VmHWM at most until now, VmSize of addresses."""
+    with open("/proc/self/status", encoding="ascii") as file:
+        return next(int(line.split()[1]) * 1024 for line in file if line.startswith(key + ":"))
+
+
 def mpi_environment():
     """For mpirun: pvpython has started MPI for itself; its traces would confuse it."""
     environment = {key: value for key, value in os.environ.items()
