@@ -43,7 +43,6 @@ bool IsSameMoved(CalibrationTarget target, int axis)
 
 CalibrationModel::CalibrationModel(const std::vector<CalibrationPick>& picks, bool estimateScale)
   : Picks(picks)
-  , EstimateScale(estimateScale)
 {
   for (const CalibrationPick& pick : picks)
   {

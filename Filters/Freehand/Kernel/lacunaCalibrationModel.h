@@ -76,7 +76,6 @@ private:
   CalibrationState Move(const CalibrationState& state, const Eigen::VectorXd& step) const;
 
   const std::vector<CalibrationPick>& Picks;
-  bool EstimateScale;
   std::vector<Pose> Poses;
   std::vector<int> Unknowns;
 };

@@ -50,7 +50,7 @@ std::vector<Eigen::Matrix3d> GetPlanes(int count)
 }
 
 // The equations of all picks for one orientation of the phantom. They are linear in the image's axes and
-// in all lengths, so that their products are summed once for every orientation of the image.
+// in all lengths, so that one sum of their products serves all orientations of the image.
 class StartEquations
 {
 public:
@@ -141,7 +141,7 @@ private:
   enum Factor
   {
     ImageOrigin = 0,
-    ImageX = 3, // of a column's width
+    ImageX = 3, // times the spacing
     ImageY = 6,
     PhantomOrigin = 9,
     One = 12,
