@@ -85,7 +85,7 @@ extern "C" ssize_t readlink(const char* name, char* target, size_t size) noexcep
   if (result < 0 && errno == ENOENT && IsOfPseudoTerminal(name))
   {
     const std::size_t length = std::min(size, std::strlen(Device));
-    std::memcpy(target, Device, length);
+    std::copy_n(Device, length, target); // without a zero, as readlink
     return static_cast<ssize_t>(length);
   }
   return result;
