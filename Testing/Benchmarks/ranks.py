@@ -6,7 +6,7 @@
     Testing/Benchmarks/ranks.py [--quick] [--ranks N] [--benchmark_out FILE]
 
 Strong: the same work by more ranks; weak: as much work for each. Times are the processor time of the busiest rank, which what else the
-machine does changes little, the least of some; inputs are there before. Prints them as a table, and what the model of
+machine does changes little, the median of some; inputs are there before. Prints them as a table, and what the model of
 Documentation/DeveloperGuide/distributed.md makes of them for more ranks. A row of the file is CASE/strong/ranks:N or CASE/weak/ranks:N,
 with the time by the clock, too: for that leave the machine alone.
 """
@@ -15,6 +15,7 @@ import json
 import math
 import os
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -121,13 +122,26 @@ def sum_time(ranks, size):
     return 2 * math.log2(ranks) * LATENCY + 2 * (ranks - 1) / ranks * size / BANDWIDTH
 
 
+def repeated(alone, some, ranks):
+    """The part of the work that all ranks repeat, from two times."""
+    return min(1.0, max(0.0, (ranks * some / alone - 1) / (ranks - 1)))
+
+
 def extrapolate(rows, case, ranks):
-    """Strong scaling: the part that all ranks repeat, from the two measured times, and seconds for many ranks."""
+    """Strong scaling: the repeated part, as (median, least, largest) of the rounds, and how many times as fast many ranks are by each."""
     one, some = rows[f"{case}/strong/ranks:1"], rows[f"{case}/strong/ranks:{ranks}"]
     alone = one["seconds"]
-    serial = min(1.0, max(0.0, (ranks * some["seconds"] / alone - 1) / (ranks - 1)))
+    each = [repeated(a, b, ranks) for a, b in zip(one["rounds"], some["rounds"])]
+    parts = repeated(alone, some["seconds"], ranks), min(each), max(each)
     summed = 4 * one["points"] if case == "occluded-angle" else 0
-    return serial, [alone * (serial + (1 - serial) / many) + sum_time(many, summed) * bool(summed) for many in MANY]
+    return parts, [[alone / (alone * (part + (1 - part) / many) + sum_time(many, summed) * bool(summed)) for part in parts] for many in MANY]
+
+
+def spread(values):
+    """Of (median, and what may be least and largest)."""
+    def number(value):
+        return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
+    return f"{number(values[0])} ({number(min(values))} – {number(max(values))})"
 
 
 def table(rows, ranks):
@@ -136,9 +150,9 @@ def table(rows, ranks):
     for case in CASES:
         strong = [rows[f"{case}/strong/ranks:{n}"]["seconds"] for n in (1, ranks)]
         weak = [rows[f"{case}/weak/ranks:{n}"]["seconds"] for n in (1, ranks)]
-        serial, many = extrapolate(rows, case, ranks)
+        part, many = extrapolate(rows, case, ranks)
         lines.append(f"| {case} | {strong[0]:.2f} | {strong[1]:.2f} | {strong[0] / strong[1]:.2f} | {100 * weak[0] / weak[1]:.0f} % | "
-                     f"{100 * serial:.1f} % | " + " | ".join(f"{strong[0] / each:.0f} times" for each in many) + " |")
+                     f"{spread([100 * each for each in part])} % | " + " | ".join(f"{spread(each)} times" for each in many) + " |")
     return "\n".join(lines)
 
 
@@ -159,7 +173,8 @@ def run(options):
                 sys.exit(done.stdout)
             with open(out, encoding="utf-8") as file:
                 for name, row in json.load(file).items():  # not there: the Programmable Filter makes min and max others
-                    rows[name] = {"seconds": min(max(each) for each in row["processor"]), "wall": min(row["wall"]), "points": row["points"]}
+                    rounds = [max(each) for each in row["processor"]]
+                    rows[name] = {"seconds": statistics.median(rounds), "rounds": rounds, "wall": statistics.median(row["wall"]), "points": row["points"]}
     print(table(rows, options.ranks))
     if options.benchmark_out:
         benchmarks = [{"name": name, "run_type": "iteration", "iterations": 1, "real_time": 1000 * row["wall"], "cpu_time": 1000 * row["seconds"],
@@ -178,7 +193,7 @@ def main():
     if options.ranks < 2:
         parser.error("--ranks must be 2 or more: one rank is measured in any case")
     if options.in_pvbatch:
-        measure(0.5 if options.quick else 1, int(options.in_pvbatch[0]), 1 if options.quick else 5, options.in_pvbatch[1])
+        measure(0.5 if options.quick else 1.6, int(options.in_pvbatch[0]), 1 if options.quick else 5, options.in_pvbatch[1])
     else:
         run(options)
 
