@@ -1,18 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Sets up everything on a Debian 12 machine, builds and runs the tests: all but the examples of the
-# documentation, and those that take long (label soak); or what ctest's options select.
+# documentation and those that take long (label soak), unless options of ctest (-L, -R) select them.
 #   ./test.sh [--preset NAME] [--target NAME] [ctest options]
-#   ./test.sh -L example                               the examples
-# Presets: release debug asan tsan vtk kernels; the target is what to build, if not all.
+#   ./test.sh -L example          the examples
+# Presets: release debug asan tsan vtk kernels clang; the target is what to build, if not all.
 set -euo pipefail
 cd "$(dirname "$0")"
 . Testing/Tools/setup.sh
 preset=release target=all
 if [ "${1:-}" = --preset ]; then preset=$2; shift 2; fi
 if [ "${1:-}" = --target ]; then target=$2; shift 2; fi
-excluded=soak
-if [ $# = 0 ]; then excluded='soak|example'; fi
+soak=soak example='|example' others='' options=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    -LE) others+="|$2"; shift 2; continue ;; # ctest would exclude only what several -LE name
+    -L | -R) example='' ;;
+    *[sS]oak*) soak='^$' ;;
+  esac
+  options+=("$1")
+  shift
+done
 lacuna_install_packages
+if [ "$preset" = clang ]; then lacuna_install_packages packages-fuzzing.txt; fi
 lacuna_build "$preset" --target "$target"
-lacuna_display ctest --preset "$preset" -j2 -LE "$excluded" "$@"
+lacuna_display ctest --preset "$preset" -j2 -LE "$soak$example$others" --no-tests=error "${options[@]}"

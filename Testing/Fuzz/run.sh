@@ -10,6 +10,7 @@ seconds=${1:?seconds}
 shift
 [ "$seconds" -gt 0 ] || { echo "$0: SECONDS must be positive" >&2; exit 2; } # to libFuzzer 0 is for ever
 . Testing/Tools/setup.sh
+lacuna_install_packages
 lacuna_install_packages packages-fuzzing.txt
 lacuna_build fuzz --target LacunaFuzzTargets
 targets=("$@")

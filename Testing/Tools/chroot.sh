@@ -9,7 +9,7 @@
 # FOLDER is made by debootstrap (package debootstrap; DEBIAN_MIRROR) when it does not exist: about
 # 0.4 GB, 3 GB when all is installed. Options of the configuration: LACUNA_CMAKE_OPTIONS. When
 # CCACHE_DIR is set, the compiler's results are kept there.
-# Debian's VTK and ParaView's Python cannot share a system: use one folder for each.
+# Debian's VTK and ParaView's Python cannot share a system: use one folder for each, and for each SUITE.
 set -euo pipefail
 folder=$1
 what=$2
@@ -19,6 +19,10 @@ data=$(realpath -m "${LACUNA_TEST_DATA:-$source/../shared/data}")
 
 if [ ! -x "$folder/bin/bash" ]; then
   debootstrap --variant=minbase "$suite" "$folder" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
+fi
+if [ "$what" = vtk ] && ! grep -qw "$suite" "$folder/etc/os-release"; then
+  echo "$0: $folder is another Debian than $suite" >&2
+  exit 2
 fi
 cp /etc/resolv.conf "$folder/etc/resolv.conf"
 # a mirror may lag behind, and a folder to try things in need not survive a power failure
@@ -56,7 +60,7 @@ fi
 
 case $what in
   fresh)
-    inside 'cd /lacuna && ./test.sh && ./demo.sh'
+    inside 'cd /lacuna && ./test.sh && ./test.sh -L example && ./demo.sh'
     ;;
   vtk)
     inside 'apt-get -qq update'

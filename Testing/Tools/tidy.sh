@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
+lacuna_install_packages
 lacuna_install_packages packages-ci.txt
 # configured is enough: no header of these sources is made by the build
 lacuna_configure release

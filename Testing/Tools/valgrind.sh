@@ -8,6 +8,7 @@ cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
 preset=release
 if [ "${1:-}" = --preset ]; then preset=$2; shift 2; fi
+lacuna_install_packages
 lacuna_install_packages packages-valgrind.txt
 lacuna_build "$preset" --target LacunaProperties
 work=$(mktemp -d)
