@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Sets up everything on a Debian 12 machine, builds and runs the tests: all but the examples of the
-# documentation and those that take long (label soak), unless options of ctest (-L, -R) select them.
+# Sets up everything on a Debian 12 machine, builds and runs the tests: all but demo.sh, the examples of
+# the documentation and those that take long (label soak), unless options of ctest (-L, -R) select them.
 #   ./test.sh [--preset NAME] [--target NAME] [ctest options]
-#   ./test.sh -L example          the examples
+#   ./test.sh -L example          demo.sh and the examples
 # Presets: release debug asan tsan vtk kernels clang; the target is what to build, if not all.
 set -euo pipefail
 cd "$(dirname "$0")"
