@@ -14,9 +14,11 @@ if [ "${1:-}" = --target ]; then target=$2; shift 2; fi
 soak=soak example='|example' others='' options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    -LE) others+="|$2"; shift 2; continue ;; # ctest would exclude only what several -LE name
-    -L | -R) example='' ;;
-    *[sS]oak*) soak='^$' ;;
+    -LE) others+="|$2"; shift 2; continue ;; # ctest excludes only what all of several -LE match
+    -L | -R)
+      example=''
+      if [[ ${2:-} = *[sS]oak* ]]; then soak='^$'; fi # matches no label
+      ;;
   esac
   options+=("$1")
   shift

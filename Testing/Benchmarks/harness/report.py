@@ -130,7 +130,7 @@ class Page:
         text = "## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.\n\n" + picture("ranks", "Speed-up by ranks", plots)
         if not ranks.get("text"):
             return text
-        return text + ranks["text"] + "\n\nMedians of five; in brackets, the least and largest repeated part of a round, and what the model makes " \
+        return text + ranks["text"] + "\n\nMedians of the rounds; in brackets, the least and largest repeated part of a round, and what the model makes " \
             "of these. All by which ranks hinder each other on one machine counts as repeated ([the model](../DeveloperGuide/distributed.md)).\n"
 
     def exponents(self):
