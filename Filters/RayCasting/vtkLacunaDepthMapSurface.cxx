@@ -127,9 +127,9 @@ int vtkLacunaDepthMapSurface::RequestUpdateExtent(
   int extent[6] = { 0, -1, 0, -1, 0, -1 };
   inInfo->Get(SDDP::WHOLE_EXTENT(), extent);
   const Rows rows(extent, outputVector->GetInformationObject(0));
-  // one more row on either side for the rule
-  extent[2] = std::max(extent[2], rows.First - 1);
-  extent[3] = std::min(extent[3], rows.Last + 1);
+  // one more row on either side for the rule; an extent may begin or end with the integers
+  extent[2] = rows.First > extent[2] ? rows.First - 1 : extent[2];
+  extent[3] = rows.Last < extent[3] ? rows.Last + 1 : extent[3];
   vtkLacunaRequest::Extent(inInfo, extent);
   return 1;
 }

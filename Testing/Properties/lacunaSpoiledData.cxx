@@ -17,6 +17,7 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <limits>
@@ -208,7 +209,8 @@ std::string SpoilImage(vtkImageData* image, Dice& dice)
       image->GetExtent(extent);
       const int axis = dice.Whole(0, 2);
       const int size = extent[2 * axis + 1] - extent[2 * axis];
-      extent[2 * axis] = dice.Pick({ -3, 5, 100000, INT_MAX - size, INT_MIN });
+      extent[2 * axis] =
+        dice.Pick({ -3, 5, 100000, INT_MAX - std::max(size, 0), INT_MIN - std::min(size, 0) });
       extent[2 * axis + 1] = extent[2 * axis] + size;
       image->SetExtent(extent);
       return "extent from " + std::to_string(extent[2 * axis]) + " along " + std::to_string(axis);

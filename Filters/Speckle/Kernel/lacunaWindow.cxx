@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaWindow.h"
 
+#include <algorithm>
+#include <climits>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -61,8 +64,11 @@ Extent Window::Grow(const Extent& box) const
   Extent grown = box;
   for (int a = 0; a < 3; ++a)
   {
-    First(grown, a) -= this->Lower(a);
-    Last(grown, a) += this->Upper(a);
+    // an extent may begin or end with the integers
+    First(grown, a) -= static_cast<int>(
+      std::min<std::int64_t>(this->Lower(a), First(box, a) - std::int64_t(INT_MIN)));
+    Last(grown, a) += static_cast<int>(
+      std::min<std::int64_t>(this->Upper(a), INT_MAX - std::int64_t(Last(box, a))));
   }
   return grown;
 }
