@@ -54,7 +54,8 @@ public:
   /// with it after an erosion with this one is an opening that shifts nothing.
   Window Reflect() const;
 
-  /// The box of all samples that results in box depend on.
+  /// The box of all samples that results in box depend on; it ends where the integers do, so that a
+  /// request of any extent can be made. What is filtered lies within 2^30 of 0 (vtkLacunaInputs).
   Extent Grow(const Extent& box) const;
 
 private:

@@ -28,6 +28,15 @@ TEST(SpeckleWindow, IsCentredWhenOddAndReachesDownwardsWhenEven)
   EXPECT_EQ(reflected.Grow({ 0, 9, 0, 9, 3, 3 }), (Extent{ -2, 11, -1, 11, 3, 3 }));
 }
 
+TEST(SpeckleWindow, GrowsNoFurtherThanTheIntegers)
+{
+  constexpr int least = std::numeric_limits<int>::min();
+  constexpr int greatest = std::numeric_limits<int>::max();
+  const Window window({ 5, 4, 3 }, WindowShape::Box);
+  EXPECT_EQ(window.Grow({ least, 9, least + 1, greatest, 3, greatest - 1 }),
+    (Extent{ least, 11, least, greatest, 2, greatest }));
+}
+
 TEST(SpeckleWindow, EllipsoidsHaveTheKernelSizeAsDiameters)
 {
   EXPECT_EQ(Window({ 1, 1, 1 }, WindowShape::Ellipsoid).GetNumberOfSamples(), 1);
