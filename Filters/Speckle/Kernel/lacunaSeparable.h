@@ -38,7 +38,7 @@ struct Reach
   }
 
   bool Along(int axis) const { return this->Lower[axis] + this->Upper[axis] > 0; }
-  /// The box that results in box depend on, along some axes.
+  /// The box that results in box depend on, along some axes; it ends where the integers do.
   Extent Grow(const Extent& box, bool xy, bool z) const
   {
     Extent grown = box;
@@ -46,8 +46,7 @@ struct Reach
     {
       if (a < 2 ? xy : z)
       {
-        First(grown, a) -= this->Lower[a];
-        Last(grown, a) += this->Upper[a];
+        lacuna::Grow(grown, a, this->Lower[a], this->Upper[a]);
       }
     }
     return grown;

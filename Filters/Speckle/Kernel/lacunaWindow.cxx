@@ -59,16 +59,20 @@ Window Window::Reflect() const
   return other;
 }
 
+void Grow(Extent& box, int axis, int below, int above)
+{
+  First(box, axis) -=
+    static_cast<int>(std::min<std::int64_t>(below, First(box, axis) - std::int64_t(INT_MIN)));
+  Last(box, axis) +=
+    static_cast<int>(std::min<std::int64_t>(above, INT_MAX - std::int64_t(Last(box, axis))));
+}
+
 Extent Window::Grow(const Extent& box) const
 {
   Extent grown = box;
   for (int a = 0; a < 3; ++a)
   {
-    // an extent may begin or end with the integers
-    First(grown, a) -= static_cast<int>(
-      std::min<std::int64_t>(this->Lower(a), First(box, a) - std::int64_t(INT_MIN)));
-    Last(grown, a) += static_cast<int>(
-      std::min<std::int64_t>(this->Upper(a), INT_MAX - std::int64_t(Last(box, a))));
+    lacuna::Grow(grown, a, this->Lower(a), this->Upper(a));
   }
   return grown;
 }

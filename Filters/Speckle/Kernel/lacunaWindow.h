@@ -69,6 +69,9 @@ private:
   std::int64_t Samples = 0;
 };
 
+/// Moves the ends of a box along an axis away from each other, but not beyond the integers.
+void Grow(Extent& box, int axis, int below, int above);
+
 /// The part of a box that lies in bounds.
 Extent Intersect(const Extent& box, const Extent& bounds);
 

@@ -338,6 +338,17 @@ TEST(LinearFilters, LaplacianVanishesOnConstantsAndChangesSignAtAnEdge)
   EXPECT_NEAR(result.At(20, 4, 0), -result.At(19, 4, 0), 1e-3);
 }
 
+TEST(LinearFilters, ReachNoFurtherThanTheIntegers)
+{
+  constexpr int least = std::numeric_limits<int>::min();
+  constexpr int greatest = std::numeric_limits<int>::max();
+  const lacuna::Extent box{ least, 9, least + 1, greatest, 3, greatest - 1 };
+  EXPECT_EQ(lacuna::GaussianReach({ 1, 1, 0.5 }).Grow(box, true, true),
+    (lacuna::Extent{ least, 13, least, greatest, 1, greatest }));
+  EXPECT_EQ(lacuna::LaplacianReach({ 1, 0, 1 }).Grow(box, true, true),
+    (lacuna::Extent{ least, 15, least + 1, greatest, -3, greatest }));
+}
+
 TEST(LinearFilters, RefusesDeviationsThatMakeNoSense)
 {
   for (const double bad : { -1.0, 1e9, std::nan(""), std::numeric_limits<double>::infinity() })
