@@ -364,6 +364,12 @@ int vtkLacunaMillingToolPath::RequestData(
     const double step = path.SmallestStepOver > 0 ? path.SmallestStepOver : this->ToolRadius;
     const lacuna::LeftOverMap map = lacuna::MapLeftOver(
       execution, surface, options.Tool, path, this->MapSpacing > 0 ? this->MapSpacing : step / 4);
+    if (this->MapSpacing > 0 && map.Spacing > this->MapSpacing * (1 + 1e-9))
+    {
+      vtkWarningMacro(<< "MapSpacing " << this->MapSpacing
+                      << " mm would take more points than the map "
+                      << "may have; they are up to " << map.Spacing << " mm apart");
+    }
     const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
     if (!unreachable.empty())
     {

@@ -184,7 +184,10 @@ public:
   vtkGetMacro(SpindleSpeed, double);
   ///@}
   ///@{
-  /** mm between points of the left-over map; 0: a quarter of the step-over. Default 0. */
+  /**
+   * mm between points of the left-over map; 0: a quarter of the step-over. Default 0. Larger with a
+   * warning where there would be more than 4 million points.
+   */
   vtkSetMacro(MapSpacing, double);
   vtkGetMacro(MapSpacing, double);
   ///@}

@@ -409,6 +409,7 @@ LeftOverMap MapLeftOver(Execution& execution, const MillSurface& surface, const 
     std::max(1.0, std::min(wanted, std::floor(std::sqrt(LargestMap / cellCount)))));
   LeftOverMap map;
   map.Size = { cells.Columns * n + 1, cells.Rows * n + 1 };
+  map.Spacing = surface.GetSpacing() / static_cast<double>(n);
   const auto count = static_cast<std::size_t>(map.Size.Columns * map.Size.Rows);
   RequireMemory("the map of what is left", static_cast<double>(count) * 48);
   map.Points.resize(count);

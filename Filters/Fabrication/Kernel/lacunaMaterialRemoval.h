@@ -60,6 +60,7 @@ private:
 struct LeftOverMap
 {
   GridSize Size;
+  double Spacing = 0;              ///< mm, that its points are apart at most
   std::vector<Vec3> Points;        ///< on the triangles of the surface
   std::vector<double> LeftOver;    ///< mm, see MaterialRemoval::Result; not negative
   std::vector<double> Height;      ///< z of what is left
@@ -75,8 +76,8 @@ struct LeftOverMap
 std::vector<double> FindUnreachable(
   Execution& execution, const MillSurface& surface, const MillTool& tool);
 
-/// What is left on a surface, at points at most spacing apart (as cells are divided evenly; there
-/// are no more than some millions of them, though).
+/// What is left on a surface, at points at most spacing apart (as cells are divided evenly); there
+/// are no more than four millions of them, though: Spacing says how far they are apart.
 LeftOverMap MapLeftOver(Execution& execution, const MillSurface& surface, const MillTool& tool,
   const ToolPath& path, double spacing);
 }

@@ -73,7 +73,8 @@ using Samples = std::vector<Vec3>;
 
 std::int64_t CountSamples(const Raster::Line& line, double step)
 {
-  return static_cast<std::int64_t>(std::ceil(line.GetLength() / step - 1e-6)) + 1;
+  // both ends at least, also of a line that all but touches a corner
+  return static_cast<std::int64_t>(std::max(1.0, std::ceil(line.GetLength() / step - 1e-6))) + 1;
 }
 
 std::vector<Samples> DropLines(Execution& execution, const DropCutter& cutter, const Raster& raster,

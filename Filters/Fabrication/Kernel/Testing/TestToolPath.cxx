@@ -256,6 +256,26 @@ TEST(ToolPath, ScallopsOnAPlane)
 }
 
 //------------------------------------------------------------------------------
+// The first line touches a corner; it is a micrometre long, and shorter still than a step.
+TEST(ToolPath, LinesThatTouchACorner)
+{
+  const MillSurface plane = Surface(31, 31, 1, [](double, double) { return -2.0; });
+  for (const double direction : { 1.0, 3.0, 5.0, 7.0, -5.0, 84.0, 95.0 })
+  {
+    for (const double step : { 0.3, 1.0, 1.2, 2.0, 5.0 })
+    {
+      ToolPathOptions options;
+      options.Direction = direction;
+      options.PathStep = step;
+      const ToolPath path = Path(plane, options);
+      CheckForm(path);
+      EXPECT_TRUE(std::all_of(path.Points.begin(), path.Points.end(),
+        [](const Vec3& p) { return std::isfinite(p[0] + p[1] + p[2]); }));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 TEST(ToolPath, StepOverFromScallopHeight)
 {
   EXPECT_NEAR(GetStepOver(4, 0.01), 0.5655, 1e-3);

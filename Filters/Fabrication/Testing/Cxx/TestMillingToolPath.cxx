@@ -183,6 +183,14 @@ void TestWarnsAndRefuses()
   filter->Update();
   LACUNA_CHECK(messages->Errors.empty() && filter->GetOutput()->GetNumberOfPoints() == 0);
 
+  // a map that cannot be as fine as was asked for says how fine it is
+  filter->SetInputData(Mould());
+  filter->SetMapSpacing(1e-6);
+  filter->Update();
+  LACUNA_CHECK_CONTAINS(messages->Warnings, "more points than the map may have");
+  LACUNA_CHECK(Map(filter)->GetNumberOfPoints() < 4.1e6);
+  filter->SetMapSpacing(0);
+
   // a slot that is too narrow is told with its place
   filter->SetInputData(Mould([](double x, double) { return std::abs(x - 18) < 0.5 ? -3 : 0; }));
   filter->Update();
