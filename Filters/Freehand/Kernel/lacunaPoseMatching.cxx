@@ -2,7 +2,9 @@
 #include "lacunaPoseMatching.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -32,6 +34,15 @@ std::vector<PoseMatch> MatchByOrder(std::size_t slices, std::size_t rows)
 std::vector<PoseMatch> MatchByFrameNumber(
   std::size_t slices, const std::vector<double>& frames, double firstFrame)
 {
+  const double lastFrame = firstFrame + static_cast<double>(slices) - 1;
+  if (lastFrame > INT_MAX)
+  {
+    std::ostringstream message;
+    message << std::fixed << std::setprecision(0) << "FirstFrameNumber is " << firstFrame
+            << ": the last of " << slices << " slices would have the number " << lastFrame
+            << "; a frame number is at most " << INT_MAX;
+    throw std::runtime_error(message.str());
+  }
   std::vector<PoseMatch> matches(slices);
   bool any = false;
   for (std::size_t row = 0; row < frames.size(); ++row)
@@ -64,7 +75,7 @@ std::vector<PoseMatch> MatchByFrameNumber(
     const auto ends = std::minmax_element(frames.begin(), frames.end());
     std::ostringstream message;
     message << "no row belongs to a slice: the slices have the frame numbers " << firstFrame
-            << " to " << firstFrame + static_cast<double>(slices) - 1 << ", the rows ";
+            << " to " << lastFrame << ", the rows ";
     if (frames.empty())
     {
       message << "none";

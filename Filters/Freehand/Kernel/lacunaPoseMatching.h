@@ -29,7 +29,8 @@ std::vector<PoseMatch> MatchByOrder(std::size_t slices, std::size_t rows);
 
 /// The row with frame number firstFrame + i belongs to slice i; slices may lack one, and rows for
 /// other frames are not used. Throws std::runtime_error when a frame number is not a whole number,
-/// when a slice has several rows, and when no slice has any.
+/// when a slice has several rows, when no slice has any, and when the last slice's number would be
+/// above INT_MAX.
 std::vector<PoseMatch> MatchByFrameNumber(
   std::size_t slices, const std::vector<double>& frames, double firstFrame);
 

@@ -28,13 +28,13 @@ bool IsFrameKind(const std::string& kind)
   return kind == "list" || kind == "time";
 }
 
-// Seq_Frame0012_Timestamp -> 12, Timestamp
+// Seq_Frame0012_Timestamp -> 12, Timestamp; there are INT_MAX frames at most
 bool SplitFrameField(std::string_view name, std::int64_t& frame, std::string& field)
 {
   name.remove_prefix(FramePrefix.size());
   const std::size_t underscore = name.find('_');
   if (underscore == std::string_view::npos || underscore + 1 == name.size() ||
-    !ParseInteger(name.substr(0, underscore), frame) || frame < 0)
+    !ParseInteger(name.substr(0, underscore), frame) || frame < 0 || frame >= INT_MAX)
   {
     return false;
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <climits>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -54,6 +55,8 @@ TEST(PoseMatching, ByFrameNumber)
   ExpectError([] { MatchByFrameNumber(4, { 1, NaN }, 0); }, "whole number");
   ExpectError([] { MatchByFrameNumber(4, { 100, 101 }, 0); }, "0 to 3, the rows 100 to 101");
   EXPECT_EQ(GetFirst(MatchByFrameNumber(2, { 1e300, -1e300, 1 }, 0)), (Rows{ -1, 2 }));
+  EXPECT_EQ(GetFirst(MatchByFrameNumber(2, { INT_MAX }, INT_MAX - 1.0)), (Rows{ -1, 0 }));
+  ExpectError([] { MatchByFrameNumber(2, { INT_MAX }, INT_MAX); }, "at most 2147483647");
 }
 
 TEST(PoseMatching, ByTime)

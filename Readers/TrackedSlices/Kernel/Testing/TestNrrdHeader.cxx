@@ -207,6 +207,20 @@ TEST(NrrdHeader, ADetachedHeaderCutOffAnywhereHasItsWholeFrames)
   }
 }
 
+TEST(NrrdHeader, FrameNumbersThatNoFileReachesAreIgnored)
+{
+  NrrdFile file = MakeNrrd();
+  file.Detached = true;
+  file.Set("data file", "pixels.raw");
+  file.SetPair("Seq_Frame9223372036854775807_ImageStatus", "OK");
+  file.SetPair("Seq_Frame2147483647_ImageStatus", "OK");
+  const SequenceHeader header = Read(file);
+  EXPECT_EQ(header.Frames, 3);
+  ASSERT_FALSE(header.Warnings.empty());
+  EXPECT_NE(header.Warnings[0].find("Seq_Frame9223372036854775807_ImageStatus"), std::string::npos)
+    << header.Warnings[0];
+}
+
 TEST(NrrdHeader, WhatIsWrong)
 {
   ExpectError("NRRD0009\n", { "line 1", "NRRD0001 to NRRD0005" });
