@@ -257,7 +257,13 @@ public:
   // Says where the symmetry is not what one would want.
   static void Warn(vtkLacunaMirror* self, const Result& result)
   {
-    if (!(result.Score >= PoorScore))
+    if (std::isnan(result.Score))
+    {
+      vtkWarningWithObjectMacro(self,
+        << "there is no SymmetryScore: all values on both sides of the plane are equal, or there "
+           "are none");
+    }
+    else if (result.Score < PoorScore)
     {
       vtkWarningWithObjectMacro(self,
         << "the symmetry is poor: the score is " << Rounded(result.Score)
