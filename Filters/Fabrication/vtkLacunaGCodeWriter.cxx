@@ -10,6 +10,7 @@
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
+#include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMillingToolPath.h"
 #include "vtkLacunaMirrored.h"
@@ -293,8 +294,13 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
     options.Comments.push_back("Made by: " + step);
   }
 
-  const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options);
+  vtkLacunaExecution execution(this);
+  execution.SetStage(0, 0.9);
+  const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options, &execution);
+  execution.SetStage(0.9, 1);
+  execution.Report(0);
   lacuna::WriteFileAtomically(this->FileName, program.Text);
+  this->UpdateProgress(1); // no longer to be stopped: the file is there
   this->FileSize = static_cast<vtkTypeInt64>(program.Text.size());
   this->NumberOfBlocks = program.Blocks;
   if (mirrored)

@@ -2,6 +2,7 @@
 // Filters that take tracked slices, pictures and tables of poses.
 #include "lacunaRandomData.h"
 #include "lacunaSubject.h"
+#include "lacunaTrial.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -22,6 +23,8 @@
 
 #include <algorithm>
 #include <cmath>
+
+#include <unistd.h>
 
 namespace lacunaProperties
 {
@@ -145,6 +148,7 @@ Subject MakeAssembler()
       Real("FrameRate", &T::SetFrameRate, 0, 50), Real("TimeOffset", &T::SetTimeOffset, -0.1, 0.1),
       Real("MaximumTimeGap", &T::SetMaximumTimeGap, 0, 1),
       Switch("SkipInvalidPoses", &T::SetSkipInvalidPoses) } };
+  subject.MayBeNaN = { "Gate", "ImageToReference", "ProbeToReference" };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetPixelSpacing(0.3); };
   return subject;
 }
@@ -210,7 +214,18 @@ Subject MakeProbeCalibration()
       Real("RowSpacing", &T::SetRowSpacing, 0.1, 1), Switch("EstimateScale", &T::SetEstimateScale),
       Real("OutlierLimit", &T::SetOutlierLimit, 2, 6),
       Word("WireRanges", &T::SetWireRanges, { "", "X 0-1, Y 2-3, Z 4-5", "X 1", "Y 3-0" }),
-      Switch("FindSpots", &T::SetFindSpots) } };
+      Switch("FindSpots", &T::SetFindSpots),
+      Other<T>("OutputFileName",
+        [](T* filter, Dice& dice, bool isHostile)
+        {
+          const std::string name = GetOutputFolder() +
+            (isHostile ? dice.Pick({ "", "/no such folder/calibration.xml", "/calibration" })
+                       : "/calibration" + std::to_string(getpid()) + ".xml");
+          filter->SetOutputFileName(name.c_str());
+          return name;
+        }) } };
+  subject.MayBeNaN = { "RunnerUpRms" };
+  subject.KeepsOutput = true;
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetPixelSpacing(0.4); };
   subject.KeepsGeometry = true;
   subject.Cost = 20;
@@ -309,6 +324,7 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
         Real("TimeOffset", &T::SetTimeOffset, -1, 1),
         Real("MaximumTimeGap", &T::SetMaximumTimeGap, 0, 1),
         Real("SpeedLimit", &T::SetSpeedLimit, 0, 50) } };
+    subject.MayBeNaN = { "Gate" };
     subject.IsFrugal = true;
     subject.KeepsGeometry = true;
     subjects.push_back(subject);
@@ -323,6 +339,7 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
         Whole("InvalidSlices", &T::SetInvalidSlices, 0, 2),
         Whole("BadPoses", &T::SetBadPoses, 1, 2),
         Whole("MaximumNumberOfPoints", &T::SetMaximumNumberOfPoints, 4, 1000) } });
+    subjects.back().MayBeNaN = { "Speed", "Intensity", "RegistrationError" };
   }
   subjects.push_back(MakeSweptVolume());
   subjects.push_back(MakeSliceRayCaster());
@@ -347,6 +364,7 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
         Real("TranslationAccuracy", &T::SetTranslationAccuracy, 0, 3),
         Real("AngularAccuracy", &T::SetAngularAccuracy, 0, 2),
         Real("RangeLimit", &T::SetRangeLimit, 100, 1000) } });
+    subjects.back().MayBeNaN = { "Repeatability" };
   }
   {
     using T = vtkLacunaScanRegion;

@@ -54,8 +54,19 @@ Subject MakeRayCaster()
 {
   using T = vtkLacunaBSplineIsoRayCaster;
   Subject subject{ "BSplineIsoRayCaster", NewOf<T>,
-    [](Dice& dice) -> Inputs {
-      return { dice.Chance(0.5) ? RandomVolume(dice) : RandomLump(dice, 2, 9), nullptr };
+    [](Dice& dice) -> Inputs
+    {
+      const auto volume = dice.Chance(0.5) ? RandomVolume(dice) : RandomLump(dice, 2, 9);
+      vtkSmartPointer<vtkImageData> start;
+      if (dice.Chance(0.2))
+      {
+        vtkNew<T> caster;
+        caster->SetInputData(volume);
+        caster->SetIsoValue(0, 30);
+        caster->Update();
+        start = caster->GetOutput();
+      }
+      return { volume, start };
     },
     ViewProperties<T>() };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetIsoValue(0, 50); };
@@ -90,6 +101,7 @@ Subject MakeRayCaster()
   {
     subject.Properties.push_back(property);
   }
+  subject.MayBeNaN = { "Depth", "Depth_1", "Depth_2", "Thickness" };
   subject.Cost = 3;
   return subject;
 }
@@ -130,6 +142,7 @@ Subject MakeShader()
       Whole("Interpolation", &T::SetInterpolation, 0, 2),
       Whole("SolidSide", &T::SetSolidSide, 0, 1), Real("ShadowBias", &T::SetShadowBias, 0, 1),
       Switch("CapCutAway", &T::SetCapCutAway), Switch("CapBoundary", &T::SetCapBoundary) } };
+  subject.MayBeNaN = { "NormalDifference" };
   subject.KeepsGeometry = true;
   return subject;
 }
@@ -250,6 +263,8 @@ void AddImageSubjects(std::vector<Subject>& subjects)
         Reals<6>("InsideBounds", &T::SetInsideBounds, -120, 120),
         Reals<6>("OutsideBounds", &T::SetOutsideBounds, -120, 120),
         Real("IsoValue", &T::SetIsoValue, 0, 100) } });
+    subjects.back().MayBeNaN = { "CSR", "InsideMean", "OutsideMean", "InsideVariance",
+      "OutsideVariance", "InsideSNR", "OutsideSNR" };
     subjects.back().Prepare = [](vtkAlgorithm* algorithm)
     { Cast<T>(algorithm)->SetInsideArray("Inside"); };
   }
@@ -286,6 +301,7 @@ void AddImageSubjects(std::vector<Subject>& subjects)
       { Whole("PlaneMethod", &T::SetPlaneMethod, 0, 1), Reals<3>("Origin", &T::SetOrigin, -50, 50),
         Reals<3>("Normal", &T::SetNormal, -1, 1),
         Whole("Interpolation", &T::SetInterpolation, 0, 2) } };
+    subject.MayBeNaN = { "Asymmetry", "SymmetryScore" };
     subject.KeepsGeometry = true;
     subject.Cost = 10;
     subjects.push_back(subject);

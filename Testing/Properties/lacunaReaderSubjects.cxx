@@ -94,6 +94,20 @@ const std::vector<std::string>& GetSequences()
   return files;
 }
 
+const std::string& GetCalibration()
+{
+  static const std::string file = []
+  {
+    const std::string name = InFolder("calibration.xml");
+    Store(name,
+      "<PlusConfiguration><CoordinateDefinitions><Transform From=\"Image\" To=\"Probe\" "
+      "Matrix=\"0.1 0 0 0 0 0.2 0 0 0 0 0.1 5 0 0 0 1\"/></CoordinateDefinitions>"
+      "</PlusConfiguration>");
+    return name;
+  }();
+  return file;
+}
+
 using MakeDamage = std::string (*)(const std::string& sound, Dice& dice);
 
 /// A property of readers: one of the sound files, or what is none.
@@ -161,7 +175,9 @@ Subject MakeCTSeriesReader()
 {
   using T = vtkLacunaCTSeriesReader;
   Subject subject{ "CTSeriesReader", NewOf<T>, [](Dice&) -> Inputs { return {}; },
-    { FileName<T>(GetSeries, MakeDamagedSeries), Whole("MissingSlices", &T::SetMissingSlices, 0, 1),
+    { FileName<T>(GetSeries, MakeDamagedSeries),
+      Word("SeriesUID", &T::SetSeriesUID, { "", CTTestSeries().SeriesUid }),
+      Whole("MissingSlices", &T::SetMissingSlices, 0, 1),
       Whole("GantryTilt", &T::SetGantryTilt, 0, 1), Whole("Acquisition", &T::SetAcquisition, -1, 2),
       Real("PositionTolerance", &T::SetPositionTolerance, 1e-6, 10),
       Real("PaddingValue", &T::SetPaddingValue, -2000, 2000),
@@ -182,6 +198,16 @@ void AddReaderSubjects(std::vector<Subject>& subjects)
     { FileName<T>(GetSequences, MakeDamaged),
       Word("ImageFrame", &T::SetImageFrame, { "Image", "Probe" }),
       Word("ReferenceFrame", &T::SetReferenceFrame, { "Reference", "Tracker", "Probe" }),
+      Other<T>("CalibrationFileName",
+        [](T* reader, Dice& dice, bool isHostile)
+        {
+          const std::string& sound = GetCalibration();
+          const std::string name = !isHostile ? sound
+            : dice.Chance(0.7)                ? MakeDamaged(sound, dice)
+                                              : GetStrangeFile(dice);
+          reader->SetCalibrationFileName(name.c_str());
+          return name;
+        }),
       Wholes<2>("FrameRange", &T::SetFrameRange, -1, 7),
       Whole("FrameStride", &T::SetFrameStride, 1, 4),
       Switch("DropInvalidSlices", &T::SetDropInvalidSlices),

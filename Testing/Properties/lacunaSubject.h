@@ -14,6 +14,7 @@
 #include <climits>
 #include <functional>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -43,6 +44,10 @@ struct Subject
   bool KeepsGeometry = false;
   /// Whether it asks for no memory to speak of, however large its input is.
   bool IsFrugal = false;
+  /// Whether there may be an output besides an error: that a file could not be written as well.
+  bool KeepsOutput = false;
+  /// Arrays in which NaN says that there is no value.
+  std::set<std::string> MayBeNaN = {};
   /// What makes a run of it sensible that begins with the properties' defaults.
   std::function<void(vtkAlgorithm*)> Prepare = nullptr;
   /// A writer's file without extension; gives its whole name. None: no writer.

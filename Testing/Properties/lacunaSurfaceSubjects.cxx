@@ -2,6 +2,7 @@
 // Radial basis functions and fabrication.
 #include "lacunaRandomData.h"
 #include "lacunaSubject.h"
+#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDefectModel.h"
 #include "vtkLacunaDepthMapSurface.h"
@@ -12,7 +13,10 @@
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaRBFInterpolator.h"
+#include "vtkLacunaSplineLoop.h"
 #include "vtkPolyData.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 #include "vtkSphere.h"
 #include "vtkStructuredGrid.h"
 
@@ -43,6 +47,49 @@ vtkSmartPointer<vtkPolyData> PointsOn(vtkImageData* map, Dice& dice)
   return data;
 }
 
+// Of some points of data.
+vtkSmartPointer<vtkSelection> SelectOf(vtkDataSet* data, Dice& dice)
+{
+  vtkNew<vtkIdTypeArray> points;
+  for (int i = dice.Whole(1, 40); i > 0 && data->GetNumberOfPoints() > 0; --i)
+  {
+    points->InsertNextValue(dice.Whole(0, static_cast<int>(data->GetNumberOfPoints()) - 1));
+  }
+  vtkNew<vtkSelectionNode> node;
+  node->SetFieldType(vtkSelectionNode::POINT);
+  node->SetContentType(vtkSelectionNode::INDICES);
+  node->SetSelectionList(points);
+  auto selection = vtkSmartPointer<vtkSelection>::New();
+  selection->AddNode(node);
+  return selection;
+}
+
+// What a map is marked by: a ball, or what a loop encloses.
+std::string SetDefectRegion(vtkLacunaRBFHoleFiller* filter, Dice& dice, bool isHostile)
+{
+  const auto place = [&] { return isHostile ? HostileReal(dice) : dice.Real(-100, 100); };
+  if (dice.Chance(0.5))
+  {
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(dice.Real(-100, 100), dice.Real(-100, 100), dice.Real(-100, 100));
+    sphere->SetRadius(isHostile ? HostileReal(dice) : dice.Real(1, 120));
+    filter->SetDefectRegion(sphere);
+    return "a sphere";
+  }
+  vtkNew<vtkLacunaSplineLoop> loop;
+  const int points = isHostile ? dice.Whole(0, 4) : dice.Whole(3, 8);
+  loop->SetNumberOfPoints(points);
+  for (int i = 0; i < points; ++i)
+  {
+    const double x = place();
+    const double y = place();
+    loop->SetPoint(i, x, y, place());
+  }
+  loop->SetClosed(dice.Chance(0.7));
+  filter->SetDefectRegion(loop);
+  return "a loop of " + std::to_string(points) + " points";
+}
+
 Subject MakeHoleFiller()
 {
   using T = vtkLacunaRBFHoleFiller;
@@ -65,19 +112,13 @@ Subject MakeHoleFiller()
         prior = vtkSmartPointer<vtkImageData>::New();
         prior->DeepCopy(map);
       }
-      return { map, surface, nullptr, points, prior };
+      const auto selection = dice.Chance(0.2)
+        ? SelectOf(surface ? surface.Get() : static_cast<vtkDataSet*>(map), dice)
+        : vtkSmartPointer<vtkSelection>();
+      return { map, surface, selection, points, prior };
     },
     { Whole("Kernel", &T::SetKernel, 0, 5), Real("KernelLength", &T::SetKernelLength, 0, 10),
-      Whole("Trend", &T::SetTrend, 0, 1),
-      Other<T>("DefectRegion",
-        [](T* filter, Dice& dice, bool isHostile)
-        {
-          vtkNew<vtkSphere> sphere;
-          sphere->SetCenter(dice.Real(-100, 100), dice.Real(-100, 100), dice.Real(-100, 100));
-          sphere->SetRadius(isHostile ? HostileReal(dice) : dice.Real(1, 120));
-          filter->SetDefectRegion(sphere);
-          return std::string("a sphere");
-        }),
+      Whole("Trend", &T::SetTrend, 0, 1), Other<T>("DefectRegion", SetDefectRegion),
       Word("DefectArray", &T::SetDefectArray, { "", "Defect", "None", "Depth" }),
       Word("SupportArray", &T::SetSupportArray, { "", "Defect", "vtkValidPointMask" }),
       Real("SupportMargin", &T::SetSupportMargin, 1, 20),
@@ -88,6 +129,7 @@ Subject MakeHoleFiller()
       Real("OutputMargin", &T::SetOutputMargin, 0, 5),
       Reals<3>("OutputSpacing", &T::SetOutputSpacing, 0.4, 2),
       Real("Accuracy", &T::SetAccuracy, 0, 0.01), Whole("Solver", &T::SetSolver, 0, 2) } };
+  subject.MayBeNaN = { "Fitted", "Deviation", "HoleBoneThickness" };
   subject.Cost = 8;
   return subject;
 }

@@ -114,18 +114,8 @@ std::uint64_t HashOf(vtkPolyData* mesh)
   return hash.Value;
 }
 
-// Arrays that say by NaN that there is no value.
-bool MayBeNaN(const std::string& name)
-{
-  static const std::set<std::string> names = { "Thickness", "Fitted", "Deviation", "Asymmetry",
-    "NormalDifference", "Gate", "RegistrationError", "Repeatability", "Speed", "Timestamp",
-    "ImageToReference", "ProbeToReference", "HoleBoneThickness", "ExpectedError", "RunnerUpRms",
-    "CSR", "InsideMean", "OutsideMean", "InsideVariance", "OutsideVariance", "InsideSNR",
-    "OutsideSNR", "Intensity", "Residual" };
-  return names.count(name) > 0 || name.rfind("Depth", 0) == 0;
-}
-
-std::string FindFaultInArrays(vtkDataObject* data, bool isInputFinite)
+std::string FindFaultInArrays(
+  vtkDataObject* data, bool isInputFinite, const std::set<std::string>& mayBeNaN)
 {
   // what a mask takes out has no value
   vtkFieldData* points = data->GetAttributesAsFieldData(vtkDataObject::POINT);
@@ -144,7 +134,7 @@ std::string FindFaultInArrays(vtkDataObject* data, bool isInputFinite)
           std::to_string(wanted);
       }
       auto* numbers = vtkDataArray::SafeDownCast(array);
-      if (!numbers || !isInputFinite || MayBeNaN(name))
+      if (!numbers || !isInputFinite || mayBeNaN.count(name) > 0)
       {
         continue;
       }
@@ -314,14 +304,15 @@ bool IsEmpty(vtkDataObject* data)
 }
 
 //------------------------------------------------------------------------------
-std::string FindFault(vtkAlgorithm* algorithm, int port, bool isInputFinite)
+std::string FindFault(
+  vtkAlgorithm* algorithm, int port, bool isInputFinite, const std::set<std::string>& mayBeNaN)
 {
   vtkDataObject* data = algorithm->GetOutputDataObject(port);
   if (IsEmpty(data))
   {
     return {};
   }
-  std::string fault = FindFaultInArrays(data, isInputFinite);
+  std::string fault = FindFaultInArrays(data, isInputFinite, mayBeNaN);
   auto* points = vtkPointSet::SafeDownCast(data);
   if (fault.empty() && points)
   {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 
 class vtkAlgorithm;
@@ -25,8 +26,9 @@ bool IsEmpty(vtkDataObject* data);
 
 /// What is wrong with the output of a port: arrays of another length than there are points or cells,
 /// cells with points that do not exist, points or (with isInputFinite) values that are not finite
-/// and not documented to be, no provenance, or other extent, geometry or scalars than
+/// and not in an array that may have NaN), no provenance, or other extent, geometry or scalars than
 /// RequestInformation promised. Empty when nothing is.
-std::string FindFault(vtkAlgorithm* algorithm, int port, bool isInputFinite);
+std::string FindFault(
+  vtkAlgorithm* algorithm, int port, bool isInputFinite, const std::set<std::string>& mayBeNaN);
 }
 #endif

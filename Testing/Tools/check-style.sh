@@ -24,6 +24,11 @@ bad=$(git ls-files '*/Kernel/*' | xargs grep -lE '#include *[<"]vtk' || true)
 bad=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' 'Filters/*.h' 'Readers/*.h' 'Sources/*.h' | grep -vE '/(Kernel|Testing)/|vtkLacuna(Arrays|SplineLoop)' |
   xargs grep -nE -- '->(SetNumberOf(Tuples|Points)|AllocateScalars|AllocateExact|CopyAllocate|DeepCopy)\(' || true)
 [ -z "$bad" ] || complain "VTK ends the program where there is no memory; use vtkLacunaArrays: $bad"
+for file in Plugins/Lacuna/{Sources,Readers,Filters}/*.xml; do
+  name=$(basename "$file" .xml)
+  case $name in PolhemusVideoSource | SplineLoop) continue ;; esac # of devices; a part of RBF Hole Filler's
+  grep -q "\"$name\", NewOf" Testing/Properties/lacuna*Subjects.cxx || complain "$name is in no property test (Testing/Properties)"
+done
 bad=$(grep -nP '[^\x00-\x7F]' $sources | head -n 5 || true)
 [ -z "$bad" ] || complain "non-ASCII characters in C++: $bad"
 

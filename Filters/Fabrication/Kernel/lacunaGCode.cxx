@@ -2,6 +2,7 @@
 #include "lacunaGCode.h"
 
 #include "lacunaArcFit.h"
+#include "lacunaExecution.h"
 #include "lacunaGCodeTemplate.h"
 #include "lacunaParameterText.h"
 
@@ -20,6 +21,7 @@ namespace
 constexpr std::size_t CommentLength = 64;
 constexpr std::string_view CutSign = "..."; // where a comment goes on in the next one within a word
 constexpr std::int64_t LargestUnits = 99999999; // eight digits of a micrometre
+constexpr std::size_t MovesBetweenReports = 1000;
 constexpr const char* AxisNames = "XYZ";
 // What the path's numbers mean: mm, in the plane of x and y, no compensation, no length, no cycle,
 // absolute, mm/min, and after these the work offset. Before the header, which cannot change it.
@@ -299,14 +301,20 @@ std::vector<Units> GetPoints(
 
 //------------------------------------------------------------------------------
 void AddMoves(BlockWriter& writer, const std::vector<Units>& points,
-  const std::vector<GCodeMove>& moves, const GCodeOptions& options)
+  const std::vector<GCodeMove>& moves, const GCodeOptions& options, Execution* execution)
 {
   const ArcFit fit(points, 1000 * options.ArcTolerance);
   const double ceiling =
     options.HasEnvelope ? 1000 * options.Envelope[5] : std::numeric_limits<double>::infinity();
   std::size_t same = 0; // the end of the motions that are as fast as this one
+  std::size_t reported = 0;
   for (std::size_t k = 0; k < moves.size();)
   {
+    if (execution && k >= reported + MovesBetweenReports)
+    {
+      execution->Report(static_cast<double>(k) / static_cast<double>(moves.size()));
+      reported = k;
+    }
     const GCodeMove& move = moves[k];
     const std::int64_t feed = move.Rapid ? 0 : std::llround(1000 * move.Feed);
     if (!move.Rapid && options.ArcTolerance > 0)
@@ -349,8 +357,8 @@ const char* GCodeOptions::DefaultFooter()
 }
 
 //------------------------------------------------------------------------------
-GCodeProgram MakeGCode(
-  const Vec3& start, const std::vector<GCodeMove>& moves, const GCodeOptions& options)
+GCodeProgram MakeGCode(const Vec3& start, const std::vector<GCodeMove>& moves,
+  const GCodeOptions& options, Execution* execution)
 {
   CheckOptions(options);
   if (moves.empty())
@@ -398,7 +406,7 @@ GCodeProgram MakeGCode(
   }
   writer.Move(true, first, 0, 0, 2);
   writer.Move(true, first, 0, 2, 3);
-  AddMoves(writer, GetPoints(first, moves, options), moves, options);
+  AddMoves(writer, GetPoints(first, moves, options), moves, options, execution);
   writer.SetPlane(17);
   for (const std::string& line : footer.Lines)
   {

@@ -12,6 +12,8 @@
 
 namespace lacuna
 {
+class Execution;
+
 /// A straight motion.
 struct GCodeMove
 {
@@ -63,8 +65,9 @@ struct GCodeProgram
 /// mm or outside of the envelope, a feed is not above 0, a rapid motion is neither upright nor
 /// level (controls run the axes at speeds of their own there, not along the line), the path does not
 /// start with a rapid motion or straight down and end with a rapid one; for options out of range; for
-/// templates that FillInTemplate refuses.
-GCodeProgram MakeGCode(
-  const Vec3& start, const std::vector<GCodeMove>& moves, const GCodeOptions& options);
+/// templates that FillInTemplate refuses. With an execution it reports progress, and throws Aborted
+/// when that is stopped.
+GCodeProgram MakeGCode(const Vec3& start, const std::vector<GCodeMove>& moves,
+  const GCodeOptions& options, Execution* execution = nullptr);
 }
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaGCode.h"
 
+#include "lacunaExecution.h"
 #include "lacunaGCodeParser.h"
 #include "lacunaGCodeScene.h"
 
@@ -64,6 +65,29 @@ TEST(GCode, ReadsBackWithinAMicrometre)
     ASSERT_GE(step.To[2], moves[k].To[2] - 1e-8) << "never deeper";
     ASSERT_LE(step.To[2], moves[k].To[2] + 0.001);
   }
+}
+
+TEST(GCode, CanBeStopped)
+{
+  std::vector<GCodeMove> moves(10001, { false, { 0, 0, 0 }, 100 });
+  for (std::size_t k = 0; k < moves.size(); ++k)
+  {
+    moves[k].To = { 0.01 * static_cast<double>(k), 0, 5 };
+  }
+  moves.front().Rapid = moves.back().Rapid = true;
+  std::vector<double> reports;
+  ThreadExecution watched(1,
+    [&](double fraction)
+    {
+      reports.push_back(fraction);
+      return true;
+    });
+  EXPECT_EQ(
+    MakeGCode({ 0, 0, 5 }, moves, {}, &watched).Text, MakeGCode({ 0, 0, 5 }, moves, {}).Text);
+  EXPECT_GE(reports.size(), 9u);
+  EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
+  ThreadExecution stopped(1, [](double fraction) { return fraction < 0.5; });
+  EXPECT_THROW(MakeGCode({ 0, 0, 5 }, moves, {}, &stopped), Aborted);
 }
 
 TEST(GCode, IsTheSameInAnyLocale)
