@@ -4,7 +4,7 @@
     . build/release/lacuna-env.sh
     pvpython Testing/Benchmarks/memory.py [name ...]
 
-Each is measured in a process of its own (Linux): resident memory over that before the filter runs, plus its input, divided
+(every.py says how long they take.) Each is measured in a process of its own (Linux): resident memory over that before the filter runs, plus its input, divided
 by input and output. 1 is the least that can be, below 1 what shares arrays with the input. A file that is written is no output: it is
 on the disk. Prints the table of the guide's page on memory.
 """
@@ -12,6 +12,7 @@ import os
 import struct
 import sys
 import tempfile
+import time
 
 import lacuna.plugin
 import numpy as np
@@ -20,6 +21,7 @@ lacuna.plugin.load()
 from lacuna import occlusion
 from lacuna.errors import raising
 from paraview import servermanager
+from harness.sizes import SIZES
 from paraview.simple import *
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Examples", "04-calibration"))
@@ -157,48 +159,46 @@ def occlusion_surface(n):
     return OcclusionSurface(Input=seen, Data=IncompleteShape(**sparse))
 
 
-# label of the proxy, and which one of it: (what makes it of a size, small size, large size)
+# label of the proxy, and which one of it: what makes it of a size
 CASES = {
-    "Skull Phantom": (skull, 1, 0.5),
-    "Phantom Sweep": (sweep, 100, 400),
-    "Incomplete Shape": (shape, 200, 400),
-    "Tracked Slice Reader": (reader, 100, 400),
-    "CT Series Reader": (series, 60, 240),
-    "Assemble Tracked Slices": (assembled, 50, 200),
-    "Gate Slices": (lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6), 100, 400),
-    "Scan Region": (lambda n: ScanRegion(Input=floor(n, 25)), 400, 1600),
-    "Probe Calibration": (lambda n: ProbeCalibration(Input=floor(n, 25), Method="SingleWall", PixelSpacing=scans.SPACING), 400, 1600),
-    "Temporal Calibration": (lambda n: TemporalCalibration(Input=floor(n, 0)), 400, 1600),
-    "Tracker Self Test": (lambda n: TrackerSelfTest(Input=receivers(n)), 50000, 200000),
-    "Slice Planes": (lambda n: SlicePlanes(Input=sweep(n)), 10, 40),
-    "Swept Volume": (lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3), 100, 400),
-    "Swept Volume, footprints across slices": (lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3,
-                                                                     FootprintAcrossSlices=1), 100, 400),
-    "Slice Ray Caster": (lambda n: SliceRayCaster(Input=sweep(n), IsoValue=120, PixelSpacing=0.05), 50, 200),
-    "Speckle Filter, median": (lambda n: SpeckleFilter(Input=wavelet(n)), 200, 320),
-    "Speckle Filter, opening in 3-D": (lambda n: SpeckleFilter(Input=wavelet(n), Operation="Opening", KernelSize=[5, 5, 5]), 200, 320),
-    "Speckle Filter, Gaussian": (lambda n: SpeckleFilter(Input=wavelet(n), Operation="Gaussian"), 200, 320),
-    "Contrast To Speckle": (lambda n: ContrastToSpeckle(Input=wavelet(n), InsideBounds=[0, 9, 0, 9, 0, 9], IsoValue=150), 200, 320),
-    "B-Spline Iso Ray Caster": (lambda n: BSplineIsoRayCaster(Input=skull(n), IsoValues=[500]), 1, 0.5),
-    "B-Spline Iso Ray Caster, interpolating": (lambda n: BSplineIsoRayCaster(Input=skull(n), IsoValues=[500],
-                                                                             Interpolation="InterpolatingBSpline"), 1, 0.5),
-    "Depth Map Shader": (lambda n: DepthMapShader(Input=depth(n)), 0.2, 0.1),
-    "Depth Map Surface": (lambda n: DepthMapSurface(Input=depth(n)), 0.2, 0.1),
-    "Mirror": (lambda n: Mirror(Input=skull(n), PlaneMethod="Given", Normal=[1, 0, 0]), 1, 0.5),
-    "Mirror, best symmetry": (lambda n: Mirror(Input=skull(n)), 1, 0.5),
-    "RBF Hole Filler": (filled, 0.25, 0.15),
-    "RBF Interpolator": (interpolate, 0.5, 0.3),
-    "RBF Image Warp": (warp, 160, 256),
-    "Occluded Angle": (angle, 160, 320),
-    "Occlusion Surface": (occlusion_surface, 100, 160),
-    "Implant Plate": (lambda n: ImplantPlate(Input=filled(n), Thickness=2, EdgeClearance=0.5), 0.3, 0.15),
-    "Defect Model": (lambda n: DefectModel(Input=filled(n)), 0.3, 0.15),
-    "Press Orientation": (lambda n: PressOrientation(Input=filled(n)), 0.3, 0.15),
-    "Milling Tool Path": (milled, 0.6, 0.3),
-    "IGES Writer": (lambda n: written("fit.igs", filled(n)), 0.3, 0.15),
-    "G-Code Writer": (lambda n: written("path.nc", milled(1, StepOver=n, MapSpacing=2)), 0.5, 0.1),
-    "Tracked Slice Writer, raw": (lambda n: written("sweep.mha", sweep(n), CompressionLevel=0), 100, 400),
-    "Tracked Slice Writer, compressed": (lambda n: written("sweep.mha", sweep(n), CompressionLevel=1), 100, 400),
+    "Skull Phantom": skull,
+    "Phantom Sweep": sweep,
+    "Incomplete Shape": shape,
+    "Tracked Slice Reader": reader,
+    "CT Series Reader": series,
+    "Assemble Tracked Slices": assembled,
+    "Gate Slices": lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6),
+    "Scan Region": lambda n: ScanRegion(Input=floor(n, 25)),
+    "Probe Calibration": lambda n: ProbeCalibration(Input=floor(n, 25), Method="SingleWall", PixelSpacing=scans.SPACING),
+    "Temporal Calibration": lambda n: TemporalCalibration(Input=floor(n, 0)),
+    "Tracker Self Test": lambda n: TrackerSelfTest(Input=receivers(n)),
+    "Slice Planes": lambda n: SlicePlanes(Input=sweep(n)),
+    "Swept Volume": lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3),
+    "Swept Volume, footprints across slices": lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3, FootprintAcrossSlices=1),
+    "Slice Ray Caster": lambda n: SliceRayCaster(Input=sweep(n), IsoValue=120, PixelSpacing=0.05),
+    "Speckle Filter, median": lambda n: SpeckleFilter(Input=wavelet(n)),
+    "Speckle Filter, opening in 3-D": lambda n: SpeckleFilter(Input=wavelet(n), Operation="Opening", KernelSize=[5, 5, 5]),
+    "Speckle Filter, Gaussian": lambda n: SpeckleFilter(Input=wavelet(n), Operation="Gaussian"),
+    "Contrast To Speckle": lambda n: ContrastToSpeckle(Input=wavelet(n), InsideBounds=[0, 9, 0, 9, 0, 9], IsoValue=150),
+    "B-Spline Iso Ray Caster": lambda n: BSplineIsoRayCaster(Input=skull(n), IsoValues=[500]),
+    "B-Spline Iso Ray Caster, interpolating": lambda n: BSplineIsoRayCaster(Input=skull(n), IsoValues=[500], Interpolation="InterpolatingBSpline"),
+    "Depth Map Shader": lambda n: DepthMapShader(Input=depth(n)),
+    "Depth Map Surface": lambda n: DepthMapSurface(Input=depth(n)),
+    "Mirror": lambda n: Mirror(Input=skull(n), PlaneMethod="Given", Normal=[1, 0, 0]),
+    "Mirror, best symmetry": lambda n: Mirror(Input=skull(n)),
+    "RBF Hole Filler": filled,
+    "RBF Interpolator": interpolate,
+    "RBF Image Warp": warp,
+    "Occluded Angle": angle,
+    "Occlusion Surface": occlusion_surface,
+    "Implant Plate": lambda n: ImplantPlate(Input=filled(n), Thickness=2, EdgeClearance=0.5),
+    "Defect Model": lambda n: DefectModel(Input=filled(n)),
+    "Press Orientation": lambda n: PressOrientation(Input=filled(n)),
+    "Milling Tool Path": milled,
+    "IGES Writer": lambda n: written("fit.igs", filled(n)),
+    "G-Code Writer": lambda n: written("path.nc", milled(1, StepOver=n, MapSpacing=2)),
+    "Tracked Slice Writer, raw": lambda n: written("sweep.mha", sweep(n), CompressionLevel=0),
+    "Tracked Slice Writer, compressed": lambda n: written("sweep.mha", sweep(n), CompressionLevel=1),
 }
 
 
@@ -226,7 +226,7 @@ def inputs_of(proxy):
 
 
 def measure(name, make, size):
-    """(input, output, peak over what was there before) in bytes."""
+    """(input, output, peak over what was there before) in bytes, (clock, processor of all threads) in ms."""
     with raising():
         proxy = make(size)
         assert name.split(",")[0] == proxy.SMProxy.GetXMLLabel(), proxy.SMProxy.GetXMLLabel()
@@ -235,9 +235,10 @@ def measure(name, make, size):
             each.UpdatePipeline()
         with open("/proc/self/clear_refs", "w", encoding="ascii") as file:
             file.write("5")
-        before = status("VmRSS")
+        before, clock, processor = status("VmRSS"), time.perf_counter(), time.process_time()
         proxy.UpdatePipeline()
-        return sum(size_of(each, each.Port) for each in inputs), size_of(proxy), status("VmHWM") - before
+        took = [1e3 * (time.perf_counter() - clock), 1e3 * (time.process_time() - processor)]
+        return sum(size_of(each, each.Port) for each in inputs), size_of(proxy), status("VmHWM") - before, *took
 
 
 def apart(*what):
@@ -258,7 +259,7 @@ def apart(*what):
         os.waitpid(child, 0)
     if not said or said.startswith("error"):
         raise RuntimeError(said or "the child process died")
-    return map(int, said.split())
+    return map(float, said.split())
 
 
 def main(names):
@@ -268,11 +269,10 @@ def main(names):
     print("|---|---|---|---|---|---|---|---|---|", flush=True)
     failed = False
     for name in names or CASES:
-        make, *sizes = CASES[name]
         cells = [name]
-        for size in sizes:
+        for size in SIZES[name]:
             try:
-                taken, made, peak = apart(name, make, size)
+                taken, made, peak, *_ = apart(name, CASES[name], size)
             except RuntimeError as error:
                 print(f"{name}: {error}", file=sys.stderr)
                 failed = True

@@ -41,6 +41,7 @@ measured = {case.split(",")[0] for case in memory.CASES}
 missing = labels - measured - set(WITHOUT_ROW)
 assert not missing, f"memory.py has no case of {sorted(missing)}"
 assert measured <= labels, f"memory.py measures what is not there: {sorted(measured - labels)}"
+assert list(memory.CASES) == list(memory.SIZES), "cases without a size, or sizes without a case"
 assert set(WITHOUT_ROW) <= labels - measured, "listed as without a row, and has one or is not there"
 
 with open(os.path.join(ROOT, "Documentation", "UserGuide", "memory.md"), encoding="utf-8") as file:

@@ -6,6 +6,8 @@ peers alternate. Rows are named by program and name; a program that ends in .py 
 """
 from dataclasses import dataclass
 
+from harness.sizes import SIZES
+
 
 @dataclass(frozen=True)
 class Row:
@@ -335,6 +337,16 @@ def filters():
         Figures("Tracked Slice Writer, ultrasound_spine, by level of compression", columns, tuple((str(level), Row(own, f"Writer/level:{level}")) for level in (0, 1, 6, 9)))))
 
 
+def every():
+    own = "every.py"
+    columns = (("wall", "clock, ms", ".0f"), ("cpu", "processor, ms", ".0f"), ("input", "input, MB", ".1f"), ("output", "output, MB", ".1f"))
+    rows = tuple((name, Row(own, name)) for name in SIZES)
+    half = list(SIZES).index("Speckle Filter, median")
+    return Suite("every", "Every source, filter and writer",
+                 "Once, in ParaView, with its inputs made. What each makes of what is in `Testing/Benchmarks/memory.py`; for Polhemus Video Source see above.",
+                 figures=(Figures("Sources, readers, freehand ultrasound", columns, rows[:half]), Figures("Volumes, maps, surfaces, writers", columns, rows[half:], quick=False)), rounds=3)
+
+
 def plugin_startup():
     def against(program):
         return Comparison(f"start of {program}", Row("plugin_startup.py", f"{program}/with"), (Row("plugin_startup.py", f"{program}/without", "yardstick: without plugins"),), quick=program == "pvpython")
@@ -342,4 +354,4 @@ def plugin_startup():
 
 
 SUITES = tuple(make() for make in (speckle, radial_basis, swept_volume, iso_ray_caster, slice_ray_caster, growing_sweep, occluded_angle, closed_surfaces, iges, tool_path,
-                                   implant_plate, ct_series, probe_calibration, live_acquisition, filters, plugin_startup))
+                                   implant_plate, ct_series, probe_calibration, live_acquisition, filters, every, plugin_startup))

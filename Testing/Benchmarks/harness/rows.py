@@ -68,24 +68,32 @@ def pattern(names):
     return "^(" + "|".join(escaped) + ")(/iterations:[0-9]+|/process_time|/real_time|/manual_time)*$"
 
 
+def call(command, timeout, environment=None):
+    """What a program prints. It is of a group of its own, so that what it starts ends with it."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True) as process:
+        try:
+            printed, said = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired as late:
+            os.killpg(process.pid, signal.SIGTERM)  # mpirun's ranks are of other groups, and end with it if it is asked
+            try:
+                process.communicate(timeout=5)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate()
+            raise Failure(f"not done in {timeout:.0f} s") from late
+    if process.returncode != 0:
+        last = said.strip().splitlines()[-1] if said.strip() else ""
+        how = f"ended by signal {-process.returncode}" if process.returncode < 0 else f"ended with code {process.returncode}"
+        raise Failure(f"{how}{': ' + last if last else ''}")
+    return printed
+
+
 def run(command, names, seconds, timeout, environment=None):
     """Has a program measure the rows of these names, each for at least so many seconds; rows by name."""
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "rows.json")
-        # of its own group, so that what it starts ends with it
-        with subprocess.Popen([*command, f"--benchmark_filter={pattern(names)}", f"--benchmark_min_time={seconds}", f"--benchmark_out={out}",
-                               "--benchmark_out_format=json"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              env=environment, start_new_session=True) as process:
-            try:
-                _, said = process.communicate(timeout=timeout)
-            except subprocess.TimeoutExpired as late:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.communicate()
-                raise Failure(f"not done in {timeout:.0f} s") from late
-        if process.returncode != 0:
-            last = said.strip().splitlines()[-1] if said.strip() else ""
-            how = f"ended by signal {-process.returncode}" if process.returncode < 0 else f"ended with code {process.returncode}"
-            raise Failure(f"{how}{': ' + last if last else ''}")
+        call([*command, f"--benchmark_filter={pattern(names)}", f"--benchmark_min_time={seconds}", f"--benchmark_out={out}", "--benchmark_out_format=json"],
+             timeout, environment)
         try:
             with open(out, encoding="utf-8") as file:
                 return parse(file.read())
@@ -101,7 +109,10 @@ class Program:
         self.rows = []
 
     def add(self, name, prepare):
-        """prepare() returns what is to be measured, a function that may return a dict of counters; None without its data."""
+        """prepare() returns what is to be measured, a function that may return a dict of counters; None without its data.
+
+        Among them may be real_time and cpu_time in ms, where only a part of the function counts: of its last run.
+        """
         self.rows.append((name, prepare))
 
     def main(self, arguments=None):
