@@ -37,7 +37,7 @@ using lacunaProperties::Subject;
 
 // s of the processor's time; they take milliseconds, under a sanitizer seconds
 constexpr int LongestCase = lacuna::Sanitized ? 1200 : 120;
-constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes of address space; they take little
+constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes; they take little
 
 constexpr int More = 60; ///< cases, where none has come to the point
 
@@ -199,13 +199,15 @@ int main(int argc, char* argv[])
   }
   else
   {
-    const struct rlimit limit = { MostMemory, MostMemory };
-    setrlimit(RLIMIT_AS, &limit);
     for (const int signal : { SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS })
     {
       std::signal(signal, Die);
     }
   }
+  // of data, since sanitizers take all of the address space
+  const auto most = static_cast<rlim_t>(lacuna::GetProcessMemory("VmData")) + MostMemory;
+  const struct rlimit limit = { most, most };
+  setrlimit(RLIMIT_DATA, &limit);
   int failures = 0;
   int found = 0;
   for (const Subject& subject : lacunaProperties::GetSubjects())

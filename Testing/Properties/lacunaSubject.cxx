@@ -25,12 +25,7 @@ double HostileReal(Dice& dice)
 //------------------------------------------------------------------------------
 int HostileWhole(Dice& dice)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int large = -2; // memory cannot be limited, so that large requests are granted
-#else
-  constexpr int large = INT_MAX;
-#endif
-  return dice.Pick({ INT_MIN, large, -1, 0, -1000 });
+  return dice.Pick({ INT_MIN, INT_MAX, -1, 0, -1000 });
 }
 
 //------------------------------------------------------------------------------

@@ -20,21 +20,33 @@ namespace
 {
 constexpr double Unlimited = std::numeric_limits<double>::infinity();
 
-// What ulimit -v allows this process in all.
-double GetAddressSpace()
+// What the system lets this process have, of all addresses or of those that hold data.
+struct ProcessLimit
+{
+  const char* Option; // of ulimit
+  double Bytes;
+  double Free;
+};
+
+ProcessLimit Measure(const char* option, int resource, double pages)
 {
   rlimit limit{};
-  return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY
-    ? Unlimited
-    : static_cast<double>(limit.rlim_cur);
+  const bool limited = getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  const double bytes = limited ? static_cast<double>(limit.rlim_cur) : Unlimited;
+  return { option, bytes,
+    std::max(0.0, bytes - pages * static_cast<double>(sysconf(_SC_PAGESIZE))) };
 }
 
-// What is left of that.
-double GetFreeAddressSpace()
+// The one that leaves less.
+ProcessLimit MeasureProcess()
 {
-  double pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return std::max(0.0, GetAddressSpace() - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
+  double size = 0;
+  double data = 0;
+  std::string others;
+  std::ifstream("/proc/self/statm") >> size >> others >> others >> others >> others >> data;
+  const ProcessLimit addresses = Measure("-v", RLIMIT_AS, size);
+  const ProcessLimit stored = Measure("-d", RLIMIT_DATA, data);
+  return stored.Free < addresses.Free ? stored : addresses;
 }
 
 double GetMachine()
@@ -60,13 +72,13 @@ double GetFreeMachine()
 
 double GetPhysicalMemory()
 {
-  return std::min({ GetMachine(), ReadControlGroupMemory().Limit, GetAddressSpace() });
+  return std::min({ GetMachine(), ReadControlGroupMemory().Limit, MeasureProcess().Bytes });
 }
 
 double GetAvailableMemory()
 {
   return std::min(
-    { GetMachine(), GetFreeMachine(), ReadControlGroupMemory().Free, GetFreeAddressSpace() });
+    { GetMachine(), GetFreeMachine(), ReadControlGroupMemory().Free, MeasureProcess().Free });
 }
 
 std::string DescribeBytes(double bytes)
@@ -94,9 +106,11 @@ void RequireMemory(const std::string& what, double bytes)
   {
     return;
   }
+  const ProcessLimit process = MeasureProcess();
   throw std::runtime_error(what + " would need " + DescribeBytes(bytes) +
-    (GetFreeAddressSpace() <= available
-        ? ", this process may have (ulimit -v) " + DescribeBytes(available) + " more"
+    (process.Free <= available
+        ? ", this process may have (ulimit " + std::string(process.Option) + ") " +
+          DescribeBytes(available) + " more"
         : ", this machine has " + DescribeBytes(available) + " of memory free"));
 }
 

@@ -9,8 +9,8 @@
 
 namespace lacuna
 {
-/// Bytes of memory of the machine, or what the container this process runs in (cgroup) or the limit of
-/// its address space (ulimit -v) allows, if that is less.
+/// Bytes of memory of the machine, or what the container this process runs in (cgroup) or the limits of
+/// its address space and data (ulimit -v, -d) allow, if that is less.
 double GetPhysicalMemory();
 
 /// Bytes of memory that this process can have now without swapping: what is free, as far as the same

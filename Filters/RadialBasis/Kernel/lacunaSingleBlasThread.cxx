@@ -64,7 +64,7 @@ void RequireRoom(int count)
       DescribeBytes(static_cast<double>(BufferSize) * count) +
       " of address space, this process may have " +
       DescribeBytes(static_cast<double>(BufferSize) * static_cast<double>(found)) +
-      " (ulimit -v); fewer threads (OPENBLAS_NUM_THREADS, VTK_SMP_MAX_THREADS) need less");
+      " (ulimit -v, -d); fewer threads (OPENBLAS_NUM_THREADS, VTK_SMP_MAX_THREADS) need less");
   }
 }
 
