@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaProbeCalibration.h"
 
+#include "lacunaOutputFile.h"
 #include "lacunaParameterText.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -433,14 +434,21 @@ int vtkLacunaProbeCalibration::RequestData(
           refusal = "it holds something else, or more, than Probe Calibration wrote for '" +
             std::string(from) + "' to '" + to + "'. Set another OutputFileName";
         }
+        try
+        {
+          if (refusal.empty())
+          {
+            report.Write(this->OutputFileName, from, to, advice);
+          }
+        }
+        catch (const lacuna::FileError& e)
+        {
+          refusal = e.what(); // the outputs are there all the same
+        }
         if (!refusal.empty())
         {
           vtkErrorMacro(<< "'" << this->OutputFileName
                         << "' is not written, and kept if it is there: " << refusal);
-        }
-        else
-        {
-          report.Write(this->OutputFileName, from, to, advice);
         }
       }
     });

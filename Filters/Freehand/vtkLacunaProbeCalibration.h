@@ -134,7 +134,7 @@ public:
   /// not at all. Nothing is written, a file that is there is kept, and it is an error (the outputs
   /// are there to be looked at) when the calibration is of no use: ExpectedError above 5 mm, RMS
   /// above 3 mm, another position that fits nearly as well, or an image of less than 10 or more than
-  /// 500 mm. Empty: none is written. Default: empty.
+  /// 500 mm; so it is when the file cannot be written. Empty: none is written. Default: empty.
   void SetOutputFileName(const char* name);
   const char* GetOutputFileName() const { return this->OutputFileName.c_str(); }
   ///@}

@@ -152,10 +152,20 @@ void TestFile()
   LACUNA_CHECK(!Calibrate(scan.Slices, few, write).Errors.empty());
   LACUNA_CHECK(ReadFile(name) == text);
   std::remove(name.c_str());
-  LACUNA_CHECK_CONTAINS(Calibrate(scan.Slices, scan.Picks,
-                          [](auto* f) { f->SetOutputFileName("no-such-folder/calibration.xml"); })
-                          .Errors,
-    "no-such-folder");
+  // A file that cannot be written is an error, and the outputs are there.
+  vtkNew<vtkLacunaProbeCalibration> filter;
+  filter->SetInputData(scan.Slices);
+  filter->SetInputDataObject(1, scan.Picks);
+  filter->SetPixelSpacing(ColumnSpacing);
+  filter->SetRowSpacing(RowSpacing);
+  filter->SetOutputFileName("no-such-folder/calibration.xml");
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->Update();
+  LACUNA_CHECK_CONTAINS(messages->Errors, "no-such-folder");
+  LACUNA_CHECK(
+    LargestDifference(vtkLacunaFieldData::GetMatrix(
+                        vtkLacunaFieldData::Get(filter->GetOutput(), "ImageToProbe", 16, 1), 0),
+      ImageToProbe()) < 1e-6);
 }
 
 void TestBadSlices()
