@@ -380,7 +380,8 @@ int vtkLacunaMillingToolPath::RequestData(
       const double s = path.LargestStepOver;
       const double r = this->ToolRadius;
       // what a dense path leaves on steep slopes, and so at borders, too
-      const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(r * r - 0.25 * s * s)) : s;
+      const double half2 = std::max(0.0, r * r - 0.25 * s * s); // s may be 2 r and a bit
+      const double steep = this->ToolShape == Ball ? 4 * (r - std::sqrt(half2)) : s;
       const std::string border =
         DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
       if (!border.empty())

@@ -440,7 +440,8 @@ int vtkLacunaOccludedAngle::RequestData(
         {
           const double step = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
           const double last = static_cast<double>(iterations.size());
-          chosen = static_cast<std::size_t>(std::clamp(std::floor(step), 1.0, last)) - 1;
+          // the first one for what is no number, too
+          chosen = step >= 1 ? static_cast<std::size_t>(std::min(std::floor(step), last)) - 1 : 0;
         }
       }
       output->ShallowCopy(iterations[chosen]);

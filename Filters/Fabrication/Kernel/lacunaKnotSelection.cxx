@@ -148,6 +148,10 @@ KnotSelection::Trial KnotSelection::Try(Execution& execution, std::int64_t count
 //------------------------------------------------------------------------------
 void KnotSelection::Equalise(const Trial& trial)
 {
+  if (!(trial.Deviation > 0))
+  {
+    return;
+  }
   // Deviation goes with the fourth power of an interval's length.
   std::size_t first = 0;
   for (std::size_t k = 0; k <= trial.Interior.size(); ++k)

@@ -17,6 +17,8 @@ namespace lacuna
 {
 namespace
 {
+constexpr double Farthest = 1e6; // mm
+
 // Samples with the given number of values each, at the crossings of two sets of parameters.
 struct Problem
 {
@@ -261,6 +263,15 @@ SurfaceFit FitComponents(Execution& execution, Problem& problem, double neglecte
   return fit;
 }
 
+// Differences are squared twice: numbers that mean nothing else than no data would be infinite.
+void CheckPlace(GridSize size, std::size_t index, const Vec3& p)
+{
+  if (std::max({ std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) }) > Farthest)
+  {
+    ThrowAt(size, index, "the point is more than a kilometre away");
+  }
+}
+
 std::vector<double> Uniform(std::int64_t count)
 {
   std::vector<double> parameters(count);
@@ -333,6 +344,7 @@ SurfaceFit FitHeights(Execution& execution, GridSize size, const std::vector<dou
       {
         ThrowAt(size, k, "the height is not a number");
       }
+      CheckPlace(size, k, points[k]);
       ++k;
     }
   }
@@ -359,6 +371,7 @@ SurfaceFit FitPoints(Execution& execution, GridSize size, const std::vector<Vec3
     {
       ThrowAt(size, k, "the point is not finite");
     }
+    CheckPlace(size, k, points[k]);
     const std::int64_t i = static_cast<std::int64_t>(k) % columns;
     const std::int64_t j = static_cast<std::int64_t>(k) / columns;
     alongU[std::max<std::int64_t>(0, i - 1)] += i > 0 ? Norm(points[k] - points[k - 1]) : 0;

@@ -18,6 +18,7 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double Pi = 3.14159265358979323846;
 constexpr double LargestLevels = 10000;
+constexpr double LeastStepOver = 0.01; // mm
 
 void Require(bool condition, const std::string& what)
 {
@@ -37,14 +38,18 @@ void CheckOptions(const ToolPathOptions& o)
   Require(o.ScallopHeight >= 0 && o.ScallopHeight < o.Tool.Radius,
     "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
       " mm; 0 (StepOver is used) or above, and less than ToolRadius is possible");
+  Require(o.ScallopHeight == 0 || GetStepOver(o.Tool.Radius, o.ScallopHeight) >= LeastStepOver,
+    "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
+      " mm, which takes finishing lines less than 0.01 mm apart");
   Require(o.ScallopHeight == 0 || o.Tool.Shape == ToolShape::Ball,
     "ScallopHeight is for ball ends; give StepOver for a flat end");
-  Require(within(o.StepOver, 0.01, 2 * o.Tool.Radius),
+  Require(within(o.StepOver, LeastStepOver, 2 * o.Tool.Radius),
     "StepOver is " + FormatNumber(o.StepOver) + " mm; 0.01 mm to the tool's diameter (" +
       FormatNumber(2 * o.Tool.Radius) + " mm) is possible");
   Require(within(o.Overrun, 0, 1000),
     "Overrun is " + FormatNumber(o.Overrun) + " mm; 0 to 1000 is possible");
-  Require(std::isfinite(o.Direction), "Direction is not a number");
+  Require(within(o.Direction, -36000, 36000),
+    "Direction is " + FormatNumber(o.Direction) + " degrees; -36000 to 36000 is possible");
   Require(o.PathStep == 0 || within(o.PathStep, 0.01, 1000),
     "PathStep is " + FormatNumber(o.PathStep) +
       " mm; 0 (the surface's spacing) or 0.01 to 1000 "

@@ -59,8 +59,8 @@ public:
     int block[2];
     for (int a = 0; a < 2; ++a)
     {
-      block[a] = std::clamp(
-        static_cast<int>(wantedCell / frame.Spacing[a] + 0.5), 1, std::max(1, pixels[a] / 4));
+      block[a] = static_cast<int>(std::clamp(
+        wantedCell / frame.Spacing[a] + 0.5, 1.0, std::max(1.0, std::floor(pixels[a] / 4.0))));
       this->Size[a] = pixels[a] / block[a];
       this->Cell[a] = block[a] * frame.Spacing[a];
       this->First[a] = (block[a] - 1) / 2.0 * frame.Spacing[a];

@@ -43,8 +43,8 @@ VolumeLevel::VolumeLevel(const MaskedVolume& volume, const Vec3& spacing, double
   for (int a = 0; a < 3; ++a)
   {
     const int voxels = volume.Volume.Size[a];
-    const int block =
-      std::clamp(static_cast<int>(wantedCell / spacing[a] + 0.5), 1, std::max(1, voxels / 4));
+    const int block = static_cast<int>(
+      std::clamp(wantedCell / spacing[a] + 0.5, 1.0, std::max(1.0, std::floor(voxels / 4.0))));
     this->Block[a] = block;
     this->Size[a] = voxels / block; // what remains at the end is left out
     this->Cell[a] = block * spacing[a];

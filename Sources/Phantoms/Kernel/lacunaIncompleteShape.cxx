@@ -184,6 +184,8 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
   const std::int64_t count = static_cast<std::int64_t>(n[0]) * n[1] * n[2];
   std::vector<unsigned char> voxels(count, 0);
   const double open = std::cos(this->Values.GapAngle * Pi / 360);
+  const Execution::NestedStages nested(execution);
+  execution.SetStage(0, 0.2);
   execution.For(count, 1 << 14,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -210,12 +212,15 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
   { return static_cast<std::int64_t>(choice.Uniform(drawn++) * static_cast<double>(below)); };
   std::int64_t present = static_cast<std::int64_t>(object.size());
   const auto kept = std::llround(this->Values.PresentFraction * static_cast<double>(present));
-  if (this->Values.Patches)
+  const std::array<double, 2>& radii = this->Values.PatchRadii;
+  execution.SetStage(0.2, 0.9);
+  if (this->Values.Patches && radii[1] >= 1) // smaller ones are single voxels
   {
+    const auto removed = static_cast<double>(present - kept);
     while (present > kept)
     {
+      execution.Report(1 - static_cast<double>(present - kept) / removed);
       const auto centre = at(object[draw(static_cast<std::int64_t>(object.size()))]);
-      const std::array<double, 2>& radii = this->Values.PatchRadii;
       const double radius = radii[0] + (radii[1] - radii[0]) * choice.Uniform(drawn++);
       for (std::int64_t i : object)
       {
@@ -243,6 +248,7 @@ std::vector<unsigned char> IncompleteShape::Sample(Execution& execution) const
   if (this->Values.TissueFraction > 0)
   {
     const CounterNoise echo(this->Values.Seed, 1);
+    execution.SetStage(0.9, 1);
     execution.For(count, 1 << 14,
       [&](std::int64_t begin, std::int64_t end)
       {

@@ -259,6 +259,16 @@ TEST(SurfaceFit, BadInput)
   SurfaceFitOptions tooFine;
   tooFine.Tolerance = 1e-17;
   EXPECT_THROW(FitPoints(execution, grid.Size, grid.Points, tooFine), std::runtime_error);
+  for (const double none : { 1e300, -9e99, 1e9 })
+  {
+    grid.Heights[34] = grid.Points[34][2] = none;
+    EXPECT_NE(MessageOf([&] { FitHeights(execution, grid.Size, grid.Heights, grid.ToWorld); })
+                .find("more than a kilometre away"),
+      std::string::npos);
+    EXPECT_NE(MessageOf([&] { FitPoints(execution, grid.Size, grid.Points); })
+                .find("more than a kilometre away"),
+      std::string::npos);
+  }
   grid.Heights[34] = NaN;
   EXPECT_NE(MessageOf([&] { FitHeights(execution, grid.Size, grid.Heights, grid.ToWorld); })
               .find("column 4, row 3"),

@@ -133,6 +133,9 @@ TEST(ToolPathWarnings, RefusesBadInput)
   EXPECT_NE(refuses([&](auto& o) { o.Tool.Radius = nan; }).find("ToolRadius"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.StepOver = 9; }).find("StepOver"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.ScallopHeight = 4; }).find("ScallopHeight"), std::string::npos);
+  EXPECT_NE(
+    refuses([](auto& o) { o.ScallopHeight = 1e-40; }).find("ScallopHeight"), std::string::npos);
+  EXPECT_NE(refuses([](auto& o) { o.Direction = 1e308; }).find("Direction"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.Finishing = false; }).find("nothing to do"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.Overrun = -1; }).find("Overrun"), std::string::npos);
   EXPECT_NE(refuses([&](auto& o) { o.Overrun = nan; }).find("Overrun"), std::string::npos);

@@ -147,6 +147,13 @@ void TestTimeSteps()
     }
     LACUNA_CHECK(same);
   }
+  // times that are none
+  for (const double step : { std::numeric_limits<double>::quiet_NaN(), -1e300, 1e300 })
+  {
+    filter->UpdateTimeStep(step);
+    LACUNA_CHECK(filter->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()) ==
+      (step > 0 ? 3 : 1));
+  }
   // a change of the input must not be answered from what is kept
   circle->GetPointData()->GetScalars()->Fill(10);
   circle->SetScalarComponentFromDouble(0, 0, 7, 0, 200);

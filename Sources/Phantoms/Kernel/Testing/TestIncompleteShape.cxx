@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <vector>
 
 namespace lacuna
 {
@@ -57,7 +59,21 @@ TEST(IncompleteShape, FractionsAreExact)
     p.PatchRadii = bad;
     EXPECT_THROW(IncompleteShape{ p }, std::invalid_argument);
   }
+  p.PatchRadii = { 0, 0.9 }; // single voxels
+  p.PresentFraction = 1e-9;
+  EXPECT_EQ(Count(Sample(p)), 0);
+  p.PresentFraction = 0.4;
+  EXPECT_EQ(Count(Sample(p)), std::llround(0.4 * all));
   p.PatchRadii = { 3, 8 };
+  std::vector<double> reports;
+  lacuna::ThreadExecution stopped(1,
+    [&](double fraction)
+    {
+      reports.push_back(fraction);
+      return fraction < 0.5;
+    });
+  EXPECT_THROW(IncompleteShape(p).Sample(stopped), lacuna::Aborted);
+  EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
   p.Patches = false;
   const int clean = Count(Sample(p));
   p.TissueFraction = 0.1;
