@@ -323,11 +323,12 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
     outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
     if (extent[0] <= extent[1] && extent[2] <= extent[3])
     {
-      // neighbours, for the normals
-      extent[0] = std::max(whole[0], extent[0] - 1);
-      extent[1] = std::min(whole[1], extent[1] + 1);
-      extent[2] = std::max(whole[2], extent[2] - 1);
-      extent[3] = std::min(whole[3], extent[3] + 1);
+      // neighbours, for the normals; an extent may begin or end with the integers
+      for (const int first : { 0, 2 })
+      {
+        extent[first] -= extent[first] > whole[first] ? 1 : 0;
+        extent[first + 1] += extent[first + 1] < whole[first + 1] ? 1 : 0;
+      }
     }
   }
   vtkLacunaRequest::Extent(inInfo, extent);

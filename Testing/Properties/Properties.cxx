@@ -29,6 +29,12 @@
 #include <unistd.h>
 
 extern "C" void __sanitizer_set_death_callback(void (*)()) __attribute__((weak));
+// That of undefined behaviour knows of no callback; what is aborted says where.
+extern "C" const char* __ubsan_default_options();
+extern "C" const char* __ubsan_default_options()
+{
+  return "abort_on_error=1:print_stacktrace=1";
+}
 
 namespace
 {
@@ -193,13 +199,14 @@ int main(int argc, char* argv[])
     setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1);
   }
   std::signal(SIGPROF, TakesTooLong);
+  std::signal(SIGABRT, Die);
   if (__sanitizer_set_death_callback)
   {
     __sanitizer_set_death_callback(SayWhere);
   }
   else
   {
-    for (const int signal : { SIGSEGV, SIGABRT, SIGFPE, SIGILL, SIGBUS })
+    for (const int signal : { SIGSEGV, SIGFPE, SIGILL, SIGBUS })
     {
       std::signal(signal, Die);
     }
