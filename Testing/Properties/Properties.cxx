@@ -43,7 +43,8 @@ using lacunaProperties::Subject;
 
 // s of the processor's time; they take milliseconds, under a sanitizer seconds
 constexpr int LongestCase = lacuna::Sanitized ? 1200 : 120;
-constexpr rlim_t MostMemory = rlim_t{ 5 } << 29; // bytes; they take little
+// bytes; they take little, sanitizers keep what was given back
+constexpr rlim_t MostMemory = rlim_t{ lacuna::Sanitized ? 16 : 5 } << 29;
 
 constexpr int More = 60; ///< cases, where none has come to the point
 
