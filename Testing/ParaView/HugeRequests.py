@@ -161,13 +161,20 @@ def files():
     os.remove(path)
 
 
-def mesh():
-    """The surface of a map takes several times the map."""
+def depth_map(spacing, *direction):
+    """A coarse skull, seen from the top or along a direction."""
     skull = lacuna.vtkLacunaSkullPhantom()
     skull.SetSpacing(4, 4, 4)
     caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), skull)
     caster.SetIsoValue(0, 500)
-    caster.SetPixelSpacing(0.1)
+    caster.SetPixelSpacing(spacing)
+    caster.SetViewDirection(*(direction or (0, 0, -1)))
+    return caster
+
+
+def mesh():
+    """The surface of a map takes several times the map."""
+    caster = depth_map(0.1)
     caster.Update()
     limit = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (memory_of_process("VmSize") + GIBIBYTE // 8, limit[1]))
@@ -180,13 +187,7 @@ def mesh():
 
 def filled():
     """A map with a filled hole, of 1 mm."""
-    skull = lacuna.vtkLacunaSkullPhantom()
-    skull.SetSpacing(4, 4, 4)
-    caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), skull)
-    caster.SetIsoValue(0, 500)
-    caster.SetPixelSpacing(1)
-    caster.SetViewDirection(-0.5, 0.2, -0.8)
-    filler = behind(lacuna.vtkLacunaRBFHoleFiller(), caster)
+    filler = behind(lacuna.vtkLacunaRBFHoleFiller(), depth_map(1, -0.5, 0.2, -0.8))
     sphere = vtkSphere()
     sphere.SetCenter(37, -15, 60)
     sphere.SetRadius(34)
