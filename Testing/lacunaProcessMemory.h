@@ -9,13 +9,6 @@
 
 namespace lacuna
 {
-/// Whether a sanitizer's red zones and shadows are in what the system counts.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool Sanitized = true;
-#else
-constexpr bool Sanitized = false;
-#endif
-
 /// Bytes: "VmHWM", the most that has been in memory, or "VmRSS", what is there now; 0 where the
 /// system does not tell.
 inline double GetProcessMemory(const std::string& key)

@@ -8,6 +8,7 @@
 // this block must be that of the block alone, bit by bit, which is made in memory.
 #include "lacunaCheck.h"
 #include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaGateSlices.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arrays get their size, or an error that names the bytes; VTK's own functions end the program.
 #include "lacunaCheck.h"
-#include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"

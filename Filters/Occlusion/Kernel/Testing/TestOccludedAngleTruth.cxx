@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The closed forms of Carr 1996, section 5.3, and how fast they are approached.
 #include "OcclusionCases.h"
+#include "lacunaSanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -98,7 +99,7 @@ TEST(OccludedAngleTruth, OutsideAClosedCircle)
 // what it is uncertain by: 1.01 +- 0.08.
 TEST(OccludedAngleTruth, OneGap)
 {
-  const int gaps = 100;
+  const int gaps = Sanitized ? 3 : 100;
   Numbers number(5);
   double mean[2] = { 0, 0 };
   double square[2] = { 0, 0 };
@@ -127,6 +128,10 @@ TEST(OccludedAngleTruth, OneGap)
   const double order = std::log(mean[0] / mean[1]) / std::log(4.0);
   const double uncertainty = 1.96 * std::sqrt(variance) / std::log(4.0);
   EXPECT_LT(mean[1], 0.025);
+  if (Sanitized)
+  {
+    return; // no order of so few
+  }
   EXPECT_NEAR(order, 1, 0.1);
   EXPECT_LT(uncertainty, 0.1);
 }

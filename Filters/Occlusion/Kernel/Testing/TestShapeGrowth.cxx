@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OcclusionCases.h"
+#include "lacunaSanitized.h"
 #include "lacunaShapeGrowth.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +82,7 @@ bool InCube(std::int64_t voxel)
 TEST(ShapeGrowth, RebuildsTheCube)
 {
   std::vector<double> rebuilt;
-  for (std::uint64_t seed = 0; seed < 20; ++seed)
+  for (std::uint64_t seed = 0; seed < (Sanitized ? 2 : 20); ++seed)
   {
     AttenuationField field = MakeCube(0.2, seed);
     GrowthOptions options;
@@ -100,7 +101,7 @@ TEST(ShapeGrowth, RebuildsTheCube)
     EXPECT_LT(growth.Statistics[1].ObjectVoxels, 2400); // small clusters
   }
   std::sort(rebuilt.begin(), rebuilt.end());
-  EXPECT_GE(0.5 * (rebuilt[9] + rebuilt[10]), 0.97);
+  EXPECT_GE(rebuilt[(rebuilt.size() - 1) / 2], 0.97);
   EXPECT_GE(rebuilt[0], 0.96);
 }
 

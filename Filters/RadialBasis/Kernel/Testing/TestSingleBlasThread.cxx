@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaProcessMemory.h"
 #include "lacunaRadialBasisTest.h"
+#include "lacunaSanitized.h"
 
 #include <gtest/gtest.h>
 

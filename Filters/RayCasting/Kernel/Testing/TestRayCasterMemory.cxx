@@ -3,6 +3,7 @@
 /// asked of the system. A program of its own, since it replaces the global operator new.
 #include "lacunaIsoRayCaster.h"
 #include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 
 #include <gtest/gtest.h>
 

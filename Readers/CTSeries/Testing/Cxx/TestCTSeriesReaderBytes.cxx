@@ -4,6 +4,7 @@
 // since.
 #include "CTSeriesReaderTesting.h"
 #include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 

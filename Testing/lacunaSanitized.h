@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Whether a test runs under a sanitizer.
+#ifndef lacunaSanitized_h
+#define lacunaSanitized_h
+
+namespace lacuna
+{
+/// Red zones and shadows are in what the system counts as memory, and all takes ten to a hundred times
+/// as long: of studies of many random cases, a few do, since it is no statistics that is looked for.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool Sanitized = true;
+#else
+constexpr bool Sanitized = false;
+#endif
+}
+#endif
