@@ -4,6 +4,8 @@
 #include "lacunaExecution.h"
 #include "lacunaRanks.h"
 #include "vtkAlgorithm.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
@@ -12,6 +14,52 @@
 #include <cstdint>
 #include <new>
 #include <stdexcept>
+
+namespace
+{
+// Points along the axes of images, or of other data at all: three numbers for each input.
+std::vector<std::uint64_t> GetSizes(vtkAlgorithm* filter)
+{
+  std::vector<std::uint64_t> sizes;
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* data = filter->GetInputDataObject(port, i);
+      int dimensions[3] = { 0, 0, 0 };
+      auto* image = vtkImageData::SafeDownCast(data);
+      auto* points = vtkDataSet::SafeDownCast(data);
+      if (image)
+      {
+        image->GetDimensions(dimensions);
+      }
+      sizes.insert(sizes.end(), dimensions, dimensions + 3);
+      sizes.back() += points && !image ? points->GetNumberOfPoints() : 0;
+    }
+  }
+  return sizes;
+}
+
+// Throws on all ranks when their inputs, of which each has the whole, are of unequal sizes.
+void RequireEqualSizes(vtkAlgorithm* filter, const lacuna::Ranks& ranks)
+{
+  const std::vector<std::uint64_t> own = GetSizes(filter);
+  std::vector<std::uint64_t> sum = own;
+  ranks.Sum(sum.data(), static_cast<std::int64_t>(sum.size()));
+  ranks.Together(
+    [&]
+    {
+      for (std::size_t i = 0; i < own.size(); ++i)
+      {
+        if (sum[i] != own[i] * static_cast<std::uint64_t>(ranks.GetNumber()))
+        {
+          throw std::runtime_error("the ranks' inputs are not of one size; do all nodes have the "
+                                   "same files?");
+        }
+      }
+    });
+}
+}
 
 //------------------------------------------------------------------------------
 void vtkLacunaMeeting::AskForWhole(
@@ -74,6 +122,7 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
       throw std::runtime_error(hasData ? "another rank has no input; its own messages say why"
                                        : "this rank has no input, though others have");
     }
+    RequireEqualSizes(filter, ranks);
     body();
   }
   catch (const lacuna::Aborted&)

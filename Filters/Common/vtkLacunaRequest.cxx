@@ -92,7 +92,24 @@ void AskForNothing(vtkInformation* input)
   vtkLacunaRequest::Extent(input, nothing);
 }
 
-// Whether there are filters upstream that are neither Lacuna's nor ParaView's between two proxies.
+// As little as does not make a reader on all ranks fail.
+void AskForAPoint(vtkInformation* input)
+{
+  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
+  vtkLacunaRequest::Extent(input, point);
+}
+
+// Whether an algorithm executes on each rank for itself: Lacuna's, ParaView's between two proxies, and
+// sources of which that is known. Raw images and NRRD are read by MPI on all ranks or none, for instance.
+bool IsFamiliar(vtkAlgorithm* algorithm)
+{
+  static const std::set<std::string> names{ "vtkFileSeriesReader", "vtkImageFileSeriesReader",
+    "vtkPVPostFilter", "vtkPVTrivialProducer", "vtkRTAnalyticSource", "vtkTrivialProducer" };
+  const std::string name = algorithm->GetClassName();
+  return name.rfind("vtkLacuna", 0) == 0 || names.count(name) > 0 || algorithm->IsA("vtkXMLReader");
+}
+
 bool HasStrangersUpstream(vtkAlgorithm* filter)
 {
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
@@ -100,10 +117,11 @@ bool HasStrangersUpstream(vtkAlgorithm* filter)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       vtkAlgorithm* other = filter->GetInputAlgorithm(port, i);
-      const std::string name = other->GetClassName();
-      const bool known = name.rfind("vtkLacuna", 0) == 0 || name == "vtkPVPostFilter" ||
-        other->GetTotalNumberOfInputConnections() == 0;
-      if (!known || HasStrangersUpstream(other))
+      // of sources of anything else a part is asked for always
+      const bool isAsked = other &&
+        (other->GetTotalNumberOfInputConnections() > 0 ||
+          filter->GetInputInformation(port, i)->Has(SDDP::WHOLE_EXTENT()));
+      if (isAsked && (!IsFamiliar(other) || HasStrangersUpstream(other)))
       {
         return true;
       }
@@ -234,7 +252,14 @@ std::string vtkLacunaRequest::WholeOrNothing(
   }
   catch (const std::runtime_error& error)
   {
-    AskForNothing(input);
+    if (HasStrangersUpstream(filter))
+    {
+      AskForAPoint(input);
+    }
+    else
+    {
+      AskForNothing(input);
+    }
     return error.what();
   }
   Whole(filter, input, outputs);

@@ -25,8 +25,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool IsFirst(vtkInformationVector* outputs);
 VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
 
 /// All of an input of filter, on every rank: images by their whole extent, other data as one piece.
-/// When outputs are not wanted (null: they are), nothing of an image, unless a filter that is not
-/// Lacuna's lies upstream: such a one may need all ranks, and execute on some of them only.
+/// When outputs are not wanted (null: they are), nothing of an image, unless there is a filter upstream
+/// that is not Lacuna's, or a source of which it is not known that it executes on each rank for itself:
+/// such a one may need all ranks, and execute on some of them only.
 VTKLACUNAFILTERSCOMMON_EXPORT void Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 

@@ -15,6 +15,7 @@
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceStream.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkNew.h"
@@ -171,6 +172,17 @@ int vtkLacunaGateSlices::RequestInformation(
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaGateSlices::RequestUpdateExtent(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (vtkInformation* table = inputs[1]->GetInformationObject(0))
+  {
+    vtkLacunaRequest::OnePiece(table); // on every rank, whatever slices it has
+  }
+  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaGateSlices::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -190,6 +202,10 @@ int vtkLacunaGateSlices::RequestData(
       vtkDataArray* status =
         vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
       const vtkIdType count = status->GetNumberOfTuples();
+      for (const int k : { slices->GetExtent()[4], slices->GetExtent()[5] })
+      {
+        vtkLacunaTrackedSlices::GetSliceNumber(slices, k, count); // throws when there is none
+      }
       if (!(this->SpeedLimit >= 0))
       {
         throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");

@@ -2,6 +2,7 @@
 #include "vtkLacunaSweptVolumePlan.h"
 
 #include "lacunaActivityMap.h"
+#include "lacunaExecution.h"
 #include "lacunaPrincipalFrame.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -146,6 +147,11 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
       try
       {
         fans.Found.emplace_back(DetectFan(sweep, filter));
+      }
+      catch (const lacuna::Aborted&)
+      {
+        fans = {};
+        throw;
       }
       catch (const std::runtime_error& error)
       {

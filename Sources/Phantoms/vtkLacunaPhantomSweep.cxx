@@ -18,6 +18,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVersionCompat.h"
@@ -196,13 +197,12 @@ int vtkLacunaPhantomSweep::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaPhantomSweep::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
     // A slice may cut through any part of the volume.
-    info->Set(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(),
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()), 6);
+    vtkLacunaRequest::WholeIfItFits(this, info, outputVector);
   }
   return 1;
 }
@@ -214,6 +214,10 @@ int vtkLacunaPhantomSweep::RequestData(
   return vtkLacunaExecution::Run(this, outputVector,
     [&](vtkLacunaExecution& execution)
     {
+      if (!vtkLacunaRequest::IsWanted(outputVector))
+      {
+        return;
+      }
       vtkImageData* volume = vtkImageData::GetData(inputVector[0]);
       const lacuna::ProbeMotion motion = this->MakeMotion(volume);
       const std::unique_ptr<lacuna::PhantomScene> volumeScene =

@@ -104,6 +104,29 @@ proxy.GateTable = table
 proxy.GateType = "Trigger"
 assert (status(proxy) == np.where(truth, 0, 8)).all()
 
+# arrays that have nothing for the slices that there are
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
+from vtkmodules.vtkCommonCore import vtkDoubleArray
+bare, gates = vtkImageData(), vtkTable()
+bare.SetDimensions(4, 4, 2)
+bare.AllocateScalars(3, 1)
+for field in ("SliceStatus", "FrameNumber", "Timestamp"):
+    for holder in (bare.GetFieldData(), gates.GetRowData()):
+        numbers = vtkDoubleArray()
+        numbers.SetName(field)
+        holder.AddArray(numbers)
+own.SetInputData(0, bare)
+own.SetInputData(1, gates)
+heard = []
+own.AddObserver("ErrorEvent", lambda *_: heard.append(1))
+own.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+for key in (own.Timestamp, own.FrameNumber):
+    own.SetMatchBy(key)
+    own.SetGateColumn("Timestamp")
+    own.Update()
+    assert heard, key
+    heard.clear()
+
 # state
 name = output("GateSlices.pvsm")
 SaveState(name)

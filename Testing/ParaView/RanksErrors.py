@@ -105,7 +105,7 @@ def refused(make, rank):
 def unsound(make, rank):
     """What the second rank has is not sound, and then fewer than the first rank has."""
     from vtkmodules.vtkCommonDataModel import vtkImageData
-    for wrong in ("spacing", "nothing", "short"):
+    for wrong in ("spacing", "nothing", "short", "size"):
         source = wavelet(20)
         filter = make(source, False)
         source.Update()
@@ -115,12 +115,18 @@ def unsound(make, rank):
             image.SetSpacing(math.nan, 1, 1)
         elif rank == 1 and wrong == "nothing":
             image = vtkImageData()
+        elif rank == 1 and wrong == "size":
+            image.SetDimensions(20, 20, 19)
+            image.GetPointData().GetScalars().SetNumberOfTuples(20 * 20 * 19)
         elif rank == 1:
             image.GetPointData().GetScalars().SetNumberOfTuples(100)
         elif wrong == "nothing":
             image.SetSpacing(1, math.nan, 1)
         filter.SetInputData(image)
         text = update(filter)
+        if wrong == "size":
+            assert "not of one size" in text, text
+            continue
         own = "sound" if rank == (0 if wrong == "nothing" else 1) else "another rank has stopped"
         assert own in text or (wrong == "short" and "100" in text), (rank, wrong, text)
 
@@ -146,12 +152,33 @@ def partial(make, rank):
 
 
 def unpaired(rank):
-    """Landmarks that only one rank has, without partners."""
+    """A target that only the first rank has."""
     filter = warp(wavelet(20), False)
     if rank == 1:
         filter.SetInputData(2, landmarks(30, False, 7))
     text = update(filter)
-    assert ("8 landmarks but 7 targets" if rank == 1 else "another rank has stopped") in text, text
+    assert "not of one size" in text, text
+
+
+def transparent(rank):
+    """Nothing of what the second rank has attenuates."""
+    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPiecewiseFunction
+    image = vtkImageData()
+    image.SetDimensions(20, 20, 20)
+    image.AllocateScalars(3, 1)
+    grey = image.GetPointData().GetScalars()
+    grey.Fill(100)
+    for voxel in range(3000, 3400):
+        grey.SetValue(voxel, 255 if rank == 0 else 200)
+    opacity = vtkPiecewiseFunction()
+    for value in (0, 0), (200, 0), (255, 1):
+        opacity.AddPoint(*value)
+    filter = occluded_angle(wavelet(20), False)
+    filter.SetInputData(image)
+    filter.SetAttenuation(filter.OPACITY_FUNCTION)
+    filter.SetOpacityFunction(opacity)
+    text = update(filter)
+    assert ("another rank has stopped" if rank == 0 else "attenuates") in text, text
 
 
 def again(make, rank):
@@ -227,6 +254,7 @@ def run():
             what(make, rank)
             controller.Barrier()
     unpaired(rank)
+    transparent(rank)
     signal.alarm(0)
     print("rank done", flush=True)
 

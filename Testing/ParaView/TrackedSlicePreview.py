@@ -40,6 +40,19 @@ volumes = [SweptVolume(Input=source, OutputSpacing=[0.7, 0.7, 0.7]) for source i
 for a, b in zip(*map(arrays, volumes)):
     assert len(a) > 1000 and (a == b).all()
 
+# a stop while the fan is sought in slices that are read for it is nothing but a stop
+from lacuna.vtkLacunaFiltersFreehand import vtkLacunaSweptVolume
+from lacuna.vtkLacunaReadersTrackedSlices import vtkLacunaTrackedSliceReader
+opened, stopped, said = vtkLacunaTrackedSliceReader(), vtkLacunaSweptVolume(), []
+opened.SetFileName(name)
+opened.SetMemoryLimit(3)
+stopped.SetInputConnection(opened.GetOutputPort())
+stopped.SetFanMask(stopped.Automatic)
+stopped.AddObserver("ErrorEvent", lambda *_: said.append("error"))
+stopped.AddObserver("ProgressEvent", lambda filter, _: (said.append("stop"), filter.AbortExecuteOn()))
+stopped.Update()
+assert "stop" in said and "error" not in said, said
+
 copy = lacuna_test.output("preview-copy.igs.mha")
 SaveData(copy, reader)
 assert (arrays(OpenDataFile(copy))[0] == arrays(whole)[0]).all()

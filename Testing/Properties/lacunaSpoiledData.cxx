@@ -162,6 +162,33 @@ std::string SpoilArray(vtkDataObject* data, Dice& dice)
   }
 }
 
+// All arrays of a group, which agree with each other then.
+std::string SpoilLengths(vtkDataObject* data, Dice& dice)
+{
+  const std::vector<vtkFieldData*> groups = GetGroups(data);
+  if (groups.empty())
+  {
+    return "nothing (no arrays)";
+  }
+  vtkFieldData* group = dice.Pick(groups);
+  const vtkIdType other = dice.Pick<vtkIdType>({ 0, 1, 3, 30 });
+  std::vector<vtkSmartPointer<vtkAbstractArray>> arrays;
+  for (int i = 0; i < group->GetNumberOfArrays(); ++i)
+  {
+    arrays.emplace_back(group->GetAbstractArray(i));
+  }
+  for (vtkAbstractArray* array : arrays)
+  {
+    if (array->GetName()) // by which it is replaced
+    {
+      Replace(
+        group, array, Remake(array, array->GetDataType(), array->GetNumberOfComponents(), other));
+    }
+  }
+  return "all arrays of a " + std::string(group->GetClassName()) + " of " + std::to_string(other) +
+    " tuples";
+}
+
 std::string SpoilImage(vtkImageData* image, Dice& dice)
 {
   switch (dice.Whole(0, 5))
@@ -268,6 +295,10 @@ std::string Spoil(vtkDataObject* data, Dice& dice)
   {
     data->Initialize();
     return "nothing left";
+  }
+  if (dice.Chance(0.05))
+  {
+    return SpoilLengths(data, dice);
   }
   if (dice.Chance(0.3))
   {

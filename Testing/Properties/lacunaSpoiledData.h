@@ -13,7 +13,7 @@ class vtkDataObject;
 namespace lacunaProperties
 {
 /// Changes one thing about data: takes an array away, renames it, gives it another type, other
-/// components or another length, puts NaN, infinities or huge numbers in, moves or distorts the
+/// components or another length, or all of a group another length, puts NaN, infinities or huge numbers in, moves or distorts the
 /// grid, or takes everything away. Says what it did.
 std::string Spoil(vtkDataObject* data, Dice& dice);
 

@@ -43,6 +43,21 @@ void Check(const AttenuationField& field, const GrowthOptions& options)
   }
 }
 
+void RequireAttenuation(const AttenuationField& field)
+{
+  const auto& n = field.GetDimensions();
+  for (std::int64_t r = 0; r < n[1] * n[2]; ++r)
+  {
+    const float* row = field.Row(r % n[1], r / n[1]);
+    if (std::any_of(row, row + n[0], [](float value) { return value > 0; }))
+    {
+      return;
+    }
+  }
+  throw std::invalid_argument("no voxel of the reconstruction space attenuates: there is "
+                              "nothing to reconstruct from");
+}
+
 template <class Row>
 void ForRows(const AttenuationField& field, Execution& execution, Row&& row)
 {
@@ -200,30 +215,15 @@ double SuggestThreshold(const std::vector<std::int64_t>& counts, double full)
 void GrowShape(AttenuationField& field, const GrowthOptions& options, float* angle,
   unsigned char* object, const GrowthObserver& observer, Execution& execution, const Ranks& ranks)
 {
-  Check(field, options);
   const auto& n = field.GetDimensions();
-  bool any = false;
-  for (std::int64_t k = 0; k < n[2]; ++k)
-  {
-    for (std::int64_t j = 0; j < n[1]; ++j)
-    {
-      const float* row = field.Row(j, k);
-      any = any || std::any_of(row, row + n[0], [](float value) { return value > 0; });
-    }
-  }
-  if (!any)
-  {
-    throw std::invalid_argument("no voxel of the reconstruction space attenuates: there is "
-                                "nothing to reconstruct from");
-  }
-  const int count = static_cast<int>(options.Steps.size());
-  const float opaque = static_cast<float>(GetAttenuation(field, options.ObjectOpacity));
   const float half = static_cast<float>(GetAttenuation(field, 0.5));
   std::vector<bool> kept;
-  // when one rank is stopped, or lacks memory, between meetings, the others shall not wait for it
+  // when one rank has nothing, is stopped, or lacks memory, the others shall not wait for it
   ranks.Together(
     [&]
     {
+      Check(field, options);
+      RequireAttenuation(field);
       kept.reserve(options.KeepData ? field.GetNumberOfVoxels() : 0);
       for (std::int64_t r = 0; options.KeepData && r < n[1] * n[2]; ++r)
       {
@@ -232,6 +232,8 @@ void GrowShape(AttenuationField& field, const GrowthOptions& options, float* ang
           row, row + n[0], std::back_inserter(kept), [half](float value) { return value >= half; });
       }
     });
+  const int count = static_cast<int>(options.Steps.size());
+  const float opaque = static_cast<float>(GetAttenuation(field, options.ObjectOpacity));
   std::vector<std::int64_t> histogram;
   for (int iteration = 0; iteration < count; ++iteration)
   {

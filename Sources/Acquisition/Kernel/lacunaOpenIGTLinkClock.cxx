@@ -33,6 +33,10 @@ double OpenIGTLinkClock::Estimate::GetLargest() const
 
 double OpenIGTLinkClock::ToLocal(const std::string& device, double stamp, double arrival)
 {
+  if (this->Devices.size() >= MostDevices && this->Devices.count(device) == 0)
+  {
+    return arrival;
+  }
   Estimate& own = this->Devices[device];
   const double difference = arrival - stamp;
   // stamps that go back, or that would be of the future

@@ -115,6 +115,21 @@ TEST(OpenIGTLinkClock, DevicesOfOneClockShareItsOffset)
   EXPECT_NEAR(clock.ToLocal("Image", 600, 110.04), 110.04, 1e-9);
 }
 
+TEST(OpenIGTLinkClock, NamesWithoutEndTakeNoMemory)
+{
+  OpenIGTLinkClock clock;
+  EXPECT_NEAR(clock.ToLocal("Probe", 500, 10.001), 10.001, 1e-9);
+  for (int i = 0; i < 1000; ++i)
+  {
+    const std::string name = "Device " + std::to_string(i);
+    EXPECT_NEAR(clock.ToLocal(name, 9000, 10.002), 10.002, 1e-9);
+    EXPECT_EQ(clock.GetOffset(name).has_value(), i + 1 < int(OpenIGTLinkClock::MostDevices));
+  }
+  EXPECT_NEAR(clock.ToLocal("Device 999", 9000, 10.003), 10.003, 1e-9);
+  // those that were there first go on
+  EXPECT_NEAR(clock.ToLocal("Probe", 500.02, 10.022), 10.021, 1e-9);
+}
+
 TEST(OpenIGTLinkClock, AClockThatIsSetStartsAnew)
 {
   OpenIGTLinkClock clock;
