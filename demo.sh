@@ -24,7 +24,7 @@ offscreen=""
 case "${DISPLAY:-none} $* " in
   none\ * | *" --offscreen "*) offscreen=--force-offscreen-rendering ;;
 esac
-# for the emulated serial port (Documentation/UserGuide/emulated-devices.md)
-ports="$top/build/release/lib/libLacunaPseudoTerminalPorts.so"
-lacuna_display env LD_PRELOAD="$ports${LD_PRELOAD:+:$LD_PRELOAD}" \
+# for the emulated serial port (Documentation/UserGuide/emulated-devices.md); found in LD_LIBRARY_PATH, as
+# LD_PRELOAD takes no folders with blanks
+lacuna_display env LD_PRELOAD="libLacunaPseudoTerminalPorts.so${LD_PRELOAD:+:$LD_PRELOAD}" \
   pvpython $offscreen -- -m lacuna.demo "$@"

@@ -27,6 +27,17 @@ function (lacuna_tests_in_real_time)
   set_tests_properties(${ARGN} PROPERTIES RUN_SERIAL ON)
 endfunction ()
 
+# lacuna_tests_with_emulated_ports(<test>...)
+# In real time, with the library without which libserialport does not open the emulator's port. By its
+# name, which is looked for in LD_LIBRARY_PATH: LD_PRELOAD is parted at blanks, also those of folders.
+function (lacuna_tests_with_emulated_ports)
+  lacuna_tests_in_real_time(${ARGN})
+  set_property(TEST ${ARGN} APPEND PROPERTY
+    ENVIRONMENT "LD_PRELOAD=$<TARGET_FILE_NAME:LacunaPseudoTerminalPorts>")
+  set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT_MODIFICATION
+    "LD_LIBRARY_PATH=path_list_prepend:$<TARGET_FILE_DIR:LacunaPseudoTerminalPorts>")
+endfunction ()
+
 # lacuna_add_paraview_test(<script.py> [NAME <name>] [LABELS <label>...] [ARGS <argument>...])
 # Runs a script of Testing/ParaView in pvpython with the plugin of the build tree at hand. A script
 # that lacks the real data leaves with code 77, which counts as skipped.

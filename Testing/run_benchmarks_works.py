@@ -133,8 +133,15 @@ with tempfile.TemporaryDirectory() as folder:
     except ImportError:
         assert not pictures
     # with no program at all there is nothing to write about
-    nothing = subprocess.run([sys.executable, RUN, "--only=occluded-angle", f"--build={folder}/none", f"--output={folder}/none", "--rounds=1", "--minutes=0"], check=False, stdout=subprocess.DEVNULL)
+    nothing = subprocess.run([sys.executable, RUN, "--only=occluded-angle", f"--build={folder}/none", f"--output={output}", "--rounds=1", "--minutes=0"],
+                             check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     assert nothing.returncode == 1
+    with open(os.path.join(output, "README.md"), encoding="utf-8") as file:
+        assert file.read() == page
+    # where nothing can be written nothing is measured
+    calls = os.path.getsize(log)
+    nowhere = subprocess.run([sys.executable, RUN, "--only=iso-ray-caster", f"--build={folder}", f"--output={log}/page"], check=False, text=True, stderr=subprocess.PIPE)
+    assert nowhere.returncode == 1 and "cannot write into" in nowhere.stderr and os.path.getsize(log) == calls, nowhere
 
 # The rows are rows of the programs; peers may be absent
 if len(sys.argv) > 1:

@@ -30,5 +30,9 @@ else ()
     OPTIONAL_COMPONENTS TestingCore TestingRendering RenderingOpenGL2 InteractionStyle
       Python WrappingPythonCore FiltersPoints ImagingHybrid
     PATHS ${lacuna_paraview_vtk})
+  if (LACUNA_WRAP_PYTHON AND NOT VTK_WRAP_PYTHON)
+    message(FATAL_ERROR "${VTK_DIR} was built without Python: give LACUNA_WRAP_PYTHON=OFF, "
+      "and BUILD_TESTING=OFF where it was also built without its modules for tests")
+  endif ()
   set(lacuna_flavor "vtk${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}")
 endif ()

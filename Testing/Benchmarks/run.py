@@ -6,8 +6,8 @@
     Testing/Benchmarks/run.py --quick               a few minutes, into build/benchmarks
     Testing/Benchmarks/run.py --only speckle        one suite (several times for several)
 
-Needs a release build and the packages of Testing/Tools/packages-benchmarks.txt; peers that are not installed are
-left out, and so is what needs data of LACUNA_TEST_DATA where there is none. A benchmark that fails is noted on the
+Testing/Tools/benchmarks.sh runs it after installing the packages and building all; by itself it takes what is built
+in build/release, with the packages of Testing/Tools/packages-benchmarks.txt. Peers that are not installed are left out, and so is what needs data of LACUNA_TEST_DATA where there is none. A benchmark that fails is noted on the
 page, the others go on. Leave the machine alone meanwhile: the page says how much others had of it.
 """
 import argparse
@@ -22,7 +22,6 @@ import tempfile
 import time
 
 from harness import cases, machine, report, rows
-from harness.statistics import Measured
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -122,15 +121,32 @@ def rank_rows(results):
     return found
 
 
+def has_plots():
+    """Whether plots can be drawn; complains if not."""
+    try:
+        import matplotlib  # noqa: F401
+        return True
+    except ImportError as missing:
+        print(f"no plots: {missing} (Debian: python3-matplotlib, for /usr/bin/python3); --redraw makes them later", file=sys.stderr)
+        return False
+
+
+def require_writable(folder):
+    """Now rather than after an hour of measuring."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as problem:
+        raise SystemExit(f"cannot write into {folder}: {problem.strerror}; give another --output") from None
+
+
 def write(results, folder, suites):
     """The page, its plots, and the figures themselves."""
-    os.makedirs(folder, exist_ok=True)
-    try:
-        from harness import plots  # after all was measured: without matplotlib there are the tables
+    drawn = []
+    if has_plots():
+        from harness import plots
         drawn = plots.draw(results, suites, folder, rank_rows(results))
-    except ImportError as missing:
-        print(f"no plots: {missing} (Debian: python3-matplotlib)", file=sys.stderr)
-        drawn = []
     for name in os.listdir(folder):
         if name.endswith(".svg") and name[:-4] not in drawn:
             os.remove(os.path.join(folder, name))  # of an earlier run
@@ -186,9 +202,11 @@ def parse_arguments(arguments):
 
 def main(arguments=None):
     options = parse_arguments(arguments)
+    require_writable(options.output)
     if options.redraw:
         write(join(options.redraw), options.output, cases.SUITES)
         return 0
+    has_plots()
     runner = Runner(options)
     suites = [suite for suite in cases.SUITES if not options.only or suite.name in options.only]
     given = " ".join(["Testing/Benchmarks/run.py", *(["--quick"] if options.quick else []), *(f"--only {name}" for name in options.only or [])])
@@ -208,11 +226,15 @@ def main(arguments=None):
             results["left_out"]["Ranks"] = f"not begun within {options.minutes:g} minutes"
     results["load"] = {"mean": load.others(), "largest": max((each["others"] for each in results["suites"].values()), default=0.0)}
     results["minutes"] = (time.monotonic() - start) / 60
+    for name, each in results["suites"].items():
+        for what, why in each["errors"].items():
+            print(f"not measured: {name}: {what}: {why}")
+    if not rank_rows(results) and not any(any(values) for each in results["suites"].values() for values in each["rows"].values()):
+        print("nothing was measured, and nothing written; is Lacuna built?", file=sys.stderr)
+        return 1
     write(results, options.output, suites)
-    failed = [f"{name}: {what}: {why}" for name, each in results["suites"].items() for what, why in each["errors"].items()]
-    print("\n".join([os.path.join(options.output, "README.md"), *(f"not measured: {each}" for each in failed)]))
-    nothing = not any(Measured(each).rows and any(any(values) for values in each["rows"].values()) for each in results["suites"].values())
-    return 1 if nothing and not rank_rows(results) else 0
+    print(os.path.join(options.output, "README.md"))
+    return 0
 
 
 if __name__ == "__main__":

@@ -46,14 +46,19 @@ echo "== removal"
 purge
 files >"$work/before"
 install ./lacuna*_"$version"-*.deb
-test -e /usr/share/doc/lacuna-doc/examples/README.md
+examples=/usr/share/doc/lacuna-doc/examples
+test -e $examples/README.md
+for script in 15-occluded-angle-2d/occluded_angle_2d 04-calibration/error_budget; do
+  as_user pvpython --force-offscreen-rendering $examples/$script.py >"$work/example.log" 2>&1 || { cat "$work/example.log"; exit 1; }
+done
 python3 -c 'import lacuna.plugin, lacuna.pictures' # as root, who may write beside the modules
 pvpython --force-offscreen-rendering installed.py "$version" "$work" >/dev/null
 dpkg --verify lacuna lacuna-dev lacuna-doc
 purge
 files >"$work/after"
 diff "$work/before" "$work/after"
-if grep -i lacuna "$work/after"; then exit 1; fi
+if grep -i -e lacuna -e /usr/bin/paraview.conf "$work/after"; then exit 1; fi
+if find /var/cache /var/log -iname '*lacuna*' | grep .; then exit 1; fi
 
 # as it was, so that the next run sees what is missing among the dependencies
 apt-mark auto $tools >/dev/null

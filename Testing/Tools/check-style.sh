@@ -13,7 +13,7 @@ if command -v clang-format-14 >/dev/null || command -v clang-format >/dev/null; 
   # shellcheck disable=SC2086
   $format --dry-run -Werror $sources || complain "run clang-format -i on the files above"
 else
-  complain "clang-format is not installed (Testing/Tools/setup.sh installs it)"
+  complain "clang-format is not installed (Debian: clang-format-14; .ci/run installs it)"
 fi
 for file in $sources $(git ls-files '*.py' '*.sh' '*.cmake' '*CMakeLists.txt'); do
   head -n 3 "$file" | grep -q 'SPDX-License-Identifier: BSD-3-Clause' ||

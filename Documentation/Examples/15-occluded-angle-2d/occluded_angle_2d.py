@@ -14,7 +14,7 @@ from lacuna import occlusion, pictures
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+folder = sys.argv[1] if len(sys.argv) > 1 else "."
 os.makedirs(folder, exist_ok=True)
 SIZE = [200, 200, 200]
 

@@ -12,7 +12,7 @@ lacuna.plugin.load()
 from lacuna import occlusion, pictures
 from paraview.simple import *
 
-folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
+folder = sys.argv[1] if len(sys.argv) > 1 else "."
 os.makedirs(folder, exist_ok=True)
 
 

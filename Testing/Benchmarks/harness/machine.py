@@ -38,14 +38,21 @@ def package_versions():
     return ", ".join(found)
 
 
+def is_stale(build):
+    """Whether there is something to build, so that what is measured is not the sources' state."""
+    return "no work to do" not in (output("ninja", "-C", build, "-n") or "no work to do")
+
+
 def describe(root, build):
-    """Facts by heading."""
+    """Facts by heading; the version is that of the sources of the build, where one is there, else of root."""
     cpu = re.search(r"model name\s*: (.*)", read("/proc/cpuinfo"))
     flags = re.search(r"flags\s*: (.*)", read("/proc/cpuinfo"))
     sets = [name for name, flag in (("SSE2", "sse2"), ("AVX2", "avx2"), ("AVX-512", "avx512f")) if flags and flag in flags.group(1).split()]
     memory = re.search(r"MemTotal:\s*(\d+)", read("/proc/meminfo"))
     system = re.search(r'PRETTY_NAME="?([^"\n]*)', read("/etc/os-release"))
     cache = read(os.path.join(build, "CMakeCache.txt"))
+    source = re.search(r"CMAKE_HOME_DIRECTORY:\w+=(.*)", cache)
+    root = source.group(1) if source else root
     compiler = re.search(r"CMAKE_CXX_COMPILER:\w+=(.*)", cache)
     kind = re.search(r"CMAKE_BUILD_TYPE:\w+=(.*)", cache)
     changed = output("git", "-C", root, "status", "--porcelain", "--untracked-files=no", "--", ".", ":!Documentation/Benchmarks")
@@ -57,7 +64,7 @@ def describe(root, build):
         "System": f"{system.group(1) if system else platform.system()}, Linux {platform.release()}",
         "Compiler": f"{(output(compiler.group(1), '--version').splitlines() or ['unknown'])[0] if compiler else 'unknown'}, {kind.group(1) if kind else 'unknown build type'}",
         "Versions": package_versions() or "unknown",
-        "Lacuna": version + (", with changes" if changed else ""),
+        "Lacuna": version + (", with changes" if changed else "") + (", not all of it built" if is_stale(build) else ""),
         "Date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
     }
 

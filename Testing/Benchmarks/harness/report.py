@@ -71,7 +71,7 @@ class Page:
                     if load["largest"] > NOISY else ": the machine was quiet."))
         quick = ("**A quick run: small cases, and too few rounds to quote a figure.**\n\n" if results["quick"] else "")
         return (f"# Benchmarks\n\nWritten by `{results['command']}`, which needs a release build ([how](../../CONTRIBUTING.md)) and the packages of "
-                "`Testing/Tools/packages-benchmarks.txt`; run it to have the same of your machine. All figures are of "
+                "`Testing/Tools/packages-benchmarks.txt` (`Testing/Tools/benchmarks.sh` installs and builds them first); run it to have the same of your machine. All figures are of "
                 f"{'one run' if runs == 1 else f'{runs} runs'} of {results['minutes']:.0f} minutes: each row and its peers were measured in turns, {results['rounds']} rounds "
                 "(less where a table says so); given are the median and, in parentheses, the least and the largest of the rounds. A ratio is taken within a round. "
                 "*Clock* is the time one waits, *processor* the time of all threads together, both in ms.\n\n"
