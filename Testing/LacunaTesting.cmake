@@ -5,15 +5,20 @@
 # of others.
 add_custom_target(LacunaSanitizeTests)
 
-# lacuna_add_kernel_test(<name> [SANITIZE] SOURCES <file>... LIBRARIES <target>...)
-# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above.
+# lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)
+# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. SHARDS: its tests
+# mostly wait, and so many run at once.
 function (lacuna_add_kernel_test name)
-  cmake_parse_arguments(arg "SANITIZE" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZE" "SHARDS" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})
   target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
   target_include_directories(Test${name}Kernel PRIVATE "${CMAKE_SOURCE_DIR}/Testing")
   target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
-  add_test(NAME Kernel.${name} COMMAND Test${name}Kernel)
+  set(shards)
+  if (arg_SHARDS)
+    set(shards "${CMAKE_SOURCE_DIR}/Testing/Tools/shards.sh" ${arg_SHARDS})
+  endif ()
+  add_test(NAME Kernel.${name} COMMAND ${shards} "$<TARGET_FILE:Test${name}Kernel>")
   set_tests_properties(Kernel.${name} PROPERTIES LABELS "kernel")
   if (arg_SANITIZE)
     set_property(TEST Kernel.${name} APPEND PROPERTY LABELS "sanitize")

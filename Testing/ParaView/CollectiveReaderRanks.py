@@ -62,9 +62,9 @@ def run():
 def main():
     write_volume()
     found = {ranks: [line for line in lacuna_test.run_ranks(ranks, __file__, "in pvbatch").splitlines() if line.startswith("result")]
-             for ranks in (1, 2, 3)}
+             for ranks in (1, 2)}
     assert len(found[1]) == 8 and len(set(found[1])) == 8, found[1]
-    assert found[2] == found[1] and found[3] == found[1], found
+    assert found[2] == found[1], found
 
 
 if sys.argv[1:2] == ["in pvbatch"]:

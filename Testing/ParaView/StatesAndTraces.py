@@ -20,6 +20,22 @@ from paraview import servermanager, smstate, smtrace
 from paraview.simple import *
 
 
+def remember_definitions():
+    """ParaView's Python goes through all definitions for each proxy that it meets, which takes most of this test's time."""
+    search, found = servermanager.ProxyNamespace._findProxy, {}
+
+    def find(self, name=None, xmlname=None):
+        key = frozenset(self.xmlGroups), name, xmlname
+        if key not in found:
+            definition = search(self, name, xmlname)
+            if definition is None:
+                return None
+            found[key] = definition
+        return found[key]
+
+    servermanager.ProxyNamespace._findProxy = find
+
+
 def properties():
     """What the panel shows of each source: (source, property) and its values, of sub-proxies also."""
     found = {}
@@ -83,6 +99,7 @@ def check(pipeline):
     return kinds | {kind for ending, kind in WRITERS.items() if f"written.{ending}" in saved}
 
 
+remember_definitions()
 make_files("StatesAndTraces", *sys.argv[1:])
 seen = set()
 for pipeline in PIPELINES:

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Runs a GoogleTest program several times at once, each time a part of its tests: of those that mostly wait.
+#   Testing/Tools/shards.sh NUMBER PROGRAM [ARGUMENT...]
+set -uo pipefail
+number=$1
+shift
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+parts=()
+for ((i = 0; i < number; ++i)); do
+  GTEST_TOTAL_SHARDS=$number GTEST_SHARD_INDEX=$i "$@" >"$folder/$i" 2>&1 &
+  parts+=($!)
+done
+failed=0
+for ((i = 0; i < number; ++i)); do
+  wait "${parts[i]}" || failed=1
+  cat "$folder/$i"
+done
+exit $failed
