@@ -3,6 +3,7 @@
 
 #include "lacunaBoxInterpolant.h"
 #include "lacunaExecution.h"
+#include "lacunaMemory.h"
 #include "lacunaSingleBlasThread.h"
 
 #include <cblas.h>
@@ -228,10 +229,52 @@ void FastRadialSum<Dimension>::SetUpInterpolants(Execution& execution)
   const Execution::NestedStages stages(execution);
   execution.SetStage(0.15, 0.45);
   this->Upward(execution);
-  execution.SetStage(0.45, 0.9);
-  this->Across(execution);
-  execution.SetStage(0.9, 1);
-  this->Downward(execution);
+  execution.SetStage(0.45, 1);
+  this->OfPart = {};
+  if (this->Fits(this->Part))
+  {
+    this->OfPart = this->MakeInterpolants(execution, this->Part);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+std::int64_t FastRadialSum<Dimension>::CountWanted(const GridPart<Dimension>& part) const
+{
+  const std::vector<Cell>& cells = this->GetTargets().Cells;
+  return std::count_if(
+    cells.begin(), cells.end(), [&](const Cell& cell) { return this->IsWanted(cell, part); });
+}
+
+template <int Dimension>
+bool FastRadialSum<Dimension>::Fits(const GridPart<Dimension>& part) const
+{
+  const double bytes = 8.0 * this->Far->GetSize() * static_cast<double>(this->CountWanted(part));
+  return !this->Grid || bytes <= this->MemoryForInterpolants;
+}
+
+template <int Dimension>
+typename FastRadialSum<Dimension>::Interpolants FastRadialSum<Dimension>::MakeInterpolants(
+  Execution& execution, const GridPart<Dimension>& part) const
+{
+  const Execution::NestedStages stages(execution);
+  const std::vector<Cell>& cells = this->GetTargets().Cells;
+  Interpolants made;
+  made.Slots.reserve(cells.size());
+  std::int32_t wanted = 0;
+  for (const Cell& cell : cells)
+  {
+    made.Slots.push_back(this->IsWanted(cell, part) ? wanted++ : -1);
+  }
+  const std::size_t numbers = static_cast<std::size_t>(wanted) * this->Far->GetSize();
+  RequireMemory("the interpolants of a fast sum (raise " + this->Words.Accuracy + ")",
+    static_cast<double>(numbers * sizeof(double)));
+  made.Locals.assign(numbers, 0.0);
+  execution.SetStage(0, 0.8);
+  this->Across(execution, made);
+  execution.SetStage(0.8, 1);
+  this->Downward(execution, made);
+  return made;
 }
 
 //------------------------------------------------------------------------------
@@ -329,7 +372,8 @@ void FastRadialSum<Dimension>::ForCells(Execution& execution, int first, int las
 
 //------------------------------------------------------------------------------
 template <int Dimension>
-void FastRadialSum<Dimension>::ApplyPairs(const typename InteractionLists<Dimension>::Block& block)
+void FastRadialSum<Dimension>::ApplyPairs(
+  const typename InteractionLists<Dimension>::Block& block, Interpolants& to) const
 {
   constexpr std::size_t columns = 256;
   const auto size = static_cast<std::size_t>(this->Far->GetSize());
@@ -345,28 +389,28 @@ void FastRadialSum<Dimension>::ApplyPairs(const typename InteractionLists<Dimens
     std::size_t last = first;
     for (; last < std::min(first + columns, block.LastPair) && pairs[last].Operator == op; ++last)
     {
-      const std::int32_t* to = this->Permutations[pairs[last].Symmetry].data();
+      const std::int32_t* turned = this->Permutations[pairs[last].Symmetry].data();
       const double* multipole = this->Multipoles.data() + pairs[last].Source * size;
       double* column = in.data() + (last - first) * size;
       for (std::size_t k = 0; k < size; ++k)
       {
-        column[to[k]] = multipole[k];
+        column[turned[k]] = multipole[k];
       }
     }
     this->Far->Get(level, op).Apply(in.data(), static_cast<int>(last - first), out.data(), scratch);
     for (std::size_t p = first; p < last; ++p)
     {
-      const std::int32_t slot = this->Slots[pairs[p].Target];
+      const std::int32_t slot = to.Slots[pairs[p].Target];
       if (slot < 0)
       {
         continue;
       }
-      const std::int32_t* to = this->Permutations[pairs[p].Symmetry].data();
+      const std::int32_t* turned = this->Permutations[pairs[p].Symmetry].data();
       const double* column = out.data() + (p - first) * size;
-      double* local = this->Locals.data() + slot * size;
+      double* local = to.Locals.data() + slot * size;
       for (std::size_t k = 0; k < size; ++k)
       {
-        local[k] += scale * column[to[k]];
+        local[k] += scale * column[turned[k]];
       }
     }
     first = last;
@@ -374,12 +418,12 @@ void FastRadialSum<Dimension>::ApplyPairs(const typename InteractionLists<Dimens
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::PointsToLocal(int target)
+void FastRadialSum<Dimension>::PointsToLocal(int target, Interpolants& to) const
 {
   const CellLists<std::int32_t>& lists = this->Lists->PointsToLocal;
   const CellTree<Dimension>& tree = this->GetTargets();
   const Cell& cell = tree.Cells[target];
-  if (lists.Begin[target] == lists.Begin[target + 1] || this->Slots[target] < 0)
+  if (lists.Begin[target] == lists.Begin[target + 1] || to.Slots[target] < 0)
   {
     return;
   }
@@ -387,7 +431,7 @@ void FastRadialSum<Dimension>::PointsToLocal(int target)
   NodeLattice<Dimension> nodes;
   nodes.Set(
     this->Far->GetBasis().GetRoots(), tree.GetCellSize(cell.Level) / 2, tree.GetCenter(cell), size);
-  double* local = this->Locals.data() + static_cast<std::size_t>(this->Slots[target]) * size;
+  double* local = to.Locals.data() + static_cast<std::size_t>(to.Slots[target]) * size;
   alignas(64) double sums[RadialBlock];
   for (std::size_t i = lists.Begin[target]; i < lists.Begin[target + 1]; ++i)
   {
@@ -405,45 +449,37 @@ void FastRadialSum<Dimension>::PointsToLocal(int target)
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::Across(Execution& execution)
+void FastRadialSum<Dimension>::Across(Execution& execution, Interpolants& to) const
 {
-  const auto cells = static_cast<std::int64_t>(this->GetTargets().Cells.size());
-  this->Slots.assign(cells, -1);
-  std::int32_t wanted = 0;
-  for (std::int64_t t = 0; t < cells; ++t)
-  {
-    this->Slots[t] = this->IsWanted(this->GetTargets().Cells[t]) ? wanted++ : -1;
-  }
-  this->Locals.assign(static_cast<std::size_t>(wanted) * this->Far->GetSize(), 0.0);
   execution.For(static_cast<std::int64_t>(this->Lists->Blocks.size()), 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t b = begin; b < end; ++b)
       {
         const typename InteractionLists<Dimension>::Block& block = this->Lists->Blocks[b];
-        const auto first = this->Slots.begin();
+        const auto first = to.Slots.begin();
         if (std::any_of(first + block.FirstTarget, first + block.LastTarget,
               [](std::int32_t slot) { return slot >= 0; }))
         {
-          this->ApplyPairs(block);
+          this->ApplyPairs(block, to);
         }
       }
     });
   if (!this->Lists->PointsToLocal.Items.empty())
   {
-    execution.For(cells, 16,
+    execution.For(static_cast<std::int64_t>(to.Slots.size()), 16,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t t = begin; t < end; ++t)
         {
-          this->PointsToLocal(static_cast<int>(t));
+          this->PointsToLocal(static_cast<int>(t), to);
         }
       });
   }
 }
 
 template <int Dimension>
-void FastRadialSum<Dimension>::Downward(Execution& execution)
+void FastRadialSum<Dimension>::Downward(Execution& execution, Interpolants& to) const
 {
   const CellTree<Dimension>& tree = this->GetTargets();
   const auto size = static_cast<std::size_t>(this->Far->GetSize());
@@ -454,7 +490,7 @@ void FastRadialSum<Dimension>::Downward(Execution& execution)
     std::vector<double> moved(size);
     for (std::int64_t t = begin; t < end; ++t)
     {
-      if (this->Slots[t] < 0)
+      if (to.Slots[t] < 0)
       {
         continue;
       }
@@ -465,8 +501,8 @@ void FastRadialSum<Dimension>::Downward(Execution& execution)
         halves[c] = basis.GetHalfTransposed(static_cast<int>(cell.Index[c] & 1U));
       }
       TransformTensor<Dimension>(halves, RepeatSize<Dimension>(this->Order), this->Order,
-        this->Locals.data() + this->Slots[cell.Parent] * size, moved.data(), scratch);
-      double* local = this->Locals.data() + this->Slots[t] * size;
+        to.Locals.data() + to.Slots[cell.Parent] * size, moved.data(), scratch);
+      double* local = to.Locals.data() + to.Slots[t] * size;
       for (std::size_t k = 0; k < size; ++k)
       {
         local[k] += moved[k];

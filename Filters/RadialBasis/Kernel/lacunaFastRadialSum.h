@@ -47,6 +47,11 @@ public:
   /// The part of the grid where values are wanted, by default all. They have the same bits.
   void SetPart(const GridPart<Dimension>& part) { this->Part = part; }
 
+  /// Bytes that interpolants over the boxes of the grid's part may take at once: with more of them
+  /// values are made for some boxes after the others, which have the same bits and take somewhat
+  /// longer. Those of scattered points are all there, or refused with their bytes.
+  void SetMemoryForInterpolants(double bytes) { this->MemoryForInterpolants = bytes; }
+
   /// For errors. By default the options' own names.
   void SetWords(const RadialWords& words) { this->Words = words; }
 
@@ -101,10 +106,24 @@ private:
   void SumMagnitudes();
   void Upward(Execution& execution);
   void PointsToMultipole(const Cell& cell, double* multipole) const;
-  void Across(Execution& execution);
-  void ApplyPairs(const typename InteractionLists<Dimension>::Block& block);
-  void PointsToLocal(int target);
-  void Downward(Execution& execution);
+  /// Target boxes with points of a part: which they are among these, else -1, and values at the nodes
+  /// of their interpolants.
+  struct Interpolants
+  {
+    std::vector<std::int32_t> Slots;
+    std::vector<double> Locals;
+  };
+  /// How many boxes have points of a part.
+  std::int64_t CountWanted(const GridPart<Dimension>& part) const;
+  bool Fits(const GridPart<Dimension>& part) const;
+  Interpolants MakeInterpolants(Execution& execution, const GridPart<Dimension>& part) const;
+  void Across(Execution& execution, Interpolants& to) const;
+  void ApplyPairs(const typename InteractionLists<Dimension>::Block& block, Interpolants& to) const;
+  void PointsToLocal(int target, Interpolants& to) const;
+  void Downward(Execution& execution, Interpolants& to) const;
+  /// Of some of a part; values are those of the part.
+  void EvaluateSome(Execution& execution, const GridPart<Dimension>& some,
+    const Interpolants& interpolants, const GridPart<Dimension>& part, double* values) const;
   void EvaluateLocal(const Cell& cell, const double* local, double* values) const;
   /// At points of a target: the points of cell.
   void EvaluateDirect(int target, const Cell& cell, double* values) const;
@@ -117,8 +136,11 @@ private:
   /// What is left of a box in the part.
   Cell Clip(const Cell& cell, const GridPart<Dimension>& part) const;
   static bool IsWithin(const Cell& cell, const GridPart<Dimension>& part);
-  /// Whether a box of points has some of the part.
-  bool IsWanted(const Cell& cell) const { return !this->Grid || IsWithin(cell, this->Part); }
+  /// Whether a box of points has some of a part.
+  bool IsWanted(const Cell& cell, const GridPart<Dimension>& part) const
+  {
+    return !this->Grid || IsWithin(cell, part);
+  }
   static void ForCells(Execution& execution, int first, int last,
     const std::function<void(std::int64_t, std::int64_t)>& body);
 
@@ -142,10 +164,8 @@ private:
   std::vector<double> Weights;    // in the order of Sources
   std::vector<double> Magnitudes; // sum of |w| in each box of sources
   std::vector<double> Multipoles; // each box's weights of the nodes of its interpolant
-  // Of target boxes with points of the part: which they are among these, else -1, and values at the
-  // nodes of their interpolants
-  std::vector<std::int32_t> Slots;
-  std::vector<double> Locals;
+  Interpolants OfPart;            // none when those of the whole part are too many
+  double MemoryForInterpolants = 512 * 1048576.0;
 };
 }
 #endif

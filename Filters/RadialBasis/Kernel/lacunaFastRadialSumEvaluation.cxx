@@ -44,6 +44,25 @@ void CopyRows(const std::array<std::array<std::int32_t, 2>, Dimension>& range, c
       from + getPlace(fromBox, row), range[0][1] - range[0][0], to + getPlace(toBox, row));
   }
 }
+
+// Cuts a part across its longest edge and appends the second half. False for a point.
+template <int Dimension>
+bool Halve(GridPart<Dimension>& part, std::vector<GridPart<Dimension>>& parts)
+{
+  const auto getLength = [](const auto& range) { return range[1] - range[0]; };
+  const auto longest = std::max_element(part.begin(), part.end(),
+    [&](const auto& a, const auto& b) { return getLength(a) < getLength(b); });
+  if (getLength(*longest) < 2)
+  {
+    return false;
+  }
+  const auto axis = longest - part.begin();
+  GridPart<Dimension> other = part;
+  other[axis][0] = (part[axis][0] + part[axis][1]) / 2;
+  part[axis][1] = other[axis][0];
+  parts.push_back(other); // part may be one of them
+  return true;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -284,9 +303,37 @@ void FastRadialSum<Dimension>::EvaluatePart(
   Execution& execution, const GridPart<Dimension>& part, double* values) const
 {
   const SingleBlasThread single(execution.GetNumberOfThreads());
+  if (this->Direct || !this->OfPart.Slots.empty())
+  {
+    this->EvaluateSome(execution, part, this->OfPart, part, values);
+    return;
+  }
+  const Execution::NestedStages stages(execution);
+  std::vector<GridPart<Dimension>> some{ part };
+  for (std::size_t i = 0; i < some.size(); ++i)
+  {
+    while (!this->Fits(some[i]) && Halve<Dimension>(some[i], some))
+    {
+    }
+  }
+  for (std::size_t i = 0; i < some.size(); ++i)
+  {
+    const double begin = static_cast<double>(i) / static_cast<double>(some.size());
+    const double share = 1 / static_cast<double>(some.size());
+    execution.SetStage(begin, begin + 0.6 * share);
+    const Interpolants own = this->MakeInterpolants(execution, some[i]);
+    execution.SetStage(begin + 0.6 * share, begin + share);
+    this->EvaluateSome(execution, some[i], own, part, values);
+  }
+}
+
+template <int Dimension>
+void FastRadialSum<Dimension>::EvaluateSome(Execution& execution, const GridPart<Dimension>& some,
+  const Interpolants& interpolants, const GridPart<Dimension>& part, double* values) const
+{
   const CellTree<Dimension>& tree = this->GetTargets();
   const auto size = static_cast<std::size_t>(this->Direct ? 0 : this->Far->GetSize());
-  const std::vector<int> leaves = this->GetLeaves(part);
+  const std::vector<int> leaves = this->GetLeaves(some);
   execution.For(static_cast<std::int64_t>(leaves.size()), this->Direct ? 1 : 8,
     [&](std::int64_t begin, std::int64_t end)
     {
@@ -296,7 +343,7 @@ void FastRadialSum<Dimension>::EvaluatePart(
       {
         const int t = leaves[leaf];
         const Cell& cell = tree.Cells[t];
-        const Cell clipped = this->Clip(cell, part);
+        const Cell clipped = this->Clip(cell, some);
         results.assign(clipped.Count, 0.0);
         if (this->Direct)
         {
@@ -308,7 +355,8 @@ void FastRadialSum<Dimension>::EvaluatePart(
           {
             // Of all points whatever is wanted: rounding of matrix products depends on their size.
             all.resize(cell.Count);
-            this->EvaluateLocal(cell, this->Locals.data() + this->Slots[t] * size, all.data());
+            this->EvaluateLocal(
+              cell, interpolants.Locals.data() + interpolants.Slots[t] * size, all.data());
             if (this->Grid)
             {
               CopyRows<Dimension>(

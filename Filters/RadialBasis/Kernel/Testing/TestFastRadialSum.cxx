@@ -282,6 +282,40 @@ TEST(FastRadialSum, IsTheSameForAnyNumberOfThreads)
   EXPECT_EQ(results[0], results[2]);
 }
 
+TEST(FastRadialSum, WithLittleMemoryHasTheSameBits)
+{
+  lacuna::ThreadExecution execution(2);
+  const auto check = [&](const auto& sources, const auto& grid, const auto& part, double least)
+  {
+    constexpr int dimension = std::tuple_size<decltype(grid.Origin)>::value;
+    const std::vector<double> weights = Weights(sources.size(), true);
+    std::size_t count = 1;
+    for (const auto& range : part)
+    {
+      count *= range[1] - range[0];
+    }
+    std::vector<std::vector<double>> results;
+    for (const double bytes : { 1e12, 1e6, least })
+    {
+      lacuna::FastRadialSum<dimension> sum(RadialKernel::Linear, sources, grid);
+      sum.SetMemoryForInterpolants(bytes);
+      results.emplace_back(count);
+      sum.SetPart(part);
+      sum.SetUpOnce(execution, weights, 1e-4);
+      EXPECT_GT(sum.GetOrder(), 1);
+      sum.EvaluatePart(execution, part, results.back().data());
+      EXPECT_EQ(results.back(), results.front()) << bytes;
+    }
+  };
+  const lacuna::RegularGrid<3> grid3{ { 0, 0, 0 }, { 0.02, 0.025, 0.02 }, { 50, 40, 50 } };
+  check(Make<3>(Shape::Clustered, 1500), grid3, lacuna::WholeGrid(grid3), 3e5);
+  // point by point
+  check(Make<3>(Shape::Uniform, 1500), grid3,
+    lacuna::GridPart<3>{ { { 30, 41 }, { 7, 8 }, { 20, 24 } } }, 0);
+  const lacuna::RegularGrid<2> grid2{ { 0, 0 }, { 0.005, 0.004 }, { 200, 250 } };
+  check(Make<2>(Shape::Clustered, 3000), grid2, lacuna::WholeGrid(grid2), 3e4);
+}
+
 TEST(FastRadialSum, UsesNoMoreThanItNeeds)
 {
   const Points<2> sources = Make<2>(Shape::Uniform, 3000);
