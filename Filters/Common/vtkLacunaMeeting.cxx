@@ -43,8 +43,13 @@ std::vector<std::uint64_t> GetSizes(vtkAlgorithm* filter)
 // Throws on all ranks when their inputs, of which each has the whole, are of unequal sizes.
 void RequireEqualSizes(vtkAlgorithm* filter, const lacuna::Ranks& ranks)
 {
-  const std::vector<std::uint64_t> own = GetSizes(filter);
-  std::vector<std::uint64_t> sum = own;
+  std::vector<std::uint64_t> own;
+  std::vector<std::uint64_t> sum;
+  ranks.Together([&] { sum = own = GetSizes(filter); });
+  if (own.empty())
+  {
+    return; // without inputs, on all ranks
+  }
   ranks.Sum(sum.data(), static_cast<std::int64_t>(sum.size()));
   ranks.Together(
     [&]

@@ -92,14 +92,6 @@ void AskForNothing(vtkInformation* input)
   vtkLacunaRequest::Extent(input, nothing);
 }
 
-// As little as does not make a reader on all ranks fail.
-void AskForAPoint(vtkInformation* input)
-{
-  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
-  const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
-  vtkLacunaRequest::Extent(input, point);
-}
-
 // Whether an algorithm executes on each rank for itself: Lacuna's, ParaView's between two proxies, and
 // sources of which that is known. Raw images and NRRD are read by MPI on all ranks or none, for instance.
 bool IsFamiliar(vtkAlgorithm* algorithm)
@@ -252,14 +244,7 @@ std::string vtkLacunaRequest::WholeOrNothing(
   }
   catch (const std::runtime_error& error)
   {
-    if (HasStrangersUpstream(filter))
-    {
-      AskForAPoint(input);
-    }
-    else
-    {
-      AskForNothing(input);
-    }
+    AskForNothing(input);
     return error.what();
   }
   Whole(filter, input, outputs);

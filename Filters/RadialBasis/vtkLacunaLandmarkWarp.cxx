@@ -178,7 +178,8 @@ void vtkLacunaLandmarkWarp<Dimension>::SetPart(vtkLacunaExecution& execution, co
   for (int c = 0; c < Dimension; ++c)
   {
     execution.SetStage(1.0 * c / Dimension, (c + 1.0) / Dimension);
-    this->Components.emplace_back(execution, *this->Fit, grid, this->GetReach(part), c);
+    this->Components.emplace_back(execution, *this->Fit, grid, this->GetReach(part), c,
+      Function::OnGrid::Memory / Dimension); // all are kept
   }
 }
 

@@ -219,6 +219,10 @@ int vtkLacunaPhantomSweep::RequestData(
         return;
       }
       vtkImageData* volume = vtkImageData::GetData(inputVector[0]);
+      if (volume && volume->GetNumberOfPoints() == 0)
+      {
+        return; // an error has been said before, as that there is no room for it
+      }
       const lacuna::ProbeMotion motion = this->MakeMotion(volume);
       const std::unique_ptr<lacuna::PhantomScene> volumeScene =
         volume ? MakeScene(volume) : nullptr;

@@ -124,7 +124,7 @@ def rank_rows(results):
 def has_plots():
     """Whether plots can be drawn; complains if not."""
     try:
-        import matplotlib  # noqa: F401
+        from harness import plots  # noqa: F401
         return True
     except ImportError as missing:
         print(f"no plots: {missing} (Debian: python3-matplotlib, for /usr/bin/python3); --redraw makes them later", file=sys.stderr)
@@ -143,6 +143,9 @@ def require_writable(folder):
 
 def write(results, folder, suites):
     """The page, its plots, and the figures themselves."""
+    with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:  # first: all else can be made of it
+        json.dump(results, file, indent=1, ensure_ascii=False)
+        file.write("\n")
     drawn = []
     if has_plots():
         from harness import plots
@@ -152,9 +155,6 @@ def write(results, folder, suites):
             os.remove(os.path.join(folder, name))  # of an earlier run
     with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as file:
         file.write(report.Page(results, suites).text(drawn))
-    with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:
-        json.dump(results, file, indent=1, ensure_ascii=False)
-        file.write("\n")
 
 
 def join(files):
@@ -229,6 +229,8 @@ def main(arguments=None):
     for name, each in results["suites"].items():
         for what, why in each["errors"].items():
             print(f"not measured: {name}: {what}: {why}")
+    if results.get("ranks") and not rank_rows(results):
+        print(f"not measured: ranks: {results['ranks']['text']}")
     if not rank_rows(results) and not any(any(values) for each in results["suites"].values() for values in each["rows"].values()):
         print("nothing was measured, and nothing written; is Lacuna built?", file=sys.stderr)
         return 1

@@ -5,9 +5,10 @@
 set -uo pipefail
 number=$1
 shift
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 parts=()
+folder=$(mktemp -d) || exit 1
+trap 'kill "${parts[@]}" 2>/dev/null; rm -rf "$folder"' EXIT
+trap 'exit 130' INT TERM
 for ((i = 0; i < number; ++i)); do
   GTEST_TOTAL_SHARDS=$number GTEST_SHARD_INDEX=$i "$@" >"$folder/$i" 2>&1 &
   parts+=($!)

@@ -140,9 +140,11 @@ public:
   class OnGrid
   {
   public:
-    /// region: contains the parts that will be asked for.
+    static constexpr double Memory = 512 * 1048576.0;
+    /// region: contains the parts that will be asked for. memory: bytes that are kept for them, see
+    /// FastRadialSum::SetMemoryForInterpolants.
     OnGrid(Execution& execution, const RadialBasis& function, const RegularGrid<Dimension>& grid,
-      const GridPart<Dimension>& region, int component = 0);
+      const GridPart<Dimension>& region, int component = 0, double memory = Memory);
     void Evaluate(Execution& execution, const GridPart<Dimension>& part, double* values) const;
 
   private:

@@ -184,7 +184,8 @@ void RadialBasis<Dimension>::EvaluateGrid(Execution& execution, const RegularGri
 
 template <int Dimension>
 RadialBasis<Dimension>::OnGrid::OnGrid(Execution& execution, const RadialBasis& function,
-  const RegularGrid<Dimension>& grid, const GridPart<Dimension>& region, int component)
+  const RegularGrid<Dimension>& grid, const GridPart<Dimension>& region, int component,
+  double memory)
   : Function(function)
   , Grid(grid)
   , Component(component)
@@ -206,6 +207,7 @@ RadialBasis<Dimension>::OnGrid::OnGrid(Execution& execution, const RadialBasis& 
     function.Options.Kernel, function.GetCenters().Nodes, this->Scaled);
   sum->SetWords(function.Options.Words);
   sum->SetPart(region);
+  sum->SetMemoryForInterpolants(memory);
   sum->SetUpOnce(execution, { coefficients.begin(), coefficients.begin() + n }, tolerance);
   this->Sum = sum;
 }

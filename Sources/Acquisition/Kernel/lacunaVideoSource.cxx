@@ -421,7 +421,8 @@ void VideoSource::Stream::Fill(VideoFrame& frame, Counts& count)
     const double time = static_cast<double>(picture.best_effort_timestamp) *
       av_q2d(this->Format->streams[this->Index]->time_base);
     const double periods = this->LastTime ? (time - *this->LastTime) * this->Rate : 0;
-    count.Missing += periods > 1.5 ? static_cast<std::uint64_t>(std::lround(periods)) - 1 : 0;
+    count.Missing +=
+      periods > 1.5 ? static_cast<std::uint64_t>(std::lround(std::fmin(periods, 1e9))) - 1 : 0;
     if (this->Paced)
     {
       this->WaitForTurn(time);

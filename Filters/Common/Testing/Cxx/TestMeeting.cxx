@@ -27,13 +27,23 @@ class Half : public lacuna::Ranks
 public:
   bool OtherIsFine = true;
   bool OtherHasData = true;
+  std::uint64_t OtherIsLonger = 0; // points along the first axis
   mutable int Met = 0;
 
   int GetNumber() const override { return 2; }
   using lacuna::Ranks::Sum;
-  void Sum(std::uint64_t* values, std::int64_t) const override
+  // of whether there are data, or of sizes
+  void Sum(std::uint64_t* values, std::int64_t count) const override
   {
-    values[0] += this->OtherHasData ? 1 : 0;
+    if (count == 1)
+    {
+      values[0] += this->OtherHasData ? 1 : 0;
+      return;
+    }
+    for (std::int64_t i = 0; i < count; ++i)
+    {
+      values[i] += values[i] + (i == 0 ? this->OtherIsLonger : 0);
+    }
   }
 
 protected:
@@ -64,6 +74,9 @@ std::string ErrorOf(const std::function<void()>& work)
 const std::vector<double> Before{ 1, 0, 0 };
 const std::vector<double> After{ 2, 0, 0 };
 
+// Whether all are sound, and of one size.
+constexpr int Meetings = 2;
+
 void TestTimes()
 {
   vtkNew<vtkTrivialProducer> filter; // without inputs
@@ -73,12 +86,12 @@ void TestTimes()
   const auto body = [&] { ++calls; };
   LACUNA_CHECK(meeting.Hold(filter, Before, true, ranks, body));
   LACUNA_CHECK(!meeting.Hold(filter, Before, true, ranks, body));
-  LACUNA_CHECK(calls == 1 && ranks.Met == 1);
+  LACUNA_CHECK(calls == 1 && ranks.Met == Meetings);
   LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, body));
-  LACUNA_CHECK(calls == 2 && ranks.Met == 2);
+  LACUNA_CHECK(calls == 2 && ranks.Met == 2 * Meetings);
   meeting.Forget();
   LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, body));
-  LACUNA_CHECK(calls == 3 && ranks.Met == 3);
+  LACUNA_CHECK(calls == 3 && ranks.Met == 3 * Meetings);
 }
 
 // VTK asks again for what an error has left empty, on those ranks only that have been asked for a part.
@@ -93,14 +106,14 @@ void TestErrors()
     Half ranks;
     vtkLacunaMeeting meeting;
     LACUNA_CHECK(!ErrorOf([&] { meeting.Hold(filter, Before, true, ranks, bodies[i]); }).empty());
-    LACUNA_CHECK(ranks.Met == 1);
+    LACUNA_CHECK(ranks.Met == Meetings);
     const std::string again =
       ErrorOf([&] { meeting.Hold(filter, Before, true, ranks, [] { LACUNA_CHECK(false); }); });
     LACUNA_CHECK_CONTAINS(again, texts[i]);
     LACUNA_CHECK_CONTAINS(again, "change a property");
-    LACUNA_CHECK(ranks.Met == 1);
+    LACUNA_CHECK(ranks.Met == Meetings);
     LACUNA_CHECK(meeting.Hold(filter, After, true, ranks, [] {}));
-    LACUNA_CHECK(ranks.Met == 2);
+    LACUNA_CHECK(ranks.Met == 2 * Meetings);
 
     // one rank alone waits for nobody, and what was wrong may be right now
     const lacuna::Ranks alone;
@@ -128,6 +141,23 @@ void TestOtherRank()
     ErrorOf([&] { meeting.Hold(filter, Before, false, ranks, never); }), "this rank has no input");
   ranks.OtherHasData = false;
   LACUNA_CHECK(meeting.Hold(filter, After, false, ranks, [] {})); // empty in, empty out
+}
+
+// Each has the whole of an input: parts of one that differs cannot be put together.
+void TestSizes()
+{
+  vtkNew<vtkRTAnalyticSource> source;
+  source->SetWholeExtent(0, 9, 0, 8, 0, 7);
+  vtkNew<vtkImageThreshold> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->Update();
+  Half ranks;
+  vtkLacunaMeeting meeting;
+  LACUNA_CHECK(meeting.Hold(filter, Before, true, ranks, [] {}));
+  ranks.OtherIsLonger = 1;
+  LACUNA_CHECK_CONTAINS(
+    ErrorOf([&] { meeting.Hold(filter, After, true, ranks, [] { LACUNA_CHECK(false); }); }),
+    "not of one size");
 }
 
 // An input that does not fit: nobody loads it, and all ranks hear of it when they meet.
@@ -172,6 +202,7 @@ int TestMeeting(int, char*[])
   TestTimes();
   TestErrors();
   TestOtherRank();
+  TestSizes();
   TestRefusal();
   return lacunaCheck::Result();
 }

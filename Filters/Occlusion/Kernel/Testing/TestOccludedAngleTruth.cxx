@@ -114,7 +114,7 @@ TEST(OccludedAngleTruth, OneGap)
       { return Radius(x, y) < 0.8 ? 2 * Pi - GetGap(half, c * x + s * y, c * y - s * x) : None; } };
     for (int fine : { 0, 1 })
     {
-      const double error = circle.GetError(fine ? 80 : 20, 400);
+      const double error = circle.GetError(fine ? 80 : 20, 800);
       mean[fine] += error / gaps;
       square[fine] += error * error / gaps;
     }
