@@ -40,12 +40,11 @@ std::vector<std::uint64_t> GetSizes(vtkAlgorithm* filter)
   return sizes;
 }
 
-// Throws on all ranks when their inputs, of which each has the whole, are of unequal sizes.
-void RequireEqualSizes(vtkAlgorithm* filter, const lacuna::Ranks& ranks)
+// Throws on all ranks when their inputs, of which each has the whole, are of unequal sizes. sum: the
+// same as own.
+void RequireEqualSizes(const std::vector<std::uint64_t>& own, std::vector<std::uint64_t>& sum,
+  const lacuna::Ranks& ranks)
 {
-  std::vector<std::uint64_t> own;
-  std::vector<std::uint64_t> sum;
-  ranks.Together([&] { sum = own = GetSizes(filter); });
   if (own.empty())
   {
     return; // without inputs, on all ranks
@@ -119,7 +118,14 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
   };
   try
   {
-    ranks.Together(requireInput);
+    std::vector<std::uint64_t> sizes;
+    std::vector<std::uint64_t> sum; // made here, where others do not wait if there is no memory
+    ranks.Together(
+      [&]
+      {
+        requireInput();
+        sum = sizes = GetSizes(filter);
+      });
     std::uint64_t number = hasData ? 1 : 0;
     ranks.Sum(&number, 1);
     if (number > 0 && number < static_cast<std::uint64_t>(ranks.GetNumber()))
@@ -127,7 +133,7 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
       throw std::runtime_error(hasData ? "another rank has no input; its own messages say why"
                                        : "this rank has no input, though others have");
     }
-    RequireEqualSizes(filter, ranks);
+    RequireEqualSizes(sizes, sum, ranks);
     body();
   }
   catch (const lacuna::Aborted&)

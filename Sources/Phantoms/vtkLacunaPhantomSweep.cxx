@@ -221,7 +221,7 @@ int vtkLacunaPhantomSweep::RequestData(
       vtkImageData* volume = vtkImageData::GetData(inputVector[0]);
       if (volume && volume->GetNumberOfPoints() == 0)
       {
-        return; // an error has been said before, as that there is no room for it
+        throw std::runtime_error("the input volume is empty");
       }
       const lacuna::ProbeMotion motion = this->MakeMotion(volume);
       const std::unique_ptr<lacuna::PhantomScene> volumeScene =

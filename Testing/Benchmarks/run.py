@@ -7,8 +7,9 @@
     Testing/Benchmarks/run.py --only speckle        one suite (several times for several)
 
 Testing/Tools/benchmarks.sh runs it after installing the packages and building all; by itself it takes what is built
-in build/release, with the packages of Testing/Tools/packages-benchmarks.txt. Peers that are not installed are left out, and so is what needs data of LACUNA_TEST_DATA where there is none. A benchmark that fails is noted on the
-page, the others go on. Leave the machine alone meanwhile: the page says how much others had of it.
+in build/release, with the packages of Testing/Tools/packages-benchmarks.txt. Peers that are not installed are left
+out, and so is what needs data of LACUNA_TEST_DATA where there is none. A benchmark that fails is noted on the page,
+the others go on. Leave the machine alone meanwhile: the page says how much others had of it.
 """
 import argparse
 import json

@@ -13,8 +13,8 @@ class vtkDataObject;
 namespace lacunaProperties
 {
 /// Changes one thing about data: takes an array away, renames it, gives it another type, other
-/// components or another length, or all of a group another length, puts NaN, infinities or huge numbers in, moves or distorts the
-/// grid, or takes everything away. Says what it did.
+/// components or another length, or all of a group another length, puts NaN, infinities or huge
+/// numbers in, moves or distorts the grid, or takes everything away. Says what it did.
 std::string Spoil(vtkDataObject* data, Dice& dice);
 
 /// Whether all numbers of data are finite.

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -47,9 +48,9 @@ public:
   /// The part of the grid where values are wanted, by default all. They have the same bits.
   void SetPart(const GridPart<Dimension>& part) { this->Part = part; }
 
-  /// Bytes that interpolants over the boxes of the grid's part may take at once: with more of them
-  /// values are made for some boxes after the others, which have the same bits and take somewhat
-  /// longer. Those of scattered points are all there, or refused with their bytes.
+  /// Bytes that interpolants over the boxes of the grid's part may take at once, by default any: with
+  /// more of them values are made for some boxes after the others, which have the same bits and take
+  /// somewhat longer. Those of scattered points are all there, or refused with their bytes.
   void SetMemoryForInterpolants(double bytes) { this->MemoryForInterpolants = bytes; }
 
   /// For errors. By default the options' own names.
@@ -165,7 +166,7 @@ private:
   std::vector<double> Magnitudes; // sum of |w| in each box of sources
   std::vector<double> Multipoles; // each box's weights of the nodes of its interpolant
   Interpolants OfPart;            // none when those of the whole part are too many
-  double MemoryForInterpolants = 512 * 1048576.0;
+  double MemoryForInterpolants = std::numeric_limits<double>::infinity();
 };
 }
 #endif

@@ -24,8 +24,8 @@ public:
   /// clocks, 1 ms at 50 parts in a million.
   explicit OpenIGTLinkClock(double window = 20);
 
-  /// Of further ones nothing is kept, and their messages are of the time they came: names of devices may
-  /// never end. Twice as many as a connection keeps whose messages nobody wants.
+  /// Devices whose stamps are kept, twice as many as a connection keeps whose messages nobody wants.
+  /// Messages of further ones are of the time they came: the names that a server sends may never end.
   static constexpr std::size_t MostDevices = 128;
   /// Takes in that a message of a device with this stamp came then, and gives the stamp in our time.
   double ToLocal(const std::string& device, double stamp, double arrival);
