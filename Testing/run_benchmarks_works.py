@@ -142,6 +142,16 @@ with tempfile.TemporaryDirectory() as folder:
     calls = os.path.getsize(log)
     nowhere = subprocess.run([sys.executable, RUN, "--only=iso-ray-caster", f"--build={folder}", f"--output={log}/page"], check=False, text=True, stderr=subprocess.PIPE)
     assert nowhere.returncode == 1 and "cannot write into" in nowhere.stderr and os.path.getsize(log) == calls, nowhere
+    # nor beside things of another kind
+    strange = os.path.join(folder, "strange")
+    os.makedirs(strange)
+    for name in ("README.md", "drawing.svg"):
+        with open(os.path.join(strange, name), "w", encoding="utf-8") as file:
+            file.write("mine")
+    for how in (f"--only=iso-ray-caster --build={folder}", f"--redraw={output}/results.json"):
+        refused = subprocess.run([sys.executable, RUN, *how.split(), f"--output={strange}"], check=False, text=True, stderr=subprocess.PIPE)
+        assert refused.returncode == 1 and "new or empty" in refused.stderr and os.path.getsize(log) == calls, refused
+    assert sorted(os.listdir(strange)) == ["README.md", "drawing.svg"]
 
 # The rows are rows of the programs; peers may be absent
 if len(sys.argv) > 1:

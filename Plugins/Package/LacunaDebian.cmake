@@ -98,6 +98,7 @@ set(CPACK_DEBIAN_DOC_PACKAGE_NAME lacuna-doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DOC_PACKAGE_SUGGESTS lacuna)
+set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${debian}/control-doc/prerm")
 set(CPACK_DEBIAN_DOC_DESCRIPTION
 "ParaView plugin: user guide, examples and C++ reference of Lacuna
 The site of Lacuna, to be read by a web browser from disk, and its examples:

@@ -7,6 +7,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaImagePlane.h"
+#include "lacunaVTKThreads.h"
 #include "lacunaVoxelVolume.h"
 
 #include "vtkCellArray.h"
@@ -19,7 +20,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSMPTools.h"
 #include "vtkShortArray.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ public:
     : Threads(threads)
     , Normals(normals)
   {
-    vtkSMPTools::Initialize(threads);
+    lacunaBenchmark::SetVTKThreads(threads);
     const Matrix4& m = volume.IndexToWorld;
     this->Image->SetDimensions(volume.Size.data());
     this->Image->SetSpacing(m(0, 0), m(1, 1), m(2, 2));

@@ -48,7 +48,7 @@ def warp(count):
     values = franke(places[:, 0], places[:, 1]) * numpy.cos(3 * places[:, 2])
 
     def measured():
-        interpolate.RBFInterpolator(places, numpy.stack([values] * 3, axis=1), kernel="linear", degree=1)
+        interpolate.RBFInterpolator(places, numpy.stack([values] * 3, axis=1), kernel="thin_plate_spline", degree=1)
     return measured
 
 

@@ -133,9 +133,11 @@ def has_plots():
 
 
 def require_writable(folder):
-    """Now rather than after an hour of measuring."""
+    """Now rather than after an hour of measuring. A folder of other things, with a README.md and pictures of its own, is left alone."""
     try:
         os.makedirs(folder, exist_ok=True)
+        if os.listdir(folder) and not os.path.exists(os.path.join(folder, "results.json")):
+            raise SystemExit(f"{folder} has files, and no results.json of an earlier run; give a folder that is new or empty as --output")
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as problem:
@@ -151,9 +153,9 @@ def write(results, folder, suites):
     if has_plots():
         from harness import plots
         drawn = plots.draw(results, suites, folder, rank_rows(results))
-    for name in os.listdir(folder):
-        if name.endswith(".svg") and name[:-4] not in drawn:
-            os.remove(os.path.join(folder, name))  # of an earlier run
+        for name in os.listdir(folder):
+            if name.endswith(".svg") and name[:-4] not in drawn:
+                os.remove(os.path.join(folder, name))  # of an earlier run
     with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as file:
         file.write(report.Page(results, suites).text(drawn))
 

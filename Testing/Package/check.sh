@@ -8,14 +8,29 @@ cd "$(dirname "$0")"
 version=$1
 tools="cmake g++ make xvfb xauth libgl1-mesa-dri"
 install() { apt-get -y -qq install --no-install-recommends "$@" >/dev/null; }
-purge() { apt-get -y -qq purge lacuna lacuna-dev lacuna-doc >/dev/null; }
+installed() { dpkg-query -W -f '${Package} ${db:Status-Abbrev}\n' "$@" 2>/dev/null | sed -n '/ un *$/!s/ .*//p'; }
+purge() {
+  mapfile -t there < <(installed lacuna lacuna-dev lacuna-doc)
+  [ ${#there[@]} = 0 ] || apt-get -y -qq purge "${there[@]}" >/dev/null
+}
+# as it was, so that what is missing among the dependencies is seen; also after a run that failed
+clean() {
+  purge
+  mapfile -t there < <(installed $tools)
+  [ ${#there[@]} = 0 ] || apt-mark auto "${there[@]}" >/dev/null
+  apt-get -y -qq autoremove --purge >/dev/null
+}
 files() {
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /tmp -o -path /var/tmp -o -path /run -o -path /root \
     -o -path /home -o -path /var/lib/apt -o -path /var/lib/dpkg/info -o -path /var/cache -o -path /var/log \
     -o -path "$PWD" -o -path /ccache \) -prune -o -print | sort
 }
 as_user() { (cd "$work" && setpriv --reuid=nobody --regid=nogroup --clear-groups env HOME="$work" "$@"); }
+# ParaView draws off screen, too, on a display
+on_display() { as_user timeout 300 xvfb-run -a -s -noreset "$@"; }
+clean
 work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 cp -r 18-embedding kernels installed.py in_window.py "$work"
 chown -R nobody "$work"
 apt-get -qq update
@@ -38,7 +53,7 @@ as_user cmake --build of-kernels >"$work/build.log" || { cat "$work/build.log"; 
 as_user of-kernels/Kernels "$work/calibration.xml"
 
 echo "== in ParaView's window"
-as_user timeout 120 xvfb-run -a -s -noreset paraview --script=in_window.py >"$work/window.log" 2>&1 || cat "$work/window.log"
+on_display paraview --script=in_window.py >"$work/window.log" 2>&1 || cat "$work/window.log"
 cat "$work/in_window.txt"
 grep -qx works "$work/in_window.txt"
 
@@ -49,19 +64,25 @@ install ./lacuna*_"$version"-*.deb
 examples=/usr/share/doc/lacuna-doc/examples
 test -e $examples/README.md
 for script in 15-occluded-angle-2d/occluded_angle_2d 04-calibration/error_budget; do
-  as_user pvpython --force-offscreen-rendering $examples/$script.py >"$work/example.log" 2>&1 || { cat "$work/example.log"; exit 1; }
+  on_display pvpython --force-offscreen-rendering $examples/$script.py >"$work/example.log" 2>&1 || { cat "$work/example.log"; exit 1; }
 done
+if [ -e $examples/../html ]; then
+  for page in $examples/README.md $examples/*/README.md; do
+    for target in $(grep -o '](\.\.[^)#]*' "$page" | cut -c3-); do
+      test -e "$(dirname "$page")/$target" || { echo "$page: nothing at $target"; exit 1; }
+    done
+  done
+fi
+python3 -m compileall -q $examples/04-calibration # as root's runs of examples with modules of their own
 python3 -c 'import lacuna.plugin, lacuna.pictures' # as root, who may write beside the modules
 pvpython --force-offscreen-rendering installed.py "$version" "$work" >/dev/null
-dpkg --verify lacuna lacuna-dev lacuna-doc
+changed=$(dpkg --verify lacuna lacuna-dev lacuna-doc)
+test -z "$changed" || { echo "$changed"; exit 1; }
 purge
 files >"$work/after"
 diff "$work/before" "$work/after"
 if grep -i -e lacuna -e /usr/bin/paraview.conf "$work/after"; then exit 1; fi
 if find /var/cache /var/log -iname '*lacuna*' | grep .; then exit 1; fi
 
-# as it was, so that the next run sees what is missing among the dependencies
-apt-mark auto $tools >/dev/null
-apt-get -y -qq autoremove --purge >/dev/null
-rm -rf "$work"
+clean
 echo "packages: installed, used and removed without a trace"

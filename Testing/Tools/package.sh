@@ -9,7 +9,10 @@ cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
 lacuna_install_packages
 lacuna_install_packages packages-packaging.txt
-if [ "${1:-}" != --no-site ]; then Documentation/build-site.sh; fi
+if [ "${1:-}" != --no-site ]; then
+  rm -rf build/site # pages that are no more
+  Documentation/build-site.sh
+fi
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH
 mkdir -p build # configured anew: the changelog's date, and whether there is a site

@@ -11,3 +11,17 @@ file(GLOB wrappings "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/dev/usr/lib/*/*CS.a")
 if (wrappings)
   file(REMOVE ${wrappings})
 endif ()
+# The examples' pages are written for the project's folder: here the site lies beside them, and programs
+# and libraries are found without a path.
+set(examples "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/doc/usr/share/doc/lacuna-doc/examples")
+file(GLOB pages "${examples}/README.md" "${examples}/*/README.md")
+foreach (page IN LISTS pages)
+  file(READ "${page}" text)
+  string(REPLACE "    . build/release/lacuna-env.sh\n" "" text "${text}")
+  string(REGEX REPLACE "(LD_PRELOAD=|    )build/release/(lib|bin)/" "\\1" text "${text}")
+  string(REPLACE "pvpython Documentation/Examples/" "pvpython /usr/share/doc/lacuna-doc/examples/" text "${text}")
+  string(REGEX REPLACE "\\]\\(((\\.\\./)+)(UserGuide|DeveloperGuide)/([a-z0-9-]+)\\.md"
+    "](\\1html/Documentation/\\3/\\4.html" text "${text}")
+  string(REGEX REPLACE "\\]\\(((\\.\\./)+)UserGuide/pictures/" "](\\1html/_images/" text "${text}")
+  file(WRITE "${page}" "${text}")
+endforeach ()

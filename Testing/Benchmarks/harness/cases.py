@@ -205,7 +205,7 @@ def iso_ray_caster():
     return Suite(
         "iso-ray-caster", "B-Spline Iso Ray Caster",
         "From volume to depth map with normals, nothing prepared, two threads. The head is ct_head/head.mha of LACUNA_TEST_DATA at 500 HU with 512 × 512 rays, the shell a bone in a cube. "
-        "VTK's FlyingEdges3D makes triangles, which a z-buffer draws (lacunaSurfacePass.h).",
+        "VTK's FlyingEdges3D, with as many threads (back end STDThread), makes triangles, which a z-buffer draws (lacunaSurfacePass.h).",
         comparisons=(against("CT head, B-spline, along an axis", 0, 0, True), against("CT head, B-spline, oblique", 0, 1), against("CT head, trilinear, along an axis", 2, 0),
                      Comparison("shell of 256³, B-spline, oblique", Row(own, "Shell/256/512/2"), (Row(own, "ShellFlyingEdges/256/512/2", "VTK FlyingEdges + z-buffer"),))),
         scalings=(
@@ -303,7 +303,7 @@ def ct_series():
         return Comparison(title, row(*at), (*peers, row(*at, "raw", "yardstick: bytes read"), *((row(*at, "decode", "yardstick: pixels decoded"),) if syntax else ())), quick)
 
     return Suite(
-        "ct-series", "CT Series Reader", "Slices of 512 × 512 in the system's memory, from opening the folder to the volume, two threads. VTK: vtkDICOMImageReader, one thread, uncompressed files only.",
+        "ct-series", "CT Series Reader", "Slices of 512 × 512 in the system's memory, from opening the folder to the volume, two threads. VTK: vtkDICOMImageReader, one thread, uncompressed files only. Yardsticks are the least of their trials.",
         comparisons=(against("500 slices, uncompressed", 0, (row(0, 500, 2, "vtk", VTK),)), against("500 slices, JPEG-LS", 1), against("500 slices, JPEG lossless", 2)),
         scalings=(Scaling("ct-series-slices", "CT series, uncompressed, two threads", "slices", (
             ("Lacuna", tuple((n, row(0, n, 2)) for n in (5, 50, 500))), (VTK, tuple((n, row(0, n, 2, "vtk", VTK)) for n in (5, 50, 500)))), quick=50),),
