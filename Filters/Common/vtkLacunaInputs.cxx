@@ -161,6 +161,11 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm)
 //------------------------------------------------------------------------------
 void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
 {
+  const std::string refusal = vtkLacunaRequest::TakeRefusal(algorithm, port);
+  if (!refusal.empty())
+  {
+    throw std::runtime_error(refusal);
+  }
   for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
   {
     const std::string name = "input " + std::to_string(port);

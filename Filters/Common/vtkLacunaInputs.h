@@ -20,8 +20,9 @@ namespace vtkLacunaInputs
 /// without points, cells and rows are sound.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string& name);
 
-/// All inputs that algorithm has, by the numbers of their ports. Throws, too, when less of an image
-/// arrived than algorithm asked for, as behind ParaView's Resample To Image on several ranks.
+/// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an image was refused
+/// (vtkLacunaRequest::WholeIfItFits), or less of it arrived than algorithm asked for, as behind ParaView's
+/// Resample To Image on several ranks.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
 
 /// Those of one port.

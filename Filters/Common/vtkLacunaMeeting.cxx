@@ -69,14 +69,11 @@ void RequireEqualSizes(const std::vector<std::uint64_t>& own, std::vector<std::u
 void vtkLacunaMeeting::AskForWhole(
   vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* wanted)
 {
-  this->Refusal.clear();
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
     {
-      const std::string refusal =
-        vtkLacunaRequest::WholeOrNothing(filter, inputs[port]->GetInformationObject(i), wanted);
-      this->Refusal = this->Refusal.empty() ? refusal : this->Refusal;
+      vtkLacunaRequest::WholeIfItFits(filter, inputs[port]->GetInformationObject(i), wanted);
     }
   }
 }
@@ -87,10 +84,6 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
 {
   const auto requireInput = [&]
   {
-    if (!this->Refusal.empty())
-    {
-      throw std::runtime_error(this->Refusal);
-    }
     if (vtkLacunaCheckAbort(filter))
     {
       throw lacuna::Aborted();

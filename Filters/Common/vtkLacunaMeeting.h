@@ -25,8 +25,8 @@ class vtkInformationVector;
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaMeeting
 {
 public:
-  /// For RequestUpdateExtent: asks for all of each input as vtkLacunaRequest::Whole does. When one does
-  /// not fit into the memory of this rank nothing is asked of it, and Hold says so on all ranks.
+  /// For RequestUpdateExtent: asks for all of each input as vtkLacunaRequest::WholeIfItFits does. When one
+  /// does not fit into the memory of this rank Hold says so on all ranks.
   void AskForWhole(
     vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* wanted = nullptr);
 
@@ -43,7 +43,6 @@ public:
   void Forget() { this->Times.clear(); }
 
 private:
-  std::string Refusal; ///< of the last request; empty: none
   std::vector<double> Times;
   std::string Error; ///< at these times; empty: none
 };

@@ -9,6 +9,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationStringVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRanks.h"
@@ -90,6 +91,45 @@ void AskForNothing(vtkInformation* input)
 {
   const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
   vtkLacunaRequest::Extent(input, nothing);
+}
+
+void AskForAPoint(vtkInformation* input)
+{
+  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
+  vtkLacunaRequest::Extent(input, point);
+}
+
+void AskForAll(vtkInformation* input)
+{
+  if (input->Has(SDDP::WHOLE_EXTENT()))
+  {
+    input->Set(SDDP::UPDATE_EXTENT(), input->Get(SDDP::WHOLE_EXTENT()), 6);
+  }
+  vtkLacunaRequest::OnePiece(input);
+}
+
+// What was refused of the inputs of a port, by their numbers; empty: nothing. In what the filter knows of
+// its port: an input's own information is that of all filters behind the same output.
+vtkInformationStringVectorKey* Refusals()
+{
+  static vtkInformationStringVectorKey* const key =
+    vtkInformationStringVectorKey::MakeKey("REFUSALS", "vtkLacunaRequest");
+  return key;
+}
+
+void Remember(vtkAlgorithm* filter, vtkInformation* input, const std::string& refusal)
+{
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      if (filter->GetInputInformation(port, i) == input)
+      {
+        filter->GetInputPortInformation(port)->Set(Refusals(), refusal.c_str(), i);
+      }
+    }
+  }
 }
 
 // Whether an algorithm executes on each rank for itself: Lacuna's, ParaView's between two proxies, and
@@ -191,13 +231,20 @@ bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
 {
-  if (HasStrangersUpstream(filter))
-  {
-    Whole(filter, input, nullptr);
-  }
-  else if (input->Has(SDDP::WHOLE_EXTENT()))
+  const bool isImage = input->Has(SDDP::WHOLE_EXTENT());
+  if (isImage && !HasStrangersUpstream(filter))
   {
     AskForNothing(input);
+    return;
+  }
+  try
+  {
+    RequireMemoryFor(input);
+    AskForAll(input);
+  }
+  catch (const std::runtime_error&)
+  {
+    AskForAPoint(input);
   }
 }
 
@@ -210,11 +257,7 @@ void vtkLacunaRequest::Whole(
     Nothing(filter, input);
     return;
   }
-  if (input->Has(SDDP::WHOLE_EXTENT()))
-  {
-    input->Set(SDDP::UPDATE_EXTENT(), input->Get(SDDP::WHOLE_EXTENT()), 6);
-  }
-  OnePiece(input);
+  AskForAll(input);
 }
 
 //------------------------------------------------------------------------------
@@ -232,7 +275,7 @@ void vtkLacunaRequest::WholeOnFirst(
 }
 
 //------------------------------------------------------------------------------
-std::string vtkLacunaRequest::WholeOrNothing(
+bool vtkLacunaRequest::WholeIfItFits(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {
   try
@@ -244,23 +287,26 @@ std::string vtkLacunaRequest::WholeOrNothing(
   }
   catch (const std::runtime_error& error)
   {
-    AskForNothing(input);
-    return error.what();
+    Remember(filter, input, error.what());
+    Nothing(filter, input);
+    return false;
   }
+  Remember(filter, input, {});
   Whole(filter, input, outputs);
-  return {};
+  return true;
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaRequest::WholeIfItFits(
-  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
+std::string vtkLacunaRequest::TakeRefusal(vtkAlgorithm* filter, int port)
 {
-  const std::string refusal = WholeOrNothing(filter, input, outputs);
-  if (!refusal.empty())
+  vtkInformation* info = filter->GetInputPortInformation(port);
+  std::string refusal;
+  for (int i = 0; i < info->Length(Refusals()) && refusal.empty(); ++i)
   {
-    vtkErrorWithObjectMacro(filter, << refusal);
+    refusal = info->Get(Refusals(), i);
   }
-  return refusal.empty();
+  info->Remove(Refusals());
+  return refusal;
 }
 
 //------------------------------------------------------------------------------
@@ -276,16 +322,10 @@ std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformat
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
 {
-  const std::string refusal = WholeOrNothing(filter, filter->GetInputInformation(port, 0), nullptr);
-  if (refusal.empty() || vtkLacunaRanks().GetNumber() > 1) // which may meet there
-  {
-    vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
-    connection->GetProducer()->Update(connection->GetIndex());
-  }
-  if (!refusal.empty())
-  {
-    throw std::runtime_error(refusal);
-  }
+  WholeIfItFits(filter, filter->GetInputInformation(port, 0), nullptr);
+  vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
+  connection->GetProducer()->Update(
+    connection->GetIndex()); // also after a refusal: ranks may meet there
   vtkLacunaInputs::Check(filter, port);
 }
 

@@ -27,20 +27,21 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
 /// All of an input of filter, on every rank: images by their whole extent, other data as one piece.
 /// When outputs are not wanted (null: they are), nothing of an image, unless there is a filter upstream
 /// that is not Lacuna's, or a source of which it is not known that it executes on each rank for itself:
-/// such a one may need all ranks, and execute on some of them only.
+/// such a one may need all ranks, and execute on some of them only. Then all of it, or one point when it
+/// does not fit into the memory: readers that use MPI end the program when they are asked for nothing.
 VTKLACUNAFILTERSCOMMON_EXPORT void Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
-/// The same for filters that cannot do with less: returns true, or false after an error of filter that
-/// names the bytes, when the input is an image that is not in memory yet and does not fit into it. Then
-/// nothing is asked for. RequestUpdateExtent shall return 1 all the same: VTK goes on to execute, and
-/// only so passes on to all that lie upstream that nothing is wanted, so that nobody tries to load it.
+/// The same for filters that cannot do with less: returns false when the input is an image that is not in
+/// memory yet and does not fit into it. Then as little as possible is asked for, and
+/// vtkLacunaInputs::Check of the filter throws an error that names the bytes. RequestUpdateExtent shall
+/// return 1 all the same: VTK goes on to execute, and only so passes on to all that lie upstream that
+/// nothing is wanted, so that nobody tries to load it.
 VTKLACUNAFILTERSCOMMON_EXPORT bool WholeIfItFits(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
-/// The same, but without an error: returns its text instead, empty when all is asked for.
-VTKLACUNAFILTERSCOMMON_EXPORT std::string WholeOrNothing(
-  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
+/// The text of what WholeIfItFits has refused of a port; empty when it was asked for, and from then on.
+VTKLACUNAFILTERSCOMMON_EXPORT std::string TakeRefusal(vtkAlgorithm* filter, int port);
 
 /// This very extent of an image.
 VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);

@@ -36,18 +36,17 @@ int vtkLacunaSliceAlgorithm::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaSliceAlgorithm::AskForSlices(
+void vtkLacunaSliceAlgorithm::AskForSlices(
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  bool fits = true;
   for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
   {
     vtkInformation* info = inputs[0]->GetInformationObject(i);
-    const bool isStream =
-      this->TakesStreams() && vtkLacunaSliceStream::RequestFields(this, info, 0, i);
-    fits = (isStream || vtkLacunaRequest::WholeIfItFits(this, info, outputs)) && fits;
+    if (!this->TakesStreams() || !vtkLacunaSliceStream::RequestFields(this, info, 0, i))
+    {
+      vtkLacunaRequest::WholeIfItFits(this, info, outputs);
+    }
   }
-  return fits;
 }
 
 //------------------------------------------------------------------------------
@@ -60,10 +59,7 @@ int vtkLacunaSliceAlgorithm::RequestInformation(
   }
   // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
   // must be executed now. When they are up to date, as they usually are, this does nothing.
-  if (!this->AskForSlices(inputs, nullptr))
-  {
-    return 0;
-  }
+  this->AskForSlices(inputs, nullptr);
   for (int i = 0; i < this->GetNumberOfInputConnections(0); ++i)
   {
     vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);

@@ -137,8 +137,8 @@ private:
   vtkLacunaSliceAlgorithm(const vtkLacunaSliceAlgorithm&) = delete;
   void operator=(const vtkLacunaSliceAlgorithm&) = delete;
 
-  /// Of outputs, if they are wanted; null: they are. Returns whether they fit into the memory.
-  bool AskForSlices(vtkInformationVector** inputs, vtkInformationVector* outputs);
+  /// Of outputs, if they are wanted; null: they are.
+  void AskForSlices(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::set<std::string> KnownFacts;
 };
