@@ -5,6 +5,7 @@
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaVersionCompat.h"
 #include "vtkSMPTools.h"
@@ -74,6 +75,13 @@ void Parallel(const Callable& body)
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
+  const std::string news = vtkLacunaAnnouncement::GetNews(outputs);
+  if (!news.empty())
+  {
+    EmptyOutputs(outputs);
+    vtkErrorWithObjectMacro(algorithm, << news);
+    return 1; // after a failure VTK's own filters would go on to ask for what was there before
+  }
   return vtkLacunaExecution::RunTogether(algorithm, outputs,
     [&](vtkLacunaExecution& execution)
     {
@@ -133,6 +141,7 @@ int vtkLacunaExecution::RunInformation(
     error = ErrorOf(body);
     if (error.empty())
     {
+      vtkLacunaAnnouncement::Remember(outputs);
       return 1;
     }
   }
@@ -150,6 +159,7 @@ int vtkLacunaExecution::RunInformation(
     info->Remove(SDDP::UPDATE_EXTENT());
     info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
   }
+  vtkLacunaAnnouncement::Remember(outputs);
   if (error.empty())
   {
     return 1;

@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
@@ -129,6 +130,26 @@ int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaDefectModel::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  // The defect, and with it the grid, may change with time.
+  return request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION())
+    ? vtkLacunaAnnouncement::Renew(this, outputVector,
+        [&] { return this->RequestInformation(request, inputVector, outputVector); })
+    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaDefectModel::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int port,
+  vtkMTimeType* time)
+{
+  vtkLacunaAnnouncement::Publish(this, outputVector);
+  return this->Superclass::ComputePipelineMTime(request, inputVector, outputVector, port, time);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaDefectModel::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -147,8 +168,9 @@ int vtkLacunaDefectModel::RequestInformation(
         extent[3] = static_cast<int>(plan.Size.Rows) - 1;
         extent[5] = 0;
       }
-      outputVector->GetInformationObject(1)->Set(
-        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      vtkInformation* info = outputVector->GetInformationObject(1);
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
     });
 }
 

@@ -4,6 +4,7 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
@@ -18,13 +19,19 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 int vtkLacunaSliceAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  // Slices that change with time change the output's place: it is found again when the time is
-  // known.
-  if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
-  {
-    return this->RequestInformation(request, inputs, outputs);
-  }
-  return this->Superclass::ProcessRequest(request, inputs, outputs);
+  // Slices that change with time change the output's place: it is found again when the time is known.
+  return request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION())
+    ? vtkLacunaAnnouncement::Renew(
+        this, outputs, [&] { return this->RequestInformation(request, inputs, outputs); })
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceAlgorithm::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputs, vtkInformationVector* outputs, int port, vtkMTimeType* time)
+{
+  vtkLacunaAnnouncement::Publish(this, outputs);
+  return this->Superclass::ComputePipelineMTime(request, inputs, outputs, port, time);
 }
 
 //------------------------------------------------------------------------------

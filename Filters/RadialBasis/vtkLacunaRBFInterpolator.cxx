@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -265,6 +266,25 @@ int vtkLacunaRBFInterpolator::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  // The points, and with them the grid, may change with time.
+  return request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION())
+    ? vtkLacunaAnnouncement::Renew(
+        this, outputs, [&] { return this->RequestInformation(request, inputs, outputs); })
+    : this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFInterpolator::ComputePipelineMTime(vtkInformation* request,
+  vtkInformationVector** inputs, vtkInformationVector* outputs, int port, vtkMTimeType* time)
+{
+  vtkLacunaAnnouncement::Publish(this, outputs);
+  return this->Superclass::ComputePipelineMTime(request, inputs, outputs, port, time);
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaRBFInterpolator::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -296,6 +316,7 @@ int vtkLacunaRBFInterpolator::RequestInformation(
       }
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
     });
 }
 

@@ -209,6 +209,11 @@ public:
   vtkGetVector2Macro(ImageSize, int);
   ///@}
 
+  int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector, int port, vtkMTimeType* time) override;
+
 protected:
   vtkLacunaBSplineIsoRayCaster();
   ~vtkLacunaBSplineIsoRayCaster() override;
