@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkMatrix3x3.h"
 #include "vtkSmartPointer.h"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -85,6 +87,64 @@ void CheckPart(const std::string& name, const int arrived[6], const int asked[6]
         " arrived, " + Text(asked) +
         " is needed; the filter before this one does not give what it is asked for");
     }
+  }
+}
+
+// Algorithms of ParaView behind which ranks do not have the same, though each has asked for the whole.
+enum class Share
+{
+  Whole,
+  Parts,  // or copies of them
+  OnFirst // the first rank has all, the others nothing
+};
+
+Share GetShare(vtkAlgorithm* algorithm)
+{
+  static const std::set<std::string> parts{ "vtkDistributedPointCloudFilter",
+    "vtkPDistributedDataFilter", "vtkPResampleToImage", "vtkRedistributeDataSetFilter",
+    "vtkReductionFilter" };
+  static const std::set<std::string> onFirst{ "vtkDIYAggregateDataSetFilter",
+    "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter" };
+  const std::string name = algorithm->GetClassName();
+  return parts.count(name) > 0 ? Share::Parts
+    : onFirst.count(name) > 0  ? Share::OnFirst
+                               : Share::Whole;
+}
+
+// The first such algorithm upstream, before one of Lacuna's, which give the whole; null: none.
+vtkAlgorithm* FindSharing(vtkAlgorithm* algorithm)
+{
+  const std::string name = algorithm->GetClassName();
+  if (GetShare(algorithm) != Share::Whole)
+  {
+    return algorithm;
+  }
+  vtkAlgorithm* found = nullptr;
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && name.rfind("vtkLacuna", 0) != 0;
+       ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port) && !found; ++i)
+    {
+      vtkAlgorithm* upstream = algorithm->GetInputAlgorithm(port, i);
+      found = upstream ? FindSharing(upstream) : nullptr;
+    }
+  }
+  return found;
+}
+
+// Of several ranks, each of which takes the data for all there are.
+void CheckShare(const std::string& name, vtkAlgorithm* upstream, bool isImage)
+{
+  vtkAlgorithm* found = upstream ? FindSharing(upstream) : nullptr;
+  const Share share = found ? GetShare(found) : Share::Whole;
+  const bool isSeen = isImage && found == upstream; // parts of images are (CheckPart)
+  if ((share == Share::Parts && !isSeen) ||
+    (share == Share::OnFirst && vtkLacunaRanks().GetRank() > 0))
+  {
+    throw std::runtime_error(name + " is not the same on all ranks: " + found->GetClassName() +
+      " before this filter gives " +
+      (share == Share::Parts ? "them parts or copies" : "all to the first one") +
+      ", and each needs the whole; save the data and read them again, or run one rank");
   }
 }
 
@@ -172,6 +232,10 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
     Check(algorithm->GetInputDataObject(port, i), name);
     auto* image = vtkImageData::SafeDownCast(algorithm->GetInputDataObject(port, i));
     vtkInformation* info = algorithm->GetInputInformation(port, i);
+    if (vtkLacunaRanks().GetNumber() > 1)
+    {
+      CheckShare(name, algorithm->GetInputAlgorithm(port, i), image != nullptr);
+    }
     // of several pieces this one is a part of what the extent says
     if (image && image->GetNumberOfPoints() > 0 && info->Has(SDDP::UPDATE_EXTENT()) &&
       info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) <= 1)

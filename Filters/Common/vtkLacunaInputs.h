@@ -22,7 +22,8 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string&
 
 /// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an image was refused
 /// (vtkLacunaRequest::WholeIfItFits), or less of it arrived than algorithm asked for, as behind ParaView's
-/// Resample To Image on several ranks.
+/// Resample To Image on several ranks, or when it is known of a filter upstream that it gives ranks
+/// different points or rows, whatever they ask for, as Redistribute Data Set does.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
 
 /// Those of one port.

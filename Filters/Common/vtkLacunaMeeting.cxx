@@ -4,45 +4,62 @@
 #include "lacunaExecution.h"
 #include "lacunaRanks.h"
 #include "vtkAlgorithm.h"
-#include "vtkDataSet.h"
+#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVersionCompat.h"
+#include "vtkPointSet.h"
 
 #include <cstdint>
+#include <functional>
 #include <new>
 #include <stdexcept>
+#include <string_view>
 
 namespace
 {
-// Points along the axes of images, or of other data at all: three numbers for each input.
-std::vector<std::uint64_t> GetSizes(vtkAlgorithm* filter)
+// Of an array's values; not the same on machines of another byte order. It leaves room for the sum of
+// 65 536 ranks.
+std::uint64_t GetHash(vtkDataArray* values)
 {
-  std::vector<std::uint64_t> sizes;
+  if (!values || values->GetNumberOfValues() == 0)
+  {
+    return 0;
+  }
+  const std::string_view bytes(static_cast<const char*>(values->GetVoidPointer(0)),
+    static_cast<std::size_t>(values->GetNumberOfValues()) * values->GetDataTypeSize());
+  return std::hash<std::string_view>{}(bytes) >> 16;
+}
+
+// Points along the axes of images; of points their number and coordinates: parts may be of equal size.
+std::vector<std::uint64_t> GetFingerprint(vtkAlgorithm* filter)
+{
+  std::vector<std::uint64_t> numbers;
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       vtkDataObject* data = filter->GetInputDataObject(port, i);
-      int dimensions[3] = { 0, 0, 0 };
-      auto* image = vtkImageData::SafeDownCast(data);
-      auto* points = vtkDataSet::SafeDownCast(data);
-      if (image)
+      if (auto* image = vtkImageData::SafeDownCast(data))
       {
+        int dimensions[3];
         image->GetDimensions(dimensions);
+        numbers.insert(numbers.end(), dimensions, dimensions + 3);
+        continue;
       }
-      sizes.insert(sizes.end(), dimensions, dimensions + 3);
-      sizes.back() += points && !image ? points->GetNumberOfPoints() : 0;
+      auto* points = vtkPointSet::SafeDownCast(data);
+      const bool has = points && points->GetPoints();
+      numbers.push_back(has ? points->GetNumberOfPoints() : 0);
+      numbers.push_back(has ? GetHash(points->GetPoints()->GetData()) : 0);
     }
   }
-  return sizes;
+  return numbers;
 }
 
-// Throws on all ranks when their inputs, of which each has the whole, are of unequal sizes. sum: the
-// same as own.
-void RequireEqualSizes(const std::vector<std::uint64_t>& own, std::vector<std::uint64_t>& sum,
+// Throws on all ranks when their inputs, of which each has the whole, are not equal. sum: the same as own.
+void RequireEqualInputs(const std::vector<std::uint64_t>& own, std::vector<std::uint64_t>& sum,
   const lacuna::Ranks& ranks)
 {
   if (own.empty())
@@ -57,8 +74,8 @@ void RequireEqualSizes(const std::vector<std::uint64_t>& own, std::vector<std::u
       {
         if (sum[i] != own[i] * static_cast<std::uint64_t>(ranks.GetNumber()))
         {
-          throw std::runtime_error("the ranks' inputs are not of one size; do all nodes have the "
-                                   "same files?");
+          throw std::runtime_error("the ranks' inputs are not the same; do all nodes have the same "
+                                   "files?");
         }
       }
     });
@@ -111,13 +128,13 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
   };
   try
   {
-    std::vector<std::uint64_t> sizes;
+    std::vector<std::uint64_t> own;
     std::vector<std::uint64_t> sum; // made here, where others do not wait if there is no memory
     ranks.Together(
       [&]
       {
         requireInput();
-        sum = sizes = GetSizes(filter);
+        sum = own = GetFingerprint(filter);
       });
     std::uint64_t number = hasData ? 1 : 0;
     ranks.Sum(&number, 1);
@@ -126,7 +143,7 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
       throw std::runtime_error(hasData ? "another rank has no input; its own messages say why"
                                        : "this rank has no input, though others have");
     }
-    RequireEqualSizes(sizes, sum, ranks);
+    RequireEqualInputs(own, sum, ranks);
     body();
   }
   catch (const lacuna::Aborted&)

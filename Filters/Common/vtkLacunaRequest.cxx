@@ -231,10 +231,12 @@ bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
 {
-  const bool isImage = input->Has(SDDP::WHOLE_EXTENT());
-  if (isImage && !HasStrangersUpstream(filter))
+  if (!HasStrangersUpstream(filter))
   {
-    AskForNothing(input);
+    if (input->Has(SDDP::WHOLE_EXTENT()))
+    {
+      AskForNothing(input);
+    }
     return;
   }
   try

@@ -125,7 +125,7 @@ def unsound(make, rank):
         filter.SetInputData(image)
         text = update(filter)
         if wrong == "size":
-            assert "not of one size" in text, text
+            assert "not the same" in text, text
             continue
         own = "sound" if rank == (0 if wrong == "nothing" else 1) else "another rank has stopped"
         assert own in text or (wrong == "short" and "100" in text), (rank, wrong, text)
@@ -152,12 +152,48 @@ def partial(make, rank):
 
 
 def unpaired(rank):
-    """A target that only the first rank has."""
-    filter = warp(wavelet(20), False)
-    if rank == 1:
-        filter.SetInputData(2, landmarks(30, False, 7))
-    text = update(filter)
-    assert "not of one size" in text, text
+    """A target that only the first rank has, and targets of which one lies elsewhere."""
+    for count, edge in (7, 30), (8, 30.0001):
+        filter = warp(wavelet(20), False)
+        if rank == 1:
+            filter.SetInputData(2, landmarks(edge, False, count))
+        text = update(filter)
+        assert "not the same" in text, text
+
+
+def distributed(rank):
+    """Points of which ParaView gives each rank a part, or all to the first, whatever filters ask for."""
+    from paraview import simple as pv
+    points = pv.Elevation(Input=pv.Sphere(Radius=8))
+    parts = pv.ExtractSurface(Input=pv.MergeBlocks(Input=pv.RedistributeDataSet(Input=points)))
+    line = pv.PlotOverLine(Input=pv.Wavelet(), Point1=[-9, -9, -9], Point2=[9, 9, 9])
+    for source, on_all in ((parts, True), (line, False)):
+        for made, port in ((interpolator(), 0), (warp(wavelet(20), False), 2), (filler(), 3)):
+            made.SetInputConnection(port, source.GetClientSideObject().GetOutputPort(source.Port))
+            text = update(made)
+            assert not (on_all or rank == 1) or "is not the same on all ranks" in text or "another rank has stopped" in text, (made.GetClassName(), text)
+    everywhere = interpolator()
+    everywhere.SetInputConnection(points.GetClientSideObject().GetOutputPort())
+    assert not update(everywhere)
+
+
+def interpolator():
+    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFInterpolator
+    made = vtkLacunaRBFInterpolator()
+    made.SetOutputSpacing(2, 2, 2)
+    return made
+
+
+def filler():
+    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFHoleFiller
+    from lacuna.vtkLacunaFiltersRayCasting import vtkLacunaBSplineIsoRayCaster
+    source = wavelet(20)
+    caster = vtkLacunaBSplineIsoRayCaster()
+    caster.SetInputConnection(source.GetOutputPort())
+    caster.SetIsoValue(0, 100)
+    made = vtkLacunaRBFHoleFiller()
+    made.SetInputConnection(caster.GetOutputPort())
+    return made
 
 
 def transparent(rank):
@@ -254,6 +290,7 @@ def run():
             what(make, rank)
             controller.Barrier()
     unpaired(rank)
+    distributed(rank)
     transparent(rank)
     signal.alarm(0)
     print("rank done", flush=True)

@@ -18,4 +18,5 @@ for ((i = 0; i < number; ++i)); do
   wait "${parts[i]}" || failed=1
   cat "$folder/$i"
 done
+parts=() # none is left
 exit $failed

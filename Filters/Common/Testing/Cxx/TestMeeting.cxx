@@ -154,7 +154,7 @@ void TestSizes()
   ranks.OtherIsLonger = 1;
   LACUNA_CHECK_CONTAINS(
     ErrorOf([&] { meeting.Hold(filter, After, true, ranks, [] { LACUNA_CHECK(false); }); }),
-    "not of one size");
+    "not the same");
 }
 
 // An input that does not fit: nobody loads it, and all ranks hear of it when they meet.
