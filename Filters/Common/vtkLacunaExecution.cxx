@@ -4,8 +4,8 @@
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
+#include "vtkInformationKeyLookup.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaVersionCompat.h"
 #include "vtkSMPTools.h"
@@ -21,6 +21,9 @@ using SDDP = vtkStreamingDemandDrivenPipeline;
 
 void EmptyOutputs(vtkInformationVector* outputs)
 {
+  // else VTK takes what was made of an earlier time, and is no more, for up to date
+  vtkInformationKey* const time =
+    vtkInformationKeyLookup::Find("PREVIOUS_UPDATE_TIME_STEP", "vtkStreamingDemandDrivenPipeline");
   for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
   {
     if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
@@ -30,6 +33,10 @@ void EmptyOutputs(vtkInformationVector* outputs)
     // VTK forgets the combined request only after success: the next one would be united with it,
     // though the whole extent may have become smaller.
     outputs->GetInformationObject(i)->Remove(SDDP::COMBINED_UPDATE_EXTENT());
+    if (time)
+    {
+      outputs->GetInformationObject(i)->Remove(time);
+    }
   }
 }
 
@@ -75,13 +82,6 @@ void Parallel(const Callable& body)
 int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
-  const std::string news = vtkLacunaAnnouncement::GetNews(outputs);
-  if (!news.empty())
-  {
-    EmptyOutputs(outputs);
-    vtkErrorWithObjectMacro(algorithm, << news);
-    return 1; // after a failure VTK's own filters would go on to ask for what was there before
-  }
   return vtkLacunaExecution::RunTogether(algorithm, outputs,
     [&](vtkLacunaExecution& execution)
     {
@@ -103,13 +103,22 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     EmptyOutputs(outputs);
     return 0;
   }
+  int result = 0;
   try
   {
     const std::string error = ErrorOf(
       [&]
       {
-        vtkLacunaExecution execution(algorithm);
-        body(execution);
+        try
+        {
+          vtkLacunaExecution execution(algorithm);
+          body(execution);
+        }
+        catch (const vtkLacunaGridChanged&)
+        {
+          result = 1;
+          throw;
+        }
       });
     if (error.empty())
     {
@@ -117,7 +126,7 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     }
     EmptyOutputs(outputs);
     vtkErrorWithObjectMacro(algorithm, << error);
-    return 0;
+    return result;
   }
   catch (const lacuna::Aborted&)
   {
@@ -141,7 +150,6 @@ int vtkLacunaExecution::RunInformation(
     error = ErrorOf(body);
     if (error.empty())
     {
-      vtkLacunaAnnouncement::Remember(outputs);
       return 1;
     }
   }
@@ -159,7 +167,6 @@ int vtkLacunaExecution::RunInformation(
     info->Remove(SDDP::UPDATE_EXTENT());
     info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
   }
-  vtkLacunaAnnouncement::Remember(outputs);
   if (error.empty())
   {
     return 1;

@@ -8,9 +8,18 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
 #include <functional>
+#include <stdexcept>
 
 class vtkAlgorithm;
 class vtkInformationVector;
+
+/// Thrown by the body of RequestData when the output has another grid than was announced, as of data that
+/// change with time: VTK announces grids before the time is known. Those downstream would cut it off.
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaGridChanged : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Kernel execution on vtkSMPTools. All cores by default: where VTK's back end is the sequential
 /// one (Debian's ParaView) and the user did not choose it through VTK_SMP_BACKEND_IN_USE, the
@@ -26,7 +35,8 @@ public:
 
   /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). Returns 1, or
   /// 0 after an exception, whose text becomes algorithm's error. When body fails or is stopped by the
-  /// user all outputs are emptied, so that no half result looks whole.
+  /// user all outputs are emptied, so that no half result looks whole. After vtkLacunaGridChanged it
+  /// returns 1 all the same: writers of time steps would ask again for ever.
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 

@@ -90,7 +90,7 @@ void CheckPart(const std::string& name, const int arrived[6], const int asked[6]
   }
 }
 
-// Algorithms of ParaView behind which ranks do not have the same, though each has asked for the whole.
+// Algorithms behind which ranks do not have the same, though each has asked for the whole.
 enum class Share
 {
   Whole,
@@ -102,16 +102,20 @@ Share GetShare(vtkAlgorithm* algorithm)
 {
   static const std::set<std::string> parts{ "vtkDistributedPointCloudFilter",
     "vtkPDistributedDataFilter", "vtkPResampleToImage", "vtkRedistributeDataSetFilter",
-    "vtkReductionFilter" };
+    "vtkPStreamTracer", "vtkReductionFilter" };
   static const std::set<std::string> onFirst{ "vtkDIYAggregateDataSetFilter",
-    "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter" };
+    "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter",
+    // Lacuna's serial filters
+    "vtkLacunaContrastToSpeckle", "vtkLacunaDefectModel", "vtkLacunaImplantPlate",
+    "vtkLacunaMillingToolPath", "vtkLacunaOcclusionSurface", "vtkLacunaPressOrientation",
+    "vtkLacunaScanRegion", "vtkLacunaTemporalCalibration", "vtkLacunaTrackerSelfTest" };
   const std::string name = algorithm->GetClassName();
   return parts.count(name) > 0 ? Share::Parts
     : onFirst.count(name) > 0  ? Share::OnFirst
                                : Share::Whole;
 }
 
-// The first such algorithm upstream, before one of Lacuna's, which give the whole; null: none.
+// The first such algorithm upstream, before one of Lacuna's others, which give the whole; null: none.
 vtkAlgorithm* FindSharing(vtkAlgorithm* algorithm)
 {
   const std::string name = algorithm->GetClassName();

@@ -10,7 +10,9 @@
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVersionCompat.h"
+#include "vtkMatrix3x3.h"
 #include "vtkPointSet.h"
+#include "vtkRectilinearGrid.h"
 
 #include <cstdint>
 #include <functional>
@@ -20,20 +22,25 @@
 
 namespace
 {
-// Of an array's values; not the same on machines of another byte order. It leaves room for the sum of
-// 65 536 ranks.
-std::uint64_t GetHash(vtkDataArray* values)
+// Of coordinates; not the same on machines of another byte order.
+void Hash(vtkDataArray* values, std::uint64_t& hash)
 {
-  if (!values || values->GetNumberOfValues() == 0)
+  if (values && values->GetNumberOfValues() > 0)
   {
-    return 0;
+    const std::string_view bytes(static_cast<const char*>(values->GetVoidPointer(0)),
+      static_cast<std::size_t>(values->GetNumberOfValues()) * values->GetDataTypeSize());
+    hash = 31 * hash + std::hash<std::string_view>{}(bytes);
   }
-  const std::string_view bytes(static_cast<const char*>(values->GetVoidPointer(0)),
-    static_cast<std::size_t>(values->GetNumberOfValues()) * values->GetDataTypeSize());
-  return std::hash<std::string_view>{}(bytes) >> 16;
 }
 
-// Points along the axes of images; of points their number and coordinates: parts may be of equal size.
+void Hash(const double* numbers, std::size_t count, std::uint64_t& hash)
+{
+  const std::string_view bytes(reinterpret_cast<const char*>(numbers), count * sizeof(double));
+  hash = 31 * hash + std::hash<std::string_view>{}(bytes);
+}
+
+// Four numbers for each input: points along the axes of images, or their number, and where they are. Parts
+// may be of equal size.
 std::vector<std::uint64_t> GetFingerprint(vtkAlgorithm* filter)
 {
   std::vector<std::uint64_t> numbers;
@@ -42,17 +49,29 @@ std::vector<std::uint64_t> GetFingerprint(vtkAlgorithm* filter)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       vtkDataObject* data = filter->GetInputDataObject(port, i);
+      int dimensions[3] = { 0, 0, 0 };
+      std::uint64_t hash = 0;
       if (auto* image = vtkImageData::SafeDownCast(data))
       {
-        int dimensions[3];
         image->GetDimensions(dimensions);
-        numbers.insert(numbers.end(), dimensions, dimensions + 3);
-        continue;
+        Hash(image->GetOrigin(), 3, hash);
+        Hash(image->GetSpacing(), 3, hash);
+        Hash(image->GetDirectionMatrix()->GetData(), 9, hash);
       }
-      auto* points = vtkPointSet::SafeDownCast(data);
-      const bool has = points && points->GetPoints();
-      numbers.push_back(has ? points->GetNumberOfPoints() : 0);
-      numbers.push_back(has ? GetHash(points->GetPoints()->GetData()) : 0);
+      else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data))
+      {
+        grid->GetDimensions(dimensions);
+        Hash(grid->GetXCoordinates(), hash);
+        Hash(grid->GetYCoordinates(), hash);
+        Hash(grid->GetZCoordinates(), hash);
+      }
+      else if (auto* points = vtkPointSet::SafeDownCast(data); points && points->GetPoints())
+      {
+        dimensions[0] = static_cast<int>(points->GetNumberOfPoints());
+        Hash(points->GetPoints()->GetData(), hash);
+      }
+      numbers.insert(numbers.end(), dimensions, dimensions + 3);
+      numbers.push_back(hash >> 16); // there is room for the sum of 65 536 ranks
     }
   }
   return numbers;

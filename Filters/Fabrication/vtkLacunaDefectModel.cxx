@@ -8,7 +8,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaDepthMap.h"
@@ -130,26 +129,6 @@ int vtkLacunaDefectModel::FillOutputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaDefectModel::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  // The defect, and with it the grid, may change with time.
-  return request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION())
-    ? vtkLacunaAnnouncement::Renew(this, outputVector,
-        [&] { return this->RequestInformation(request, inputVector, outputVector); })
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaDefectModel::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int port,
-  vtkMTimeType* time)
-{
-  vtkLacunaAnnouncement::Publish(this, outputVector);
-  return this->Superclass::ComputePipelineMTime(request, inputVector, outputVector, port, time);
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaDefectModel::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -168,9 +147,8 @@ int vtkLacunaDefectModel::RequestInformation(
         extent[3] = static_cast<int>(plan.Size.Rows) - 1;
         extent[5] = 0;
       }
-      vtkInformation* info = outputVector->GetInformationObject(1);
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
+      outputVector->GetInformationObject(1)->Set(
+        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
     });
 }
 
@@ -222,6 +200,14 @@ int vtkLacunaDefectModel::RequestData(
       lacuna::Matrix4::FromColumns({ 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 },
         { middle(model.Column, input.Scene.Column, model.TopSize.Columns, spacing[0]),
           middle(model.Row, input.Scene.Row, model.TopSize.Rows, spacing[1]), model.Highest });
+    int whole[6];
+    outputVector->GetInformationObject(1)->Get(
+      vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+    if (whole[1] + 1 != model.TopSize.Columns || whole[3] + 1 != model.TopSize.Rows)
+    {
+      throw vtkLacunaGridChanged("the depth map has changed since the grid was announced (a source "
+                                 "that changes with time?); change a property and update again");
+    }
     vtkLacunaSolidMesh::Set(solid, model, input.ToWorld, ModelFaceName);
     SetTop(top, model, input.Scene, fromPress.Inverse());
 

@@ -84,11 +84,6 @@ public:
   vtkGetMacro(MaximumHeight, double);
   ///@}
 
-  int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector, int port, vtkMTimeType* time) override;
-
 protected:
   vtkLacunaDefectModel();
   ~vtkLacunaDefectModel() override = default;

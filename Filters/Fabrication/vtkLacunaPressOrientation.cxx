@@ -10,7 +10,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
@@ -265,26 +264,6 @@ int vtkLacunaPressOrientation::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaPressOrientation::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  // The defect, and with it the grid, may change with time.
-  return request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION())
-    ? vtkLacunaAnnouncement::Renew(this, outputVector,
-        [&] { return this->RequestInformation(request, inputVector, outputVector); })
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaPressOrientation::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int port,
-  vtkMTimeType* time)
-{
-  vtkLacunaAnnouncement::Publish(this, outputVector);
-  return this->Superclass::ComputePipelineMTime(request, inputVector, outputVector, port, time);
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaPressOrientation::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -317,9 +296,8 @@ int vtkLacunaPressOrientation::RequestInformation(
           extent[1] = -1; // no mould; RequestData meets the same error and reports it, once
         }
       }
-      vtkInformation* info = outputVector->GetInformationObject(0);
-      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
+      outputVector->GetInformationObject(0)->Set(
+        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
     });
 }
 
@@ -344,10 +322,11 @@ int vtkLacunaPressOrientation::RequestData(
     int whole[6];
     outputVector->GetInformationObject(0)->Get(
       vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
-    if (whole[1] + 1 != plan.GetColumns() || whole[3] + 1 != plan.GetRows())
+    if (layout.SingleValued &&
+      (whole[1] + 1 != plan.GetColumns() || whole[3] + 1 != plan.GetRows()))
     {
-      throw std::runtime_error("the depth map has changed since the grid was announced (a source "
-                               "that changes without saying so?)");
+      throw vtkLacunaGridChanged("the depth map has changed since the grid was announced (a source "
+                                 "that changes with time?); change a property and update again");
     }
     const lacuna::Matrix4& toWorld = plan.Part.ToWorld;
     if (this->PlaneMethod == Fit && !plan.HasPlane)

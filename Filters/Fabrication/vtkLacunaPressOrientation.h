@@ -164,11 +164,6 @@ public:
   vtkGetMacro(ConvexSide, int);
   ///@}
 
-  int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector, int port, vtkMTimeType* time) override;
-
 protected:
   vtkLacunaPressOrientation() = default;
   ~vtkLacunaPressOrientation() override = default;

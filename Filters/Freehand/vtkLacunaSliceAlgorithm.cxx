@@ -4,7 +4,6 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
@@ -20,18 +19,21 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   // Slices that change with time change the output's place: it is found again when the time is known.
-  return request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION())
-    ? vtkLacunaAnnouncement::Renew(
-        this, outputs, [&] { return this->RequestInformation(request, inputs, outputs); })
-    : this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaSliceAlgorithm::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputs, vtkInformationVector* outputs, int port, vtkMTimeType* time)
-{
-  vtkLacunaAnnouncement::Publish(this, outputs);
-  return this->Superclass::ComputePipelineMTime(request, inputs, outputs, port, time);
+  // Its extent stays as it was: VTK does not tell those downstream of another one, who would cut it
+  // off. RequestData compares the two.
+  if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
+  {
+    vtkInformation* output = outputs->GetInformationObject(0);
+    int known[6] = { 0, -1, 0, -1, 0, -1 };
+    output->Get(SDDP::WHOLE_EXTENT(), known);
+    const int result = this->RequestInformation(request, inputs, outputs);
+    if (known[0] <= known[1])
+    {
+      output->Set(SDDP::WHOLE_EXTENT(), known, 6);
+    }
+    return result;
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------

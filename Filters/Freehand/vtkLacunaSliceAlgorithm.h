@@ -103,8 +103,6 @@ public:
 
   int ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs, int port, vtkMTimeType* time) override;
 
 protected:
   vtkLacunaSliceAlgorithm() = default;

@@ -255,7 +255,7 @@ int vtkLacunaSliceRayCaster::RequestData(
       const lacuna::ImagePlane& plane = plan.Plane;
       if (!IsAnnounced(info, plane))
       {
-        throw std::runtime_error(
+        throw vtkLacunaGridChanged(
           "the slices have changed since the map was announced (a source that changes with "
           "time?); set FocalPoint, PlaneOrigin, PixelSpacing and ImageSize, so that the map does "
           "not depend on the slices");

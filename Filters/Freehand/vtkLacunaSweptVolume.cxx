@@ -266,9 +266,9 @@ int vtkLacunaSweptVolume::RequestData(
           info->Get(vtkDataObject::SPACING())[a] != plan.Grid.Spacing[a] ||
           !std::equal(direction.begin(), direction.end(), info->Get(vtkDataObject::DIRECTION())))
         {
-          throw std::runtime_error("the slices have changed since the volume was announced (a "
-                                   "source that changes with time?); set OutputBounds and "
-                                   "OutputSpacing, so that they do not depend on the slices");
+          throw vtkLacunaGridChanged("the slices have changed since the volume was announced (a "
+                                     "source that changes with time?); set OutputBounds and "
+                                     "OutputSpacing, so that they do not depend on the slices");
         }
       }
 

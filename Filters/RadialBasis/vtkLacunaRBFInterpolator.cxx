@@ -13,7 +13,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -266,25 +265,6 @@ int vtkLacunaRBFInterpolator::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFInterpolator::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
-{
-  // The points, and with them the grid, may change with time.
-  return request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_TIME_DEPENDENT_INFORMATION())
-    ? vtkLacunaAnnouncement::Renew(
-        this, outputs, [&] { return this->RequestInformation(request, inputs, outputs); })
-    : this->Superclass::ProcessRequest(request, inputs, outputs);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaRBFInterpolator::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputs, vtkInformationVector* outputs, int port, vtkMTimeType* time)
-{
-  vtkLacunaAnnouncement::Publish(this, outputs);
-  return this->Superclass::ComputePipelineMTime(request, inputs, outputs, port, time);
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaRBFInterpolator::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -316,7 +296,6 @@ int vtkLacunaRBFInterpolator::RequestInformation(
       }
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-      info->Set(vtkStreamingDemandDrivenPipeline::TIME_DEPENDENT_INFORMATION(), 1);
     });
 }
 
@@ -376,11 +355,19 @@ int vtkLacunaRBFInterpolator::RequestData(
           options.Errors.push_back(errors->GetComponent(i, 0));
         }
       }
+      int whole[6];
       int piece[6]; // of ranks, which share the evaluation: each fits for itself
-      outputs->GetInformationObject(0)->Get(
-        vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
+      vtkInformation* info = outputs->GetInformationObject(0);
+      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole);
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), piece);
       for (std::size_t c = 0; c < 3; ++c)
       {
+        if (whole[2 * c + 1] + 1 != static_cast<int>(to.Grid.Size[c]))
+        {
+          throw vtkLacunaGridChanged("the points have changed since the grid was announced (points "
+                                     "that change with time?); set OutputBounds and OutputSpacing, "
+                                     "so that it does not depend on them");
+        }
         piece[2 * c] = std::max(piece[2 * c], 0);
         piece[2 * c + 1] = std::min(piece[2 * c + 1], static_cast<int>(to.Grid.Size[c]) - 1);
       }

@@ -139,11 +139,6 @@ public:
   vtkGetMacro(CenterTolerance, double);
   ///@}
 
-  int ProcessRequest(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs, int port, vtkMTimeType* time) override;
-
 protected:
   vtkLacunaRBFInterpolator() = default;
   ~vtkLacunaRBFInterpolator() override = default;

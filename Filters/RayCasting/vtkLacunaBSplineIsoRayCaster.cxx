@@ -13,7 +13,6 @@
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkLacunaAnnouncement.h"
 #include "vtkLacunaCasterView.h"
 #include "vtkLacunaCutAway.h"
 #include "vtkLacunaDepthMap.h"
@@ -334,26 +333,6 @@ int vtkLacunaBSplineIsoRayCaster::FillInputPortInformation(int port, vtkInformat
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaBSplineIsoRayCaster::ProcessRequest(
-  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  // The volume, and with it the map, may lie elsewhere at another time.
-  return request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION())
-    ? vtkLacunaAnnouncement::Renew(this, outputVector,
-        [&] { return this->RequestInformation(request, inputVector, outputVector); })
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaBSplineIsoRayCaster::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int port,
-  vtkMTimeType* time)
-{
-  vtkLacunaAnnouncement::Publish(this, outputVector);
-  return this->Superclass::ComputePipelineMTime(request, inputVector, outputVector, port, time);
-}
-
-//------------------------------------------------------------------------------
 int vtkLacunaBSplineIsoRayCaster::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -377,7 +356,6 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
       }
       const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
       vtkLacunaDepthMap::SetInformation(outInfo, plane);
-      outInfo->Set(SDDP::TIME_DEPENDENT_INFORMATION(), 1);
     });
 }
 

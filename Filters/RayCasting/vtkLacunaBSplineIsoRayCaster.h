@@ -209,11 +209,6 @@ public:
   vtkGetVector2Macro(ImageSize, int);
   ///@}
 
-  int ProcessRequest(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector) override;
-  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputVector,
-    vtkInformationVector* outputVector, int port, vtkMTimeType* time) override;
-
 protected:
   vtkLacunaBSplineIsoRayCaster();
   ~vtkLacunaBSplineIsoRayCaster() override;
