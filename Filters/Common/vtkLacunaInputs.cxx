@@ -105,10 +105,8 @@ Share GetShare(vtkAlgorithm* algorithm)
     "vtkPStreamTracer", "vtkReductionFilter" };
   static const std::set<std::string> onFirst{ "vtkDIYAggregateDataSetFilter",
     "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter",
-    // Lacuna's serial filters
-    "vtkLacunaContrastToSpeckle", "vtkLacunaDefectModel", "vtkLacunaImplantPlate",
-    "vtkLacunaMillingToolPath", "vtkLacunaOcclusionSurface", "vtkLacunaPressOrientation",
-    "vtkLacunaScanRegion", "vtkLacunaTemporalCalibration", "vtkLacunaTrackerSelfTest" };
+    // Lacuna's other serial filters make all of it on each rank that asks for it
+    "vtkLacunaDefectModel", "vtkLacunaPressOrientation" };
   const std::string name = algorithm->GetClassName();
   return parts.count(name) > 0 ? Share::Parts
     : onFirst.count(name) > 0  ? Share::OnFirst
