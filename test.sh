@@ -4,7 +4,7 @@
 # the documentation and those that take long (label soak), unless options of ctest (-L, -R) select them.
 #   ./test.sh [--preset NAME] [--target NAME] [ctest options]
 #   ./test.sh -L example          demo.sh and the examples
-# Presets: release debug asan tsan vtk kernels clang; the target is what to build, if not all.
+# Presets: release debug asan tsan vtk kernels clang fuzz; the target is what to build, if not all.
 set -euo pipefail
 cd "$(dirname "$0")"
 . Testing/Tools/setup.sh
@@ -24,6 +24,6 @@ while [ $# -gt 0 ]; do
   shift
 done
 lacuna_install_packages
-if [ "$preset" = clang ]; then lacuna_install_packages packages-fuzzing.txt; fi
+if [[ $preset = clang || $preset = fuzz ]]; then lacuna_install_packages packages-fuzzing.txt; fi
 lacuna_build "$preset" --target "$target"
 lacuna_display ctest --preset "$preset" -j2 -LE "$soak$example$others" --no-tests=error "${options[@]}"

@@ -104,13 +104,15 @@ Share GetShare(vtkAlgorithm* algorithm)
     "vtkPDistributedDataFilter", "vtkPResampleToImage", "vtkRedistributeDataSetFilter",
     "vtkPStreamTracer", "vtkReductionFilter" };
   static const std::set<std::string> onFirst{ "vtkDIYAggregateDataSetFilter",
-    "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter",
-    // Lacuna's other serial filters make all of it on each rank that asks for it
-    "vtkLacunaDefectModel", "vtkLacunaPressOrientation" };
+    "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter" };
   const std::string name = algorithm->GetClassName();
-  return parts.count(name) > 0 ? Share::Parts
-    : onFirst.count(name) > 0  ? Share::OnFirst
-                               : Share::Whole;
+  if (parts.count(name) > 0)
+  {
+    return Share::Parts;
+  }
+  // Lacuna's other serial filters make all of it on each rank that asks for it
+  return onFirst.count(name) > 0 || vtkLacunaRequest::IsOnFirst(algorithm) ? Share::OnFirst
+                                                                           : Share::Whole;
 }
 
 // The first such algorithm upstream, before one of Lacuna's others, which give the whole; null: none.

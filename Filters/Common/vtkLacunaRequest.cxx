@@ -9,6 +9,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
@@ -130,6 +131,14 @@ void Remember(vtkAlgorithm* filter, vtkInformation* input, const std::string& re
       }
     }
   }
+}
+
+// Of filters that have asked for anything on the first rank only.
+vtkInformationIntegerKey* OnFirst()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("ON_FIRST", "vtkLacunaRequest");
+  return key;
 }
 
 // Whether an algorithm executes on each rank for itself: Lacuna's, ParaView's between two proxies, and
@@ -266,6 +275,7 @@ void vtkLacunaRequest::Whole(
 void vtkLacunaRequest::WholeOnFirst(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {
+  filter->GetInformation()->Set(OnFirst(), 1);
   if (vtkLacunaRanks().GetRank() == 0)
   {
     Whole(filter, input, outputs);
@@ -274,6 +284,12 @@ void vtkLacunaRequest::WholeOnFirst(
   {
     Nothing(filter, input);
   }
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRequest::IsOnFirst(vtkAlgorithm* filter)
+{
+  return filter->GetInformation()->Has(OnFirst()) != 0;
 }
 
 //------------------------------------------------------------------------------

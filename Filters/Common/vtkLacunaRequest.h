@@ -51,6 +51,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int exten
 VTKLACUNAFILTERSCOMMON_EXPORT void WholeOnFirst(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
+/// Whether a filter has asked by WholeOnFirst, so that the other ranks have nothing of what it makes.
+VTKLACUNAFILTERSCOMMON_EXPORT bool IsOnFirst(vtkAlgorithm* filter);
+
 /// For outputs whose whole extent may be empty for the time being, as after a stop while it was sought:
 /// VTK would go on to ask for nothing, whatever is announced then.
 VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);

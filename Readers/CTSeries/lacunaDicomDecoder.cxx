@@ -47,10 +47,11 @@ std::string Decode(const CTFrame& frame, CTPixels& pixels)
     return decoded ? "" : "cannot be decoded";
   }
 #ifdef LACUNA_HAS_GDCM
-  std::string wrong =
-    WhyNotImage(pixels.Stream, header.Columns, header.Rows, header.Format.BitsAllocated);
+  std::string wrong = WhyNotImage(
+    pixels.Stream, header.TransferSyntax, header.Columns, header.Rows, header.Format.BitsAllocated);
   if (wrong.empty())
   {
+    pixels.Bytes.clear(); // what a codec leaves out shall not be the image before
     MakeRoom(frame, pixels);
     wrong = DecodeWithGDCM(frame, pixels);
   }

@@ -16,6 +16,93 @@ const Vec3 Start{ 0, 0, 20 };
 const std::vector<GCodeMove> Path{ { true, { 1, 2, 20 }, 0 }, { false, { 1, 2, 5 }, 100 },
   { false, { 4, 2.5, 4 }, 300 }, { true, { 4, 2.5, 20 }, 0 } };
 
+// What any control makes of a program whose templates may have words of its builder.
+class LenientReader
+{
+public:
+  std::vector<GCodeMove> Moves;
+
+  explicit LenientReader(const std::string& text)
+  {
+    std::istringstream lines(text);
+    std::string line;
+    while (std::getline(lines, line))
+    {
+      if (line.front() != '%' && line.front() != 'O')
+      {
+        this->Read(line);
+      }
+    }
+  }
+
+private:
+  // Without blanks and comments.
+  static std::string Strip(const std::string& line)
+  {
+    std::string words;
+    bool comment = false;
+    for (const char c : line)
+    {
+      comment = comment || c == '(';
+      words += comment || c == ' ' ? "" : std::string(1, c);
+      comment = comment && c != ')';
+    }
+    return words;
+  }
+
+  void Read(const std::string& line)
+  {
+    const std::string words = Strip(line);
+    Vec3 to = this->Place;
+    bool moves = false, elsewhere = false;
+    for (std::size_t k = 0; k < words.size();)
+    {
+      const char letter = words[k];
+      std::size_t size = 0;
+      const double number = std::stod(words.substr(k + 1), &size);
+      k += 1 + size;
+      const bool isAxis = letter >= 'X' && letter <= 'Z';
+      moves = moves || isAxis;
+      if (isAxis)
+      {
+        to[static_cast<std::size_t>(letter - 'X')] = number;
+      }
+      else if (letter == 'F')
+      {
+        this->Feed = number;
+      }
+      else if (letter == 'G' && (number == 0 || number == 1))
+      {
+        this->Rapid = number == 0;
+      }
+      else if (letter == 'G' && (number == 4 || number == 28 || number == 30 || number == 53))
+      {
+        elsewhere = true; // a time, or places of the machine
+      }
+    }
+    if (moves && !elsewhere)
+    {
+      this->Place = to;
+      this->Moves.push_back({ this->Rapid, to, this->Rapid ? 0 : this->Feed });
+    }
+  }
+
+  Vec3 Place{};
+  double Feed = 0;
+  bool Rapid = true;
+};
+
+void FindPath(const std::string& text)
+{
+  std::size_t found = 0;
+  for (const GCodeMove& move : LenientReader(text).Moves)
+  {
+    const GCodeMove& next = Path[std::min(found, Path.size() - 1)];
+    found += move.Rapid == next.Rapid && move.To == next.To && move.Feed == next.Feed;
+  }
+  Require(found >= Path.size(), "the path is in the program, as it is");
+}
+
 // The strict reader knows what the default templates need, and comments have no meaning.
 void ReadBack(const std::string& text)
 {
@@ -76,6 +163,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       Require(c >= ' ' && c <= '~' && !(c >= 'a' && c <= 'z'), "characters that a control knows");
     }
   }
+  FindPath(program.Text);
   if (!own)
   {
     ReadBack(program.Text);

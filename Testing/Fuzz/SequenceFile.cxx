@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracked sequences, MetaImage and NRRD: header, pixels, poses. Of a header that names pixels.raw, the
-// bytes behind the first zero are also read as that file.
+// Tracked sequences, MetaImage and NRRD: header, pixels, poses. What is behind the first zero byte is also
+// read as pixels.raw, and as the pixels of a header sweep.mhd that lacks its end, beside it.
 #include "lacunaFuzzTarget.h"
 #include "lacunaPixelSource.h"
 #include "lacunaSliceStack.h"
@@ -65,14 +65,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Read(MemoryFile(data, size).GetPath());
 
   const std::uint8_t *end = data + size, *zero = std::find(data, end, 0);
-  std::string header(data, zero);
-  const std::string pixelsName = "pixels.raw";
-  const std::size_t name = header.find(pixelsName);
-  if (zero != end && name != std::string::npos)
+  if (zero != end)
   {
+    static const MemoryFolder folder;
+    const MemoryFile header(data, static_cast<std::size_t>(zero - data));
     const MemoryFile pixels(zero + 1, static_cast<std::size_t>(end - zero - 1));
-    header.replace(name, pixelsName.size(), pixels.GetPath());
-    Read(MemoryFile(header.data(), header.size()).GetPath());
+    folder.Name("sweep.mhd", header);
+    folder.Name("sweep.raw", pixels);
+    folder.Name("pixels.raw", pixels);
+    Read(folder.GetPath("sweep.mhd"));
   }
   return 0;
 }

@@ -12,8 +12,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 /// libFuzzer's entry point; ReplayCorpus.cxx calls it where that is not there.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -106,6 +108,34 @@ public:
 
 private:
   int Descriptor;
+  std::string Path;
+};
+
+/// Names in one folder for files in memory, for readers that look beside a file.
+class MemoryFolder
+{
+public:
+  MemoryFolder()
+  {
+    char path[] = "/tmp/lacuna-fuzz-XXXXXX";
+    Require(mkdtemp(path) != nullptr, "a folder");
+    this->Path = path;
+  }
+  ~MemoryFolder()
+  {
+    std::error_code code;
+    std::filesystem::remove_all(this->Path, code);
+  }
+  MemoryFolder(const MemoryFolder&) = delete;
+  MemoryFolder& operator=(const MemoryFolder&) = delete;
+  std::string GetPath(const std::string& name) const { return this->Path + "/" + name; }
+  void Name(const std::string& name, const MemoryFile& file) const
+  {
+    unlink(this->GetPath(name).c_str());
+    Require(symlink(file.GetPath().c_str(), this->GetPath(name).c_str()) == 0, "a name");
+  }
+
+private:
   std::string Path;
 };
 }

@@ -163,7 +163,9 @@ def unpaired(rank):
 
 def distributed(rank):
     """Points of which ParaView gives each rank a part, or all to the first, whatever filters ask for."""
+    import lacuna.plugin
     from paraview import simple as pv
+    lacuna.plugin.load()
     points = pv.Elevation(Input=pv.Sphere(Radius=8))
     parts = pv.ExtractSurface(Input=pv.MergeBlocks(Input=pv.RedistributeDataSet(Input=points)))
     line = pv.PlotOverLine(Input=pv.Wavelet(), Point1=[-9, -9, -9], Point2=[9, 9, 9])
@@ -172,9 +174,15 @@ def distributed(rank):
             made.SetInputConnection(port, source.GetClientSideObject().GetOutputPort(source.Port))
             text = update(made)
             assert not (on_all or rank == 1) or "is not the same on all ranks" in text or "another rank has stopped" in text, (made.GetClassName(), text)
-    everywhere = interpolator()
-    everywhere.SetInputConnection(points.GetClientSideObject().GetOutputPort())
-    assert not update(everywhere)
+    depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[2, 2, 2]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
+    filled = pv.RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+    # Lacuna's serial filters: two answer all ranks by what the first has made, the others make it on each
+    for source, on_all in ((pv.DefectModel(Input=filled), False), (pv.ImplantPlate(Input=filled), True), (points, True)):
+        made = interpolator()
+        made.SetInputConnection(source.GetClientSideObject().GetOutputPort())
+        text = update(made)
+        assert ("is not the same on all ranks" not in text) == (on_all or rank == 0), (source.GetXMLLabel(), text)
+        assert source is not points or not text, text
 
 
 def interpolator():

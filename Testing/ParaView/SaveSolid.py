@@ -100,7 +100,22 @@ for record in (first, again):
     del record["sha256"]  # the file itself holds all field data
 assert again == first
 
-# After a failure neither the old solid nor its record is there.
+# A file that the surface itself is read from: replaced when the new one is whole, and never lost.
+again = output("SaveSolidAgain.stl")
+save_solid(again, solid)
+moved = Transform(Input=STLReader(FileNames=[again]))
+moved.Transform.Translate = [5, 0, 0]
+save_solid(again, moved)
+assert save_solid(again, Transform(Input=STLReader(FileNames=[again])))["bounds"] == [5, 8, 0, 2, 0, 1]
+broken = Transform(Input=STLReader(FileNames=[again]))
+broken.Transform.Scale = [-1, 1, 1]
+refused(again, broken, "mirror image")
+kept = STLReader(FileNames=[again + ".old"])
+kept.UpdatePipeline()
+assert kept.GetDataInformation().GetBounds() == (5, 8, 0, 2, 0, 1)
+assert read_strictly(again + ".json.old")["bounds"] == [5, 8, 0, 2, 0, 1]
+
+# After a failure neither the old solid nor its record is there under its name.
 for name in ("SaveSolid.stl", "SaveSolid.3mf"):
     plate = ImplantPlate(Input=filled)
     save_solid(output(name), plate)

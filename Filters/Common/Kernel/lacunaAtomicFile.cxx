@@ -1,15 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaAtomicFile.h"
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 namespace lacuna
 {
+namespace
+{
+// Who may do what with a file goes over to the one that takes its place, as far as the system lets us.
+void CopyAccess(const std::string& from, const std::string& to)
+{
+  struct stat status;
+  if (stat(from.c_str(), &status) != 0)
+  {
+    return;
+  }
+  const bool owned = chown(to.c_str(), status.st_uid, status.st_gid) == 0 ||
+    chown(to.c_str(), static_cast<uid_t>(-1), status.st_gid) == 0;
+  // what the group might do is nothing for another group
+  chmod(to.c_str(), status.st_mode & (owned ? 0777 : 0707));
+  constexpr const char* list = "system.posix_acl_access";
+  std::array<char, 4096> entries;
+  const ssize_t size = getxattr(from.c_str(), list, entries.data(), entries.size());
+  if (size > 0 &&
+    setxattr(to.c_str(), list, entries.data(), static_cast<std::size_t>(size), 0) != 0)
+  {
+    chmod(to.c_str(), status.st_mode & 0700);
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 AtomicFile::AtomicFile(const std::string& path)
   : Path(path)
@@ -17,6 +45,13 @@ AtomicFile::AtomicFile(const std::string& path)
 {
   namespace fs = std::filesystem;
   std::error_code code;
+  const fs::file_status whole = fs::status(path, code); // before links, which lie about pipes
+  if (fs::exists(whole) && !fs::is_regular_file(whole) && !fs::is_directory(whole))
+  {
+    this->Stream = true;
+    this->File = std::make_unique<OutputFile>(path, OutputFile::Mode::Existing, path);
+    return;
+  }
   for (int links = 0; fs::is_symlink(fs::symlink_status(this->Target, code)); ++links)
   {
     const fs::path next = fs::read_symlink(this->Target, code);
@@ -32,12 +67,6 @@ AtomicFile::AtomicFile(const std::string& path)
   {
     throw FileError::Make("cannot write", path, EISDIR);
   }
-  if (fs::exists(status) && !fs::is_regular_file(status))
-  {
-    this->Stream = true;
-    this->File = std::make_unique<OutputFile>(this->Target, OutputFile::Mode::Existing, path);
-    return;
-  }
   if (fs::exists(status) && faccessat(AT_FDCWD, this->Target.c_str(), W_OK, AT_EACCESS) != 0)
   {
     throw FileError::Make("cannot overwrite", path, errno); // a rename would not ask
@@ -47,6 +76,7 @@ AtomicFile::AtomicFile(const std::string& path)
   unlink(temporary.c_str());
   this->File = std::make_unique<OutputFile>(temporary, OutputFile::Mode::CreateNew, path);
   this->Temporary = temporary;
+  CopyAccess(this->Target, temporary);
 }
 
 //------------------------------------------------------------------------------

@@ -14,8 +14,9 @@ namespace lacuna
 {
 /// A file that takes its name when it is complete: it is written under another name beside its
 /// place, seen on the disk and renamed, so that path is either what it was before or the whole new
-/// content, also after a crash. A symbolic link is followed; a device or pipe is written to
-/// directly. All functions throw FileError.
+/// content, also after a crash. A file that is there before passes on its permissions, access list
+/// and, where the system allows it, owner and group. A symbolic link is followed; a device or pipe
+/// is written to directly. All functions throw FileError.
 class AtomicFile
 {
 public:

@@ -38,6 +38,8 @@ constexpr const char* HarmlessNames =
 constexpr double Subprograms[] = { 96, 97, 98, 99, 198 };
 constexpr double Ends[] = { 2, 30 };
 constexpr double ToolChange = 6;
+constexpr double Clockwise[] = { 3, 13 };                   // 13: with coolant
+constexpr double NotClockwise[] = { 4, 5, 14, ToolChange }; // backwards, stop, the change stops it
 constexpr double Mirrors[] = { 21, 22 }; // of many machines with this control: x, y
 
 struct Word
@@ -159,6 +161,8 @@ public:
               (Has(Ends, word.Number) ? "not be run"
                                       : "depend on what the control does elsewhere"));
           }
+          this->Turns =
+            Has(Clockwise, word.Number) || (this->Turns && !Has(NotClockwise, word.Number));
           if (Has(Mirrors, word.Number))
           {
             this->Throw("has " + word.Text + ", which mirrors the path on many machines");
@@ -189,6 +193,7 @@ public:
 
   // Whether the tool's length is in force behind the lines so far.
   bool HasToolLength() const { return this->Length; }
+  bool HasSpindleTurning() const { return this->Turns; }
 
 private:
   [[noreturn]] void Throw(const std::string& what) const
@@ -390,6 +395,7 @@ private:
   bool Cancelled = false;  // G49 in the footer
   bool Chosen = false;     // T in the header
   bool Changed = false;    // M06
+  bool Turns = false;      // M03
 };
 }
 
@@ -414,6 +420,7 @@ FilledTemplate FillInTemplate(const GCodeTemplate& source,
     }
   }
   filled.HasToolLength = reader.HasToolLength();
+  filled.SpindleTurns = reader.HasSpindleTurning();
   return filled;
 }
 }

@@ -33,17 +33,27 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
     coordinates the surface is stands there, too, as lacuna.coordinates.find knows it: "unknown" if it
     does not. Raises PipelineError when a filter or the writer fails (also when the disk has no room
     left), when there is no polygon or a point is not finite, and for a mirror image of the patient
-    (lacuna.coordinates) unless allow_mirrored; neither of the two files is there then.
+    (lacuna.coordinates) unless allow_mirrored. Neither of the two files is there then: older ones, which
+    would be taken for the new ones, have .old behind their names (they may be all there is, as of a
+    surface that was read from path).
     options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
+    try:
+        return _save_solid(path, proxy, allow_mirrored, options)
+    except BaseException:
+        for old in (path, path + ".json"):
+            if os.path.exists(old):
+                os.replace(old, old + ".old")
+        raise
+
+
+def _save_solid(path, proxy, allow_mirrored, options):
+    """save_solid; the old files stay where they are until the surface is written under another name."""
     from lacuna import __version__, coordinates
     from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
 
     beside = path + ".json"
-    for old in (path, beside):
-        if os.path.exists(old):
-            os.remove(old)  # what is there after a failure would be taken for the new one
     with raising():
         proxy.UpdatePipeline()
         data = fetch(proxy)
@@ -61,6 +71,8 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
     else:
         _write_by_paraview(path, proxy, options)
+    if os.path.exists(beside):
+        os.remove(beside)  # of the surface before
     with open(path, "rb") as file:
         digest = hashlib.sha256(file.read()).hexdigest()
     record = _without_nan({

@@ -34,8 +34,44 @@ private:
   const std::vector<unsigned char>& Bytes;
 };
 
+enum class Coding
+{
+  None,
+  Jpeg,
+  JpegLS,
+  Jpeg2000
+};
+
+// Of transfer syntaxes 1.2.840.10008.1.2.4.*; others are for the codec to refuse.
+Coding GetCoding(const std::string& transferSyntax)
+{
+  const auto is = [&](const char* kind)
+  { return transferSyntax.rfind(std::string("1.2.840.10008.1.2.4.") + kind, 0) == 0; };
+  if (is("9") || is("20"))
+  {
+    return Coding::Jpeg2000;
+  }
+  return is("8") ? Coding::JpegLS : Coding::Jpeg;
+}
+
+const char* GetName(Coding coding)
+{
+  switch (coding)
+  {
+    case Coding::Jpeg:
+      return "JPEG";
+    case Coding::JpegLS:
+      return "JPEG-LS";
+    case Coding::Jpeg2000:
+      return "JPEG 2000";
+    default:
+      return "no known coding";
+  }
+}
+
 struct ImageSize
 {
+  Coding Kind = Coding::None;
   std::int64_t Columns = 0;
   std::int64_t Rows = 0;
   int Bits = 0;
@@ -46,6 +82,7 @@ struct ImageSize
 ImageSize ReadJpeg2000Size(const Stream& stream)
 {
   ImageSize size;
+  size.Kind = Coding::Jpeg2000;
   size.Columns = std::int64_t{ stream.Big(8, 4) } - stream.Big(16, 4);
   size.Rows = std::int64_t{ stream.Big(12, 4) } - stream.Big(20, 4);
   size.Components = static_cast<int>(stream.Big(40, 2));
@@ -54,9 +91,11 @@ ImageSize ReadJpeg2000Size(const Stream& stream)
   return whole ? size : ImageSize();
 }
 
+constexpr std::uint32_t StartOfFrameLS = 0xF7;
+
 bool IsStartOfFrame(std::uint32_t marker)
 {
-  return marker == 0xF7 ||
+  return marker == StartOfFrameLS ||
     (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC);
 }
 
@@ -84,8 +123,9 @@ ImageSize ReadJpegSize(const Stream& stream, std::size_t length)
     if (IsStartOfFrame(marker))
     {
       lossless = marker == Lossless;
-      size = { stream.Big(at + 7, 2), stream.Big(at + 5, 2),
-        static_cast<int>(stream.Big(at + 4, 1)), static_cast<int>(stream.Big(at + 9, 1)) };
+      size = { marker == StartOfFrameLS ? Coding::JpegLS : Coding::Jpeg, stream.Big(at + 7, 2),
+        stream.Big(at + 5, 2), static_cast<int>(stream.Big(at + 4, 1)),
+        static_cast<int>(stream.Big(at + 9, 1)) };
     }
     at += 2 + std::max<std::size_t>(2, stream.Big(at + 2, 2));
   }
@@ -94,8 +134,8 @@ ImageSize ReadJpegSize(const Stream& stream, std::size_t length)
 }
 
 //------------------------------------------------------------------------------
-std::string WhyNotImage(
-  const std::vector<unsigned char>& bytes, std::int64_t columns, std::int64_t rows, int bits)
+std::string WhyNotImage(const std::vector<unsigned char>& bytes, const std::string& transferSyntax,
+  std::int64_t columns, std::int64_t rows, int allocated)
 {
   const Stream stream(bytes);
   const std::uint32_t begin = stream.Big(0, 4);
@@ -108,15 +148,21 @@ std::string WhyNotImage(
   {
     size = ReadJpegSize(stream, bytes.size());
   }
-  if (size.Components == 1 && size.Columns == columns && size.Rows == rows && size.Bits >= 1 &&
-    size.Bits <= bits)
+  const Coding wanted = GetCoding(transferSyntax);
+  if (size.Kind != Coding::None && size.Kind != wanted)
+  {
+    return std::string("are ") + GetName(size.Kind) + ", not " + GetName(wanted);
+  }
+  if (size.Components == 1 && size.Columns == columns && size.Rows == rows &&
+    (size.Bits + 7) / 8 * 8 == allocated)
   {
     return {};
   }
   return "are of " + std::to_string(size.Columns) + " x " + std::to_string(size.Rows) +
     " pixels of " + std::to_string(size.Components) + " times " + std::to_string(size.Bits) +
-    " bits, not of " + std::to_string(columns) + " x " + std::to_string(rows) + " of at most " +
-    std::to_string(bits);
+    " bits, not of " + std::to_string(columns) + " x " + std::to_string(rows) + " of " +
+    (allocated > 8 ? std::to_string(allocated - 7) + " to " : "up to ") +
+    std::to_string(allocated) + " (Bits Allocated, 0028,0100)";
 }
 
 //------------------------------------------------------------------------------

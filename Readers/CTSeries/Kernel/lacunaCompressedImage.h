@@ -11,10 +11,11 @@
 
 namespace lacuna
 {
-/// Why a JPEG, JPEG-LS or JPEG 2000 stream is not one component of columns x rows pixels of at most
-/// bits each ("is of 512 x 400 pixels ..."); empty when it is.
-std::string WhyNotImage(
-  const std::vector<unsigned char>& stream, std::int64_t columns, std::int64_t rows, int bits);
+/// Why a stream is not of the kind of its transfer syntax, JPEG, JPEG-LS or JPEG 2000, with one component
+/// of columns x rows pixels, which take allocated bits each when they are decoded (a multiple of 8: codecs
+/// write as many as the stream has) ("are of 512 x 400 pixels ..."); empty when it is.
+std::string WhyNotImage(const std::vector<unsigned char>& stream, const std::string& transferSyntax,
+  std::int64_t columns, std::int64_t rows, int allocated);
 
 /// Decodes RLE (PS3.5, annex G): pixels of so many bytes, little endian. False when the stream is
 /// damaged or gives another amount.

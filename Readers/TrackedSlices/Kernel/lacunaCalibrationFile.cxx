@@ -20,6 +20,10 @@ namespace lacuna
 {
 namespace
 {
+constexpr std::size_t LargestFile = std::size_t{ 1 } << 24;
+constexpr std::size_t MostTransforms =
+  1000; // each is compared with the way that leads there already
+
 bool NearlyEqual(const Matrix4& a, const Matrix4& b)
 {
   for (int i = 0; i < 16; ++i)
@@ -74,6 +78,11 @@ private:
     while (const std::size_t size = ReadBytes(stream, part.data(), part.size(), shown))
     {
       text.append(part.data(), size);
+      if (text.size() > LargestFile)
+      {
+        throw std::runtime_error(shown + ": is larger than " + std::to_string(LargestFile) +
+          " bytes, which no calibration file is; is it a recording?");
+      }
     }
     if (text.empty())
     {
@@ -144,6 +153,10 @@ private:
     catch (const std::invalid_argument& e)
     {
       this->Fail(name + ": the " + e.what());
+    }
+    if (this->Transforms.size() == MostTransforms)
+    {
+      this->Fail("has more than " + std::to_string(MostTransforms) + " transforms");
     }
     std::vector<TransformGraph::Link> chain;
     if (!this->Graph.FindChain(transform.From, transform.To, chain))

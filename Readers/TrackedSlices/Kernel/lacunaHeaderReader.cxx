@@ -28,6 +28,8 @@ bool IsFrameKind(const std::string& kind)
   return kind == "list" || kind == "time";
 }
 
+constexpr std::size_t LongestFrameFieldName = 256;
+
 // Seq_Frame0012_Timestamp -> 12, Timestamp; there are INT_MAX frames at most
 bool SplitFrameField(std::string_view name, std::int64_t& frame, std::string& field)
 {
@@ -152,6 +154,11 @@ void HeaderReader::AddFrameField(const std::string& name, const std::string& val
   {
     this->Ignore("field " + name);
     return;
+  }
+  if (field.Name.size() > LongestFrameFieldName) // which may be read in as many ways as it has "To"
+  {
+    this->Lines.Fail("has a field of a frame with a name of " + std::to_string(field.Name.size()) +
+      " characters; up to " + std::to_string(LongestFrameFieldName) + " are read");
   }
   field.Value = value;
   this->FrameFields.push_back(std::move(field));

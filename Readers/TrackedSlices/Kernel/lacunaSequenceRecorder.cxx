@@ -41,7 +41,7 @@ SequenceRecorder::SequenceRecorder(
   const std::string beginning = this->Kind.GetBeginning(description);
   if (compressionLevel > 0)
   {
-    this->Compressor = std::make_unique<StreamCompressor>(
+    this->Now.Compressor = std::make_unique<StreamCompressor>(
       this->Kind.IsNrrd() ? StreamCompressor::Wrapping::Gzip : StreamCompressor::Wrapping::Zlib,
       compressionLevel);
   }
@@ -50,17 +50,18 @@ SequenceRecorder::SequenceRecorder(
   try
   {
     this->Header = std::make_unique<OutputFile>(fileName, OutputFile::Mode::CreateNew, fileName);
-    if (this->Compressor)
+    if (this->Now.Compressor)
     {
-      const std::string start = this->Compressor->GetBeginning();
+      const std::string start = this->Now.Compressor->GetBeginning();
       this->Data->WriteAt(0, start);
-      this->DataSize = static_cast<std::int64_t>(start.size());
+      this->Now.DataSize = static_cast<std::int64_t>(start.size());
     }
     this->CountsOffset =
       static_cast<std::int64_t>(beginning.find(this->Kind.GetCounts(description, 0, 0)));
     this->Header->WriteAt(0, beginning + this->Kind.GetEnd());
-    this->HeaderSize = static_cast<std::int64_t>(beginning.size());
+    this->Now.HeaderSize = static_cast<std::int64_t>(beginning.size());
     SyncFolderOf(fileName);
+    this->Synced = this->Now;
   }
   catch (const FileError&)
   {
@@ -93,7 +94,7 @@ void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
   {
     fields.emplace_back("ImageStatus", "OK"); // marks the end of a slice's fields, too
   }
-  const std::string text = this->Kind.GetFrame(this->Slices, fields);
+  const std::string text = this->Kind.GetFrame(this->Now.Slices, fields);
 
   const std::size_t elementSize = GetScalarSize(this->Description.Type);
   const auto size =
@@ -108,9 +109,9 @@ void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
   std::unique_ptr<StreamCompressor> compressor;
   std::string packed;
   std::int64_t stored = static_cast<std::int64_t>(size);
-  if (this->Compressor)
+  if (this->Now.Compressor)
   {
-    compressor = std::make_unique<StreamCompressor>(*this->Compressor);
+    compressor = std::make_unique<StreamCompressor>(*this->Now.Compressor);
     ThreadExecution execution(1);
     packed = compressor->Compress(bytes, size, execution);
     stored = static_cast<std::int64_t>(packed.size());
@@ -118,22 +119,22 @@ void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
 
   try
   {
-    this->Data->WriteAt(this->DataSize,
+    this->Data->WriteAt(this->Now.DataSize,
       compressor ? static_cast<const void*>(packed.data()) : bytes,
       static_cast<std::size_t>(stored));
-    this->WriteHeader(text, this->Slices + 1, 0);
+    this->WriteHeader(text, this->Now.Slices + 1, 0);
   }
   catch (const FileError&)
   {
-    Try([&] { this->Data->Truncate(this->DataSize); });
+    Try([&] { this->Data->Truncate(this->Now.DataSize); });
     throw;
   }
-  this->DataSize += stored;
-  this->HeaderSize += static_cast<std::int64_t>(text.size());
-  ++this->Slices;
+  this->Now.DataSize += stored;
+  this->Now.HeaderSize += static_cast<std::int64_t>(text.size());
+  ++this->Now.Slices;
   if (compressor)
   {
-    this->Compressor = std::move(compressor);
+    this->Now.Compressor = std::move(compressor);
   }
 }
 
@@ -145,32 +146,50 @@ void SequenceRecorder::WriteHeader(
   const std::string end = this->Kind.GetEnd();
   try
   {
-    this->Header->WriteAt(this->HeaderSize, fields + end);
+    this->Header->WriteAt(this->Now.HeaderSize, fields + end);
     this->Header->WriteAt(
       this->CountsOffset, this->Kind.GetCounts(this->Description, slices, compressedSize));
   }
   catch (const FileError&)
   {
-    // These bytes were there before, so a full disk has room for them.
-    Try(
-      [&]
-      {
-        this->Header->WriteAt(
-          this->CountsOffset, this->Kind.GetCounts(this->Description, this->Slices, 0));
-        this->Header->WriteAt(this->HeaderSize, end);
-        this->Header->Truncate(this->HeaderSize + static_cast<std::int64_t>(end.size()));
-      });
+    this->RestoreHeader();
     throw;
   }
 }
 
 //------------------------------------------------------------------------------
+// As it was when there were Now.Slices: these bytes were there, so a full disk has room for them.
+void SequenceRecorder::RestoreHeader()
+{
+  const std::string end = this->Kind.GetEnd();
+  Try(
+    [&]
+    {
+      this->Header->WriteAt(
+        this->CountsOffset, this->Kind.GetCounts(this->Description, this->Now.Slices, 0));
+      this->Header->WriteAt(this->Now.HeaderSize, end);
+      this->Header->Truncate(this->Now.HeaderSize + static_cast<std::int64_t>(end.size()));
+    });
+}
+
+//------------------------------------------------------------------------------
 void SequenceRecorder::Sync()
 {
-  if (this->Header)
+  if (!this->Header)
+  {
+    return;
+  }
+  try
   {
     this->Data->Sync();
     this->Header->Sync();
+    this->Synced = this->Now;
+  }
+  catch (const FileError&)
+  {
+    this->Now = this->Synced;
+    this->RestoreHeader();
+    throw;
   }
 }
 
@@ -181,19 +200,20 @@ void SequenceRecorder::Close()
   {
     return;
   }
-  if (this->Compressor)
+  if (this->Now.Compressor)
   {
-    const std::string end = this->Compressor->GetEnd();
+    const std::string end = this->Now.Compressor->GetEnd();
     try
     {
-      this->Data->WriteAt(this->DataSize, end);
+      this->Data->WriteAt(this->Now.DataSize, end);
     }
     catch (const FileError&)
     {
-      Try([&] { this->Data->Truncate(this->DataSize); });
+      Try([&] { this->Data->Truncate(this->Now.DataSize); });
       throw;
     }
-    this->WriteHeader({}, this->Slices, this->DataSize + static_cast<std::int64_t>(end.size()));
+    this->WriteHeader(
+      {}, this->Now.Slices, this->Now.DataSize + static_cast<std::int64_t>(end.size()));
   }
   this->Sync();
   this->Data->Close();

@@ -49,26 +49,35 @@ public:
   /// or another slice may be added later.
   void Append(const void* pixels, SequenceFields fields);
 
-  std::int64_t GetNumberOfSlices() const { return this->Slices; }
+  std::int64_t GetNumberOfSlices() const { return this->Now.Slices; }
 
-  /// Waits until the disk has all slices. Throws FileError.
+  /// Waits until the disk has all slices. Throws FileError: then the system may have dropped what it
+  /// could not write, and says so only once. The recording is as it was after the last Sync that
+  /// worked, and the slices since are to be appended again.
   void Sync();
   /// Ends the recording: compressed pixels get their end and check sum. Throws FileError; it may be
-  /// called again.
+  /// called again, after appending the slices since the last Sync that worked.
   void Close();
 
 private:
+  // What there is of the recording.
+  struct Extent
+  {
+    std::int64_t HeaderSize = 0; ///< without its end
+    std::int64_t DataSize = 0;
+    std::int64_t Slices = 0;
+    std::shared_ptr<const StreamCompressor> Compressor; ///< null when the pixels are raw
+  };
   void WriteHeader(const std::string& fields, std::int64_t slices, std::int64_t compressedSize);
+  void RestoreHeader();
 
   SequenceKind Kind;
   SequenceDescription Description;
-  std::unique_ptr<StreamCompressor> Compressor; ///< null when the pixels are raw
   std::unique_ptr<OutputFile> Header;
   std::unique_ptr<OutputFile> Data;
   std::int64_t CountsOffset = 0;
-  std::int64_t HeaderSize = 0; ///< without its end
-  std::int64_t DataSize = 0;
-  std::int64_t Slices = 0;
+  Extent Now;
+  Extent Synced;
   std::vector<unsigned char> Frame;
 };
 }

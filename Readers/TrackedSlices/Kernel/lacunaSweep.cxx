@@ -225,12 +225,38 @@ void SweepBuilder::FindImageToProbe()
 {
   Chain chain;
   Matrix4 imageToProbe;
-  if (this->Graph().FindChain(this->Options.ImageFrame, "Probe", chain) && !chain.empty() &&
-    std::all_of(chain.begin(), chain.end(),
-      [&](const TransformGraph::Link& link) { return this->Transforms.Get(link).IsConstant(); }) &&
-    this->Transforms.Compose(chain, 0, imageToProbe))
+  if (!this->Graph().FindChain(this->Options.ImageFrame, "Probe", chain) || chain.empty())
   {
-    this->Result.ImageToProbe.push_back(imageToProbe);
+    return;
+  }
+  if (std::all_of(chain.begin(), chain.end(),
+        [&](const TransformGraph::Link& link) { return this->Transforms.Get(link).IsConstant(); }))
+  {
+    if (this->Transforms.Compose(chain, 0, imageToProbe))
+    {
+      this->Result.ImageToProbe.push_back(imageToProbe);
+    }
+    return;
+  }
+  if (chain.size() > 1) // by way of what moves
+  {
+    return;
+  }
+  // Shown while it was recorded, all slices were placed by the last one.
+  const SweepTransform& calibration = this->Transforms.Get(chain.front());
+  const std::vector<Matrix4>& matrices = calibration.Matrices;
+  const auto isGiven = [](const Matrix4& matrix) { return matrix.IsFinite(); };
+  const auto first = std::find_if(matrices.begin(), matrices.end(), isGiven);
+  const auto other = std::find_if(first, matrices.end(),
+    [&](const Matrix4& matrix)
+    { return isGiven(matrix) && !std::equal(matrix.Data(), matrix.Data() + 16, first->Data()); });
+  if (other != matrices.end())
+  {
+    this->Warn("the probe's calibration " + calibration.Name + " of frame " +
+      std::to_string(other - matrices.begin()) + " is not that of frame " +
+      std::to_string(first - matrices.begin()) +
+      " (calibrated anew while it was recorded?); each slice is placed by its own. Give "
+      "CalibrationFileName to place all by one");
   }
 }
 

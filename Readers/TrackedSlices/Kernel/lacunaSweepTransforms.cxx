@@ -110,12 +110,15 @@ void SweepTransforms::ReadFrames(const SequenceHeader& header)
       transform.Matrices.push_back(transform.Errors.back().empty() ? matrix : NoMatrix());
     }
     const std::string status = transform.Name + std::string(StatusSuffix);
-    for (const auto& [other, states] : header.FrameFields)
+    // fields stand by their names
+    for (auto other = header.FrameFields.lower_bound(transform.Name);
+         other != header.FrameFields.end() &&
+         other->first.compare(0, transform.Name.size(), transform.Name) == 0;
+         ++other)
     {
-      if (EqualsIgnoringCase(other, status) &&
-        other.compare(0, transform.Name.size(), transform.Name) == 0)
+      if (EqualsIgnoringCase(other->first, status))
       {
-        transform.Status = &states;
+        transform.Status = &other->second;
       }
     }
     this->Transforms.push_back(std::move(transform));
@@ -208,8 +211,11 @@ bool SweepTransforms::Enter(std::size_t transform, const std::string& from, cons
   this->RelateToPicture(this->Transforms[transform], from, to);
   for (const SweepTransform& other : this->Transforms)
   {
-    if (other.FromCalibration &&
-      ((other.From == from && other.To == to) || (other.From == to && other.To == from)))
+    if (!other.FromCalibration) // those of the calibration stand first
+    {
+      break;
+    }
+    if ((other.From == from && other.To == to) || (other.From == to && other.To == from))
     {
       if (!this->IsSame(this->Transforms[transform], other, from == other.From))
       {

@@ -11,6 +11,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -69,7 +70,7 @@ struct SweepRecorder::Work
   bool IsSyncDue(double now) const
   {
     return !this->Unsynced.empty() &&
-      (this->Hurry || this->Ending || now >= this->Unsynced.front() + SyncInterval);
+      (this->Hurry || this->Ending || now >= this->Unsynced.front().Time + SyncInterval);
   }
   // When there is something to do next; a time passed: now.
   double GetNextTime() const
@@ -84,7 +85,7 @@ struct SweepRecorder::Work
     }
     return this->Hurry || this->Ending
       ? this->RetryTime
-      : std::max(this->RetryTime, this->Unsynced.front() + SyncInterval);
+      : std::max(this->RetryTime, this->Unsynced.front().Time + SyncInterval);
   }
   bool HasAll() const { return this->Queue.empty() && this->Unsynced.empty(); }
 
@@ -104,7 +105,7 @@ struct SweepRecorder::Work
   mutable std::mutex Mutex;
   std::condition_variable Changed;
   std::deque<Slice> Queue;
-  std::deque<double> Unsynced; // when those were added that are written and not synced
+  std::deque<Slice> Unsynced; // written, and to be written again should the disk have dropped them
   State Now;
   double RetryTime = 0;
   FileError::Kind TroubleKind = FileError::Kind::Other;
@@ -176,7 +177,7 @@ void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
     this->Now.Trouble.clear();
     ++this->Now.Written;
     this->Now.WaitingBytes -= static_cast<std::int64_t>(this->Bytes);
-    this->Unsynced.push_back(slice.Time);
+    this->Unsynced.push_back(std::move(this->Queue.front()));
     this->Queue.pop_front();
   }
 }
@@ -186,10 +187,19 @@ void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
   if (this->Try(lock, [&] { this->Recorder->Sync(); }))
   {
     this->Now.LongestDelay =
-      std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front());
+      std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front().Time);
     this->Unsynced.clear(); // only this thread adds to it
     this->Now.Synced = this->Now.Written;
     this->Changed.notify_all();
+  }
+  else
+  {
+    const auto count = static_cast<std::int64_t>(this->Unsynced.size());
+    this->Now.Written -= count;
+    this->Now.WaitingBytes += count * static_cast<std::int64_t>(this->Bytes);
+    this->Queue.insert(this->Queue.begin(), std::make_move_iterator(this->Unsynced.begin()),
+      std::make_move_iterator(this->Unsynced.end()));
+    this->Unsynced.clear();
   }
 }
 

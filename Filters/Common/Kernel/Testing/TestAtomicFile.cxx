@@ -10,6 +10,7 @@
 
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 namespace fs = std::filesystem;
@@ -98,6 +99,68 @@ TEST_F(AtomicFile, RespectsTheUmask)
   WriteFileAtomically(this->Path("a"), "x");
   umask(before);
   EXPECT_EQ(fs::status(this->Path("a")).permissions(), static_cast<fs::perms>(0640));
+}
+
+// A patient's data do not become everybody's to read, nor a group's file its last writer's.
+TEST_F(AtomicFile, PassesOnWhoMayDoWhat)
+{
+  const std::string path = this->Path("file");
+  WriteFileAtomically(path, "old");
+  for (const mode_t mode : { 0600, 0640, 0666, 0755 })
+  {
+    ASSERT_EQ(chmod(path.c_str(), mode), 0);
+    const bool given = geteuid() == 0 && chown(path.c_str(), 65534, 65533) == 0;
+    WriteFileAtomically(path, "new");
+    struct stat status;
+    ASSERT_EQ(stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, mode);
+    if (given)
+    {
+      EXPECT_EQ(status.st_uid, 65534u);
+      EXPECT_EQ(status.st_gid, 65533u);
+    }
+  }
+}
+
+// user::rw-, user:65534:r--, group::---, mask::r--, other::---
+TEST_F(AtomicFile, PassesOnTheAccessList)
+{
+  const std::string path = this->Path("file");
+  WriteFileAtomically(path, "old");
+  const auto entry = [](int tag, int rights, unsigned int id)
+  {
+    std::string bytes{ static_cast<char>(tag), 0, static_cast<char>(rights), 0 };
+    for (int shift = 0; shift < 32; shift += 8)
+    {
+      bytes += static_cast<char>(id >> shift);
+    }
+    return bytes;
+  };
+  constexpr unsigned int none = 0xFFFFFFFF;
+  const std::string list = std::string("\2\0\0\0", 4) + entry(1, 6, none) + entry(2, 4, 65534) +
+    entry(4, 0, none) + entry(16, 4, none) + entry(32, 0, none);
+  const char* name = "system.posix_acl_access";
+  if (setxattr(path.c_str(), name, list.data(), list.size(), 0) != 0)
+  {
+    GTEST_SKIP() << "the file system has no access lists";
+  }
+  WriteFileAtomically(path, "new");
+  char found[4096];
+  const ssize_t size = getxattr(path.c_str(), name, found, sizeof found);
+  ASSERT_EQ(size, static_cast<ssize_t>(list.size()));
+  EXPECT_EQ(std::string(found, list.size()), list);
+}
+
+TEST_F(AtomicFile, WritesToTheSystemsNamesOfPipes)
+{
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  WriteFileAtomically("/proc/self/fd/" + std::to_string(ends[1]), "through a pipe");
+  char text[20] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof text), 14);
+  EXPECT_STREQ(text, "through a pipe");
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_F(AtomicFile, WritesRelativePaths)

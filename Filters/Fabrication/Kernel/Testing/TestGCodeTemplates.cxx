@@ -150,13 +150,22 @@ TEST(GCodeTemplates, TemplatesThatMoveThePathAreRefused)
     return MakeGCode(Start, Path(), options).Warnings;
   };
   EXPECT_TRUE(MakeGCode(Start, Path(), {}).Warnings.empty());
-  EXPECT_TRUE(warnings("G21 g43 z50. h 1").empty());
-  for (const char* h : { "S100 M03", "(G43 H1)", "G43 Z50." })
+  EXPECT_TRUE(warnings("M3 G21 g43 z50. h 1").empty());
+  for (const char* h : { "S100 M03", "(G43 H1)\nM03", "G43 Z50. M03" })
   {
     const std::vector<std::string> told = warnings(h);
     ASSERT_EQ(told.size(), 1u) << h;
     EXPECT_NE(told[0].find("Z is the spindle nose's"), std::string::npos);
   }
+  for (const char* h : { "M03\nT1 M06\nG43 H1", "T1 M06\nS900\nG43 H1", "(M03)\nG43 H1",
+         "M04 G43 H1", "M03\nM05\nG43 H1", "G43 H1 M13\nM14", "M07\nG43 H1" })
+  {
+    const std::vector<std::string> told = warnings(h);
+    ASSERT_EQ(told.size(), 1u) << h;
+    EXPECT_NE(told[0].find("spindle turning clockwise"), std::string::npos) << told[0];
+  }
+  EXPECT_TRUE(warnings("M05\nT1 M06\nM04\nS900 M03 M08\nG43 H1").empty());
+  EXPECT_TRUE(warnings("T1 M06\nM13\nG43 H1\nM09").empty());
 }
 
 TEST(GCodeTemplates, IncrementsLeadToTheReferencePointOnly)
@@ -182,16 +191,16 @@ TEST(GCodeTemplates, IncrementsLeadToTheReferencePointOnly)
 TEST(GCodeTemplates, BlanksAndTabs)
 {
   GCodeOptions options;
-  options.Header = " \n\t\n\tG21\tG90\n  (a\tb)\nG43\tH1\n";
+  options.Header = " \n\t\n\tG21\tG90\n  (a\tb)\nG43\tH1 M03\n";
   options.LineNumbers = true;
   const GCodeProgram program = MakeGCode(Start, Path(), options);
   EXPECT_EQ(program.Text.find("%\nO0001\nN10 G21 G17 G40 G49 G80 G90 G94 G54\nN20 G21 G90\n(A B)\n"
-                              "N30 G43 H1\nN40 G00 X1.5"),
+                              "N30 G43 H1 M03\nN40 G00 X1.5"),
     0u)
     << program.Text.substr(0, 200);
   EXPECT_TRUE(program.Warnings.empty());
   const std::int64_t blocks = program.Blocks;
-  options.Header = "G21 G90\n(A)\nG43 H1";
+  options.Header = "G21 G90\n(A)\nG43 H1 M03";
   EXPECT_EQ(MakeGCode(Start, Path(), options).Blocks, blocks);
 }
 

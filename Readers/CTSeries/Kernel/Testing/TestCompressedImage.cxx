@@ -33,15 +33,26 @@ Bytes MakeRuns()
 
 TEST(CompressedImage, SizeOfJpeg)
 {
-  EXPECT_EQ(WhyNotImage(MakeJpeg(0xC3, 1), 30, 20, 16), "");
-  EXPECT_EQ(WhyNotImage(MakeJpeg(0xF7, 0), 30, 20, 16), "");
-  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 0), 30, 20, 16), "");
-  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 8), 30, 20, 16), "");
-  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 31, 20, 16), "");
-  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 30, 21, 16), "");
-  EXPECT_NE(WhyNotImage(MakeJpeg(0xC3, 1), 30, 20, 8), "");
-  EXPECT_NE(WhyNotImage({}, 30, 20, 16), "");
-  EXPECT_NE(WhyNotImage(Bytes(500, 0xFF), 30, 20, 16), "");
+  const auto why =
+    [](const Bytes& stream, const std::string& syntax, int columns, int rows, int bits)
+  { return WhyNotImage(stream, "1.2.840.10008.1.2.4." + syntax, columns, rows, bits); };
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "70", 30, 20, 16), "");
+  EXPECT_EQ(why(MakeJpeg(0xF7, 0), "80", 30, 20, 16), "");
+  EXPECT_NE(why(MakeJpeg(0xC3, 0), "70", 30, 20, 16), "");
+  EXPECT_NE(why(MakeJpeg(0xC3, 8), "70", 30, 20, 16), "");
+  EXPECT_NE(why(MakeJpeg(0xC3, 1), "70", 31, 20, 16), "");
+  EXPECT_NE(why(MakeJpeg(0xC3, 1), "70", 30, 21, 16), "");
+  EXPECT_NE(why({}, "70", 30, 20, 16), "");
+  EXPECT_NE(why(Bytes(500, 0xFF), "70", 30, 20, 16), "");
+  // as many bytes of a pixel as the codec writes, neither fewer nor more
+  EXPECT_NE(why(MakeJpeg(0xC3, 1), "70", 30, 20, 8), "");
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "70", 30, 20, 32),
+    "are of 30 x 20 pixels of 1 times 12 bits, not of 30 x 20 of 25 to 32 (Bits Allocated, "
+    "0028,0100)");
+  // the codec is the transfer syntax's
+  EXPECT_EQ(why(MakeJpeg(0xF7, 0), "57", 30, 20, 16), "are JPEG-LS, not JPEG");
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "81", 30, 20, 16), "are JPEG, not JPEG-LS");
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "90", 30, 20, 16), "are JPEG, not JPEG 2000");
 }
 
 TEST(CompressedImage, RunLength)
@@ -72,6 +83,6 @@ TEST(CompressedImage, Damaged)
     runs.resize(random() % runs.size() + 1);
     Bytes pixels(16);
     DecodeRunLength(runs, 2, pixels);
-    WhyNotImage(jpeg, 30, 20, 16);
+    WhyNotImage(jpeg, "1.2.840.10008.1.2.4.70", 30, 20, 16);
   }
 }

@@ -53,6 +53,18 @@ TEST(CalibrationFile, ReadsTransformsInOrder)
   EXPECT_EQ(transforms[1].To, "Reference 2");
 }
 
+TEST(CalibrationFile, RefusesWhatIsTooMuch)
+{
+  std::string chain;
+  for (int i = 0; i < 1000; ++i)
+  {
+    chain += Element("Frame" + std::to_string(i), "Frame" + std::to_string(i + 1), Unit);
+  }
+  EXPECT_EQ(Read(Document(chain)).size(), 1000u);
+  ExpectError(Document(chain + Element("A", "B", Unit)), { "more than 1000 transforms" });
+  ExpectError(Document(std::string(1 << 24, ' ')), { "larger than 16777216 bytes" });
+}
+
 TEST(CalibrationFile, AcceptsWhatAgrees)
 {
   const std::string shift = "1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1";

@@ -4,6 +4,7 @@
 #include "Compress.h"
 #include "NrrdFile.h"
 #include "SequenceFile.h"
+#include "lacunaProcessMemory.h"
 #include "lacunaSliceStack.h"
 #include "lacunaSweep.h"
 
@@ -143,6 +144,24 @@ TEST_F(HostileSequences, EveryByteReplaced)
       this->Survives(bad);
       ASSERT_FALSE(this->HasFatalFailure()) << at << " " << static_cast<int>(bad[at]);
     }
+  }
+}
+
+// Each "To" is a way to read a name; a megabyte of them took hundreds of gigabytes.
+TEST_F(HostileSequences, NamesOfManyFrames)
+{
+  for (const std::size_t length : { std::size_t{ 200 }, std::size_t{ 1000000 } })
+  {
+    SequenceFile file = MakeRich();
+    std::string name;
+    while (name.size() < length)
+    {
+      name += "AToB";
+    }
+    file.Append(0, name + "Transform", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+    const double before = GetProcessMemory("VmHWM");
+    EXPECT_EQ(this->Survives(file.GetContent()), length < 256);
+    EXPECT_LT(GetProcessMemory("VmHWM") - before, 100e6);
   }
 }
 

@@ -350,7 +350,10 @@ TEST(Sweep, TheCalibrationReplacesTransformsOfTheSequence)
   ExpectContains(Warnings(given), { "ImageToProbe of the sequence is replaced" });
 
   file.SetFrame(1, "ImageToProbeTransform", "2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
-  EXPECT_TRUE(Build(file, "").ImageToProbe.empty()); // not constant
+  const Sweep changed = Build(file, "");
+  EXPECT_TRUE(changed.ImageToProbe.empty()); // not constant
+  ExpectContains(Warnings(changed),
+    { "the probe's calibration ImageToProbe of frame 1 is not that of frame 0" });
 }
 
 TEST(Sweep, ASequenceThatNeedsNoCalibrationSaysSo)

@@ -5,6 +5,7 @@
 #include "lacunaSweep.h"
 #include "lacunaSweepFile.h"
 #include "lacunaSweepTransforms.h"
+#include "lacunaTestDisk.h"
 #include "lacunaTestNoThreads.h"
 #include "lacunaTestRoom.h"
 
@@ -21,7 +22,6 @@
 #include <thread>
 #include <utility>
 
-#include <sys/syscall.h>
 #include <unistd.h>
 
 using namespace lacuna;
@@ -55,7 +55,6 @@ SweepFrame MakeFrame(bool calibrated)
 }
 
 // What the system takes to make files and folders safe.
-std::atomic<int> Milliseconds{ 0 };
 
 lacuna::Sweep ReadSweep(const std::string& path)
 {
@@ -114,12 +113,6 @@ struct Recorded
   Room Place;
   std::unique_ptr<SweepAcquisition> Work;
 };
-}
-
-extern "C" int fsync(int file)
-{
-  std::this_thread::sleep_for(std::chrono::milliseconds(Milliseconds));
-  return static_cast<int>(syscall(SYS_fsync, file));
 }
 
 TEST(SweepFile, IsReadAsItWasTaken)
@@ -310,7 +303,7 @@ TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
   {
     const std::string path = folder / (finish ? "finished.mhd" : "left.mhd");
     {
-      Milliseconds = 400;
+      lacunaTest::DiskDelay = 400;
       SweepFile file(path, 0);
       const double begin = clock.Now();
       for (int i = 0; i < 5; ++i)
@@ -322,7 +315,7 @@ TEST(SweepFile, NothingWaitsForADiskThatIsSlow)
       EXPECT_LT(taken, 0.3);
       EXPECT_EQ(file.GetState().WaitingBytes, 5 * 20);
       EXPECT_EQ(file.GetState().Trouble, "");
-      Milliseconds = 0; // but for the opening, which goes on
+      lacunaTest::DiskDelay = 0; // but for the opening, which goes on
       if (finish)
       {
         file.Finish();
@@ -354,13 +347,13 @@ TEST(SweepAcquisition, DevicesGoOnWhileASlowDiskEndsTheRecording)
 {
   Recorded recorded("sweep.mhd");
   SweepAcquisition& acquisition = *recorded.Work;
-  Milliseconds = 1000;
+  lacunaTest::DiskDelay = 1000;
   std::atomic<bool> begun{ false };
   std::thread user = recorded.BeginSweepBeside(begun);
   recorded.Place.RunTo(40);
   acquisition.GetState();
   EXPECT_FALSE(begun);
-  Milliseconds = 0;
+  lacunaTest::DiskDelay = 0;
   user.join();
   acquisition.Start();
   recorded.Place.RunTo(60);
@@ -376,13 +369,13 @@ TEST(SweepAcquisition, WhatIsCapturedWhileASlowDiskEndsTheRecordingHasItsPoses)
 {
   Recorded recorded("sweep.mhd");
   SweepAcquisition& acquisition = *recorded.Work;
-  Milliseconds = 2000;
+  lacunaTest::DiskDelay = 2000;
   std::atomic<bool> begun{ false };
   std::thread user = recorded.BeginSweepBeside(begun);
   acquisition.Start();
   recorded.Place.RunTo(520);
   EXPECT_FALSE(begun);
-  Milliseconds = 0;
+  lacunaTest::DiskDelay = 0;
   user.join();
   acquisition.Stop();
   EXPECT_EQ(acquisition.GetState().Missing, 500);

@@ -4,6 +4,7 @@
 #include "lacunaClock.h"
 #include "lacunaOutputFile.h"
 #include "lacunaSweepRecorder.h"
+#include "lacunaTestDisk.h"
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,34 @@ bool Becomes(
   }
   return condition(recorder.GetState());
 }
+}
+
+TEST(SweepRecorder, WritesAgainWhatTheDiskHasDropped)
+{
+  for (const auto& [name, level] : { std::pair("dropped.mhd", 0), std::pair("dropped.nhdr", 6) })
+  {
+    const TemporaryFolder folder;
+    SweepRecorder recorder(folder / name, MakeDescription(), level);
+    for (int frame = 0; frame < 6; ++frame)
+    {
+      lacunaTest::DiskFailures = frame == 3 ? 1 : 0;
+      Add(recorder, frame);
+      if (frame == 1 || frame == 3)
+      {
+        ASSERT_TRUE(Becomes(recorder, [&](const auto& now) { return now.Synced == frame + 1; }));
+        EXPECT_EQ(lacunaTest::DiskFailures, 0);
+        ExpectBeginning(folder / name, static_cast<std::size_t>(frame + 1));
+      }
+    }
+    lacunaTest::DiskFailures = 1;
+    EXPECT_THROW(recorder.Finish(), FileError);
+    EXPECT_EQ(recorder.GetState().Written, 4);
+    recorder.Finish();
+    ExpectBeginning(folder / name, 6);
+    EXPECT_EQ(recorder.GetState().Written, 6);
+    EXPECT_EQ(recorder.GetState().WaitingBytes, 0);
+    EXPECT_EQ(recorder.GetState().Trouble, "");
+  }
 }
 
 TEST(SweepRecorder, SlicesAreOnDiskWithoutBeingAskedFor)
