@@ -67,7 +67,7 @@ std::string ListText()
 }
 
 // What the library says of a call that failed on an open port.
-std::string Reason(sp_return result)
+std::string Reason(int result)
 {
   return result == SP_ERR_FAIL ? std::strerror(sp_last_error_code())
                                : "error " + std::to_string(result);
@@ -159,7 +159,8 @@ std::size_t SerialPort::Read(char* bytes, std::size_t size, double seconds)
 {
   // a time of 0 would mean for ever; and the wait itself does not take the bytes one by one
   const auto milliseconds = static_cast<unsigned int>(std::ceil(1000 * seconds));
-  sp_return count = sp_nonblocking_read(this->Port->Port, bytes, size);
+  // a number of bytes, which is none of the enumeration's values
+  int count = sp_nonblocking_read(this->Port->Port, bytes, size);
   if (count == 0 && milliseconds > 0)
   {
     const sp_return waited = sp_wait(this->Port->Events, milliseconds);
@@ -182,8 +183,7 @@ std::size_t SerialPort::Read(char* bytes, std::size_t size, double seconds)
 
 void SerialPort::Write(std::string_view bytes)
 {
-  const sp_return count =
-    sp_blocking_write(this->Port->Port, bytes.data(), bytes.size(), WriteTime);
+  const int count = sp_blocking_write(this->Port->Port, bytes.data(), bytes.size(), WriteTime);
   if (count < 0)
   {
     ThrowUnplugged(this->Name, Reason(count));

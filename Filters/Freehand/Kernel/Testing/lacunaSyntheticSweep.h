@@ -132,17 +132,23 @@ inline std::vector<Matrix4> MakeRandomPoses(int count, unsigned int seed, double
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> u(-1, 1);
+  // compilers evaluate arguments in different orders
+  const auto rotate = [&](double turn)
+  {
+    const double angle = turn * u(random);
+    return Matrix4::Rotation({ u(random), u(random), u(random) }, angle);
+  };
   // any overall orientation of the probe, sheared pixels of unequal size
-  const Matrix4 probe = Matrix4::Translation({ 30 * u(random), 20, -40 }) *
-    Matrix4::Rotation({ u(random), u(random), u(random) }, 3 * u(random));
+  const Matrix4 turned = rotate(3);
+  const Matrix4 probe = Matrix4::Translation({ 30 * u(random), 20, -40 }) * turned;
   std::vector<Matrix4> poses;
   for (int n = 0; n < count; ++n)
   {
     Matrix4 pixels = Matrix4::Scaling({ 0.31, 0.23, 1 });
     pixels(0, 1) = 0.02;
-    poses.push_back(probe * Matrix4::Translation({ 0.5 * u(random), 0.5 * u(random), 0.6 * n }) *
-      Matrix4::Rotation({ u(random), u(random), u(random) }, turn * u(random)) * pixels *
-      Matrix4::Translation({ -15, -12, 0 }));
+    const Matrix4 tilted = rotate(turn);
+    const Matrix4 moved = Matrix4::Translation({ 0.5 * u(random), 0.5 * u(random), 0.6 * n });
+    poses.push_back(probe * moved * tilted * pixels * Matrix4::Translation({ -15, -12, 0 }));
   }
   return poses;
 }
