@@ -13,6 +13,8 @@
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkMatrix3x3.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -98,6 +100,27 @@ enum class Share
   OnFirst // the first rank has all, the others nothing
 };
 
+// Whether a selection's numbers of points choose what an algorithm gives: they count in each rank's part
+// of what was shown, and each rank has its own only.
+bool ExtractsByNumber(vtkAlgorithm* algorithm)
+{
+  for (int port = 1;
+       algorithm->IsA("vtkExtractSelection") && port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    auto* selection = algorithm->GetNumberOfInputConnections(port) > 0
+      ? vtkSelection::SafeDownCast(algorithm->GetInputDataObject(port, 0))
+      : nullptr;
+    for (unsigned int i = 0; selection && i < selection->GetNumberOfNodes(); ++i)
+    {
+      if (selection->GetNode(i)->GetContentType() == vtkSelectionNode::INDICES)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 Share GetShare(vtkAlgorithm* algorithm)
 {
   static const std::set<std::string> parts{ "vtkDistributedPointCloudFilter",
@@ -106,7 +129,7 @@ Share GetShare(vtkAlgorithm* algorithm)
   static const std::set<std::string> onFirst{ "vtkDIYAggregateDataSetFilter",
     "vtkIntegrateAttributes", "vtkPOutlineFilter", "vtkPProbeFilter", "vtkPVProbeLineFilter" };
   const std::string name = algorithm->GetClassName();
-  if (parts.count(name) > 0)
+  if (parts.count(name) > 0 || ExtractsByNumber(algorithm))
   {
     return Share::Parts;
   }

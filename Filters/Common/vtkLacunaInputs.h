@@ -21,7 +21,7 @@ namespace vtkLacunaInputs
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string& name);
 
 /// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an image was refused
-/// (vtkLacunaRequest::WholeIfItFits), or less of it arrived than algorithm asked for, as behind ParaView's
+/// (vtkLacunaRequest::Whole), or less of it arrived than algorithm asked for, as behind ParaView's
 /// Resample To Image on several ranks, or when it is known of a filter upstream that it gives ranks
 /// different points or rows, whatever they ask for, as Redistribute Data Set does.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);

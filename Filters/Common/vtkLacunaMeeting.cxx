@@ -109,7 +109,7 @@ void vtkLacunaMeeting::AskForWhole(
   {
     for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
     {
-      vtkLacunaRequest::WholeIfItFits(filter, inputs[port]->GetInformationObject(i), wanted);
+      vtkLacunaRequest::Whole(filter, inputs[port]->GetInformationObject(i), wanted);
     }
   }
 }

@@ -25,7 +25,7 @@ class vtkInformationVector;
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaMeeting
 {
 public:
-  /// For RequestUpdateExtent: asks for all of each input as vtkLacunaRequest::WholeIfItFits does. When one
+  /// For RequestUpdateExtent: asks for all of each input as vtkLacunaRequest::Whole does. When one
   /// does not fit into the memory of this rank Hold says so on all ranks.
   void AskForWhole(
     vtkAlgorithm* filter, vtkInformationVector** inputs, vtkInformationVector* wanted = nullptr);

@@ -51,63 +51,97 @@ vtkMTimeType GetNewestTime(vtkAlgorithm* algorithm, std::set<vtkAlgorithm*>& see
   return newest;
 }
 
-// Throws when the whole of an announced image does not fit into the memory.
-void RequireMemoryFor(vtkInformation* input)
+bool Contains(const int whole[6], const int part[6])
 {
-  if (!input->Has(SDDP::WHOLE_EXTENT()))
+  return whole[0] <= part[0] && part[1] <= whole[1] && whole[2] <= part[2] && part[3] <= whole[3] &&
+    whole[4] <= part[4] && part[5] <= whole[5];
+}
+
+// Of a point in an array that is announced; what is not said of it is taken for little.
+double GetBytes(vtkInformation* array)
+{
+  const int type = array->Has(vtkDataObject::FIELD_ARRAY_TYPE())
+    ? array->Get(vtkDataObject::FIELD_ARRAY_TYPE())
+    : VTK_UNSIGNED_CHAR;
+  const int components = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    : 1;
+  return std::max(1.0, double(vtkDataArray::GetDataTypeSize(type))) * std::max(1, components);
+}
+
+// Of a point in all arrays that are announced; there are about as many cells.
+double GetBytesPerPoint(vtkInformation* input)
+{
+  double bytes = 0;
+  for (auto* key : { vtkDataObject::POINT_DATA_VECTOR(), vtkDataObject::CELL_DATA_VECTOR() })
   {
-    return;
+    vtkInformationVector* arrays = input->Get(key);
+    for (int a = 0; arrays && a < arrays->GetNumberOfInformationObjects(); ++a)
+    {
+      bytes += GetBytes(arrays->GetInformationObject(a));
+    }
   }
-  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  return std::max(1.0, bytes);
+}
+
+// Throws when a part of an announced image does not fit into the memory; part: "its input as a whole".
+void RequireMemoryFor(vtkInformation* input, const int extent[6], const char* part)
+{
   auto* image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
-  if (image && std::equal(whole, whole + 6, image->GetExtent()))
+  if (image && Contains(image->GetExtent(), extent))
   {
     return; // it is here
   }
   std::ostringstream what;
-  what << "this filter takes its input as a whole, which with";
-  double size = 1;
+  what << "this filter takes " << part << ", which with";
+  double size = GetBytesPerPoint(input);
   for (int a = 0; a < 3; ++a)
   {
-    const double points = static_cast<double>(whole[2 * a + 1]) - whole[2 * a] + 1;
+    const double points = std::max(0.0, static_cast<double>(extent[2 * a + 1]) - extent[2 * a] + 1);
     size *= points;
     what << (a > 0 ? " x " : " ") << points;
   }
   what << " points";
-  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-    input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
-  {
-    size *=
-      std::max(1, vtkDataArray::GetDataTypeSize(scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())));
-  }
-  if (scalars && scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
-  {
-    size *= std::max(1, scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
-  }
   lacuna::RequireMemory(what.str(), size);
+}
+
+void RequireMemoryForWhole(vtkInformation* input)
+{
+  if (input->Has(SDDP::WHOLE_EXTENT()))
+  {
+    RequireMemoryFor(input, input->Get(SDDP::WHOLE_EXTENT()), "its input as a whole");
+  }
+}
+
+void Ask(vtkInformation* input, const int extent[6])
+{
+  input->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  vtkLacunaRequest::OnePiece(input);
 }
 
 void AskForNothing(vtkInformation* input)
 {
   const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-  vtkLacunaRequest::Extent(input, nothing);
+  Ask(input, nothing);
 }
 
 void AskForAPoint(vtkInformation* input)
 {
   const int* whole = input->Get(SDDP::WHOLE_EXTENT());
   const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
-  vtkLacunaRequest::Extent(input, point);
+  Ask(input, point);
 }
 
 void AskForAll(vtkInformation* input)
 {
   if (input->Has(SDDP::WHOLE_EXTENT()))
   {
-    input->Set(SDDP::UPDATE_EXTENT(), input->Get(SDDP::WHOLE_EXTENT()), 6);
+    Ask(input, input->Get(SDDP::WHOLE_EXTENT()));
   }
-  vtkLacunaRequest::OnePiece(input);
+  else
+  {
+    vtkLacunaRequest::OnePiece(input);
+  }
 }
 
 // What was refused of the inputs of a port, by their numbers; empty: nothing. In what the filter knows of
@@ -181,10 +215,21 @@ void vtkLacunaRequest::OnePiece(vtkInformation* input)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRequest::Extent(vtkInformation* input, const int extent[6])
+bool vtkLacunaRequest::Extent(vtkAlgorithm* filter, vtkInformation* input, const int extent[6])
 {
-  input->Set(SDDP::UPDATE_EXTENT(), extent, 6);
-  OnePiece(input);
+  try
+  {
+    RequireMemoryFor(input, extent, "a part of its input");
+  }
+  catch (const std::runtime_error& error)
+  {
+    Remember(filter, input, error.what());
+    Nothing(filter, input);
+    return false;
+  }
+  Remember(filter, input, {});
+  Ask(input, extent);
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -250,25 +295,13 @@ void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
   }
   try
   {
-    RequireMemoryFor(input);
+    RequireMemoryForWhole(input);
     AskForAll(input);
   }
   catch (const std::runtime_error&)
   {
     AskForAPoint(input);
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRequest::Whole(
-  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
-{
-  if (outputs && !IsWanted(outputs))
-  {
-    Nothing(filter, input);
-    return;
-  }
-  AskForAll(input);
 }
 
 //------------------------------------------------------------------------------
@@ -293,15 +326,18 @@ bool vtkLacunaRequest::IsOnFirst(vtkAlgorithm* filter)
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaRequest::WholeIfItFits(
+bool vtkLacunaRequest::Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {
+  if (outputs && !IsWanted(outputs))
+  {
+    Remember(filter, input, {});
+    Nothing(filter, input);
+    return true;
+  }
   try
   {
-    if (!outputs || IsWanted(outputs))
-    {
-      RequireMemoryFor(input);
-    }
+    RequireMemoryForWhole(input);
   }
   catch (const std::runtime_error& error)
   {
@@ -310,7 +346,7 @@ bool vtkLacunaRequest::WholeIfItFits(
     return false;
   }
   Remember(filter, input, {});
-  Whole(filter, input, outputs);
+  AskForAll(input);
   return true;
 }
 
@@ -340,7 +376,7 @@ std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformat
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
 {
-  WholeIfItFits(filter, filter->GetInputInformation(port, 0), nullptr);
+  Whole(filter, filter->GetInputInformation(port, 0), nullptr);
   vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
   connection->GetProducer()->Update(
     connection->GetIndex()); // also after a refusal: ranks may meet there

@@ -29,24 +29,22 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
 /// that is not Lacuna's, or a source of which it is not known that it executes on each rank for itself:
 /// such a one may need all ranks, and execute on some of them only. Then all of it, or one point when it
 /// does not fit into the memory: readers that use MPI end the program when they are asked for nothing.
-VTKLACUNAFILTERSCOMMON_EXPORT void Whole(
+///
+/// An image that is wanted, is not in memory yet and does not fit into it is refused: returns false, as
+/// little as possible is asked for, and vtkLacunaInputs::Check of the filter throws an error that names
+/// the bytes. RequestUpdateExtent shall return 1 all the same: VTK goes on to execute, and only so passes
+/// on to all that lie upstream that nothing is wanted, so that nobody tries to load it.
+VTKLACUNAFILTERSCOMMON_EXPORT bool Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
-/// The same for filters that cannot do with less: returns false when the input is an image that is not in
-/// memory yet and does not fit into it. Then as little as possible is asked for, and
-/// vtkLacunaInputs::Check of the filter throws an error that names the bytes. RequestUpdateExtent shall
-/// return 1 all the same: VTK goes on to execute, and only so passes on to all that lie upstream that
-/// nothing is wanted, so that nobody tries to load it.
-VTKLACUNAFILTERSCOMMON_EXPORT bool WholeIfItFits(
-  vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
+/// This very extent of an image, refused like the whole.
+VTKLACUNAFILTERSCOMMON_EXPORT bool Extent(
+  vtkAlgorithm* filter, vtkInformation* input, const int extent[6]);
 
-/// The text of what WholeIfItFits has refused of a port; empty when it was asked for, and from then on.
+/// The text of what was refused of a port; empty when it was asked for, and from then on.
 VTKLACUNAFILTERSCOMMON_EXPORT std::string TakeRefusal(vtkAlgorithm* filter, int port);
 
-/// This very extent of an image.
-VTKLACUNAFILTERSCOMMON_EXPORT void Extent(vtkInformation* input, const int extent[6]);
-
-/// The same on the first rank and nothing on the others, for filters that answer all requests by what
+/// All of it on the first rank and nothing on the others, for filters that answer all requests by what
 /// the first rank has made.
 VTKLACUNAFILTERSCOMMON_EXPORT void WholeOnFirst(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);

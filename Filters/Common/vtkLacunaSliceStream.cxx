@@ -40,7 +40,7 @@ bool vtkLacunaSliceStream::RequestFields(
   int slice[6];
   input->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), slice);
   slice[5] = slice[4];
-  vtkLacunaRequest::Extent(input, slice);
+  vtkLacunaRequest::Extent(consumer, input, slice);
   return true;
 }
 

@@ -170,13 +170,16 @@ int vtkLacunaDefectModel::RequestData(
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector) ||
-    vtkLacunaRanks().GetRank() > 0)
+  if (!vtkLacunaRequest::IsWanted(outputVector) || vtkLacunaRanks().GetRank() > 0)
   {
-    return 1; // empty in, empty out; the model is one piece
+    return 1; // the model is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
+    if (!map || map->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
     const Input input(map, this);
     execution.SetStage(0, 0.1);
     const lacuna::ReliefSurface surface(

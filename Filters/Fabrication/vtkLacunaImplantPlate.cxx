@@ -179,12 +179,16 @@ int vtkLacunaImplantPlate::RequestData(
   vtkImageData* map = vtkImageData::GetData(inputVector[0]);
   vtkPointSet* marks = vtkPointSet::GetData(inputVector[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  if (!vtkLacunaRequest::IsWanted(outputVector))
   {
-    return 1; // empty in, empty out; the plate is one piece
+    return 1; // the plate is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
+    if (!map || map->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
     if (this->Side != Inward && this->Side != Outward)
     {
       throw std::runtime_error(

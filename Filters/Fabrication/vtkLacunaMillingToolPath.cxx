@@ -316,12 +316,16 @@ int vtkLacunaMillingToolPath::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
-  if (!grid || grid->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  if (!vtkLacunaRequest::IsWanted(outputVector))
   {
-    return 1; // empty in, empty out; a path is one piece
+    return 1; // a path is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
+    if (!grid || grid->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
     this->CheckProperties();
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
     const std::string elsewhere = vtkLacunaPressPosition::Check(grid);

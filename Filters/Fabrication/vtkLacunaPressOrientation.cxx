@@ -309,13 +309,16 @@ int vtkLacunaPressOrientation::RequestData(
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector) ||
-    vtkLacunaRanks().GetRank() > 0)
+  if (!vtkLacunaRequest::IsWanted(outputVector) || vtkLacunaRanks().GetRank() > 0)
   {
-    return 1; // empty in, empty out; the mould is one piece
+    return 1; // the mould is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
+    if (!map || map->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
     execution.SetStage(0, 0.3);
     const Plan plan(execution, this, map);
     const lacuna::PressLayout& layout = plan.Layout;

@@ -191,7 +191,7 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
     const auto last = static_cast<int>(this->TimeSteps.size()) - 1;
     in->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[std::max(0, std::min(wanted[4], last))]);
   }
-  vtkLacunaRequest::Extent(in, extent.data());
+  vtkLacunaRequest::Extent(this, in, extent.data());
   vtkLacunaRequest::OnePiece(table);
   return 1;
 }

@@ -210,7 +210,7 @@ int vtkLacunaProbeCalibration::RequestUpdateExtent(
   {
     vtkLacunaRequest::OnePiece(table);
   }
-  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 

@@ -283,7 +283,7 @@ int vtkLacunaScanRegion::FillOutputPortInformation(int port, vtkInformation* inf
 int vtkLacunaScanRegion::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 

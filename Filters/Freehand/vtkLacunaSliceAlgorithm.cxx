@@ -53,7 +53,7 @@ void vtkLacunaSliceAlgorithm::AskForSlices(
     vtkInformation* info = inputs[0]->GetInformationObject(i);
     if (!this->TakesStreams() || !vtkLacunaSliceStream::RequestFields(this, info, 0, i))
     {
-      vtkLacunaRequest::WholeIfItFits(this, info, outputs);
+      vtkLacunaRequest::Whole(this, info, outputs);
     }
   }
 }

@@ -80,7 +80,7 @@ int vtkLacunaSlicePlanes::RequestUpdateExtent(
   {
     extent[5] = extent[4]; // what the sweep is, is asked for even where no slice is wanted
   }
-  vtkLacunaRequest::Extent(in, extent);
+  vtkLacunaRequest::Extent(this, in, extent);
   return 1;
 }
 

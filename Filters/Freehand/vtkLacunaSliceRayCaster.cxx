@@ -154,6 +154,14 @@ public:
   /// Of the first slices that have been cast; kept up only while it is of interest.
   lacuna::GreyRange GreyLevels;
 
+  /// What the casting takes, which the next one uses or frees before it needs more.
+  double GetBytes() const
+  {
+    return this->Caster ? static_cast<double>(lacuna::SliceRayCaster::GetBytesPerPixel()) *
+        (1.0 + this->Extent[1] - this->Extent[0]) * (1.0 + this->Extent[3] - this->Extent[2])
+                        : 0;
+  }
+
   /// Brings the casting up to date and returns how many slices had to be cast for that.
   std::size_t Update(const vtkLacunaSliceRayCaster* self, const Plan& plan,
     const std::array<int, 4>& extent, lacuna::Execution& execution)
@@ -266,9 +274,10 @@ int vtkLacunaSliceRayCaster::RequestData(
       vtkLacunaDepthMap::SetGeometry(output, plane);
       const vtkIdType pixels = output->GetNumberOfPoints();
       constexpr std::int64_t arrays = sizeof(double) + sizeof(char) + 3 * sizeof(float);
-      const std::int64_t work = this->Kept->Caster ? 0 : lacuna::SliceRayCaster::GetBytesPerPixel();
       lacuna::RequireMemory("this part of the depth map",
-        static_cast<double>(pixels) * static_cast<double>(arrays + work));
+        static_cast<double>(pixels) *
+          static_cast<double>(arrays + lacuna::SliceRayCaster::GetBytesPerPixel()),
+        this->Kept->GetBytes());
       vtkNew<vtkDoubleArray> depth;
       depth->SetName(vtkLacunaDepthMap::DepthName);
       vtkLacunaArrays::SetNumberOfTuples(depth, pixels);

@@ -279,8 +279,8 @@ int vtkLacunaSweptVolume::RequestData(
       output->SetDirectionMatrix(direction.data());
       output->SetSpacing(plan.Grid.Spacing.data());
       const vtkIdType size = output->GetNumberOfPoints();
-      lacuna::RequireMemory(
-        "this part of the volume", static_cast<double>(size) * plan.BytesPerVoxel);
+      lacuna::RequireMemory("this part of the volume",
+        static_cast<double>(size) * plan.BytesPerVoxel, this->Growing->GetBytes());
       vtkSmartPointer<vtkDataArray> intensity;
       intensity.TakeReference(vtkDataArray::CreateDataArray(plan.ScalarType));
       intensity->SetName("Intensity");

@@ -56,7 +56,7 @@ int vtkLacunaTemporalCalibration::FillInputPortInformation(int, vtkInformation* 
 int vtkLacunaTemporalCalibration::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 

@@ -202,7 +202,7 @@ int vtkLacunaOcclusionSurface::RequestUpdateExtent(
 {
   for (int port : { 0, 1 })
   {
-    vtkLacunaRequest::WholeIfItFits(this, inputVector[port]->GetInformationObject(0), outputVector);
+    vtkLacunaRequest::Whole(this, inputVector[port]->GetInformationObject(0), outputVector);
   }
   return 1;
 }

@@ -11,10 +11,12 @@
 #include "vtkImplicitSelectionLoop.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaRanks.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -149,6 +151,23 @@ std::vector<lacuna::Vec2> GetPolygon(
   return polygon;
 }
 
+// Numbers of points count in each rank's part of what was shown, and VTK leaves out those of others.
+void CheckRanks(vtkSelection* selection)
+{
+  for (unsigned int i = 0; selection && i < selection->GetNumberOfNodes(); ++i)
+  {
+    if (vtkLacunaRanks().GetNumber() > 1 &&
+      selection->GetNode(i)->GetContentType() == vtkSelectionNode::INDICES)
+    {
+      throw std::runtime_error("Selection has numbers of points, which count in each rank's own "
+                               "part of what was shown, and those "
+                               "of the other ranks are lost; mark the defect by DefectRegion or "
+                               "DefectArray, select by values of "
+                               "PixelId, or run one rank");
+    }
+  }
+}
+
 // What a selection selects, as a data set of the selected points.
 vtkSmartPointer<vtkDataSet> Extract(vtkDataSet* data, vtkSelection* selection)
 {
@@ -203,6 +222,7 @@ MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contra
 MapMask FromSelection(
   vtkImageData* map, const lacuna::MapGrid& grid, vtkDataSet* surface, vtkSelection* selection)
 {
+  CheckRanks(selection);
   vtkSmartPointer<vtkDataSet> selected = surface;
   if (selection)
   {

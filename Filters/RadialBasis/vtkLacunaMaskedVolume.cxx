@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaMaskedVolume.h"
 
+#include "lacunaMemory.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaArrays.h"
@@ -62,6 +63,8 @@ lacuna::MaskedVolume vtkLacunaMaskedVolume::Get(
       static_cast<double>(extent[4]) });
   if (vtkDataArray* mask = GetMask(image))
   {
+    lacuna::RequireMemory(
+      "the mask of the volume", static_cast<double>(given.Volume.NumberOfVoxels()));
     given.Valid.resize(static_cast<std::size_t>(given.Volume.NumberOfVoxels()));
     for (std::size_t i = 0; i < given.Valid.size(); ++i)
     {

@@ -66,6 +66,12 @@ vtkSmartPointer<Array> MakeArray(
   return array;
 }
 
+template <class T>
+void Free(std::vector<T>& values)
+{
+  std::vector<T>().swap(values);
+}
+
 bool IsDepthMap(vtkImageData* image)
 {
   return image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName) &&
@@ -162,7 +168,7 @@ public:
     {
       part[c] = piece[c] - extent[c / 2 * 2];
     }
-    const lacuna::MirroredVolume mirrored = lacuna::MirrorVolume(given, result.Plane,
+    lacuna::MirroredVolume mirrored = lacuna::MirrorVolume(given, result.Plane,
       static_cast<lacuna::MirrorInterpolation>(self->Interpolation), part, !isKnown, ranks,
       execution);
     if (!isKnown)
@@ -184,11 +190,13 @@ public:
       (std::string("Mirrored") + (scalars->GetName() ? scalars->GetName() : "")).c_str());
     vtkLacunaArrays::SetNumberOfTuples(image, static_cast<vtkIdType>(mirrored.Valid.size()));
     std::memcpy(image->GetVoidPointer(0), mirrored.Voxels.data(), mirrored.Voxels.size());
+    Free(mirrored.Voxels); // one array at a time is there twice
     vtkPointData* points = output->GetPointData();
     points->Initialize();
     output->SetExtent(piece[0], piece[1], piece[2], piece[3], piece[4], piece[5]);
     points->SetScalars(image);
     points->AddArray(MakeArray<vtkCharArray>(vtkLacunaDepthMap::MaskName, mirrored.Valid));
+    Free(mirrored.Valid);
     points->AddArray(MakeArray<vtkFloatArray>(AsymmetryName, mirrored.Asymmetry));
   }
 

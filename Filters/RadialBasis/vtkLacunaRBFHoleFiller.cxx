@@ -365,12 +365,16 @@ int vtkLacunaRBFHoleFiller::RequestData(
 {
   vtkImageData* map = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputVector);
-  if (!map || map->GetNumberOfPoints() == 0 || !vtkLacunaRequest::IsWanted(outputVector))
+  if (!vtkLacunaRequest::IsWanted(outputVector))
   {
-    return 1; // empty in, empty out
+    return 1; // an empty part
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
+    if (!map || map->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
     const vtkLacunaDepthMap contract(map);
     int whole[6];
     inputs[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), whole);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaWarpedPart.h"
 
+#include "lacunaMemory.h"
 #include "vtkCharArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
@@ -21,12 +22,26 @@ namespace
 constexpr double RoundOff = 1e-9;
 
 // vtkImageInterpolator knows no integers of 64 bits, and leaves grey levels undefined then.
+bool IsInterpolable(vtkDataArray* scalars)
+{
+  return scalars->GetDataTypeSize() < 8 || scalars->GetDataType() == VTK_DOUBLE;
+}
+
+// The largest number of the scalars' type that a double can be.
+double GetLargest(vtkDataArray* scalars)
+{
+  const double largest = scalars->GetDataTypeMax(); // of 64 bits: one more, rounded
+  return IsInterpolable(scalars) ? largest : std::nextafter(largest, 0);
+}
+
 vtkSmartPointer<vtkDataArray> GetInterpolable(vtkDataArray* scalars)
 {
-  if (scalars->GetDataTypeSize() < 8 || scalars->GetDataType() == VTK_DOUBLE)
+  if (IsInterpolable(scalars))
   {
     return scalars;
   }
+  lacuna::RequireMemory("a copy of the grey levels, which have 64 bits",
+    static_cast<double>(scalars->GetNumberOfValues()) * sizeof(double));
   auto doubles = vtkSmartPointer<vtkDoubleArray>::New();
   vtkLacunaArrays::Copy(scalars, doubles);
   return doubles;
@@ -44,9 +59,12 @@ public:
     image->GetDimensions(this->Size);
     image->GetExtent(this->Extent);
     vtkDataArray* mask = image->GetPointData()->GetArray(vtkLacunaDepthMap::MaskName);
-    for (vtkIdType i = 0; mask && i < mask->GetNumberOfTuples(); ++i)
+    const vtkIdType count = mask ? mask->GetNumberOfTuples() : 0;
+    lacuna::RequireMemory("the mask of the image", static_cast<double>(count));
+    this->Mask.resize(static_cast<std::size_t>(count));
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      this->Mask.push_back(mask->GetComponent(i, 0) != 0 ? 1 : 0);
+      this->Mask[static_cast<std::size_t>(i)] = mask->GetComponent(i, 0) != 0 ? 1 : 0;
     }
   }
 
@@ -86,6 +104,18 @@ public:
     return true;
   }
 
+  // The point of the image next to a place, as vtkImageInterpolator takes it.
+  vtkIdType GetNearest(const double* index) const
+  {
+    vtkIdType point = 0;
+    for (int c = 2; c >= 0; --c)
+    {
+      const double place = index[c] - this->Extent[2 * c];
+      point = point * this->Size[c] + this->Clamp(static_cast<int>(std::floor(place + 0.5)), c);
+    }
+    return point;
+  }
+
 private:
   int Clamp(int i, int axis) const { return std::min(std::max(i, 0), this->Size[axis] - 1); }
 
@@ -102,7 +132,7 @@ vtkLacunaWarpedPart::vtkLacunaWarpedPart(vtkImageData* image, vtkDataArray* scal
   , Part(part)
   , Components(scalars->GetNumberOfComponents())
   , Low(scalars->GetDataTypeMin())
-  , High(scalars->GetDataTypeMax())
+  , High(GetLargest(scalars))
   , Integral(scalars->GetDataType() != VTK_FLOAT && scalars->GetDataType() != VTK_DOUBLE)
   , Warped(vtkSmartPointer<vtkDataArray>::Take(scalars->NewInstance()))
   , Places(std::make_unique<const ValidPlaces>(image, interpolation))
@@ -121,6 +151,10 @@ vtkLacunaWarpedPart::vtkLacunaWarpedPart(vtkImageData* image, vtkDataArray* scal
   vtkNew<vtkImageData> input; // with the scalars that shall be warped as the active ones
   input->ShallowCopy(image);
   input->GetPointData()->SetScalars(GetInterpolable(scalars));
+  if (interpolation == vtkLacunaRBFImageWarp::Nearest && !IsInterpolable(scalars))
+  {
+    this->Copied = scalars;
+  }
   this->Interpolator->SetInterpolationMode(interpolation);
   this->Interpolator->SetOutValue(outsideValue);
   this->Interpolator->Initialize(input);
@@ -149,7 +183,11 @@ void vtkLacunaWarpedPart::Set(const int* voxel, double* index, std::vector<doubl
   {
     std::fill(tuple.begin(), tuple.end(), this->OutsideValue);
   }
-  for (int k = 0; k < this->Components; ++k)
+  if (known && this->Copied) // a double does not hold all labels of 64 bits
+  {
+    this->Warped->SetTuple(i, this->Places->GetNearest(index), this->Copied);
+  }
+  for (int k = 0; k < this->Components && !(known && this->Copied); ++k)
   {
     const double value = this->Integral
       ? std::floor(std::min(std::max(tuple[k], this->Low), this->High) + 0.5)

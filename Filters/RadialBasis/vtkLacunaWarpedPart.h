@@ -50,5 +50,7 @@ private:
   vtkNew<vtkCharArray> Valid;
   vtkNew<vtkImageInterpolator> Interpolator;
   std::unique_ptr<const ValidPlaces> Places;
+  vtkSmartPointer<vtkDataArray>
+    Copied; ///< from which tuples are copied instead; null: they are not
 };
 #endif

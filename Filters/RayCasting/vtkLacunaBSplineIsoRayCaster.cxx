@@ -2,6 +2,7 @@
 #include "vtkLacunaBSplineIsoRayCaster.h"
 
 #include "lacunaIsoRayCaster.h"
+#include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPerspective.h"
 
@@ -370,7 +371,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestUpdateExtent(
     if (vtkInformation* input =
           inputVector[port]->GetInformationObject(0)) // else none is connected
     {
-      vtkLacunaRequest::WholeIfItFits(this, input, outputVector);
+      vtkLacunaRequest::Whole(this, input, outputVector);
     }
   }
   return 1;
@@ -425,6 +426,13 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       request.CapBoundary = this->CapBoundary;
       request.Normals = this->NormalMethod == Analytic ? lacuna::SurfaceNormal::Analytic
                                                        : lacuna::SurfaceNormal::GreyLevel;
+      // depths and normals of each, mask and thickness of the first
+      const double bytes = (sizeof(double) + 3 * sizeof(float)) * this->IsoValues.size() +
+        sizeof(char) + (this->ComputeThickness ? sizeof(double) : 0) +
+        (vtkImageData::GetData(inputVector[1]) ? sizeof(double) : 0);
+      lacuna::RequireMemory(
+        "this part of the depth map, " + std::to_string(output->GetNumberOfPoints()) + " pixels,",
+        static_cast<double>(output->GetNumberOfPoints()) * bytes);
       std::vector<double> startDepths;
       vtkImageData* start = vtkImageData::GetData(inputVector[1]);
       if (start)

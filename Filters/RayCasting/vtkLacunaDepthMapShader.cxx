@@ -331,10 +331,10 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
       }
     }
   }
-  vtkLacunaRequest::Extent(inInfo, extent);
+  vtkLacunaRequest::Extent(this, inInfo, extent);
   if (vtkInformation* volumeInfo = inputVector[1]->GetInformationObject(0))
   {
-    vtkLacunaRequest::WholeIfItFits(this, volumeInfo, outputVector);
+    vtkLacunaRequest::Whole(this, volumeInfo, outputVector);
   }
   return 1;
 }

@@ -130,7 +130,7 @@ int vtkLacunaDepthMapSurface::RequestUpdateExtent(
   // one more row on either side for the rule; an extent may begin or end with the integers
   extent[2] = rows.First > extent[2] ? rows.First - 1 : extent[2];
   extent[3] = rows.Last < extent[3] ? rows.Last + 1 : extent[3];
-  vtkLacunaRequest::Extent(inInfo, extent);
+  vtkLacunaRequest::Extent(this, inInfo, extent);
   return 1;
 }
 

@@ -141,7 +141,7 @@ int vtkLacunaContrastToSpeckle::FillInputPortInformation(int, vtkInformation* in
 int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkLacunaRequest::WholeIfItFits(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
   return 1;
 }
 

@@ -235,7 +235,7 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     // RequestData reports it.
   }
-  vtkLacunaRequest::Extent(input, needed.data());
+  vtkLacunaRequest::Extent(this, input, needed.data());
   return 1;
 }
 

@@ -202,7 +202,7 @@ int vtkLacunaPhantomSweep::RequestUpdateExtent(
   if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
   {
     // A slice may cut through any part of the volume.
-    vtkLacunaRequest::WholeIfItFits(this, info, outputVector);
+    vtkLacunaRequest::Whole(this, info, outputVector);
   }
   return 1;
 }

@@ -135,6 +135,14 @@ def whole_inputs():
     surface = behind(lacuna.vtkLacunaOcclusionSurface())
     behind(surface, port=1)
     check_refused("Occlusion Surface", surface, "34359738368 bytes")
+    for made in (lacuna.vtkLacunaRBFInterpolator(), lacuna.vtkLacunaRBFHoleFiller(), lacuna.vtkLacunaDepthMapSurface(), lacuna.vtkLacunaDepthMapShader(),
+                 lacuna.vtkLacunaImplantPlate(), lacuna.vtkLacunaDefectModel(), lacuna.vtkLacunaPressOrientation(), lacuna.vtkLacunaSpeckleFilter()):
+        check_refused(made.GetClassName(), behind(made), "34359738368 bytes")
+    for made, ending in (lacuna.vtkLacunaIGESWriter(), "igs"), (lacuna.vtkLacunaTrackedSliceWriter(), "mha"):
+        made.SetFileName(output("HugeRequests." + ending))
+        text = errors_of(behind(made), made.Write)
+        assert "34359738368 bytes" in text, (ending, text)
+        assert not os.path.exists(output("HugeRequests." + ending))
     # nor what lies before the filter upstream, which has had no request yet and would make all of it
     for made in (lacuna.vtkLacunaOccludedAngle(), lacuna.vtkLacunaMirror(), lacuna.vtkLacunaBSplineIsoRayCaster(),
                  lacuna.vtkLacunaContrastToSpeckle(), lacuna.vtkLacunaSweptVolume()):
@@ -253,6 +261,8 @@ def pieces():
     caster = behind(lacuna.vtkLacunaBSplineIsoRayCaster(), wavelet(64))
     caster.SetImageSize(16000, 16000)
     caster.SetIsoValue(0, 150)
+    check_refused("B-Spline Iso Ray Caster", caster, "256000000 pixels, would need 5376000000 bytes")
+    caster.Modified()
     check_piece("B-Spline Iso Ray Caster", caster, (1000, 1199, 2000, 2199, 0, 0), 40000)
 
 

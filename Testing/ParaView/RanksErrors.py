@@ -176,6 +176,7 @@ def distributed(rank):
             assert not (on_all or rank == 1) or "is not the same on all ranks" in text or "another rank has stopped" in text, (made.GetClassName(), text)
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[2, 2, 2]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
     filled = pv.RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+    selected(rank, pv, depth)
     # Lacuna's serial filters: two answer all ranks by what the first has made, the others make it on each
     for source, on_all in ((pv.DefectModel(Input=filled), False), (pv.ImplantPlate(Input=filled), True), (points, True)):
         made = interpolator()
@@ -183,6 +184,26 @@ def distributed(rank):
         text = update(made)
         assert ("is not the same on all ranks" not in text) == (on_all or rank == 0), (source.GetXMLLabel(), text)
         assert source is not points or not text, text
+
+
+def selected(rank, pv, depth):
+    """Numbers of points of each rank's part are refused, however they come; those of pixels are the same on all."""
+    from lacuna.vtkLacunaFiltersRadialBasis import vtkLacunaRBFHoleFiller
+    surface = pv.DepthMapSurface(Input=depth)
+    by_number = pv.IDSelectionSource(IDs=[each for k in range(300) for each in (k % 2, k)], FieldType="POINT")
+    rows = [end for row in range(60, 70) for end in (100 * row + 40, 100 * row + 54)]
+    by_pixel = pv.ThresholdSelectionSource(ArrayName="PixelId", Thresholds=rows, FieldType="POINT")
+    extracted = pv.ExtractSelection(Input=surface, Selection=by_number)
+    for selection, shown, said in ((by_number, surface, "numbers of points"), (by_number, None, "numbers of points"),
+                                   (None, extracted, "is not the same on all ranks"), (by_pixel, surface, "")):
+        made = vtkLacunaRBFHoleFiller()
+        made.SetInputConnection(depth.GetClientSideObject().GetOutputPort())
+        for port, source in (1, shown), (2, selection):
+            if source:
+                made.SetInputConnection(port, source.GetClientSideObject().GetOutputPort())
+        text = update(made)
+        print(rank, repr(text), flush=True)
+        assert said in text if said else not text, (said, text)
 
 
 def interpolator():

@@ -99,10 +99,10 @@ std::string DescribeBytes(double bytes)
   return text.str();
 }
 
-void RequireMemory(const std::string& what, double bytes)
+void RequireMemory(const std::string& what, double bytes, double held)
 {
   const double available = GetAvailableMemory();
-  if (bytes <= available)
+  if (bytes <= available + held)
   {
     return;
   }

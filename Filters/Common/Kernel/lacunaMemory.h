@@ -22,8 +22,8 @@ std::string DescribeBytes(double bytes);
 
 /// Throws std::runtime_error when bytes exceed the available memory; the text names what is
 /// to be stored, its size and the memory there is. bytes is a double so that no product of sizes
-/// can overflow on its way here.
-void RequireMemory(const std::string& what, double bytes);
+/// can overflow on its way here. held: of those, what there is already and will be used or freed first.
+void RequireMemory(const std::string& what, double bytes, double held = 0);
 
 /// Asks the system to back memory by large pages when it is first touched: ordinary ones of 4 KiB
 /// take a fault each, which is a sixth of the time of making a volume. For memory that has just been

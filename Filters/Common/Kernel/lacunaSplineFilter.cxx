@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSplineFilter.h"
 
+#include "lacunaMemory.h"
 #include "lacunaWide.h"
 
 #include <algorithm>
@@ -138,6 +139,7 @@ SplineCoefficients FilterToCoefficients(
     [&](const auto* voxels)
     {
       FindRange(voxels, count, result, execution);
+      RequireMemory("the coefficients of the spline", static_cast<double>(count) * sizeof(float));
       result.Values.resize(count);
       const double empty = emptyIsLow ? result.Minimum : result.Maximum;
       execution.For(count, 1 << 18,

@@ -151,6 +151,18 @@ const SweptVolume& GrowingVolume::Update(const Sweeps& sweeps, const VolumeGrid&
   return *this->Volume;
 }
 
+double GrowingVolume::GetBytes() const
+{
+  double bytes =
+    this->Volume ? static_cast<double>(SweptVolume::GetBytesPerVoxel(this->Options)) : 0;
+  for (std::size_t a = 0; a < 3; ++a)
+  {
+    bytes *= std::max(0.0, 1.0 + this->Extent[2 * a + 1] - this->Extent[2 * a]);
+  }
+  return bytes;
+}
+
+//------------------------------------------------------------------------------
 void GrowingVolume::Finish()
 {
   if (!this->IsKept)

@@ -41,6 +41,9 @@ public:
   /// Slices that the last update worked on: the new ones, or all.
   std::int64_t GetNumberOfSlicesAdded() const { return this->Added; }
 
+  /// What is kept, which the next update uses or frees before it needs more.
+  double GetBytes() const;
+
   /// Frees the volume, unless it is to be kept. Call it when the volume is written.
   void Finish();
 

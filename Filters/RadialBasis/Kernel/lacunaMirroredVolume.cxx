@@ -464,9 +464,10 @@ MirroredVolume MirrorVolume(const MaskedVolume& volume, const MirrorPlane& plane
   {
     const std::size_t bytes = GetScalarSize(volume.Volume.Type);
     const bool spline = interpolation == MirrorInterpolation::BSpline;
+    // with a copy of one array at a time for who wants them, and the mask of what is given
     RequireMemory("the mirrored volume",
-      static_cast<double>(count) * static_cast<double>(bytes + 5) +
-        (spline ? 4.0 : 0.0) * static_cast<double>(volume.Volume.NumberOfVoxels()));
+      static_cast<double>(count) * static_cast<double>(std::max(2 * bytes + 5, bytes + 9)) +
+        (spline ? 5.0 : 1.0) * static_cast<double>(volume.Volume.NumberOfVoxels()));
     result.Voxels.resize(count * bytes);
     result.Valid.resize(count);
     result.Asymmetry.resize(count);

@@ -5,9 +5,12 @@
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkLacunaRBFImageWarp.h"
+#include "vtkTypeInt32Array.h"
+#include "vtkTypeInt64Array.h"
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace
@@ -161,6 +164,53 @@ void CheckErrors()
   }
 }
 
+// Labels that a double does not hold come out as they are; 32 bits say which they are. The largest number
+// stays the largest.
+void CheckLabels()
+{
+  constexpr vtkTypeInt64 first = vtkTypeInt64{ 1 } << 53;
+  const vtkSmartPointer<vtkImageData> image = MakeImage(12);
+  vtkNew<vtkPolyData> landmarks;
+  vtkNew<vtkPolyData> targets;
+  MakeLandmarks(image, 25, landmarks, targets);
+  const auto warp = [&](vtkDataArray* scalars, int interpolation)
+  {
+    image->GetPointData()->SetScalars(scalars);
+    WatchedWarp run(image, landmarks, targets);
+    run.Filter->SetInterpolation(interpolation);
+    run.Filter->SetOutsideValue(-7);
+    run.Filter->Update();
+    LACUNA_CHECK(run.Messages->Errors.empty());
+    return vtkSmartPointer<vtkDataArray>(run.Filter->GetOutput()->GetPointData()->GetScalars());
+  };
+  vtkNew<vtkTypeInt32Array> numbers;
+  vtkNew<vtkTypeInt64Array> labels;
+  vtkNew<vtkTypeInt64Array> largest;
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    numbers->InsertNextValue(static_cast<vtkTypeInt32>(i));
+    labels->InsertNextValue(first + 2 * i + 1);
+    largest->InsertNextValue(std::numeric_limits<vtkTypeInt64>::max());
+  }
+  numbers->SetName("Labels");
+  labels->SetName("Labels");
+  largest->SetName("Labels");
+  const auto expected = warp(numbers, vtkLacunaRBFImageWarp::Nearest);
+  const auto found = warp(labels, vtkLacunaRBFImageWarp::Nearest);
+  const auto high = warp(largest, vtkLacunaRBFImageWarp::Linear);
+  vtkIdType inside = 0;
+  for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+  {
+    const auto number = static_cast<vtkTypeInt64>(expected->GetTuple1(i));
+    LACUNA_CHECK(vtkTypeInt64Array::SafeDownCast(found)->GetValue(i) ==
+      (number < 0 ? -7 : first + 2 * number + 1));
+    const double value = high->GetTuple1(i);
+    LACUNA_CHECK(value == -7 || value > 9e18);
+    inside += number < 0 ? 0 : 1;
+  }
+  LACUNA_CHECK(inside > 1000);
+}
+
 // The mask is no picture.
 void CheckMaskAlone()
 {
@@ -183,6 +233,7 @@ int TestRBFImageWarp(int, char*[])
     CheckMask(1, interpolation, false);
     CheckMask(12, interpolation, true);
   }
+  CheckLabels();
   CheckMaskAlone();
   CheckErrors();
   return lacunaCheck::Result();
