@@ -6,8 +6,8 @@
 add_custom_target(LacunaSanitizeTests)
 
 # lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)
-# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. SHARDS: its tests
-# mostly wait, and so many run at once.
+# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. SHARDS: so many of its
+# tests run at once, since they mostly wait or take long.
 function (lacuna_add_kernel_test name)
   cmake_parse_arguments(arg "SANITIZE" "SHARDS" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})

@@ -57,38 +57,31 @@ bool Contains(const int whole[6], const int part[6])
     whole[4] <= part[4] && part[5] <= whole[5];
 }
 
-// Of a point in an array that is announced; what is not said of it is taken for little.
-double GetBytes(vtkInformation* array)
-{
-  const int type = array->Has(vtkDataObject::FIELD_ARRAY_TYPE())
-    ? array->Get(vtkDataObject::FIELD_ARRAY_TYPE())
-    : VTK_UNSIGNED_CHAR;
-  const int components = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-    ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
-    : 1;
-  return std::max(1.0, double(vtkDataArray::GetDataTypeSize(type))) * std::max(1, components);
-}
-
-// Of a point in all arrays that are announced; there are about as many cells.
+// Of a point in the scalars that are announced; what is not said of them is taken for little. Not of other
+// arrays: readers announce also those that are switched off.
 double GetBytesPerPoint(vtkInformation* input)
 {
-  double bytes = 0;
-  for (auto* key : { vtkDataObject::POINT_DATA_VECTOR(), vtkDataObject::CELL_DATA_VECTOR() })
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  double bytes = 1;
+  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
   {
-    vtkInformationVector* arrays = input->Get(key);
-    for (int a = 0; arrays && a < arrays->GetNumberOfInformationObjects(); ++a)
-    {
-      bytes += GetBytes(arrays->GetInformationObject(a));
-    }
+    bytes =
+      std::max(1, vtkDataArray::GetDataTypeSize(scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())));
   }
-  return std::max(1.0, bytes);
+  if (scalars && scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
+  {
+    bytes *= std::max(1, scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
+  }
+  return bytes;
 }
 
 // Throws when a part of an announced image does not fit into the memory; part: "its input as a whole".
 void RequireMemoryFor(vtkInformation* input, const int extent[6], const char* part)
 {
-  auto* image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
-  if (image && Contains(image->GetExtent(), extent))
+  vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
+  if (data->Has(vtkDataObject::DATA_EXTENT()) &&
+    Contains(data->Get(vtkDataObject::DATA_EXTENT()), extent))
   {
     return; // it is here
   }

@@ -18,6 +18,7 @@
 #include "vtkLacunaMirrored.h"
 #include "vtkLacunaPressPosition.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -316,13 +317,15 @@ int vtkLacunaMillingToolPath::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
-  if (!vtkLacunaRequest::IsWanted(outputVector))
+  const bool empty = !grid || grid->GetNumberOfPoints() == 0;
+  // other ranks than the first have nothing of what Press Orientation makes
+  if (!vtkLacunaRequest::IsWanted(outputVector) || (empty && vtkLacunaRanks().GetRank() > 0))
   {
     return 1; // a path is one piece
   }
   const auto body = [&](vtkLacunaExecution& execution)
   {
-    if (!grid || grid->GetNumberOfPoints() == 0)
+    if (empty)
     {
       return; // empty in, empty out
     }

@@ -36,7 +36,8 @@ def run(ranks):
     folder = output("PressOrientationRanks%d" % ranks)
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
-    run_ranks(ranks, __file__, folder)
+    printed = run_ranks(ranks, __file__, folder)
+    assert "ERR" not in printed, printed[-3000:]  # what a rank has to say would not be in the files
     found = {}
     for name in sorted(os.listdir(folder)):
         with open(os.path.join(folder, name), "rb") as file:

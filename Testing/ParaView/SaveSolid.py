@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """save_solid: strict records, the same for the same solid, nothing old beside a failure, 3MF of solids only."""
+import glob
 import json
 import math
 import os
@@ -102,6 +103,8 @@ assert again == first
 
 # A file that the surface itself is read from: replaced when the new one is whole, and never lost.
 again = output("SaveSolidAgain.stl")
+for left in glob.glob(glob.escape(again) + "*"):
+    os.remove(left)  # by an earlier run
 save_solid(again, solid)
 moved = Transform(Input=STLReader(FileNames=[again]))
 moved.Transform.Translate = [5, 0, 0]
@@ -114,6 +117,21 @@ kept = STLReader(FileNames=[again + ".old"])
 kept.UpdatePipeline()
 assert kept.GetDataInformation().GetBounds() == (5, 8, 0, 2, 0, 1)
 assert read_strictly(again + ".json.old")["bounds"] == [5, 8, 0, 2, 0, 1]
+save_solid(again, solid)
+refused(again, broken, "mirror image")
+assert os.path.exists(again + ".old2") and kept.GetDataInformation().GetBounds() == (5, 8, 0, 2, 0, 1)
+# nor what only ParaView's own writers or nobody can write over
+with open(output("SaveSolidAgain.step"), "w", encoding="ascii") as file:
+    file.write("mine")
+refused(output("SaveSolidAgain.step"), solid, "step")
+assert "mine" in {open(left, encoding="ascii").read() for left in glob.glob(glob.escape(output("SaveSolidAgain.step")) + ".old*")}
+inner = output("SaveSolidFolder.stl")
+os.makedirs(inner, exist_ok=True)
+try:
+    save_solid(inner, solid)
+    raise AssertionError("a folder")
+except PipelineError as error:
+    assert "is a folder" in str(error) and os.path.isdir(inner), error
 
 # After a failure neither the old solid nor its record is there under its name.
 for name in ("SaveSolid.stl", "SaveSolid.3mf"):

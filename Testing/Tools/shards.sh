@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs a GoogleTest program several times at once, each time a part of its tests: of those that mostly wait.
+# Runs a GoogleTest program several times at once, each time a part of its tests.
 #   Testing/Tools/shards.sh NUMBER PROGRAM [ARGUMENT...]
 set -uo pipefail
 number=$1

@@ -15,26 +15,33 @@ namespace lacuna
 {
 namespace
 {
-// Who may do what with a file goes over to the one that takes its place, as far as the system lets us.
+// Who may do what with a file goes over to the one that takes its place, as far as the system lets us, and
+// nobody may do more.
 void CopyAccess(const std::string& from, const std::string& to)
 {
-  struct stat status;
-  if (stat(from.c_str(), &status) != 0)
+  struct stat old;
+  struct stat made;
+  if (stat(from.c_str(), &old) != 0 || stat(to.c_str(), &made) != 0)
   {
     return;
   }
-  const bool owned = chown(to.c_str(), status.st_uid, status.st_gid) == 0 ||
-    chown(to.c_str(), static_cast<uid_t>(-1), status.st_gid) == 0;
-  // what the group might do is nothing for another group
-  chmod(to.c_str(), status.st_mode & (owned ? 0777 : 0707));
+  // of a folder's default list
   constexpr const char* list = "system.posix_acl_access";
-  std::array<char, 4096> entries;
-  const ssize_t size = getxattr(from.c_str(), list, entries.data(), entries.size());
-  if (size > 0 &&
-    setxattr(to.c_str(), list, entries.data(), static_cast<std::size_t>(size), 0) != 0)
+  if (removexattr(to.c_str(), list) != 0 && errno != ENODATA && errno != ENOTSUP)
   {
-    chmod(to.c_str(), status.st_mode & 0700);
+    return;
   }
+  const bool owned = (old.st_uid == made.st_uid && old.st_gid == made.st_gid) ||
+    chown(to.c_str(), old.st_uid, old.st_gid) == 0 ||
+    chown(to.c_str(), static_cast<uid_t>(-1), old.st_gid) == 0;
+  std::array<char, 65536> entries;
+  const ssize_t size = getxattr(from.c_str(), list, entries.data(), entries.size());
+  const bool hasList = size >= 0 || (errno != ENODATA && errno != ENOTSUP);
+  // what one group might do is nothing for another one, and of a list the mode has the most of all
+  const bool listed = hasList && owned && size >= 0 &&
+    setxattr(to.c_str(), list, entries.data(), static_cast<std::size_t>(size), 0) == 0;
+  const mode_t group = listed || (owned && !hasList) ? 0070 : 0;
+  chmod(to.c_str(), old.st_mode & (0707 | group));
 }
 }
 
@@ -74,9 +81,14 @@ AtomicFile::AtomicFile(const std::string& path)
   const std::string temporary = this->Target + ".part" + std::to_string(getpid());
   // One may be left over by a dead process of the same number.
   unlink(temporary.c_str());
-  this->File = std::make_unique<OutputFile>(temporary, OutputFile::Mode::CreateNew, path);
+  const bool replaces = fs::exists(status);
+  this->File = std::make_unique<OutputFile>(
+    temporary, replaces ? OutputFile::Mode::CreatePrivate : OutputFile::Mode::CreateNew, path);
   this->Temporary = temporary;
-  CopyAccess(this->Target, temporary);
+  if (replaces)
+  {
+    CopyAccess(this->Target, temporary);
+  }
 }
 
 //------------------------------------------------------------------------------

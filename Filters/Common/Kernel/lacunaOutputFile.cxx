@@ -31,8 +31,8 @@ FileError FileError::Make(const std::string& what, const std::string& path, int 
 OutputFile::OutputFile(const std::string& path, Mode mode, const std::string& shownName)
   : Name(shownName)
 {
-  const int flags = O_WRONLY | O_CLOEXEC | (mode == Mode::CreateNew ? O_CREAT | O_EXCL : 0);
-  this->Descriptor = open(path.c_str(), flags, 0666);
+  const int flags = O_WRONLY | O_CLOEXEC | (mode == Mode::Existing ? 0 : O_CREAT | O_EXCL);
+  this->Descriptor = open(path.c_str(), flags, mode == Mode::CreatePrivate ? 0600 : 0666);
   if (this->Descriptor < 0)
   {
     this->Throw(errno);

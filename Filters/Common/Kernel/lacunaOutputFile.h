@@ -44,8 +44,9 @@ class OutputFile
 public:
   enum class Mode
   {
-    CreateNew, ///< an error when the file exists
-    Existing   ///< a device, pipe or file that is there; not truncated
+    CreateNew,     ///< an error when the file exists
+    CreatePrivate, ///< the same, for nobody else to read
+    Existing       ///< a device, pipe or file that is there; not truncated
   };
   OutputFile(const std::string& path, Mode mode, const std::string& shownName);
   /// Closes, without a word about errors.

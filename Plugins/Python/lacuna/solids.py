@@ -38,17 +38,32 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
     surface that was read from path).
     options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
+    from lacuna.errors import PipelineError
+
+    for each in (path, path + ".json"):
+        if os.path.isdir(each):
+            raise PipelineError(f"{each} is a folder")
     try:
         return _save_solid(path, proxy, allow_mirrored, options)
     except BaseException:
-        for old in (path, path + ".json"):
-            if os.path.exists(old):
-                os.replace(old, old + ".old")
+        _set_aside(path)
+        _set_aside(path + ".json")
         raise
 
 
+def _set_aside(path):
+    """Gives an older file the first free name of path.old, path.old2, ...; where that cannot be, it stays."""
+    number = 1
+    while os.path.exists(name := f"{path}.old{number if number > 1 else ''}"):
+        number += 1
+    try:
+        os.rename(path, name)
+    except OSError:
+        pass  # none is there, or the folder lets nobody: what went wrong before says more
+
+
 def _save_solid(path, proxy, allow_mirrored, options):
-    """save_solid; the old files stay where they are until the surface is written under another name."""
+    """save_solid; the old files stay where they are until both new ones are whole under other names."""
     from lacuna import __version__, coordinates
     from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
@@ -68,27 +83,33 @@ def _save_solid(path, proxy, allow_mirrored, options):
     if not coordinates.keeps_points(proxy):
         measures = {}  # of the surface before it was moved or scaled
     if os.path.splitext(path)[1].lower() == ".3mf":
-        _write_3mf(path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
+        name = path + ".part"
+        _write_3mf(name, path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
     else:
-        _write_by_paraview(path, proxy, options)
-    if os.path.exists(beside):
-        os.remove(beside)  # of the surface before
-    with open(path, "rb") as file:
-        digest = hashlib.sha256(file.read()).hexdigest()
-    record = _without_nan({
-        "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
-        "version": __version__, "unit": "mm", "coordinates": place,
-        "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
-        "notice": NOTICE,
-    })
+        name = _write_by_paraview(path, proxy, options)
+    unfinished = beside + ".part"
     try:
-        with open(beside, "w", encoding="utf-8") as file:
+        with open(name, "rb") as file:
+            digest = hashlib.sha256(file.read()).hexdigest()
+        record = _without_nan({
+            "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
+            "version": __version__, "unit": "mm", "coordinates": place,
+            "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
+            "notice": NOTICE,
+        })
+        with open(unfinished, "w", encoding="utf-8") as file:
             file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
+        if os.path.exists(beside):
+            os.remove(beside)  # never beside another file than its own
+        if name != path:
+            os.replace(name, path)
+        os.replace(unfinished, beside)
     except OSError as error:
-        for each in (path, beside):
+        raise PipelineError(f"{beside} cannot be written: {error.strerror}") from error
+    finally:
+        for each in {unfinished, name} - {path}:
             if os.path.exists(each):
                 os.remove(each)
-        raise PipelineError(f"{beside} cannot be written: {error.strerror}") from error
     return record
 
 
@@ -145,21 +166,25 @@ def _require_room(name):
 
 
 def _write_by_paraview(path, proxy, options):
-    """Under another name first, so that there is none under the final one when it is not whole."""
+    """Returns the name under which it is: another one, so that there is none under the final one when it is not whole.
+
+    Where ParaView writes several files, it is the final one, and an older file is set aside.
+    """
     from lacuna.errors import PipelineError, raising
     from paraview.simple import SaveData
 
     root, ending = os.path.splitext(path)
     lower = ending.lower()
     name = f"{root}.part{lower}" if lower in SINGLE_FILES else path
+    if name == path:
+        _set_aside(path)
     try:
         with raising():
             SaveData(name, proxy, **options)
         if not os.path.exists(name):
             raise PipelineError(f"{path} was not written")
         _require_room(name)
-        if name != path:
-            os.replace(name, path)
+        return name
     except Exception as error:
         if os.path.exists(name):
             os.remove(name)
@@ -197,7 +222,7 @@ def _check_closed(path, points, triangles):
                             "Flip Normals)")
 
 
-def _write_3mf(path, data, title, application, place, steps):
+def _write_3mf(name, path, data, title, application, place, steps):
     """One object in the 3MF core format (1.x), with the points as they are, without a transform.
 
     Coordinates have six decimals, a nanometre. Metadata: Title, Application, Description (unit,
@@ -242,14 +267,11 @@ def _write_3mf(path, data, title, application, place, steps):
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n',
         "3D/3dmodel.model": "\n".join(lines),
     }
-    unfinished = path + ".part"
     try:
-        with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as package:
-            for name, text in parts.items():
-                package.writestr(zipfile.ZipInfo(name), text.encode(), zipfile.ZIP_DEFLATED)
-        os.replace(unfinished, path)
+        with zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as package:
+            for part, text in parts.items():
+                package.writestr(zipfile.ZipInfo(part), text.encode(), zipfile.ZIP_DEFLATED)
     except OSError as error:
+        if os.path.exists(name):
+            os.remove(name)
         raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
-    finally:
-        if os.path.exists(unfinished):
-            os.remove(unfinished)

@@ -38,7 +38,7 @@ SequenceRecorder::SequenceRecorder(
       "' cannot be recorded to: a single file has its header before the pixels and cannot grow; "
       "record to .mhd or .nhdr, and convert the finished recording");
   }
-  const std::string beginning = this->Kind.GetBeginning(description);
+  this->HeaderStart = this->Kind.GetBeginning(description);
   if (compressionLevel > 0)
   {
     this->Now.Compressor = std::make_unique<StreamCompressor>(
@@ -52,14 +52,14 @@ SequenceRecorder::SequenceRecorder(
     this->Header = std::make_unique<OutputFile>(fileName, OutputFile::Mode::CreateNew, fileName);
     if (this->Now.Compressor)
     {
-      const std::string start = this->Now.Compressor->GetBeginning();
-      this->Data->WriteAt(0, start);
-      this->Now.DataSize = static_cast<std::int64_t>(start.size());
+      this->DataStart = this->Now.Compressor->GetBeginning();
+      this->Data->WriteAt(0, this->DataStart);
+      this->Now.DataSize = static_cast<std::int64_t>(this->DataStart.size());
     }
     this->CountsOffset =
-      static_cast<std::int64_t>(beginning.find(this->Kind.GetCounts(description, 0, 0)));
-    this->Header->WriteAt(0, beginning + this->Kind.GetEnd());
-    this->Now.HeaderSize = static_cast<std::int64_t>(beginning.size());
+      static_cast<std::int64_t>(this->HeaderStart.find(this->Kind.GetCounts(description, 0, 0)));
+    this->Header->WriteAt(0, this->HeaderStart + this->Kind.GetEnd());
+    this->Now.HeaderSize = static_cast<std::int64_t>(this->HeaderStart.size());
     SyncFolderOf(fileName);
     this->Synced = this->Now;
   }
@@ -79,7 +79,7 @@ SequenceRecorder::SequenceRecorder(
 //------------------------------------------------------------------------------
 SequenceRecorder::~SequenceRecorder()
 {
-  Try([&] { this->Close(); });
+  Try([&] { this->End(); }); // nobody would append slices once more
 }
 
 //------------------------------------------------------------------------------
@@ -173,6 +173,13 @@ void SequenceRecorder::RestoreHeader()
 }
 
 //------------------------------------------------------------------------------
+void SequenceRecorder::SyncFiles()
+{
+  this->Data->Sync();
+  this->Header->Sync();
+}
+
+//------------------------------------------------------------------------------
 void SequenceRecorder::Sync()
 {
   if (!this->Header)
@@ -181,13 +188,17 @@ void SequenceRecorder::Sync()
   }
   try
   {
-    this->Data->Sync();
-    this->Header->Sync();
+    this->SyncFiles();
     this->Synced = this->Now;
   }
   catch (const FileError&)
   {
     this->Now = this->Synced;
+    if (this->Now.Slices == 0)
+    {
+      Try([&] { this->Data->WriteAt(0, this->DataStart); });
+      Try([&] { this->Header->WriteAt(0, this->HeaderStart); });
+    }
     this->RestoreHeader();
     throw;
   }
@@ -195,6 +206,16 @@ void SequenceRecorder::Sync()
 
 //------------------------------------------------------------------------------
 void SequenceRecorder::Close()
+{
+  if (this->Now.Slices != this->Synced.Slices)
+  {
+    this->Sync();
+  }
+  this->End();
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::End()
 {
   if (!this->Header)
   {
@@ -206,6 +227,7 @@ void SequenceRecorder::Close()
     try
     {
       this->Data->WriteAt(this->Now.DataSize, end);
+      this->Data->Truncate(this->Now.DataSize + static_cast<std::int64_t>(end.size()));
     }
     catch (const FileError&)
     {
@@ -215,7 +237,7 @@ void SequenceRecorder::Close()
     this->WriteHeader(
       {}, this->Now.Slices, this->Now.DataSize + static_cast<std::int64_t>(end.size()));
   }
-  this->Sync();
+  this->SyncFiles();
   this->Data->Close();
   this->Header->Close();
   this->Data.reset();

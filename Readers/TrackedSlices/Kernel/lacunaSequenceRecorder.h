@@ -53,7 +53,7 @@ public:
 
   /// Waits until the disk has all slices. Throws FileError: then the system may have dropped what it
   /// could not write, and says so only once. The recording is as it was after the last Sync that
-  /// worked, and the slices since are to be appended again.
+  /// worked, and the slices since are to be appended again, at once: until then the file lacks them.
   void Sync();
   /// Ends the recording: compressed pixels get their end and check sum. Throws FileError; it may be
   /// called again, after appending the slices since the last Sync that worked.
@@ -70,9 +70,13 @@ private:
   };
   void WriteHeader(const std::string& fields, std::int64_t slices, std::int64_t compressedSize);
   void RestoreHeader();
+  void SyncFiles();
+  void End();
 
   SequenceKind Kind;
   SequenceDescription Description;
+  std::string HeaderStart; ///< and the pixels', written again while no Sync has worked
+  std::string DataStart;
   std::unique_ptr<OutputFile> Header;
   std::unique_ptr<OutputFile> Data;
   std::int64_t CountsOffset = 0;

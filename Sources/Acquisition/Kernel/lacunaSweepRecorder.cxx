@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -123,7 +124,8 @@ void SweepRecorder::Work::Run()
   {
     const double now = this->Clock.Now();
     const bool retry = this->Ending || now >= this->RetryTime;
-    if (retry && this->IsSyncDue(now) && (this->Queue.empty() || !this->Hurry))
+    const bool last = this->Hurry || this->Ending; // once for all of them
+    if (retry && this->IsSyncDue(now) && (this->Queue.empty() || !last))
     {
       this->Sync(lock);
     }
@@ -184,22 +186,41 @@ void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
 
 void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
 {
-  if (this->Try(lock, [&] { this->Recorder->Sync(); }))
+  std::size_t written = this->Unsynced.size(); // only this thread uses it
+  const auto sync = [&]
+  {
+    try
+    {
+      this->Recorder->Sync();
+    }
+    catch (const FileError&)
+    {
+      written = 0;
+      for (const Slice& slice : this->Unsynced) // at once: now the file lacks them
+      {
+        this->Recorder->Append(slice.Pixels->data(), slice.Fields);
+        ++written;
+      }
+      throw;
+    }
+  };
+  if (this->Try(lock, sync))
   {
     this->Now.LongestDelay =
       std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front().Time);
-    this->Unsynced.clear(); // only this thread adds to it
+    this->Unsynced.clear();
     this->Now.Synced = this->Now.Written;
     this->Changed.notify_all();
   }
   else
   {
-    const auto count = static_cast<std::int64_t>(this->Unsynced.size());
+    const auto first = this->Unsynced.begin() + static_cast<std::ptrdiff_t>(written);
+    const std::int64_t count = this->Unsynced.end() - first;
     this->Now.Written -= count;
     this->Now.WaitingBytes += count * static_cast<std::int64_t>(this->Bytes);
-    this->Queue.insert(this->Queue.begin(), std::make_move_iterator(this->Unsynced.begin()),
+    this->Queue.insert(this->Queue.begin(), std::make_move_iterator(first),
       std::make_move_iterator(this->Unsynced.end()));
-    this->Unsynced.clear();
+    this->Unsynced.erase(first, this->Unsynced.end());
   }
 }
 

@@ -62,25 +62,48 @@ TEST(SweepRecorder, WritesAgainWhatTheDiskHasDropped)
   {
     const TemporaryFolder folder;
     SweepRecorder recorder(folder / name, MakeDescription(), level);
-    for (int frame = 0; frame < 6; ++frame)
+    for (int frame = 0; frame < 4; ++frame)
     {
-      lacunaTest::DiskFailures = frame == 3 ? 1 : 0;
+      lacunaTest::DiskFailures = frame % 3 == 0 ? 1 : 0; // the first time, and later
       Add(recorder, frame);
-      if (frame == 1 || frame == 3)
+      if (frame != 2)
       {
         ASSERT_TRUE(Becomes(recorder, [&](const auto& now) { return now.Synced == frame + 1; }));
         EXPECT_EQ(lacunaTest::DiskFailures, 0);
         ExpectBeginning(folder / name, static_cast<std::size_t>(frame + 1));
       }
     }
-    lacunaTest::DiskFailures = 1;
+    lacunaTest::DiskFailures = 1000;
+    Add(recorder, 4);
+    Add(recorder, 5);
     EXPECT_THROW(recorder.Finish(), FileError);
-    EXPECT_EQ(recorder.GetState().Written, 4);
+    EXPECT_EQ(recorder.GetState().Synced, 4);
+    ExpectBeginning(folder / name, 6); // written again, and in the system's memory
+    lacunaTest::DiskFailures = 0;
     recorder.Finish();
     ExpectBeginning(folder / name, 6);
     EXPECT_EQ(recorder.GetState().Written, 6);
     EXPECT_EQ(recorder.GetState().WaitingBytes, 0);
     EXPECT_EQ(recorder.GetState().Trouble, "");
+  }
+}
+
+// The program ends while the disk fails once.
+TEST(SweepRecorder, EndsWithAllSlicesAfterAFailure)
+{
+  for (const auto& [name, level] : { std::pair("ended.mhd", 6), std::pair("ended.nhdr", 0) })
+  {
+    const TemporaryFolder folder;
+    {
+      SweepRecorder recorder(folder / name, MakeDescription(), level);
+      Add(recorder, 0);
+      ASSERT_TRUE(Becomes(recorder, [&](const auto& now) { return now.Synced == 1; }));
+      lacunaTest::DiskFailures = 1;
+      Add(recorder, 1);
+      Add(recorder, 2);
+    }
+    EXPECT_EQ(lacunaTest::DiskFailures, 0);
+    ExpectBeginning(folder / name, 3);
   }
 }
 
