@@ -76,7 +76,9 @@ double GetBytesPerPoint(vtkInformation* input)
   return bytes;
 }
 
-// Throws when a part of an announced image does not fit into the memory; part: "its input as a whole".
+const char* const WholeInput = "its input as a whole";
+
+// Throws when a part of an announced image does not fit into the memory.
 void RequireMemoryFor(vtkInformation* input, const int extent[6], const char* part)
 {
   vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
@@ -98,43 +100,10 @@ void RequireMemoryFor(vtkInformation* input, const int extent[6], const char* pa
   lacuna::RequireMemory(what.str(), size);
 }
 
-void RequireMemoryForWhole(vtkInformation* input)
-{
-  if (input->Has(SDDP::WHOLE_EXTENT()))
-  {
-    RequireMemoryFor(input, input->Get(SDDP::WHOLE_EXTENT()), "its input as a whole");
-  }
-}
-
 void Ask(vtkInformation* input, const int extent[6])
 {
   input->Set(SDDP::UPDATE_EXTENT(), extent, 6);
   vtkLacunaRequest::OnePiece(input);
-}
-
-void AskForNothing(vtkInformation* input)
-{
-  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-  Ask(input, nothing);
-}
-
-void AskForAPoint(vtkInformation* input)
-{
-  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
-  const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
-  Ask(input, point);
-}
-
-void AskForAll(vtkInformation* input)
-{
-  if (input->Has(SDDP::WHOLE_EXTENT()))
-  {
-    Ask(input, input->Get(SDDP::WHOLE_EXTENT()));
-  }
-  else
-  {
-    vtkLacunaRequest::OnePiece(input);
-  }
 }
 
 // What was refused of the inputs of a port, by their numbers; empty: nothing. In what the filter knows of
@@ -158,6 +127,30 @@ void Remember(vtkAlgorithm* filter, vtkInformation* input, const std::string& re
       }
     }
   }
+}
+
+// Asks for a part, or for nothing and remembers why when it does not fit into the memory.
+bool AskOrRefuse(vtkAlgorithm* filter, vtkInformation* input, const int extent[6], const char* part)
+{
+  std::string refusal;
+  try
+  {
+    RequireMemoryFor(input, extent, part);
+  }
+  catch (const std::runtime_error& error)
+  {
+    refusal = error.what();
+  }
+  Remember(filter, input, refusal);
+  if (refusal.empty())
+  {
+    Ask(input, extent);
+  }
+  else
+  {
+    vtkLacunaRequest::Nothing(filter, input);
+  }
+  return refusal.empty();
 }
 
 // Of filters that have asked for anything on the first rank only.
@@ -210,19 +203,7 @@ void vtkLacunaRequest::OnePiece(vtkInformation* input)
 //------------------------------------------------------------------------------
 bool vtkLacunaRequest::Extent(vtkAlgorithm* filter, vtkInformation* input, const int extent[6])
 {
-  try
-  {
-    RequireMemoryFor(input, extent, "a part of its input");
-  }
-  catch (const std::runtime_error& error)
-  {
-    Remember(filter, input, error.what());
-    Nothing(filter, input);
-    return false;
-  }
-  Remember(filter, input, {});
-  Ask(input, extent);
-  return true;
+  return AskOrRefuse(filter, input, extent, "a part of its input");
 }
 
 //------------------------------------------------------------------------------
@@ -278,22 +259,31 @@ bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 //------------------------------------------------------------------------------
 void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
 {
-  if (!HasStrangersUpstream(filter))
+  const bool wanted = HasStrangersUpstream(filter);
+  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  if (!whole)
   {
-    if (input->Has(SDDP::WHOLE_EXTENT()))
+    if (wanted)
     {
-      AskForNothing(input);
+      OnePiece(input);
     }
+    return;
+  }
+  if (!wanted)
+  {
+    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
+    Ask(input, nothing);
     return;
   }
   try
   {
-    RequireMemoryForWhole(input);
-    AskForAll(input);
+    RequireMemoryFor(input, whole, WholeInput);
+    Ask(input, whole);
   }
   catch (const std::runtime_error&)
   {
-    AskForAPoint(input);
+    const int point[6] = { whole[0], whole[0], whole[2], whole[2], whole[4], whole[4] };
+    Ask(input, point);
   }
 }
 
@@ -328,18 +318,12 @@ bool vtkLacunaRequest::Whole(
     Nothing(filter, input);
     return true;
   }
-  try
+  if (const int* whole = input->Get(SDDP::WHOLE_EXTENT()))
   {
-    RequireMemoryForWhole(input);
-  }
-  catch (const std::runtime_error& error)
-  {
-    Remember(filter, input, error.what());
-    Nothing(filter, input);
-    return false;
+    return AskOrRefuse(filter, input, whole, WholeInput);
   }
   Remember(filter, input, {});
-  AskForAll(input);
+  OnePiece(input);
   return true;
 }
 
