@@ -5,22 +5,28 @@
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
+#include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationExecutivePortKey.h"
+#include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRanks.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkXMLReader.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
@@ -57,23 +63,91 @@ bool Contains(const int whole[6], const int part[6])
     whole[4] <= part[4] && part[5] <= whole[5];
 }
 
-// Of a point in the scalars that are announced; what is not said of them is taken for little. Not of other
-// arrays: readers announce also those that are switched off.
-double GetBytesPerPoint(vtkInformation* input)
+vtkLacunaRequest::InnerReader GetInnerReader = nullptr;
+
+vtkAlgorithm* GetProducer(vtkInformation* image)
 {
-  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
-    input, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  double bytes = 1;
-  if (scalars && scalars->Has(vtkDataObject::FIELD_ARRAY_TYPE()))
+  vtkExecutive* executive = vtkExecutive::PRODUCER()->GetExecutive(image);
+  return executive ? executive->GetAlgorithm() : nullptr;
+}
+
+// An image's source behind any filters, with the algorithm around it; null when it is no reader of VTK's
+// XML formats. These alone announce all arrays that a file has.
+struct Source
+{
+  vtkAlgorithm* Outer;
+  vtkXMLReader* Reader;
+
+  explicit Source(vtkInformation* image)
+    : Outer(GetProducer(image))
   {
-    bytes =
-      std::max(1, vtkDataArray::GetDataTypeSize(scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE())));
+    while (this->Outer && this->Outer->GetNumberOfInputPorts() > 0 &&
+      this->Outer->GetNumberOfInputConnections(0) > 0)
+    {
+      this->Outer = this->Outer->GetInputAlgorithm(0, 0);
+    }
+    vtkAlgorithm* inner = this->Outer && GetInnerReader ? GetInnerReader(this->Outer) : nullptr;
+    this->Reader = vtkXMLReader::SafeDownCast(inner ? inner : this->Outer);
   }
-  if (scalars && scalars->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()))
+};
+
+bool IsSwitchedOff(vtkDataArraySelection* arrays, const char* name)
+{
+  return arrays && name && arrays->ArrayExists(name) && !arrays->ArrayIsEnabled(name);
+}
+
+// Of a point in an array that is announced; what is not said of it is taken for little.
+double GetBytes(vtkInformation* array)
+{
+  const int type = array->Has(vtkDataObject::FIELD_ARRAY_TYPE())
+    ? array->Get(vtkDataObject::FIELD_ARRAY_TYPE())
+    : VTK_UNSIGNED_CHAR;
+  const int components = array->Has(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    ? array->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS())
+    : 1;
+  return std::max(1.0, static_cast<double>(vtkDataArray::GetDataTypeSize(type))) *
+    std::max(1, components);
+}
+
+// Of a point in all arrays that are announced and not switched off; there are about as many cells.
+double GetBytesPerPoint(vtkInformation* image, vtkXMLReader* reader)
+{
+  const std::array<std::pair<vtkInformationInformationVectorKey*, vtkDataArraySelection*>, 2> kinds{
+    std::pair(
+      vtkDataObject::POINT_DATA_VECTOR(), reader ? reader->GetPointDataArraySelection() : nullptr),
+    std::pair(
+      vtkDataObject::CELL_DATA_VECTOR(), reader ? reader->GetCellDataArraySelection() : nullptr)
+  };
+  double bytes = 0;
+  for (const auto& [key, selection] : kinds)
   {
-    bytes *= std::max(1, scalars->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
+    vtkInformationVector* arrays = image->Get(key);
+    for (int a = 0; arrays && a < arrays->GetNumberOfInformationObjects(); ++a)
+    {
+      vtkInformation* array = arrays->GetInformationObject(a);
+      if (!IsSwitchedOff(selection, array->Get(vtkDataObject::FIELD_NAME())))
+      {
+        bytes += GetBytes(array);
+      }
+    }
   }
-  return bytes;
+  return std::max(1.0, bytes);
+}
+
+// Filters announce their active scalars only, without a name, and yet their reader loads the other arrays,
+// too. ParaView has a filter that passes images on behind every source.
+double GetBytesPerPoint(vtkInformation* image)
+{
+  vtkAlgorithm* producer = GetProducer(image);
+  if (producer && producer->IsA("vtkPVPostFilter") && producer->GetNumberOfInputConnections(0) > 0)
+  {
+    return GetBytesPerPoint(producer->GetExecutive()->GetInputInformation(0, 0));
+  }
+  const Source source(image);
+  const double bytes = GetBytesPerPoint(image, source.Reader);
+  return source.Reader
+    ? std::max(bytes, GetBytesPerPoint(source.Outer->GetOutputInformation(0), source.Reader))
+    : bytes;
 }
 
 const char* const WholeInput = "its input as a whole";
@@ -198,6 +272,12 @@ void vtkLacunaRequest::OnePiece(vtkInformation* input)
   input->Set(SDDP::UPDATE_PIECE_NUMBER(), 0);
   input->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), 1);
   input->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRequest::SetInnerReader(InnerReader function)
+{
+  GetInnerReader = function;
 }
 
 //------------------------------------------------------------------------------

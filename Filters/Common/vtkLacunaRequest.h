@@ -37,6 +37,12 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool IsWanted(vtkInformationVector* outputs);
 VTKLACUNAFILTERSCOMMON_EXPORT bool Whole(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs);
 
+/// A function that gives the reader inside an algorithm, null where there is none: ParaView's readers of
+/// series are around another one, which knows what arrays are switched off, so that these do not count
+/// for what fits. VTK's own readers need none.
+using InnerReader = vtkAlgorithm* (*)(vtkAlgorithm*);
+VTKLACUNAFILTERSCOMMON_EXPORT void SetInnerReader(InnerReader function);
+
 /// This very extent of an image, refused like the whole.
 VTKLACUNAFILTERSCOMMON_EXPORT bool Extent(
   vtkAlgorithm* filter, vtkInformation* input, const int extent[6]);

@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Files whose names say that they are tracked sequences are opened by Tracked Slice Reader without a
-/// question, while the plugin is loaded; otherwise ParaView asks each time whether to take its own
-/// reader, which drops the poses. What a user has set as default readers is of higher priority and wins.
+/// What Lacuna and ParaView's readers have to know of each other.
+#include "vtkLacunaRequest.h"
+#include "vtkMetaReader.h"
 #include "vtkSMSettings.h"
 
 namespace
 {
+// Files whose names say that they are tracked sequences are opened by Tracked Slice Reader without a
+// question, while the plugin is loaded; otherwise ParaView asks each time whether to take its own
+// reader, which drops the poses. What a user has set as default readers is of higher priority and wins.
 const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
   R"json({ "settings": { "RepresentedArrayListSettings": { "ReaderDetails": [
   "*.igs.mha *.igs.mhd *.igs.nrrd *.igs.nhdr *.seq.mha *.seq.mhd *.seq.nrrd *.seq.nhdr",
   "Tracked ultrasound sequence", "LacunaTrackedSliceReader"] } } })json",
   0.5);
+
+vtkAlgorithm* GetInnerReader(vtkAlgorithm* algorithm)
+{
+  auto* series = vtkMetaReader::SafeDownCast(algorithm);
+  return series ? series->GetReader() : nullptr;
+}
+
+const bool Known = (vtkLacunaRequest::SetInnerReader(GetInnerReader), true);
 }

@@ -58,9 +58,10 @@ private:
     for (std::size_t k = 0; k < words.size();)
     {
       const char letter = words[k];
-      std::size_t size = 0;
-      const double number = std::stod(words.substr(k + 1), &size);
-      k += 1 + size;
+      const std::size_t end =
+        std::min(words.find_first_not_of("+-.0123456789", k + 1), words.size());
+      const double number = std::stod(words.substr(k + 1, end - k - 1)); // no hexadecimal 0X0.P2
+      k = end;
       const bool isAxis = letter >= 'X' && letter <= 'Z';
       moves = moves || isAxis;
       if (isAxis)

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """save_solid: strict records, the same for the same solid, nothing old beside a failure, 3MF of solids only."""
-import glob
+import errno
 import json
 import math
 import os
 import resource
+import shutil
 import signal
+import stat
 
 import numpy as np
 from lacuna.errors import PipelineError
 from lacuna.solids import save_solid
-from lacuna_test import output
+from lacuna_test import output as output_of_tests
 from paraview import servermanager
 from paraview.simple import *
 from solid_files import read_3mf
@@ -20,6 +22,15 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+
+
+FOLDER = output_of_tests("SaveSolid")
+shutil.rmtree(FOLDER, ignore_errors=True)  # of an earlier run
+os.makedirs(FOLDER)
+
+
+def output(name):
+    return os.path.join(FOLDER, name)
 
 
 def read_strictly(path):
@@ -38,9 +49,8 @@ def refused(path, proxy, *words, **options):
     else:
         raise AssertionError((path, words))
     assert not os.path.exists(path) and not os.path.exists(path + ".json"), path
-    folder, file = os.path.split(path)
-    parts = [name for name in os.listdir(folder) if name.startswith(file + ".part")]
-    assert not parts, parts
+    folder = os.path.dirname(path)
+    assert not [name for name in os.listdir(folder) if name.startswith(".")], os.listdir(folder)
 
 
 def surface(points, triangles, fields=None):
@@ -103,8 +113,6 @@ assert again == first
 
 # A file that the surface itself is read from: replaced when the new one is whole, and never lost.
 again = output("SaveSolidAgain.stl")
-for left in glob.glob(glob.escape(again) + "*"):
-    os.remove(left)  # by an earlier run
 save_solid(again, solid)
 moved = Transform(Input=STLReader(FileNames=[again]))
 moved.Transform.Translate = [5, 0, 0]
@@ -124,7 +132,64 @@ assert os.path.exists(again + ".old2") and kept.GetDataInformation().GetBounds()
 with open(output("SaveSolidAgain.step"), "w", encoding="ascii") as file:
     file.write("mine")
 refused(output("SaveSolidAgain.step"), solid, "step")
-assert "mine" in {open(left, encoding="ascii").read() for left in glob.glob(glob.escape(output("SaveSolidAgain.step")) + ".old*")}
+with open(output("SaveSolidAgain.step.old"), encoding="ascii") as file:
+    assert file.read() == "mine"
+# one without a record before: each solid keeps its own
+first = output("SaveSolidFirst.stl")
+with open(first, "w", encoding="ascii") as file:
+    file.write("mine")
+refused(first, broken, "mirror image")
+save_solid(first, solid)
+refused(first, broken, "mirror image")
+assert sorted(name for name in os.listdir(FOLDER) if "First" in name) == [
+    "SaveSolidFirst.stl.json.old2", "SaveSolidFirst.stl.old", "SaveSolidFirst.stl.old2"]
+
+# Names that might be taken for temporary ones are the user's.
+for name in ("SaveSolidMine.part.stl", "SaveSolidMine.3mf.part", "SaveSolidMine.stl.json.part"):
+    with open(output(name), "w", encoding="ascii") as file:
+        file.write("mine")
+for name in ("SaveSolidMine.stl", "SaveSolidMine.3mf"):
+    save_solid(output(name), solid)
+    save_solid(output(name), solid)
+for name in ("SaveSolidMine.part.stl", "SaveSolidMine.3mf.part", "SaveSolidMine.stl.json.part"):
+    with open(output(name), encoding="ascii") as file:
+        assert file.read() == "mine"
+
+# Who may do what goes over; a record that is new is as private as its solid.
+for name in ("SaveSolidMine.stl", "SaveSolidMine.3mf"):
+    private = output(name)
+    for mode in (0o600, 0o664):
+        os.chmod(private, mode)
+        os.remove(private + ".json")
+        save_solid(private, solid)
+        assert {stat.S_IMODE(os.stat(each).st_mode) for each in (private, private + ".json")} == {mode}
+
+# When a solid cannot take its name its record stays with it, both under other names, and nothing else is left.
+replace = os.replace
+
+
+def refuse_to_replace(source, target):
+    raise OSError(errno.EROFS, "Read-only file system")
+
+
+save_solid(private, solid)
+os.replace = refuse_to_replace
+try:
+    refused(private, moved, "Read-only file system")
+finally:
+    os.replace = replace
+assert read_strictly(private + ".json.old")["bounds"] == [0, 3, 0, 2, 0, 1] and os.path.exists(private + ".old")
+
+# Several files are no solid, and what they would write over stays.
+os.makedirs(output("SaveSolidPieces"))
+kept = output("SaveSolidPieces/SaveSolidPieces_0.vtp")
+with open(kept, "w", encoding="ascii") as file:
+    file.write("mine")
+refused(output("SaveSolidPieces.pvtp"), solid, "several files")
+with open(kept, encoding="ascii") as file:
+    assert file.read() == "mine"
+for ending in ("vtm", "stl"):
+    refused(output("SaveSolidPieces." + ending), GroupDatasets(Input=[solid, Sphere()]), "several blocks")
 inner = output("SaveSolidFolder.stl")
 os.makedirs(inner, exist_ok=True)
 try:
@@ -163,7 +228,7 @@ for ending in ("stl", "ply", "obj", "vtp", "vtk"):
     assert record["file"] == os.path.basename(capital) and record == read_strictly(capital + ".json")
     with open(capital, "rb") as file:
         assert file.read() == expected, ending
-    assert not os.path.exists(small) and not [n for n in os.listdir(os.path.dirname(small)) if ".part" in n]
+    assert not os.path.exists(small) and not [n for n in os.listdir(FOLDER) if n.startswith(".")]
 save_solid(output("SaveSolidCapitals.3MF"), solid)
 
 # 3MF holds solids.

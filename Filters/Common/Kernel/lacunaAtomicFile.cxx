@@ -1,52 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaAtomicFile.h"
 
-#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <sys/xattr.h>
 #include <unistd.h>
 
 namespace lacuna
 {
-namespace
-{
-// Who may do what with a file goes over to the one that takes its place, as far as the system lets us, and
-// nobody may do more.
-void CopyAccess(const std::string& from, const std::string& to)
-{
-  struct stat old;
-  struct stat made;
-  if (stat(from.c_str(), &old) != 0 || stat(to.c_str(), &made) != 0)
-  {
-    return;
-  }
-  // of a folder's default list
-  constexpr const char* list = "system.posix_acl_access";
-  if (removexattr(to.c_str(), list) != 0 && errno != ENODATA && errno != ENOTSUP)
-  {
-    return;
-  }
-  const bool owned = (old.st_uid == made.st_uid && old.st_gid == made.st_gid) ||
-    chown(to.c_str(), old.st_uid, old.st_gid) == 0 ||
-    chown(to.c_str(), static_cast<uid_t>(-1), old.st_gid) == 0;
-  std::array<char, 65536> entries;
-  const ssize_t size = getxattr(from.c_str(), list, entries.data(), entries.size());
-  const bool hasList = size >= 0 || (errno != ENODATA && errno != ENOTSUP);
-  // what one group might do is nothing for another one, and of a list the mode has the most of all
-  const bool listed = hasList && owned && size >= 0 &&
-    setxattr(to.c_str(), list, entries.data(), static_cast<std::size_t>(size), 0) == 0;
-  const mode_t group = listed || (owned && !hasList) ? 0070 : 0;
-  chmod(to.c_str(), old.st_mode & (0707 | group));
-}
-}
-
 //------------------------------------------------------------------------------
-AtomicFile::AtomicFile(const std::string& path)
+AtomicFile::AtomicFile(const std::string& path, const std::string& companion)
   : Path(path)
   , Target(path)
 {
@@ -81,14 +46,11 @@ AtomicFile::AtomicFile(const std::string& path)
   const std::string temporary = this->Target + ".part" + std::to_string(getpid());
   // One may be left over by a dead process of the same number.
   unlink(temporary.c_str());
-  const bool replaces = fs::exists(status);
+  this->Companion = fs::canonical(companion, code).string(); // empty when it is not there
+  const bool isNew = !fs::exists(status) && this->Companion.empty();
   this->File = std::make_unique<OutputFile>(
-    temporary, replaces ? OutputFile::Mode::CreatePrivate : OutputFile::Mode::CreateNew, path);
+    temporary, isNew ? OutputFile::Mode::CreateNew : OutputFile::Mode::CreatePrivate, path);
   this->Temporary = temporary;
-  if (replaces)
-  {
-    CopyAccess(this->Target, temporary);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -121,6 +83,9 @@ void AtomicFile::Finish()
   }
   if (!this->IsStream())
   {
+    std::error_code code; // as it is now: it may have been changed meanwhile
+    this->File->TakeAccess(
+      std::filesystem::exists(this->Target, code) ? this->Target : this->Companion);
     this->File->Sync();
   }
   this->File->Close();

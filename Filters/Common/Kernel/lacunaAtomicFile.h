@@ -15,12 +15,14 @@ namespace lacuna
 /// A file that takes its name when it is complete: it is written under another name beside its
 /// place, seen on the disk and renamed, so that path is either what it was before or the whole new
 /// content, also after a crash. A file that is there before passes on its permissions, access list
-/// and, where the system allows it, owner and group. A symbolic link is followed; a device or pipe
-/// is written to directly. All functions throw FileError.
+/// and, where the system allows it, owner and group (OutputFile::TakeAccess). A symbolic link is
+/// followed; a device or pipe is written to directly. All functions throw FileError.
 class AtomicFile
 {
 public:
-  explicit AtomicFile(const std::string& path);
+  /// Where there is no path before, companion passes on who may do what: another file of the same
+  /// data. Without it, or where it is not there, either, the umask decides.
+  explicit AtomicFile(const std::string& path, const std::string& companion = {});
   /// Throws away what was written unless Commit came before.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -40,6 +42,7 @@ public:
 private:
   std::string Path;      ///< as the caller knows it
   std::string Target;    ///< the file itself, links followed
+  std::string Companion; ///< links followed; empty: none
   std::string Temporary; ///< empty when there is nothing to remove
   bool Stream = false;
   std::unique_ptr<OutputFile> File;

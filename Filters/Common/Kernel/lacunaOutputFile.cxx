@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaOutputFile.h"
 
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
 #include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 namespace lacuna
 {
 static_assert(sizeof(off_t) == 8, "files over 2 GiB need 64-bit offsets");
+
+namespace
+{
+// The mode of a file that has not the owner or not the group of the one with mode old: who was that is
+// one of its group or of the others then.
+mode_t GetMode(mode_t old, bool sameOwner, bool sameGroup)
+{
+  const mode_t owner = sameOwner ? 7 : (old >> 6) & 7;
+  const mode_t group = (old >> 3) & owner;
+  const mode_t others = old & owner & (sameGroup ? 7 : group);
+  return (old & 0700) | (sameGroup ? group << 3 : 0) | others;
+}
+}
 
 //------------------------------------------------------------------------------
 FileError FileError::Make(const std::string& what, const std::string& path, int error)
@@ -109,6 +125,42 @@ void OutputFile::Sync()
   {
     this->Throw(errno);
   }
+}
+
+//------------------------------------------------------------------------------
+// By the descriptor, as the name may be another file's by now, in a folder where others write.
+void OutputFile::TakeAccess(const std::string& from)
+{
+  const int file = this->Descriptor;
+  struct stat old;
+  struct stat made;
+  if (lstat(from.c_str(), &old) != 0 || !S_ISREG(old.st_mode))
+  {
+    return;
+  }
+  constexpr const char* list = "system.posix_acl_access";
+  if (fchmod(file, 0600) != 0 ||
+    (fremovexattr(file, list) != 0 && errno != ENODATA && errno != ENOTSUP) || // a folder's default
+    fstat(file, &made) != 0)
+  {
+    return;
+  }
+  const uid_t sameOwner = static_cast<uid_t>(-1);
+  if ((old.st_uid != made.st_uid && fchown(file, old.st_uid, old.st_gid) == 0) ||
+    (old.st_gid != made.st_gid && fchown(file, sameOwner, old.st_gid) == 0))
+  {
+    fstat(file, &made);
+  }
+  mode_t mode = GetMode(old.st_mode, old.st_uid == made.st_uid, old.st_gid == made.st_gid);
+  std::array<char, 65536> entries;
+  const ssize_t size = lgetxattr(from.c_str(), list, entries.data(), entries.size());
+  if (size < 0 ? errno != ENODATA && errno != ENOTSUP
+               : old.st_gid != made.st_gid ||
+        fsetxattr(file, list, entries.data(), static_cast<std::size_t>(size), 0) != 0)
+  {
+    mode &= 0700; // others are those whom a list does not name
+  }
+  fchmod(file, mode);
 }
 
 //------------------------------------------------------------------------------

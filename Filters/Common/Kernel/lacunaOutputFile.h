@@ -63,6 +63,10 @@ public:
   void Truncate(std::int64_t size);
   /// Waits until the disk has it all.
   void Sync();
+  /// Gives the file the permissions, access list and, where the system allows it, owner and group of
+  /// another one, which it is to replace; a link is none. What cannot be given is nobody's: not one
+  /// user may do more than with the other file.
+  void TakeAccess(const std::string& from);
   /// Closes; the last chance for an error.
   void Close();
 

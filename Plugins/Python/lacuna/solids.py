@@ -10,13 +10,13 @@ import json
 import math
 import os
 import re
+import stat
+import tempfile
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
 NOTICE = "Research software, not a medical device."
 TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
-# What ParaView writes into one file. It knows its writers by endings in lower case only.
-SINGLE_FILES = (".stl", ".ply", ".obj", ".vtp", ".vtk")
 # Characters that an XML file cannot have, not even escaped.
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 ROOM = 1 << 16  # bytes that a disk must have left
@@ -47,33 +47,36 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
         return _save_solid(path, proxy, allow_mirrored, options)
     except BaseException:
         _set_aside(path)
-        _set_aside(path + ".json")
         raise
 
 
 def _set_aside(path):
-    """Gives an older file the first free name of path.old, path.old2, ...; where that cannot be, it stays."""
+    """Gives an older solid and its record the first free names of path.old, path.old2, ...; where that cannot be, they stay."""
     number = 1
-    while os.path.exists(name := f"{path}.old{number if number > 1 else ''}"):
+    while any(os.path.lexists(_get_old_name(each, number)) for each in (path, path + ".json")):
         number += 1
-    try:
-        os.rename(path, name)
-    except OSError:
-        pass  # none is there, or the folder lets nobody: what went wrong before says more
+    for each in (path, path + ".json"):
+        try:
+            os.rename(each, _get_old_name(each, number))
+        except OSError:
+            pass  # none is there, or the folder lets nobody: what went wrong before says more
+
+
+def _get_old_name(path, number):
+    return f"{path}.old{number if number > 1 else ''}"
 
 
 def _save_solid(path, proxy, allow_mirrored, options):
-    """save_solid; the old files stay where they are until both new ones are whole under other names."""
+    """save_solid; the old files stay where they are until both new ones are whole in a folder beside them."""
     from lacuna import __version__, coordinates
     from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
 
-    beside = path + ".json"
     with raising():
         proxy.UpdatePipeline()
         data = fetch(proxy)
-        if data is None or data.GetNumberOfPoints() == 0:
-            raise PipelineError(f"there is nothing to write to {path}")
+    if data is None or data.GetNumberOfPoints() == 0:
+        raise PipelineError(f"there is nothing to write to {path}")
     _check_surface(path, data)
     if coordinates.is_mirrored(proxy) and not allow_mirrored:
         raise PipelineError(f"{path}: this is a mirror image of the patient (by Mirror, Reflect or a negative Scale of "
@@ -82,43 +85,74 @@ def _save_solid(path, proxy, allow_mirrored, options):
     steps, measures = _steps_and_measures(data)
     if not coordinates.keeps_points(proxy):
         measures = {}  # of the surface before it was moved or scaled
-    if os.path.splitext(path)[1].lower() == ".3mf":
-        name = path + ".part"
-        _write_3mf(name, path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
-    else:
-        name = _write_by_paraview(path, proxy, options)
-    unfinished = beside + ".part"
     try:
-        with open(name, "rb") as file:
-            digest = hashlib.sha256(file.read()).hexdigest()
-        record = _without_nan({
-            "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
-            "version": __version__, "unit": "mm", "coordinates": place,
-            "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
-            "notice": NOTICE,
-        })
-        with open(unfinished, "w", encoding="utf-8") as file:
-            file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
-        if os.path.exists(beside):
-            os.remove(beside)  # never beside another file than its own
-        if name != path:
-            os.replace(name, path)
-        os.replace(unfinished, beside)
+        with tempfile.TemporaryDirectory(prefix=".lacuna-", dir=os.path.dirname(path) or ".",
+                                         ignore_cleanup_errors=True) as folder:
+            root, ending = os.path.splitext(os.path.basename(path))
+            name = os.path.join(folder, root + ending.lower())  # ParaView knows its writers by these only
+            if ending.lower() == ".3mf":
+                _write_3mf(name, path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
+            else:
+                _write_by_paraview(name, path, proxy, options)
+            with open(name, "rb") as file:
+                digest = hashlib.sha256(file.read()).hexdigest()
+            record = _without_nan({
+                "file": os.path.basename(path), "sha256": digest, "software": "Lacuna",
+                "version": __version__, "unit": "mm", "coordinates": place,
+                "bounds": list(data.GetBounds()), "measures": measures, "steps": steps,
+                "notice": NOTICE,
+            })
+            record_name = name + ".json"
+            with open(record_name, "w", encoding="utf-8") as file:
+                file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
+            _replace(path, name, record_name)
     except OSError as error:
-        raise PipelineError(f"{beside} cannot be written: {error.strerror}") from error
-    finally:
-        for each in {unfinished, name} - {path}:
-            if os.path.exists(each):
-                os.remove(each)
+        raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
     return record
 
 
+def _replace(path, solid, record):
+    """Gives both their names; an older record is never beside another solid than its own."""
+    beside = path + ".json"
+    if os.path.exists(path):
+        _take_access(solid, path)
+        _take_access(record, beside if os.path.exists(beside) else path)
+    older = record + ".old"
+    if os.path.lexists(beside):
+        os.rename(beside, older)
+    try:
+        os.replace(solid, path)
+    except OSError:
+        if os.path.lexists(older):
+            os.rename(older, beside)
+        raise
+    os.replace(record, beside)
+
+
+def _take_access(path, old):
+    """Gives a file owner (where the system lets us), group, permissions and access list of an older one, or it is private."""
+    os.chmod(path, 0o600)
+    status = os.stat(old)
+    try:
+        try:
+            os.chown(path, status.st_uid, status.st_gid)
+        except OSError:
+            os.chown(path, -1, status.st_gid)
+        for name in (each for each in os.listxattr(old) if each == "system.posix_acl_access"):
+            os.setxattr(path, name, os.getxattr(old, name))
+        os.chmod(path, stat.S_IMODE(status.st_mode))
+    except OSError:
+        pass
+
+
 def _check_surface(path, data):
-    """Raises PipelineError for what has no surface, or one with points that are nowhere; composite data are not looked at."""
+    """Raises PipelineError for what has no surface, is of several blocks, or has points that are nowhere."""
     import numpy as np
     from lacuna.errors import PipelineError
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    if data.IsA("vtkCompositeDataSet"):
+        raise PipelineError(f"{path}: these are several blocks; apply Merge Blocks and Extract Surface first")
     if not data.IsA("vtkPointSet"):
         return
     if data.IsA("vtkPolyData") and data.GetNumberOfPolys() + data.GetNumberOfStrips() == 0:
@@ -165,32 +199,19 @@ def _require_room(name):
         file.truncate(size)
 
 
-def _write_by_paraview(path, proxy, options):
-    """Returns the name under which it is: another one, so that there is none under the final one when it is not whole.
-
-    Where ParaView writes several files, it is the final one, and an older file is set aside.
-    """
+def _write_by_paraview(name, path, proxy, options):
+    """Writes the file name, alone in its folder, for path; raises for formats of several files."""
     from lacuna.errors import PipelineError, raising
     from paraview.simple import SaveData
 
-    root, ending = os.path.splitext(path)
-    lower = ending.lower()
-    name = f"{root}.part{lower}" if lower in SINGLE_FILES else path
-    if name == path:
-        _set_aside(path)
-    try:
-        with raising():
-            SaveData(name, proxy, **options)
-        if not os.path.exists(name):
-            raise PipelineError(f"{path} was not written")
-        _require_room(name)
-        return name
-    except Exception as error:
-        if os.path.exists(name):
-            os.remove(name)
-        if isinstance(error, OSError):
-            raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
-        raise
+    with raising():
+        SaveData(name, proxy, **options)
+    made = os.listdir(os.path.dirname(name))
+    if made != [os.path.basename(name)]:
+        raise PipelineError(f"{path} was not written" if not made else
+                            f"{path}: ParaView writes several files for this ({', '.join(sorted(made))}); save it in a "
+                            "format of one, such as STL, PLY, OBJ or VTP")
+    _require_room(name)
 
 
 def _check_closed(path, points, triangles):
@@ -267,11 +288,6 @@ def _write_3mf(name, path, data, title, application, place, steps):
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>\n',
         "3D/3dmodel.model": "\n".join(lines),
     }
-    try:
-        with zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as package:
-            for part, text in parts.items():
-                package.writestr(zipfile.ZipInfo(part), text.encode(), zipfile.ZIP_DEFLATED)
-    except OSError as error:
-        if os.path.exists(name):
-            os.remove(name)
-        raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
+    with zipfile.ZipFile(name, "w", zipfile.ZIP_DEFLATED) as package:
+        for part, text in parts.items():
+            package.writestr(zipfile.ZipInfo(part), text.encode(), zipfile.ZIP_DEFLATED)

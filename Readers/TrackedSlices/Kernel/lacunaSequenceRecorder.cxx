@@ -190,11 +190,12 @@ void SequenceRecorder::Sync()
   {
     this->SyncFiles();
     this->Synced = this->Now;
+    this->Begun = true;
   }
-  catch (const FileError&)
+  catch (...) // also when there is no memory for an error
   {
     this->Now = this->Synced;
-    if (this->Now.Slices == 0)
+    if (!this->Begun)
     {
       Try([&] { this->Data->WriteAt(0, this->DataStart); });
       Try([&] { this->Header->WriteAt(0, this->HeaderStart); });
@@ -207,7 +208,7 @@ void SequenceRecorder::Sync()
 //------------------------------------------------------------------------------
 void SequenceRecorder::Close()
 {
-  if (this->Now.Slices != this->Synced.Slices)
+  if (!this->Begun || this->Now.Slices != this->Synced.Slices)
   {
     this->Sync();
   }

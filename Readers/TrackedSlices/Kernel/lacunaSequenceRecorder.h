@@ -82,6 +82,7 @@ private:
   std::int64_t CountsOffset = 0;
   Extent Now;
   Extent Synced;
+  bool Begun = false; ///< on the disk, by a Sync
   std::vector<unsigned char> Frame;
 };
 }

@@ -25,7 +25,8 @@ public:
     , Kind(fileName, compressionLevel > 0)
     , Level(compressionLevel)
     , HeaderFile(fileName)
-    , DataFile(Kind.IsDetached() ? std::make_unique<AtomicFile>(Kind.GetDataFileName()) : nullptr)
+    , DataFile(Kind.IsDetached() ? std::make_unique<AtomicFile>(Kind.GetDataFileName(), fileName)
+                                 : nullptr)
     , FrameSize(static_cast<std::size_t>(content.Description.Columns * content.Description.Rows) *
         GetScalarSize(content.Description.Type))
   {

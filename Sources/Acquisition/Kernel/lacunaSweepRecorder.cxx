@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -34,12 +35,14 @@ struct Slice
   double Time; // when it was added
 };
 
-std::string Advise(const std::string& reason)
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+// What the disk did not do last time it was asked to; until when it is left alone.
+struct Refusal
 {
-  return reason +
-    ". The capture goes on, its slices wait in memory: make room on that disk, then they are "
-    "written; or save the sweep elsewhere";
-}
+  std::string Trouble; // empty: it did
+  double RetryTime = 0;
+};
 }
 
 struct SweepRecorder::Work
@@ -59,43 +62,49 @@ struct SweepRecorder::Work
     {
       const std::lock_guard<std::mutex> lock(this->Mutex);
       this->Ending = true;
-      this->Failed = false;
+      this->BeginRound();
     }
-    this->Changed.notify_all();
     if (this->Thread.joinable())
     {
       this->Thread.join();
     }
   }
 
-  bool IsSyncDue(double now) const
+  // From when on each is to be done.
+  double GetWriteTime() const { return this->Queue.empty() ? Never : this->Writing.RetryTime; }
+  double GetSyncTime() const
   {
-    return !this->Unsynced.empty() &&
-      (this->Hurry || this->Ending || now >= this->Unsynced.front().Time + SyncInterval);
-  }
-  // When there is something to do next; a time passed: now.
-  double GetNextTime() const
-  {
-    if (!this->Queue.empty())
+    const bool last = this->Hurry || this->Ending; // once for all of them
+    if (this->Unsynced.empty() || (last && !this->Queue.empty()))
     {
-      return this->RetryTime;
+      return Never;
     }
-    if (this->Unsynced.empty())
+    if (last)
     {
-      return this->Clock.Now() + 3600;
+      return this->Syncing.RetryTime;
     }
-    return this->Hurry || this->Ending
-      ? this->RetryTime
-      : std::max(this->RetryTime, this->Unsynced.front().Time + SyncInterval);
+    // a disk that takes long does not keep slices from being written
+    const double begin = this->Queue.empty() ? this->Unsynced.front().Time
+                                             : std::max(this->SyncEnd, this->Unsynced.front().Time);
+    return std::max(this->Syncing.RetryTime, begin + SyncInterval);
   }
   bool HasAll() const { return this->Queue.empty() && this->Unsynced.empty(); }
+  bool HasFailed() const { return this->FailedRound == this->Round; }
+  // Everything is tried at once, also what fails while it begins.
+  void BeginRound()
+  {
+    ++this->Round;
+    this->Writing.RetryTime = 0;
+    this->Syncing.RetryTime = 0;
+    this->Changed.notify_all();
+  }
 
   void Run();
   // Each is called with the lock and gives it up while the disk works.
-  bool Try(std::unique_lock<std::mutex>& lock, const std::function<void()>& action);
+  bool Try(std::unique_lock<std::mutex>& lock, Refusal& refusal, const char* advice,
+    const std::function<void()>& action);
   void WriteFront(std::unique_lock<std::mutex>& lock);
   void Sync(std::unique_lock<std::mutex>& lock);
-  void Fail(FileError::Kind kind, const std::string& reason);
 
   SteadyClock Clock;
   const std::string FileName;
@@ -108,10 +117,15 @@ struct SweepRecorder::Work
   std::deque<Slice> Queue;
   std::deque<Slice> Unsynced; // written, and to be written again should the disk have dropped them
   State Now;
-  double RetryTime = 0;
-  FileError::Kind TroubleKind = FileError::Kind::Other;
+  Refusal Writing;
+  Refusal Syncing;
+  double SyncEnd = 0; // of the last one, when
+  // Of what was begun in the last round that failed.
+  FileError::Kind FailedKind = FileError::Kind::Other;
+  std::string Failure;
+  int FailedRound = -1;
+  int Round = 0;       // of tries to have all on the disk
   bool Hurry = false;  // Finish waits
-  bool Failed = false; // since it does
   bool Ending = false; // the thread has to end, at the first failure or when all is done
   bool Finished = false;
   std::thread Thread; // last: it uses all the others
@@ -120,30 +134,30 @@ struct SweepRecorder::Work
 void SweepRecorder::Work::Run()
 {
   std::unique_lock<std::mutex> lock(this->Mutex);
-  while (!this->Ending || (!this->HasAll() && !this->Failed))
+  while (!this->Ending || (!this->HasAll() && !this->HasFailed()))
   {
     const double now = this->Clock.Now();
-    const bool retry = this->Ending || now >= this->RetryTime;
-    const bool last = this->Hurry || this->Ending; // once for all of them
-    if (retry && this->IsSyncDue(now) && (this->Queue.empty() || !last))
+    if (now >= this->GetSyncTime())
     {
       this->Sync(lock);
     }
-    else if (retry && !this->Queue.empty())
+    else if (now >= this->GetWriteTime())
     {
       this->WriteFront(lock);
     }
     else
     {
-      this->Changed.wait_for(lock,
-        std::chrono::duration<double>(std::clamp(this->GetNextTime() - now, 0.001, RetryInterval)));
+      const double next = std::min(this->GetSyncTime(), this->GetWriteTime());
+      this->Changed.wait_for(
+        lock, std::chrono::duration<double>(std::clamp(next - now, 0.001, RetryInterval)));
     }
   }
 }
 
-bool SweepRecorder::Work::Try(
-  std::unique_lock<std::mutex>& lock, const std::function<void()>& action)
+bool SweepRecorder::Work::Try(std::unique_lock<std::mutex>& lock, Refusal& refusal,
+  const char* advice, const std::function<void()>& action)
 {
+  const int round = this->Round;
   lock.unlock();
   FileError::Kind kind = FileError::Kind::Other;
   std::string failure;
@@ -164,19 +178,28 @@ bool SweepRecorder::Work::Try(
   const std::uintmax_t free = std::filesystem::space(this->FileName, unknown).available;
   lock.lock();
   this->Now.FreeBytes = unknown ? -1 : static_cast<std::int64_t>(free);
+  refusal = {};
   if (!failure.empty())
   {
-    this->Fail(kind, failure);
+    refusal.Trouble = failure + advice;
+    refusal.RetryTime = round == this->Round ? this->Clock.Now() + RetryInterval : 0;
+    this->FailedKind = kind;
+    this->Failure = refusal.Trouble;
+    this->FailedRound = round;
   }
+  this->Now.Trouble = this->Writing.Trouble.empty() ? this->Syncing.Trouble : this->Writing.Trouble;
+  this->Changed.notify_all();
   return failure.empty();
 }
 
 void SweepRecorder::Work::WriteFront(std::unique_lock<std::mutex>& lock)
 {
   const Slice& slice = this->Queue.front(); // stays where it is while others are added
-  if (this->Try(lock, [&] { this->Recorder->Append(slice.Pixels->data(), slice.Fields); }))
+  if (this->Try(lock, this->Writing,
+        ". The capture goes on, its slices wait in memory: make room on that disk, then they are "
+        "written; or save the sweep elsewhere",
+        [&] { this->Recorder->Append(slice.Pixels->data(), slice.Fields); }))
   {
-    this->Now.Trouble.clear();
     ++this->Now.Written;
     this->Now.WaitingBytes -= static_cast<std::int64_t>(this->Bytes);
     this->Unsynced.push_back(std::move(this->Queue.front()));
@@ -193,7 +216,7 @@ void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
     {
       this->Recorder->Sync();
     }
-    catch (const FileError&)
+    catch (...)
     {
       written = 0;
       for (const Slice& slice : this->Unsynced) // at once: now the file lacks them
@@ -204,13 +227,17 @@ void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
       throw;
     }
   };
-  if (this->Try(lock, sync))
+  const bool synced = this->Try(lock, this->Syncing,
+    ". The capture goes on, its slices stay in memory, too, until the disk has taken them: look "
+    "after that disk, or save the sweep elsewhere",
+    sync);
+  this->SyncEnd = this->Clock.Now();
+  if (synced)
   {
     this->Now.LongestDelay =
-      std::max(this->Now.LongestDelay, this->Clock.Now() - this->Unsynced.front().Time);
+      std::max(this->Now.LongestDelay, this->SyncEnd - this->Unsynced.front().Time);
     this->Unsynced.clear();
     this->Now.Synced = this->Now.Written;
-    this->Changed.notify_all();
   }
   else
   {
@@ -222,15 +249,6 @@ void SweepRecorder::Work::Sync(std::unique_lock<std::mutex>& lock)
       std::make_move_iterator(this->Unsynced.end()));
     this->Unsynced.erase(first, this->Unsynced.end());
   }
-}
-
-void SweepRecorder::Work::Fail(FileError::Kind kind, const std::string& reason)
-{
-  this->TroubleKind = kind;
-  this->Now.Trouble = Advise(reason);
-  this->RetryTime = this->Clock.Now() + RetryInterval;
-  this->Failed = this->Hurry || this->Ending;
-  this->Changed.notify_all();
 }
 
 SweepRecorder::SweepRecorder(
@@ -288,14 +306,12 @@ void SweepRecorder::Finish()
   {
     std::unique_lock<std::mutex> lock(job.Mutex);
     job.Hurry = true;
-    job.Failed = false;
-    job.RetryTime = 0;
-    job.Changed.notify_all();
-    job.Changed.wait(lock, [&] { return job.HasAll() || job.Failed; });
+    job.BeginRound();
+    job.Changed.wait(lock, [&] { return job.HasAll() || job.HasFailed(); });
     job.Hurry = false;
     if (!job.HasAll())
     {
-      throw FileError(job.TroubleKind, job.Now.Trouble);
+      throw FileError(job.FailedKind, job.Failure);
     }
     job.Finished = true;
   }

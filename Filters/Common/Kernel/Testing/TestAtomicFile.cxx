@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -82,6 +84,34 @@ private:
 };
 }
 
+namespace
+{
+constexpr const char* AccessList = "system.posix_acl_access";
+
+// As the system keeps them.
+std::string Entry(int tag, int rights, unsigned int id)
+{
+  std::string bytes{ static_cast<char>(tag), 0, static_cast<char>(rights), 0 };
+  for (int shift = 0; shift < 32; shift += 8)
+  {
+    bytes += static_cast<char>(id >> shift);
+  }
+  return bytes;
+}
+
+// user::rw-, the users named, group::---, mask, other::---
+std::string List(const std::vector<std::string>& users, int mask)
+{
+  constexpr unsigned int none = 0xFFFFFFFF;
+  std::string list = std::string("\2\0\0\0", 4) + Entry(1, 6, none);
+  for (const std::string& user : users)
+  {
+    list += user;
+  }
+  return list + Entry(4, 0, none) + Entry(16, mask, none) + Entry(32, 0, none);
+}
+}
+
 TEST_F(AtomicFile, WritesAndReplacesTheWholeFile)
 {
   const std::string path = this->Path("a.igs");
@@ -122,24 +152,108 @@ TEST_F(AtomicFile, PassesOnWhoMayDoWhat)
   }
 }
 
+// What is made while a file is written holds when it is there.
+TEST_F(AtomicFile, PassesOnWhatWasChangedMeanwhile)
+{
+  const std::string path = this->Path("file");
+  WriteFileAtomically(path, "old");
+  lacuna::AtomicFile file(path);
+  file.Write("new");
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  file.Commit();
+  EXPECT_EQ(Read(path), "new");
+  EXPECT_EQ(fs::status(path).permissions(), static_cast<fs::perms>(0600));
+}
+
+// In a folder of all somebody puts a link to another's file where the unfinished file was.
+TEST_F(AtomicFile, OpensNoOtherFileToAnyone)
+{
+  const std::string path = this->Path("file");
+  const std::string secret = this->Path("secret");
+  for (const std::string& each : { path, secret })
+  {
+    WriteFileAtomically(each, "old");
+  }
+  ASSERT_EQ(chmod(path.c_str(), 0666), 0);
+  ASSERT_EQ(chmod(secret.c_str(), 0600), 0);
+  lacuna::AtomicFile file(path);
+  file.Write("new");
+  const std::string unfinished = path + ".part" + std::to_string(getpid());
+  ASSERT_TRUE(fs::remove(unfinished));
+  fs::create_symlink("secret", unfinished);
+  file.Finish();
+  EXPECT_EQ(fs::status(secret).permissions(), static_cast<fs::perms>(0600));
+}
+
+// A second file of the same data, which is not there yet, is as private as the first.
+TEST_F(AtomicFile, TakesTheAccessOfItsCompanion)
+{
+  const std::string header = this->Path("a.mhd");
+  for (const mode_t mode : { 0600, 0664 })
+  {
+    WriteFileAtomically(header, "header");
+    ASSERT_EQ(chmod(header.c_str(), mode), 0);
+    lacuna::AtomicFile pixels(this->Path("a.raw"), header);
+    pixels.Write("pixels");
+    pixels.Commit();
+    struct stat status;
+    ASSERT_EQ(stat(this->Path("a.raw").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, mode);
+    fs::remove(this->Path("a.raw"));
+  }
+}
+
+// Those whom a group or a list kept out are not let in as others, where neither can be given.
+TEST_F(AtomicFile, LetsNobodyInWhenItCannotGiveGroupOrList)
+{
+  if (geteuid() != 0)
+  {
+    GTEST_SKIP() << "only the super-user can make files of others";
+  }
+  const std::string path = this->Path("file");
+  fs::permissions(this->Folder, fs::perms::all);
+  const auto becomes = [&](mode_t mode, const std::string& list) -> mode_t
+  {
+    fs::remove(path);
+    WriteFileAtomically(path, "old");
+    if (!list.empty() && setxattr(path.c_str(), AccessList, list.data(), list.size(), 0) != 0)
+    {
+      return 07777;
+    }
+    if (chown(path.c_str(), 1, 1) != 0 || chmod(path.c_str(), mode) != 0)
+    {
+      return 07777;
+    }
+    {
+      const AsNobody nobody;
+      WriteFileAtomically(path, "new");
+    }
+    EXPECT_EQ(Read(path), "new");
+    struct stat status;
+    EXPECT_EQ(stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_uid, 65534u);
+    return status.st_mode & 07777;
+  };
+  EXPECT_EQ(becomes(0606, {}), 0600u);
+  EXPECT_EQ(becomes(0646, {}), 0604u);
+  EXPECT_EQ(becomes(0666, {}), 0606u);
+  EXPECT_EQ(becomes(0466, {}), 0404u);
+  // of user 65534 alone, who writes; and group::---
+  const mode_t listed = becomes(0666, List({ Entry(2, 6, 65534) }, 6));
+  if (listed == 07777)
+  {
+    GTEST_SKIP() << "the file system has no access lists";
+  }
+  EXPECT_EQ(listed, 0600u);
+}
+
 // user::rw-, user:65534:r--, group::---, mask::r--, other::---
 TEST_F(AtomicFile, PassesOnTheAccessList)
 {
   const std::string path = this->Path("file");
   WriteFileAtomically(path, "old");
-  const auto entry = [](int tag, int rights, unsigned int id)
-  {
-    std::string bytes{ static_cast<char>(tag), 0, static_cast<char>(rights), 0 };
-    for (int shift = 0; shift < 32; shift += 8)
-    {
-      bytes += static_cast<char>(id >> shift);
-    }
-    return bytes;
-  };
-  constexpr unsigned int none = 0xFFFFFFFF;
-  const std::string list = std::string("\2\0\0\0", 4) + entry(1, 6, none) + entry(2, 4, 65534) +
-    entry(4, 0, none) + entry(16, 4, none) + entry(32, 0, none);
-  const char* name = "system.posix_acl_access";
+  const std::string list = List({ Entry(2, 4, 65534) }, 4);
+  const char* name = AccessList;
   if (setxattr(path.c_str(), name, list.data(), list.size(), 0) != 0)
   {
     GTEST_SKIP() << "the file system has no access lists";

@@ -3,6 +3,7 @@
 #include "WrittenSequence.h"
 #include "lacunaClock.h"
 #include "lacunaOutputFile.h"
+#include "lacunaSequenceRecorder.h"
 #include "lacunaSweepRecorder.h"
 #include "lacunaTestDisk.h"
 
@@ -70,6 +71,7 @@ TEST(SweepRecorder, WritesAgainWhatTheDiskHasDropped)
       {
         ASSERT_TRUE(Becomes(recorder, [&](const auto& now) { return now.Synced == frame + 1; }));
         EXPECT_EQ(lacunaTest::DiskFailures, 0);
+        EXPECT_EQ(recorder.GetState().Trouble, "");
         ExpectBeginning(folder / name, static_cast<std::size_t>(frame + 1));
       }
     }
@@ -103,6 +105,80 @@ TEST(SweepRecorder, EndsWithAllSlicesAfterAFailure)
       Add(recorder, 2);
     }
     EXPECT_EQ(lacunaTest::DiskFailures, 0);
+    ExpectBeginning(folder / name, 3);
+  }
+}
+
+// The program ends while the disk is about to fail for the first slice, and others wait.
+TEST(SweepRecorder, EndsWithAllSlicesWhileItFails)
+{
+  const TemporaryFolder folder;
+  {
+    SweepRecorder recorder(folder / "ended.mhd", MakeDescription());
+    lacunaTest::DiskDelay = 400;
+    lacunaTest::DiskFailures = 1;
+    Add(recorder, 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // it began 300 ms after the slice
+    for (int frame = 1; frame < 50; ++frame)
+    {
+      Add(recorder, frame);
+    }
+  }
+  lacunaTest::DiskDelay = 0;
+  EXPECT_EQ(lacunaTest::DiskFailures, 0);
+  ExpectBeginning(folder / "ended.mhd", 50);
+}
+
+TEST(SweepRecorder, WritesWhileTheDiskFails)
+{
+  const TemporaryFolder folder;
+  SweepRecorder recorder(folder / "failing.nhdr", MakeDescription());
+  lacunaTest::DiskFailures = 1000000;
+  Add(recorder, 0);
+  ASSERT_TRUE(Becomes(recorder, [](const auto& now) { return !now.Trouble.empty(); }));
+  EXPECT_NE(recorder.GetState().Trouble.find("look after that disk"), std::string::npos);
+  for (int frame = 1; frame < 200; ++frame)
+  {
+    Add(recorder, frame);
+  }
+  EXPECT_TRUE(Becomes(recorder, [](const auto& now) { return now.Written == 200; }));
+  EXPECT_EQ(recorder.GetState().Synced, 0);
+  EXPECT_NE(recorder.GetState().Trouble, "");
+  ExpectBeginning(folder / "failing.nhdr", 200);
+  lacunaTest::DiskFailures = 0;
+  EXPECT_TRUE(Becomes(recorder, [](const auto& now) { return now.Synced == 200; }));
+  EXPECT_EQ(recorder.GetState().Trouble, "");
+}
+
+TEST(SweepRecorder, WritesWhileTheDiskIsSlow)
+{
+  const TemporaryFolder folder;
+  SweepRecorder recorder(folder / "slow.mhd", MakeDescription());
+  lacunaTest::DiskDelay = 500; // for each of two files
+  for (int frame = 0; frame < 200; ++frame)
+  {
+    Add(recorder, frame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(Becomes(recorder, [](const auto& now) { return now.Synced == 200; }));
+  lacunaTest::DiskDelay = 0;
+  ExpectBeginning(folder / "slow.mhd", 200);
+}
+
+// Not even its beginning was on the disk when it was to end without a slice.
+TEST(SweepRecorder, IsWholeAfterAnEndThatFailed)
+{
+  for (const auto& [name, level] : { std::pair("empty.mhd", 6), std::pair("empty.nhdr", 6) })
+  {
+    const TemporaryFolder folder;
+    SequenceRecorder recorder(folder / name, MakeDescription(), level);
+    lacunaTest::DiskFailures = 1;
+    EXPECT_THROW(recorder.Close(), FileError);
+    for (int frame = 0; frame < 3; ++frame)
+    {
+      recorder.Append(MakePixels(frame).data(), MakeFields(frame));
+    }
+    recorder.Close();
     ExpectBeginning(folder / name, 3);
   }
 }
