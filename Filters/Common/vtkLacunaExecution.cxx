@@ -2,15 +2,25 @@
 #include "vtkLacunaExecution.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
 #include "vtkDataObject.h"
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationKeyLookup.h"
+#include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
+#include "vtkLacunaRequest.h"
 #include "vtkLacunaVersionCompat.h"
+#include "vtkNew.h"
+#include "vtkOutputWindow.h"
 #include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <string>
@@ -18,6 +28,83 @@
 namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
+
+constexpr double SecondsShown = 5; // in which the same error is not shown again
+
+// In what an algorithm knows of itself: the error of its RequestInformation.
+vtkInformationStringKey* Announced()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("ANNOUNCED_ERROR", "vtkLacunaExecution");
+  return key;
+}
+
+// The error that was shown last, and when: by the clock, and by the time of the algorithm.
+vtkInformationStringKey* Shown()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("SHOWN_ERROR", "vtkLacunaExecution");
+  return key;
+}
+vtkInformationDoubleVectorKey* ShownAt()
+{
+  static vtkInformationDoubleVectorKey* const key =
+    vtkInformationDoubleVectorKey::MakeKey("SHOWN_ERROR_AT", "vtkLacunaExecution", 2);
+  return key;
+}
+
+// Whether an error is on the screen already; from now on it is.
+bool IsShown(vtkAlgorithm* algorithm, const std::string& error)
+{
+  const double now =
+    std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  const auto changed = static_cast<double>(algorithm->GetMTime());
+  vtkInformation* info = algorithm->GetInformation();
+  const double* at = info->Get(ShownAt());
+  if (at && now - at[0] < SecondsShown && at[1] == changed && error == info->Get(Shown()))
+  {
+    return true;
+  }
+  info->Set(Shown(), error);
+  const double place[2] = { now, changed };
+  info->Set(ShownAt(), place, 2);
+  return false;
+}
+
+// An error that is on the screen already: tells only who listens.
+void Repeat(vtkAlgorithm* algorithm, const std::string& error)
+{
+  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
+    ? static_cast<vtkObject*>(algorithm)
+    : vtkOutputWindow::GetInstance();
+  std::string copy = error;
+  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
+  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
+  vtkNew<vtkCallbackCommand> once;
+  once->SetClientData(once);
+  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
+    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
+}
+
+// Of empty data VTK takes for up to date nobody would hear any more, and writers would put nothing in the
+// place of good files: so the algorithm executes, and fails, for each who asks. ParaView asks several times
+// for one command.
+void Fail(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+  }
+  if (IsShown(algorithm, error))
+  {
+    Repeat(algorithm, error);
+  }
+  else
+  {
+    vtkErrorWithObjectMacro(algorithm, << error);
+  }
+}
 
 void EmptyOutputs(vtkInformationVector* outputs)
 {
@@ -38,6 +125,7 @@ void EmptyOutputs(vtkInformationVector* outputs)
       outputs->GetInformationObject(i)->Remove(time);
     }
   }
+  vtkLacunaRequest::Limit(outputs);
 }
 
 // The text of what body throws; empty when it ran to its end. Aborted passes through.
@@ -111,6 +199,11 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
       {
         try
         {
+          if (const char* announced = algorithm->GetInformation()->Get(Announced()))
+          {
+            throw std::runtime_error(announced);
+          }
+          vtkLacunaRequest::Limit(outputs);
           vtkLacunaExecution execution(algorithm);
           body(execution);
         }
@@ -125,7 +218,14 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
       return 1;
     }
     EmptyOutputs(outputs);
-    vtkErrorWithObjectMacro(algorithm, << error);
+    if (result == 1)
+    {
+      vtkErrorWithObjectMacro(algorithm, << error);
+    }
+    else
+    {
+      Fail(algorithm, outputs, error);
+    }
     return result;
   }
   catch (const lacuna::Aborted&)
@@ -141,6 +241,7 @@ int vtkLacunaExecution::RunInformation(
 {
   std::string error;
   vtkLacunaForgetAbort(algorithm);
+  algorithm->GetInformation()->Remove(Announced());
   try
   {
     if (!vtkLacunaInputs::AreSingle(algorithm))
@@ -152,6 +253,7 @@ int vtkLacunaExecution::RunInformation(
     {
       return 1;
     }
+    algorithm->GetInformation()->Set(Announced(), error);
   }
   catch (const lacuna::Aborted&)
   {
@@ -164,15 +266,10 @@ int vtkLacunaExecution::RunInformation(
     vtkInformation* info = outputs->GetInformationObject(i);
     const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
     info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
-    info->Remove(SDDP::UPDATE_EXTENT());
+    info->Set(SDDP::UPDATE_EXTENT(), nothing, 6);
     info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
   }
-  if (error.empty())
-  {
-    return 1;
-  }
-  vtkErrorWithObjectMacro(algorithm, << error);
-  return 0;
+  return 1;
 }
 
 //------------------------------------------------------------------------------

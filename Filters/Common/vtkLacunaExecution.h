@@ -34,7 +34,8 @@ public:
   }
 
   /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). Returns 1, or
-  /// 0 after an exception, whose text becomes algorithm's error. When body fails or is stopped by the
+  /// 0 after an exception, whose text becomes algorithm's error: each time data are asked for, until
+  /// something is changed (shown once within seconds, and heard each time). When body fails or is stopped by the
   /// user all outputs are emptied, so that no half result looks whole. After vtkLacunaGridChanged it
   /// returns 1 all the same: writers of time steps would ask again for ever.
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
@@ -45,9 +46,10 @@ public:
   static int RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 
-  /// Runs the body of algorithm's RequestInformation, with the same rules. After an exception the
-  /// outputs are empty, have an empty whole extent and no remembered request, so that the next
-  /// update starts afresh when the cause is mended.
+  /// Runs the body of algorithm's RequestInformation and returns 1. After an exception the outputs are empty,
+  /// have an empty whole extent and no remembered request, so that the next update starts afresh when the
+  /// cause is mended. The text is an error only when data are asked for (Run): ParaView asks for information
+  /// as soon as one of several properties is set, and never again before the data.
   static int RunInformation(
     vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body);
 

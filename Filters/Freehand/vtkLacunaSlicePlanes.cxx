@@ -177,6 +177,10 @@ void vtkLacunaSlicePlanes::CheckRequest(const vtkLacunaSlicePlaneBuilder& builde
       throw std::runtime_error(message.str());
     }
   }
+  if (!(this->SpeedLimit >= 0))
+  {
+    throw std::runtime_error("SpeedLimit must be positive, or 0 for no limit");
+  }
   if (builder.HasBadCalibration())
   {
     const std::string text = std::string("field data array '") +

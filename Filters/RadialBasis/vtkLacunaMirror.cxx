@@ -118,9 +118,10 @@ public:
     {
       const lacuna::Vec3 normal{ self->Normal[0], self->Normal[1], self->Normal[2] };
       const lacuna::Vec3 origin{ self->Origin[0], self->Origin[1], self->Origin[2] };
-      if (!IsFinite(normal) || !IsFinite(origin) || !(Norm(normal) > 0))
+      if (!HasDirection(normal) || !IsFinite(origin))
       {
-        throw std::runtime_error("Origin and Normal must be numbers, and Normal not 0 0 0");
+        throw std::runtime_error(
+          "Origin and Normal must be numbers, and Normal not 0 0 0, nor too long");
       }
       result.Plane.Normal = Normalized(normal);
       result.Plane.Offset = Dot(result.Plane.Normal, origin);

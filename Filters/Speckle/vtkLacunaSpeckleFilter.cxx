@@ -222,6 +222,7 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     input->Get(vtkDataObject::SPACING(), spacing);
   }
+  vtkLacunaRequest::Limit(outputs);
   lacuna::Extent needed = GetAsked(outputs->GetInformationObject(0));
   try
   {

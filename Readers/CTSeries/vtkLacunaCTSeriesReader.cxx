@@ -27,6 +27,7 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaReading.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
@@ -37,28 +38,18 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <new>
-#include <optional>
 #include <utility>
 
 namespace
 {
 constexpr const char* ScalarsName = "HounsfieldUnits";
-constexpr int SecondsShown = 5; // in which an error is not shown again
 
 std::string Text(const char* s)
 {
   return s ? s : "";
-}
-
-unsigned long GetReadError(const char* path)
-{
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored) ? vtkErrorCode::FileFormatError
-                                                : vtkErrorCode::FileNotFoundError;
 }
 
 void AddString(vtkDataObject* data, const char* name, const std::string& text)
@@ -126,22 +117,6 @@ private:
   lacuna::CTPixels First;
   lacuna::CTPixels Second;
 };
-
-// An error that is on the screen already: tells only who listens.
-void RepeatError(vtkAlgorithm* algorithm, const std::string& text)
-{
-  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
-    ? static_cast<vtkObject*>(algorithm)
-    : vtkOutputWindow::GetInstance();
-  std::string copy = text;
-  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
-  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
-  vtkNew<vtkCallbackCommand> once;
-  once->SetClientData(once);
-  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
-    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
-  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
-}
 }
 
 struct vtkLacunaCTSeriesReader::Content
@@ -153,10 +128,7 @@ struct vtkLacunaCTSeriesReader::Content
   vtkNew<vtkStringArray> SeriesList;
   vtkNew<vtkStringArray> Notes;
   bool Opened = false;
-  std::string Error; // why it is not
-  unsigned long ErrorCode = vtkErrorCode::NoError;
-  std::optional<std::chrono::steady_clock::time_point> Shown; // when Error was
-  bool Warned = false;                                        // of what follows
+  bool Warned = false; // of what follows
   std::vector<std::string> Warnings;
   lacuna::CTGeometry Geometry;
   lacuna::ScalarType Type = lacuna::ScalarType::Int16;
@@ -283,41 +255,23 @@ int vtkLacunaCTSeriesReader::RequestInformation(
 {
   Content& found = *this->Found;
   found.Opened = false;
-  found.Shown.reset();
   found.Warned = false;
   found.SeriesList->Reset();
   found.Notes->Reset();
-  this->SetErrorCode(vtkErrorCode::NoError);
-  vtkInformation* info = outputs->GetInformationObject(0);
-  // Nothing here is an error yet: ParaView asks as soon as one of several properties is set, and the
-  // next may choose the series or allow that slices are missing. RequestData tells.
-  const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
-  const auto fail = [&](const std::string& error, unsigned long code)
-  {
-    found.Error = error;
-    found.ErrorCode = code;
-    this->SetErrorCode(code);
-    return 1;
-  };
-  found.ErrorCode = vtkErrorCode::NoError;
-  if (Text(this->FileName).empty())
-  {
-    return fail("FileName is not set; it must be a DICOM file of a CT series, or its folder",
-      vtkErrorCode::NoFileNameError);
-  }
-  try
-  {
-    this->OpenSeries();
-  }
-  catch (const std::bad_alloc&)
-  {
-    return fail("out of memory", vtkErrorCode::UserError);
-  }
-  catch (const std::exception& e)
-  {
-    return fail(e.what(), GetReadError(this->FileName));
-  }
+  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
+    "a DICOM file of a CT series, or its folder",
+    [&]
+    {
+      this->OpenSeries();
+      this->Announce(outputs->GetInformationObject(0));
+    }));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaCTSeriesReader::Announce(vtkInformation* info) const
+{
+  const Content& found = *this->Found;
   const lacuna::CTGeometry& geometry = found.Geometry;
   const int extent[6] = { 0, static_cast<int>(geometry.Columns) - 1, 0,
     static_cast<int>(geometry.Rows) - 1, 0, static_cast<int>(geometry.Planes.size()) - 1 };
@@ -334,7 +288,6 @@ int vtkLacunaCTSeriesReader::RequestInformation(
   // Ranks share out whole images, each of which is read by one of them.
   info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
   vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(found.Type), 1);
-  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -397,7 +350,6 @@ int vtkLacunaCTSeriesReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
   Content& found = *this->Found;
-  this->SetErrorCode(found.ErrorCode);
   for (const std::string& warning : found.Warnings)
   {
     if (found.Opened && !found.Warned)
@@ -406,29 +358,9 @@ int vtkLacunaCTSeriesReader::RequestData(
     }
   }
   found.Warned = true;
-  if (!found.Opened)
-  {
-    // Of an empty extent VTK takes empty data for up to date, and would not ask again. So each who
-    // asks gets the error; ParaView asks several times for one command.
-    outputs->GetInformationObject(0)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
-    const auto now = std::chrono::steady_clock::now();
-    if (found.Shown && now - *found.Shown < std::chrono::seconds(SecondsShown))
-    {
-      vtkImageData::GetData(outputs, 0)->Initialize();
-      outputs->GetInformationObject(0)->Remove(
-        vtkStreamingDemandDrivenPipeline::COMBINED_UPDATE_EXTENT());
-      RepeatError(this, found.Error);
-      return 0;
-    }
-    found.Shown = now;
-  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
-      if (!found.Opened)
-      {
-        throw std::runtime_error(found.Error);
-      }
       vtkInformation* info = outputs->GetInformationObject(0);
       vtkImageData* output = vtkImageData::GetData(outputs, 0);
       std::array<int, 6> extent{};

@@ -149,6 +149,7 @@ private:
 
   struct Content;
   void OpenSeries();
+  void Announce(vtkInformation* info) const;
   void FindVolume(const lacuna::CTSeriesList& list);
   void AddFieldData(vtkImageData* output) const;
   std::string DescribeParameters() const;

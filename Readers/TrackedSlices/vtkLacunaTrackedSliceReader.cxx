@@ -20,6 +20,7 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRanks.h"
+#include "vtkLacunaReading.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaSequenceFile.h"
 #include "vtkLacunaSequenceNames.h"
@@ -139,19 +140,12 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
 {
   this->Opened.reset();
   this->Preview.clear();
-  this->SetErrorCode(vtkErrorCode::NoError);
   vtkInformation* info = outputs->GetInformationObject(0);
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
   info->Remove(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
   info->Remove(vtkLacunaSliceStream::STREAM());
-  if (!this->FileName || !this->FileName[0])
-  {
-    // Not yet an error: ParaView asks as soon as one of several properties is set.
-    const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), nothing, 6);
-    return 1;
-  }
-  const int opened = vtkLacunaExecution::RunInformation(this, outputs,
+  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
+    "a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)",
     [&]
     {
       auto sequence = std::make_unique<Sequence>();
@@ -181,14 +175,8 @@ int vtkLacunaTrackedSliceReader::RequestInformation(
       }
       this->Preview = file.DescribePreview();
       this->Opened = std::move(sequence);
-    });
-  if (!opened)
-  {
-    this->SetErrorCode(vtksys::SystemTools::FileExists(this->FileName)
-        ? vtkErrorCode::FileFormatError
-        : vtkErrorCode::FileNotFoundError);
-  }
-  return opened;
+    }));
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -358,17 +346,6 @@ void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) co
 int vtkLacunaTrackedSliceReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  if (!this->Opened)
-  {
-    vtkDataObject::GetData(outputs, 0)->Initialize();
-    if (!this->FileName || !*this->FileName) // else RequestInformation has said what is wrong
-    {
-      this->SetErrorCode(vtkErrorCode::NoFileNameError);
-      vtkErrorMacro(
-        "FileName is not set; it must be a tracked sequence file (.mha, .mhd, .nrrd, .nhdr)");
-    }
-    return 0;
-  }
   return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {

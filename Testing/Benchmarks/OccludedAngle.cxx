@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <vector>
 
 using lacunaBenchmark::Measure;
@@ -127,6 +128,46 @@ BENCHMARK(Cube)
   ->Args({ 256, 1, 0, 0 })
   ->Args({ 512, 1, 0, 0 })
   ->Apply(Measure);
+
+// The part of each iteration that every rank repeats, whatever directions are its own: filling the field,
+// and what a few directions take beyond their share of many.
+void Repeated(benchmark::State& state)
+{
+  const std::int64_t n = state.range(0);
+  constexpr int Few = 2;
+  constexpr int Many = 42;
+  std::vector<float> angle(static_cast<std::size_t>(n * n * n));
+  lacuna::ThreadExecution execution(1);
+  double fill = 0;
+  double few = 0;
+  double many = 0;
+  for (auto _ : state)
+  {
+    const double start = lacunaBenchmark::GetProcessSeconds();
+    lacuna::AttenuationField field = MakeField(n, n, n);
+    fill += lacunaBenchmark::GetProcessSeconds() - start;
+    lacuna::OccludedAngleOptions options;
+    const auto compute = [&](int directions)
+    {
+      options.Directions = directions;
+      return ProcessorSeconds(
+        [&] { lacuna::ComputeOccludedAngle(field, options, angle.data(), execution); });
+    };
+    few += compute(Few);
+    many += compute(Many);
+  }
+  const double direction = (many - few) / (Many - Few);
+  const double repeated = fill + std::max(0.0, few - Few * direction);
+  for (const int directions : { 1000, 10000 })
+  {
+    state.counters["f_" + std::to_string(directions)] =
+      repeated / (repeated + directions * direction);
+  }
+  const double times = static_cast<double>(state.iterations());
+  state.counters["repeated_s"] = repeated / times;
+  state.counters["direction_s"] = direction / times;
+}
+BENCHMARK(Repeated)->ArgName("edge")->Arg(128)->Arg(512)->Iterations(3)->Apply(Measure);
 
 // Two threads; times: one after the other.
 void Compute(benchmark::State& state, lacuna::AttenuationField field, int directions, int times)

@@ -59,6 +59,72 @@ shader = pv.DepthMapShader(Input=caster)
 recovers(shader, "Lights", [0, 0, 0, 0, 1], [([0, 0, 1, 0, 1], pixels), ([], pixels)])
 recovers(shader, "DepthArray", "Fitted", [("Depth", pixels)])
 
+# what was too large for the memory leaves nothing behind either, also in what comes after
+for proxy, name, huge, small, other in (
+        (pv.PhantomSweep(NumberOfSlices=5, PixelSpacing=1), "ImageSize", [200000] * 2, [20, 30], [10, 10]),
+        (pv.SkullPhantom(), "Spacing", [1e-3] * 3, [4] * 3, [5] * 3),
+        (pv.IncompleteShape(Shape="Sphere"), "Dimensions", [10**4] * 3, [40] * 3, [30] * 3),
+        (pv.RBFInterpolator(Input=pv.Calculator(Input=pv.Sphere(), Function="coordsX")), "OutputSpacing",
+         [1e-5] * 3, [0.1] * 3, [0.2] * 3),
+        (pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500]), "PixelSpacing", 1e-4, 5, 9),
+        (pv.SliceRayCaster(Input=sweep, IsoValue=100), "PixelSpacing", 1e-5, 2, 3),
+        (pv.SweptVolume(Input=sweep, MemoryLimit=0), "OutputSpacing", [1e-3] * 3, [2] * 3, [3] * 3)):
+    expected = []
+    for value in (small, other):
+        setattr(proxy, name, value)
+        expected.append((value, points(proxy)))
+    assert expected[0][1] > expected[1][1] > 0, (proxy, expected)
+    recovers(proxy, name, huge, expected)
+grid = pv.Wavelet()
+for filter in (pv.SpeckleFilter(Input=grid), pv.Mirror(Input=grid, PlaneMethod="Given"),
+               pv.OccludedAngle(Input=grid, NumberOfDirections=4), pv.RBFImageWarp(
+                   Input=grid, Landmarks=pv.Sphere(), Targets=pv.Sphere(Radius=0.6))):
+    for half in (5, 10**4, 5, 4):
+        grid.WholeExtent = [-half, half] * 3
+        try:
+            assert points(filter) == (2 * half + 1)**3, (filter, half)
+            assert half < 10**4
+        except PipelineError as error:
+            assert half == 10**4 and "bytes" in str(error), (filter, half, str(error))
+
+# a reader says what is wrong each time it is asked, not only when a script makes it
+with open(output("RecoveryCut.igs.mha"), "wb") as file:
+    file.write(b"ObjectType = Image\nNDims = 3\n")
+for name, word in ("RecoveryNone.igs.mha", "RecoveryNone"), ("RecoveryCut.igs.mha", "RecoveryCut"):
+    for make in (lambda reader: reader, lambda reader: pv.SweptVolume(Input=reader),
+                 lambda reader: pv.SpeckleFilter(Input=reader), lambda reader: pv.GateSlices(Input=reader)):
+        proxy = make(pv.TrackedSliceReader(FileName=output(name)))
+        try:
+            points(proxy)
+            raise AssertionError(f"{proxy} has nothing to say of {name}")
+        except PipelineError as error:
+            assert word in str(error), (proxy, str(error))
+
+# A file that is written again while something is wrong stays as it was, and each try says what is wrong: of
+# announcements as of data, of the filter itself as of one upstream.
+skull = pv.SkullPhantom(Spacing=[5] * 3)
+caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
+shader = pv.DepthMapShader(Input=caster)
+saved = output("RecoverySaved.vti")
+for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spacing is -1"),
+                                     (skull, "Spacing", [1e-3] * 3, [5] * 3, "bytes"),
+                                     (caster, "PixelSpacing", 1e-4, 9, "is too large"),
+                                     (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up"),
+                                     (shader, "DepthArray", "Fitted", "Depth", "Fitted")):
+    pv.SaveData(saved, proxy=shader)
+    before = open(saved, "rb").read()
+    setattr(proxy, name, bad)
+    for update in (shader.UpdatePipeline, *[lambda: pv.SaveData(saved, proxy=shader)] * 2):
+        try:
+            with raising():
+                update()
+            raise AssertionError(f"{name} = {bad}: nothing is said")
+        except PipelineError as error:
+            assert word in str(error), (name, bad, str(error))
+    assert open(saved, "rb").read() == before, (name, bad)
+    setattr(proxy, name, good)
+    assert points(shader) == pixels, (name, good, points(shader))
+
 # classes alone: no older result passes for the one asked for
 direct = lacuna.vtkLacunaSkullPhantom()
 direct.SetSpacing(4, 4, 4)

@@ -68,15 +68,15 @@ void Place(
 ImagePlane MakeImagePlane(
   const std::vector<Vec3>& points, double finestSpacing, const ViewSettings& view)
 {
-  if (!IsFinite(view.Direction) || !(Norm(view.Direction) > 0))
+  if (!HasDirection(view.Direction))
   {
-    throw std::invalid_argument(
-      "the view direction " + Text(view.Direction) + " has no direction: give a non-zero vector");
+    throw std::invalid_argument("the view direction " + Text(view.Direction) +
+      " has no direction: give a vector that is not zero, nor too long");
   }
-  if (!IsFinite(view.Up) || !(Norm(view.Up) > 0))
+  if (!HasDirection(view.Up))
   {
-    throw std::invalid_argument(
-      "the view-up vector " + Text(view.Up) + " has no direction: give a non-zero vector");
+    throw std::invalid_argument("the view-up vector " + Text(view.Up) +
+      " has no direction: give a vector that is not zero, nor too long");
   }
   if (view.HasFocalPoint && !IsFinite(view.FocalPoint))
   {

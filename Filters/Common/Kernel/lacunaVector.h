@@ -68,5 +68,12 @@ inline bool IsFinite(const Vec3& a)
 {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }
+
+/// Whether a can be normalized: neither zero, nor so long that its length overflows.
+inline bool HasDirection(const Vec3& a)
+{
+  const double n = Norm(a);
+  return n > 0 && std::isfinite(n);
+}
 }
 #endif

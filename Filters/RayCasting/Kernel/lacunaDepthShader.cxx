@@ -166,8 +166,7 @@ void ShadingSettings::Check() const
     {
       throw std::invalid_argument(name + " has a place that is not finite");
     }
-    const double length = Norm(light.Place);
-    if (!light.IsPosition && !(length > 0 && std::isfinite(length)))
+    if (!light.IsPosition && !HasDirection(light.Place))
     {
       throw std::invalid_argument(name +
         " has no direction (its vector is zero or too long); give the direction towards the light");

@@ -441,6 +441,11 @@ void TestErrors()
     GetError(MakeStack(3),
       [](auto* f) { f->SetAngularAccuracy(std::numeric_limits<double>::quiet_NaN()); }),
     "0 or more");
+  for (const double limit : { -1.0, std::numeric_limits<double>::quiet_NaN() })
+  {
+    LACUNA_CHECK_CONTAINS(
+      GetError(MakeStack(3), [&](auto* f) { f->SetSpeedLimit(limit); }), "SpeedLimit");
+  }
 
   // too fast, and standing still in time
   stack = MakeStack(3);

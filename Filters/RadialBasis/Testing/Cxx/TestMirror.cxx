@@ -206,6 +206,8 @@ void TestErrors()
   fails(mirror, "Normal not 0 0 0");
   mirror->SetNormal(1, 0, std::numeric_limits<double>::quiet_NaN());
   fails(mirror, "must be numbers");
+  mirror->SetNormal(1e160, 0, 0); // its length is beyond all numbers
+  fails(mirror, "nor too long");
   mirror->SetNormal(1, 0, 0);
   mirror->SetOrigin(1e6, 0, 0);
   fails(mirror, "does not pass through the data");

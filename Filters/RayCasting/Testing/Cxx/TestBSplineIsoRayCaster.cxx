@@ -302,6 +302,9 @@ void TestBadInput()
     LACUNA_CHECK_THAT(message.find(text) != std::string::npos, text + ", but: " + message);
   };
   fails(volume, "view direction (0, 0, 0)", [](Caster* c) { c->SetViewDirection(0, 0, 0); });
+  fails(volume, "view direction (1e+200", [](Caster* c) { c->SetViewDirection(1e200, 0, 0); });
+  fails(volume, "view-up vector", [](Caster* c) { c->SetViewUp(0, vtkMath::Nan(), 0); });
+  fails(volume, "view-up vector", [](Caster* c) { c->SetViewUp(0, 1e200, 0); });
   fails(volume, "parallel", [](Caster* c) { c->SetViewUp(0, 0, 3); });
   fails(volume, "pixel spacing of -1", [](Caster* c) { c->SetPixelSpacing(-1); });
   fails(volume, "pixel spacing of nan", [](Caster* c) { c->SetPixelSpacing(vtkMath::Nan()); });
