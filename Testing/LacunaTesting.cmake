@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Helpers that declare tests.
 
-# What .ci/run repeats with sanitizers (label sanitize): tests of what takes files, streams and tables
-# of others.
+# What .ci/run repeats with sanitizers (label sanitize): tests of what takes files and streams of others.
 add_custom_target(LacunaSanitizeTests)
 
 # lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# clang-tidy, with the rules of .clang-tidy, on all kernels and filters or on the sources named.
-#   Testing/Tools/tidy.sh [SOURCE...]
+# clang-tidy, with the rules of .clang-tidy, on all kernels and filters, on the sources named, or on what
+# the last COMMITS changed: sources, and of each header one source that includes it.
+#   Testing/Tools/tidy.sh [--last COMMITS | SOURCE...]
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
@@ -9,10 +10,21 @@ lacuna_install_packages
 lacuna_install_packages packages-ci.txt
 # configured is enough: no header of these sources is made by the build
 lacuna_configure release
-sources=("$@")
-if [ ${#sources[@]} = 0 ]; then
-  mapfile -t sources < <(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/)
-fi
+mapfile -t all < <(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/)
+changed() {
+  git log --max-count="$1" --name-only --pretty= -- '*.cxx' '*.h' | sort -u | while read -r file; do
+    case $file in
+      *.cxx) echo "$file" ;;
+      *.h) grep -lF "#include \"${file##*/}\"" "${all[@]}" | head -n 1 || true ;;
+    esac
+  done
+}
+case ${1:-} in
+  '') sources=("${all[@]}") ;;
+  --last) mapfile -t sources < <(changed "${2:?commits}" | sort -u | grep -xFf <(printf '%s\n' "${all[@]}")) ;;
+  *) sources=("$@") ;;
+esac
+if [ ${#sources[@]} = 0 ]; then echo "clang-tidy: nothing changed"; exit 0; fi
 failed=0
 # warnings of the compiler are GCC's, which knows attributes that clang does not
 printf '%s\n' "${sources[@]}" |
