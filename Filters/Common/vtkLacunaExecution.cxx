@@ -2,25 +2,19 @@
 #include "vtkLacunaExecution.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCommand.h"
 #include "vtkDataObject.h"
-#include "vtkExecutive.h"
 #include "vtkInformation.h"
-#include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationKeyLookup.h"
-#include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaFailure.h"
 #include "vtkLacunaInputs.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVersionCompat.h"
-#include "vtkNew.h"
-#include "vtkOutputWindow.h"
 #include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <string>
@@ -28,83 +22,6 @@
 namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
-
-constexpr double SecondsShown = 5; // in which the same error is not shown again
-
-// In what an algorithm knows of itself: the error of its RequestInformation.
-vtkInformationStringKey* Announced()
-{
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("ANNOUNCED_ERROR", "vtkLacunaExecution");
-  return key;
-}
-
-// The error that was shown last, and when: by the clock, and by the time of the algorithm.
-vtkInformationStringKey* Shown()
-{
-  static vtkInformationStringKey* const key =
-    vtkInformationStringKey::MakeKey("SHOWN_ERROR", "vtkLacunaExecution");
-  return key;
-}
-vtkInformationDoubleVectorKey* ShownAt()
-{
-  static vtkInformationDoubleVectorKey* const key =
-    vtkInformationDoubleVectorKey::MakeKey("SHOWN_ERROR_AT", "vtkLacunaExecution", 2);
-  return key;
-}
-
-// Whether an error is on the screen already; from now on it is.
-bool IsShown(vtkAlgorithm* algorithm, const std::string& error)
-{
-  const double now =
-    std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  const auto changed = static_cast<double>(algorithm->GetMTime());
-  vtkInformation* info = algorithm->GetInformation();
-  const double* at = info->Get(ShownAt());
-  if (at && now - at[0] < SecondsShown && at[1] == changed && error == info->Get(Shown()))
-  {
-    return true;
-  }
-  info->Set(Shown(), error);
-  const double place[2] = { now, changed };
-  info->Set(ShownAt(), place, 2);
-  return false;
-}
-
-// An error that is on the screen already: tells only who listens.
-void Repeat(vtkAlgorithm* algorithm, const std::string& error)
-{
-  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
-    ? static_cast<vtkObject*>(algorithm)
-    : vtkOutputWindow::GetInstance();
-  std::string copy = error;
-  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
-  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
-  vtkNew<vtkCallbackCommand> once;
-  once->SetClientData(once);
-  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
-    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
-  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
-}
-
-// Of empty data VTK takes for up to date nobody would hear any more, and writers would put nothing in the
-// place of good files: so the algorithm executes, and fails, for each who asks. ParaView asks several times
-// for one command.
-void Fail(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
-{
-  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
-  {
-    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
-  }
-  if (IsShown(algorithm, error))
-  {
-    Repeat(algorithm, error);
-  }
-  else
-  {
-    vtkErrorWithObjectMacro(algorithm, << error);
-  }
-}
 
 void EmptyOutputs(vtkInformationVector* outputs)
 {
@@ -128,7 +45,7 @@ void EmptyOutputs(vtkInformationVector* outputs)
   vtkLacunaRequest::Limit(outputs);
 }
 
-// The text of what body throws; empty when it ran to its end. Aborted passes through.
+// The text of what body throws; empty when it ran to its end. Stops and changes of the grid pass through.
 std::string ErrorOf(const std::function<void()>& body)
 {
   try
@@ -137,6 +54,10 @@ std::string ErrorOf(const std::function<void()>& body)
     return {};
   }
   catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const vtkLacunaGridChanged&)
   {
     throw;
   }
@@ -191,42 +112,42 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     EmptyOutputs(outputs);
     return 0;
   }
-  int result = 0;
+  const bool isAlone = vtkLacunaRanks().GetNumber() == 1;
+  const std::string announced = vtkLacunaFailure::GetAnnounced(algorithm);
   try
   {
-    const std::string error = ErrorOf(
-      [&]
-      {
-        try
+    // Of several ranks one alone may have failed: what they make together is not left out by one of them.
+    std::string error =
+      announced.empty() && isAlone ? vtkLacunaFailure::GetRecent(algorithm, outputs) : announced;
+    if (error.empty())
+    {
+      error = ErrorOf(
+        [&]
         {
-          if (const char* announced = algorithm->GetInformation()->Get(Announced()))
-          {
-            throw std::runtime_error(announced);
-          }
           vtkLacunaRequest::Limit(outputs);
           vtkLacunaExecution execution(algorithm);
           body(execution);
-        }
-        catch (const vtkLacunaGridChanged&)
-        {
-          result = 1;
-          throw;
-        }
-      });
+        });
+    }
     if (error.empty())
     {
       return 1;
     }
     EmptyOutputs(outputs);
-    if (result == 1)
+    if (!announced.empty() && !isAlone)
     {
+      // VTK would not execute what comes behind on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
+      return 1;
     }
-    else
-    {
-      Fail(algorithm, outputs, error);
-    }
-    return result;
+    vtkLacunaFailure::Tell(algorithm, outputs, error);
+    return 0;
+  }
+  catch (const vtkLacunaGridChanged& error)
+  {
+    EmptyOutputs(outputs);
+    vtkErrorWithObjectMacro(algorithm, << error.what());
+    return 1;
   }
   catch (const lacuna::Aborted&)
   {
@@ -241,7 +162,7 @@ int vtkLacunaExecution::RunInformation(
 {
   std::string error;
   vtkLacunaForgetAbort(algorithm);
-  algorithm->GetInformation()->Remove(Announced());
+  vtkLacunaFailure::Announce(algorithm, {});
   try
   {
     if (!vtkLacunaInputs::AreSingle(algorithm))
@@ -253,7 +174,7 @@ int vtkLacunaExecution::RunInformation(
     {
       return 1;
     }
-    algorithm->GetInformation()->Set(Announced(), error);
+    vtkLacunaFailure::Announce(algorithm, error);
   }
   catch (const lacuna::Aborted&)
   {

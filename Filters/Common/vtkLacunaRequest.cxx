@@ -445,11 +445,17 @@ std::string vtkLacunaRequest::TakeRefusal(vtkAlgorithm* filter, int port)
 }
 
 //------------------------------------------------------------------------------
+vtkMTimeType vtkLacunaRequest::GetNewestTime(vtkAlgorithm* algorithm)
+{
+  std::set<vtkAlgorithm*> seen;
+  return ::GetNewestTime(algorithm, seen);
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> vtkLacunaRequest::GetTimes(vtkAlgorithm* filter, vtkInformation* input)
 {
   vtkInformation* data = vtkDataObject::GetData(input)->GetInformation();
-  std::set<vtkAlgorithm*> seen;
-  return { static_cast<double>(GetNewestTime(filter, seen)),
+  return { static_cast<double>(GetNewestTime(filter)),
     data->Has(vtkDataObject::DATA_TIME_STEP()) ? data->Get(vtkDataObject::DATA_TIME_STEP()) : 0,
     input->Has(SDDP::UPDATE_TIME_STEP()) ? input->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }

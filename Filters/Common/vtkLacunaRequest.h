@@ -5,6 +5,7 @@
 #define vtkLacunaRequest_h
 
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
+#include "vtkType.h"                      // for vtkMTimeType
 
 #include <string>
 #include <vector> // for times
@@ -72,6 +73,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation*
 
 /// Data of any kind as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);
+
+/// When an algorithm or one upstream was changed last, other than the time of data.
+VTKLACUNAFILTERSCOMMON_EXPORT vtkMTimeType GetNewestTime(vtkAlgorithm* algorithm);
 
 /// For filters that keep a result: changes when what a filter is, or is given by input, changes; the
 /// newest time of it and all upstream, and the time steps asked for and given. On all ranks alike, other

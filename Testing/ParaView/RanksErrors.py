@@ -259,6 +259,21 @@ def again(make, rank):
     assert not text, text
 
 
+def absent(make, rank):
+    """The second rank alone does not know the size of its input; and then it does."""
+    from lacuna.vtkLacunaSourcesPhantoms import vtkLacunaSkullPhantom
+    source = vtkLacunaSkullPhantom()
+    source.SetSpacing(*[-1 if rank == 1 else 5] * 3)
+    filter = make(source, False)
+    silent = source.AddObserver("ErrorEvent", lambda *_: None)
+    text = update(filter)
+    assert "no input" in text, text
+    source.RemoveObserver(silent)
+    source.SetSpacing(4, 4, 4)  # of both: what has failed together is tried again together
+    text = update(filter)
+    assert not text and filter.GetOutput().GetNumberOfPoints() > 0, text
+
+
 def stopped(make, rank):
     """Stopped on one rank, at some moment."""
     source = wavelet(48)
@@ -313,7 +328,7 @@ def run():
     assert controller.GetNumberOfProcesses() == 2
     rank = controller.GetLocalProcessId()
     for make in (occluded_angle, mirror, warp):
-        for what in (refused, unsound, partial, again, stopped, afterwards):
+        for what in (refused, unsound, absent, partial, again, stopped, afterwards):
             signal.alarm(SECONDS)  # ends a rank that waits for ever
             print(f"rank {rank}: {make.__name__} {what.__name__}", flush=True)
             what(make, rank)

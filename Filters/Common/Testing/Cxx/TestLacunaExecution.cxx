@@ -97,6 +97,43 @@ int TestLacunaExecution(int, char*[])
     LACUNA_CHECK(source->GetOutput()->GetNumberOfPoints() == 0);
   }
   {
+    // each who asks hears what is wrong, for which the same work is not done again at once
+    vtkNew<TestSource> source;
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(source);
+    vtkNew<lacunaCheck::Messages> executiveMessages;
+    executiveMessages->Watch(source->GetExecutive());
+    int ran = 0;
+    source->Body = [&](vtkLacunaExecution&)
+    {
+      ++ran;
+      throw std::runtime_error("slice 7 has no pose");
+    };
+    const auto heard = [&]
+    {
+      messages->Errors.clear();
+      source->Update();
+      return messages->HasError("slice 7 has no pose");
+    };
+    LACUNA_CHECK(heard() && ran == 1);
+    LACUNA_CHECK(heard() && ran == 1);
+    const int part[6] = { 0, 3, 0, 3, 1, 2 };
+    messages->Errors.clear();
+    source->UpdateExtent(part);
+    LACUNA_CHECK(messages->HasError("slice 7 has no pose") && ran == 2);
+    source->Modified();
+    LACUNA_CHECK(heard() && ran == 3);
+    vtkObject::GlobalWarningDisplayOff();
+    source->Modified();
+    const bool heardWhenOff = heard() || heard();
+    vtkObject::GlobalWarningDisplayOn();
+    LACUNA_CHECK(!heardWhenOff);
+    LACUNA_CHECK(heard());
+    source->Body = [](vtkLacunaExecution&) {};
+    source->Modified();
+    LACUNA_CHECK(!heard());
+  }
+  {
     // stopped by the user: no error, nothing that looks like a result
     vtkNew<TestSource> source;
     vtkNew<lacunaCheck::Messages> messages;

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaFailure.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkDataObject.h"
+#include "vtkExecutive.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
+#include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationStringKey.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaRequest.h"
+#include "vtkNew.h"
+#include "vtkOutputWindow.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+constexpr double Moment = 5; // seconds
+
+// All of them in what an algorithm knows of itself.
+vtkInformationStringKey* Announced()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("ANNOUNCED_ERROR", "vtkLacunaFailure");
+  return key;
+}
+vtkInformationStringKey* Told()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("TOLD_ERROR", "vtkLacunaFailure");
+  return key;
+}
+vtkInformationDoubleKey* ToldAt()
+{
+  static vtkInformationDoubleKey* const key =
+    vtkInformationDoubleKey::MakeKey("TOLD_ERROR_AT", "vtkLacunaFailure");
+  return key;
+}
+vtkInformationDoubleVectorKey* ToldOf()
+{
+  static vtkInformationDoubleVectorKey* const key =
+    vtkInformationDoubleVectorKey::MakeKey("TOLD_ERROR_OF", "vtkLacunaFailure");
+  return key;
+}
+
+double GetSeconds()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Of the algorithm itself, first; then all on which the outcome depends: what lies upstream, the inputs (blocks
+// come one by one), and what is asked for.
+std::vector<double> GetState(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
+{
+  std::vector<double> state{ static_cast<double>(algorithm->GetMTime()),
+    static_cast<double>(vtkLacunaRequest::GetNewestTime(algorithm)) };
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* data = algorithm->GetInputDataObject(port, i);
+      state.push_back(data ? static_cast<double>(data->GetMTime()) : 0);
+    }
+  }
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkInformation* info = outputs->GetInformationObject(i);
+    state.push_back(info->Get(SDDP::UPDATE_PIECE_NUMBER()));
+    state.push_back(info->Get(SDDP::UPDATE_NUMBER_OF_PIECES()));
+    state.push_back(info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0);
+    if (const int* extent = info->Get(SDDP::UPDATE_EXTENT()))
+    {
+      state.insert(state.end(), extent, extent + 6);
+    }
+  }
+  return state;
+}
+
+// The state in which an error was told a moment ago; empty: none was.
+std::vector<double> GetToldState(vtkAlgorithm* algorithm)
+{
+  vtkInformation* own = algorithm->GetInformation();
+  if (!own->Has(ToldAt()) || GetSeconds() - own->Get(ToldAt()) > Moment)
+  {
+    return {};
+  }
+  const double* state = own->Get(ToldOf());
+  return { state, state + own->Length(ToldOf()) };
+}
+
+// An error that is on the screen already: tells only who listens.
+void Repeat(vtkAlgorithm* algorithm, const std::string& error)
+{
+  vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
+    ? static_cast<vtkObject*>(algorithm)
+    : vtkOutputWindow::GetInstance();
+  std::string copy = error;
+  listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
+  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
+  vtkNew<vtkCallbackCommand> once;
+  once->SetClientData(once);
+  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
+    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
+  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::Announce(vtkAlgorithm* algorithm, const std::string& error)
+{
+  algorithm->GetInformation()->Set(Announced(), error);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaFailure::GetAnnounced(vtkAlgorithm* algorithm)
+{
+  const char* error = algorithm->GetInformation()->Get(Announced());
+  return error ? error : "";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaFailure::GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
+{
+  const std::vector<double> told = GetToldState(algorithm);
+  return !told.empty() && told == GetState(algorithm, outputs)
+    ? algorithm->GetInformation()->Get(Told())
+    : "";
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::Tell(
+  vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+  }
+  if (!vtkObject::GetGlobalWarningDisplay())
+  {
+    return;
+  }
+  vtkInformation* own = algorithm->GetInformation();
+  const std::vector<double> told = GetToldState(algorithm);
+  const std::vector<double> state = GetState(algorithm, outputs);
+  const bool isShown = !told.empty() && told[0] == state[0] && error == own->Get(Told());
+  own->Set(ToldOf(), state.data(), static_cast<int>(state.size()));
+  if (isShown)
+  {
+    Repeat(algorithm, error);
+    return;
+  }
+  own->Set(Told(), error);
+  own->Set(ToldAt(), GetSeconds());
+  vtkErrorWithObjectMacro(algorithm, << error);
+}
