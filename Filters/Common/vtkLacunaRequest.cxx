@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRequest.h"
 
+#include "lacunaExecution.h"
 #include "lacunaMemory.h"
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
@@ -17,6 +18,7 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRanks.h"
+#include "vtkLacunaVersionCompat.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkXMLReader.h"
 
@@ -467,6 +469,10 @@ void vtkLacunaRequest::UpdateNow(vtkAlgorithm* filter, int port)
   vtkAlgorithmOutput* connection = filter->GetInputConnection(port, 0);
   connection->GetProducer()->Update(
     connection->GetIndex()); // also after a refusal: ranks may meet there
+  if (vtkLacunaWasStopped(filter->GetInputInformation(port, 0)))
+  {
+    throw lacuna::Aborted(); // what is upstream was stopped: its data say nothing
+  }
   vtkLacunaInputs::Check(filter, port);
 }
 

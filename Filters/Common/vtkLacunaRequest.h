@@ -86,7 +86,8 @@ VTKLACUNAFILTERSCOMMON_EXPORT std::vector<double> GetTimes(
 
 /// For RequestInformation of filters whose output's size depends on their data: executes now, as a
 /// whole, what is connected to an input port. When it is up to date, as it usually is, this does
-/// nothing. Throws std::runtime_error when it does not fit into the memory.
+/// nothing. Throws std::runtime_error when it does not fit into the memory, and lacuna::Aborted when it
+/// was stopped.
 VTKLACUNAFILTERSCOMMON_EXPORT void UpdateNow(vtkAlgorithm* filter, int port = 0);
 
 /// The same for filters that make all of their output on the first rank: returns true there; the

@@ -5,6 +5,8 @@
 #define vtkLacunaVersionCompat_h
 
 #include "vtkAlgorithm.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkLacunaRanks.h"
 #include "vtkVersionMacros.h"
 
@@ -16,6 +18,18 @@ inline bool vtkLacunaCheckAbort(vtkAlgorithm* algorithm)
   return algorithm->GetAbortOutput() || algorithm->CheckAbort();
 #else
   return algorithm->GetAbortExecute() != 0;
+#endif
+}
+
+/// True when what is upstream was stopped in the last update of the input that info is of: outside of
+/// executions algorithms are not told.
+inline bool vtkLacunaWasStopped(vtkInformation* info)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20220823)
+  return info->Get(vtkAlgorithm::ABORTED()) != 0;
+#else
+  static_cast<void>(info);
+  return false;
 #endif
 }
 

@@ -307,13 +307,19 @@ int vtkLacunaImplantPlate::RequestData(
                          "ComputeThickness of B-Spline Iso Ray Caster, or MinimumBoneThickness 0 "
                          "not to be told");
     }
-    const lacuna::Vec3 tightest = toWorld.Point(plate.MinimumRadiusPoint);
+    constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+    const bool isMeasured = std::isfinite(plate.MinimumThickness); // else all of it is edge
+    const lacuna::Vec3 tightest = std::isfinite(plate.MinimumRadius)
+      ? toWorld.Point(plate.MinimumRadiusPoint)
+      : lacuna::Vec3{ NaN, NaN, NaN };
     vtkLacunaFieldData::Set(output, "Volume", { plate.Volume }, 1);
     vtkLacunaFieldData::Set(output, "Mass", { plate.Volume * this->Density / 1000 }, 1);
     vtkLacunaFieldData::Set(output, "OuterArea", { plate.OuterArea }, 1);
     vtkLacunaFieldData::Set(output, "OutlineLength", { plate.Outline.Length }, 1);
-    vtkLacunaFieldData::Set(output, "MinimumThickness", { plate.MinimumThickness }, 1);
-    vtkLacunaFieldData::Set(output, "MinimumCurvatureRadius", { plate.MinimumRadius }, 1);
+    vtkLacunaFieldData::Set(
+      output, "MinimumThickness", { isMeasured ? plate.MinimumThickness : NaN }, 1);
+    vtkLacunaFieldData::Set(
+      output, "MinimumCurvatureRadius", { isMeasured ? plate.MinimumRadius : NaN }, 1);
     vtkLacunaFieldData::Set(output, "TightestPoint", { tightest[0], tightest[1], tightest[2] }, 3);
     vtkLacunaFieldData::Set(output, "HoleCenters", centers, 3);
     vtkLacunaFieldData::Set(output, "HoleAxes", axes, 3);

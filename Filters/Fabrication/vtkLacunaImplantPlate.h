@@ -25,9 +25,11 @@
  * | Mass                   | 1          | g, Volume times Density                                |
  * | OuterArea              | 1          | mm^2                                                   |
  * | OutlineLength          | 1          | mm, on the surface                                     |
- * | MinimumThickness       | 1          | mm, least distance of the faces, apart from edges      |
- * | MinimumCurvatureRadius | 1          | mm, of the surface under the plate                     |
- * | TightestPoint          | 3          | where that is, world mm                                |
+ * | MinimumThickness       | 1          | mm, least distance of the faces, apart from edges; NaN |
+ * |                        |            | of a plate that is so small that all of it is edge     |
+ * | MinimumCurvatureRadius | 1          | mm, of the surface under the plate, infinite of a flat |
+ * |                        |            | one; NaN where MinimumThickness is                     |
+ * | TightestPoint          | 3          | where that is, world mm; NaN where it is nowhere       |
  * | HoleCenters            | 3          | world mm, on the outer face, a tuple per screw hole    |
  * | HoleAxes               | 3          | world, unit, towards the viewer                        |
  * | HoleBoneThickness      | 1          | mm, least under the screw; 0 over the defect, NaN when |

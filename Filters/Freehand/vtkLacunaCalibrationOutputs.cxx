@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaCalibrationOutputs.h"
 
+#include "lacunaParameterText.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkImageData.h"
@@ -15,7 +16,9 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace
 {
@@ -224,6 +227,15 @@ void FillErrorMap(vtkImageData* slices, const lacuna::ProbeCalibration& found, v
     double pixel[3];
     map->GetPoint(i, pixel);
     error->SetValue(i, found.GetExpectedError({ pixel[0], pixel[1] }));
+    if (!std::isfinite(error->GetValue(i)))
+    {
+      const double* spacing = slices->GetSpacing();
+      throw std::runtime_error(
+        "the error to expect is no number at the border of the slices, whose "
+        "spacing is " +
+        lacuna::FormatValue(std::array<double, 3>{ spacing[0], spacing[1], spacing[2] }) +
+        "; the coordinates of tracked slices are (column, row, slice)");
+    }
   }
   map->GetPointData()->SetScalars(error);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaOcclusionInput.h"
 
+#include "lacunaParameterText.h"
 #include "lacunaShapeGrowth.h"
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
@@ -14,6 +15,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -101,6 +103,13 @@ Grid::Grid(vtkImageData* image)
   {
     throw std::runtime_error("an occluded angle needs an image that is at least two voxels wide "
                              "along two axes");
+  }
+  if (!std::isfinite(this->GetVoxelContent() * static_cast<double>(this->GetSize())))
+  {
+    throw std::runtime_error("the voxels of the image are " +
+      lacuna::FormatValue(std::array<double, 3>{
+        image->GetSpacing()[0], image->GetSpacing()[1], image->GetSpacing()[2] }) +
+      " mm, of which nothing can be measured; mend the spacing of the input");
   }
 }
 

@@ -351,14 +351,21 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 
 //------------------------------------------------------------------------------
 int vtkLacunaMirror::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   if (!vtkLacunaInputs::AreSingle(this))
   {
     return 0;
   }
+  vtkInformation* info = outputVector->GetInformationObject(0);
   // Each rank makes the extent that VTK turns its piece into.
-  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
+  if (input &&
+    IsDepthMap(input)) // a volume keeps its type; depths may come in any, and become double
+  {
+    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
+  }
   return 1;
 }
 

@@ -26,7 +26,8 @@
  * Output: the same map with its arrays and geometry, and Color (unsigned char x 3, active scalars;
  * pixels without a depth have BackgroundColor, and 0 in vtkValidPointMask), the normals used (float x
  * 3, in Normals, for other depth arrays see vtkLacunaDepthMap::GetNormalsName) and, if the map had
- * normals and others were used, NormalDifference: degrees between both (float, NaN without a depth).
+ * normals and others were used, NormalDifference: degrees between both (float, NaN without a depth or
+ * a normal).
  * Requested extents are honoured.
  *
  * Errors: input 0 is no depth map or has no such DepthArray, no normals are stored, a setting is out

@@ -19,7 +19,8 @@
  * active normals, and Color, which a shaded map has, the active scalars (without it, DepthArray);
  * PixelId (vtkIdType, pedigree ids): column + row * W, counted from the corner of the map's whole
  * extent, so that a selection made with the mouse means pixels; if asked for, NormalDifference (float,
- * degrees): the angle between the map's normals and those that the depths give by the nine cases.
+ * degrees): the angle between the map's normals and those that the depths give by the nine cases, NaN
+ * where the map has none.
  * Pieces split the map into bands of rows.
  *
  * Errors: the input is not a depth map, it has no such DepthArray, it has no normals to

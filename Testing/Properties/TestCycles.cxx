@@ -36,6 +36,7 @@ std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, A
   {
     for (int i = 0; i < count; ++i)
     {
+      StartClock();
       trial.Execute(trial.Make(), 0);
     }
   };

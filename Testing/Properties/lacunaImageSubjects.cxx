@@ -279,6 +279,7 @@ void AddImageSubjects(std::vector<Subject>& subjects)
         Real("MaximumAngle", &T::SetMaximumAngle, 0, 90),
         Real("MaximumAngleChange", &T::SetMaximumAngleChange, 0, 180),
         Switch("ComputeNormalDifference", &T::SetComputeNormalDifference) } });
+    subjects.back().MayBeNaN = { "NormalDifference" };
   }
   subjects.push_back(MakeOccludedAngle());
   {

@@ -105,7 +105,12 @@ std::string SpoilArray(vtkDataObject* data, Dice& dice)
     case 1:
       if (group->GetNumberOfArrays() > 1)
       {
-        array->SetName("Other"); // no two of one name
+        std::string other = "Other"; // no two of one name
+        while (group->HasArray(other.c_str()))
+        {
+          other += "s";
+        }
+        array->SetName(other.c_str());
         return "array " + name + " renamed";
       }
       array->SetName(dice.Pick({ "", "Other", "Depth", "Intensity" }));

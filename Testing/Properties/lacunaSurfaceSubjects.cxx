@@ -177,6 +177,7 @@ Subject MakePlate()
       Real("DrainageDiameter", &T::SetDrainageDiameter, 0.5, 2),
       Real("Density", &T::SetDensity, 1, 5) } };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(1); };
+  subject.MayBeNaN = { "MinimumThickness", "MinimumCurvatureRadius", "TightestPoint" };
   subject.Cost = 40;
   return subject;
 }

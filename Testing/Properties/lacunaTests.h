@@ -21,6 +21,10 @@ struct Account
   bool Succeeded = false;
 };
 
+/// What is done from now on may take as long as a case may. A test that does a lot in one case calls it
+/// now and then.
+void StartClock();
+
 /// A valid output, the same twice and for any number of threads and pieces, or an error and nothing;
 /// inputs stay as they were; sound inputs after an error give what they always give.
 std::string TestOutcome(const Subject& subject, std::uint64_t seed, Account& account);

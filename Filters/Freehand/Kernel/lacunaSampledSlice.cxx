@@ -3,6 +3,7 @@
 
 #include "lacunaFootprint.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -90,6 +91,15 @@ SampledSlice SampleSlice(const SliceImage& slice, const VolumeGrid& grid, PixelS
   sampled.Column = MakeFunction(grid, 1 / Norm(area) * Cross(y, sampled.Normal), origin);
   sampled.Row = MakeFunction(grid, 1 / Norm(area) * Cross(sampled.Normal, x), origin);
   sampled.Distance = MakeFunction(grid, sampled.Normal, origin);
+  for (const AffineFunction* f : { &sampled.Column, &sampled.Row, &sampled.Distance })
+  {
+    if (!std::isfinite(std::max(1.0, footprintScale) * GetVoxelWidth(*f)) || !std::isfinite(f->C))
+    {
+      throw std::invalid_argument(slice.Label +
+        ": a voxel is wider than numbers can say in its pixels; lower OutputSpacing, which is in "
+        "mm");
+    }
+  }
 
   sampled.FootprintHeight = footprintScale * GetVoxelWidth(sampled.Distance);
 

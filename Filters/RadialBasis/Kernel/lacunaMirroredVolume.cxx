@@ -28,8 +28,8 @@ std::int64_t GetNumberOfBlocks(const std::array<int, 3>& size)
   return (static_cast<std::int64_t>(size[1]) * size[2] + BlockRows - 1) / BlockRows;
 }
 
-// Where a voxel's image lies between voxels: lower corner and fractions. An axis of one voxel, or an
-// image on its last one, has fraction 0 or 1 there, and no step.
+// Where a voxel's image lies between voxels: lower corner and fractions. An image on the last voxel of
+// an axis has fraction 1 there; an axis of one voxel has fraction 0, and nothing behind it.
 struct Cell
 {
   int Base[3];
@@ -46,7 +46,7 @@ bool FindCell(const Vec3& index, const std::array<int, 3>& size, Cell& cell)
       return false;
     }
     cell.Base[a] = std::clamp(static_cast<int>(std::floor(u)), 0, std::max(0, size[a] - 2));
-    cell.Fraction[a] = std::clamp(u - cell.Base[a], 0.0, 1.0);
+    cell.Fraction[a] = size[a] > 1 ? std::clamp(u - cell.Base[a], 0.0, 1.0) : 0;
   }
   return true;
 }

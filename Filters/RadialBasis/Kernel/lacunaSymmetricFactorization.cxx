@@ -3,7 +3,9 @@
 
 #include "lacunaSingleBlasThread.h"
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -26,6 +28,14 @@ namespace lacuna
 namespace
 {
 constexpr std::align_val_t Alignment{ 64 };
+
+// Aligned as matrices are: where BLAS's vectors begin decides in what order it sums.
+using Workspace = std::unique_ptr<double[], FreeAligned>;
+
+Workspace MakeWorkspace(std::size_t length)
+{
+  return Workspace(new (Alignment) double[length]());
+}
 }
 
 SquareMatrix::SquareMatrix(std::size_t size)
@@ -34,9 +44,9 @@ SquareMatrix::SquareMatrix(std::size_t size)
 {
 }
 
-void SquareMatrix::Free::operator()(double* elements) const
+void FreeAligned::operator()(double* numbers) const
 {
-  ::operator delete[](elements, Alignment);
+  ::operator delete[](numbers, Alignment);
 }
 
 SymmetricFactorization::SymmetricFactorization(SquareMatrix matrix)
@@ -50,16 +60,16 @@ SymmetricFactorization::SymmetricFactorization(SquareMatrix matrix)
   const SingleBlasThread single;
   const int n = static_cast<int>(this->Factors.GetSize());
   double* a = this->Factors.Column(0);
-  std::vector<double> work(2 * this->Factors.GetSize());
-  const double norm = dlansy_("1", "L", &n, a, &n, work.data(), 1, 1);
+  const Workspace work = MakeWorkspace(2 * this->Factors.GetSize());
+  const double norm = dlansy_("1", "L", &n, a, &n, work.get(), 1, 1);
 
   int info = 0;
   const int query = -1;
   double workLength = 0;
   dsytrf_("L", &n, a, &n, this->Pivots.data(), &workLength, &query, &info, 1);
-  std::vector<double> factorWork(static_cast<std::size_t>(workLength));
-  const int length = static_cast<int>(factorWork.size());
-  dsytrf_("L", &n, a, &n, this->Pivots.data(), factorWork.data(), &length, &info, 1);
+  const int length = static_cast<int>(workLength);
+  const Workspace factorWork = MakeWorkspace(static_cast<std::size_t>(length));
+  dsytrf_("L", &n, a, &n, this->Pivots.data(), factorWork.get(), &length, &info, 1);
   if (info > 0)
   {
     throw std::runtime_error("matrix is singular");
@@ -68,7 +78,7 @@ SymmetricFactorization::SymmetricFactorization(SquareMatrix matrix)
   double reciprocal = 0;
   std::vector<int> intWork(this->Factors.GetSize());
   dsycon_(
-    "L", &n, a, &n, this->Pivots.data(), &norm, &reciprocal, work.data(), intWork.data(), &info, 1);
+    "L", &n, a, &n, this->Pivots.data(), &norm, &reciprocal, work.get(), intWork.data(), &info, 1);
   this->Condition = reciprocal > 0 ? 1 / reciprocal : std::numeric_limits<double>::infinity();
 }
 
@@ -82,7 +92,10 @@ void SymmetricFactorization::Solve(std::vector<double>& rightHandSide) const
   const int n = static_cast<int>(this->Factors.GetSize());
   const int columns = 1;
   int info = 0;
-  dsytrs_("L", &n, &columns, this->Factors.Column(0), &n, this->Pivots.data(), rightHandSide.data(),
-    &n, &info, 1);
+  const Workspace solution = MakeWorkspace(rightHandSide.size());
+  std::copy(rightHandSide.begin(), rightHandSide.end(), solution.get());
+  dsytrs_("L", &n, &columns, this->Factors.Column(0), &n, this->Pivots.data(), solution.get(), &n,
+    &info, 1);
+  std::copy_n(solution.get(), rightHandSide.size(), rightHandSide.begin());
 }
 }

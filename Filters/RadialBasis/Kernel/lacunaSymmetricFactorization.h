@@ -11,6 +11,12 @@
 
 namespace lacuna
 {
+/// Gives back doubles that are aligned for BLAS.
+struct FreeAligned
+{
+  void operator()(double* numbers) const;
+};
+
 /// A square array of doubles, column after column, aligned so that BLAS always takes the same path.
 class SquareMatrix
 {
@@ -27,12 +33,8 @@ public:
   static std::uint64_t GetBytes(std::size_t size) { return std::uint64_t(8) * size * size; }
 
 private:
-  struct Free
-  {
-    void operator()(double* elements) const;
-  };
   std::size_t Size;
-  std::unique_ptr<double[], Free> Elements;
+  std::unique_ptr<double[], FreeAligned> Elements;
 };
 
 /// P L D L^T P^T of a symmetric matrix by the diagonal pivoting method of Bunch and Kaufman

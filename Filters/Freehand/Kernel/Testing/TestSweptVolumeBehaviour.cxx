@@ -452,6 +452,31 @@ TEST(SweptVolumeBehaviour, VoxelsMayBeAbsurdlyLarge)
   }
 }
 
+TEST(SweptVolumeBehaviour, RefusesVoxelsOfMorePixelsThanNumbersCanSay)
+{
+  SyntheticSweep<std::uint8_t> sweep(21, 11, ScalarType::UInt8);
+  for (int n = 0; n < 3; ++n)
+  {
+    sweep.Add(Matrix4::Translation({ 5, 6, 0.3 * n }) * Matrix4::Scaling({ 0.2, 0.2, 1 }),
+      [](int, int) { return 77; });
+  }
+  const double largest = std::numeric_limits<double>::max();
+  for (const auto& spacing : { lacuna::Vec3{ largest, 1, 1 }, { 1, largest, 1 } })
+  {
+    const VolumeGrid grid = MakeGrid(sweep.Slices, spacing);
+    for (SweptVolume::Options options : GetAllOptions())
+    {
+      if (options.Interpolation == SweptVolume::Method::NearestVoxel)
+      {
+        continue; // which counts voxels, not pixels
+      }
+      ThreadExecution execution(1);
+      SweptVolume volume(grid, GetExtent(grid), options);
+      EXPECT_THROW(volume.AddSlices(sweep.Slices, execution), std::invalid_argument);
+    }
+  }
+}
+
 TEST(SweptVolumeBehaviour, RefusesUnusableSlicesByName)
 {
   const auto sweep = MakeSpeckleSweep(3, 1);

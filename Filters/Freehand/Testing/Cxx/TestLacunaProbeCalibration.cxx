@@ -176,6 +176,8 @@ void TestBadSlices()
   using Image = vtkImageData;
   LACUNA_CHECK_CONTAINS(error([](Image* s) { s->GetFieldData()->RemoveArray("ProbeToTracker"); }),
     "no field data array 'ProbeToTracker'");
+  LACUNA_CHECK_CONTAINS(
+    error([](Image* s) { s->SetSpacing(1, 1e300, 1); }), "the error to expect is no number");
   LACUNA_CHECK_CONTAINS(error([](Image* s) { s->GetFieldData()->RemoveArray("SliceStatus"); }),
     "'SliceStatus' is missing");
   LACUNA_CHECK_CONTAINS(error([](Image* s) { Shorten(s, "ProbeToTracker"); }), "'ProbeToTracker'");

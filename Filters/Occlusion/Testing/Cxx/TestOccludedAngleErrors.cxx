@@ -46,6 +46,8 @@ int TestOccludedAngleErrors(int, char*[])
     [](Filter*, vtkImageData* image) { image->GetPointData()->Initialize(); });
   Expect("no point array 'Echo' of numbers",
     [](Filter* filter, vtkImageData*) { filter->SetScalarArray("Echo"); });
+  Expect("mend the spacing of the input",
+    [](Filter*, vtkImageData* image) { image->SetSpacing(1, 1e300, 1e300); });
   Expect("at least two voxels wide",
     [](Filter*, vtkImageData* image) { image->SetDimensions(0, 0, 0); });
   Expect("its point array Short has 3 values for 960 points",

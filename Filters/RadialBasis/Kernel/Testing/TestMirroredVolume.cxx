@@ -365,3 +365,30 @@ TEST(MirroredVolume, NothingMeetsOutsideOfTheVolume)
     MirrorVolume(volume.Masked, PlaneAcross(pose, 6), MirrorInterpolation::BSpline, execution),
     std::runtime_error);
 }
+
+TEST(MirroredVolume, BehindTheLastVoxelThereIsNothing)
+{
+  // a part of an array that goes on; the plane is oblique by rounding, and shifts along the flat axis
+  std::vector<double> voxels(static_cast<std::size_t>(2 * 13 * 9), std::nan(""));
+  lacuna::MaskedVolume flat;
+  flat.Volume.Voxels = voxels.data();
+  flat.Volume.Type = lacuna::GetScalarType<double>();
+  flat.Volume.Size = { 13, 9, 1 };
+  for (std::size_t i = 0; i < 13 * 9; ++i)
+  {
+    voxels[i] = static_cast<double>(i % 13);
+  }
+  lacuna::ThreadExecution execution(1);
+  for (const double tilt : { -1e-8, 1e-8 })
+  {
+    MirrorPlane plane;
+    plane.Normal = Normalized(Vec3{ 1, 0, tilt });
+    plane.Offset = 6;
+    const auto result = MirrorVolume(flat, plane, MirrorInterpolation::Linear, execution);
+    const auto* mirrored = reinterpret_cast<const double*>(result.Voxels.data());
+    for (std::size_t i = 0; i < 13 * 9; ++i)
+    {
+      EXPECT_NEAR(mirrored[i], static_cast<double>(12 - i % 13), 1e-6) << i;
+    }
+  }
+}

@@ -176,6 +176,25 @@ void TestDepthMap()
   }
   LACUNA_CHECK(seen > 3000);
 
+  // whole millimetres become parts of them, which is announced
+  vtkNew<vtkImageData> whole;
+  whole->ShallowCopy(map.Image);
+  vtkNew<vtkShortArray> millimetres;
+  vtkDataArray* given = map.Image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName);
+  millimetres->SetName(given->GetName());
+  for (vtkIdType i = 0; i < given->GetNumberOfTuples(); ++i)
+  {
+    const double value = given->GetComponent(i, 0);
+    millimetres->InsertNextValue(std::isnan(value) ? 0 : static_cast<short>(std::lround(value)));
+  }
+  whole->GetPointData()->SetScalars(millimetres);
+  mirror->SetInputData(whole);
+  mirror->Update();
+  LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+  LACUNA_CHECK(vtkImageData::GetScalarType(mirror->GetOutputInformation(0)) == VTK_DOUBLE);
+  LACUNA_CHECK(output->GetPointData()->GetScalars()->GetDataType() == VTK_DOUBLE);
+  mirror->SetInputData(map.Image);
+
   // from the side the other side is not seen
   const lacuna::Vec3 far = origin + 200 * map.Right;
   mirror->SetOrigin(far.data());

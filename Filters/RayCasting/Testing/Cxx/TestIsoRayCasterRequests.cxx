@@ -17,6 +17,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaVersionCompat.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPlanes.h"
@@ -354,6 +355,43 @@ void TestSilentMover()
     "where the voxels are");
 }
 
+/// Stopped, and what VTK copies of what it announces has no direction.
+class StoppedMover : public SilentMover
+{
+public:
+  static StoppedMover* New() { VTK_STANDARD_NEW_BODY(StoppedMover); }
+  vtkTypeMacro(StoppedMover, SilentMover);
+
+protected:
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override
+  {
+    this->AbortExecuteOn();
+    vtkLacunaCheckAbort(this);
+    return 1;
+  }
+};
+
+// The eye sees the data where their direction puts them; without it they would lie behind it.
+void TestStoppedInput()
+{
+  const auto ball = MakeBall();
+  ball->SetDirectionMatrix(1, 0, 0, 0, -1, 0, 0, 0, -1);
+  vtkNew<StoppedMover> mover;
+  mover->AnnouncesDirection = false;
+  mover->SetInputData(ball);
+  auto caster = MakeCaster(ball);
+  caster->SetPlaneOrigin(VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
+  caster->SetImageSize(0, 0);
+  caster->SetProjection(Caster::Perspective);
+  caster->SetEyePosition(0, 0, ball->GetOrigin()[2] - 0.5);
+  caster->SetInputConnection(mover->GetOutputPort());
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(caster);
+  caster->Update();
+  LACUNA_CHECK_THAT(!vtkLacunaTellsOfAbort || !messages->HasError("eye"), "no message");
+  LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "no output");
+}
+
 void TestErrors()
 {
   const auto ball = MakeBall();
@@ -499,6 +537,7 @@ int TestIsoRayCasterRequests(int, char*[])
   TestPerspective();
   TestStartDepthMap();
   TestSilentMover();
+  TestStoppedInput();
   TestErrors();
   TestBeyondTheVoxels();
   TestPadding();
