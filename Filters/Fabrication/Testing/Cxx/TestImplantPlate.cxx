@@ -230,6 +230,29 @@ void TestMarks()
   LACUNA_CHECK(IsClosed(filter->GetOutput()));
 }
 
+// Of a plate that is all edge nothing is measured, and no place is told.
+void TestSmall()
+{
+  const auto geometry = TestSurfaces::Geometry({ 1, -2, 0.5 }, 0.3);
+  vtkNew<vtkLacunaImplantPlate> filter;
+  filter->SetInputData(
+    FilledMap(geometry, [](double x, double y) { return std::hypot(x, y) < 3; }));
+  filter->SetThickness(3.4);
+  filter->SetSide(vtkLacunaImplantPlate::Outward);
+  filter->SetEdgeShape(1);
+  filter->SetEdgeClearance(1);
+  filter->SetBevel(0);
+  filter->SetCornerRadius(0.3);
+  filter->SetTriangleSize(1.3);
+  filter->Update();
+  vtkPolyData* plate = filter->GetOutput();
+  LACUNA_CHECK(IsClosed(plate));
+  LACUNA_CHECK(GetField(plate, "Volume") > 0);
+  LACUNA_CHECK(std::isnan(GetField(plate, "MinimumThickness")));
+  LACUNA_CHECK(std::isnan(GetField(plate, "MinimumCurvatureRadius")));
+  LACUNA_CHECK(std::isnan(GetField(plate, "TightestPoint")));
+}
+
 void TestErrors()
 {
   const auto geometry = TestSurfaces::Geometry({ 0, 0, 1 }, 0);
@@ -262,6 +285,7 @@ int TestImplantPlate(int, char*[])
   TestPlace();
   TestHoles();
   TestMarks();
+  TestSmall();
   TestErrors();
   return lacunaCheck::Result();
 }
