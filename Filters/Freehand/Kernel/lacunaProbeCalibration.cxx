@@ -78,6 +78,25 @@ Matrix4 ToMatrix4(
     column(0, scale[0]), column(1, scale[1]), column(2, 1), { origin[0], origin[1], origin[2] });
 }
 
+// Wires, walls and picks are the same after half a turn of the phantom about any of its axes: of the four, the
+// one whose axes lie nearest to the tracker's, so that rounding does not decide.
+void FaceTracker(CalibrationState& state)
+{
+  const Eigen::Vector3d cosines = state.PhantomRotation.diagonal();
+  Eigen::Vector3d best = Eigen::Vector3d::Ones();
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    Eigen::Vector3d turn = -Eigen::Vector3d::Ones();
+    turn[axis] = 1;
+    if (turn.dot(cosines) > best.dot(cosines))
+    {
+      best = turn;
+    }
+  }
+  state.PhantomRotation = best.asDiagonal() * state.PhantomRotation;
+  state.PhantomOrigin = best.asDiagonal() * state.PhantomOrigin;
+}
+
 // The solution that is being found, with what the steps towards it share.
 class Solver
 {
@@ -116,6 +135,7 @@ public:
   // From a start to the end, outliers left out.
   Solution Finish(CalibrationState state) const
   {
+    FaceTracker(state);
     Solution solution{ std::move(state), std::vector<double>(this->Model.GetNumberOfPicks(), 1.0) };
     if (this->Options.OutlierLimit > 0)
     {

@@ -83,7 +83,8 @@ public:
   /// (column, row, 0, 1) to mm. Its third column is the unit normal, so that it is a rotation (never
   /// a mirror) times the pixel spacing.
   Matrix4 ImageToProbe;
-  /// For a wall turned and moved arbitrarily within it, for a point turned arbitrarily about it.
+  /// Of wires, which are the same after half a turn about any of them, the one with axes nearest to the
+  /// tracker's. For a wall turned and moved arbitrarily within it, for a point turned arbitrarily about it.
   Matrix4 TrackerToPhantom;
   Vec2 PixelSpacing{ 1, 1 };
 

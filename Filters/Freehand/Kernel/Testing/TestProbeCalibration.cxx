@@ -332,6 +332,40 @@ TEST(ProbeCalibration, OrderOfPicksDoesNotMatter)
   }
 }
 
+// A phantom of wires is the same after half a turn about any of them; which of the four is found must not hang
+// on rounding, as it did from processor to processor.
+TEST(ProbeCalibration, OfFourEqualPhantomsTheNearestToTheTracker)
+{
+  int turned = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed)
+  {
+    Scene scene(seed);
+    for (int i = 0; i < 12; ++i)
+    {
+      scene.PickWire(i % 3, { 1, 1 });
+    }
+    const lacuna::Matrix4 found =
+      ProbeCalibration::Solve(scene.Picks, scene.Options()).TrackerToPhantom;
+    const double cosines[3] = { found.Column(0)[0], found.Column(1)[1], found.Column(2)[2] };
+    const double sum = cosines[0] + cosines[1] + cosines[2];
+    for (const double kept : cosines)
+    {
+      EXPECT_GE(sum, 2 * kept - sum) << seed; // after half a turn about this axis
+    }
+    for (CalibrationPick& pick : scene.Picks)
+    {
+      pick.Pixel[0] *= 1 + 1e-15;
+    }
+    const lacuna::Matrix4 again =
+      ProbeCalibration::Solve(scene.Picks, scene.Options()).TrackerToPhantom;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      turned += lacuna::Dot(found.Column(axis), again.Column(axis)) < 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(turned, 0);
+}
+
 TEST(ProbeCalibration, AnglesAreThoseOfThe3Space)
 {
   // azimuth about z, then elevation about the new y, then roll about the new x
