@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs all benchmarks beside their peers and writes a page with tables and plots.
 
-    Testing/Benchmarks/run.py                       all, some 40 minutes, into Documentation/Benchmarks
+    Testing/Benchmarks/run.py                       all, some 45 minutes, into Documentation/Benchmarks
     Testing/Benchmarks/run.py --quick               a few minutes, into build/benchmarks
     Testing/Benchmarks/run.py --only speckle        one suite (several times for several)
 
