@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaExecution.h"
 
+#include "lacunaMemory.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
@@ -42,11 +43,10 @@ void EmptyOutputs(vtkInformationVector* outputs)
       outputs->GetInformationObject(i)->Remove(time);
     }
   }
-  vtkLacunaRequest::Limit(outputs);
 }
 
 // The text of what body throws; empty when it ran to its end. Stops and changes of the grid pass through.
-std::string ErrorOf(const std::function<void()>& body)
+std::string ErrorOf(const std::function<void()>& body, bool* isOfMemory = nullptr)
 {
   try
   {
@@ -63,7 +63,19 @@ std::string ErrorOf(const std::function<void()>& body)
   }
   catch (const std::bad_alloc&)
   {
+    if (isOfMemory)
+    {
+      *isOfMemory = true;
+    }
     return "out of memory";
+  }
+  catch (const lacuna::MemoryExceeded& e)
+  {
+    if (isOfMemory)
+    {
+      *isOfMemory = true;
+    }
+    return e.what();
   }
   catch (const std::exception& e)
   {
@@ -124,7 +136,6 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
       error = ErrorOf(
         [&]
         {
-          vtkLacunaRequest::Limit(outputs);
           vtkLacunaExecution execution(algorithm);
           body(execution);
         });
@@ -134,7 +145,7 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
       return 1;
     }
     EmptyOutputs(outputs);
-    if (!announced.empty() && !isAlone)
+    if (!announced.empty() && !isAlone && vtkLacunaFailure::MayBeOfOneRank(algorithm))
     {
       // VTK would not execute what comes behind on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
@@ -169,12 +180,13 @@ int vtkLacunaExecution::RunInformation(
     {
       return 0;
     }
-    error = ErrorOf(body);
+    bool isOfMemory = false; // of which one rank may have less
+    error = ErrorOf(body, &isOfMemory);
     if (error.empty())
     {
       return 1;
     }
-    vtkLacunaFailure::Announce(algorithm, error);
+    vtkLacunaFailure::Announce(algorithm, error, isOfMemory);
   }
   catch (const lacuna::Aborted&)
   {

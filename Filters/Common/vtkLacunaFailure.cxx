@@ -9,6 +9,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaRequest.h"
@@ -33,10 +34,29 @@ vtkInformationStringKey* Announced()
     vtkInformationStringKey::MakeKey("ANNOUNCED_ERROR", "vtkLacunaFailure");
   return key;
 }
+vtkInformationIntegerKey* AnnouncedOfMemory()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("ANNOUNCED_ERROR_OF_MEMORY", "vtkLacunaFailure");
+  return key;
+}
+vtkInformationIntegerKey* OfFiles()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("DEPENDS_ON_FILES", "vtkLacunaFailure");
+  return key;
+}
 vtkInformationStringKey* Told()
 {
   static vtkInformationStringKey* const key =
     vtkInformationStringKey::MakeKey("TOLD_ERROR", "vtkLacunaFailure");
+  return key;
+}
+// Whether nobody listened, so that it was shown.
+vtkInformationIntegerKey* ToldOnScreen()
+{
+  static vtkInformationIntegerKey* const key =
+    vtkInformationIntegerKey::MakeKey("TOLD_ERROR_ON_SCREEN", "vtkLacunaFailure");
   return key;
 }
 vtkInformationDoubleKey* ToldAt()
@@ -57,8 +77,8 @@ double GetSeconds()
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Of the algorithm itself, first; then all on which the outcome depends: what lies upstream, the inputs (blocks
-// come one by one), and what is asked for.
+// Of the algorithm itself and what lies upstream, first; then all else on which the outcome depends: the inputs
+// (blocks come one by one), and what is asked for.
 std::vector<double> GetState(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
 {
   std::vector<double> state{ static_cast<double>(algorithm->GetMTime()),
@@ -115,9 +135,23 @@ void Repeat(vtkAlgorithm* algorithm, const std::string& error)
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaFailure::Announce(vtkAlgorithm* algorithm, const std::string& error)
+void vtkLacunaFailure::DependsOnFiles(vtkAlgorithm* algorithm)
+{
+  algorithm->GetInformation()->Set(OfFiles(), 1);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::Announce(vtkAlgorithm* algorithm, const std::string& error, bool isOfMemory)
 {
   algorithm->GetInformation()->Set(Announced(), error);
+  algorithm->GetInformation()->Set(AnnouncedOfMemory(), isOfMemory ? 1 : 0);
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaFailure::MayBeOfOneRank(vtkAlgorithm* algorithm)
+{
+  vtkInformation* own = algorithm->GetInformation();
+  return own->Get(OfFiles()) != 0 || own->Get(AnnouncedOfMemory()) != 0;
 }
 
 //------------------------------------------------------------------------------
@@ -130,9 +164,10 @@ std::string vtkLacunaFailure::GetAnnounced(vtkAlgorithm* algorithm)
 //------------------------------------------------------------------------------
 std::string vtkLacunaFailure::GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
 {
+  vtkInformation* own = algorithm->GetInformation();
   const std::vector<double> told = GetToldState(algorithm);
-  return !told.empty() && told == GetState(algorithm, outputs)
-    ? algorithm->GetInformation()->Get(Told())
+  return !own->Has(OfFiles()) && !told.empty() && told == GetState(algorithm, outputs)
+    ? own->Get(Told())
     : "";
 }
 
@@ -151,7 +186,8 @@ void vtkLacunaFailure::Tell(
   vtkInformation* own = algorithm->GetInformation();
   const std::vector<double> told = GetToldState(algorithm);
   const std::vector<double> state = GetState(algorithm, outputs);
-  const bool isShown = !told.empty() && told[0] == state[0] && error == own->Get(Told());
+  const bool isShown = !told.empty() && own->Get(ToldOnScreen()) != 0 && told[0] == state[0] &&
+    told[1] == state[1] && error == own->Get(Told());
   own->Set(ToldOf(), state.data(), static_cast<int>(state.size()));
   if (isShown)
   {
@@ -160,5 +196,6 @@ void vtkLacunaFailure::Tell(
   }
   own->Set(Told(), error);
   own->Set(ToldAt(), GetSeconds());
+  own->Set(ToldOnScreen(), algorithm->HasObserver(vtkCommand::ErrorEvent) ? 0 : 1);
   vtkErrorWithObjectMacro(algorithm, << error);
 }

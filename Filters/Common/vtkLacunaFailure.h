@@ -12,16 +12,27 @@ class vtkInformationVector;
 /// Of empty data VTK takes for up to date nobody would hear any more, and writers would put nothing in the
 /// place of good files: so an algorithm fails for each who asks, until something is changed. ParaView asks
 /// several times for one command: within seconds the same error is shown once, and the same work not done
-/// again.
+/// again. What something else than a property or an input has mended (memory that was freed) may be told for
+/// some seconds more.
 namespace vtkLacunaFailure
 {
-/// Keeps the error of RequestInformation for who asks for data; empty: there is none.
-void Announce(vtkAlgorithm* algorithm, const std::string& error);
+/// Says that the algorithm's outcome depends on files, which may be mended or changed without its knowledge, and
+/// which one rank alone may lack.
+void DependsOnFiles(vtkAlgorithm* algorithm);
+
+/// Keeps the error of RequestInformation for who asks for data; empty: there is none. isOfMemory: of several
+/// ranks one may have less.
+void Announce(vtkAlgorithm* algorithm, const std::string& error, bool isOfMemory = false);
+
+/// Whether the error that was announced may be that of one rank alone: all have the same properties, but not
+/// the same memory and files.
+bool MayBeOfOneRank(vtkAlgorithm* algorithm);
 
 /// The error that was announced; empty: none.
 std::string GetAnnounced(vtkAlgorithm* algorithm);
 
-/// The error with which the same request for the same inputs has failed a moment ago; empty: none.
+/// The error with which the same request for the same inputs has failed a moment ago; empty: none. Files are
+/// looked at again.
 std::string GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs);
 
 /// Makes error one of algorithm. Its outputs are marked as not generated.

@@ -3,6 +3,7 @@
 
 #include "vtkErrorCode.h"
 #include "vtkLacunaExecution.h"
+#include "vtkLacunaFailure.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 unsigned long vtkLacunaReading::RunInformation(vtkAlgorithm* reader, vtkInformationVector* outputs,
   const char* fileName, const std::string& kind, const std::function<void()>& body)
 {
+  vtkLacunaFailure::DependsOnFiles(reader);
   unsigned long code = vtkErrorCode::NoFileNameError;
   vtkLacunaExecution::RunInformation(reader, outputs,
     [&]

@@ -209,7 +209,6 @@ void Remember(vtkAlgorithm* filter, vtkInformation* input, const std::string& re
 bool AskOrRefuse(vtkAlgorithm* filter, vtkInformation* input, const int extent[6], const char* part)
 {
   std::string refusal;
-  vtkLacunaRequest::Limit(filter->GetExecutive()->GetOutputInformation());
   try
   {
     RequireMemoryFor(input, extent, part);
@@ -300,29 +299,6 @@ bool vtkLacunaRequest::IsFirst(vtkInformationVector* outputs)
     }
   }
   return true;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaRequest::Limit(vtkInformationVector* outputs)
-{
-  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
-  {
-    vtkInformation* info = outputs->GetInformationObject(i);
-    info->Set(SDDP::UNRESTRICTED_UPDATE_EXTENT(), 1);
-    const int* whole = info->Get(SDDP::WHOLE_EXTENT());
-    const int* asked = info->Get(SDDP::UPDATE_EXTENT());
-    if (whole && asked && !IsEmpty(asked) && !Contains(whole, asked))
-    {
-      int extent[6];
-      for (int a = 0; a < 6; a += 2)
-      {
-        extent[a] = std::max(whole[a], asked[a]);
-        extent[a + 1] = std::min(whole[a + 1], asked[a + 1]);
-      }
-      const int nothing[6] = { 0, -1, 0, -1, 0, -1 };
-      info->Set(SDDP::UPDATE_EXTENT(), IsEmpty(extent) ? nothing : extent, 6);
-    }
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -59,11 +59,6 @@ VTKLACUNAFILTERSCOMMON_EXPORT void WholeOnFirst(
 /// Whether a filter has asked by WholeOnFirst, so that the other ranks have nothing of what it makes.
 VTKLACUNAFILTERSCOMMON_EXPORT bool IsOnFirst(vtkAlgorithm* filter);
 
-/// Keeps what is asked of outputs within their whole extents, and lets more be asked of them: after an
-/// error filters behind, as ParaView's own, go on to ask for all of what was announced before
-/// (COMBINED_UPDATE_EXTENT), which VTK refuses when the grid has become smaller since.
-VTKLACUNAFILTERSCOMMON_EXPORT void Limit(vtkInformationVector* outputs);
-
 /// For outputs whose whole extent may be empty for the time being, as after a stop while it was sought:
 /// VTK would go on to ask for nothing, whatever is announced then.
 VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);

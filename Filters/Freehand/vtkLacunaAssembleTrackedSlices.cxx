@@ -176,7 +176,6 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
 {
   vtkInformation* in = inputs[0]->GetInformationObject(0);
   vtkInformation* table = inputs[1]->GetInformationObject(0);
-  vtkLacunaRequest::Limit(outputs);
   const std::array<int, 6> wanted =
     GetExtent(outputs->GetInformationObject(0), SDDP::UPDATE_EXTENT());
   // Whole pictures: which rows are wanted is known when the order of rows is.

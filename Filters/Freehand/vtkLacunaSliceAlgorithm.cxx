@@ -24,12 +24,17 @@ int vtkLacunaSliceAlgorithm::ProcessRequest(
   if (request->Has(SDDP::REQUEST_TIME_DEPENDENT_INFORMATION()))
   {
     vtkInformation* output = outputs->GetInformationObject(0);
-    int known[6] = { 0, -1, 0, -1, 0, -1 };
+    int known[6] = { 0, -1, 0, -1, 0, -1 }, asked[6] = { 0, -1, 0, -1, 0, -1 };
     output->Get(SDDP::WHOLE_EXTENT(), known);
+    output->Get(SDDP::UPDATE_EXTENT(), asked);
+    const int isAsked = output->Get(SDDP::UPDATE_EXTENT_INITIALIZED());
     const int result = this->RequestInformation(request, inputs, outputs);
     if (known[0] <= known[1])
     {
       output->Set(SDDP::WHOLE_EXTENT(), known, 6);
+      // also after an error, which is told with the data
+      output->Set(SDDP::UPDATE_EXTENT(), asked, 6);
+      output->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), isAsked);
     }
     return result;
   }

@@ -10,11 +10,13 @@
 #include "vtkCellData.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
@@ -76,6 +78,20 @@ bool IsDepthMap(vtkImageData* image)
 {
   return image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName) &&
     image->GetFieldData()->GetArray(vtkLacunaDepthMap::ImageToWorldName);
+}
+
+// Of data that may not have come: by the name, which is all that a reader tells of them.
+bool IsAnnouncedDepthMap(vtkInformation* info)
+{
+  vtkImageData* image = vtkImageData::GetData(info);
+  if (image && image->GetNumberOfPoints() > 0)
+  {
+    return IsDepthMap(image);
+  }
+  vtkInformation* scalars = vtkDataObject::GetActiveFieldInformation(
+    info, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+  const char* name = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  return name && vtkLacunaDepthMap::DepthName == std::string(name);
 }
 
 std::string Rounded(double value)
@@ -360,9 +376,8 @@ int vtkLacunaMirror::RequestInformation(
   vtkInformation* info = outputVector->GetInformationObject(0);
   // Each rank makes the extent that VTK turns its piece into.
   info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  vtkImageData* input = vtkImageData::GetData(inputVector[0]);
-  if (input &&
-    IsDepthMap(input)) // a volume keeps its type; depths may come in any, and become double
+  // a volume keeps its type; depths may come in any, and become double
+  if (IsAnnouncedDepthMap(inputVector[0]->GetInformationObject(0)))
   {
     vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
   }

@@ -320,7 +320,6 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
   std::copy_n(whole, 6, extent);
   if (!this->NeedsWholeMap())
   {
-    vtkLacunaRequest::Limit(outputVector);
     outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
     if (extent[0] <= extent[1] && extent[2] <= extent[3])
     {

@@ -222,7 +222,6 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
   {
     input->Get(vtkDataObject::SPACING(), spacing);
   }
-  vtkLacunaRequest::Limit(outputs);
   lacuna::Extent needed = GetAsked(outputs->GetInformationObject(0));
   try
   {

@@ -387,6 +387,7 @@ int vtkLacunaCTSeriesReader::RequestData(
             lacuna::GetScalarSize(found.Type));
         lacuna::ReadCTVolume(found.Geometry, extent, found.Type, this->PaddingValue,
           lacuna::ReadDicomPixels, voxels, execution);
+        this->SetErrorCode(vtkErrorCode::NoError);
       }
       catch (const lacuna::Aborted&)
       {

@@ -381,6 +381,7 @@ int vtkLacunaTrackedSliceReader::RequestData(
           this->HideSlices(output, shown);
         }
         this->ReadPixels(output, shown, execution);
+        this->SetErrorCode(vtkErrorCode::NoError);
       }
       catch (const lacuna::Aborted&)
       {

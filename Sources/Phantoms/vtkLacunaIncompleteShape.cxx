@@ -65,25 +65,20 @@ double vtkLacunaIncompleteShape::EvaluateDistance(double x, double y, double z)
 int vtkLacunaIncompleteShape::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  try
-  {
-    const std::array<int, 3> n = this->MakeShape().GetDimensions();
-    const int extent[6] = { 0, n[0] - 1, 0, n[1] - 1, 0, n[2] - 1 };
-    const double origin[3] = { -0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1) };
-    const double spacing[3] = { 1, 1, 1 };
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
-    info->Set(vtkDataObject::ORIGIN(), origin, 3);
-    info->Set(vtkDataObject::SPACING(), spacing, 3);
-    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
-    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    return 1;
-  }
-  catch (const std::exception& e)
-  {
-    vtkErrorMacro(<< e.what());
-    return 0;
-  }
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      const std::array<int, 3> n = this->MakeShape().GetDimensions();
+      const int extent[6] = { 0, n[0] - 1, 0, n[1] - 1, 0, n[2] - 1 };
+      const double origin[3] = { -0.5 * (n[0] - 1), -0.5 * (n[1] - 1), -0.5 * (n[2] - 1) };
+      const double spacing[3] = { 1, 1, 1 };
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      info->Set(vtkDataObject::ORIGIN(), origin, 3);
+      info->Set(vtkDataObject::SPACING(), spacing, 3);
+      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_UNSIGNED_CHAR, 1);
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    });
 }
 
 //------------------------------------------------------------------------------

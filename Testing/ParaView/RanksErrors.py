@@ -4,6 +4,7 @@
 Run without arguments it is the test; it runs itself in pvbatch on two ranks, each of which has a time to end in.
 """
 import math
+import os
 import resource
 import signal
 import sys
@@ -260,18 +261,61 @@ def again(make, rank):
 
 
 def absent(make, rank):
-    """The second rank alone does not know the size of its input; and then it does."""
-    from lacuna.vtkLacunaSourcesPhantoms import vtkLacunaSkullPhantom
-    source = vtkLacunaSkullPhantom()
-    source.SetSpacing(*[-1 if rank == 1 else 5] * 3)
-    filter = make(source, False)
-    silent = source.AddObserver("ErrorEvent", lambda *_: None)
+    """The second rank alone lacks the file of its input; and then it has it."""
+    from lacuna.vtkLacunaReadersTrackedSlices import vtkLacunaTrackedSliceReader, vtkLacunaTrackedSliceWriter
+    from lacuna.vtkLacunaSourcesPhantoms import vtkLacunaPhantomSweep
+    file = lacuna_test.output(f"RanksErrors{rank}.igs.mha")
+    if os.path.exists(file):
+        os.remove(file)
+
+    def write():
+        sweep = vtkLacunaPhantomSweep()
+        sweep.SetNumberOfSlices(6)
+        sweep.SetImageSize(24, 18)
+        sweep.Update()
+        writer = vtkLacunaTrackedSliceWriter()
+        writer.SetInputDataObject(sweep.GetOutput())
+        writer.SetFileName(file)
+        writer.Update()
+    if rank == 0:
+        write()
+    reader = vtkLacunaTrackedSliceReader()
+    reader.SetFileName(file)
+    filter = make(reader, False)
+    silent = reader.AddObserver("ErrorEvent", lambda *_: None)
     text = update(filter)
     assert "no input" in text, text
-    source.RemoveObserver(silent)
-    source.SetSpacing(4, 4, 4)  # of both: what has failed together is tried again together
+    reader.RemoveObserver(silent)
+    write()
+    reader.Modified()  # on both: what has failed together is tried again together
     text = update(filter)
     assert not text and filter.GetOutput().GetNumberOfPoints() > 0, text
+
+
+def saved(rank):
+    """What is wrong on all ranks alike is said each time, and a file that was good stays."""
+    from lacuna.errors import PipelineError, raising
+    from paraview import simple as pv
+    skull = pv.SkullPhantom(Spacing=[5] * 3)
+    caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
+    file = lacuna_test.output("RanksErrors.pvti")
+    pv.SaveData(file, proxy=caster)
+    before = open(file, "rb").read()
+    for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spacing is -1"),
+                                         (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up")):
+        setattr(proxy, name, bad)
+        for _ in range(2):
+            try:
+                with raising():
+                    pv.SaveData(file, proxy=caster)
+                raise AssertionError(f"{name} = {bad}: nothing is said")
+            except PipelineError as error:
+                assert word in str(error), (name, str(error))
+            assert open(file, "rb").read() == before, name
+        setattr(proxy, name, good)
+    with raising():
+        pv.SaveData(file, proxy=caster)
+    assert open(file, "rb").read() == before
 
 
 def stopped(make, rank):
@@ -336,6 +380,8 @@ def run():
     unpaired(rank)
     distributed(rank)
     transparent(rank)
+    signal.alarm(SECONDS)
+    saved(rank)
     signal.alarm(0)
     print("rank done", flush=True)
 

@@ -107,7 +107,7 @@ void RequireMemory(const std::string& what, double bytes, double held)
     return;
   }
   const ProcessLimit process = MeasureProcess();
-  throw std::runtime_error(what + " would need " + DescribeBytes(bytes) +
+  throw MemoryExceeded(what + " would need " + DescribeBytes(bytes) +
     (process.Free <= available
         ? ", this process may have (ulimit " + std::string(process.Option) + ") " +
           DescribeBytes(available) + " more"

@@ -5,6 +5,7 @@
 #define lacunaMemory_h
 
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 
 namespace lacuna
@@ -20,7 +21,14 @@ double GetAvailableMemory();
 /// In full, and in a unit that can be read: "20000000000 bytes (18.6 GiB)".
 std::string DescribeBytes(double bytes);
 
-/// Throws std::runtime_error when bytes exceed the available memory; the text names what is
+/// What RequireMemory throws.
+class MemoryExceeded : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws MemoryExceeded when bytes exceed the available memory; the text names what is
 /// to be stored, its size and the memory there is. bytes is a double so that no product of sizes
 /// can overflow on its way here. held: of those, what there is already and will be used or freed first.
 void RequireMemory(const std::string& what, double bytes, double held = 0);
