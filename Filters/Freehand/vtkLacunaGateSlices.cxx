@@ -173,13 +173,16 @@ int vtkLacunaGateSlices::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkLacunaGateSlices::RequestUpdateExtent(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   if (vtkInformation* table = inputs[1]->GetInformationObject(0))
   {
     vtkLacunaRequest::OnePiece(table); // on every rank, whatever slices it has
   }
-  return this->Superclass::RequestUpdateExtent(request, inputs, outputs);
+  int extent[6] = { 0, -1, 0, -1, 0, -1 };
+  outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+  vtkLacunaRequest::Extent(this, inputs[0]->GetInformationObject(0), extent);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from lacuna_test import memory_of_process, output
 from vtkmodules.numpy_interface import dataset_adapter as dsa
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkSphere
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkSphere, vtkTable
 from vtkmodules.vtkImagingCore import vtkImageShiftScale, vtkRTAnalyticSource
 
 GIBIBYTE = 1 << 30
@@ -137,6 +137,12 @@ def whole_inputs():
     check_refused("Occlusion Surface", surface, "34359738368 bytes")
     for made in (lacuna.vtkLacunaRBFInterpolator(), lacuna.vtkLacunaRBFHoleFiller(), lacuna.vtkLacunaDepthMapSurface(), lacuna.vtkLacunaDepthMapShader(),
                  lacuna.vtkLacunaImplantPlate(), lacuna.vtkLacunaDefectModel(), lacuna.vtkLacunaPressOrientation(), lacuna.vtkLacunaSpeckleFilter()):
+        check_refused(made.GetClassName(), behind(made), "34359738368 bytes")
+    poses = vtkTable()
+    for made in (lacuna.vtkLacunaAssembleTrackedSlices(), lacuna.vtkLacunaGateSlices(), lacuna.vtkLacunaSlicePlanes(), lacuna.vtkLacunaScanRegion(),
+                 lacuna.vtkLacunaProbeCalibration(), lacuna.vtkLacunaTemporalCalibration()):
+        if made.GetNumberOfInputPorts() > 1:
+            made.SetInputData(1, poses)
         check_refused(made.GetClassName(), behind(made), "34359738368 bytes")
     for made, ending in (lacuna.vtkLacunaIGESWriter(), "igs"), (lacuna.vtkLacunaTrackedSliceWriter(), "mha"):
         made.SetFileName(output("HugeRequests." + ending))

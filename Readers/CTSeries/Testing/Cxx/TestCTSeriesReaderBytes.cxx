@@ -10,6 +10,7 @@
 
 #include <fstream>
 #include <functional>
+#include <sys/resource.h>
 
 namespace
 {
@@ -98,6 +99,33 @@ void TestManyFiles()
                  reader->UpdateInformation();
                }),
     Beginning, "a file that has grown");
+}
+
+// A volume for which there is no room is refused with its bytes before it is read, and read when there is.
+void TestTooLarge()
+{
+  if (lacuna::Sanitized)
+  {
+    return; // sanitizers take the address space
+  }
+  ReaderOf test(MakeSeries("1.2.3.1"));
+  test.Reader->UpdateInformation();
+  rlimit before;
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit little{ static_cast<rlim_t>(lacuna::GetProcessMemory("VmSize")) + (1U << 20),
+    before.rlim_max };
+  setrlimit(RLIMIT_AS, &little);
+  CheckAbout(CountBytes(
+               [&]
+               {
+                 test.ExpectError("The CT volume would need " +
+                   std::to_string(static_cast<int>(Slices * ImageBytes)) + " bytes");
+               }),
+    0, "a series that does not fit");
+  setrlimit(RLIMIT_AS, &before);
+  test.Reader->Modified();
+  test.ExpectGood();
+  LACUNA_CHECK(test.Reader->GetErrorCode() == vtkErrorCode::NoError);
 }
 
 // A series that is there twice: whether the images are the same is found once.
@@ -189,6 +217,7 @@ int TestCTSeriesReaderBytes(int, char*[])
     return lacunaCheck::Result();
   }
   TestManyFiles();
+  TestTooLarge();
   TestCopies();
   TestManyFrames();
   return lacunaCheck::Result();
