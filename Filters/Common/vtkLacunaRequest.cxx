@@ -9,16 +9,19 @@
 #include "vtkDataArraySelection.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
+#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerKey.h"
+#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationStringVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaVersionCompat.h"
+#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkXMLReader.h"
 
@@ -299,6 +302,26 @@ bool vtkLacunaRequest::IsFirst(vtkInformationVector* outputs)
     }
   }
   return true;
+}
+
+//------------------------------------------------------------------------------
+std::array<int, 6> vtkLacunaRequest::GetPart(vtkInformation* output)
+{
+  std::array<int, 6> asked{ 0, -1, 0, -1, 0, -1 };
+  output->Get(SDDP::UPDATE_EXTENT(), asked.data());
+  const int pieces = output->Get(SDDP::UPDATE_NUMBER_OF_PIECES());
+  if (pieces <= 1)
+  {
+    return asked;
+  }
+  const int mode = output->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    ? output->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
+    : vtkExtentTranslator::BLOCK_MODE;
+  std::array<int, 6> part{};
+  vtkNew<vtkExtentTranslator> translator;
+  translator->PieceToExtentThreadSafe(output->Get(SDDP::UPDATE_PIECE_NUMBER()), pieces,
+    output->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()), asked.data(), part.data(), mode, 0);
+  return part;
 }
 
 //------------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"                      // for vtkMTimeType
 
+#include <array>
 #include <string>
 #include <vector> // for times
 
@@ -65,6 +66,11 @@ VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);
 
 /// What Whole asks for when nothing is wanted.
 VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
+
+/// For RequestUpdateExtent of filters that make parts (CAN_PRODUCE_SUB_EXTENT): the extent that is asked of
+/// an output. VTK divides the extent into pieces only when it executes the algorithm, too late to ask the
+/// input for what they need: so here in the same way.
+VTKLACUNAFILTERSCOMMON_EXPORT std::array<int, 6> GetPart(vtkInformation* output);
 
 /// Data of any kind as one piece.
 VTKLACUNAFILTERSCOMMON_EXPORT void OnePiece(vtkInformation* input);

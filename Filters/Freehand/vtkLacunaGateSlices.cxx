@@ -167,7 +167,10 @@ int vtkLacunaGateSlices::RequestInformation(
   {
     return 0;
   }
-  vtkLacunaSliceStream::Pass(this, outputs->GetInformationObject(0));
+  vtkInformation* info = outputs->GetInformationObject(0);
+  vtkLacunaSliceStream::Pass(this, info);
+  // Each rank asks for the extent that VTK turns its piece into.
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   return this->Superclass::RequestInformation(request, inputs, outputs);
 }
 
@@ -179,9 +182,8 @@ int vtkLacunaGateSlices::RequestUpdateExtent(
   {
     vtkLacunaRequest::OnePiece(table); // on every rank, whatever slices it has
   }
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
-  vtkLacunaRequest::Extent(this, inputs[0]->GetInformationObject(0), extent);
+  vtkLacunaRequest::Extent(this, inputs[0]->GetInformationObject(0),
+    vtkLacunaRequest::GetPart(outputs->GetInformationObject(0)).data());
   return 1;
 }
 
@@ -202,6 +204,9 @@ int vtkLacunaGateSlices::RequestData(
       {
         return;
       }
+      // what is upstream may have more, which another filter has asked for
+      output->Crop(
+        outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT()));
       vtkDataArray* status =
         vtkLacunaFieldData::Get(slices, vtkLacunaTrackedSlices::SliceStatusName, 1, -1);
       const vtkIdType count = status->GetNumberOfTuples();

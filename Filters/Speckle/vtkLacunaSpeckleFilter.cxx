@@ -5,10 +5,8 @@
 #include "lacunaParameterText.h"
 #include "lacunaSpeckleFilter.h"
 #include "vtkDataObject.h"
-#include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationIntegerRequestKey.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
@@ -139,25 +137,10 @@ lacuna::Extent GetWhole(vtkInformation* info)
   return vtkLacunaSpeckleInput::GetExtent(whole);
 }
 
-/// The extent that an output is asked for. VTK divides the extent into pieces only when it executes
-/// the algorithm, too late to ask the input for what their borders need: so here in the same way.
+/// The extent that an output is asked for.
 lacuna::Extent GetAsked(vtkInformation* info)
 {
-  int asked[6] = { 0, -1, 0, -1, 0, -1 };
-  info->Get(Pipeline::UPDATE_EXTENT(), asked);
-  const int pieces = info->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
-  if (pieces > 1)
-  {
-    const int mode = info->Has(vtkExtentTranslator::UPDATE_SPLIT_MODE())
-      ? info->Get(vtkExtentTranslator::UPDATE_SPLIT_MODE())
-      : vtkExtentTranslator::BLOCK_MODE;
-    int part[6];
-    vtkNew<vtkExtentTranslator> translator;
-    translator->PieceToExtentThreadSafe(info->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces,
-      info->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS()), asked, part, mode, 0);
-    return vtkLacunaSpeckleInput::GetExtent(part);
-  }
-  return vtkLacunaSpeckleInput::GetExtent(asked);
+  return vtkLacunaSpeckleInput::GetExtent(vtkLacunaRequest::GetPart(info).data());
 }
 
 /// from: the samples of a component after the other at each point of fromBox.
