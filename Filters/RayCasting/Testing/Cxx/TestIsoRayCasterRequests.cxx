@@ -10,6 +10,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkImageAlgorithm.h"
 #include "vtkImageData.h"
@@ -387,7 +388,10 @@ void TestStoppedInput()
   caster->SetInputConnection(mover->GetOutputPort());
   vtkNew<lacunaCheck::Messages> messages;
   messages->Watch(caster);
+  vtkNew<lacunaCheck::Messages> executiveMessages; // of VTK 9.1, which repeats the error
+  executiveMessages->Watch(caster->GetExecutive());
   caster->Update();
+  // where algorithms are not told of stops upstream, they miss their data
   LACUNA_CHECK_THAT(!vtkLacunaTellsOfAbort || !messages->HasError("eye"), "no message");
   LACUNA_CHECK_THAT(caster->GetOutput()->GetNumberOfPoints() == 0, "no output");
 }
