@@ -292,15 +292,22 @@ def absent(make, rank):
     assert not text and filter.GetOutput().GetNumberOfPoints() > 0, text
 
 
-def saved(rank):
+def saved(controller):
     """What is wrong on all ranks alike is said each time, and a file that was good stays."""
     from lacuna.errors import PipelineError, raising
     from paraview import simple as pv
     skull = pv.SkullPhantom(Spacing=[5] * 3)
     caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
     file = lacuna_test.output("RanksErrors.pvti")
+
+    def written():
+        """The file when both ranks are there: the first one alone writes it, and the second does not wait for that."""
+        controller.Barrier()
+        content = open(file, "rb").read()
+        controller.Barrier()
+        return content
     pv.SaveData(file, proxy=caster)
-    before = open(file, "rb").read()
+    before = written()
     for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spacing is -1"),
                                          (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up")):
         setattr(proxy, name, bad)
@@ -311,11 +318,11 @@ def saved(rank):
                 raise AssertionError(f"{name} = {bad}: nothing is said")
             except PipelineError as error:
                 assert word in str(error), (name, str(error))
-            assert open(file, "rb").read() == before, name
+            assert written() == before, name
         setattr(proxy, name, good)
     with raising():
         pv.SaveData(file, proxy=caster)
-    assert open(file, "rb").read() == before
+    assert written() == before
 
 
 def stopped(make, rank):
@@ -381,7 +388,7 @@ def run():
     distributed(rank)
     transparent(rank)
     signal.alarm(SECONDS)
-    saved(rank)
+    saved(controller)
     signal.alarm(0)
     print("rank done", flush=True)
 
