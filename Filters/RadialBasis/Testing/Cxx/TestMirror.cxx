@@ -5,7 +5,10 @@
 #include "vtkCallbackCommand.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
+#include "vtkImageAlgorithm.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaMirror.h"
 #include "vtkLacunaMirrored.h"
@@ -13,9 +16,12 @@
 #include "vtkMath.h"
 #include "vtkMatrix3x3.h"
 #include "vtkNew.h"
+#include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkShortArray.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
 #include <limits>
@@ -203,6 +209,70 @@ void TestDepthMap()
   LACUNA_CHECK(output->GetNumberOfPoints() == 0);
 }
 
+// A reader of images: tells of its scalars by name and type before they are there.
+class Announcing : public vtkImageAlgorithm
+{
+public:
+  static Announcing* New();
+  vtkTypeMacro(Announcing, vtkImageAlgorithm);
+
+  vtkSmartPointer<vtkImageData> Image;
+  const char* Name = nullptr;
+
+protected:
+  Announcing() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkInformation* info = outputs->GetInformationObject(0);
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Image->GetExtent(), 6);
+    info->Set(vtkDataObject::ORIGIN(), this->Image->GetOrigin(), 3);
+    info->Set(vtkDataObject::SPACING(), this->Image->GetSpacing(), 3);
+    info->Set(vtkDataObject::DIRECTION(), this->Image->GetDirectionMatrix()->GetData(), 9);
+    vtkDataObject::SetActiveAttributeInfo(info, vtkDataObject::FIELD_ASSOCIATION_POINTS,
+      vtkDataSetAttributes::SCALARS, this->Name, this->Image->GetScalarType(), 1, -1);
+    return 1;
+  }
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkImageData::GetData(outputs)->ShallowCopy(this->Image);
+    return 1;
+  }
+};
+vtkStandardNewMacro(Announcing);
+
+// What has not been read yet is known by its name: depths become double, a volume keeps its type.
+void TestAnnounced()
+{
+  const auto announce = [](vtkImageData* image, const char* name, int type)
+  {
+    vtkNew<Announcing> reader;
+    reader->Image = image;
+    reader->Name = name;
+    vtkNew<vtkLacunaMirror> mirror;
+    mirror->SetInputConnection(reader->GetOutputPort());
+    mirror->SetPlaneMethod(vtkLacunaMirror::Given);
+    mirror->SetOrigin(image->GetCenter());
+    auto messages = lacunaCheck::Watch(mirror);
+    mirror->UpdateInformation();
+    LACUNA_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
+    LACUNA_CHECK(vtkImageData::GetScalarType(mirror->GetOutputInformation(0)) == type);
+    mirror->Update();
+    LACUNA_CHECK_THAT(messages->Errors.empty(), messages->Errors);
+    LACUNA_CHECK(mirror->GetOutput()->GetScalarType() == type);
+  };
+  TestMap map;
+  vtkNew<vtkImageData> depths;
+  depths->DeepCopy(map.Image);
+  vtkNew<vtkFloatArray> single;
+  single->DeepCopy(map.Image->GetPointData()->GetArray(vtkLacunaDepthMap::DepthName));
+  depths->GetPointData()->SetScalars(single);
+  announce(depths, vtkLacunaDepthMap::DepthName, VTK_DOUBLE);
+  announce(Scene().Image, "CT", VTK_SHORT);
+}
+
 void TestErrors()
 {
   Scene scene;
@@ -278,6 +348,7 @@ int TestMirror(int, char*[])
 {
   TestVolume();
   TestDepthMap();
+  TestAnnounced();
   TestErrors();
   TestAbort();
   vtkNew<vtkLacunaMirror> mirror;
