@@ -94,7 +94,8 @@ def describe(image, skull, report):
     mask = vtk_to_numpy(mask) > 0
     report.add("depth map, pixels", "{} × {}".format(*image.GetDimensions()))
     report.add("nodes of the spline", int(field.GetArray("NodeCount").GetValue(0)))
-    report.add("condition estimate", f"{field.GetArray('ConditionEstimate').GetValue(0):.2g}")
+    condition = field.GetArray("ConditionEstimate").GetValue(0)
+    report.add("condition estimate", f"{condition:.2g}" if condition else "unknown (fast solution)")
     report.add("hole, mm² of surface", f"{field.GetArray('DefectArea').GetValue(0):.0f}")
 
     if skull:
