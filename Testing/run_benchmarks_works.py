@@ -54,8 +54,9 @@ for suite in cases.SUITES:
 
 # Ranks
 import run  # noqa: E402
-assert run.rank_rows({"ranks": {"rows": {"Swept Volume/strong/ranks:1": 8.0, "Swept Volume/strong/ranks:2": 5.0, "Swept Volume/weak/ranks:2": 9.0, "Setup": 1.0}}}) == {
-    "Swept Volume": {"strong": {1: 8.0, 2: 5.0}, "weak": {2: 9.0}}}
+assert run.rank_rows({"ranks": {"rows": {"Swept Volume/strong/ranks:1": 8.0, "Swept Volume/strong/ranks:2": 5.0, "Swept Volume/weak/ranks:2": 9.0,
+                                         "Swept Volume/strong/parts:100": 0.5, "Setup": 1.0}}}) == {
+    "Swept Volume": {"strong": {1: 8.0, 2: 5.0}, "weak": {2: 9.0}, "strong by parts": {100: 0.5}}}
 assert run.rank_rows({"ranks": None}) == run.rank_rows({}) == run.rank_rows({"ranks": {"text": "no mpirun"}}) == {}
 
 # A run with programs that stand in for ours: they write the time that their rows' names say
@@ -121,6 +122,14 @@ with tempfile.TemporaryDirectory() as folder:
     assert joined["suites"]["tool-path"] == joined["suites"]["iso-ray-caster"] and "iges" in joined["suites"]
     with open(os.path.join(folder, "joined", "README.md"), encoding="utf-8") as file:
         assert "All figures are of 2 runs of" in file.read()
+    # ranks stand alone: they may be of another build, and say of which
+    ranks = {"rows": {"x/strong/parts:1": 9.0, "x/strong/parts:1000": 0.1}, "text": "the table of ranks", "Lacuna": "abc", "Date": "today"}
+    with open(parts[1], "w", encoding="utf-8") as file:
+        json.dump({**again, "suites": {}, "ranks": ranks, "machine": {**again["machine"], "Lacuna": "abc"}}, file)
+    subprocess.run([sys.executable, RUN, "--redraw", *parts, f"--output={folder}/ranks"], check=True, stderr=subprocess.DEVNULL)
+    with open(os.path.join(folder, "ranks", "README.md"), encoding="utf-8") as file:
+        text = file.read()
+    assert "the table of ranks" in text and "Lacuna abc, measured at today." in text and again["machine"]["Lacuna"] in text
     pictures = sorted(name for name in os.listdir(output) if name.endswith(".svg"))
     try:
         import matplotlib  # noqa: F401

@@ -1,14 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Strong and weak scaling over MPI's ranks, one thread each, on the cores of this machine.
+"""Strong and weak scaling over MPI's ranks, one thread each: measured with two, and what 1000 would do.
 
     . build/release/lacuna-env.sh
     Testing/Benchmarks/ranks.py [--quick] [--ranks N] [--benchmark_out FILE]
 
 Strong: the same work by more ranks; weak: as much work for each. Times are the processor time of the busiest rank, which what else the
-machine does changes little, the median of some; inputs are there before. Prints them as a table, and what the model of
-Documentation/DeveloperGuide/distributed.md makes of them for more ranks. A row of the file is CASE/strong/ranks:N or CASE/weak/ranks:N,
-with the time by the clock, too: for that leave the machine alone.
+machine does changes little; inputs are there before.
+
+Measured: rounds of one rank and of N ranks, one after the other, the first update of each left out; the median of the rounds.
+
+By parts: what each of many ranks would do, done one after the other by one process: ranks exchange nothing but the sums of
+Occluded Angle, so a rank's time is that of its part of the output, and nothing is extrapolated but the network
+(Documentation/DeveloperGuide/distributed.md). All parts of up to 10 ranks, else some of them; the busiest counts.
+
+Rows of the file: CASE/strong/ranks:N and CASE/weak/ranks:N, measured, with the time by the clock, too (for that leave the machine alone);
+CASE/strong/parts:N and CASE/weak/parts:N.
 """
 import argparse
 import json
@@ -24,7 +31,7 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 LATENCY = 2e-6  # s, of a message between nodes
 BANDWIDTH = 12.5e9  # bytes/s: 100 Gbit/s
-MANY = 10, 100, 1000
+MANY = 2, 10, 100, 1000
 
 
 # --- in pvbatch; work: how much, 1 for one rank. Each gives the input and a function that makes the filter. ---
@@ -33,21 +40,21 @@ MANY = 10, 100, 1000
 def occluded_angle(size, work):
     import paraview.simple as pv
     shape = pv.IncompleteShape(Shape="Sphere", Dimensions=[int(160 * size)] * 3)
-    return shape, lambda: pv.OccludedAngle(Input=shape, NumberOfDirections=int(200 * work))
+    return shape, lambda: pv.OccludedAngle(Input=shape, NumberOfDirections=2 * math.ceil(100 * work))  # two for each line
 
 
 def swept_volume(size, work):
     import paraview.simple as pv
     sweep = pv.PhantomSweep(NumberOfSlices=100, ImageSize=[int(320 * size), int(240 * size)], PixelSpacing=0.2 / size)
-    spacing = 0.25 / size / work ** (1 / 3)
-    return sweep, lambda: pv.SweptVolume(Input=sweep, OutputSpacing=[spacing] * 3)
+    spacing = 0.16 / size / work ** (1 / 3)
+    return sweep, lambda: pv.SweptVolume(Input=sweep, OutputSpacing=[spacing] * 3, MemoryLimit=10 ** 7)  # of all ranks together
 
 
 def iso_ray_caster(size, work):
     import paraview.simple as pv
     skull = pv.SkullPhantom(Spacing=[2 / size] * 3)
     return skull, lambda: pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9],
-                                                 PixelSpacing=0.12 / size / math.sqrt(work))
+                                                 PixelSpacing=0.09 / size / math.sqrt(work))
 
 
 def speckle(size, work):
@@ -60,12 +67,13 @@ def rbf_interpolator(size, work):
     import paraview.simple as pv
     sphere = pv.Sphere(Radius=50, ThetaResolution=36, PhiResolution=30)
     values = pv.Calculator(Input=sphere, ResultArrayName="Value", Function="coordsX + sin(coordsZ/15)")
-    spacing = 0.6 / size / work ** (1 / 3)
+    spacing = 0.4 / size / work ** (1 / 3)
     return values, lambda: pv.RBFInterpolator(Input=values, ScalarArray="Value", Kernel="Linear", OutputSpacing=[spacing] * 3)
 
 
 CASES = {"occluded-angle": occluded_angle, "swept-volume": swept_volume, "iso-ray-caster": iso_ray_caster, "speckle": speckle,
          "rbf-interpolator": rbf_interpolator}
+SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 
 
 # In ParaView's Programmable Filter, on each rank: its processor time so far.
@@ -86,9 +94,8 @@ def stamps(start, ranks):
     return found
 
 
-def measure(size, ranks, times, out):
-    import lacuna.plugin
-    lacuna.plugin.load()
+def measure(size, ranks, out):
+    """One round by real ranks: {row: [each rank's processor time, time by the clock]}. The Programmable Filter makes min and max others here."""
     import paraview.simple as pv
     rows = {}
     for name, case in CASES.items():
@@ -98,23 +105,64 @@ def measure(size, ranks, times, out):
                 continue
             source, make = case(size, ranks if kind == "weak" else 1)
             source.UpdatePipeline()
-            wall, processor = [], []
-            for _ in range(times):
+            for _ in range(2):  # the first time memory is new, and libraries are loaded
                 made = make()
                 before = pv.ProgrammableFilter(Input=pv.Sphere(), Script=STAMP.format(file=out + "before"))
                 after = pv.ProgrammableFilter(Input=made, Script=STAMP.format(file=out + "after"), CopyArrays=0)
                 before.UpdatePipeline()
                 start = time.perf_counter()
                 after.UpdatePipeline()
-                points = made.GetDataInformation().GetNumberOfPoints()  # of all ranks, so it waits for them
-                wall.append(time.perf_counter() - start)
-                processor.append([b - a for a, b in zip(stamps(out + "before", ranks), stamps(out + "after", ranks))])
+                made.GetDataInformation().GetNumberOfPoints()  # of all ranks, so it waits for them
+                wall = time.perf_counter() - start
+                processor = [b - a for a, b in zip(stamps(out + "before", ranks), stamps(out + "after", ranks))]
                 for each in (after, before, made):
                     pv.Delete(each)
-            rows[f"{name}/{kind}/ranks:{ranks}"] = {"processor": processor, "wall": wall, "points": points}
+            rows[f"{name}/{kind}/ranks:{ranks}"] = processor, wall
             pv.Delete(source)
-    with open(out, "w", encoding="utf-8") as file:
-        json.dump(rows, file)
+    return rows
+
+
+def parts(size, quick):
+    """Of each case: {row: {"seconds": of the busiest part, "points"} or {"refused": why}}"""
+    import paraview.simple as pv
+    rows = {}
+    for name, case in CASES.items():
+        for kind in ("strong", "weak"):
+            for ranks in (1, *MANY):
+                work = ranks if kind == "weak" else 1
+                source, make = case(size, work / ranks if name == SHARES_DIRECTIONS else work)
+                made = make()
+                rows[f"{name}/{kind}/parts:{ranks}"] = busiest_part(made.GetClientSideObject(), name, kind, ranks, quick)
+                pv.Delete(made)
+                pv.Delete(source)
+    return rows
+
+
+def busiest_part(algorithm, name, kind, ranks, quick):
+    if name == SHARES_DIRECTIONS:
+        wanted, ranks = [0], 1
+    else:
+        count = min(ranks, 2 if quick else 3 if kind == "weak" else 10 if ranks <= 10 else 20)
+        wanted = [int((each + 0.5) * ranks / count) for each in range(count)]
+    said = []
+
+    def listen(_, __, text):
+        said.append(text)
+    listen.CallDataType = "string0"
+    algorithm.AddObserver("ErrorEvent", listen)
+    algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
+    seconds = []
+    for rank in wanted:
+        taken = []
+        while len(taken) < 2 or sum(taken) < 0.3 and len(taken) < 10:  # short ones more often; the first makes the input
+            algorithm.Modified()
+            start = time.process_time()
+            algorithm.UpdatePiece(rank, ranks, 0)
+            taken.append(time.process_time() - start)
+            if said:
+                return {"refused": said[0].strip().partition("): ")[2]}
+        seconds.append(min(taken[1:]))
+    return {"seconds": max(seconds), "points": algorithm.GetOutputDataObject(0).GetNumberOfPoints()}
 
 
 # --- the table ---
@@ -125,38 +173,41 @@ def sum_time(ranks, size):
     return 2 * math.log2(ranks) * LATENCY + 2 * (ranks - 1) / ranks * size / BANDWIDTH
 
 
-def repeated(alone, some, ranks):
-    """The part of the work that all ranks repeat, from two times."""
-    return min(1.0, max(0.0, (ranks * some / alone - 1) / (ranks - 1)))
+def at(rows, case, kind, ranks):
+    """Time of the busiest of so many ranks with what the network takes, from their parts; None when it is refused."""
+    row = rows[f"{case}/{kind}/parts:{ranks}"]
+    if "refused" in row:
+        return None
+    return row["seconds"] + (sum_time(ranks, 4 * row["points"]) if case == SHARES_DIRECTIONS and ranks > 1 else 0.0)
 
 
-def extrapolate(rows, case, ranks):
-    """Strong scaling: the repeated part, as (median, least, largest) of the rounds, and how many times as fast many ranks are by each."""
-    one, some = rows[f"{case}/strong/ranks:1"], rows[f"{case}/strong/ranks:{ranks}"]
-    alone = one["seconds"]
-    each = [repeated(a, b, ranks) for a, b in zip(one["rounds"], some["rounds"])]
-    parts = repeated(alone, some["seconds"], ranks), min(each), max(each)
-    summed = 4 * one["points"] if case == "occluded-angle" else 0
-    return parts, [[alone / (alone * (part + (1 - part) / many) + sum_time(many, summed) * bool(summed)) for part in parts] for many in MANY]
-
-
-def spread(values):
-    """Of (median, and what may be least and largest)."""
+def table(measured, by_parts, ranks):
     def number(value):
-        return f"{value:.0f}" if value >= 10 else f"{value:.1f}"
-    return f"{number(values[0])} ({number(min(values))} – {number(max(values))})"
-
-
-def table(rows, ranks):
-    lines = [f"| | 1 rank, s | {ranks} ranks, s | strong: times as fast | weak: efficiency | repeated part | " +
-             " | ".join(f"model, {many} ranks" for many in MANY) + " |", "|---" * (6 + len(MANY)) + "|"]
-    for case in CASES:
-        strong = [rows[f"{case}/strong/ranks:{n}"]["seconds"] for n in (1, ranks)]
-        weak = [rows[f"{case}/weak/ranks:{n}"]["seconds"] for n in (1, ranks)]
-        part, many = extrapolate(rows, case, ranks)
-        lines.append(f"| {case} | {strong[0]:.2f} | {strong[1]:.2f} | {strong[0] / strong[1]:.2f} | {100 * weak[0] / weak[1]:.0f} % | "
-                     f"{spread([100 * each for each in part])} % | " + " | ".join(f"{spread(each)} times" for each in many) + " |")
-    return "\n".join(lines)
+        return f"{value:.0f}" if value >= 20 else f"{value:.1f}"
+    texts, refused = [], {}
+    for kind, title, cell in (("strong", "Strong scaling: times as fast as one rank", lambda ratio: number(ratio)),
+                              ("weak", "Weak scaling: efficiency", lambda ratio: f"{100 * ratio:.0f} %")):
+        lines = [f"| {title} | 1 rank, s | {ranks} ranks, measured | " + " | ".join(f"{many}, by parts" for many in MANY) +
+                 (" | repeated part |" if kind == "strong" else " |"), "|---" * (3 + len(MANY) + (kind == "strong")) + "|"]
+        for case in CASES:
+            one, some = (measured[f"{case}/{kind}/ranks:{n}"]["rounds"] for n in (1, ranks))
+            ratios = [a / b for a, b in zip(one, some)]
+            cells = [f"{statistics.median(one):.2f}", cell(statistics.median(ratios))]
+            if len(ratios) > 1:
+                cells[-1] += f" ({cell(min(ratios))} – {cell(max(ratios))})"
+            alone = at(by_parts, case, kind, 1)
+            for many in MANY:
+                taken = at(by_parts, case, kind, many)
+                cells.append(cell(alone / taken) if taken else "refused")
+                if not taken:
+                    refused[case] = f"{many} ranks, {kind}: " + by_parts[f"{case}/{kind}/parts:{many}"]["refused"]
+            if kind == "strong":
+                most = MANY[-1]
+                part = by_parts[f"{case}/strong/parts:{most}"]
+                cells.append(f"{100 * max(0.0, part['seconds'] / alone - 1 / most) / (1 - 1 / most):.2g} %" if "seconds" in part else "–")
+            lines.append(f"| {case} | " + " | ".join(cells) + " |")
+        texts.append("\n".join(lines))
+    return "\n\n".join(texts + [f"{case}, {why}" for case, why in refused.items()])
 
 
 def run(options):
@@ -165,25 +216,46 @@ def run(options):
         sys.exit("no mpirun or pvbatch")
     environment = dict(os.environ, VTK_SMP_MAX_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
                        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
-    rows = {}
+    measured = {}
     with tempfile.TemporaryDirectory() as folder:
-        for ranks in (1, options.ranks):
+        def job(ranks, what):
             out = os.path.join(folder, "rows.json")
             done = subprocess.run([mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering", os.path.abspath(__file__), "--in-pvbatch",
-                                   str(ranks), out, *(["--quick"] if options.quick else [])], env=environment, check=False, text=True,
+                                   what, str(ranks), out, *(["--quick"] if options.quick else [])], env=environment, check=False, text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             if done.returncode != 0:
                 sys.exit(done.stdout)
             with open(out, encoding="utf-8") as file:
-                for name, row in json.load(file).items():  # not there: the Programmable Filter makes min and max others
-                    rounds = [max(each) for each in row["processor"]]
-                    rows[name] = {"seconds": statistics.median(rounds), "rounds": rounds, "wall": statistics.median(row["wall"]), "points": row["points"]}
-    print(table(rows, options.ranks))
+                return json.load(file)
+        for _ in range(1 if options.quick else 3):
+            for ranks in (1, options.ranks):
+                for name, (processor, wall) in job(ranks, "measure").items():
+                    row = measured.setdefault(name, {"rounds": [], "wall": []})
+                    row["rounds"].append(max(processor))
+                    row["wall"].append(wall)
+        by_parts = job(1, "parts")
+    print(table(measured, by_parts, options.ranks))
     if options.benchmark_out:
-        benchmarks = [{"name": name, "run_type": "iteration", "iterations": 1, "real_time": 1000 * row["wall"], "cpu_time": 1000 * row["seconds"],
-                       "time_unit": "ms"} for name, row in rows.items()]
+        rows = {name: (statistics.median(row["wall"]), statistics.median(row["rounds"])) for name, row in measured.items()}
+        for case in CASES:
+            for kind in ("strong", "weak"):
+                for many in (1, *MANY):
+                    taken = at(by_parts, case, kind, many)
+                    if taken:
+                        rows[f"{case}/{kind}/parts:{many}"] = taken, taken
+        benchmarks = [{"name": name, "run_type": "iteration", "iterations": 1, "real_time": 1000 * wall, "cpu_time": 1000 * processor,
+                       "time_unit": "ms"} for name, (wall, processor) in rows.items()]
         with open(options.benchmark_out, "w", encoding="utf-8") as file:
             json.dump({"benchmarks": benchmarks}, file, indent=1)
+
+
+def run_in_pvbatch(what, ranks, out, quick):
+    import lacuna.plugin
+    lacuna.plugin.load()
+    size = 0.5 if quick else 1.4
+    rows = measure(size, ranks, out) if what == "measure" else parts(size, quick)
+    with open(out, "w", encoding="utf-8") as file:
+        json.dump(rows, file)
 
 
 def main():
@@ -191,12 +263,13 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small cases, once")
     parser.add_argument("--ranks", type=int, default=2, help="besides one rank")
     parser.add_argument("--benchmark_out", metavar="FILE", help="also write the rows as Google Benchmark's JSON")
-    parser.add_argument("--in-pvbatch", nargs=2, metavar=("RANKS", "OUT"), help=argparse.SUPPRESS)
+    parser.add_argument("--in-pvbatch", nargs=3, metavar=("WHAT", "RANKS", "OUT"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.ranks < 2:
         parser.error("--ranks must be 2 or more: one rank is measured in any case")
     if options.in_pvbatch:
-        measure(0.5 if options.quick else 1.4, int(options.in_pvbatch[0]), 1 if options.quick else 5, options.in_pvbatch[1])
+        what, ranks, out = options.in_pvbatch
+        run_in_pvbatch(what, int(ranks), out, options.quick)
     else:
         run(options)
 

@@ -95,16 +95,14 @@ class Runner:
         return rows.run(command, names, self.seconds, min(self.timeout, left), self.environment)
 
     def ranks(self):
-        """ranks.py scales over MPI's ranks; its rows are CASE/strong/ranks:N and CASE/weak/ranks:N, of the processor time of the busiest rank."""
+        """ranks.py scales over MPI's ranks; its rows are CASE/strong/ranks:N and CASE/weak/ranks:N, of the processor time of the busiest rank, and parts:N."""
         script = os.path.join(HERE, "ranks.py")
-        if not os.path.exists(script):
-            return None
         print("  ranks", flush=True)
         try:
             with tempfile.TemporaryDirectory() as folder:
                 out = os.path.join(folder, "ranks.json")
-                said = rows.call([sys.executable, script, *(["--quick"] if self.quick else []), "--benchmark_out", out],
-                                 min(self.timeout, max(60.0, self.end - time.monotonic())), self.environment)
+                said = rows.call([sys.executable, script, *(["--quick"] if self.quick else []), "--benchmark_out", out], 2 * self.timeout,
+                                 self.environment)
                 with open(out, encoding="utf-8") as file:
                     return {"rows": {name: row.cpu for name, row in rows.parse(file.read()).items() if not row.error}, "text": said.strip()}
         except (OSError, ValueError, KeyError, rows.Failure) as problem:
@@ -112,13 +110,13 @@ class Runner:
 
 
 def rank_rows(results):
-    """{case: {kind: {ranks: ms}}}"""
+    """{case: {kind: {ranks: ms}}}; kind is strong or weak, measured, or with "by parts" behind it."""
     found = {}
     for name, time_taken in (results.get("ranks") or {}).get("rows", {}).items():
-        case, _, rest = name.rpartition("/ranks:")
-        case, _, kind = case.rpartition("/")
-        if rest.isdigit() and kind in ("strong", "weak"):
-            found.setdefault(case, {}).setdefault(kind, {})[int(rest)] = time_taken
+        row = re.fullmatch(r"(.*)/(strong|weak)/(ranks|parts):(\d+)", name)
+        if row:
+            kind = row[2] + (" by parts" if row[3] == "parts" else "")
+            found.setdefault(row[1], {}).setdefault(kind, {})[int(row[4])] = time_taken
     return found
 
 
@@ -169,15 +167,17 @@ def join(files):
         if whole is None:
             whole = part
             continue
-        for fact in set(whole["machine"]) - {"Date", "Versions"}:
+        own = {"Date", "Versions"} if part["suites"] else {"Date", "Versions", "Lacuna"}  # ranks stand alone, with their own build
+        for fact in set(whole["machine"]) - own:
             if part["machine"].get(fact) != whole["machine"][fact]:
                 raise SystemExit(f"{name}: {fact} is another: {part['machine'].get(fact)}, not {whole['machine'][fact]}")
         if any(part[kind] != whole[kind] for kind in ("quick", "rounds")):
             raise SystemExit(f"{name}: it was measured with other rounds")
-        whole["machine"] = part["machine"]  # peers that were installed since
+        if part["suites"]:
+            whole["machine"] = part["machine"]  # peers that were installed since
         whole["suites"].update(part["suites"])
         whole["ranks"] = part.get("ranks") or whole.get("ranks")
-        whole["runs"] = whole.get("runs", 1) + part.get("runs", 1)
+        whole["runs"] = whole.get("runs", 1) + (part.get("runs", 1) if part["suites"] else 0)
         whole["minutes"] += part["minutes"]
         whole["load"] = {"mean": max(whole["load"]["mean"], part["load"]["mean"]), "largest": max(each["others"] for each in whole["suites"].values())}
     return whole
@@ -224,7 +224,7 @@ def main(arguments=None):
         results["suites"][suite.name] = runner.measure(suite)
     if not options.only or "ranks" in options.only:
         if time.monotonic() < runner.end:
-            results["ranks"] = runner.ranks()
+            results["ranks"] = {**runner.ranks(), **{fact: results["machine"][fact] for fact in ("Lacuna", "Date")}}
         else:
             results["left_out"]["Ranks"] = f"not begun within {options.minutes:g} minutes"
     results["load"] = {"mean": load.others(), "largest": max((each["others"] for each in results["suites"].values()), default=0.0)}

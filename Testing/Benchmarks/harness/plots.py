@@ -197,27 +197,41 @@ def peers(suites, measured, path):
 
 
 def ranks(rows, path, cores):
-    """rows: {case: {kind: {ranks: ms}}} with kind strong or weak."""
+    """rows: {case: {kind: {ranks: ms}}} as run.rank_rows gives them: lines by parts, and what was measured as rings; a line of that where there are no parts."""
     figure, both = pyplot.subplots(1, 2, figsize=(8.6, 3.6), sharex=True)
     for axes, kind, words in zip(both, ("strong", "weak"), ("Strong scaling: the same work", "Weak scaling: work in proportion")):
-        ends, most = [], 1
+        ends, most, by_parts = [], 1, False
         for index, (case, kinds) in enumerate(sorted(rows.items())):
-            there = sorted(kinds.get(kind, {}).items())
-            if len(there) > 1:
+            marker = MARKERS[index % len(MARKERS)]
+            for way, style in ((kind + " by parts", {}), (kind, {"markerfacecolor": "none"})):
+                there = sorted(kinds.get(way, {}).items())
+                if len(there) < 2:
+                    continue
                 x = [n for n, _ in there]
                 y = [there[0][1] / time for _, time in there]
-                axes.plot(x, y, color=colour(index), marker=MARKERS[index % len(MARKERS)], zorder=3)
-                ends.append((x[-1], y[-1], case, colour(index)))
+                line = not style or kind + " by parts" not in kinds
+                axes.plot(x if line else x[1:], y if line else y[1:], color=colour(index), marker=marker, zorder=3, linestyle="-" if line else "none", **style)
+                if line:
+                    ends.append((x[-1], y[-1], case, colour(index)))
+                by_parts |= not style
                 most = max(most, x[-1])
-        can = min(most, cores)  # ranks beyond the cores take turns
+        can = most if by_parts else min(most, cores)  # measured ranks beyond the cores take turns
         axes.plot([1, can, most], [1, can, can] if kind == "strong" else [1, 1, can / most], color=FAINT, linewidth=1, linestyle=(0, (4, 3)))
         axes.set_title(words, fontsize=10.5)
         axes.set_xlabel("ranks")
-        axes.set_ylabel("times as fast as one rank (processor time)" if kind == "strong" else "efficiency")
-        axes.set_ylim(bottom=0)
-        axes.xaxis.set_major_locator(ticker.MaxNLocator(integer=True))
+        axes.set_ylabel("times as fast as one rank" if kind == "strong" else "efficiency")
+        if by_parts:
+            axes.set_xscale("log")
+            plain_axis(axes.xaxis)
+            if kind == "strong":
+                axes.set_yscale("log")
+                plain_axis(axes.yaxis)
+        else:
+            axes.xaxis.set_major_locator(ticker.MaxNLocator(integer=True))
+        if kind == "weak" or not by_parts:
+            axes.set_ylim(bottom=0)
         axes.grid(axis="x", visible=False)
-        figure.subplots_adjust(left=0.07, right=0.78, top=0.88, bottom=0.16, wspace=0.28)
+        figure.subplots_adjust(left=0.08, right=0.8, top=0.88, bottom=0.16, wspace=0.3)
         if axes is both[1]:
             place_labels(axes, ends, 8.5)
     save(figure, path, "Speed-up by ranks")

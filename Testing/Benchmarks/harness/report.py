@@ -127,11 +127,12 @@ class Page:
         ranks = self.results.get("ranks")
         if not ranks:
             return ""
-        text = "## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.\n\n" + picture("ranks", "Speed-up by ranks", plots)
+        build = f" Lacuna {ranks['Lacuna']}, measured at {ranks['Date']}." if "Lacuna" in ranks else ""
+        text = f"## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.{build}\n\n" + picture("ranks", "Speed-up by ranks", plots)
         if not ranks.get("text"):
             return text
-        return text + ranks["text"] + "\n\nMedians of the rounds; in brackets, the least and largest repeated part of a round, and what the model makes " \
-            "of these. All by which ranks hinder each other on one machine counts as repeated ([the model](../DeveloperGuide/distributed.md)).\n"
+        return text + ranks["text"] + "\n\nMeasured: the median of the rounds, and the extremes. By parts: the time of the busiest of so many ranks, done one after the other, " \
+            "and what a network would take; the repeated part is what each of 1000 ranks does again ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n"
 
     def exponents(self):
         rows = []
