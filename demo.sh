@@ -6,7 +6,7 @@
 set -euo pipefail
 top=$(cd "$(dirname "$0")" && pwd)
 for argument in "$@"; do
-  if [ "$argument" = --help ] && command -v python3 >/dev/null; then
+  if [[ $argument = --help || $argument = -h ]] && command -v python3 >/dev/null; then
     exec python3 "$top/Plugins/Python/lacuna/demo.py" --help
   fi
 done

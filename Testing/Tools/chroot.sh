@@ -11,7 +11,7 @@
 # CCACHE_DIR is set, the compiler's results are kept there.
 # Debian's VTK and ParaView's Python cannot share a system: use one folder for each, and for each SUITE.
 set -euo pipefail
-[ $# -ge 2 ] || { sed -n '3,13s/^# \?//p' "$0" >&2; exit 2; }
+[[ ${2:-} =~ ^(fresh|vtk|package)$ ]] || { sed -n '3,13s/^# \?//p' "$0" >&2; exit 2; }
 folder=$1
 what=$2
 suite=${3:-bookworm}
@@ -84,9 +84,5 @@ case $what in
     cp -r "$source/Documentation/Examples/18-embedding" "$source/Testing/Embedding/kernels" \
       "$source/build/package"/lacuna*.deb "$folder/packages"
     inside "/packages/check.sh $version"
-    ;;
-  *)
-    echo "usage: $0 FOLDER fresh|package|vtk [SUITE]" >&2
-    exit 2
     ;;
 esac

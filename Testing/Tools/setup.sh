@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Shared by demo.sh, test.sh and build-site.sh (sourced from the top folder): installs what is missing, configures
+# Shared by the scripts of the project (sourced from the top folder): installs what is missing, configures
 # and builds. Each function says what failed and returns non-zero.
 
 lacuna_fail() {
@@ -47,7 +47,7 @@ lacuna_build() {
   lacuna_configure "$preset" || return 1
   echo "== building ($preset)"
   cmake --build --preset "$preset" "$@" >"$log" 2>&1 ||
-    { grep -E -A8 'error|FAILED' "$log" | head -n 60 >&2; lacuna_fail "building" "see $log"; }
+    { grep -E -A8 -m 8 'error|FAILED' "$log" >&2 || tail -n 30 "$log" >&2; lacuna_fail "building" "see $log"; }
 }
 
 # lacuna_display <command>...: runs it with a display, a virtual one if there is none. -noreset: the

@@ -21,7 +21,10 @@ changed() {
 }
 case ${1:-} in
   '') sources=("${all[@]}") ;;
-  --last) mapfile -t sources < <(changed "${2:?commits}" | sort -u | grep -xFf <(printf '%s\n' "${all[@]}")) ;;
+  --last)
+    found=$(changed "${2:?commits}")
+    mapfile -t sources < <(sort -u <<<"$found" | grep -xFf <(printf '%s\n' "${all[@]}"))
+    ;;
   *) sources=("$@") ;;
 esac
 if [ ${#sources[@]} = 0 ]; then echo "clang-tidy: nothing changed"; exit 0; fi

@@ -129,8 +129,8 @@ class Page:
             return ""
         build = f" Lacuna {ranks['Lacuna']}, measured at {ranks['Date']}." if "Lacuna" in ranks else ""
         text = f"## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.{build}\n\n" + picture("ranks", "Speed-up by ranks", plots)
-        if not ranks.get("text"):
-            return text
+        if not ranks.get("rows"):
+            return ""
         return text + ranks["text"] + "\n\nMeasured: the median of the rounds, and the extremes. By parts: the time of the busiest of so many ranks, done one after the other, " \
             "and what a network would take; the repeated part is what each of 1000 ranks does again ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n"
 
@@ -167,6 +167,8 @@ class Page:
     def failures(self):
         rows = [(suite.title, what, why) for suite in self.suites for what, why in self.results["suites"][suite.name]["errors"].items()]
         rows += [(name, "", why) for name, why in self.results.get("left_out", {}).items()]
+        if (ranks := self.results.get("ranks")) and not ranks.get("rows"):
+            rows.append(("Ranks", "", ranks["text"]))
         if not rows:
             return ""
         return "## What was not measured\n\n" + table(("", "", ""), [(a, f"`{b}`" if b else "", clean(c)) for a, b, c in rows], (0, 1, 2))
