@@ -242,11 +242,16 @@ def pieces():
         interpolator.SetInputData(points(100))
         interpolator.SetOutputSpacing(spacing, spacing, spacing)
         check_refused(f"RBF Interpolator {spacing}", interpolator)
-    # as a whole 15.8 GiB, and an accuracy that takes fast sums over the whole grid
+    # an accuracy that takes fast sums over the whole grid, whose boxes take most
     interpolator = lacuna.vtkLacunaRBFInterpolator()
     interpolator.SetInputData(points(100))
     interpolator.SetOutputBounds(0, 100, 0, 100, 0, 100)
-    interpolator.SetOutputSpacing(100 / 1019, 100 / 1019, 100 / 1019)
+    interpolator.SetOutputSpacing(100 / (N - 1), 100 / (N - 1), 100 / (N - 1))
+    interpolator.UpdateInformation()
+    check_refused("RBF Interpolator", interpolator)
+    text = errors_of(interpolator, lambda: interpolator.UpdateExtent((500, 519, 510, 529, 800, 809)))
+    assert "the boxes of a grid of 8589934592 points" in text and "bytes" in text, text
+    interpolator.SetOutputSpacing(200 / (N - 1), 200 / (N - 1), 200 / (N - 1))
     check_refused("RBF Interpolator", interpolator)
     check_piece("RBF Interpolator", interpolator, (500, 519, 510, 529, 800, 809), 4000)
     step = interpolator.GetOutput().GetSpacing()[0]

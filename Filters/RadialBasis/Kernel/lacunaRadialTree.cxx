@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -212,35 +213,90 @@ Coordinates<Dimension> PointTree<Dimension>::GetCoordinates(std::int64_t first) 
 //------------------------------------------------------------------------------
 namespace
 {
-// Throws when a grid is divided into more boxes than there is memory, or numbers, for. Counted level by
-// level: boxes at the borders of a level's boxes may have a point more than others.
-template <int Dimension>
-void RequireBoxes(const RootCube<Dimension>& root, const RegularGrid<Dimension>& grid, int capacity)
+// Boxes, or along an axis intervals, that are alike: how many there are, points of each, and into how
+// many with points each is divided.
+struct AlikeBoxes
 {
-  double all = 0;
-  double most = std::numeric_limits<double>::infinity(); // points of a box
-  for (int level = 0; level <= RootCube<Dimension>::MaximumLevel && most > capacity; ++level)
+  double Number;
+  double Points;
+  double Children;
+};
+
+// The intervals of a level along an axis; index: of its points, in order.
+std::vector<AlikeBoxes> GetIntervals(const std::vector<std::uint32_t>& index, int shift)
+{
+  std::map<std::pair<std::ptrdiff_t, int>, double> number;
+  for (auto begin = index.begin(); begin != index.end();)
   {
-    const double edge = std::ldexp(root.Size, -level);
-    double boxes = 1;
-    most = 1;
-    for (int c = 0; c < Dimension; ++c)
-    {
-      const auto size = static_cast<double>(grid.Size[c]);
-      boxes *= std::min(size, 1 + std::ceil(size * grid.Spacing[c] / edge));
-      most *= std::min(size, std::floor(edge / grid.Spacing[c]) + 1);
-    }
-    all += boxes;
+    const std::uint32_t interval = *begin >> shift;
+    const auto end = std::partition_point(
+      begin, index.end(), [&](std::uint32_t i) { return (i >> shift) == interval; });
+    const bool both = ((*begin ^ *(end - 1)) >> (shift - 1)) != 0;
+    ++number[{ end - begin, both ? 2 : 1 }];
+    begin = end;
   }
-  // a list grows by twice its size, and others have some numbers for each box
-  const double bytes = all * (3.0 * sizeof(TreeCell<Dimension>) + 64);
+  std::vector<AlikeBoxes> intervals;
+  for (const auto& [kind, times] : number)
+  {
+    intervals.push_back({ times, static_cast<double>(kind.first), 1.0 * kind.second });
+  }
+  return intervals;
+}
+
+// How many boxes DivideCells makes of a grid, level by level until there are more than `most`. Points
+// are in rows, so that of few kinds of intervals along each axis follows how many boxes have how many.
+template <int Dimension>
+double CountBoxes(
+  const std::array<std::vector<std::uint32_t>, Dimension>& index, int capacity, double most)
+{
+  double all = 1;
+  for (int shift = RootCube<Dimension>::MaximumLevel; shift > 0 && all <= most; --shift)
+  {
+    std::vector<AlikeBoxes> boxes{ { 1, 1, 1 } };
+    for (const std::vector<std::uint32_t>& axis : index)
+    {
+      std::vector<AlikeBoxes> rows;
+      for (const AlikeBoxes& interval : GetIntervals(axis, shift))
+      {
+        for (const AlikeBoxes& box : boxes)
+        {
+          rows.push_back({ box.Number * interval.Number, box.Points * interval.Points,
+            box.Children * interval.Children });
+        }
+      }
+      boxes = std::move(rows);
+    }
+    double next = 0;
+    for (const AlikeBoxes& box : boxes)
+    {
+      next += box.Points > capacity ? box.Number * box.Children : 0;
+    }
+    if (next == 0)
+    {
+      break;
+    }
+    all += next;
+  }
+  return all;
+}
+
+// Throws when a grid is divided into more boxes than there is memory, or numbers, for; gives how many.
+template <int Dimension>
+std::size_t RequireBoxes(const RegularGrid<Dimension>& grid,
+  const std::array<std::vector<std::uint32_t>, Dimension>& index, int capacity)
+{
+  constexpr double most = std::numeric_limits<std::int32_t>::max();
+  const double boxes = CountBoxes<Dimension>(index, capacity, most);
+  const double bytes = boxes * (sizeof(TreeCell<Dimension>) + 72.0); // others have some numbers for each
   const std::string what = "the boxes of a grid of " + std::to_string(grid.GetNumberOfPoints()) +
     " points, of which all parts need all,";
-  if (all > std::numeric_limits<std::int32_t>::max())
+  if (boxes > most)
   {
-    throw std::length_error(what + " would need " + DescribeBytes(bytes) + "; take a coarser grid");
+    throw std::length_error(
+      what + " would need more than " + DescribeBytes(bytes) + "; take a coarser grid");
   }
   RequireMemory(what, bytes);
+  return static_cast<std::size_t>(boxes);
 }
 }
 
@@ -249,11 +305,8 @@ GridTree<Dimension>::GridTree(
   const RootCube<Dimension>& root, const RegularGrid<Dimension>& grid, int capacity)
   : Grid(grid)
 {
-  RequireBoxes(root, grid, capacity);
   this->Root = root;
   std::array<std::vector<std::uint32_t>, Dimension> index;
-  this->Cells.emplace_back();
-  this->Cells[0].Count = grid.GetNumberOfPoints();
   for (int c = 0; c < Dimension; ++c)
   {
     index[c].resize(static_cast<std::size_t>(grid.Size[c]));
@@ -261,6 +314,12 @@ GridTree<Dimension>::GridTree(
     {
       index[c][i] = root.GetIndex(grid.Origin[c] + static_cast<double>(i) * grid.Spacing[c], c);
     }
+  }
+  this->Cells.reserve(RequireBoxes<Dimension>(grid, index, capacity));
+  this->Cells.emplace_back();
+  this->Cells[0].Count = grid.GetNumberOfPoints();
+  for (int c = 0; c < Dimension; ++c)
+  {
     this->Cells[0].Range[c] = { 0, static_cast<std::int32_t>(grid.Size[c]) };
   }
   DivideCells<Dimension>(*this, capacity,

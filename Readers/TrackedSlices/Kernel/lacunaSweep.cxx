@@ -81,6 +81,7 @@ private:
   void BuildPoses();
   void DescribeChain(const Chain& chain);
   void ReportBadFrames(const SweepTransform& transform);
+  void ReportMirrors(const SweepTransform& transform);
 
   const SequenceHeader& Header;
   const SweepOptions& Options;
@@ -339,9 +340,15 @@ void SweepBuilder::BuildPoses()
   }
   for (const TransformGraph::Link& link : chain)
   {
-    if (!this->Transforms.Get(link).FromCalibration)
+    const SweepTransform& transform = this->Transforms.Get(link);
+    if (!transform.FromCalibration)
     {
-      this->ReportBadFrames(this->Transforms.Get(link));
+      this->ReportBadFrames(transform);
+    }
+    const std::string& image = this->Options.ImageFrame;
+    if (transform.From != image && transform.To != image) // the third axis of a picture means nothing
+    {
+      this->ReportMirrors(transform);
     }
   }
 }
@@ -414,6 +421,26 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
   {
     this->Warn("field " + transform.Name +
       "TransformStatus is missing in all frames; the transform is taken as valid");
+  }
+}
+
+//------------------------------------------------------------------------------
+void SweepBuilder::ReportMirrors(const SweepTransform& transform)
+{
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < this->Count; ++i)
+  {
+    if (transform.Get(i).IsFinite() && transform.Get(i).Determinant3() < 0)
+    {
+      frames.push_back(i);
+    }
+  }
+  if (!frames.empty())
+  {
+    this->Warn("transform " + transform.Name + " mirrors (its axes are left-handed) in " +
+      FrameList(frames) +
+      ", which no tracker can move by: what is made of these slices may be a mirror image. Convert "
+      "the poses to right-handed axes; where only the pictures are mirrored, flip those instead");
   }
 }
 }

@@ -362,6 +362,45 @@ TEST(FastRadialSum, RefusesWhatCannotBeSummed)
 }
 
 // A landmark warp of a small volume: interpolants of a high order would take seconds to set up.
+// What is refused for lack of memory is as many boxes as there would be, not a bound.
+template <int Dimension>
+void ExpectRoomForEachBox(const std::array<std::int64_t, Dimension>& size, int capacity)
+{
+  lacuna::RegularGrid<Dimension> grid;
+  grid.Size = size;
+  for (int c = 0; c < Dimension; ++c)
+  {
+    grid.Origin[c] = -0.3 * c;
+    grid.Spacing[c] = (0.7 + 0.2 * c) / static_cast<double>(size[c]);
+  }
+  lacuna::RootCube<Dimension> root;
+  root.Low.fill(-0.7);
+  root.Size = 1.9;
+  const lacuna::GridTree<Dimension> tree(root, grid, capacity);
+  std::int64_t points = 0;
+  for (const lacuna::TreeCell<Dimension>& cell : tree.Cells)
+  {
+    EXPECT_GT(cell.Count, 0);
+    points += cell.Children == 0 ? cell.Count : 0;
+  }
+  EXPECT_EQ(points, grid.GetNumberOfPoints());
+  EXPECT_EQ(tree.Cells.capacity(), tree.Cells.size()) << size[0] << " " << capacity;
+}
+
+TEST(FastRadialSum, CountsTheBoxesOfGrids)
+{
+  for (const int capacity : { 1, 7, 64, 300 })
+  {
+    for (const std::array<std::int64_t, 3>& size : { std::array<std::int64_t, 3>{ 1, 1, 1 },
+           { 64, 64, 64 }, { 65, 63, 2 }, { 1, 900, 33 }, { 47, 51, 80 } })
+    {
+      ExpectRoomForEachBox<3>(size, capacity);
+    }
+    ExpectRoomForEachBox<2>({ 257, 90 }, capacity);
+    ExpectRoomForEachBox<2>({ 1, 4000 }, capacity);
+  }
+}
+
 // The boxes are those of the whole grid, of which parts may be wanted that fit.
 TEST(FastRadialSum, RefusesGridsWithoutRoomForTheirBoxes)
 {

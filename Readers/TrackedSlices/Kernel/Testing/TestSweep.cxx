@@ -304,6 +304,19 @@ TEST(Sweep, DamagedMatricesSpoilTheirFrame)
   ExpectContains(Warnings(sweep), { "transform ProbeToTracker is missing in frames 0, 2" });
 }
 
+// A tracker that is said to mirror would mirror the patient; of a picture's calibration the third axis means nothing.
+TEST(Sweep, PosesThatMirrorAreToldOf)
+{
+  SequenceFile file = MakeSequence();
+  file.SetFrame(1, "ProbeToTrackerTransform", "-1 0 0 4 0 1 0 0 0 0 1 30 0 0 0 1");
+  const Sweep sweep = Build(file);
+  EXPECT_EQ(sweep.Status, (Flags{ 0, 0, 0 }));
+  ExpectContains(Warnings(sweep), { "ProbeToTracker mirrors", "in frame 1,", "flip" });
+  EXPECT_EQ(sweep.Warnings.size(), 1u);
+  const std::string calibration = MakeCalibration("0.1 0 0 0 0 0.1 0 0 0 0 -0.1 0 0 0 0 1");
+  EXPECT_EQ(Warnings(Build(MakeSequence(), calibration)), "");
+}
+
 TEST(Sweep, NotOneValidSlice)
 {
   SequenceFile file = MakeSequence(12);
