@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Client and server: both pipelines give on a pvserver, also on one of two ranks, what they give alone, whichever of the two sides has loaded the plugin when it started; fetched images lie as they do there.
+"""Client and server: both pipelines give on a pvserver, also on one of two ranks, what they give alone, whichever of the two sides has loaded the plugin when it started; fetched images lie as they do there, and the macros work.
 
 With the name of pvpython it is the test; with the port of a server, or 0 for none, it is the client and prints what it got.
 """
+import hashlib
 import os
 import socket
 import subprocess
@@ -48,7 +49,8 @@ def client(port):
     from lacuna import coordinates
     from lacuna.data import fetch
     from lacuna.errors import raising
-    from paraview.simple import BSplineIsoRayCaster, DepthMapSurface, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom, SweptVolume
+    from paraview.simple import (BSplineIsoRayCaster, DepthMapSurface, FindSource, GetActiveViewOrCreate, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom,
+                                 SweptVolume)
     for view, up in (((0, 1, 0), (0, 0, 1)), ((0.4, 0.3, -0.8), (0, 1, 0))):
         depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500], ViewDirection=view, ViewUp=up)
         matrix, record = fetch(depth).GetDirectionMatrix(), depth.FieldData.GetArray("ImageToWorld")
@@ -67,7 +69,17 @@ def client(port):
         filled.UpdatePipeline()
         iges = output(f"ClientServer-{port}.igs")
         SaveData(iges, proxy=filled)
-    print("result", volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
+    from FetchRanks import fetched
+    from lacuna import macros
+    surface = macros.sweep_to_surface(PhantomSweep(registrationName="sweep", NumberOfSlices=40, ImageSize=[160, 120], PixelSpacing=0.4))
+    box = [round(bound, 9) for bound in [*surface.GetDataInformation().GetBounds(), *FindSource("Volume of sweep").OutputBounds]]
+    skull = SkullPhantom(registrationName="CT", Spacing=[4, 4, 4], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8])
+    view = GetActiveViewOrCreate("RenderView")
+    view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [250, -100, 400], [0, 1, 0]
+    implant, written = macros.ct_to_iges(skull, folder=os.path.dirname(output("x")))
+    macro = box, implant.GetDataInformation().GetExtent(), os.path.getsize(written)
+    os.remove(written)
+    print("result", hashlib.sha256(repr(fetched()).encode()).hexdigest(), macro, volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
           filled.PointData["Deviation"].GetRange(), coordinates.find(filled), os.path.getsize(iges))
     os.remove(iges)
 

@@ -287,7 +287,8 @@ std::size_t RequireBoxes(const RegularGrid<Dimension>& grid,
 {
   constexpr double most = std::numeric_limits<std::int32_t>::max();
   const double boxes = CountBoxes<Dimension>(index, capacity, most);
-  const double bytes = boxes * (sizeof(TreeCell<Dimension>) + 72.0); // others have some numbers for each
+  // others have some numbers for each box, too
+  const double bytes = boxes * (sizeof(TreeCell<Dimension>) + 72.0);
   const std::string what = "the boxes of a grid of " + std::to_string(grid.GetNumberOfPoints()) +
     " points, of which all parts need all,";
   if (boxes > most)

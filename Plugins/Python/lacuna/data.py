@@ -5,39 +5,92 @@
     volume = open_volume("head.mha")   # an error if ParaView would drop how it lies
     top = fetch(OutputPort(model, 1))
 """
+import contextlib
 import os
+
+import numpy
 
 
 def fetch(source):
     """The data of a proxy, of its second output for OutputPort(proxy, 1): servermanager.Fetch gives that of the first.
 
-    Images from a server have the direction that they have there, which servermanager.Fetch drops.
+    Images are whole, also of several ranks, and lie as they do on a server: servermanager.Fetch gives the part of the
+    first rank, drops the direction and rounds origin and spacing to six digits. Field data are those of the first rank that
+    has a part. Raises RuntimeError when the ranks' parts leave gaps.
     """
+    from lacuna.errors import set_aside
     from paraview import servermanager
-    data = servermanager.Fetch(source, idx=source.Port)
-    if servermanager.ActiveConnection.IsRemote() and data is not None and data.IsA("vtkImageData") and data.GetNumberOfPoints():
-        _turn(data, source, servermanager)
-    return data
+    ranks = servermanager.ActiveConnection.GetNumberOfDataPartitions()
+    if ranks == 1 and not servermanager.ActiveConnection.IsRemote():
+        return servermanager.Fetch(source, idx=source.Port)
+    # images travel in the legacy format, whose reader takes words of Provenance for its own
+    with set_aside(*(f"Error reading {word}!" for word in ("dimensions", "extent", "origin", "spacing"))):
+        data = servermanager.Fetch(source, idx=source.Port)
+        if data is None or not data.IsA("vtkImageData"):
+            return data
+        parts = [servermanager.Fetch(source, rank, idx=source.Port) for rank in range(ranks)] if ranks > 1 else [data]
+        parts = [part for part in parts if part is not None and part.GetNumberOfPoints()]
+        if not parts:
+            return data
+        _place(parts[0], source, servermanager)
+        return _join(parts)
 
 
-def _turn(image, source, servermanager):
-    """Gives a fetched image the direction that it has on the server: that of the points at its corner."""
+def _join(parts):
+    """The image of which the ranks have parts."""
+    if len(parts) == 1:
+        return parts[0]
+    from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes
+    from vtkmodules.vtkFiltersCore import vtkImageAppend
+    append = vtkImageAppend()
+    append.PreserveExtentsOn()
+    for part in parts:
+        append.AddInputData(part)
+    append.Update()
+    image = append.GetOutput()
+    extent = image.GetExtent()
+    covered = numpy.zeros([extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3)], bool)
+    for part in parts:
+        its = part.GetExtent()
+        covered[tuple(slice(its[2 * axis] - extent[2 * axis], its[2 * axis + 1] - extent[2 * axis] + 1) for axis in range(3))] = True
+    if not covered.all():
+        raise RuntimeError(f"the parts of {len(parts)} ranks leave gaps: {[part.GetExtent() for part in parts]}")
+    image.SetOrigin(parts[0].GetOrigin())
+    image.SetSpacing(parts[0].GetSpacing())
+    image.SetDirectionMatrix(parts[0].GetDirectionMatrix())
+    image.SetFieldData(parts[0].GetFieldData())
+    for kind in range(vtkDataSetAttributes.NUM_ATTRIBUTES):
+        active = parts[0].GetPointData().GetAbstractAttribute(kind)
+        if active is not None:
+            image.GetPointData().SetActiveAttribute(active.GetName(), kind)
+    return image
+
+
+def _place(image, source, servermanager):
+    """Gives a fetched image the place that it has on the server, where the points at its corner are: the legacy format has no direction, and
+    six digits of origin and spacing."""
     extent = image.GetExtent()
     corner = [min(bound, extent[2 * (axis // 2)] + axis % 2) for axis, bound in enumerate(extent)]
     counts = [corner[2 * axis + 1] - corner[2 * axis] + 1 for axis in range(3)]
     few = servermanager.filters.ExtractSubset(Input=servermanager.OutputPort(source, source.Port), VOI=corner)
     points = servermanager.Fetch(servermanager.filters.ImageDatatoPointSet(Input=few))
-    columns, stride = [], 1
+    first = numpy.array(points.GetPoint(0))
+    spacing, columns, stride = numpy.array(image.GetSpacing()), [None] * 3, 1
     for axis in range(3):
-        step = [b - a for a, b in zip(points.GetPoint(0), points.GetPoint(stride))] if counts[axis] > 1 else None
-        columns.append(step and [value / image.GetSpacing()[axis] for value in step])
+        if counts[axis] > 1:
+            step = numpy.array(points.GetPoint(stride)) - first
+            spacing[axis] = numpy.linalg.norm(step)
+            columns[axis] = step / spacing[axis]
         stride *= counts[axis]
     missing = [axis for axis in range(3) if columns[axis] is None]
     if len(missing) == 1:  # the axes are right-handed
-        a, b = columns[(missing[0] + 1) % 3], columns[(missing[0] + 2) % 3]
-        columns[missing[0]] = [a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3] for k in range(3)]
-    if len(missing) < 2:
-        image.SetDirectionMatrix([columns[column][row] for row in range(3) for column in range(3)])
+        columns[missing[0]] = numpy.cross(columns[(missing[0] + 1) % 3], columns[(missing[0] + 2) % 3])
+    elif missing:
+        columns = list(numpy.eye(3))
+    direction = numpy.array(columns).T
+    image.SetSpacing(spacing)
+    image.SetDirectionMatrix(direction.ravel())
+    image.SetOrigin(first - direction @ (spacing * extent[::2]))
 
 
 def open_volume(path):

@@ -346,7 +346,8 @@ void SweepBuilder::BuildPoses()
       this->ReportBadFrames(transform);
     }
     const std::string& image = this->Options.ImageFrame;
-    if (transform.From != image && transform.To != image) // the third axis of a picture means nothing
+    // the third axis of a picture means nothing
+    if (transform.From != image && transform.To != image)
     {
       this->ReportMirrors(transform);
     }
