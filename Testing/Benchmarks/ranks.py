@@ -12,7 +12,7 @@ Measured: rounds of one rank and of N ranks, one after the other, the first upda
 
 By parts: what each of many ranks would do, done one after the other by one process: ranks exchange nothing but the sums of
 Occluded Angle, so a rank's time is that of its part of the output, and nothing is extrapolated but the network
-(Documentation/DeveloperGuide/distributed.md). All parts of up to 10 ranks, else some of them; the busiest counts.
+(Documentation/DeveloperGuide/distributed.md). All parts, or fifty of them where all would take too long; the busiest counts.
 
 Rows of the file: CASE/strong/ranks:N and CASE/weak/ranks:N, measured, with the time by the clock, too (for that leave the machine alone);
 CASE/strong/parts:N and CASE/weak/parts:N.
@@ -31,7 +31,11 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 LATENCY = 2e-6  # s, of a message between nodes
 BANDWIDTH = 12.5e9  # bytes/s: 100 Gbit/s
+SUMMED = 1 << 22  # values that are summed at once
 MANY = 2, 10, 100, 1000
+
+
+LINES = 100  # of Occluded Angle, of two directions each
 
 
 # --- in pvbatch; work: how much, 1 for one rank. Each gives the input and a function that makes the filter. ---
@@ -40,7 +44,7 @@ MANY = 2, 10, 100, 1000
 def occluded_angle(size, work):
     import paraview.simple as pv
     shape = pv.IncompleteShape(Shape="Sphere", Dimensions=[int(160 * size)] * 3)
-    return shape, lambda: pv.OccludedAngle(Input=shape, NumberOfDirections=2 * math.ceil(100 * work))  # two for each line
+    return shape, lambda: pv.OccludedAngle(Input=shape, NumberOfDirections=2 * math.ceil(LINES * work))
 
 
 def swept_volume(size, work):
@@ -73,6 +77,8 @@ def rbf_interpolator(size, work):
 
 CASES = {"occluded-angle": occluded_angle, "swept-volume": swept_volume, "iso-ray-caster": iso_ray_caster, "speckle": speckle,
          "rbf-interpolator": rbf_interpolator}
+FEW = 50  # parts, where all would take more than ALL
+ALL = 40  # s
 SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 
 
@@ -123,7 +129,7 @@ def measure(size, ranks, out):
 
 
 def parts(size, quick):
-    """Of each case: {row: {"seconds": of the busiest part, "points"} or {"refused": why}}"""
+    """Of each case: {row: {"seconds": of the busiest part, "mean", "least", "points"} or {"refused": why}}"""
     import paraview.simple as pv
     rows = {}
     for name, case in CASES.items():
@@ -142,7 +148,7 @@ def busiest_part(algorithm, name, kind, ranks, quick):
     if name == SHARES_DIRECTIONS:
         wanted, ranks = [0], 1
     else:
-        count = min(ranks, 2 if quick else 3 if kind == "weak" else 10 if ranks <= 10 else 20)
+        count = min(ranks, 2 if quick else 3 if kind == "weak" else FEW)
         wanted = [int((each + 0.5) * ranks / count) for each in range(count)]
     said = []
 
@@ -151,26 +157,34 @@ def busiest_part(algorithm, name, kind, ranks, quick):
     listen.CallDataType = "string0"
     algorithm.AddObserver("ErrorEvent", listen)
     algorithm.GetExecutive().AddObserver("ErrorEvent", lambda *_: None)
-    seconds = []
-    for rank in wanted:
+
+    def seconds_of(rank):
         taken = []
-        while len(taken) < 2 or sum(taken) < 0.3 and len(taken) < 10:  # short ones more often; the first makes the input
+        while len(taken) < 3:  # the first makes the input
             algorithm.Modified()
             start = time.process_time()
             algorithm.UpdatePiece(rank, ranks, 0)
             taken.append(time.process_time() - start)
             if said:
-                return {"refused": said[0].strip().partition("): ")[2]}
-        seconds.append(min(taken[1:]))
-    return {"seconds": max(seconds), "points": algorithm.GetOutputDataObject(0).GetNumberOfPoints()}
+                return None
+        return statistics.mean(taken[1:])
+    seconds = []
+    for rank in wanted:
+        seconds.append(seconds_of(rank))
+        if said:
+            return {"refused": said[0].strip().partition("): ")[2]}
+    if kind == "strong" and not quick and 3 * ranks * statistics.mean(seconds) < ALL:
+        seconds = [seconds_of(rank) for rank in range(ranks)]
+    return {"seconds": max(seconds), "mean": statistics.mean(seconds), "least": min(seconds), "points": algorithm.GetOutputDataObject(0).GetNumberOfPoints()}
 
 
 # --- the table ---
 
 
-def sum_time(ranks, size):
-    """Of values of size bytes over all ranks, by reduce-scatter and all-gather (Rabenseifner): latency and bandwidth."""
-    return 2 * math.log2(ranks) * LATENCY + 2 * (ranks - 1) / ranks * size / BANDWIDTH
+def sum_time(ranks, values, directions):
+    """Of so many values over all ranks, by reduce-scatter and all-gather (Rabenseifner): latency and bandwidth."""
+    size = values * (4 if directions <= 1022 else 8)
+    return math.ceil(values / SUMMED) * 2 * math.log2(ranks) * LATENCY + 2 * (ranks - 1) / ranks * size / BANDWIDTH
 
 
 def at(rows, case, kind, ranks):
@@ -178,7 +192,8 @@ def at(rows, case, kind, ranks):
     row = rows[f"{case}/{kind}/parts:{ranks}"]
     if "refused" in row:
         return None
-    return row["seconds"] + (sum_time(ranks, 4 * row["points"]) if case == SHARES_DIRECTIONS and ranks > 1 else 0.0)
+    directions = 2 * LINES * (ranks if kind == "weak" else 1)
+    return row["seconds"] + (sum_time(ranks, row["points"], directions) if case == SHARES_DIRECTIONS and ranks > 1 else 0.0)
 
 
 def table(measured, by_parts, ranks):
@@ -188,7 +203,7 @@ def table(measured, by_parts, ranks):
     for kind, title, cell in (("strong", "Strong scaling: times as fast as one rank", lambda ratio: number(ratio)),
                               ("weak", "Weak scaling: efficiency", lambda ratio: f"{100 * ratio:.0f} %")):
         lines = [f"| {title} | 1 rank, s | {ranks} ranks, measured | " + " | ".join(f"{many}, by parts" for many in MANY) +
-                 (" | repeated part |" if kind == "strong" else " |"), "|---" * (3 + len(MANY) + (kind == "strong")) + "|"]
+                 (f" | busiest / mean of {MANY[-1]} | repeated, at most |" if kind == "strong" else " |"), "|---" * (3 + len(MANY) + 2 * (kind == "strong")) + "|"]
         for case in CASES:
             one, some = (measured[f"{case}/{kind}/ranks:{n}"]["rounds"] for n in (1, ranks))
             ratios = [a / b for a, b in zip(one, some)]
@@ -202,9 +217,9 @@ def table(measured, by_parts, ranks):
                 if not taken:
                     refused[case] = f"{many} ranks, {kind}: " + by_parts[f"{case}/{kind}/parts:{many}"]["refused"]
             if kind == "strong":
-                most = MANY[-1]
-                part = by_parts[f"{case}/strong/parts:{most}"]
-                cells.append(f"{100 * max(0.0, part['seconds'] / alone - 1 / most) / (1 - 1 / most):.2g} %" if "seconds" in part else "–")
+                part = by_parts[f"{case}/strong/parts:{MANY[-1]}"]
+                shares = case != SHARES_DIRECTIONS and "mean" in part
+                cells += [f"{part['seconds'] / part['mean']:.1f}" if shares else "–", f"{100 * part['least'] / alone:.2g} %" if "least" in part else "–"]
             lines.append(f"| {case} | " + " | ".join(cells) + " |")
         texts.append("\n".join(lines))
     return "\n\n".join(texts + [f"{case}, {why}" for case, why in refused.items()])

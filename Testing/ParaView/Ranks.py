@@ -31,7 +31,7 @@ IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "Dep
           "Mirror", "OccludedAngle", "PhantomSweep", "ProbeCalibration", "RBFHoleFiller", "RBFImageWarp", "RBFInterpolator",
           "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader"}
 # but of these all ranks have the whole
-WHOLE = {"IncompleteShape", "OccludedAngle", "ProbeCalibration"}
+WHOLE = {"OccludedAngle", "ProbeCalibration"}
 # Some of the cells of a mesh
 MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
