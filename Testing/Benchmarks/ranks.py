@@ -3,7 +3,7 @@
 """Strong and weak scaling over MPI's ranks, one thread each: measured with two, and what 1000 would do.
 
     . build/release/lacuna-env.sh
-    Testing/Benchmarks/ranks.py [--quick] [--ranks N] [--benchmark_out FILE]
+    Testing/Benchmarks/ranks.py [--quick] [--ranks N] [--rounds N] [--benchmark_out FILE]
 
 Strong: the same work by more ranks; weak: as much work for each. Times are the processor time of the busiest rank, which what else the
 machine does changes little; inputs are there before.
@@ -12,7 +12,7 @@ Measured: rounds of one rank and of N ranks, one after the other, the first upda
 
 By parts: what each of many ranks would do, done one after the other by one process: ranks exchange nothing but the sums of
 Occluded Angle, so a rank's time is that of its part of the output, and nothing is extrapolated but the network
-(Documentation/DeveloperGuide/distributed.md). All parts, or fifty of them where all would take too long; the busiest counts.
+(Documentation/DeveloperGuide/distributed.md). All parts, or twenty of them where all would take too long, two for weak scaling; the busiest counts.
 
 Rows of the file: CASE/strong/ranks:N and CASE/weak/ranks:N, measured, with the time by the clock, too (for that leave the machine alone);
 CASE/strong/parts:N and CASE/weak/parts:N.
@@ -77,8 +77,8 @@ def rbf_interpolator(size, work):
 
 CASES = {"occluded-angle": occluded_angle, "swept-volume": swept_volume, "iso-ray-caster": iso_ray_caster, "speckle": speckle,
          "rbf-interpolator": rbf_interpolator}
-FEW = 50  # parts, where all would take more than ALL
-ALL = 40  # s
+FEW = 20  # parts, where all would take more than ALL
+ALL = 20  # s
 SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 
 
@@ -135,6 +135,9 @@ def parts(size, quick):
     for name, case in CASES.items():
         for kind in ("strong", "weak"):
             for ranks in (1, *MANY):
+                if kind == "weak" and ranks == 1:  # the same work
+                    rows[f"{name}/weak/parts:1"] = rows[f"{name}/strong/parts:1"]
+                    continue
                 work = ranks if kind == "weak" else 1
                 source, make = case(size, work / ranks if name == SHARES_DIRECTIONS else work)
                 made = make()
@@ -148,7 +151,7 @@ def busiest_part(algorithm, name, kind, ranks, quick):
     if name == SHARES_DIRECTIONS:
         wanted, ranks = [0], 1
     else:
-        count = min(ranks, 2 if quick else 3 if kind == "weak" else FEW)
+        count = min(ranks, 2 if quick or kind == "weak" else FEW)
         wanted = [int((each + 0.5) * ranks / count) for each in range(count)]
     said = []
 
@@ -160,7 +163,7 @@ def busiest_part(algorithm, name, kind, ranks, quick):
 
     def seconds_of(rank):
         taken = []
-        while len(taken) < 3:  # the first makes the input
+        while len(taken) < (3 if kind == "strong" else 2):  # the first makes the input
             algorithm.Modified()
             start = time.process_time()
             algorithm.UpdatePiece(rank, ranks, 0)
@@ -242,7 +245,7 @@ def run(options):
                 sys.exit(done.stdout)
             with open(out, encoding="utf-8") as file:
                 return json.load(file)
-        for _ in range(1 if options.quick else 3):
+        for _ in range(1 if options.quick else options.rounds):
             for ranks in (1, options.ranks):
                 for name, (processor, wall) in job(ranks, "measure").items():
                     row = measured.setdefault(name, {"rounds": [], "wall": []})
@@ -277,11 +280,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="small cases, once")
     parser.add_argument("--ranks", type=int, default=2, help="besides one rank")
+    parser.add_argument("--rounds", type=int, default=3, help="of what is measured")
     parser.add_argument("--benchmark_out", metavar="FILE", help="also write the rows as Google Benchmark's JSON")
     parser.add_argument("--in-pvbatch", nargs=3, metavar=("WHAT", "RANKS", "OUT"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.ranks < 2:
         parser.error("--ranks must be 2 or more: one rank is measured in any case")
+    if options.rounds < 1:
+        parser.error("--rounds must be 1 or more")
     if options.in_pvbatch:
         what, ranks, out = options.in_pvbatch
         run_in_pvbatch(what, int(ranks), out, options.quick)
