@@ -85,6 +85,11 @@ def _place(image, source, servermanager):
     missing = [axis for axis in range(3) if columns[axis] is None]
     if len(missing) == 1:  # the axes are right-handed
         columns[missing[0]] = numpy.cross(columns[(missing[0] + 1) % 3], columns[(missing[0] + 2) % 3])
+    elif len(missing) == 2:  # a row: the others are any across it
+        known = ({0, 1, 2} - set(missing)).pop()
+        across = numpy.cross(columns[known], numpy.eye(3)[numpy.argmin(abs(columns[known]))])
+        columns[(known + 1) % 3] = across / numpy.linalg.norm(across)
+        columns[(known + 2) % 3] = numpy.cross(columns[known], columns[(known + 1) % 3])
     elif missing:
         columns = list(numpy.eye(3))
     direction = numpy.array(columns).T

@@ -125,14 +125,12 @@ class Page:
 
     def ranks(self, plots):
         ranks = self.results.get("ranks")
-        if not ranks:
+        if not ranks or not ranks.get("rows"):
             return ""
         build = f" Lacuna {ranks['Lacuna']}, measured at {ranks['Date']}." if "Lacuna" in ranks else ""
         text = f"## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.{build}\n\n" + picture("ranks", "Speed-up by ranks", plots)
-        if not ranks.get("rows"):
-            return ""
         return text + ranks["text"] + "\n\nMeasured: the median of the rounds, and the extremes. By parts: the time of the busiest of so many ranks, done one after the other, " \
-            "and what a network would take; the repeated part is what each of 1000 ranks does again ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n"
+            "and what a network would take; what 1000 ranks repeat is at most the least of their parts ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n"
 
     def exponents(self):
         rows = []

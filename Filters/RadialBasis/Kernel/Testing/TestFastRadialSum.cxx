@@ -361,7 +361,6 @@ TEST(FastRadialSum, RefusesWhatCannotBeSummed)
     sum.Apply(execution, std::vector<double>(10, 1.0), 0, values.data()), std::invalid_argument);
 }
 
-// A landmark warp of a small volume: interpolants of a high order would take seconds to set up.
 // What is refused for lack of memory is as many boxes as there would be, not a bound.
 template <int Dimension>
 void ExpectRoomForEachBox(const std::array<std::int64_t, Dimension>& size, int capacity)
@@ -423,6 +422,7 @@ TEST(FastRadialSum, RefusesGridsWithoutRoomForTheirBoxes)
   }
 }
 
+// A landmark warp of a small volume: interpolants of a high order would take seconds to set up.
 TEST(FastRadialSum, SumsOnceDirectlyWhereThatIsLessWork)
 {
   lacuna::ThreadExecution execution(2);
