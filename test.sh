@@ -9,11 +9,12 @@ set -euo pipefail
 cd "$(dirname "$0")"
 . Testing/Tools/setup.sh
 preset=release target=all
-if [ "${1:-}" = --preset ]; then preset=$2; shift 2; fi
-if [ "${1:-}" = --target ]; then target=$2; shift 2; fi
 soak=soak example='|example' others='' options=()
 while [ $# -gt 0 ]; do
   case $1 in
+    -h | --help) sed -n '3,7s/^# \?//p' "$0"; exit ;;
+    --preset) preset=${2:?preset}; shift 2; continue ;;
+    --target) target=${2:?target}; shift 2; continue ;;
     -LE) others+="|$2"; shift 2; continue ;; # ctest excludes only what all of several -LE match
     -L | -R)
       example=''

@@ -6,6 +6,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . Testing/Tools/setup.sh
+case $PWD in
+  *[[:blank:]]*) lacuna_fail "building the site" "Doxygen needs a folder without blanks in its path, not $PWD" ;;
+esac
 site=$(realpath -m "${1:-build/site}")
 lacuna_install_packages packages-documentation.txt
 version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)

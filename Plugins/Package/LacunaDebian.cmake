@@ -3,6 +3,9 @@
 #   lacuna      plugins, libraries, Python package, macros, emulator
 #   lacuna-dev  headers, kernels and what find_package(Lacuna) reads
 #   lacuna-doc  examples and, if it was built before (Documentation/build-site.sh), the site
+if (NOT LACUNA_WITH_PARAVIEW)
+  message(FATAL_ERROR "The Debian packages are for ParaView: LACUNA_DEBIAN needs LACUNA_WITH_PARAVIEW")
+endif ()
 set(LACUNA_PACKAGE_CONTACT "The Lacuna developers <lacuna@example.org>" CACHE STRING
   "Who answers for the packages: name and mail address")
 set(LACUNA_SITE "${CMAKE_SOURCE_DIR}/build/site/html" CACHE PATH

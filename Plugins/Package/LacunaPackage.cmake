@@ -15,3 +15,6 @@ install(FILES
   "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfig.cmake"
   "${CMAKE_BINARY_DIR}/${lacuna_cmake_destination}/LacunaConfigVersion.cmake"
   DESTINATION "${lacuna_cmake_destination}" COMPONENT development)
+if (NOT LACUNA_DEBIAN) # whose packages have a file of their own for it
+  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna" COMPONENT runtime)
+endif ()

@@ -33,9 +33,10 @@ LATENCY = 2e-6  # s, of a message between nodes
 BANDWIDTH = 12.5e9  # bytes/s: 100 Gbit/s
 SUMMED = 1 << 22  # values that are summed at once
 MANY = 2, 10, 100, 1000
-
-
+FEW = 20  # parts, where all would take more than ALL
+ALL = 20  # s
 LINES = 100  # of Occluded Angle, of two directions each
+SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 
 
 # --- in pvbatch; work: how much, 1 for one rank. Each gives the input and a function that makes the filter. ---
@@ -77,9 +78,6 @@ def rbf_interpolator(size, work):
 
 CASES = {"occluded-angle": occluded_angle, "swept-volume": swept_volume, "iso-ray-caster": iso_ray_caster, "speckle": speckle,
          "rbf-interpolator": rbf_interpolator}
-FEW = 20  # parts, where all would take more than ALL
-ALL = 20  # s
-SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 
 
 # In ParaView's Programmable Filter, on each rank: its processor time so far.
@@ -202,8 +200,8 @@ def at(rows, case, kind, ranks):
 def table(measured, by_parts, ranks):
     def number(value):
         return f"{value:.0f}" if value >= 20 else f"{value:.1f}"
-    texts, refused = [], {}
-    for kind, title, cell in (("strong", "Strong scaling: times as fast as one rank", lambda ratio: number(ratio)),
+    texts, refused = [], []
+    for kind, title, cell in (("strong", "Strong scaling: times as fast as one rank", number),
                               ("weak", "Weak scaling: efficiency", lambda ratio: f"{100 * ratio:.0f} %")):
         lines = [f"| {title} | 1 rank, s | {ranks} ranks, measured | " + " | ".join(f"{many}, by parts" for many in MANY) +
                  (f" | busiest / mean of {MANY[-1]} | repeated, at most |" if kind == "strong" else " |"), "|---" * (3 + len(MANY) + 2 * (kind == "strong")) + "|"]
@@ -218,14 +216,16 @@ def table(measured, by_parts, ranks):
                 taken = at(by_parts, case, kind, many)
                 cells.append(cell(alone / taken) if taken else "refused")
                 if not taken:
-                    refused[case] = f"{many} ranks, {kind}: " + by_parts[f"{case}/{kind}/parts:{many}"]["refused"]
+                    refused.append(f"{case}, {many} ranks, {kind}: " + by_parts[f"{case}/{kind}/parts:{many}"]["refused"])
             if kind == "strong":
                 part = by_parts[f"{case}/strong/parts:{MANY[-1]}"]
                 shares = case != SHARES_DIRECTIONS and "mean" in part
                 cells += [f"{part['seconds'] / part['mean']:.1f}" if shares else "–", f"{100 * part['least'] / alone:.2g} %" if "least" in part else "–"]
             lines.append(f"| {case} | " + " | ".join(cells) + " |")
         texts.append("\n".join(lines))
-    return "\n\n".join(texts + [f"{case}, {why}" for case, why in refused.items()])
+    rounds = len(measured[f"{next(iter(CASES))}/strong/ranks:1"]["rounds"])
+    said = f"Measured: the median of {rounds} rounds, and the extremes." if rounds > 1 else "Measured: one round."
+    return "\n\n".join([*texts, *refused, said])
 
 
 def run(options):

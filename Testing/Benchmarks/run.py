@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs all benchmarks beside their peers and writes a page with tables and plots.
 
-    Testing/Benchmarks/run.py                       all, some 50 minutes, into Documentation/Benchmarks
+    Testing/Benchmarks/run.py                       all, about an hour, into Documentation/Benchmarks
     Testing/Benchmarks/run.py --quick               a few minutes, into build/benchmarks
     Testing/Benchmarks/run.py --only speckle        one suite (several times for several)
 
@@ -168,8 +168,11 @@ def join(files):
     """Results of several runs as those of one; all of one build, machine and kind."""
     whole = None
     for name in files:
-        with open(name, encoding="utf-8") as file:
-            part = json.load(file)
+        try:
+            with open(name, encoding="utf-8") as file:
+                part = json.load(file)
+        except (OSError, ValueError) as problem:
+            raise SystemExit(f"{name}: {problem}") from None
         if whole is None:
             whole = part
             continue

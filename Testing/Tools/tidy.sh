@@ -10,7 +10,8 @@ lacuna_install_packages
 lacuna_install_packages packages-ci.txt
 # configured is enough: no header of these sources is made by the build
 lacuna_configure release
-mapfile -t all < <(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/)
+all=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/) # ends here without git
+mapfile -t all <<<"$all"
 changed() {
   git log --max-count="$1" --name-only --pretty= -- '*.cxx' '*.h' | sort -u | while read -r file; do
     case $file in

@@ -193,7 +193,8 @@ public:
     this->Program.Text += '\n';
   }
 
-  // axes: how many, from x, are spoken of; all of them when the control does not know where it is.
+  // Axes from first up to last, without it, are spoken of; all of them when the control does not know
+  // where it is.
   void Move(bool rapid, const Units& to, std::int64_t feed, int first, int last)
   {
     std::string block;
@@ -271,6 +272,7 @@ private:
   Units At{ Unknown, Unknown, Unknown };
   std::int64_t Feed = Unknown;
 };
+
 //------------------------------------------------------------------------------
 // Where the path is before, between and after the motions, which it judges.
 std::vector<Units> GetPoints(
@@ -397,8 +399,7 @@ GCodeProgram MakeGCode(const Vec3& start, const std::vector<GCodeMove>& moves,
   {
     program.Warnings.emplace_back(
       "Header does not leave the spindle turning clockwise (no M03, or M04, M05 or M06 behind it), "
-      "so the "
-      "tool would be dragged through the part. Write S{SPEED} M03 behind T{TOOL} M06");
+      "so the tool would be dragged through the part. Write S{SPEED} M03 behind T{TOOL} M06");
   }
   program.Text = "%\nO" + values[0].second + "\n";
   for (const std::string& comment : options.Comments)

@@ -69,10 +69,12 @@ class Page:
         noise = (f"Other programs had {100 * load['mean']:.0f} % of the cores in the mean (most in a suite: {100 * load['largest']:.0f} %)"
                  + (": **the machine was busy, so times by the clock, and less so ratios, are too long or off; processor times are nearer the truth.**"
                     if load["largest"] > NOISY else ": the machine was quiet."))
+        ranks = results.get("ranks") or {}
+        others = "" if ranks.get("Lacuna") in (None, results["machine"]["Lacuna"]) else "but those of ranks, whose build is told there, "
         quick = ("**A quick run: small cases, and too few rounds to quote a figure.**\n\n" if results["quick"] else "")
         return (f"# Benchmarks\n\nWritten by `{results['command']}`, which needs a release build ([how](../../CONTRIBUTING.md)) and the packages of "
-                "`Testing/Tools/packages-benchmarks.txt` (`Testing/Tools/benchmarks.sh` installs and builds them first); run it to have the same of your machine. All figures are of "
-                f"{'one run' if runs == 1 else f'{runs} runs'} of {results['minutes']:.0f} minutes: each row and its peers were measured in turns, {results['rounds']} rounds "
+                "`Testing/Tools/packages-benchmarks.txt` (`Testing/Tools/benchmarks.sh` installs and builds them first); run it to have the same of your machine. All figures "
+                f"{others}are of {'one run' if runs == 1 else f'{runs} runs'} of {results['minutes']:.0f} minutes: each row and its peers were measured in turns, {results['rounds']} rounds "
                 "(less where a table says so); given are the median and, in parentheses, the least and the largest of the rounds. A ratio is taken within a round. "
                 "*Clock* is the time one waits, *processor* the time of all threads together, both in ms.\n\n"
                 f"{quick}{noise}\n\n| | |\n|---|---|\n{facts}")
@@ -129,8 +131,9 @@ class Page:
             return ""
         build = f" Lacuna {ranks['Lacuna']}, measured at {ranks['Date']}." if "Lacuna" in ranks else ""
         text = f"## Ranks\nMPI's ranks on this machine (`Testing/Benchmarks/ranks.py`), by the processor time of the busiest one.{build}\n\n" + picture("ranks", "Speed-up by ranks", plots)
-        return text + ranks["text"] + "\n\nMeasured: the median of the rounds, and the extremes. By parts: the time of the busiest of so many ranks, done one after the other, " \
-            "and what a network would take; what 1000 ranks repeat is at most the least of their parts ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n"
+        return (text + ranks["text"] + " By parts: the time of the busiest of so many ranks, done one after the other, and what a network would take; what 1000 ranks repeat is at "
+                "most the least of their parts. Weak scaling counts points as work, of which those of a finer grid may cost less, and takes two of many parts: so it can be above "
+                "100 % ([how](../DeveloperGuide/distributed.md#a-thousand-ranks-part-by-part)).\n")
 
     def exponents(self):
         rows = []
