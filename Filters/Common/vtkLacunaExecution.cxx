@@ -97,39 +97,32 @@ void Parallel(const Callable& body)
     body();
   }
 }
-}
 
-//------------------------------------------------------------------------------
-int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
-  const std::function<void(vtkLacunaExecution&)>& body)
+// The body of RequestData, if the algorithm is not to stop and its inputs are sound.
+std::function<void(vtkLacunaExecution&)> WithSoundInputs(
+  vtkAlgorithm* algorithm, const std::function<void(vtkLacunaExecution&)>& body)
 {
-  return vtkLacunaExecution::RunTogether(algorithm, outputs,
-    [&](vtkLacunaExecution& execution)
-    {
-      if (vtkLacunaCheckAbort(algorithm))
-      {
-        throw lacuna::Aborted();
-      }
-      vtkLacunaInputs::Check(algorithm);
-      body(execution);
-    });
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
-  const std::function<void(vtkLacunaExecution&)>& body)
-{
-  if (!vtkLacunaInputs::AreSingle(algorithm))
+  return [algorithm, &body](vtkLacunaExecution& execution)
   {
-    EmptyOutputs(outputs);
-    return 0;
-  }
+    if (vtkLacunaCheckAbort(algorithm))
+    {
+      throw lacuna::Aborted();
+    }
+    vtkLacunaInputs::Check(algorithm);
+    body(execution);
+  };
+}
+
+// Runs body and returns 1, or 0 after an error that was told.
+int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+  const std::function<void(vtkLacunaExecution&)>& body, std::string& error)
+{
   const bool isAlone = vtkLacunaRanks().GetNumber() == 1;
   const std::string announced = vtkLacunaFailure::GetAnnounced(algorithm);
   try
   {
     // Of several ranks one alone may have failed: what they make together is not left out by one of them.
-    std::string error =
+    error =
       announced.empty() && isAlone ? vtkLacunaFailure::GetRecent(algorithm, outputs) : announced;
     if (error.empty())
     {
@@ -149,15 +142,16 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     {
       // VTK would not execute what comes behind on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
+      error.clear();
       return 1;
     }
     vtkLacunaFailure::Tell(algorithm, outputs, error);
     return 0;
   }
-  catch (const vtkLacunaGridChanged& error)
+  catch (const vtkLacunaGridChanged& changed)
   {
     EmptyOutputs(outputs);
-    vtkErrorWithObjectMacro(algorithm, << error.what());
+    vtkErrorWithObjectMacro(algorithm, << changed.what());
     return 1;
   }
   catch (const lacuna::Aborted&)
@@ -165,6 +159,62 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     EmptyOutputs(outputs);
     return 1; // not an error: the user asked for it
   }
+}
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+  const std::function<void(vtkLacunaExecution&)>& body)
+{
+  return vtkLacunaExecution::RunTogether(algorithm, outputs, WithSoundInputs(algorithm, body));
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+  const std::function<void(vtkLacunaExecution&)>& body)
+{
+  if (!vtkLacunaInputs::AreSingle(algorithm))
+  {
+    EmptyOutputs(outputs);
+    return 0;
+  }
+  std::string error;
+  return RunAndTell(algorithm, outputs, body, error);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+  bool isWanted, const std::function<void(vtkLacunaExecution&)>& body)
+{
+  const vtkLacunaRanks ranks;
+  if (ranks.GetNumber() == 1)
+  {
+    return isWanted ? Run(algorithm, outputs, body) : 1;
+  }
+  if (!vtkLacunaInputs::AreSingle(algorithm)) // on no rank
+  {
+    EmptyOutputs(outputs);
+    return 0;
+  }
+  std::string agreed;
+  const bool haveMet = vtkLacunaFailure::GetAgreed(algorithm, outputs, agreed);
+  std::string own;
+  if (agreed.empty() && isWanted)
+  {
+    RunAndTell(algorithm, outputs, WithSoundInputs(algorithm, body), own);
+  }
+  if (!haveMet)
+  {
+    agreed = ranks.GetFirstText(own);
+    vtkLacunaFailure::SetAgreed(algorithm, outputs, agreed);
+  }
+  if (own.empty() && !agreed.empty())
+  {
+    EmptyOutputs(outputs);
+    vtkLacunaFailure::Tell(
+      algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
+  }
+  return own.empty() && agreed.empty() ? 1 : 0;
 }
 
 //------------------------------------------------------------------------------

@@ -47,6 +47,14 @@ public:
   static int RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 
+  /// As Run where isWanted, for algorithms of which one rank, or those that are asked for something, makes
+  /// all of the output: what fails there fails on all ranks, with the same text, for VTK would leave out
+  /// what comes behind on the rank that failed alone, and the others would wait there. All wait for its
+  /// outcome; VTK executes algorithms on all ranks when something has changed. Asked once more for what has
+  /// not changed, by one rank alone for another part perhaps, nobody waits: the same error, or body again.
+  static int RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, bool isWanted,
+    const std::function<void(vtkLacunaExecution&)>& body);
+
   /// Runs the body of algorithm's RequestInformation and returns 1. After an exception the outputs are empty,
   /// have an empty whole extent and no remembered request, so that the next update starts afresh when the
   /// cause is mended. The text is an error only when data are asked for (Run): ParaView asks for information

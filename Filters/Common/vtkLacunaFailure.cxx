@@ -18,6 +18,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <vector>
 
@@ -70,6 +71,27 @@ vtkInformationDoubleVectorKey* ToldOf()
   static vtkInformationDoubleVectorKey* const key =
     vtkInformationDoubleVectorKey::MakeKey("TOLD_ERROR_OF", "vtkLacunaFailure");
   return key;
+}
+
+vtkInformationStringKey* Agreed()
+{
+  static vtkInformationStringKey* const key =
+    vtkInformationStringKey::MakeKey("AGREED_ERROR", "vtkLacunaFailure");
+  return key;
+}
+vtkInformationDoubleVectorKey* AgreedOf()
+{
+  static vtkInformationDoubleVectorKey* const key =
+    vtkInformationDoubleVectorKey::MakeKey("AGREED_ERROR_OF", "vtkLacunaFailure");
+  return key;
+}
+
+// What changes on all ranks at once: not the time at which data were made, nor the part asked for.
+std::array<double, 2> GetSharedState(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
+{
+  vtkInformation* info = outputs->GetInformationObject(0);
+  return { static_cast<double>(vtkLacunaRequest::GetNewestTime(algorithm)),
+    info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }
 
 double GetSeconds()
@@ -169,6 +191,35 @@ std::string vtkLacunaFailure::GetRecent(vtkAlgorithm* algorithm, vtkInformationV
   return !own->Has(OfFiles()) && !told.empty() && told == GetState(algorithm, outputs)
     ? own->Get(Told())
     : "";
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaFailure::GetAgreed(
+  vtkAlgorithm* algorithm, vtkInformationVector* outputs, std::string& error)
+{
+  vtkInformation* own = algorithm->GetInformation();
+  const std::array<double, 2> state = GetSharedState(algorithm, outputs);
+  if (!own->Has(AgreedOf()) || !std::equal(state.begin(), state.end(), own->Get(AgreedOf())))
+  {
+    return false;
+  }
+  error = own->Get(Agreed());
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::SetAgreed(
+  vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
+{
+  vtkInformation* own = algorithm->GetInformation();
+  own->Set(AgreedOf(), GetSharedState(algorithm, outputs).data(), 2);
+  own->Set(Agreed(), error);
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaFailure::Again(const std::string& error)
+{
+  return error + " (change a property to try again)";
 }
 
 //------------------------------------------------------------------------------

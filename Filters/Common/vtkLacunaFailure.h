@@ -35,6 +35,16 @@ std::string GetAnnounced(vtkAlgorithm* algorithm);
 /// looked at again.
 std::string GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs);
 
+/// What all ranks of an MPI program have agreed upon for the algorithm as it is now and the time asked for:
+/// the error of one of them, empty if there was none. Returns whether they have.
+bool GetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, std::string& error);
+
+/// What is told of an error that is kept though its cause may be gone, as of memory.
+std::string Again(const std::string& error);
+
+/// Keeps what the ranks have agreed upon.
+void SetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error);
+
 /// Makes error one of algorithm. Its outputs are marked as not generated.
 void Tell(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error);
 }

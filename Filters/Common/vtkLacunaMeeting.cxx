@@ -7,6 +7,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaFailure.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVersionCompat.h"
@@ -130,7 +131,7 @@ bool vtkLacunaMeeting::Hold(vtkAlgorithm* filter, const std::vector<double>& tim
   {
     if (!this->Error.empty())
     {
-      throw std::runtime_error(this->Error + " (change a property to try again)");
+      throw std::runtime_error(vtkLacunaFailure::Again(this->Error));
     }
     requireInput();
     return false;

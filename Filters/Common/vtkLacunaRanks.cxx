@@ -74,3 +74,26 @@ bool vtkLacunaRanks::AllFine(bool fine) const
   this->Controller->AllReduce(&own, &all, 1, vtkCommunicator::MIN_OP);
   return all == 1;
 }
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaRanks::GetFirstText(const std::string& own) const
+{
+  const int number = this->GetNumber();
+  if (number == 1)
+  {
+    return own;
+  }
+  const int candidate = own.empty() ? number : this->GetRank();
+  int first = number;
+  this->Controller->AllReduce(&candidate, &first, 1, vtkCommunicator::MIN_OP);
+  if (first == number)
+  {
+    return {};
+  }
+  std::string text = own;
+  int size = static_cast<int>(text.size());
+  this->Controller->Broadcast(&size, 1, first);
+  text.resize(size);
+  this->Controller->Broadcast(text.data(), size, first);
+  return text;
+}

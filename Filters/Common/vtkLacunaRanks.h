@@ -7,6 +7,8 @@
 #include "lacunaRanks.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 
+#include <string>
+
 class vtkMultiProcessController;
 
 /// Ranks of a pvserver or pvbatch under MPI; one rank alone in any other program. Use it in
@@ -22,6 +24,9 @@ public:
   void Sum(std::uint32_t* values, std::int64_t count) const override;
   void Sum(std::uint64_t* values, std::int64_t count) const override;
   bool AllFine(bool fine) const override;
+
+  /// The text of the first rank that has one, on all ranks; empty: none has.
+  std::string GetFirstText(const std::string& own) const;
 
 private:
   vtkMultiProcessController* Controller; // not owned

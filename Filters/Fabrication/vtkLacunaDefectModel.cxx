@@ -170,10 +170,9 @@ int vtkLacunaDefectModel::RequestData(
   // VTK passes the map's, whose ImageToWorld is not of these
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
-  if (!vtkLacunaRequest::IsWanted(outputVector) || vtkLacunaRanks().GetRank() > 0)
-  {
-    return 1; // the model is one piece
-  }
+  // the model is one piece
+  const bool isWanted =
+    vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)
@@ -236,7 +235,7 @@ int vtkLacunaDefectModel::RequestData(
       vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
     }
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
 }
 
 //------------------------------------------------------------------------------

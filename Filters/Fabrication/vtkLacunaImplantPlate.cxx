@@ -179,10 +179,7 @@ int vtkLacunaImplantPlate::RequestData(
   vtkImageData* map = vtkImageData::GetData(inputVector[0]);
   vtkPointSet* marks = vtkPointSet::GetData(inputVector[1]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  if (!vtkLacunaRequest::IsWanted(outputVector))
-  {
-    return 1; // the plate is one piece
-  }
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // the plate is one piece
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)
@@ -351,7 +348,7 @@ int vtkLacunaImplantPlate::RequestData(
       .Add("Density", this->Density);
     vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
 }
 
 //------------------------------------------------------------------------------

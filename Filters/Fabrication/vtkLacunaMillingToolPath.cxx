@@ -318,11 +318,9 @@ int vtkLacunaMillingToolPath::RequestData(
 {
   vtkStructuredGrid* grid = vtkStructuredGrid::GetData(inputVector[0]);
   const bool empty = !grid || grid->GetNumberOfPoints() == 0;
-  // other ranks than the first have nothing of what Press Orientation makes
-  if (!vtkLacunaRequest::IsWanted(outputVector) || (empty && vtkLacunaRanks().GetRank() > 0))
-  {
-    return 1; // a path is one piece
-  }
+  // a path is one piece, and other ranks than the first have nothing of what Press Orientation makes
+  const bool isWanted =
+    vtkLacunaRequest::IsWanted(outputVector) && (!empty || vtkLacunaRanks().GetRank() == 0);
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (empty)
@@ -428,7 +426,7 @@ int vtkLacunaMillingToolPath::RequestData(
       vtkLacunaProvenance::Record(output, this, { grid }, parameters);
     }
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
 }
 
 //------------------------------------------------------------------------------

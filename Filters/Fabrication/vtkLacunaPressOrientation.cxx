@@ -309,10 +309,9 @@ int vtkLacunaPressOrientation::RequestData(
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
-  if (!vtkLacunaRequest::IsWanted(outputVector) || vtkLacunaRanks().GetRank() > 0)
-  {
-    return 1; // the mould is one piece
-  }
+  // the mould is one piece
+  const bool isWanted =
+    vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)
@@ -389,7 +388,7 @@ int vtkLacunaPressOrientation::RequestData(
       .Add("ConvexSide", this->ConvexSide);
     vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
 }
 
 //------------------------------------------------------------------------------

@@ -291,11 +291,8 @@ int vtkLacunaScanRegion::RequestUpdateExtent(
 int vtkLacunaScanRegion::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
-  {
-    return 1; // it is made in one piece
-  }
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution&)
     {
       if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))

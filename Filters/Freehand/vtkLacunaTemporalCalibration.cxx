@@ -64,11 +64,8 @@ int vtkLacunaTemporalCalibration::RequestUpdateExtent(
 int vtkLacunaTemporalCalibration::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
-  {
-    return 1; // it is made in one piece
-  }
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* slices = vtkImageData::GetData(inputs[0]);

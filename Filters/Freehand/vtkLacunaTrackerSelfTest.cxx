@@ -178,11 +178,8 @@ int vtkLacunaTrackerSelfTest::RequestUpdateExtent(
 int vtkLacunaTrackerSelfTest::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
-  {
-    return 1; // it is made in one piece
-  }
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution&)
     {
       vtkDataObject* input = vtkDataObject::GetData(inputs[0]);

@@ -211,13 +211,10 @@ int vtkLacunaOcclusionSurface::RequestUpdateExtent(
 int vtkLacunaOcclusionSurface::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return vtkLacunaExecution::Run(this, outputVector,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // it is made in one piece
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted,
     [&](vtkLacunaExecution& execution)
     {
-      if (!vtkLacunaRequest::IsWanted(outputVector))
-      {
-        return;
-      }
       vtkImageData* angle = vtkImageData::GetData(inputVector[0]);
       vtkImageData* image = vtkImageData::GetData(inputVector[1]);
       const vtkLacunaOcclusionInput::Grid grid(angle);

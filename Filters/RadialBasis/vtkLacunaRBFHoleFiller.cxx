@@ -365,10 +365,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
 {
   vtkImageData* map = vtkImageData::GetData(inputs[0]);
   vtkImageData* output = vtkImageData::GetData(outputVector);
-  if (!vtkLacunaRequest::IsWanted(outputVector))
-  {
-    return 1; // an empty part
-  }
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // not an empty part
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)
@@ -456,7 +453,7 @@ int vtkLacunaRBFHoleFiller::RequestData(
     outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), piece);
     output->Crop(piece);
   };
-  return vtkLacunaExecution::Run(this, outputVector, body);
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
 }
 
 //------------------------------------------------------------------------------

@@ -149,15 +149,15 @@ int vtkLacunaContrastToSpeckle::RequestUpdateExtent(
 int vtkLacunaContrastToSpeckle::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  vtkTable* table = vtkTable::GetData(outputs);
+  if (!isWanted)
+  {
+    Write(Measures(), this->IsoValue, Row(table, false));
+  }
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution& execution)
     {
-      vtkTable* table = vtkTable::GetData(outputs);
-      if (!vtkLacunaRequest::IsWanted(outputs))
-      {
-        Write(Measures(), this->IsoValue, Row(table, false));
-        return;
-      }
       vtkImageData* image = vtkImageData::GetData(inputs[0]);
       vtkDataArray* array = FindNumbers(image, this->ScalarArray);
       const lacuna::ScalarType type = vtkLacunaScalarType::Get(array);

@@ -325,6 +325,41 @@ def saved(controller):
     assert written() == before
 
 
+def of_first_rank():
+    """Wrong where the first rank alone works, or is asked for something: said by all, and what comes behind, a writer that gathers from all
+    ranks, is left out by all. What is mended works again."""
+    from lacuna.errors import PipelineError, raising
+    from paraview import simple as pv
+    wavelet, pieces = pv.Wavelet(WholeExtent=[0, 9, 0, 9, 0, 9]), pv.Sphere(ThetaResolution=12)
+    depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[2] * 3), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9], PixelSpacing=2)
+    filled = pv.RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+    angle = pv.OccludedAngle(Input=wavelet, NumberOfDirections=6)
+    values = pv.Calculator(Input=pieces, ResultArrayName="Value", Function="coordsX")
+    grid = pv.RBFInterpolator(Input=values, ScalarArray="Value", Kernel="Linear", OutputSpacing=[0.1] * 3)
+    of_grid = pv.ContrastToSpeckle(Input=grid, InsideBounds=[-0.3, 0.3] * 3)
+    for proxy, cause, name, bad, good, word in (
+            (pv.ImplantPlate(Input=filled), None, "Input", depth, filled, "'Fitted'"),
+            (pv.DefectModel(Input=filled), None, "Input", depth, filled, "'Fitted'"),
+            (pv.PressOrientation(Input=filled), None, "PlateMargin", 300.0, 10.0, "beyond the defect"),
+            (pv.OcclusionSurface(Input=angle, Data=wavelet), None, "Data", pv.Wavelet(WholeExtent=[0, 3] * 3), wavelet, "other voxels"),
+            (pv.ContrastToSpeckle(Input=wavelet), None, "InsideBounds", [90, 91] * 3, [0, 4] * 3, "no sample is inside"),
+            (of_grid, grid, "ScalarArray", "No", "Value", "'No'")):
+        print(proxy.GetXMLLabel(), flush=True)
+        file = lacuna_test.output("RanksErrors.csv")
+        for _ in range(2):
+            setattr(cause or proxy, name, bad)
+            for _ in range(2):
+                try:
+                    with raising():
+                        pv.SaveData(file, proxy=proxy)
+                    raise AssertionError(f"{name} = {bad}: nothing is said")
+                except PipelineError as error:
+                    assert word in str(error), (name, str(error))
+            setattr(cause or proxy, name, good)
+            with raising():
+                pv.SaveData(file, proxy=proxy)
+
+
 def stopped(make, rank):
     """Stopped on one rank, at some moment."""
     source = wavelet(48)
@@ -389,6 +424,8 @@ def run():
     transparent(rank)
     signal.alarm(SECONDS)
     saved(controller)
+    signal.alarm(SECONDS)
+    of_first_rank()
     signal.alarm(0)
     print("rank done", flush=True)
 

@@ -18,6 +18,7 @@ class PipelineError(RuntimeError):
 
 
 _set_aside = []
+_AGAIN = " (change a property to try again)"
 
 
 @contextlib.contextmanager
@@ -67,4 +68,6 @@ def raising(warnings=None):
         for tag in tags:
             window.RemoveObserver(tag)
     if errors:
-        raise PipelineError("; ".join(dict.fromkeys(errors))) from consequence
+        # of several ranks an error that is kept is told again with a hint
+        told = dict.fromkeys(text for text in errors if text.removesuffix(_AGAIN) == text or text.removesuffix(_AGAIN) not in errors)
+        raise PipelineError("; ".join(told)) from consequence
