@@ -211,8 +211,7 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   if (own.empty() && !agreed.empty())
   {
     EmptyOutputs(outputs);
-    vtkLacunaFailure::Tell(
-      algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
+    vtkLacunaFailure::Tell(algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
   }
   return own.empty() && agreed.empty() ? 1 : 0;
 }

@@ -171,8 +171,7 @@ int vtkLacunaDefectModel::RequestData(
   solid->GetFieldData()->Initialize();
   top->GetFieldData()->Initialize();
   // the model is one piece
-  const bool isWanted =
-    vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)

@@ -310,8 +310,7 @@ int vtkLacunaPressOrientation::RequestData(
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
   // the mould is one piece
-  const bool isWanted =
-    vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector) && vtkLacunaRanks().GetRank() == 0;
   const auto body = [&](vtkLacunaExecution& execution)
   {
     if (!map || map->GetNumberOfPoints() == 0)

@@ -19,6 +19,19 @@ def describe(image):
             sorted(fields.GetArrayName(index) for index in range(fields.GetNumberOfArrays()))]
 
 
+def sweep_without_a_pose(name):
+    """A sequence whose second pose is no number."""
+    lines = ["ObjectType = Image", "NDims = 3", "DimSize = 5 4 7", "ElementSpacing = 1 1 1", "ElementType = MET_UCHAR",
+             "UltrasoundImageOrientation = MF", "UltrasoundImageType = BRIGHTNESS"]
+    for frame in range(7):
+        x = "nan" if frame == 1 else frame
+        lines += [f"Seq_Frame{frame:04}_ImageToReferenceTransform = 1 0 0 {x} 0 1 0 0 0 0 1 {frame} 0 0 0 1",
+                  f"Seq_Frame{frame:04}_ImageToReferenceTransformStatus = OK", f"Seq_Frame{frame:04}_Timestamp = {frame}"]
+    with open(name, "wb") as file:
+        file.write("\n".join([*lines, "ElementDataFile = LOCAL", ""]).encode() + bytes(range(140)))
+    return name
+
+
 def fetched():
     """Descriptions of outputs of all pipelines: volume, depth map that is turned, filled map, closed shape, slices fewer than some ranks."""
     import lacuna.plugin
@@ -26,13 +39,15 @@ def fetched():
     import paraview.simple as pv
     from lacuna.data import fetch
     from lacuna.errors import raising
+    import lacuna_test
     sweep = pv.PhantomSweep(NumberOfSlices=12, ImageSize=[40, 30], PixelSpacing=1)
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[4] * 3, DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8]), IsoValues=[500],
                                    PixelSpacing=30 / 7, ViewDirection=[-0.5, 0.2, -0.8])
     proxies = [pv.SweptVolume(Input=sweep, OutputSpacing=[2] * 3), depth, pv.RBFHoleFiller(Input=depth),
                pv.OccludedAngle(Input=pv.IncompleteShape(Shape="Sphere", Dimensions=[40] * 3), NumberOfDirections=20),
                pv.PhantomSweep(NumberOfSlices=2, ImageSize=[5, 3]),
-               pv.Wavelet(WholeExtent=[-7, 5, 3, 9, -11, 8])]
+               pv.Wavelet(WholeExtent=[-7, 5, 3, 9, -11, 8]),
+               pv.TrackedSliceReader(FileName=lacuna_test.output("FetchRanks.igs.mha"))]
     with raising():
         return [describe(fetch(proxy)) for proxy in proxies]
 
@@ -40,10 +55,11 @@ def fetched():
 def main():
     import lacuna_test
     lines = {}
+    sweep_without_a_pose(lacuna_test.output("FetchRanks.igs.mha"))
     for ranks in 1, 3:
         printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch")
         lines[ranks] = [line for line in printed.splitlines() if line.startswith("fetched ")]
-        assert len(lines[ranks]) == 6, printed
+        assert len(lines[ranks]) == 7, printed
     assert lines[1] == lines[3], lines
     assert all("(0, -1" not in line for line in lines[1]), lines
 

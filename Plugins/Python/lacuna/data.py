@@ -73,7 +73,10 @@ def _place(image, source, servermanager):
     corner = [min(bound, extent[2 * (axis // 2)] + axis % 2) for axis, bound in enumerate(extent)]
     counts = [corner[2 * axis + 1] - corner[2 * axis] + 1 for axis in range(3)]
     few = servermanager.filters.ExtractSubset(Input=servermanager.OutputPort(source, source.Port), VOI=corner)
-    points = servermanager.Fetch(servermanager.filters.ImageDatatoPointSet(Input=few))
+    # field data would travel, too, as text in which the reader of grids takes NaN for a word of its own
+    bare = servermanager.filters.PassArrays(Input=servermanager.filters.ImageDatatoPointSet(Input=few), PointDataArrays=[],
+                                            CellDataArrays=[], FieldDataArrays=[])
+    points = servermanager.Fetch(bare)
     first = numpy.array(points.GetPoint(0))
     spacing, columns, stride = numpy.array(image.GetSpacing()), [None] * 3, 1
     for axis in range(3):
