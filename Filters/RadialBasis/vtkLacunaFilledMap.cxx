@@ -11,6 +11,7 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaFieldData.h"
+#include "vtkMatrix3x3.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSmartPointer.h"
@@ -164,10 +165,14 @@ void Make(vtkImageData* map, const vtkLacunaDepthMap& contract,
     filled->GetPointData()->Initialize();
     filled->SetExtent(grid.FirstColumn, grid.FirstColumn + grid.Width - 1, grid.FirstRow,
       grid.FirstRow + grid.Height - 1, map->GetExtent()[4], map->GetExtent()[4]);
-    const lacuna::Matrix4& toWorld = contract.GetImageToWorld();
+    // those of the map to the last bit, as they were announced, not the columns of ImageToWorld normalized
+    const auto axis = [&](int c)
+    {
+      vtkMatrix3x3* m = map->GetDirectionMatrix();
+      return lacuna::Vec3{ m->GetElement(0, c), m->GetElement(1, c), m->GetElement(2, c) };
+    };
     vtkLacunaDepthMap::SetGeometry(filled,
-      { toWorld.Column(3), lacuna::Normalized(toWorld.Column(0)),
-        lacuna::Normalized(toWorld.Column(1)), lacuna::Normalized(toWorld.Column(2)),
+      { contract.GetImageToWorld().Column(3), axis(0), axis(1), axis(2),
         { grid.Spacing[0], grid.Spacing[1] } });
     for (int i = 0; i < map->GetPointData()->GetNumberOfArrays(); ++i)
     {
