@@ -49,9 +49,10 @@ public:
 
   /// As Run where isWanted, for algorithms of which one rank, or those that are asked for something, makes
   /// all of the output: what fails there fails on all ranks, with the same text, for VTK would leave out
-  /// what comes behind on the rank that failed alone, and the others would wait there. All wait for its
-  /// outcome; VTK executes algorithms on all ranks when something has changed. Asked once more for what has
-  /// not changed, by one rank alone for another part perhaps, nobody waits: the same error, or body again.
+  /// what comes behind on the rank that failed alone, and the others would wait there. So all wait for its
+  /// outcome once after each change of the algorithm or what lies upstream, when VTK executes on all ranks.
+  /// At other times, when another time step or another part is asked for, perhaps of one rank alone, nobody
+  /// waits. Ranks agree in ParaView's pipelines only: of classes in a script one process may be alone with it.
   static int RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, bool isWanted,
     const std::function<void(vtkLacunaExecution&)>& body);
 

@@ -86,7 +86,7 @@ vtkInformationDoubleVectorKey* AgreedOf()
   return key;
 }
 
-// What changes on all ranks at once: not the time at which data were made, nor the part asked for.
+// What changes on all ranks at once, so that VTK executes on all of them; and the time asked for.
 std::array<double, 2> GetSharedState(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
 {
   vtkInformation* info = outputs->GetInformationObject(0);
@@ -199,11 +199,12 @@ bool vtkLacunaFailure::GetAgreed(
 {
   vtkInformation* own = algorithm->GetInformation();
   const std::array<double, 2> state = GetSharedState(algorithm, outputs);
-  if (!own->Has(AgreedOf()) || !std::equal(state.begin(), state.end(), own->Get(AgreedOf())))
+  const double* met = own->Has(AgreedOf()) ? own->Get(AgreedOf()) : nullptr;
+  if (!met || met[0] != state[0])
   {
     return false;
   }
-  error = own->Get(Agreed());
+  error = met[1] == state[1] ? own->Get(Agreed()) : "";
   return true;
 }
 

@@ -35,8 +35,8 @@ std::string GetAnnounced(vtkAlgorithm* algorithm);
 /// looked at again.
 std::string GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs);
 
-/// What all ranks of an MPI program have agreed upon for the algorithm as it is now and the time asked for:
-/// the error of one of them, empty if there was none. Returns whether they have.
+/// Whether all ranks of an MPI program have agreed upon the outcome of the algorithm since it, or what lies
+/// upstream, was changed last. error: that of one of them; empty: there was none, or another time was asked for.
 bool GetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, std::string& error);
 
 /// What is told of an error that is kept though its cause may be gone, as of memory.

@@ -53,9 +53,9 @@ inline void vtkLacunaForgetAbort(vtkAlgorithm* algorithm)
 #endif
 }
 
-/// In the public part of classes whose ranks meet (vtkLacunaMeeting.h): a stop, and that it is over, are
-/// no change of the filter when there are several ranks. The others do not know of it, and only a change
-/// of all may let them meet again.
+/// In the public part of classes whose ranks meet (vtkLacunaMeeting.h, vtkLacunaExecution::RunAgreed): a
+/// stop, and that it is over, are no change of the filter when there are several ranks. The others do not
+/// know of it, and only a change of all may let them meet again.
 #define vtkLacunaKeepTimeAtStops()                                                                 \
   void SetAbortExecute(vtkTypeBool stop) override                                                  \
   {                                                                                                \

@@ -39,6 +39,7 @@
 #define vtkLacunaDefectModel_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaDefectModel : public vtkPolyDataAlgorithm
@@ -47,6 +48,7 @@ public:
   static vtkLacunaDefectModel* New();
   vtkTypeMacro(vtkLacunaDefectModel, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* ModelFaceName = "ModelFace";
   static constexpr const char* PressToPatientName = "PressToPatient";

@@ -50,6 +50,7 @@
 #define vtkLacunaImplantPlate_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <array>  // for ivar
@@ -61,6 +62,7 @@ public:
   static vtkLacunaImplantPlate* New();
   vtkTypeMacro(vtkLacunaImplantPlate, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* PlateFaceName = "PlateFace";
 

@@ -51,6 +51,7 @@
 #define vtkLacunaMillingToolPath_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for parameters
@@ -61,6 +62,7 @@ public:
   static vtkLacunaMillingToolPath* New();
   vtkTypeMacro(vtkLacunaMillingToolPath, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* MotionName = "Motion";
   static constexpr const char* PassName = "Pass";

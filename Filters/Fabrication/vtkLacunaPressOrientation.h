@@ -70,6 +70,7 @@
 #define vtkLacunaPressOrientation_h
 
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkStructuredGridAlgorithm.h"
 
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaPressOrientation
@@ -79,6 +80,7 @@ public:
   static vtkLacunaPressOrientation* New();
   vtkTypeMacro(vtkLacunaPressOrientation, vtkStructuredGridAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   static constexpr const char* PressRegionName = "PressRegion";
   static constexpr const char* DefectMaskName = "DefectMask";

@@ -32,6 +32,7 @@
 #define vtkLacunaScanRegion_h
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkTableAlgorithm.h"
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaScanRegion : public vtkTableAlgorithm
@@ -40,6 +41,7 @@ public:
   static vtkLacunaScanRegion* New();
   vtkTypeMacro(vtkLacunaScanRegion, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// mm from tick to tick of the ruler, of the finest ticks; 0: not known. Default: 0.

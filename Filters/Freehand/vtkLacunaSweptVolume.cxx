@@ -238,8 +238,11 @@ int vtkLacunaSweptVolume::RequestInformation(
 int vtkLacunaSweptVolume::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
+  return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
       vtkInformation* info = outputs->GetInformationObject(0);

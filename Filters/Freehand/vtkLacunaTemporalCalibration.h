@@ -24,6 +24,7 @@
 #define vtkLacunaTemporalCalibration_h
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkTableAlgorithm.h"
 
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaTemporalCalibration : public vtkTableAlgorithm
@@ -32,6 +33,7 @@ public:
   static vtkLacunaTemporalCalibration* New();
   vtkTypeMacro(vtkLacunaTemporalCalibration, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// Lags up to this many s, either way, are tried; above 0, at most 2. Default: 0.5.

@@ -44,6 +44,7 @@
 #define vtkLacunaTrackerSelfTest_h
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string>
@@ -54,6 +55,7 @@ public:
   static vtkLacunaTrackerSelfTest* New();
   vtkTypeMacro(vtkLacunaTrackerSelfTest, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum PoseFormats
   {

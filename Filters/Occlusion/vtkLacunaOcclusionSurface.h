@@ -27,6 +27,7 @@
 #define vtkLacunaOcclusionSurface_h
 
 #include "vtkLacunaFiltersOcclusionModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"          // for stops
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for the array's name
@@ -37,6 +38,7 @@ public:
   static vtkLacunaOcclusionSurface* New();
   vtkTypeMacro(vtkLacunaOcclusionSurface, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of input 1 with the data. Default empty: the active scalars.

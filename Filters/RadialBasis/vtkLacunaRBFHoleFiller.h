@@ -45,6 +45,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkSmartPointer.h"                   // for ivar
 
 #include <memory> // for ivar
@@ -66,6 +67,7 @@ public:
   static vtkLacunaRBFHoleFiller* New();
   vtkTypeMacro(vtkLacunaRBFHoleFiller, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   /// Input ports; all but the first are optional.
   enum InputPort

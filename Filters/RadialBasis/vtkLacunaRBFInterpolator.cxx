@@ -303,8 +303,11 @@ int vtkLacunaRBFInterpolator::RequestInformation(
 int vtkLacunaRBFInterpolator::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
-  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+  if (!vtkLacunaRequest::IsWanted(outputs))
+  {
+    return 1; // an empty part
+  }
+  return vtkLacunaExecution::Run(this, outputs,
     [&](vtkLacunaExecution& execution)
     {
       vtkDataSet* points = vtkDataSet::GetData(inputs[0]);

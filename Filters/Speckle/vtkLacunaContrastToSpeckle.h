@@ -31,6 +31,7 @@
 #define vtkLacunaContrastToSpeckle_h
 
 #include "vtkLacunaFiltersSpeckleModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"        // for stops
 #include "vtkTableAlgorithm.h"
 
 #include <string> // for array names
@@ -41,6 +42,7 @@ public:
   static vtkLacunaContrastToSpeckle* New();
   vtkTypeMacro(vtkLacunaContrastToSpeckle, vtkTableAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.

@@ -360,6 +360,21 @@ def of_first_rank():
                 pv.SaveData(file, proxy=proxy)
 
 
+def at_other_times():
+    """Of data without times VTK makes nothing anew when another time is asked for: then one rank alone is asked for another part, and waits
+    for nobody."""
+    from lacuna.errors import raising
+    from paraview import simple as pv
+    depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[4] * 3, DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8]), IsoValues=[500],
+                                   PixelSpacing=4, ViewDirection=[-0.5, 0.2, -0.8])
+    filled = pv.RBFHoleFiller(Input=depth, Smoothing=5, OutputMargin=30)
+    with raising():
+        for time, filter in enumerate((pv.ImplantPlate, pv.PressOrientation, pv.DepthMapSurface, pv.DefectModel, pv.DepthMapSurface, pv.ImplantPlate)):
+            made = filter(Input=filled)
+            made.UpdatePipeline(float(time))
+            pv.SaveData(lacuna_test.output("RanksErrors.csv"), proxy=made)
+
+
 def stopped(make, rank):
     """Stopped on one rank, at some moment."""
     source = wavelet(48)
@@ -426,6 +441,8 @@ def run():
     saved(controller)
     signal.alarm(SECONDS)
     of_first_rank()
+    signal.alarm(SECONDS)
+    at_other_times()
     signal.alarm(0)
     print("rank done", flush=True)
 
