@@ -94,6 +94,23 @@ std::array<double, 2> GetSharedState(vtkAlgorithm* algorithm, vtkInformationVect
     info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }
 
+// Whether an input changes with time.
+bool HasTimes(vtkAlgorithm* algorithm)
+{
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkInformation* info = algorithm->GetInputInformation(port, i);
+      if (info->Has(SDDP::TIME_RANGE()) || info->Has(SDDP::TIME_STEPS()))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 double GetSeconds()
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -204,7 +221,7 @@ bool vtkLacunaFailure::GetAgreed(
   {
     return false;
   }
-  error = met[1] == state[1] ? own->Get(Agreed()) : "";
+  error = met[1] == state[1] || !HasTimes(algorithm) ? own->Get(Agreed()) : "";
   return true;
 }
 

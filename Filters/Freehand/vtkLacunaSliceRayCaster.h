@@ -41,6 +41,7 @@
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"
+#include "vtkLacunaVersionCompat.h" // for stops
 
 #include <array>  // for std::array
 #include <memory> // for std::unique_ptr
@@ -52,6 +53,7 @@ public:
   static vtkLacunaSliceRayCaster* New();
   vtkTypeMacro(vtkLacunaSliceRayCaster, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum SolidSideType
   {

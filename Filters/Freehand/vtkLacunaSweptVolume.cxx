@@ -238,11 +238,8 @@ int vtkLacunaSweptVolume::RequestInformation(
 int vtkLacunaSweptVolume::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
-  {
-    return 1; // an empty part
-  }
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution& execution)
     {
       vtkInformation* info = outputs->GetInformationObject(0);

@@ -47,6 +47,7 @@
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
 #include "vtkLacunaSliceAlgorithm.h"
+#include "vtkLacunaVersionCompat.h" // for stops
 
 #include <memory>
 #include <string>
@@ -63,6 +64,7 @@ public:
   static vtkLacunaSweptVolume* New();
   vtkTypeMacro(vtkLacunaSweptVolume, vtkLacunaSliceAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum OutputFrames
   {

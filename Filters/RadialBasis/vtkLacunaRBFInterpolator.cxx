@@ -303,11 +303,8 @@ int vtkLacunaRBFInterpolator::RequestInformation(
 int vtkLacunaRBFInterpolator::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaRequest::IsWanted(outputs))
-  {
-    return 1; // an empty part
-  }
-  return vtkLacunaExecution::Run(this, outputs,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // not an empty part
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution& execution)
     {
       vtkDataSet* points = vtkDataSet::GetData(inputs[0]);

@@ -35,6 +35,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
 
 #include <string> // for ivars
 
@@ -44,6 +45,7 @@ public:
   static vtkLacunaRBFInterpolator* New();
   vtkTypeMacro(vtkLacunaRBFInterpolator, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum KernelType
   {

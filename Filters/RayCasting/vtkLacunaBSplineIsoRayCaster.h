@@ -44,6 +44,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"           // for stops
 
 #include "vtkSmartPointer.h" // for CutAway
 
@@ -60,6 +61,7 @@ public:
   static vtkLacunaBSplineIsoRayCaster* New();
   vtkTypeMacro(vtkLacunaBSplineIsoRayCaster, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum InterpolationType
   {

@@ -343,11 +343,8 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
 int vtkLacunaDepthMapShader::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (!vtkLacunaRequest::IsWanted(outputVector))
-  {
-    return 1; // an empty part
-  }
-  return vtkLacunaExecution::Run(this, outputVector,
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputVector); // not an empty part
+  return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted,
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* input = vtkImageData::GetData(inputVector[0]);

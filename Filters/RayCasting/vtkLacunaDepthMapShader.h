@@ -42,6 +42,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersRayCastingModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"           // for stops
 
 #include <array>  // for std::array
 #include <memory> // for std::unique_ptr
@@ -56,6 +57,7 @@ public:
   static vtkLacunaDepthMapShader* New();
   vtkTypeMacro(vtkLacunaDepthMapShader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum NormalMethodType
   {

@@ -339,6 +339,7 @@ def of_first_rank():
     of_grid = pv.ContrastToSpeckle(Input=grid, InsideBounds=[-0.3, 0.3] * 3)
     for proxy, cause, name, bad, good, word in (
             (pv.ImplantPlate(Input=filled), None, "Input", depth, filled, "'Fitted'"),
+            (pv.ImplantPlate(Input=filled), depth, "IsoValues", [], [500], "iso"),
             (pv.DefectModel(Input=filled), None, "Input", depth, filled, "'Fitted'"),
             (pv.PressOrientation(Input=filled), None, "PlateMargin", 300.0, 10.0, "beyond the defect"),
             (pv.OcclusionSurface(Input=angle, Data=wavelet), None, "Data", pv.Wavelet(WholeExtent=[0, 3] * 3), wavelet, "other voxels"),
@@ -363,7 +364,7 @@ def of_first_rank():
 def at_other_times():
     """Of data without times VTK makes nothing anew when another time is asked for: then one rank alone is asked for another part, and waits
     for nobody."""
-    from lacuna.errors import raising
+    from lacuna.errors import PipelineError, raising
     from paraview import simple as pv
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[4] * 3, DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8]), IsoValues=[500],
                                    PixelSpacing=4, ViewDirection=[-0.5, 0.2, -0.8])
@@ -373,6 +374,15 @@ def at_other_times():
             made = filter(Input=filled)
             made.UpdatePipeline(float(time))
             pv.SaveData(lacuna_test.output("RanksErrors.csv"), proxy=made)
+    outside = pv.ContrastToSpeckle(Input=pv.Wavelet(WholeExtent=[0, 9] * 3), InsideBounds=[90, 91] * 3)
+    for ask in (lambda: outside.UpdatePipeline(0.0), lambda: outside.UpdatePipeline(1.0),
+                lambda: pv.SaveData(lacuna_test.output("RanksErrors.csv"), proxy=outside)):
+        try:
+            with raising():
+                ask()
+            raise AssertionError("nothing is said")
+        except PipelineError as error:
+            assert "no sample is inside" in str(error), str(error)
 
 
 def stopped(make, rank):
