@@ -16,13 +16,18 @@ def fetch(source):
 
     Images are whole, also of several ranks, and lie as they do on a server: servermanager.Fetch gives the part of the
     first rank, drops the direction and rounds origin and spacing to six digits. Field data are those of the first rank that
-    has a part. Raises RuntimeError when the ranks' parts leave gaps.
+    has a part. Raises RuntimeError when the ranks' parts leave gaps, and PipelineError when it fails on a server, where
+    servermanager.Fetch would wait for ever.
     """
-    from lacuna.errors import set_aside
+    from lacuna.errors import raising, set_aside
     from paraview import servermanager
     ranks = servermanager.ActiveConnection.GetNumberOfDataPartitions()
     if ranks == 1 and not servermanager.ActiveConnection.IsRemote():
         return servermanager.Fetch(source, idx=source.Port)
+    if servermanager.ActiveConnection.IsRemote():
+        source.SMProxy.MarkDirty(source.SMProxy)  # asked again, what has failed says so again
+        with raising():
+            source.UpdatePipeline()
     # images travel in the legacy format, whose reader takes words of Provenance for its own
     with set_aside(*(f"Error reading {word}!" for word in ("dimensions", "extent", "origin", "spacing"))):
         data = servermanager.Fetch(source, idx=source.Port)
