@@ -3,8 +3,6 @@
 
 #include "lacunaMemory.h"
 #include "vtkAlgorithm.h"
-#include "vtkAlgorithmOutput.h"
-#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
@@ -116,29 +114,6 @@ std::function<void(vtkLacunaExecution&)> WithSoundInputs(
   };
 }
 
-// Whether all ranks execute algorithm: it is of a ParaView server, and has no input of blocks, of which some
-// ranks may have none.
-bool IsOnAllRanks(vtkAlgorithm* algorithm)
-{
-  if (!algorithm->GetExecutive()->IsA("vtkPVCompositeDataPipeline"))
-  {
-    return false;
-  }
-  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
-  {
-    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
-    {
-      vtkAlgorithmOutput* connection = algorithm->GetInputConnection(port, i);
-      if (vtkCompositeDataSet::SafeDownCast(
-            connection->GetProducer()->GetOutputDataObject(connection->GetIndex())))
-      {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 // Runs body and returns 1, or 0 after an error that was told.
 int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body, std::string& error)
@@ -213,9 +188,15 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   bool isWanted, const std::function<void(vtkLacunaExecution&)>& body)
 {
   const vtkLacunaRanks ranks;
-  if (ranks.GetNumber() == 1 || !IsOnAllRanks(algorithm))
+  const bool isOfParaView = algorithm->GetExecutive()->IsA("vtkPVCompositeDataPipeline");
+  if (ranks.GetNumber() == 1 || !isOfParaView)
   {
     return isWanted ? Run(algorithm, outputs, body) : 1;
+  }
+  if (!vtkLacunaInputs::AreSingle(algorithm))
+  {
+    EmptyOutputs(outputs);
+    return 0;
   }
   std::string agreed;
   const bool haveMet = vtkLacunaFailure::GetAgreed(algorithm, outputs, agreed);

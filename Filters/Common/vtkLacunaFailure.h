@@ -36,7 +36,8 @@ std::string GetAnnounced(vtkAlgorithm* algorithm);
 std::string GetRecent(vtkAlgorithm* algorithm, vtkInformationVector* outputs);
 
 /// Whether all ranks of an MPI program have agreed upon the outcome of the algorithm since it, or what lies
-/// upstream, was changed last. error: that of one of them; empty: there was none, or another time of data that change with it was asked for.
+/// upstream, was changed last. error: that of one of them; empty: there was none, or another time was asked
+/// for of data that change with it.
 bool GetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, std::string& error);
 
 /// What is told of an error that is kept though its cause may be gone, as of memory.
