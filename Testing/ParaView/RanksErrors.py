@@ -292,9 +292,21 @@ def absent(make, rank):
     assert not text and filter.GetOutput().GetNumberOfPoints() > 0, text
 
 
+def expect(word, ask):
+    """Asking is an error that has the word in it."""
+    from lacuna.errors import PipelineError, raising
+    try:
+        with raising():
+            ask()
+    except PipelineError as error:
+        assert word in str(error), (word, str(error))
+        return
+    raise AssertionError(f"nothing is said of {word!r}")
+
+
 def saved(controller):
     """What is wrong on all ranks alike is said each time, and a file that was good stays."""
-    from lacuna.errors import PipelineError, raising
+    from lacuna.errors import raising
     from paraview import simple as pv
     skull = pv.SkullPhantom(Spacing=[5] * 3)
     caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
@@ -312,12 +324,7 @@ def saved(controller):
                                          (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up")):
         setattr(proxy, name, bad)
         for _ in range(2):
-            try:
-                with raising():
-                    pv.SaveData(file, proxy=caster)
-                raise AssertionError(f"{name} = {bad}: nothing is said")
-            except PipelineError as error:
-                assert word in str(error), (name, str(error))
+            expect(word, lambda: pv.SaveData(file, proxy=caster))
             assert written() == before, name
         setattr(proxy, name, good)
     with raising():
@@ -328,7 +335,7 @@ def saved(controller):
 def of_first_rank():
     """Wrong where the first rank alone works, or is asked for something: said by all, and what comes behind, a writer that gathers from all
     ranks, is left out by all. What is mended works again."""
-    from lacuna.errors import PipelineError, raising
+    from lacuna.errors import raising
     from paraview import simple as pv
     wavelet, pieces = pv.Wavelet(WholeExtent=[0, 9, 0, 9, 0, 9]), pv.Sphere(ThetaResolution=12)
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[2] * 3), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9], PixelSpacing=2)
@@ -350,12 +357,7 @@ def of_first_rank():
         for _ in range(2):
             setattr(cause or proxy, name, bad)
             for _ in range(2):
-                try:
-                    with raising():
-                        pv.SaveData(file, proxy=proxy)
-                    raise AssertionError(f"{name} = {bad}: nothing is said")
-                except PipelineError as error:
-                    assert word in str(error), (name, str(error))
+                expect(word, lambda proxy=proxy: pv.SaveData(file, proxy=proxy))
             setattr(cause or proxy, name, good)
             with raising():
                 pv.SaveData(file, proxy=proxy)
@@ -364,7 +366,7 @@ def of_first_rank():
 def at_other_times():
     """Of data without times VTK makes nothing anew when another time is asked for: then one rank alone is asked for another part, and waits
     for nobody."""
-    from lacuna.errors import PipelineError, raising
+    from lacuna.errors import raising
     from paraview import simple as pv
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[4] * 3, DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8]), IsoValues=[500],
                                    PixelSpacing=4, ViewDirection=[-0.5, 0.2, -0.8])
@@ -377,12 +379,7 @@ def at_other_times():
     outside = pv.ContrastToSpeckle(Input=pv.Wavelet(WholeExtent=[0, 9] * 3), InsideBounds=[90, 91] * 3)
     for ask in (lambda: outside.UpdatePipeline(0.0), lambda: outside.UpdatePipeline(1.0),
                 lambda: pv.SaveData(lacuna_test.output("RanksErrors.csv"), proxy=outside)):
-        try:
-            with raising():
-                ask()
-            raise AssertionError("nothing is said")
-        except PipelineError as error:
-            assert "no sample is inside" in str(error), str(error)
+        expect("no sample is inside", ask)
 
 
 def stopped(make, rank):
