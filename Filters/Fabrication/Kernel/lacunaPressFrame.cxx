@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPressFrame.h"
 
-#include <algorithm>
+#include "lacunaDepthPlane.h"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -50,36 +51,12 @@ Vec3 FitPlaneNormal(GridSize size, const std::vector<double>& depths, const Vec2
       }
     }
   };
-  Vec3 mean{};
-  double count = 0;
-  forEach(
-    [&](const Vec3& p)
-    {
-      mean = mean + p;
-      ++count;
-    });
-  mean = 1 / std::max(count, 1.0) * mean;
-  double xx = 0;
-  double xy = 0;
-  double yy = 0;
-  double xz = 0;
-  double yz = 0;
-  forEach(
-    [&](const Vec3& p)
-    {
-      const Vec3 d = p - mean;
-      xx += d[0] * d[0];
-      xy += d[0] * d[1];
-      yy += d[1] * d[1];
-      xz += d[0] * d[2];
-      yz += d[1] * d[2];
-    });
-  const double determinant = xx * yy - xy * xy;
-  if (!(determinant > 1e-12 * xx * yy))
+  const DepthPlane plane = FitDepthPlane(forEach);
+  if (!plane.IsUnique)
   {
     throw std::invalid_argument("the pixels of the defect lie on a line; there is no plane through "
                                 "them");
   }
-  return Normalized({ (yy * xz - xy * yz) / determinant, (xx * yz - xy * xz) / determinant, -1 });
+  return Normalized({ plane.Coefficients[1], plane.Coefficients[2], -1 });
 }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaBaseSurface.h"
 
+#include "lacunaDepthPlane.h"
 #include "lacunaSupportSelection.h"
 
 #include <cmath>
@@ -93,8 +94,6 @@ double BaseSurface::Evaluate(double x, double y) const
 
 std::array<double, 3> BaseSurface::FitPlane(const MapMask& mask) const
 {
-  double n = 0;
-  Vec3 mean{};
   const auto forEach = [&](const auto& body)
   {
     for (std::size_t pixel = 0; pixel < this->OnMap.size(); ++pixel)
@@ -106,40 +105,6 @@ std::array<double, 3> BaseSurface::FitPlane(const MapMask& mask) const
       }
     }
   };
-  forEach(
-    [&](const Vec3& p)
-    {
-      mean = mean + p;
-      n += 1;
-    });
-  if (n == 0)
-  {
-    return {};
-  }
-  mean = (1 / n) * mean;
-  double xx = 0;
-  double xy = 0;
-  double yy = 0;
-  double xz = 0;
-  double yz = 0;
-  forEach(
-    [&](const Vec3& p)
-    {
-      const Vec3 d = p - mean;
-      xx += d[0] * d[0];
-      xy += d[0] * d[1];
-      yy += d[1] * d[1];
-      xz += d[0] * d[2];
-      yz += d[1] * d[2];
-    });
-  const double determinant = xx * yy - xy * xy;
-  std::array<double, 3> plane{ mean[2], 0, 0 };
-  if (determinant > 0)
-  {
-    plane[1] = (yy * xz - xy * yz) / determinant;
-    plane[2] = (xx * yz - xy * xz) / determinant;
-    plane[0] -= plane[1] * mean[0] + plane[2] * mean[1];
-  }
-  return plane;
+  return FitDepthPlane(forEach).Coefficients;
 }
 }
