@@ -48,12 +48,14 @@
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"
 
+#include <algorithm>
 #include <string>
 
 class vtkDataArray;
 class vtkImageData;
 class vtkInformation;
 
+/// A depth map that keeps the contract, which is that of the file vtkLacunaDepthMap.h, and the contract's names.
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaDepthMap
 {
 public:
@@ -111,9 +113,26 @@ public:
   /// What RequestInformation says of a map on plane: whole extent, geometry, type of the scalars.
   static void SetInformation(vtkInformation* info, const lacuna::ImagePlane& plane);
 
-  /// True unless point is left open: its coordinates are VTK_DOUBLE_MAX, the default of the points
-  /// of ViewSettings in filters that make maps. Throws when some are and others are not.
+  /// True unless point is left open: its coordinates are VTK_DOUBLE_MAX, the default of points in
+  /// filters that make maps. Throws when some are and others are not.
   static bool IsGiven(const double point[3]);
+
+  /// How a filter that makes maps looks at its data, by its properties ViewDirection, ViewUp,
+  /// FocalPoint, PlaneOrigin, PixelSpacing and ImageSize. Throws as IsGiven.
+  template <typename Filter>
+  static lacuna::ViewSettings GetView(Filter* filter)
+  {
+    lacuna::ViewSettings view;
+    std::copy_n(filter->GetViewDirection(), 3, view.Direction.data());
+    std::copy_n(filter->GetViewUp(), 3, view.Up.data());
+    std::copy_n(filter->GetFocalPoint(), 3, view.FocalPoint.data());
+    view.HasFocalPoint = IsGiven(view.FocalPoint.data());
+    std::copy_n(filter->GetPlaneOrigin(), 3, view.PlaneOrigin.data());
+    view.HasPlaneOrigin = IsGiven(view.PlaneOrigin.data());
+    view.PixelSpacing = filter->GetPixelSpacing();
+    std::copy_n(filter->GetImageSize(), 2, view.Size.data());
+    return view;
+  }
 
 private:
   lacuna::Matrix4 ImageToWorld;

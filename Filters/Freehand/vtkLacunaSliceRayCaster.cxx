@@ -115,15 +115,7 @@ public:
 private:
   void ChoosePlane(vtkLacunaSliceRayCaster* self)
   {
-    lacuna::ViewSettings view;
-    std::copy_n(self->ViewDirection, 3, view.Direction.data());
-    std::copy_n(self->ViewUp, 3, view.Up.data());
-    std::copy_n(self->FocalPoint, 3, view.FocalPoint.data());
-    view.HasFocalPoint = vtkLacunaDepthMap::IsGiven(self->FocalPoint);
-    std::copy_n(self->PlaneOrigin, 3, view.PlaneOrigin.data());
-    view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
-    view.PixelSpacing = self->PixelSpacing;
-    view.Size = { self->ImageSize[0], self->ImageSize[1] };
+    const lacuna::ViewSettings view = vtkLacunaDepthMap::GetView(self);
     std::vector<lacuna::Vec3> points;
     double finest = VTK_DOUBLE_MAX;
     for (const auto* slices : { &this->Images->Slices, &this->Images->Others })

@@ -60,15 +60,7 @@ public:
   static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkInformation* inInfo)
   {
     const View::Frame frame = View::FrameOf(inInfo);
-    lacuna::ViewSettings view;
-    std::copy_n(self->ViewDirection, 3, view.Direction.data());
-    std::copy_n(self->ViewUp, 3, view.Up.data());
-    std::copy_n(self->FocalPoint, 3, view.FocalPoint.data());
-    view.HasFocalPoint = vtkLacunaDepthMap::IsGiven(self->FocalPoint);
-    std::copy_n(self->PlaneOrigin, 3, view.PlaneOrigin.data());
-    view.HasPlaneOrigin = vtkLacunaDepthMap::IsGiven(self->PlaneOrigin);
-    view.PixelSpacing = self->PixelSpacing;
-    view.Size = { self->ImageSize[0], self->ImageSize[1] };
+    const lacuna::ViewSettings view = vtkLacunaDepthMap::GetView(self);
     if (self->Projection == Parallel)
     {
       return lacuna::MakeImagePlane(frame.IndexToWorld, frame.Size, view);
