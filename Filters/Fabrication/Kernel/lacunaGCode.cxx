@@ -398,8 +398,8 @@ GCodeProgram MakeGCode(const Vec3& start, const std::vector<GCodeMove>& moves,
   if (!header.SpindleTurns)
   {
     program.Warnings.emplace_back(
-      "Header does not leave the spindle turning clockwise (no M03, or M04, M05 or M06 behind it), "
-      "so the tool would be dragged through the part. Write S{SPEED} M03 behind T{TOOL} M06");
+      "Header does not leave the spindle turning clockwise (no M03, M04, M05 or M06 behind it, or "
+      "S0), so the tool would be dragged through the part. Write S{SPEED} M03 behind T{TOOL} M06");
   }
   program.Text = "%\nO" + values[0].second + "\n";
   for (const std::string& comment : options.Comments)

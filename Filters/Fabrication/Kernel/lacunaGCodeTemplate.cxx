@@ -168,6 +168,9 @@ public:
             this->Throw("has " + word.Text + ", which mirrors the path on many machines");
           }
           break;
+        case 'S':
+          this->Stands = !(word.Number > 0);
+          break;
         case 'P':
           this->JudgeP(words, word, dwells || toReference);
           break;
@@ -193,7 +196,7 @@ public:
 
   // Whether the tool's length is in force behind the lines so far.
   bool HasToolLength() const { return this->Length; }
-  bool HasSpindleTurning() const { return this->Turns; }
+  bool HasSpindleTurning() const { return this->Turns && !this->Stands; }
 
 private:
   [[noreturn]] void Throw(const std::string& what) const
@@ -396,6 +399,7 @@ private:
   bool Chosen = false;     // T in the header
   bool Changed = false;    // M06
   bool Turns = false;      // M03
+  bool Stands = false;     // S0
 };
 }
 

@@ -25,7 +25,8 @@ struct FilledTemplate
 {
   std::vector<std::string> Lines;
   bool HasToolLength = false; ///< G43 with a number: coordinates behind it are those of the tip
-  bool SpindleTurns = false;  ///< clockwise: M03, or M13, and behind it no M04, M05, M06 or M14
+  /// Clockwise: M03, or M13, and behind it no M04, M05, M06 or M14; the last S, if there is one, is above 0.
+  bool SpindleTurns = false;
 };
 
 /// The template's lines in upper case without empty ones, tabs as blanks, placeholders filled in: values are names and

@@ -158,12 +158,14 @@ TEST(GCodeTemplates, TemplatesThatMoveThePathAreRefused)
     EXPECT_NE(told[0].find("Z is the spindle nose's"), std::string::npos);
   }
   for (const char* h : { "M03\nT1 M06\nG43 H1", "T1 M06\nS900\nG43 H1", "(M03)\nG43 H1",
-         "M04 G43 H1", "M03\nM05\nG43 H1", "G43 H1 M13\nM14", "M07\nG43 H1" })
+         "M04 G43 H1", "M03\nM05\nG43 H1", "G43 H1 M13\nM14", "M07\nG43 H1", "S0 M03\nG43 H1",
+         "S900 M03\nG43 H1\nS0" })
   {
     const std::vector<std::string> told = warnings(h);
     ASSERT_EQ(told.size(), 1u) << h;
     EXPECT_NE(told[0].find("spindle turning clockwise"), std::string::npos) << told[0];
   }
+  EXPECT_TRUE(warnings("S0\nG43 H1\nM03\nS900").empty());
   EXPECT_TRUE(warnings("M05\nT1 M06\nM04\nS900 M03 M08\nG43 H1").empty());
   EXPECT_TRUE(warnings("T1 M06\nM13\nG43 H1\nM09").empty());
 }
