@@ -3,6 +3,7 @@
 
 #include "lacunaMemory.h"
 #include "lacunaOrderedKey.h"
+#include "lacunaParameterText.h"
 #include "lacunaScalarType.h"
 
 #include <atomic>
@@ -321,7 +322,7 @@ Reach ReachOf(const Deviations& deviations, double factor, int least)
     const double radius = factor * deviations[a] + 0.5;
     if (!(deviations[a] >= 0) || !(radius < MaximumGaussianRadius + 1))
     {
-      throw std::invalid_argument("the standard deviation is " + std::to_string(deviations[a]) +
+      throw std::invalid_argument("the standard deviation is " + FormatNumber(deviations[a]) +
         " samples along axis " + std::to_string(a) + "; it must be 0 to " +
         std::to_string(static_cast<int>(MaximumGaussianRadius / factor)));
     }

@@ -3,6 +3,7 @@
 
 #include "lacunaAdaptiveMedian.h"
 #include "lacunaMemory.h"
+#include "lacunaParameterText.h"
 #include "lacunaScalarType.h"
 
 #include <cmath>
@@ -56,7 +57,7 @@ Deviations DeviationsOf(const SpeckleParameters& parameters)
   if (!(parameters.StandardDeviation > 0) || !std::isfinite(parameters.StandardDeviation))
   {
     throw std::invalid_argument("the standard deviation is " +
-      std::to_string(parameters.StandardDeviation) + " mm; it must be above 0");
+      FormatNumber(parameters.StandardDeviation) + " mm; it must be above 0");
   }
   Deviations deviations{};
   for (int a = 0; a < 3; ++a)
@@ -64,7 +65,7 @@ Deviations DeviationsOf(const SpeckleParameters& parameters)
     if (!(parameters.Spacing[a] > 0) || !std::isfinite(parameters.Spacing[a]))
     {
       throw std::invalid_argument("the spacing of the image along axis " + std::to_string(a) +
-        " is " + std::to_string(parameters.Spacing[a]) + " mm; it must be above 0");
+        " is " + FormatNumber(parameters.Spacing[a]) + " mm; it must be above 0");
     }
     deviations[a] =
       parameters.KernelSize[a] > 1 ? parameters.StandardDeviation / parameters.Spacing[a] : 0;
