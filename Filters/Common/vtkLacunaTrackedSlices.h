@@ -30,6 +30,7 @@
 class vtkDataArray;
 class vtkImageData;
 
+/// Slices that keep the contract, which is that of the file vtkLacunaTrackedSlices.h, and the contract's names.
 class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices
 {
 public:

@@ -130,15 +130,21 @@ public:
 
   /// Slices of the output.
   vtkIdType GetSliceCount() const;
+  /// Whether frames become slices.
   bool GetCapturing() const;
+  ///@{
+  /// Whether data come from it.
   bool GetTrackerWorks() const;
   bool GetVideoWorks() const;
+  ///@}
+  ///@{
   /// What became of the sweep's frames, see lacuna::CaptureCounts.
   vtkIdType GetFrameCount() const;
   vtkIdType GetStillFrames() const;
   vtkIdType GetFramesWithoutPose() const;
   vtkIdType GetFramesOfWrongSize() const;
   vtkIdType GetFramesPastLimit() const;
+  ///@}
   /// Frames that did not come, or could not be decoded, during captures.
   vtkIdType GetMissingFrames() const;
   /// Slices that are flagged as too fast.
@@ -149,18 +155,22 @@ public:
   double GetLargestResidual() const;
   /// Slices of the sweep: those of the output, and those that the next Poll takes over.
   vtkIdType GetTakenSlices() const;
+  ///@{
   /// Slices that are on the disk, and the file they are in.
   vtkIdType GetRecordedSlices() const;
   const char* GetRecordedFileName();
+  ///@}
   /// Slices that are to be recorded and not on the disk yet; for less than a second if all is well.
   vtkIdType GetWaitingSlices() const;
-  /// MiB that are free on that disk, NaN when nothing is recorded; why nothing is written, empty:
-  /// all is well.
+  /// MiB that are free on that disk; NaN when nothing is recorded.
   double GetDiskSpace() const;
+  /// Why nothing is written; empty: all is well.
   const char* GetDiskMessage();
+  ///@{
   /// MiB of pixels, taken or waiting for the disk, and how many there may be; 0 before Connect.
   double GetMemoryUsed() const;
   double GetMemoryLimitNow() const;
+  ///@}
   /// What is wrong now and what to do, a line each; empty: all is well.
   const char* GetMessage();
 

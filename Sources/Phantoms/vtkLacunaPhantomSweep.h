@@ -169,11 +169,13 @@ public:
   /// The error of a reconstruction is its difference to that. Returns false after an error.
   bool AddTruth(vtkImageData* grid);
 
+  ///@{
   /// The level of the iso-surface that is exactly the surface of the object of interest (the main
   /// ellipsoid, the kumara, the vessels), and the volume in mm3 inside of it. NaN where there is no
   /// object (LINEAR), no closed form (volume of VESSELS) or an input volume.
   double GetTrueIsoValue();
   double GetTrueVolume();
+  ///@}
 
   /// The same as SetInputConnection(volume). ParaView uses it: on port 0 paraview.simple would
   /// connect the active source unasked.
