@@ -4,12 +4,13 @@
 #   Documentation/build-site.sh [folder]     default: build/site; start at its html/index.html
 # Warnings of Sphinx and Doxygen are errors, and so are links that lead nowhere.
 set -euo pipefail
+site=${1:+$(realpath -m "$1")}
 cd "$(dirname "$0")/.."
 . Testing/Tools/setup.sh
 case $PWD in
   *[[:blank:]]*) lacuna_fail "building the site" "Doxygen needs a folder without blanks in its path, not $PWD" ;;
 esac
-site=$(realpath -m "${1:-build/site}")
+site=${site:-$PWD/build/site}
 lacuna_install_packages packages-documentation.txt
 version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 mkdir -p "$site"

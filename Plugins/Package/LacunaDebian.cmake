@@ -155,7 +155,8 @@ add_custom_target(LacunaManual ALL DEPENDS "${page}")
 install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT runtime)
 
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/Documentation/Examples/"
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna-doc/examples" COMPONENT documentation)
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna-doc/examples" COMPONENT documentation
+  PATTERN __pycache__ EXCLUDE)
 if (EXISTS "${LACUNA_SITE}/index.html")
   install(DIRECTORY "${LACUNA_SITE}/"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna-doc/html" COMPONENT documentation)

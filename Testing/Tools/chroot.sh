@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Tries the project on a machine that has nothing: a minimal Debian in a folder (root only).
-#   Testing/Tools/chroot.sh FOLDER fresh           ./test.sh in a clean clone, as a newcomer runs it
+#   Testing/Tools/chroot.sh FOLDER fresh           ./test.sh, the examples and ./demo.sh in a clean clone, as a
+#                                                  newcomer runs them
 #   Testing/Tools/chroot.sh FOLDER vtk [SUITE]     modules only, against the VTK of that Debian:
 #                                                  bookworm (9.1, the default), trixie (9.3), sid
 #   Testing/Tools/chroot.sh FOLDER package         installs, uses and purges build/package/lacuna*.deb
@@ -11,7 +12,7 @@
 # CCACHE_DIR is set, the compiler's results are kept there.
 # Debian's VTK and ParaView's Python cannot share a system: use one folder for each, and for each SUITE.
 set -euo pipefail
-[[ ${2:-} =~ ^(fresh|vtk|package)$ ]] || { sed -n '3,13s/^# \?//p' "$0" >&2; exit 2; }
+[[ ${2:-} =~ ^(fresh|vtk|package)$ ]] || { sed -n '3,14s/^# \?//p' "$0" >&2; exit 2; }
 folder=$1
 what=$2
 suite=${3:-bookworm}
@@ -74,8 +75,10 @@ case $what in
       fi
     done
     inside "apt-get -y -qq install --no-install-recommends libvtk9-dev $packages >/dev/null
-      cd /lacuna && cmake --preset vtk ${LACUNA_CMAKE_OPTIONS:-} && cmake --build --preset vtk -- -k 0
-      xvfb-run -a -s -noreset ctest --preset vtk -LE soak"
+      cd /lacuna
+      cmake --preset vtk ${LACUNA_CMAKE_OPTIONS:-}
+      cmake --build --preset vtk -- -k 0
+      xvfb-run -a -s -noreset ctest --preset vtk --no-tests=error -LE soak"
     ;;
   package)
     version=$(sed -n 's/^project(Lacuna VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")

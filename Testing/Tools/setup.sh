@@ -28,11 +28,11 @@ lacuna_install_packages() {
     lacuna_fail "installing packages" "apt-get could not install$missing"
 }
 
-# lacuna_configure <preset>: into build/<preset>; does nothing when that is there.
+# lacuna_configure <preset>: into build/<preset>; does nothing when that is there, and not older than the presets.
 lacuna_configure() {
   local preset=$1 log="build/$1.log"
   mkdir -p build
-  if [ ! -f "build/$preset/build.ninja" ]; then
+  if [ ! -f "build/$preset/build.ninja" ] || [ CMakePresets.json -nt "build/$preset/build.ninja" ]; then
     echo "== configuring ($preset)"
     cmake --preset "$preset" >"$log" 2>&1 ||
       { tail -n 30 "$log" >&2; lacuna_fail "configuring" "see $log"; return 1; }
