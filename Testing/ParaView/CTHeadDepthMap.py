@@ -6,7 +6,7 @@ import sys
 
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.vtkCommonCore import mutable, vtkIdList, vtkPoints
+from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
 

@@ -17,7 +17,6 @@ PLUGINS = os.path.join(os.path.dirname(os.path.dirname(os.environ["LACUNA_PLUGIN
 
 def seen(proxy, direction, up, name):
     """Where a picture of the proxy alone, seen so, is not of the background's colour."""
-    import numpy as np
     from lacuna import pictures
     from paraview.simple import GetActiveViewOrCreate, Hide, SaveScreenshot, Show
     from vtkmodules.util.numpy_support import vtk_to_numpy

@@ -2,7 +2,6 @@
 """From a skull with a hole to programs for a mill, and back from the program to the patient."""
 import os
 
-import lacuna
 import numpy as np
 from gcode_files import read_gcode
 from lacuna.errors import raising

@@ -2,7 +2,6 @@
 """The example of a live acquisition: its sweep, its surface against the scene, its picture and its state files."""
 import os
 import shutil
-import sys
 
 import lacuna.plugin
 

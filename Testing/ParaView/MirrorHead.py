@@ -7,7 +7,6 @@ import numpy as np
 from lacuna_test import data
 from paraview.simple import LoadPlugin, MetaFileSeriesReader
 from paraview import servermanager
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 

@@ -8,7 +8,7 @@ from lacuna import occlusion
 from lacuna_test import check_defaults
 from paraview import servermanager
 from paraview.simple import *
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkStaticCellLocator
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.util.numpy_support import vtk_to_numpy

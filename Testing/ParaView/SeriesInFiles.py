@@ -13,7 +13,6 @@ from lacuna.errors import raising
 from lacuna.solids import save_solid
 from lacuna_test import output
 from letter_block import HALF, face_axes
-from paraview import servermanager
 from paraview.simple import ExtractSurface, LoadPlugin, SaveData
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())

@@ -5,7 +5,6 @@
     volume = open_volume("head.mha")   # an error if ParaView would drop how it lies
     top = fetch(OutputPort(model, 1))
 """
-import contextlib
 import os
 
 import numpy

@@ -163,6 +163,8 @@ class Page:
                     if any(measured.spread(row, name) for name, _, _ in each.columns)]
             if rows:
                 parts.append(f"**{each.title}**\n\n" + table(("", *(heading for _, heading, _ in each.columns)), rows))
+        if len(parts) == 1:
+            parts.append("Its rows are in the tables at the top.\n")
         return "\n".join(filter(None, parts))
 
     def failures(self):
