@@ -114,9 +114,9 @@ std::function<void(vtkLacunaExecution&)> WithSoundInputs(
   };
 }
 
-// Runs body and returns 1, or 0 after an error that was told.
+// Runs body and returns 1, or 0 after an error that was told. areToldAll: other ranks learn of it, and fail, too.
 int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
-  const std::function<void(vtkLacunaExecution&)>& body, std::string& error)
+  const std::function<void(vtkLacunaExecution&)>& body, std::string& error, bool areToldAll)
 {
   const bool isAlone = vtkLacunaRanks().GetNumber() == 1;
   const std::string announced = vtkLacunaFailure::GetAnnounced(algorithm);
@@ -139,7 +139,8 @@ int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
       return 1;
     }
     EmptyOutputs(outputs);
-    if (!announced.empty() && !isAlone && vtkLacunaFailure::MayBeOfOneRank(algorithm))
+    if (!areToldAll && !announced.empty() && !isAlone &&
+      vtkLacunaFailure::MayBeOfOneRank(algorithm))
     {
       // VTK would not execute what comes behind on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
@@ -180,7 +181,7 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     return 0;
   }
   std::string error;
-  return RunAndTell(algorithm, outputs, body, error);
+  return RunAndTell(algorithm, outputs, body, error, false);
 }
 
 //------------------------------------------------------------------------------
@@ -203,7 +204,7 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   std::string own;
   if (agreed.empty() && isWanted)
   {
-    RunAndTell(algorithm, outputs, WithSoundInputs(algorithm, body), own);
+    RunAndTell(algorithm, outputs, WithSoundInputs(algorithm, body), own, true);
   }
   if (!haveMet)
   {

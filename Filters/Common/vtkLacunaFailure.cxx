@@ -94,15 +94,26 @@ std::array<double, 2> GetSharedState(vtkAlgorithm* algorithm, vtkInformationVect
     info->Has(SDDP::UPDATE_TIME_STEP()) ? info->Get(SDDP::UPDATE_TIME_STEP()) : 0 };
 }
 
-// Whether an input changes with time.
+bool HasTimes(vtkInformation* info)
+{
+  return info->Has(SDDP::TIME_RANGE()) || info->Has(SDDP::TIME_STEPS());
+}
+
+// Whether an input changes with time, or what a source gives.
 bool HasTimes(vtkAlgorithm* algorithm)
 {
+  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    if (HasTimes(algorithm->GetOutputInformation(port)))
+    {
+      return true;
+    }
+  }
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
   {
     for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
     {
-      vtkInformation* info = algorithm->GetInputInformation(port, i);
-      if (info->Has(SDDP::TIME_RANGE()) || info->Has(SDDP::TIME_STEPS()))
+      if (HasTimes(algorithm->GetInputInformation(port, i)))
       {
         return true;
       }

@@ -176,8 +176,7 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
 {
   vtkInformation* in = inputs[0]->GetInformationObject(0);
   vtkInformation* table = inputs[1]->GetInformationObject(0);
-  const std::array<int, 6> wanted =
-    GetExtent(outputs->GetInformationObject(0), SDDP::UPDATE_EXTENT());
+  const std::array<int, 6> wanted = vtkLacunaRequest::GetPart(outputs->GetInformationObject(0));
   // Whole pictures: which rows are wanted is known when the order of rows is.
   std::array<int, 6> extent = GetExtent(in, SDDP::WHOLE_EXTENT());
   if (this->TimeSteps.empty())
@@ -200,7 +199,7 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
 int vtkLacunaAssembleTrackedSlices::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
     [&](vtkLacunaExecution& execution)
     {
       vtkInformation* info = outputs->GetInformationObject(0);

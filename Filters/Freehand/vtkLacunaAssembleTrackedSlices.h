@@ -32,6 +32,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 
 #include <string> // for std::string
 #include <vector> // for std::vector
@@ -45,6 +46,7 @@ public:
   static vtkLacunaAssembleTrackedSlices* New();
   vtkTypeMacro(vtkLacunaAssembleTrackedSlices, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum PoseFormats
   {

@@ -191,7 +191,7 @@ int vtkLacunaGateSlices::RequestUpdateExtent(
 int vtkLacunaGateSlices::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
     [&](vtkLacunaExecution&)
     {
       vtkImageData* slices = vtkImageData::GetData(inputs[0]);

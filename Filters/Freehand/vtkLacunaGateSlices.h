@@ -35,6 +35,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ public:
   static vtkLacunaGateSlices* New();
   vtkTypeMacro(vtkLacunaGateSlices, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   enum GateTypes
   {

@@ -29,6 +29,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -320,7 +321,9 @@ int vtkLacunaDepthMapShader::RequestUpdateExtent(
   std::copy_n(whole, 6, extent);
   if (!this->NeedsWholeMap())
   {
-    outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), extent);
+    const std::array<int, 6> part =
+      vtkLacunaRequest::GetPart(outputVector->GetInformationObject(0));
+    std::copy(part.begin(), part.end(), extent);
     if (extent[0] <= extent[1] && extent[2] <= extent[3])
     {
       // neighbours, for the normals; an extent may begin or end with the integers

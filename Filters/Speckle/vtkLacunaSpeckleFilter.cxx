@@ -226,7 +226,7 @@ int vtkLacunaSpeckleFilter::RequestUpdateExtent(
 int vtkLacunaSpeckleFilter::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
     [&](vtkLacunaExecution& execution)
     {
       vtkImageData* input = vtkImageData::GetData(inputs[0]);

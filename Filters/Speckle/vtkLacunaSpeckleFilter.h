@@ -27,6 +27,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaFiltersSpeckleModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"        // for stops
 
 #include <string> // for the array's name
 
@@ -36,6 +37,7 @@ public:
   static vtkLacunaSpeckleFilter* New();
   vtkTypeMacro(vtkLacunaSpeckleFilter, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The point array of numbers; empty: the active scalars. Default: empty.

@@ -358,7 +358,7 @@ int vtkLacunaCTSeriesReader::RequestData(
     }
   }
   found.Warned = true;
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
     [&](vtkLacunaExecution& execution)
     {
       vtkInformation* info = outputs->GetInformationObject(0);

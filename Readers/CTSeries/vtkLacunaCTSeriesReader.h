@@ -38,6 +38,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaReadersCTSeriesModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"         // for stops
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
@@ -55,6 +56,7 @@ public:
   static vtkLacunaCTSeriesReader* New();
   vtkTypeMacro(vtkLacunaCTSeriesReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   /// What is done about slices that are missing or not equally spaced.
   enum MissingSlicesType

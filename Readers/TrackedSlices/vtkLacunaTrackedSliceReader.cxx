@@ -346,7 +346,7 @@ void vtkLacunaTrackedSliceReader::HideSlices(vtkImageData* output, int shown) co
 int vtkLacunaTrackedSliceReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::Run(this, outputs,
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
     [&](vtkLacunaExecution& execution)
     {
       vtkInformation* info = outputs->GetInformationObject(0);

@@ -67,6 +67,7 @@
 
 #include "vtkImageAlgorithm.h"
 #include "vtkLacunaReadersTrackedSlicesModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"              // for stops
 
 #include <memory> // for std::unique_ptr
 #include <string> // for std::string
@@ -79,6 +80,7 @@ public:
   static vtkLacunaTrackedSliceReader* New();
   vtkTypeMacro(vtkLacunaTrackedSliceReader, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
 
   ///@{
   /// The sequence file.

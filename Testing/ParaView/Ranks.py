@@ -42,7 +42,7 @@ WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 REFUSED = {"PolhemusVideoSource"}
 
 # Provenance has the hash of what a rank was given, which for these is a part
-HASHED_PARTS = {"AssembleTrackedSlices", "GateSlices", "SpeckleFilter"}
+HASHED_PARTS = {"AssembleTrackedSlices", "DepthMapShader", "DepthMapSurface", "GateSlices", "SlicePlanes", "SpeckleFilter"}
 # Have their whole input on every rank, whatever is asked of them: the size of their output is in it, or all ranks work for it
 ALWAYS_ASK = {"BSplineIsoRayCaster", "Mirror", "OccludedAngle", "RBFImageWarp", "RBFInterpolator", "SliceRayCaster", "SweptVolume"}
 
@@ -209,6 +209,17 @@ def join_mesh(pieces):
     return sorted(cells)
 
 
+def check_field_data(key, pieces):
+    """Those that have something say the same of it."""
+    field, *others = ({name: values for name, values in pipelines.values(piece).items() if name[0] == "FieldData"}
+                      for piece in pieces if piece.GetNumberOfPoints() > 0)
+    for other in others:
+        assert set(field) == set(other), (key, set(field) ^ set(other))
+        for name, values in field.items():
+            if name[1] != "Provenance" or key[1] not in HASHED_PARTS:
+                assert np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f"), (key, name)
+
+
 def check(key, alone, pieces):
     what = key[1]
     (one, _), = alone
@@ -221,20 +232,14 @@ def check(key, alone, pieces):
             assert what not in FIRST or not any(count for _, count in upstream), (key, upstream)
     elif one.IsA("vtkPolyData"):
         assert join_mesh(data) == join_mesh([one]), key
+        check_field_data(key, [one, *data])
     else:
         assert what in WHOLE or share_faces_only(data), (key, [piece.GetExtent() for piece in data])
         whole, parts = join_image([one]), join_image(data)
         assert set(whole) == set(parts), (key, set(whole) ^ set(parts))
         for name, values in whole.items():
             assert values.dtype == parts[name].dtype and np.array_equal(values, parts[name], equal_nan=values.dtype.kind == "f"), (key, name)
-        field, *others = ({name: values for name, values in pipelines.values(image).items() if name[0] == "FieldData"}
-                          for image in [one] + [piece for piece in data if piece.GetNumberOfPoints() > 0])
-        for other in others:
-            assert set(field) == set(other), (key, set(field) ^ set(other))
-            for name, values in field.items():
-                if name[1] == "Provenance" and what in HASHED_PARTS:
-                    continue
-                assert np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f"), (key, name)
+        check_field_data(key, [one, *data])
 
 
 def files(ranks):

@@ -304,6 +304,15 @@ def expect(word, ask):
     raise AssertionError(f"nothing is said of {word!r}")
 
 
+def written(file, controller):
+    """A file when both ranks are there: the first one alone writes it, and the second does not wait for that."""
+    controller.Barrier()
+    with open(file, "rb") as opened:
+        content = opened.read()
+    controller.Barrier()
+    return content
+
+
 def saved(controller):
     """What is wrong on all ranks alike is said each time, and a file that was good stays."""
     from lacuna.errors import raising
@@ -311,25 +320,51 @@ def saved(controller):
     skull = pv.SkullPhantom(Spacing=[5] * 3)
     caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
     file = lacuna_test.output("RanksErrors.pvti")
-
-    def written():
-        """The file when both ranks are there: the first one alone writes it, and the second does not wait for that."""
-        controller.Barrier()
-        content = open(file, "rb").read()
-        controller.Barrier()
-        return content
     pv.SaveData(file, proxy=caster)
-    before = written()
+    before = written(file, controller)
     for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spacing is -1"),
                                          (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up")):
         setattr(proxy, name, bad)
         for _ in range(2):
             expect(word, lambda: pv.SaveData(file, proxy=caster))
-            assert written() == before, name
+            assert written(file, controller) == before, name
         setattr(proxy, name, good)
     with raising():
         pv.SaveData(file, proxy=caster)
-    assert written() == before
+    assert written(file, controller) == before
+
+
+def of_files(rank, controller):
+    """A file that is not there, that one rank lacks, or that is damaged where the first rank alone reads: said by all, each time, and a file
+    that was good stays."""
+    from lacuna.errors import raising
+    from paraview import simple as pv
+    good, damaged, missing = (lacuna_test.output(f"RanksErrors{name}.mha") for name in ("Good", "Damaged", "Missing"))
+    pv.SaveData(good, proxy=pv.PhantomSweep(NumberOfSlices=40, ImageSize=[64, 48]))
+    content = written(good, controller)
+    own = lacuna_test.output(f"RanksErrorsOfRank{rank}.mha")  # as one path on two nodes: the second rank's is not there
+    if rank == 0:
+        with open(own, "wb") as file:
+            file.write(content)
+        middle = len(content) * 3 // 4
+        with open(damaged, "wb") as file:
+            file.write(content[:middle] + bytes(64) + content[middle + 64:])
+    controller.Barrier()
+    reader = pv.TrackedSliceReader(FileName=good)
+    results = ((pv.ScanRegion(Input=reader), lacuna_test.output("RanksErrorsRegion.csv")),
+               (pv.SweptVolume(Input=reader, OutputSpacing=[2] * 3), lacuna_test.output("RanksErrorsVolume.pvti")))
+    for name, word in (missing, "RanksErrorsMissing"), (own, "RanksErrorsOfRank1"), (damaged, "RanksErrorsDamaged"):
+        print(f"rank {rank} {word} {name}", flush=True)
+        reader.FileName = good
+        with raising():
+            for proxy, file in results:
+                pv.SaveData(file, proxy=proxy)
+        before = [written(file, controller) for _, file in results]
+        reader.FileName = name
+        for _ in range(2):
+            for proxy, file in results:
+                expect(word, lambda proxy=proxy, file=file: pv.SaveData(file, proxy=proxy))
+            assert [written(file, controller) for _, file in results] == before
 
 
 def of_first_rank():
@@ -344,6 +379,11 @@ def of_first_rank():
     values = pv.Calculator(Input=pieces, ResultArrayName="Value", Function="coordsX")
     grid = pv.RBFInterpolator(Input=values, ScalarArray="Value", Kernel="Linear", OutputSpacing=[0.1] * 3)
     of_grid = pv.ContrastToSpeckle(Input=grid, InsideBounds=[-0.3, 0.3] * 3)
+    # the second rank makes no part of what these give to a serial filter
+    smooth = pv.SpeckleFilter(Input=wavelet, KernelSize=[3, 3, 1])
+    of_smooth = pv.ContrastToSpeckle(Input=smooth, InsideBounds=[0, 4] * 3)
+    gated = pv.GateSlices(Input=pv.PhantomSweep(NumberOfSlices=40, ImageSize=[64, 48]), SpeedLimit=1000)
+    of_gated = pv.ScanRegion(Input=gated)
     for proxy, cause, name, bad, good, word in (
             (pv.ImplantPlate(Input=filled), None, "Input", depth, filled, "'Fitted'"),
             (pv.ImplantPlate(Input=filled), depth, "IsoValues", [], [500], "iso"),
@@ -351,7 +391,10 @@ def of_first_rank():
             (pv.PressOrientation(Input=filled), None, "PlateMargin", 300.0, 10.0, "beyond the defect"),
             (pv.OcclusionSurface(Input=angle, Data=wavelet), None, "Data", pv.Wavelet(WholeExtent=[0, 3] * 3), wavelet, "other voxels"),
             (pv.ContrastToSpeckle(Input=wavelet), None, "InsideBounds", [90, 91] * 3, [0, 4] * 3, "no sample is inside"),
-            (of_grid, grid, "ScalarArray", "No", "Value", "'No'")):
+            (of_grid, grid, "ScalarArray", "No", "Value", "'No'"),
+            (of_smooth, smooth, "ScalarArray", "No", "RTData", "'No'"),
+            (of_smooth, smooth, "KernelSize", [0, 3, 1], [3, 3, 1], "kernel size is 0"),
+            (of_gated, gated, "SpeedLimit", 0, 1000, "nothing to gate by")):
         print(proxy.GetXMLLabel(), flush=True)
         file = lacuna_test.output("RanksErrors.csv")
         for _ in range(2):
@@ -446,6 +489,8 @@ def run():
     transparent(rank)
     signal.alarm(SECONDS)
     saved(controller)
+    signal.alarm(SECONDS)
+    of_files(rank, controller)
     signal.alarm(SECONDS)
     of_first_rank()
     signal.alarm(SECONDS)

@@ -121,7 +121,7 @@ Extent GetSpeckleInput(const SpeckleParameters& parameters, const Extent& box)
   if (parameters.Operation == SpeckleOperation::Rank &&
     !(parameters.Percentile >= 0 && parameters.Percentile <= 100))
   {
-    throw std::invalid_argument("the rank is " + std::to_string(parameters.Percentile) +
+    throw std::invalid_argument("the rank is " + FormatNumber(parameters.Percentile) +
       "; it must be a percentile from 0 (the least) to 100 (the greatest)");
   }
   const Window window = WindowOf(parameters);
