@@ -226,6 +226,10 @@ int vtkLacunaExecution::RunInformation(
   std::string error;
   vtkLacunaForgetAbort(algorithm);
   vtkLacunaFailure::Announce(algorithm, {});
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    outputs->GetInformationObject(i)->Remove(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT());
+  }
   try
   {
     if (!vtkLacunaInputs::AreSingle(algorithm))
@@ -253,6 +257,8 @@ int vtkLacunaExecution::RunInformation(
     info->Set(SDDP::WHOLE_EXTENT(), nothing, 6);
     info->Set(SDDP::UPDATE_EXTENT(), nothing, 6);
     info->Set(SDDP::UPDATE_EXTENT_INITIALIZED(), 0);
+    // Otherwise VTK executes it, to tell the error, where the first piece is asked for, on one rank alone.
+    info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   }
   return 1;
 }

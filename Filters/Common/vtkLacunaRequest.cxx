@@ -139,6 +139,19 @@ double GetBytesPerPoint(vtkInformation* image, vtkXMLReader* reader)
   return std::max(1.0, bytes);
 }
 
+// VTK's reader of MetaImage files (9.2) writes beyond its memory when it reads a part of some.
+bool IsReadAsWhole(vtkInformation* image)
+{
+  vtkAlgorithm* producer = GetProducer(image);
+  while (
+    producer && producer->IsA("vtkPVPostFilter") && producer->GetNumberOfInputConnections(0) > 0)
+  {
+    producer = producer->GetInputAlgorithm(0, 0);
+  }
+  vtkAlgorithm* inner = producer && GetInnerReader ? GetInnerReader(producer) : nullptr;
+  return producer && (inner ? inner : producer)->IsA("vtkMetaImageReader");
+}
+
 // Filters announce their active scalars only, without a name, and yet their reader loads the other arrays,
 // too. ParaView has a filter that passes images on behind every source.
 double GetBytesPerPoint(vtkInformation* image)
@@ -288,7 +301,9 @@ void vtkLacunaRequest::SetInnerReader(InnerReader function)
 //------------------------------------------------------------------------------
 bool vtkLacunaRequest::Extent(vtkAlgorithm* filter, vtkInformation* input, const int extent[6])
 {
-  return AskOrRefuse(filter, input, extent, "a part of its input");
+  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  return AskOrRefuse(filter, input,
+    whole && !IsEmpty(extent) && IsReadAsWhole(input) ? whole : extent, "a part of its input");
 }
 
 //------------------------------------------------------------------------------

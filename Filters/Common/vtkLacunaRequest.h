@@ -45,7 +45,7 @@ VTKLACUNAFILTERSCOMMON_EXPORT bool Whole(
 using InnerReader = vtkAlgorithm* (*)(vtkAlgorithm*);
 VTKLACUNAFILTERSCOMMON_EXPORT void SetInnerReader(InnerReader function);
 
-/// This very extent of an image, refused like the whole.
+/// This extent of an image, refused like the whole; and all of it where a part of it cannot be read.
 VTKLACUNAFILTERSCOMMON_EXPORT bool Extent(
   vtkAlgorithm* filter, vtkInformation* input, const int extent[6]);
 

@@ -190,6 +190,11 @@ int vtkLacunaAssembleTrackedSlices::RequestUpdateExtent(
     const auto last = static_cast<int>(this->TimeSteps.size()) - 1;
     in->Set(SDDP::UPDATE_TIME_STEP(), this->TimeSteps[std::max(0, std::min(wanted[4], last))]);
   }
+  if (wanted[0] > wanted[1] || wanted[2] > wanted[3] || wanted[4] > wanted[5])
+  {
+    extent = { 0, -1, 0, -1, 0,
+      -1 }; // also no columns and rows, which others would take for wanted
+  }
   vtkLacunaRequest::Extent(this, in, extent.data());
   vtkLacunaRequest::OnePiece(table);
   return 1;

@@ -365,6 +365,20 @@ def of_files(rank, controller):
             for proxy, file in results:
                 expect(word, lambda proxy=proxy, file=file: pv.SaveData(file, proxy=proxy))
             assert [written(file, controller) for _, file in results] == before
+        if name != damaged:
+            of_new(pv.TrackedSliceReader, name, word)
+    of_new(pv.CTSeriesReader, good, "RanksErrorsGood")
+    of_new(pv.TrackedSliceReader, "", "FileName is not set")
+
+
+def of_new(reader, name, word):
+    """The same of readers that have not read anything before, by themselves and behind ParaView's filters, which ask for pieces."""
+    from paraview import simple as pv
+    expect(word, lambda: reader(FileName=name).UpdatePipeline())
+    for behind in pv.Contour, pv.SliceRayCaster:
+        made = reader(FileName=name)
+        for _ in range(2):
+            expect(word, lambda made=made, behind=behind: behind(Input=made).UpdatePipeline())
 
 
 def of_first_rank():
