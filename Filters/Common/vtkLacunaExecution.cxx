@@ -181,7 +181,9 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     return 0;
   }
   std::string error;
-  return RunAndTell(algorithm, outputs, body, error, false);
+  const int done = RunAndTell(algorithm, outputs, body, error, false);
+  vtkLacunaRequest::ForgetNothing(algorithm);
+  return done;
 }
 
 //------------------------------------------------------------------------------
@@ -211,6 +213,7 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
     agreed = ranks.GetFirstText(own);
     vtkLacunaFailure::SetAgreed(algorithm, outputs, agreed);
   }
+  vtkLacunaRequest::ForgetNothing(algorithm);
   if (own.empty() && !agreed.empty())
   {
     EmptyOutputs(outputs);

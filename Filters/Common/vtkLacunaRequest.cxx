@@ -408,6 +408,29 @@ void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaRequest::ForgetNothing(vtkAlgorithm* filter)
+{
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkInformation* input = filter->GetInputInformation(port, i);
+      const int* asked = input->Get(SDDP::UPDATE_EXTENT());
+      const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+      if (asked && whole && IsEmpty(asked))
+      {
+        input->Set(SDDP::UPDATE_EXTENT(), whole, 6);
+      }
+      vtkAlgorithm* upstream = filter->GetInputAlgorithm(port, i);
+      if (upstream && upstream->IsA("vtkPVPostFilter"))
+      {
+        ForgetNothing(upstream);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaRequest::WholeOnFirst(
   vtkAlgorithm* filter, vtkInformation* input, vtkInformationVector* outputs)
 {

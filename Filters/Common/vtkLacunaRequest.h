@@ -67,6 +67,10 @@ VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);
 /// What Whole asks for when nothing is wanted.
 VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
 
+/// For the end of RequestData: where nothing was asked of images, all is asked of them again. VTK keeps what
+/// was asked of them last, and who updates them next asks for a piece of that.
+VTKLACUNAFILTERSCOMMON_EXPORT void ForgetNothing(vtkAlgorithm* filter);
+
 /// For RequestUpdateExtent of filters that make parts (CAN_PRODUCE_SUB_EXTENT): the extent that is asked of
 /// an output. VTK divides the extent into pieces only when it executes the algorithm, too late to ask the
 /// input for what they need: so here in the same way.
