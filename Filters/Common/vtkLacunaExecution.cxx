@@ -181,9 +181,7 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     return 0;
   }
   std::string error;
-  const int done = RunAndTell(algorithm, outputs, body, error, false);
-  vtkLacunaRequest::ForgetNothing(algorithm);
-  return done;
+  return RunAndTell(algorithm, outputs, body, error, false);
 }
 
 //------------------------------------------------------------------------------
@@ -213,13 +211,17 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
     agreed = ranks.GetFirstText(own);
     vtkLacunaFailure::SetAgreed(algorithm, outputs, agreed);
   }
-  vtkLacunaRequest::ForgetNothing(algorithm);
-  if (own.empty() && !agreed.empty())
+  if (own.empty() && agreed.empty())
+  {
+    vtkLacunaRequest::ForgetNothing(algorithm);
+    return 1;
+  }
+  if (own.empty())
   {
     EmptyOutputs(outputs);
     vtkLacunaFailure::Tell(algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
   }
-  return own.empty() && agreed.empty() ? 1 : 0;
+  return 0;
 }
 
 //------------------------------------------------------------------------------

@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationExecutivePortKey.h"
+#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationIntegerRequestKey.h"
@@ -302,8 +303,9 @@ void vtkLacunaRequest::SetInnerReader(InnerReader function)
 bool vtkLacunaRequest::Extent(vtkAlgorithm* filter, vtkInformation* input, const int extent[6])
 {
   const int* whole = input->Get(SDDP::WHOLE_EXTENT());
-  return AskOrRefuse(filter, input,
-    whole && !IsEmpty(extent) && IsReadAsWhole(input) ? whole : extent, "a part of its input");
+  return whole && !IsEmpty(extent) && IsReadAsWhole(input)
+    ? AskOrRefuse(filter, input, whole, WholeInput)
+    : AskOrRefuse(filter, input, extent, "a part of its input");
 }
 
 //------------------------------------------------------------------------------
@@ -415,6 +417,10 @@ void vtkLacunaRequest::ForgetNothing(vtkAlgorithm* filter)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       vtkInformation* input = filter->GetInputInformation(port, i);
+      if (vtkExecutive::CONSUMERS()->Length(input) != 1)
+      {
+        continue;
+      }
       const int* asked = input->Get(SDDP::UPDATE_EXTENT());
       const int* whole = input->Get(SDDP::WHOLE_EXTENT());
       if (asked && whole && IsEmpty(asked))

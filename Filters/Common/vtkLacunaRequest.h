@@ -67,8 +67,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void ForgetEmpty(vtkInformationVector* outputs);
 /// What Whole asks for when nothing is wanted.
 VTKLACUNAFILTERSCOMMON_EXPORT void Nothing(vtkAlgorithm* filter, vtkInformation* input);
 
-/// For the end of RequestData: where nothing was asked of images, all is asked of them again. VTK keeps what
-/// was asked of them last, and who updates them next asks for a piece of that.
+/// For the end of a RequestData without an error: where nothing was asked of images of which nobody else makes
+/// anything, all is asked of them again. VTK keeps what was asked of them last, and who updates them next asks
+/// for a piece of that. Others would come to them in the same update, and they would make all.
 VTKLACUNAFILTERSCOMMON_EXPORT void ForgetNothing(vtkAlgorithm* filter);
 
 /// For RequestUpdateExtent of filters that make parts (CAN_PRODUCE_SUB_EXTENT): the extent that is asked of
