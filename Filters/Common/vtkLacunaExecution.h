@@ -50,10 +50,10 @@ public:
   /// As Run where isWanted, for algorithms that may fail on some ranks only: of which one rank, or those that
   /// are asked for something, makes all of the output, or which read files. What fails there fails on all
   /// ranks, with the same text, for VTK would leave out what comes behind on the rank that failed alone, and
-  /// the others would wait there. So all wait for its
-  /// outcome once after each change of the algorithm or what lies upstream, when VTK executes on all ranks.
-  /// At other times, when another time step or another part is asked for, perhaps of one rank alone, nobody
-  /// waits. Ranks agree in ParaView's pipelines only: of classes in a script one process may be alone with it.
+  /// the others would wait there. So all wait for its outcome once after each change of the algorithm or what
+  /// lies upstream, when VTK executes on all ranks. At other times, when another time step or another
+  /// part is asked for, perhaps of one rank alone, nobody waits. Ranks agree in ParaView's pipelines only: of
+  /// classes in a script one process may be alone with it.
   static int RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, bool isWanted,
     const std::function<void(vtkLacunaExecution&)>& body);
 

@@ -4,8 +4,6 @@ has asked for does not stay.
 
 Run without arguments it is the test; it runs itself in pvbatch on two ranks.
 """
-import sys
-
 import lacuna_test
 
 TABLE = """
@@ -88,15 +86,6 @@ def run():
         algorithm = proxy.GetClientSideObject()
         check_half(proxy.GetXMLLabel(), algorithm.GetInputDataObject(0, 0), algorithm.GetInputInformation(0, 0))
     after_serial()
-    print("rank done", flush=True)
 
 
-def main():
-    printed = lacuna_test.run_ranks(2, __file__, "in pvbatch", options=["--symmetric"])
-    assert printed.count("rank done") == 2, printed
-
-
-if sys.argv[1:2] == ["in pvbatch"]:
-    run()
-else:
-    main()
+lacuna_test.on_two_ranks(__file__, run)

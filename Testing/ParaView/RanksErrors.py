@@ -7,7 +7,6 @@ import math
 import os
 import resource
 import signal
-import sys
 
 import lacuna_test
 
@@ -510,15 +509,6 @@ def run():
     signal.alarm(SECONDS)
     at_other_times()
     signal.alarm(0)
-    print("rank done", flush=True)
 
 
-def main():
-    printed = lacuna_test.run_ranks(2, __file__, "in pvbatch", options=["--symmetric"])
-    assert printed.count("rank done") == 2, printed
-
-
-if sys.argv[1:2] == ["in pvbatch"]:
-    run()
-else:
-    main()
+lacuna_test.on_two_ranks(__file__, run)

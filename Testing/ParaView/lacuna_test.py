@@ -61,6 +61,16 @@ def run_ranks(ranks, script, *arguments, options=()):
     return done.stdout
 
 
+def on_two_ranks(script, run):
+    """A test whose run() is called in pvbatch on each of two ranks for itself, and comes to its end on both."""
+    if sys.argv[1:2] == ["in pvbatch"]:
+        run()
+        print("rank done", flush=True)
+    else:
+        printed = run_ranks(2, script, "in pvbatch", options=["--symmetric"])
+        assert printed.count("rank done") == 2, printed
+
+
 def check_defaults(proxy, own, names, enumerations=None):
     """The panel's defaults are the class's own, and scripts may set each enumeration by its words.
 
