@@ -4,7 +4,7 @@
 # the documentation and those that take long (label soak), unless options of ctest (-L, -R) select them.
 #   ./test.sh [--preset NAME] [--target NAME] [ctest options]
 #   ./test.sh -L example          demo.sh and the examples
-# Presets: release debug asan tsan vtk kernels clang fuzz; the target is what to build, if not all.
+# Presets: release debug asan[-paraview] tsan[-paraview] vtk kernels clang fuzz; the target is what to build, if not all.
 set -euo pipefail
 cd "$(dirname "$0")"
 . Testing/Tools/setup.sh

@@ -31,13 +31,34 @@ function (lacuna_tests_in_real_time)
   set_tests_properties(${ARGN} PROPERTIES RUN_SERIAL ON)
 endfunction ()
 
+# lacuna_tests_in_interpreters(<test>...)
+# Their program is not built with the sanitizer of the modules that it loads: it has the sanitizer's
+# library preloaded, with that of the exceptions it watches, and its own leaks are not looked for.
+set(lacuna_sanitizer_libraries)
+if (LACUNA_SANITIZE MATCHES "address|thread")
+  string(SUBSTRING "${CMAKE_MATCH_0}" 0 1 sanitizer)
+  foreach (library IN ITEMS ${sanitizer}san stdc++)
+    execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-file-name=lib${library}.so
+      OUTPUT_VARIABLE file OUTPUT_STRIP_TRAILING_WHITESPACE)
+    list(APPEND lacuna_sanitizer_libraries "${file}")
+  endforeach ()
+  list(JOIN lacuna_sanitizer_libraries ":" lacuna_sanitizer_libraries)
+endif ()
+function (lacuna_tests_in_interpreters)
+  if (lacuna_sanitizer_libraries)
+    set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detect_leaks=0")
+    set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT_MODIFICATION
+      "LD_PRELOAD=path_list_prepend:${lacuna_sanitizer_libraries}")
+  endif ()
+endfunction ()
+
 # lacuna_tests_with_emulated_ports(<test>...)
 # In real time, with the library without which libserialport does not open the emulator's port. By its
 # name, which is looked for in LD_LIBRARY_PATH: LD_PRELOAD is parted at blanks, also those of folders.
 function (lacuna_tests_with_emulated_ports)
   lacuna_tests_in_real_time(${ARGN})
-  set_property(TEST ${ARGN} APPEND PROPERTY
-    ENVIRONMENT "LD_PRELOAD=$<TARGET_FILE_NAME:LacunaPseudoTerminalPorts>")
+  set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT_MODIFICATION
+    "LD_PRELOAD=path_list_append:$<TARGET_FILE_NAME:LacunaPseudoTerminalPorts>")
   set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT_MODIFICATION
     "LD_LIBRARY_PATH=path_list_prepend:$<TARGET_FILE_DIR:LacunaPseudoTerminalPorts>")
 endfunction ()
@@ -59,6 +80,7 @@ function (lacuna_add_paraview_test script)
     LABELS "paraview;${arg_LABELS}"
     SKIP_RETURN_CODE 77
     ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
+  lacuna_tests_in_interpreters("${name}")
 endfunction ()
 
 # lacuna_add_example_test(<folder of Documentation/Examples> <script> [ARGS <argument>...])

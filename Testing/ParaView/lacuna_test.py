@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 SKIPPED = 77  # ctest counts this exit code as skipped
+SANITIZED = "san.so" in os.environ.get("LD_PRELOAD", "")  # by a sanitizer, which takes all addresses: they cannot be limited
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
