@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 SKIPPED = 77  # ctest counts this exit code as skipped
-SANITIZED = "san.so" in os.environ.get("LD_PRELOAD", "")  # by a sanitizer, which takes all addresses: they cannot be limited
+SANITIZED = "san.so" in os.environ.get("LD_PRELOAD", "")  # takes all addresses and keeps what is freed: no measure of memory
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 
