@@ -33,7 +33,8 @@ endfunction ()
 
 # lacuna_tests_in_interpreters(<test>...)
 # Their program is not built with the sanitizer of the modules that it loads: it has the sanitizer's
-# library preloaded, with that of the exceptions it watches, and its own leaks are not looked for.
+# library preloaded, with that of the exceptions it watches. Its own leaks and races (Qt, Mesa, MPI) are
+# not looked for.
 set(lacuna_sanitizer_libraries)
 if (LACUNA_SANITIZE MATCHES "address|thread")
   string(SUBSTRING "${CMAKE_MATCH_0}" 0 1 sanitizer)
@@ -46,7 +47,8 @@ if (LACUNA_SANITIZE MATCHES "address|thread")
 endif ()
 function (lacuna_tests_in_interpreters)
   if (lacuna_sanitizer_libraries)
-    set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detect_leaks=0")
+    set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT "ASAN_OPTIONS=detect_leaks=0"
+      "TSAN_OPTIONS=ignore_noninstrumented_modules=1:halt_on_error=1")
     set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT_MODIFICATION
       "LD_PRELOAD=path_list_prepend:${lacuna_sanitizer_libraries}")
   endif ()
