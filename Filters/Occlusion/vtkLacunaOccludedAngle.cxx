@@ -31,16 +31,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkLacunaOccludedAngle);
 
 namespace
 {
+const int MaximumNumberOfDirections = 10000000;
 const double Pi = 3.14159265358979323846;
+
+/// Grey level, opacity, midpoint and sharpness of each node.
+std::vector<double> GetNodes(vtkPiecewiseFunction* function)
+{
+  std::vector<double> nodes(4 * static_cast<std::size_t>(function->GetSize()));
+  for (int i = 0; i < function->GetSize(); ++i)
+  {
+    function->GetNodeValue(i, nodes.data() + 4 * static_cast<std::size_t>(i));
+  }
+  return nodes;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -57,6 +71,11 @@ public:
     , Grid(input)
     , Scalars(vtkLacunaOcclusionInput::FindScalars(input, self->ScalarArray))
   {
+    if (self->NumberOfDirections < 2 || self->NumberOfDirections > MaximumNumberOfDirections)
+    {
+      throw std::runtime_error("NumberOfDirections is " + std::to_string(self->NumberOfDirections) +
+        "; give 2 to " + std::to_string(MaximumNumberOfDirections));
+    }
     std::ostringstream what;
     what << "the occluded angle of " << this->Grid.GetSize() << " voxels";
     const double kept = self->KeepIterations ? 5.0 * self->ThresholdsOverPi.size() : 0;
@@ -129,13 +148,11 @@ public:
       .Add("MedianKernel", self.MedianKernel);
     if (self.Attenuation == OPACITY_FUNCTION)
     {
-      vtkLacunaFunctionText::Add(parameters, "OpacityFunction", self.OpacityFunction);
+      parameters.Add("OpacityFunction", GetNodes(self.OpacityFunction));
     }
-    if (self.ReconstructionSpace)
-    {
-      vtkLacunaFunctionText::Add(parameters, "ReconstructionSpace", self.ReconstructionSpace);
-    }
-    return parameters.Get();
+    return parameters
+      .Add("ReconstructionSpace", vtkLacunaFunctionText::Describe(self.ReconstructionSpace))
+      .Get();
   }
 
 private:

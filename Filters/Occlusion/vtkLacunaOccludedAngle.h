@@ -96,8 +96,8 @@ public:
 
   ///@{
   /// Over the whole circle or sphere; an odd number is raised by one, since a line serves two.
-  /// Default 1000. The thesis uses 100 in 2-D and 1000 in 3-D.
-  vtkSetClampMacro(NumberOfDirections, int, 2, 10000000);
+  /// 2...10000000; default 1000. The thesis uses 100 in 2-D and 1000 in 3-D.
+  vtkSetMacro(NumberOfDirections, int);
   vtkGetMacro(NumberOfDirections, int);
   ///@}
 

@@ -9,6 +9,7 @@
 #include "vtkImageData.h"
 #include "vtkImplicitFunction.h"
 #include "vtkLacunaOccludedAngle.h"
+#include "vtkLacunaRegion.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkPiecewiseFunction.h"
@@ -236,6 +237,7 @@ void CutSpace(lacuna::AttenuationField& field, vtkImageData* image, vtkImageData
   {
     return;
   }
+  vtkLacunaRegion::Check(function, "ReconstructionSpace");
   vtkDataArray* inside = mask ? mask->GetPointData()->GetScalars() : nullptr;
   if (mask &&
     (!SamePlace(image, mask) || !inside ||

@@ -12,6 +12,7 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaRanks.h"
+#include "vtkLacunaRegion.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -210,6 +211,7 @@ MapMask FromArray(vtkImageData* map, const std::string& name, const char* proper
 MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
   const lacuna::MarkedMap& map, vtkImplicitFunction* region)
 {
+  vtkLacunaRegion::Check(region, "DefectRegion");
   auto* loop = vtkImplicitSelectionLoop::SafeDownCast(region);
   if (loop && loop->GetAutomaticNormalGeneration())
   {

@@ -213,7 +213,8 @@ public:
   ///@{
   /**
    * Fitted goes so far beyond defect and support, mm, >= 0. The output is larger than the map by as
-   * much on each side, so that a defect near its border has its margin, too. Default 0.
+   * much on each side, so that a defect near its border has its margin, too; pixel (0, 0) stays where
+   * it was, so the extent then begins below 0. Default 0.
    */
   vtkSetMacro(OutputMargin, double);
   vtkGetMacro(OutputMargin, double);

@@ -388,6 +388,14 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
       {
         throw std::runtime_error("no iso-value is given: add one to IsoValues");
       }
+      for (const double isoValue : this->IsoValues)
+      {
+        if (!std::isfinite(isoValue))
+        {
+          throw std::runtime_error("IsoValues is " + lacuna::FormatValue(this->IsoValues) +
+            "; give grey levels that are finite numbers");
+        }
+      }
 
       vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
       View::RequireSamePlace(input, inInfo);

@@ -5,6 +5,7 @@
 #include "vtkCylinder.h"
 #include "vtkDataArray.h"
 #include "vtkHomogeneousTransform.h"
+#include "vtkLacunaRegion.h"
 #include "vtkMatrix4x4.h"
 #include "vtkPlane.h"
 #include "vtkPlanes.h"
@@ -78,6 +79,7 @@ std::unique_ptr<lacuna::CutRegion> MakeExact(
 std::unique_ptr<lacuna::CutRegion> vtkLacunaCutAway::MakeRegion(
   vtkImplicitFunction* function, double step, const std::vector<lacuna::Vec3>& points)
 {
+  vtkLacunaRegion::Check(function, "CutAway");
   lacuna::Matrix4 worldToLocal;
   bool isAffine = true;
   if (vtkAbstractTransform* transform = function->GetTransform())

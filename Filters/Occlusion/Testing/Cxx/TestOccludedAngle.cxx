@@ -255,7 +255,7 @@ void TestSpace()
   LACUNA_CHECK(
     vtkLacunaProvenance::Get(a->GetOutput())
       .back()
-      .find("ReconstructionSpace=vtkSphere Center=5,5,12 Radius=25.3") != std::string::npos);
+      .find("ReconstructionSpace=\"vtkSphere Center=5,5,12 Radius=25.3\"") != std::string::npos);
 }
 
 // An iteration that leaves nothing is said, once, the first of them; others are not.

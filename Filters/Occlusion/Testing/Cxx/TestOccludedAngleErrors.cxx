@@ -9,6 +9,7 @@
 #include "vtkPointData.h"
 #include "vtkSphere.h"
 
+#include <climits>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -119,6 +120,11 @@ int TestOccludedAngleErrors(int, char*[])
     [](Filter* filter, vtkImageData*) { filter->SetLocalRadii(0, 0.4); });
   Expect(
     "ObjectOpacity is 1.5", [](Filter* filter, vtkImageData*) { filter->SetObjectOpacity(1.5); });
+  for (const int directions : { INT_MIN, -1, 0, 1, 10000001 })
+  {
+    Expect("NumberOfDirections is " + std::to_string(directions) + "; give 2 to 10000000",
+      [directions](Filter* filter, vtkImageData*) { filter->SetNumberOfDirections(directions); });
+  }
   Expect("MedianKernel is 4", [](Filter* filter, vtkImageData*) { filter->SetMedianKernel(4); });
   Expect("the dilation is 1.0", [](Filter* filter, vtkImageData*) { filter->SetDilation(1); });
   Expect("contains none of the data",
@@ -127,6 +133,14 @@ int TestOccludedAngleErrors(int, char*[])
       vtkNew<vtkSphere> elsewhere;
       elsewhere->SetCenter(100, 100, 100);
       filter->SetReconstructionSpace(elsewhere);
+    });
+  Expect("ReconstructionSpace: of the sphere Radius is -3",
+    [](Filter* filter, vtkImageData*)
+    {
+      vtkNew<vtkSphere> ball;
+      ball->SetCenter(5, 5, 5);
+      ball->SetRadius(-3);
+      filter->SetReconstructionSpace(ball);
     });
   Expect("the reconstruction space (second input)",
     [](Filter* filter, vtkImageData* image)

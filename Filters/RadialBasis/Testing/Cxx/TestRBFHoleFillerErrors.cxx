@@ -264,6 +264,20 @@ int TestRBFHoleFillerErrors(int, char*[])
     LACUNA_CHECK(
       filler->GetOutput()->GetPointData()->GetArray("FilledMask")->GetTuple1(30 * 80 + 30) == 1);
   }
+  for (const double radius : { -6.0, 0.0, std::nan("") })
+  {
+    TestMap map;
+    vtkNew<vtkSphere> sphere;
+    sphere->SetCenter(map.GetSurfacePoint(45, 42).data());
+    sphere->SetRadius(radius);
+    vtkNew<vtkLacunaRBFHoleFiller> filler;
+    filler->SetInputData(map.Image);
+    filler->SetDefectRegion(sphere);
+    const auto messages = lacunaCheck::Watch(filler);
+    filler->Update();
+    LACUNA_CHECK_CONTAINS(messages->Errors, "DefectRegion: of the sphere Radius is ");
+    LACUNA_CHECK(filler->GetOutput()->GetNumberOfPoints() == 0);
+  }
   {
     // nothing to fill
     TestMap map;

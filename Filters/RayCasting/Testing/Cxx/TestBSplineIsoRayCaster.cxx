@@ -15,6 +15,7 @@
 #include "vtkPointData.h"
 #include "vtkSOADataArrayTemplate.h"
 #include "vtkSmartPointer.h"
+#include "vtkSphere.h"
 #include "vtkStringArray.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
@@ -312,6 +313,15 @@ void TestBadInput()
   fails(volume, "too large", [](Caster* c) { c->SetImageSize(2000000000, 2000000000); });
   fails(volume, "-5 x 10", [](Caster* c) { c->SetImageSize(-5, 10); });
   fails(volume, "no iso-value", [](Caster* c) { c->SetNumberOfIsoValues(0); });
+  fails(volume, "IsoValues is 500,nan", [](Caster* c) { c->SetIsoValue(1, std::nan("")); });
+  fails(volume, "IsoValues is -inf", [](Caster* c) { c->SetIsoValue(0, -HUGE_VAL); });
+  fails(volume, "CutAway: of the sphere Radius is -7",
+    [](Caster* c)
+    {
+      vtkNew<vtkSphere> ball;
+      ball->SetRadius(-7);
+      c->SetCutAway(ball);
+    });
   fails(volume, "no point array 'Missing'", [](Caster* c) { c->SetScalarArray("Missing"); });
   fails(volume, "3 components",
     [](Caster* c)
@@ -342,7 +352,6 @@ void TestBadInput()
       });
   }
   warns(volume, "range from 592 to 604", [](Caster* c) { c->SetIsoValue(0, 4000); });
-  warns(volume, "iso-value nan", [](Caster* c) { c->SetIsoValue(0, vtkMath::Nan()); });
   const auto holed = MakeVolume(VTK_FLOAT, false,
     [](const double* p) { return p[2] < 95 && p[0] < -4 ? vtkMath::Nan() : 420 + p[2]; });
   std::string message = MessageOf(holed, true, [](Caster* c) { c->SetIsoValue(0, 520); });

@@ -414,7 +414,7 @@ void TestErrors()
   vtkNew<vtkPlane> plane;
   plane->SetOrigin(0, 0, std::nan(""));
   caster->SetCutAway(plane);
-  CheckError(caster, "no origin");
+  CheckError(caster, "CutAway: of the plane Origin is 0,0,nan");
   caster->SetCutAway(nullptr);
   ball->SetSpacing(1, 0, 1);
   CheckError(caster, "every edge must be longer than 0");
