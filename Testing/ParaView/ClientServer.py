@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+from FetchRanks import make_sweep_without_a_pose
 from lacuna_test import mpi_environment, output, program
 
 PLUGINS = os.path.join(os.path.dirname(os.path.dirname(os.environ["LACUNA_PLUGIN"])), "lacuna.plugins.xml")
@@ -141,6 +142,7 @@ def run(server=(), on_server=False, on_client=False):
 
 def main():
     pvserver = program("pvserver")
+    make_sweep_without_a_pose()
     alone = run()
     assert run([pvserver]) == alone
     assert run([pvserver], on_server=True) == alone

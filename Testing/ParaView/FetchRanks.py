@@ -4,7 +4,10 @@
 Run without arguments it is the test; it runs itself in pvbatch.
 """
 import hashlib
+import os
 import sys
+
+import lacuna_test
 
 
 def describe(image):
@@ -19,17 +22,18 @@ def describe(image):
             sorted(fields.GetArrayName(index) for index in range(fields.GetNumberOfArrays()))]
 
 
-def sweep_without_a_pose(name):
-    """A sequence whose second pose is no number."""
+def make_sweep_without_a_pose():
+    """Writes the sequence that fetched() reads, whose second pose is no number; before any rank does."""
     lines = ["ObjectType = Image", "NDims = 3", "DimSize = 5 4 7", "ElementSpacing = 1 1 1", "ElementType = MET_UCHAR",
              "UltrasoundImageOrientation = MF", "UltrasoundImageType = BRIGHTNESS"]
     for frame in range(7):
         x = "nan" if frame == 1 else frame
         lines += [f"Seq_Frame{frame:04}_ImageToReferenceTransform = 1 0 0 {x} 0 1 0 0 0 0 1 {frame} 0 0 0 1",
                   f"Seq_Frame{frame:04}_ImageToReferenceTransformStatus = OK", f"Seq_Frame{frame:04}_Timestamp = {frame}"]
-    with open(name, "wb") as file:
+    written = lacuna_test.output(f"FetchRanks-{os.getpid()}.igs.mha")
+    with open(written, "wb") as file:
         file.write("\n".join([*lines, "ElementDataFile = LOCAL", ""]).encode() + bytes(range(140)))
-    return name
+    os.replace(written, lacuna_test.output("FetchRanks.igs.mha"))  # another test may be reading it
 
 
 def fetched():
@@ -39,7 +43,6 @@ def fetched():
     import paraview.simple as pv
     from lacuna.data import fetch
     from lacuna.errors import raising
-    import lacuna_test
     sweep = pv.PhantomSweep(NumberOfSlices=12, ImageSize=[40, 30], PixelSpacing=1)
     depth = pv.BSplineIsoRayCaster(Input=pv.SkullPhantom(Spacing=[4] * 3, DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8]), IsoValues=[500],
                                    PixelSpacing=30 / 7, ViewDirection=[-0.5, 0.2, -0.8])
@@ -53,9 +56,8 @@ def fetched():
 
 
 def main():
-    import lacuna_test
     lines = {}
-    sweep_without_a_pose(lacuna_test.output("FetchRanks.igs.mha"))
+    make_sweep_without_a_pose()
     for ranks in 1, 3:
         printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch")
         lines[ranks] = [line for line in printed.splitlines() if line.startswith("fetched ")]
