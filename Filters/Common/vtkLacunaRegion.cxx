@@ -68,8 +68,8 @@ public:
     {
       vtkMatrix4x4* matrix = homogeneous->GetMatrix();
       const std::vector<double> elements(matrix->GetData(), matrix->GetData() + 16);
-      const char* const wanted =
-        "give a position and rotation of finite numbers and a scale that is not 0";
+      const char* const wanted = "give a position and rotation of finite numbers and a scale "
+                                 "(ParaView: Length) that is not 0";
       this->Numbers("Transform", elements, wanted);
       this->Require(matrix->Determinant() != 0, "Transform", elements, wanted);
     }
