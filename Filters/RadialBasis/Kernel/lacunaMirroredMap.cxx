@@ -91,12 +91,15 @@ private:
     {
       double low = this->PointOf(t, 0)[1];
       double high = low;
-      for (int c = 1; c < 3; ++c)
+      bool isFinite = true; // it is not when the plane lies 1e308 mm away
+      for (int c = 0; c < 3; ++c)
       {
-        low = std::min(low, this->PointOf(t, c)[1]);
-        high = std::max(high, this->PointOf(t, c)[1]);
+        const double* p = this->PointOf(t, c);
+        low = std::min(low, p[1]);
+        high = std::max(high, p[1]);
+        isFinite = isFinite && std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
       }
-      if (high < -1 || low > this->Height)
+      if (!isFinite || high < -1 || low > this->Height)
       {
         continue;
       }
@@ -122,9 +125,9 @@ private:
       const double* b = this->PointOf(t, 1);
       const double* c = this->PointOf(t, 2);
       const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-      if (area == 0)
+      if (area == 0 || !std::isfinite(area))
       {
-        continue; // seen edge on
+        continue; // seen edge on, or beyond all numbers
       }
       const bool isFront = (area > 0) == this->FrontIsPositive;
       const double lowX = std::min({ a[0], b[0], c[0] });

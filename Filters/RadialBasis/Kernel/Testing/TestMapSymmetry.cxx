@@ -244,6 +244,25 @@ TEST(MapSymmetry, HidesWhatIsNotSeen)
   EXPECT_EQ(back.Overlap, 0);
 }
 
+// A plane so far away that mirrored points are beyond all numbers shows nothing.
+TEST(MapSymmetry, PlaneBeyondAllNumbers)
+{
+  Map map(60, 40, 1, 6);
+  map.Fill([](double x, double y) { return 10 + 0.1 * x + 0.2 * y; });
+  lacuna::ThreadExecution execution(2);
+  for (const double away : { 1e150, 1e200, 1e308, -1e308 })
+  {
+    // reflected as it would be by a filter that was given this
+    const lacuna::MirrorPlane plane{ lacuna::Normalized({ 1, 0.02, 0 }), away };
+    const auto result = MirrorMap(map.Grid, nullptr, plane, {}, execution);
+    EXPECT_EQ(result.Overlap, 0) << away;
+    for (const double d : result.Depth)
+    {
+      ASSERT_TRUE(std::isnan(d)) << away;
+    }
+  }
+}
+
 TEST(MapSymmetry, SameForAnyNumberOfThreads)
 {
   Map map(80, 100, 2, 3);
