@@ -3,6 +3,7 @@
 
 #include "lacunaParameterText.h"
 #include "lacunaPoseTable.h"
+#include "lacunaPropertyRange.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -99,6 +100,8 @@ int vtkLacunaSlicePlanes::RequestData(
       {
         return;
       }
+      lacuna::RequireAtLeast(1, "Stride", this->Stride);
+      lacuna::RequireAtLeast(4, "MaximumNumberOfPoints", this->MaximumNumberOfPoints);
       vtkLacunaSlicePlaneBuilder::Options options;
       options.Stride = this->Stride;
       options.Accuracy = { this->TranslationAccuracy, this->AngularAccuracy };

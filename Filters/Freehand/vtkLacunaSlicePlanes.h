@@ -71,8 +71,8 @@ public:
   };
 
   ///@{
-  /// Every n-th slice of the stack is shown, from the first on. Default: 1.
-  vtkSetClampMacro(Stride, int, 1, VTK_INT_MAX);
+  /// Every n-th slice of the stack is shown, from the first on; n >= 1. Default: 1.
+  vtkSetMacro(Stride, int);
   vtkGetMacro(Stride, int);
   ///@}
 
@@ -124,8 +124,8 @@ public:
   ///@}
 
   ///@{
-  /// Points that all slices together may have. Default: 2 000 000.
-  vtkSetClampMacro(MaximumNumberOfPoints, int, 4, VTK_INT_MAX);
+  /// Points that all slices together may have, 4 or more. Default: 2 000 000.
+  vtkSetMacro(MaximumNumberOfPoints, int);
   vtkGetMacro(MaximumNumberOfPoints, int);
   ///@}
 

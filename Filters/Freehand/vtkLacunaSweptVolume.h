@@ -204,7 +204,7 @@ public:
   ///@{
   /// Memory that the whole volume may take, in MiB (2^20 bytes), its work space included. 0 = no
   /// limit but the machine's memory. Default: 4096.
-  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkSetMacro(MemoryLimit, int);
   vtkGetMacro(MemoryLimit, int);
   ///@}
 

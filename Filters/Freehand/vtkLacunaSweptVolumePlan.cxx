@@ -4,6 +4,7 @@
 #include "lacunaActivityMap.h"
 #include "lacunaExecution.h"
 #include "lacunaPrincipalFrame.h"
+#include "lacunaPropertyRange.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformationVector.h"
@@ -278,6 +279,7 @@ void vtkLacunaSweptVolumePlan::ChooseGrid(vtkLacunaSweptVolume* filter)
   std::copy_n(filter->GetOutputSpacing(), 3, request.Spacing.data());
   std::copy_n(filter->GetOutputBounds(), 6, request.Bounds.begin());
   request.BytesPerVoxel = this->BytesPerVoxel;
+  lacuna::RequireAtLeast(0, "MemoryLimit", filter->GetMemoryLimit());
   request.MemoryLimit = filter->GetMemoryLimit() * 1048576.0;
   this->Grid = lacuna::MakeVolumeGrid(this->PlacedSlices, request);
 }

@@ -3,6 +3,7 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaPropertyRange.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
@@ -124,6 +125,8 @@ double vtkLacunaTrackedSliceReader::GetMostBytes() const
 //------------------------------------------------------------------------------
 void vtkLacunaTrackedSliceReader::OpenSequence(Sequence& sequence)
 {
+  lacuna::RequireAtLeast(1, "FrameStride", this->FrameStride);
+  lacuna::RequireAtLeast(0, "MemoryLimit", this->MemoryLimit);
   sequence.File = std::make_shared<vtkLacunaSequenceFile>(
     this->FileName, this->FrameRange, this->FrameStride, this->GetMostBytes());
   if (this->ReplayInTime)

@@ -115,7 +115,7 @@ public:
 
   ///@{
   /// Read every n-th slice of FrameRange, n >= 1. Default: 1. The z spacing of the stack becomes n.
-  vtkSetClampMacro(FrameStride, int, 1, VTK_INT_MAX);
+  vtkSetMacro(FrameStride, int);
   vtkGetMacro(FrameStride, int);
   ///@}
 
@@ -137,7 +137,7 @@ public:
   /// Most memory that the pixels may take, in MiB; of more slices, the output is a preview. Default:
   /// 0, a quarter of the machine's memory, or of what its container or ulimit -v allows; 4096 with several
   /// ranks, which show the same slices.
-  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkSetMacro(MemoryLimit, int);
   vtkGetMacro(MemoryLimit, int);
   ///@}
 

@@ -284,6 +284,8 @@ void TestErrors()
                           }),
     "this part of the volume would need");
 
+  LACUNA_CHECK_CONTAINS(with([](auto* f) { f->SetMemoryLimit(-1); }), "MemoryLimit is -1; give 0");
+
   // what fits in one voxel is not called flat
   for (const double huge : { 1e7, 1e300 })
   {

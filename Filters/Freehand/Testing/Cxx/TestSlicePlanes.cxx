@@ -419,6 +419,10 @@ void TestPiecesAndThreads()
 void TestErrors()
 {
   auto stack = MakeStack(3);
+  LACUNA_CHECK_CONTAINS(
+    GetError(stack, [](auto* f) { f->SetStride(0); }), "Stride is 0; give 1 or more");
+  LACUNA_CHECK_CONTAINS(GetError(stack, [](auto* f) { f->SetMaximumNumberOfPoints(-1); }),
+    "MaximumNumberOfPoints is -1; give 4 or more");
   stack->GetFieldData()->RemoveArray("ImageToReference");
   LACUNA_CHECK_CONTAINS(GetError(stack), "not calibrated");
 

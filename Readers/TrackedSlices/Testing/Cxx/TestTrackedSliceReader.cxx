@@ -31,8 +31,6 @@ void TestDefaults()
   LACUNA_CHECK(reader->GetFrameStride() == 1);
   LACUNA_CHECK(reader->GetDropInvalidSlices());
   LACUNA_CHECK(reader->GetMemoryLimit() == 0);
-  reader->SetFrameStride(0);
-  LACUNA_CHECK(reader->GetFrameStride() == 1);
   std::ostringstream text;
   reader->Print(text);
   for (const char* name : { "FileName", "CalibrationFileName", "ImageFrame", "ReferenceFrame",
