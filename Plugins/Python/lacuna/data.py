@@ -14,7 +14,9 @@ def fetch(source):
     """The data of a proxy, of its second output for OutputPort(proxy, 1): servermanager.Fetch gives that of the first.
 
     Images are whole, also of several ranks, and lie as they do on a server: servermanager.Fetch gives the part of the
-    first rank, drops the direction and rounds origin and spacing to six digits. Field data are those of the first rank that
+    first rank, drops the direction and rounds origin and spacing to six digits. Arrays are the same bit for bit, in another
+    order on several ranks perhaps: find them by name. Origin, spacing and direction come from points and may differ from those
+    on the server in the last digits (1e-14 of the coordinates). Field data are those of the first rank that
     has a part. Raises RuntimeError when the ranks' parts leave gaps, and PipelineError when it fails on a server, where
     servermanager.Fetch would wait for ever.
     """
