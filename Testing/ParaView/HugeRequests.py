@@ -140,7 +140,7 @@ def whole_inputs():
         check_refused(made.GetClassName(), behind(made), "34359738368 bytes")
     poses = vtkTable()
     for made in (lacuna.vtkLacunaAssembleTrackedSlices(), lacuna.vtkLacunaGateSlices(), lacuna.vtkLacunaSlicePlanes(), lacuna.vtkLacunaScanRegion(),
-                 lacuna.vtkLacunaProbeCalibration(), lacuna.vtkLacunaTemporalCalibration()):
+                 lacuna.vtkLacunaProbeCalibration(), lacuna.vtkLacunaTemporalCalibration(), lacuna.vtkLacunaTrackerSelfTest()):
         if made.GetNumberOfInputPorts() > 1:
             made.SetInputData(1, poses)
         check_refused(made.GetClassName(), behind(made), "34359738368 bytes")

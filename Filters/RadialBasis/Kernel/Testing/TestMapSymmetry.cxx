@@ -252,7 +252,6 @@ TEST(MapSymmetry, PlaneBeyondAllNumbers)
   lacuna::ThreadExecution execution(2);
   for (const double away : { 1e150, 1e200, 1e308, -1e308 })
   {
-    // reflected as it would be by a filter that was given this
     const lacuna::MirrorPlane plane{ lacuna::Normalized({ 1, 0.02, 0 }), away };
     const auto result = MirrorMap(map.Grid, nullptr, plane, {}, execution);
     EXPECT_EQ(result.Overlap, 0) << away;
