@@ -68,14 +68,16 @@ struct OutputGrid
       {
         this->Axes.push_back(c);
       }
+      if (!std::isfinite(bounds[2 * c]) || !std::isfinite(bounds[2 * c + 1]))
+      {
+        throw std::runtime_error("OutputBounds must be finite numbers");
+      }
       const double* from = bounds[2 * c] > bounds[2 * c + 1] ? own : bounds;
       std::copy_n(from + 2 * c, 2, ends + 2 * c);
       if (!std::isfinite(ends[2 * c]) || !std::isfinite(ends[2 * c + 1]))
       {
-        throw std::runtime_error(from == own ? "a point has a coordinate that is not a finite "
-                                               "number; remove it (Threshold, or Clean "
-                                               "to Grid)"
-                                             : "OutputBounds must be finite numbers");
+        throw std::runtime_error("a point has a coordinate that is not a finite number; remove it "
+                                 "(Threshold, or Clean to Grid)");
       }
       longest = std::max(longest, ends[2 * c + 1] - ends[2 * c]);
     }

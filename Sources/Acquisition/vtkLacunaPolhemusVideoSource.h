@@ -88,7 +88,7 @@ public:
   ///@{
   /// Most memory for pixels, in MiB; the capture stops there and keeps what it has. Default: 0, half
   /// of the memory that is free when the devices are opened.
-  vtkSetClampMacro(MemoryLimit, int, 0, VTK_INT_MAX);
+  vtkSetMacro(MemoryLimit, int);
   vtkGetMacro(MemoryLimit, int);
   ///@}
   ///@{
@@ -99,7 +99,7 @@ public:
   ///@}
   ///@{
   /// 0 (raw) to 9. Default: 0.
-  vtkSetClampMacro(RecordCompression, int, 0, 9);
+  vtkSetMacro(RecordCompression, int);
   vtkGetMacro(RecordCompression, int);
   ///@}
   ///@{

@@ -167,6 +167,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
     rules.TimeOffset = this->TimeOffset;
     rules.RecordFileName = Text(this->RecordFileName);
     rules.RecordCompressionLevel = this->RecordCompression;
+    rules.MemoryLimit = this->MemoryLimit * Mebibyte;
     lacuna::CheckRules(rules);
     if (reopen)
     {
@@ -174,7 +175,10 @@ void vtkLacunaPolhemusVideoSource::Configure()
     }
     // of the devices that are open now
     rules.ButtonStarts = this->ButtonStarts && !now.StackIsOfOthers;
-    rules.MemoryLimit = this->MemoryLimit > 0 ? this->MemoryLimit * Mebibyte : now.FreeBytes / 2;
+    if (this->MemoryLimit == 0)
+    {
+      rules.MemoryLimit = now.FreeBytes / 2;
+    }
     now.Acquisition->SetRules(rules);
     now.Rules = rules;
     now.LimitBytes = rules.MemoryLimit;

@@ -108,7 +108,7 @@ void CheckRules(const AcquisitionRules& rules)
     "TimeOffset is s from -1 to 1: a video that is later than that is no live image");
   require(rules.MemoryLimit >= 0, "MemoryLimit is a size, or 0 for none");
   require(rules.RecordCompressionLevel >= 0 && rules.RecordCompressionLevel <= 9,
-    "The compression level is 0 (none) to 9 (most)");
+    "RecordCompression is 0 (none) to 9 (most)");
   const auto isAffine = [](const Matrix4& matrix)
   { return matrix.IsFinite() && matrix.IsAffine(); };
   require(!rules.ImageToProbe || isAffine(*rules.ImageToProbe),

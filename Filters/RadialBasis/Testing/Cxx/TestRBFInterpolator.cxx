@@ -331,6 +331,10 @@ const Case Errors[] = {
     [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
     { f->SetOutputBounds(0, std::numeric_limits<double>::infinity(), 0, 1, 0, 1); },
     "OutputBounds" },
+  { "bounds that would be those of the points",
+    [](vtkPolyData*, vtkLacunaRBFInterpolator* f)
+    { f->SetOutputBounds(0, 1, 1, -std::numeric_limits<double>::infinity(), 0, 1); },
+    "OutputBounds" },
 };
 
 void CheckErrors()

@@ -340,6 +340,14 @@ void TestMemoryLimitOfItsOwn()
   source->SetMemoryLimit(100);
   source->Update();
   LACUNA_CHECK(source->GetMemoryLimitNow() == 100);
+  source->SetMemoryLimit(-1); // would be no limit of one's own if it were taken for 0
+  source->Update();
+  LACUNA_CHECK(bench.Messages->HasError("MemoryLimit"));
+  LACUNA_CHECK(source->GetMemoryLimitNow() == 100);
+  source->SetMemoryLimit(100);
+  source->SetRecordCompression(10);
+  source->Update();
+  LACUNA_CHECK(bench.Messages->HasError("RecordCompression"));
 }
 
 // The button does not put slices of other devices to those that are there, also when nobody polled
