@@ -194,8 +194,8 @@ void FilterAdaptiveMedian(const ImageView<const T>& input, const ImageView<T>& o
 {
   if (!(strength >= 0) || !std::isfinite(strength))
   {
-    throw std::invalid_argument(
-      "the adaptive strength is " + std::to_string(strength) + "; it must be a finite number, 0 or more");
+    throw std::invalid_argument("the adaptive strength is " + std::to_string(strength) +
+      "; it must be a finite number, 0 or more");
   }
   RequireRankable(window);
   FilterBlocks(output.Box, ChooseExhaustiveBlock(window, sizeof(T)), execution,
