@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every proxy of the plugin under MPI: ranks make the same as one alone, bit for bit, and what only the first rank can do costs the others nothing.
 
-Ranks.py NUMBERS [program that makes a CT series], with numbers of ranks like 2,3,4
+Ranks.py NUMBERS as-they-are|modes [program that makes a CT series], with numbers of ranks like 2,3,4
 
 It runs itself in pvbatch, `Ranks.py in pvbatch`: there every rank writes its piece of every output of every pipeline. Pieces are compared
-here, put together again, with what one rank makes.
+here, put together again, with what one rank makes. modes: so is what each source and filter makes with each other value of its
+enumerations and switches, one at a time; where that is an error all numbers of ranks have the same.
 """
 import itertools
 import json
@@ -97,7 +98,45 @@ def folder(ranks):
 # --- in pvbatch, on the first rank; ParaView runs filters on all of them ---
 
 
-def write(pipeline, ranks):
+def write_outputs(source, start):
+    for port in range(source.SMProxy.GetNumberOfOutputPorts()):
+        script = WRITE.format(start=f"{start}-{port}-", always=ALWAYS_ASK)
+        writer = ProgrammableFilter(Input=OutputPort(source, port), Script=script, CopyArrays=0)
+        writer.UpdatePipeline()
+        Delete(writer)
+
+
+def other_modes(source):
+    """(property, value) of enumerations and switches, but those that it has."""
+    found, properties = [], source.SMProxy.NewPropertyIterator()
+    while not properties.IsAtEnd():
+        prop = properties.GetProperty()
+        if prop.IsA("vtkSMIntVectorProperty") and prop.GetNumberOfElements() == 1 and not prop.GetInformationOnly():
+            words = prop.FindDomain("vtkSMEnumerationDomain")
+            values = [words.GetEntryValue(i) for i in range(words.GetNumberOfEntries())] if words else \
+                [0, 1] if prop.FindDomain("vtkSMBooleanDomain") else []
+            found += [(properties.GetKey(), value) for value in values if value != prop.GetElement(0)]
+        properties.Next()
+    return found
+
+
+def write_modes(source, start):
+    for name, value in other_modes(source):
+        prop = source.SMProxy.GetProperty(name)
+        usual = prop.GetElement(0)
+        for element in (value, usual):
+            prop.SetElement(0, element)
+            source.SMProxy.UpdateVTKObjects()
+            if element == value:
+                try:
+                    with raising():
+                        write_outputs(source, f"{start} {name} {value}")
+                except PipelineError as error:
+                    with open(f"{start} {name} {value}-written.error", "w", encoding="utf-8") as file:
+                        file.write(str(error))
+
+
+def write(pipeline, ranks, with_modes):
     for name in every_proxy.written():
         os.remove(every_proxy.path(name))
     with raising():
@@ -105,20 +144,21 @@ def write(pipeline, ranks):
         ours = [(name, source) for (name, _), source in GetSources().items() if source.GetXMLName().startswith("Lacuna")]
         # those first that shall find nothing done yet
         for name, source in sorted(ours, key=lambda one: kind(one[1]) not in FIRST):
-            for port in range(source.SMProxy.GetNumberOfOutputPorts()):
-                start = os.path.join(folder(ranks), f"{pipeline.__name__}-{kind(source)}-{name}-{port}-")
-                ProgrammableFilter(Input=OutputPort(source, port), Script=WRITE.format(start=start, always=ALWAYS_ASK), CopyArrays=0).UpdatePipeline()
+            write_outputs(source, os.path.join(folder(ranks), f"{pipeline.__name__}-{kind(source)}-{name}"))
     for name in every_proxy.written():
         shutil.copy(every_proxy.path(name), os.path.join(folder(ranks), f"{pipeline.__name__}-{name}"))
+    if with_modes:
+        for name, source in ours:
+            write_modes(source, os.path.join(folder(ranks), f"{pipeline.__name__}-{kind(source)}-{name}"))
     ResetSession()
 
 
-def run(ranks):
+def run(ranks, with_modes):
     every_proxy.use_files("Ranks")
     for pipeline in every_proxy.PIPELINES:
         refused = ranks > 1 and pipeline is every_proxy.live
         try:
-            write(pipeline, ranks)
+            write(pipeline, ranks, with_modes and not pipeline is every_proxy.live)
         except PipelineError as error:
             assert refused and "one process only" in str(error)
             ResetSession()
@@ -220,7 +260,7 @@ def check_field_data(key, pieces):
                 assert np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f"), (key, name)
 
 
-def check(key, alone, pieces):
+def check(key, alone, pieces, with_modes):
     what = key[1]
     (one, _), = alone
     data = [piece for piece, _ in pieces]
@@ -229,7 +269,8 @@ def check(key, alone, pieces):
         assert not texts, (key, texts)
         for piece, upstream in pieces[1:]:
             assert sum(piece.GetNumberOfElements(kind) for kind in (0, 1, 6)) == 0, (key, "not on the first rank only")
-            assert what not in FIRST or not any(count for _, count in upstream), (key, upstream)
+            # with modes upstream has what was asked of it for others before
+            assert with_modes or what not in FIRST or not any(count for _, count in upstream), (key, upstream)
     elif one.IsA("vtkPolyData"):
         assert join_mesh(data) == join_mesh([one]), key
         check_field_data(key, [one, *data])
@@ -253,18 +294,19 @@ def files(ranks):
 
 def main():
     numbers = [int(number) for number in sys.argv[1].split(",")]
+    with_modes = {"as-they-are": False, "modes": True}[sys.argv[2]]
     shutil.rmtree(lacuna_test.output("Ranks"), ignore_errors=True)
-    every_proxy.make_files("Ranks", *sys.argv[2:])
+    every_proxy.make_files("Ranks", *sys.argv[3:])
     for ranks in [1, *numbers]:
         os.makedirs(folder(ranks))
-        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", str(ranks))
+        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", str(ranks), sys.argv[2], timeout=1500 if with_modes else 300)
         errors = [line for line in printed.splitlines() if "ERR|" in line and not any(f"vtkLacuna{name} " in line for name in REFUSED)]
-        assert not errors, errors
+        assert with_modes or not errors, errors
     alone = outputs(1)
     seen = {what for _, what, _, _ in alone} | {
         writer.replace("Lacuna", "") for ending, writer in every_proxy.WRITERS.items() if any(name.endswith("." + ending) for name in files(1))}
     missing = {name.replace("Lacuna", "") for name in every_proxy.every_kind()} - seen
-    assert missing <= ({"CTSeriesReader"} if len(sys.argv) < 3 else set()), f"no pipeline has {sorted(missing)}"
+    assert missing <= ({"CTSeriesReader"} if len(sys.argv) < 4 else set()), f"no pipeline has {sorted(missing)}"
     listed = IMAGES | MESHES | FIRST | WRITERS | REFUSED
     assert seen <= listed, f"not listed here: {sorted(seen - listed)}"
     faults = []
@@ -272,17 +314,20 @@ def main():
         together = outputs(ranks)
         expected = {key for key in alone if key[1] not in REFUSED}
         assert expected <= set(together), expected - set(together)
-        assert files(ranks) == files(1), ranks
+        one, several = files(1), files(ranks)
+        assert several == one, (ranks, {name: (one.get(name), several.get(name)) for name in set(one) | set(several)
+                                        if one.get(name) != several.get(name) and name.endswith(".error")})
         for key in sorted(expected):
             try:
-                check(key, alone[key], together[key])
+                check(key, alone[key], together[key], with_modes)
             except AssertionError as fault:
                 faults.append(f"{ranks} ranks: {fault}")
     assert not faults, "\n".join(faults)
-    print(f"{len(alone)} outputs of {len(seen)} kinds are the same on 1 and {sys.argv[1]} ranks")
+    refused = sum(name.endswith(".error") for name in files(1))
+    print(f"{len(alone)} outputs{f' and {refused} errors' if with_modes else ''} of {len(seen)} kinds are the same on 1 and {sys.argv[1]} ranks")
 
 
 if sys.argv[1:2] == ["in pvbatch"]:
-    run(int(sys.argv[2]))
+    run(int(sys.argv[2]), sys.argv[3] == "modes")
 else:
     main()

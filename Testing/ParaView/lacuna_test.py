@@ -52,10 +52,10 @@ def mpi_environment():
     return environment
 
 
-def run_ranks(ranks, script, *arguments, options=()):
+def run_ranks(ranks, script, *arguments, options=(), timeout=300):
     """What a script prints in pvbatch, with its options, with so many MPI ranks, or leaves the test as skipped."""
     done = subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering", *options,
-                           os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=300, text=True,
+                           os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=timeout, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     print(done.stdout, flush=True)
     done.check_returncode()
