@@ -4,6 +4,20 @@
 # What .ci/run repeats with sanitizers (label sanitize): tests of what takes files and streams of others.
 add_custom_target(LacunaSanitizeTests)
 
+# lacuna_test_program(<target>)
+# A third quicker to compile, hardly slower to run: what takes long in tests is in the kernels.
+function (lacuna_test_program target)
+  target_include_directories(${target} PRIVATE "${CMAKE_SOURCE_DIR}/Testing")
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+endfunction ()
+
+# lacuna_test_cxx_executable(<target> <name of the list of tests> [source...])
+# Of a module's Testing/Cxx, see vtk_add_test_cxx.
+function (lacuna_test_cxx_executable target)
+  vtk_test_cxx_executable(${target} ${ARGN})
+  lacuna_test_program(${target})
+endfunction ()
+
 # lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)
 # A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. SHARDS: so many of its
 # tests run at once, since they mostly wait or take long.
@@ -11,10 +25,8 @@ function (lacuna_add_kernel_test name)
   cmake_parse_arguments(arg "SANITIZE" "SHARDS" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})
   target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
-  target_include_directories(Test${name}Kernel PRIVATE "${CMAKE_SOURCE_DIR}/Testing")
   target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
-  # a third quicker to compile, hardly slower to run: what takes long there is in the kernels
-  target_compile_options(Test${name}Kernel PRIVATE $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+  lacuna_test_program(Test${name}Kernel)
   set(shards)
   if (arg_SHARDS)
     set(shards "${CMAKE_SOURCE_DIR}/Testing/Tools/shards.sh" ${arg_SHARDS})

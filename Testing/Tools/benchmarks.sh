@@ -8,6 +8,7 @@ cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
 lacuna_install_packages
 lacuna_install_packages packages-benchmarks.txt
-if [ -f build/release/build.ninja ]; then cmake --preset release >/dev/null; fi # peers that are new
+mkdir -p build
+cmake --preset release -DLACUNA_BENCHMARK_CGAL=ON >build/release.log # also looks for peers that are new
 lacuna_build release
 exec /usr/bin/python3 Testing/Benchmarks/run.py "$@" # the Python of the packages
