@@ -46,7 +46,7 @@ origin = np.array(sweep.GetOrigin())
 truth = pv.PhantomSweep(Anatomy="Ellipsoids").GetClientSideObject()
 random = np.random.default_rng(1)
 right, mirrored = [], []
-while len(right) < 20000:
+while len(right) < 2000:
     k, j, i = random.integers((count, rows - 8, columns - 8)) + (0, 4, 4)
     if grey[k, j - 4:j + 5, i - 4:i + 5].min() == 0:
         continue  # beside the sector

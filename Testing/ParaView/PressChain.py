@@ -109,7 +109,7 @@ for name in ("axial", "feet first", "sagittal", "oblique"):
             SaveData(stl, surface)
         u, v, control = read_iges(igs)
         bu, bv = basis(u, np.arange(columns, dtype=float)), basis(v, np.arange(rows, dtype=float))
-        from_iges = np.einsum("jb,ia,bac->jic", bv, bu, control).reshape(-1, 3)
+        from_iges = np.einsum("jb,ia,bac->jic", bv, bu, control, optimize=True).reshape(-1, 3)
         reader = OpenDataFile(stl)
         with raising():
             reader.UpdatePipeline()

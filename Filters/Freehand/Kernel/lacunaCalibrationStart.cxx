@@ -33,18 +33,16 @@ std::vector<Eigen::Matrix3d> GetRotations(int count)
   return rotations;
 }
 
-// Rotations that take directions all over a hemisphere to z.
+// Rotations that take directions (r cos(turn), r sin(turn), z) all over a hemisphere to z.
 std::vector<Eigen::Matrix3d> GetPlanes(int count)
 {
   std::vector<Eigen::Matrix3d> rotations;
   for (int i = 0; i < count; ++i)
   {
     const double z = (i + 0.5) / count;
-    const double r = std::sqrt(1 - z * z);
     const double turn = i * Pi * (3 - std::sqrt(5.0));
-    rotations.push_back(Eigen::Quaterniond::FromTwoVectors(
-      Eigen::Vector3d(r * std::cos(turn), r * std::sin(turn), z), Eigen::Vector3d::UnitZ())
-                          .toRotationMatrix());
+    const Eigen::Vector3d axis(std::sin(turn), -std::cos(turn), 0);
+    rotations.push_back(Eigen::AngleAxisd(std::acos(z), axis).toRotationMatrix());
   }
   return rotations;
 }
