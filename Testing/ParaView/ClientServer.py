@@ -144,10 +144,11 @@ def main():
     pvserver = program("pvserver")
     make_sweep_without_a_pose()
     alone = run()
-    assert run([pvserver]) == alone
     assert run([pvserver], on_server=True) == alone
     assert run([program("mpirun"), "-n", "2", pvserver], on_server=True, on_client=True) == alone
-    assert run([pvserver], on_client=True) == alone
+    if sys.argv[2:] == ["soak"]:
+        assert run([pvserver]) == alone
+        assert run([pvserver], on_client=True) == alone
 
 
 if sys.argv[1].isdigit():
