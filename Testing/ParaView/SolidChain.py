@@ -4,6 +4,8 @@ patient, in the plane of its face as along the normal, for scans that are turned
 
 The pit's floor marks the defect, pixel by pixel as the scan shows it; pixels border on each other at the letter's edges.
 Grown by GROWN so that nothing is left of the pit's rim, its edges are those of the bars, GROWN further out.
+
+Each face and each scan once; with "soak" as its second argument all faces of a tilted scan.
 """
 import os
 import shutil
@@ -166,7 +168,8 @@ def check_mould(filled, along, up, normal):
         Delete(proxy)
 
 
-for name, faces in (("tilted", range(5)), ("oblique", (0, 3)), ("feet first", (1, 4))):
+tilted = range(5) if "soak" in sys.argv else [2]
+for name, faces in (("tilted", tilted), ("oblique", (0, 3)), ("feet first", (1, 4))):
     scan = CTSeriesReader(FileName=os.path.join(folder, name))
     for face in faces:
         along, up, normal = face_axes(face)

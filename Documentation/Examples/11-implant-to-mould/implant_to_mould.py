@@ -30,9 +30,9 @@ from lacuna.solids import save_solid
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticPointLocator
-from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkImplicitPolyDataDistance
+from vtkmodules.vtkCommonCore import mutable, vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkStaticCellLocator, vtkStaticPointLocator
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 
 SHEET = 0.7  # mm, the titanium that is pressed
@@ -113,9 +113,15 @@ def read_stl(name):
 
 def distances(points, surface):
     """mm from points to a surface of triangles."""
-    distance = vtkImplicitPolyDataDistance()
-    distance.SetInput(surface)
-    return np.abs([distance.EvaluateFunction(p) for p in points])
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(surface)
+    locator.BuildLocator()
+    closest, cell, part, square = [0.0] * 3, mutable(0), mutable(0), mutable(0.0)
+    result = []
+    for point in points:
+        locator.FindClosestPoint(point, closest, cell, part, square)
+        result.append(square.get() ** 0.5)
+    return np.array(result)
 
 
 def depths_behind(image, points):
