@@ -47,10 +47,9 @@ lacuna_test_headers(LacunaKernelTestHeaders
   string thread vector
   LIBRARIES GTest::gtest)
 
-# lacuna_test_cxx_executable(<target> <name of the list of tests> [source...])
-# Of a module's Testing/Cxx, see vtk_add_test_cxx.
-function (lacuna_test_cxx_executable target)
-  vtk_test_cxx_executable(${target} ${ARGN})
+# lacuna_module_test_program(<target>)
+# A test program that uses VTK.
+function (lacuna_module_test_program target)
   lacuna_test_program(${target})
   if (NOT TARGET LacunaModuleTestHeaders)
     lacuna_test_headers(LacunaModuleTestHeaders
@@ -62,6 +61,13 @@ function (lacuna_test_cxx_executable target)
       LIBRARIES VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel)
   endif ()
   lacuna_use_test_headers(${target} LacunaModuleTestHeaders)
+endfunction ()
+
+# lacuna_test_cxx_executable(<target> <name of the list of tests> [source...])
+# Of a module's Testing/Cxx, see vtk_add_test_cxx.
+function (lacuna_test_cxx_executable target)
+  vtk_test_cxx_executable(${target} ${ARGN})
+  lacuna_module_test_program(${target})
 endfunction ()
 
 # lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)

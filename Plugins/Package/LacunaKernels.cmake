@@ -18,7 +18,9 @@ function (vtk_module_add_module name)
   list(TRANSFORM classes APPEND ".cxx")
   add_library(${module_LIBRARY_NAME} STATIC ${classes} ${arg_SOURCES})
   add_library(${name} ALIAS ${module_LIBRARY_NAME})
-  target_include_directories(${module_LIBRARY_NAME} PUBLIC "${CMAKE_CURRENT_SOURCE_DIR}")
+  # The first, where nothing is, makes commands those of VTK's modules: to ccache they are the same then.
+  target_include_directories(${module_LIBRARY_NAME} PUBLIC
+    "${CMAKE_CURRENT_BINARY_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
   target_link_libraries(${module_LIBRARY_NAME} PUBLIC ${module_DEPENDS})
 endfunction ()
 

@@ -4,7 +4,7 @@
 Ranks.py NUMBERS as-they-are|modes [program that makes a CT series], with numbers of ranks like 2,3,4
 
 It runs itself in pvbatch, `Ranks.py in pvbatch`: there every rank writes its piece of every output of every pipeline. Pieces are compared
-here, put together again, with what one rank makes. modes: so is what each source and filter makes with each other value of its
+here, put together again, with what one rank makes. modes: so is what each source (but the live one) and filter makes with each other value of its
 enumerations and switches, one at a time; where that is an error all numbers of ranks have the same.
 """
 import itertools
@@ -158,7 +158,7 @@ def run(ranks, with_modes):
     for pipeline in every_proxy.PIPELINES:
         refused = ranks > 1 and pipeline is every_proxy.live
         try:
-            write(pipeline, ranks, with_modes and not pipeline is every_proxy.live)
+            write(pipeline, ranks, with_modes and pipeline is not every_proxy.live)
         except PipelineError as error:
             assert refused and "one process only" in str(error)
             ResetSession()

@@ -5,7 +5,7 @@ patient, in the plane of its face as along the normal, for scans that are turned
 The pit's floor marks the defect, pixel by pixel as the scan shows it; pixels border on each other at the letter's edges.
 Grown by GROWN so that nothing is left of the pit's rim, its edges are those of the bars, GROWN further out.
 
-Each face and each scan once; with "soak" as its second argument all faces of a tilted scan.
+Each face once, and each scan; with "soak" as its second argument all faces of the tilted scan.
 """
 import os
 import shutil

@@ -39,7 +39,7 @@ std::string ErrorOf(const lacuna::MaskedVolume& volume)
 TEST(VolumeSymmetry, FindsThePlaneOfNoisySymmetricData)
 {
   std::mt19937 random(3);
-  for (int trial = 0; trial < 4; ++trial)
+  for (int trial = 0; trial < 6; ++trial)
   {
     Pose pose(random);
     const Grid grid = trial % 2 ? Grid{ { 100, 120, 110 }, { 1.5, 1.3, 1.4 } }
@@ -61,7 +61,7 @@ TEST(VolumeSymmetry, FindsThePlaneOfNoisySymmetricData)
 TEST(VolumeSymmetry, ToleratesADefect)
 {
   std::mt19937 random(5);
-  for (int trial = 0; trial < 3; ++trial)
+  for (int trial = 0; trial < 4; ++trial)
   {
     Pose pose(random);
     const Scene scene({ { 110, 120, 105 }, { 1.4, 1.3, 1.4 } }, pose, Defect::Hole, 40, trial);
