@@ -18,7 +18,7 @@ endfunction ()
 
 # lacuna_test_headers(<target> <header>... LIBRARIES <target>...)
 # Headers that many tests include, compiled once for all programs that lacuna_use_test_headers names:
-# half of what these tests take to compile. Each test includes what it needs all the same.
+# a third to a half of what these tests take to compile. Each test includes what it needs all the same.
 function (lacuna_test_headers target)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
   set(source "${CMAKE_BINARY_DIR}/Testing/${target}.cxx")

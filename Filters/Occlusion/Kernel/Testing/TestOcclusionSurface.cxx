@@ -224,9 +224,12 @@ TEST(OcclusionSurface, DoesNotDependOnThreads)
   const OcclusionSurface expected(one, ball.Get(), {});
   EXPECT_GT(expected.GetReport().Nodes, 1500);
   const std::vector<float> values = expected.EvaluateGrid(one);
-  ThreadExecution five(5);
-  const OcclusionSurface surface(five, ball.Get(), {});
-  EXPECT_EQ(surface.EvaluateGrid(five), values);
+  for (const int threads : { 2, 5 })
+  {
+    ThreadExecution execution(threads);
+    const OcclusionSurface surface(execution, ball.Get(), {});
+    EXPECT_EQ(surface.EvaluateGrid(execution), values) << threads;
+  }
 }
 
 TEST(OcclusionSurface, SmoothingStiffens)
