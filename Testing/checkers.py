@@ -6,8 +6,8 @@ import sys
 import tempfile
 
 
-def complaints(tool, files):
-    """What a checker says of a folder with these files (name to content)."""
+def complaints(tool, files, *options):
+    """What a checker says of a folder with these files (name to content); options may name {folder}."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files.items():
             path = os.path.join(folder, name)
@@ -15,6 +15,6 @@ def complaints(tool, files):
             with open(path, "w", encoding="utf-8") as file:
                 file.write(content)
         checker = os.path.join(os.path.dirname(os.path.abspath(__file__)), "Tools", tool)
-        done = subprocess.run([sys.executable, checker, folder], check=False, text=True, stderr=subprocess.PIPE)
+        done = subprocess.run([sys.executable, checker, folder, *(option.format(folder=folder) for option in options)], check=False, text=True, stderr=subprocess.PIPE)
         assert (done.returncode == 0) == (done.stderr == ""), done.stderr
         return done.stderr
