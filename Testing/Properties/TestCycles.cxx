@@ -4,7 +4,10 @@
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 
+#include <filesystem>
+#include <iterator>
 #include <memory>
+#include <string>
 
 #include <malloc.h>
 
@@ -18,6 +21,13 @@ double GetBytesInUse()
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
+
+// Files, sockets and pipes.
+long CountOpenFiles()
+{
+  const std::filesystem::directory_iterator open("/proc/self/fd");
+  return std::distance(begin(open), end(open));
+}
 }
 
 //------------------------------------------------------------------------------
@@ -25,22 +35,25 @@ std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, A
 {
   constexpr int tries = 100;
   std::unique_ptr<Trial> found;
+  Run first;
   for (int i = 0; i < tries && !account.Succeeded; ++i)
   {
     found = std::make_unique<Trial>(subject, seed + static_cast<std::uint64_t>(i), Trial::Plain);
-    const Run once = found->Execute(found->Make(), 0);
-    account.Succeeded = once.Errors.empty() && !once.IsEmpty;
+    first = found->Execute(found->Make(), 0);
+    account.Succeeded = first.Errors.empty() && !first.IsEmpty;
   }
   const Trial& trial = *found;
+  Run last;
   const auto run = [&](int count)
   {
     for (int i = 0; i < count; ++i)
     {
       StartClock();
-      trial.Execute(trial.Make(), 0);
+      last = trial.Execute(trial.Make(), 0);
     }
   };
   run(cycles / 5 + 1); // what is made once
+  const long files = CountOpenFiles();
   const double resident = lacuna::GetProcessMemory("VmRSS");
   // Tables of VTK grow a little now and then; what is lost in each cycle is lost in all rounds, and is 32
   // bytes at the least.
@@ -57,6 +70,15 @@ std::string TestCycles(const Subject& subject, std::uint64_t seed, int cycles, A
   account.Story = "  in " + std::to_string(cycles) + " cycles, after " +
     std::to_string(rounds - 1) + " times as many, " + std::to_string(grown) +
     " bytes in use more; " + std::to_string(residentGrown) + " in memory\n";
+  const std::string difference = CompareRuns(first, last);
+  if (!difference.empty())
+  {
+    return "the last cycle is not the first: " + difference;
+  }
+  if (CountOpenFiles() > files)
+  {
+    return "files stay open";
+  }
   if (grown >= 32.0 * cycles)
   {
     return "memory in use grows";

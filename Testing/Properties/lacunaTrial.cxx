@@ -198,6 +198,40 @@ void Trial::Connect(vtkAlgorithm* algorithm, bool sound) const
 }
 
 //------------------------------------------------------------------------------
+std::string CompareRuns(const Run& first, const Run& second)
+{
+  if (first.Errors.empty() != second.Errors.empty())
+  {
+    // what is kept of the first one may take the memory of the second, and so may other programs
+    for (const char* owner : { "this process may have", "this machine has" })
+    {
+      if ((first.Errors + second.Errors).find(owner) != std::string::npos)
+      {
+        return {};
+      }
+    }
+    return "an error once, none then: " + first.Errors + second.Errors;
+  }
+  if (first.IsEmpty && second.IsEmpty)
+  {
+    return {};
+  }
+  if (first.Outputs.size() != second.Outputs.size())
+  {
+    return "a file once, none then";
+  }
+  for (std::size_t port = 0; port < first.Outputs.size(); ++port)
+  {
+    const std::string difference = Compare(first.Outputs[port], second.Outputs[port]);
+    if (!difference.empty())
+    {
+      return "output " + std::to_string(port) + " differs in " + difference;
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 Run Trial::Execute(vtkAlgorithm* algorithm, int threads) const
 {
   Run run;

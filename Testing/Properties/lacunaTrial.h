@@ -24,6 +24,9 @@ struct Run
   std::vector<Fingerprint> Outputs;
 };
 
+/// What differs; empty when nothing does, or what one of them lacked was memory that others had taken.
+std::string CompareRuns(const Run& first, const Run& second);
+
 /// A subject with inputs and properties that a seed chooses.
 class Trial
 {
