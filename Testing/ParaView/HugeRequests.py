@@ -216,20 +216,20 @@ def fabrication():
     for spacing in (1e-3, 1e-9):
         filler = filled()
         filler.SetOutputSpacing(spacing, spacing, spacing)
-        check_refused(f"RBF Hole Filler {spacing}", filler, "raise OutputSpacing")
+        check_refused(f"RBF Hole Filler {spacing}", filler, "raise OutputSpacing", "bytes")
         plate = behind(lacuna.vtkLacunaImplantPlate(), filled())
         plate.SetTriangleSize(spacing)
         check_refused(f"Implant Plate {spacing}", plate, "make TriangleSize larger")
         press = behind(lacuna.vtkLacunaPressOrientation(), filled())
         press.SetOutputSpacing(spacing)
-        check_refused(f"Press Orientation {spacing}", press, "nodes; make it larger")
+        check_refused(f"Press Orientation {spacing}", press, "nodes", "bytes", "make it larger")
         for step in ("StepOver", "PathStep"):
             path = behind(lacuna.vtkLacunaMillingToolPath(), behind(lacuna.vtkLacunaPressOrientation(), filled()))
             getattr(path, "Set" + step)(spacing)
             check_refused(f"Milling Tool Path {step} {spacing}", path, step, "mm")
     press = behind(lacuna.vtkLacunaPressOrientation(), filled())
     press.SetBlockSize(1e9, 1e9, 50)
-    check_refused("Press Orientation of a block of 1e9 mm", press, "nodes; make it larger")
+    check_refused("Press Orientation of a block of 1e9 mm", press, "nodes", "bytes", "make it larger")
 
 
 def pieces():

@@ -338,7 +338,8 @@ private:
     if (!(nodes <= MaximumNodes))
     {
       throw std::runtime_error("OutputSpacing " + FormatNumber(this->Options.Spacing) +
-        " mm would give " + FormatNumber(nodes) + " nodes; make it larger");
+        " mm would give " + FormatNumber(nodes) + " nodes, " + DescribeBytes(BytesPerNode * nodes) +
+        "; make it larger");
     }
     RequireMemory("the mould", BytesPerNode * nodes);
     grid.Columns = static_cast<std::int64_t>(count[0]) + 1;

@@ -3,7 +3,6 @@
 
 #include "lacunaMemory.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -97,31 +96,34 @@ MapGrid GetOutputGrid(const MapGrid& grid, const HoleFillOptions& options)
   MapGrid to;
   const int first[2] = { grid.FirstColumn, grid.FirstRow };
   const int size[2] = { grid.Width, grid.Height };
-  int* const newFirst[2] = { &to.FirstColumn, &to.FirstRow };
-  int* const newSize[2] = { &to.Width, &to.Height };
-  double pixels = 1;
+  double begin[2], count[2];
   for (std::size_t c = 0; c < 2; ++c)
   {
     to.Spacing[c] = options.OutputSpacing[c] > 0 ? options.OutputSpacing[c] : grid.Spacing[c];
     const double low = first[c] * grid.Spacing[c] - options.OutputMargin;
     const double high = (first[c] + (size[c] - 1)) * grid.Spacing[c] + options.OutputMargin;
-    const double begin = std::ceil(low / to.Spacing[c] - PixelRounding);
-    const double end = std::floor(high / to.Spacing[c] + PixelRounding);
+    begin[c] = std::ceil(low / to.Spacing[c] - PixelRounding);
+    count[c] = std::floor(high / to.Spacing[c] + PixelRounding) - begin[c] + 1;
+    if (count[c] < 1)
+    {
+      throw std::invalid_argument("OutputSpacing is larger than the map; lower it");
+    }
+  }
+  RequireMemory(
+    "the filled map (raise OutputSpacing or lower OutputMargin)", 100 * count[0] * count[1]);
+  int* const newFirst[2] = { &to.FirstColumn, &to.FirstRow };
+  int* const newSize[2] = { &to.Width, &to.Height };
+  for (std::size_t c = 0; c < 2; ++c)
+  {
     const double limit = std::numeric_limits<int>::max() / 2;
-    if (!(std::abs(begin) < limit) || !(std::abs(end) < limit))
+    if (!(std::abs(begin[c]) < limit) || !(count[c] < limit))
     {
       throw std::length_error(
         "the output would have too many pixels; raise OutputSpacing or lower OutputMargin");
     }
-    *newFirst[c] = static_cast<int>(begin);
-    *newSize[c] = static_cast<int>(std::max(0.0, end - begin + 1));
-    pixels *= end - begin + 1;
+    *newFirst[c] = static_cast<int>(begin[c]);
+    *newSize[c] = static_cast<int>(count[c]);
   }
-  if (to.GetSize() == 0)
-  {
-    throw std::invalid_argument("OutputSpacing is larger than the map; lower it");
-  }
-  RequireMemory("the filled map (raise OutputSpacing or lower OutputMargin)", 100 * pixels);
   return to;
 }
 
