@@ -4,11 +4,10 @@
 Run without arguments it is the test; it runs itself in pvbatch with the folder of pictures and poses.
 """
 import os
-import shutil
-import subprocess
 import sys
 
 import numpy as np
+from lacuna_test import output, run_ranks
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPImageDataReader, vtkXMLPPolyDataReader
@@ -36,12 +35,8 @@ def read(reader, name):
 
 
 def main():
-    mpirun, pvbatch = shutil.which("mpirun"), shutil.which("pvbatch")
-    if not mpirun or not pvbatch:
-        print("no mpirun or pvbatch")
-        sys.exit(77)
     import own_pictures_files as files
-    folder = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "AssembleTrackedSlicesRanks")
+    folder = output("AssembleTrackedSlicesRanks")
     os.makedirs(folder, exist_ok=True)
     random = np.random.default_rng(3)
     pixels = random.integers(0, 256, (SLICES, 20, 30)).astype(np.uint8)
@@ -54,16 +49,8 @@ def main():
         pose[:3, 3] = [1, 2, 0.5 * number]
         poses.append(pose)
     files.write_poses(os.path.join(folder, "poses.csv"), "Matrix", poses)
-    # pvpython has started MPI for itself; its traces would confuse mpirun
-    environment = {key: value for key, value in os.environ.items()
-                   if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
-    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
     for ranks in (1, 3):
-        done = subprocess.run(
-            [mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering", os.path.abspath(__file__), folder, str(ranks)],
-            env=environment, check=True, timeout=300, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        assert "ERR|" not in done.stdout, done.stdout
+        assert "ERR|" not in run_ranks(ranks, __file__, folder, str(ranks))
         for stacked in (0, 1):
             data = read(vtkXMLPImageDataReader, os.path.join(folder, f"slices{ranks}-{stacked}.pvti"))
             grey = vtk_to_numpy(data.GetPointData().GetArray("Intensity")).reshape(pixels.shape)

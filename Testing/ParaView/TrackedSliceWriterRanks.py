@@ -5,9 +5,9 @@ Run without arguments it is the test; it runs itself in pvbatch with the folder 
 """
 import os
 import shutil
-import subprocess
 import sys
 
+from lacuna_test import output, run_ranks
 from paraview.simple import *
 
 KINDS = ("mha", "mhd", "nrrd", "nhdr")
@@ -45,22 +45,14 @@ def write(folder, ranks):
 def run(folder, ranks):
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
-    # pvpython has started MPI for itself; its traces would confuse mpirun
-    environment = {key: value for key, value in os.environ.items()
-                   if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
-    environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
-    done = subprocess.run(
-        [mpirun, "-n", str(ranks), pvbatch, "--force-offscreen-rendering", os.path.abspath(__file__), folder, str(ranks)],
-        env=environment, timeout=300, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    assert done.returncode == 0, done.stdout
-    errors = [line for line in done.stdout.splitlines() if "ERR|" in line]
-    assert len(errors) == 1 and "no-such-folder" in done.stdout and "No such file" in done.stdout, done.stdout
+    printed = run_ranks(ranks, __file__, folder, str(ranks))
+    errors = [line for line in printed.splitlines() if "ERR|" in line]
+    assert len(errors) == 1 and "no-such-folder" in printed and "No such file" in printed, printed
     return {name: open(os.path.join(folder, name), "rb").read() for name in sorted(os.listdir(folder))}
 
 
 def main():
-    folder = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "TrackedSliceWriterRanks")
+    folder = output("TrackedSliceWriterRanks")
     alone = run(folder, 1)
     assert len(alone) == 2 * 2 * 6 + 1 + len(TIMES), sorted(alone)
     assert all(alone.values())
@@ -83,8 +75,4 @@ def main():
 if len(sys.argv) > 2:
     write(sys.argv[1], int(sys.argv[2]))
 else:
-    mpirun, pvbatch = shutil.which("mpirun"), shutil.which("pvbatch")
-    if not mpirun or not pvbatch:
-        print("no mpirun or pvbatch")
-        sys.exit(77)
     main()

@@ -53,7 +53,7 @@ def mpi_environment():
 
 
 def run_ranks(ranks, script, *arguments, options=(), timeout=300):
-    """What a script prints in pvbatch, with its options, with so many MPI ranks, or leaves the test as skipped."""
+    """What a script prints in pvbatch, with pvbatch's options, with so many MPI ranks, or leaves the test as skipped."""
     done = subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering", *options,
                            os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=timeout, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
