@@ -62,7 +62,6 @@ public:
   CubicSplineFit(const CubicSplineSpace& space, const std::vector<double>& sites);
 
   std::int64_t GetNumberOfSites() const { return static_cast<std::int64_t>(this->Basis.size()); }
-  const CubicSplineSpace& GetSpace() const { return this->Space; }
 
   /// samples: one row of width values per site. coefficients: one row per B-spline. Normal
   /// equations, with refinement until their squared condition number does not show.

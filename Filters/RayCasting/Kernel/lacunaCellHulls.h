@@ -16,8 +16,6 @@ struct CellHulls
   std::uint64_t Outside = 0; ///< negative throughout the cell
   std::uint64_t Inside = 0;  ///< positive throughout the cell
 
-  bool AreOutside() const { return this->Outside == ~std::uint64_t(0); }
-  bool AreInside() const { return this->Inside == ~std::uint64_t(0); }
   static int BitOf(int i, int j, int k) { return (i & 3) | (j & 3) << 2 | (k & 3) << 4; }
 };
 

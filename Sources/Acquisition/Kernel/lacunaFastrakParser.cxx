@@ -16,11 +16,6 @@ FastrakParser::FastrakParser(const FastrakFormat& format, const FastrakLayout& l
   this->Layouts.fill(layout);
 }
 
-void FastrakParser::SetFormat(const FastrakFormat& format)
-{
-  this->Format = format;
-}
-
 void FastrakParser::SetLayout(int station, const FastrakLayout& layout)
 {
   this->Layouts.at(station - 1) = layout;

@@ -36,8 +36,6 @@ public:
 
   /// The same layout for all stations, until SetLayout.
   explicit FastrakParser(const FastrakFormat& format = {}, const FastrakLayout& layout = {});
-  /// Bytes that are waiting are judged anew.
-  void SetFormat(const FastrakFormat& format);
   void SetLayout(int station, const FastrakLayout& layout);
 
   /// Takes the next bytes and adds the messages that are complete now, in order.

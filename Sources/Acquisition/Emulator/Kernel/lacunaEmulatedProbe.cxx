@@ -23,9 +23,9 @@ EmulatedProbe::EmulatedProbe(FastrakEmulator::PoseScript motion, int station,
   : Motion(std::move(motion))
   , Station(station)
   , ImageToReceiver(FaceToReceiver() * imageToFace)
-  , SceneToTransmitter(
-      this->Motion(aim, station) * FaceToReceiver() * Matrix4::Translation({ 0, 0.5 * depth, 0 }))
-  , TransmitterToScene(this->SceneToTransmitter.Inverse())
+  , TransmitterToScene(
+      (this->Motion(aim, station) * FaceToReceiver() * Matrix4::Translation({ 0, 0.5 * depth, 0 }))
+        .Inverse())
 {
 }
 

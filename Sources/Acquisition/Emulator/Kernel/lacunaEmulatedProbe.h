@@ -25,7 +25,6 @@ public:
 
   /// (column, row, 0, 1) to mm of the receiver: what a calibration finds.
   const Matrix4& GetImageToReceiver() const { return this->ImageToReceiver; }
-  const Matrix4& GetSceneToTransmitter() const { return this->SceneToTransmitter; }
   /// (column, row, 0, 1) to mm of the scene at a time.
   Matrix4 ImageToScene(double time) const;
   /// A calibration file, as an acquisition, PLUS, 3D Slicer and Tracked Slice Reader take it: Image
@@ -36,7 +35,6 @@ private:
   FastrakEmulator::PoseScript Motion;
   int Station;
   Matrix4 ImageToReceiver;
-  Matrix4 SceneToTransmitter;
   Matrix4 TransmitterToScene;
 };
 }
