@@ -35,6 +35,11 @@ cp -r 18-embedding kernels installed.py in_window.py "$work"
 chown -R nobody "$work"
 apt-get -qq update
 
+echo "== what lacuna depends on, without it"
+mapfile -t needed < <(apt-get -s install --no-install-recommends ./lacuna*_"$version"-*.deb | sed -n 's/^Inst \([^ ]*\).*/\1/p' | grep -v '^lacuna')
+[ ${#needed[@]} = 0 ] || install "${needed[@]}"
+files >"$work/alone"
+
 echo "== lacuna alone, with what it depends on"
 install ./lacuna_"$version"-*.deb
 as_user pvpython --force-offscreen-rendering installed.py "$version" "$work"
@@ -81,7 +86,12 @@ purge
 files >"$work/after"
 diff "$work/before" "$work/after"
 if grep -i -e lacuna -e '/usr/bin/paraview\.conf$' "$work/after"; then exit 1; fi
-if find /var/cache /var/log -iname '*lacuna*' | grep .; then exit 1; fi
+if find /var/cache /var/log /var/lib/dpkg/info -iname '*lacuna*' | grep .; then exit 1; fi
+mapfile -t there < <(installed $tools)
+apt-mark auto "${there[@]}" >/dev/null
+apt-get -y -qq autoremove --purge >/dev/null
+files | diff "$work/alone" -
 
+[ ${#needed[@]} = 0 ] || apt-mark auto "${needed[@]}" >/dev/null
 clean
 echo "packages: installed, used and removed without a trace"
