@@ -122,7 +122,7 @@ class Page:
         if not rows:
             return ""
         return ("## Threads\nHow many times as fast by the clock as with one thread, and how much more the processors work. Results do not depend on the number of threads. "
-                "Four threads on fewer cores show that too many do no harm. Dashed: as many times as fast as there are threads, and cores for them.\n\n" + picture("threads", "Speed-up by threads", plots)
+                "Four threads on fewer cores show what too many cost; VTK's filters take no more than there are cores. Dashed: as many times as fast as there are threads, and cores for them.\n\n" + picture("threads", "Speed-up by threads", plots)
                 + table(("", "1 thread, ms", "2: times as fast", "4: times as fast", "2: processor", "4: processor"), rows))
 
     def ranks(self, plots):
