@@ -15,7 +15,7 @@ lacuna_install_packages packages-fuzzing.txt
 lacuna_build fuzz --target LacunaFuzzTargets
 targets=("$@")
 if [ ${#targets[@]} = 0 ]; then
-  for source in Testing/Fuzz/Corpus/*; do targets+=("$(basename "$source")"); done
+  for program in build/fuzz/bin/Fuzz*; do targets+=("${program#build/fuzz/bin/Fuzz}"); done
 fi
 each=$(((seconds + ${#targets[@]} - 1) / ${#targets[@]}))
 findings=$PWD/build/fuzz/findings

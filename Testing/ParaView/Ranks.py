@@ -309,6 +309,9 @@ def main():
     assert missing <= ({"CTSeriesReader"} if len(sys.argv) < 4 else set()), f"no pipeline has {sorted(missing)}"
     listed = IMAGES | MESHES | FIRST | WRITERS | REFUSED
     assert seen <= listed, f"not listed here: {sorted(seen - listed)}"
+    empty = {what for _, what, _, _ in alone} - {
+        key[1] for key, pieces in alone.items() for data, _ in pieces if any(data.GetNumberOfElements(kind) for kind in (0, 1, 6))}
+    assert empty <= REFUSED, f"nothing to compare of {sorted(empty)}"
     faults = []
     for ranks in numbers:
         together = outputs(ranks)

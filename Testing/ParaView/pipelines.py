@@ -34,7 +34,11 @@ def values(data):
         found["counts"] = np.array([data.GetNumberOfPoints(), data.GetNumberOfCells()])
     if data.IsA("vtkPolyData"):
         for kind in ("Verts", "Lines", "Polys", "Strips"):
-            found[kind] = vtk_to_numpy(getattr(data, "Get" + kind)().GetConnectivityArray())
+            cells = getattr(data, "Get" + kind)()
+            found[kind] = vtk_to_numpy(cells.GetConnectivityArray())
+            found[kind + " offsets"] = vtk_to_numpy(cells.GetOffsetsArray())
+    if data.IsA("vtkStructuredGrid"):
+        found["extent"] = np.array(data.GetExtent())
     for kind in ("PointData", "CellData", "RowData", "FieldData"):
         getter = getattr(data, "Get" + kind, None)
         arrays = getter() if getter else None
