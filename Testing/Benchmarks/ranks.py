@@ -34,7 +34,7 @@ BANDWIDTH = 12.5e9  # bytes/s: 100 Gbit/s
 SUMMED = 1 << 22  # values that are summed at once
 MANY = 2, 10, 100, 1000
 FEW = 20  # parts, where all would take more than ALL
-ALL = 20  # s
+ALL = 30  # s
 LINES = 100  # of Occluded Angle, of two directions each
 SHARES_DIRECTIONS = "occluded-angle"  # the others share the output
 

@@ -107,7 +107,7 @@ class Runner:
         try:
             with tempfile.TemporaryDirectory() as folder:
                 out = os.path.join(folder, "ranks.json")
-                said = rows.call([sys.executable, script, *(["--quick"] if self.quick else []), "--benchmark_out", out], 3 * self.timeout,
+                said = rows.call([sys.executable, script, *(["--quick"] if self.quick else []), "--benchmark_out", out], 6 * self.timeout,
                                  self.environment)
                 with open(out, encoding="utf-8") as file:
                     return {"rows": {name: row.cpu for name, row in rows.parse(file.read()).items() if not row.error}, "text": said.strip()}

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether the modules compile with the headers of Debian's own VTK, which cannot be installed beside ParaView.
+
+check-vtk-headers.py [--guarded] BUILD     a build of the preset vtk
+
+Takes the package's headers from apt and nothing else of it, and has the compiler read each source of the modules with them in the place of
+ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h).
+(Testing/Tools/chroot.sh builds and tests with that VTK.)
+"""
+import argparse
+import concurrent.futures
+import glob
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+
+PACKAGES = "libvtk9-dev", "libtbb-dev"  # whose headers VTK's include
+GUARDS = "vtkLacunaVersionCompat.h"
+
+
+def headers(folder):
+    """Folders of headers of the packages, unpacked."""
+    own = os.path.join(folder, "usr", "include")
+    if not glob.glob(os.path.join(own, "vtk-*")):
+        os.makedirs(folder, exist_ok=True)
+        download = ["apt-get", "-qq", "download", *PACKAGES]
+        if subprocess.run(download, cwd=folder, check=False, stderr=subprocess.DEVNULL).returncode != 0:  # without lists of packages?
+            subprocess.run(["apt-get", "-qq", "update"], check=False)
+            subprocess.run(download, cwd=folder, check=True)
+        for package in glob.glob(os.path.join(folder, "*.deb")):
+            subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
+    return [*glob.glob(os.path.join(own, "vtk-*")), own]
+
+
+def stand_in(folder):
+    """What export headers, which ParaView's VTK has generated, include, where VTK has none yet."""
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "vtkABINamespace.h"), "w", encoding="ascii") as file:
+        file.write("#define VTK_ABI_NAMESPACE_BEGIN\n#define VTK_ABI_NAMESPACE_END\n")
+    return folder
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def commands(build, folders):
+    """(source, command, folder) of what uses VTK, is no test and was not generated for ParaView's VTK."""
+    instead = " ".join(f"-isystem {shlex.quote(folder)}" for folder in folders)
+    for entry in json.loads(read(os.path.join(build, "compile_commands.json"))):
+        source = entry["file"]
+        command, replaced = re.subn(r"-isystem \S*/paraview-[\d.]+(?=\s)", lambda _: instead, entry["command"])
+        if replaced and "/Testing/" not in source and not source.startswith(build + os.sep):
+            words = shlex.split(command)
+            at = words.index("-o")
+            yield source, [*words[:at], "-fsyntax-only", *words[at + 2:]], entry["directory"]
+
+
+def guarded(jobs):
+    """Those whose source includes GUARDS, also by other headers of the modules."""
+    texts = {header: read(header) for folder in {os.path.dirname(source) for source, _, _ in jobs} for header in glob.glob(os.path.join(folder, "*.h"))}
+    includes, grown = set(), {GUARDS}
+    while grown > includes:
+        includes = grown
+        grown = includes | {os.path.basename(header) for header, text in texts.items() if any(f'"{name}"' in text for name in includes)}
+    return [job for job in jobs if any(f'"{name}"' in read(job[0]) for name in includes)]
+
+
+def complaint(job):
+    source, command, folder = job
+    done = subprocess.run(command, cwd=folder, check=False, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return f"{source}:\n{done.stdout}" if done.returncode != 0 else ""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--guarded", action="store_true", help=f"only what includes {GUARDS}")
+    parser.add_argument("build", help="of the preset vtk")
+    options = parser.parse_args()
+    build = os.path.abspath(options.build)
+    unpacked = os.path.join(build, "headers")
+    folders = headers(unpacked)
+    jobs = list(commands(build, [*folders, stand_in(os.path.join(unpacked, "stand-in"))]))
+    jobs = guarded(jobs) if options.guarded else jobs
+    if not jobs:
+        sys.exit(f"{build} has no such sources that use VTK")
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        complaints = list(filter(None, pool.map(complaint, jobs)))
+    print("\n".join(complaints))
+    print(f"{len(jobs) - len(complaints)} of {len(jobs)} sources compile with {os.path.basename(folders[0])}")
+    sys.exit(1 if complaints else 0)
+
+
+main()
