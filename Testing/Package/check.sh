@@ -13,12 +13,17 @@ purge() {
   mapfile -t there < <(installed lacuna lacuna-dev lacuna-doc)
   [ ${#there[@]} = 0 ] || apt-get -y -qq purge "${there[@]}" >/dev/null
 }
-# as it was, so that what is missing among the dependencies is seen; also after a run that failed
+# nor what came with them, though something that stays may recommend it
+drop() {
+  mapfile -t there < <(installed "$@")
+  [ ${#there[@]} = 0 ] || apt-mark auto "${there[@]}" >/dev/null
+  apt-get -y -qq -o APT::AutoRemove::RecommendsImportant=false -o APT::AutoRemove::SuggestsImportant=false autoremove --purge >/dev/null
+}
+# as it was, so that the next run sees what is missing among the dependencies; also when this one failed
+needed=()
 clean() {
   purge
-  mapfile -t there < <(installed $tools)
-  [ ${#there[@]} = 0 ] || apt-mark auto "${there[@]}" >/dev/null
-  apt-get -y -qq autoremove --purge >/dev/null
+  drop $tools "${needed[@]}"
 }
 files() {
   find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /tmp -o -path /var/tmp -o -path /run -o -path /root \
@@ -30,7 +35,7 @@ as_user() { (cd "$work" && setpriv --reuid=nobody --regid=nogroup --clear-groups
 on_display() { as_user timeout 300 xvfb-run -a -s -noreset "$@"; }
 clean
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+trap 'clean; rm -rf "$work"' EXIT
 cp -r 18-embedding kernels installed.py in_window.py "$work"
 chown -R nobody "$work"
 apt-get -qq update
@@ -87,11 +92,7 @@ files >"$work/after"
 diff "$work/before" "$work/after"
 if grep -i -e lacuna -e '/usr/bin/paraview\.conf$' "$work/after"; then exit 1; fi
 if find /var/cache /var/log /var/lib/dpkg/info -iname '*lacuna*' | grep .; then exit 1; fi
-mapfile -t there < <(installed $tools)
-apt-mark auto "${there[@]}" >/dev/null
-apt-get -y -qq autoremove --purge >/dev/null
+drop $tools
 files | diff "$work/alone" -
 
-[ ${#needed[@]} = 0 ] || apt-mark auto "${needed[@]}" >/dev/null
-clean
 echo "packages: installed, used and removed without a trace"
