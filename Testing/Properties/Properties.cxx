@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests of what every algorithm promises, on random data and properties:
 //
-//   LacunaProperties outcome|abort|cycles|exhaustion [--seed N] [--count N] [--filter NAME]... [--output FOLDER]
+//   LacunaProperties outcome|abort|abort-threads|cycles|exhaustion [--seed N] [--count N] [--filter NAME]... [--output FOLDER]
 //
 // --seed: of the first case, the others follow; `clock` takes one from the time. --count: cases of
 // an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone. It is
@@ -133,8 +133,8 @@ bool Parse(int argc, char* argv[], Options& options)
     }
   }
   return argc % 2 == 0 &&
-    (options.Test == "outcome" || options.Test == "abort" || options.Test == "cycles" ||
-      options.Test == "exhaustion");
+    (options.Test == "outcome" || options.Test == "abort" || options.Test == "abort-threads" ||
+      options.Test == "cycles" || options.Test == "exhaustion");
 }
 
 double GetProcessorTime()
@@ -198,14 +198,15 @@ int main(int argc, char* argv[])
   if (!Parse(argc, argv, options))
   {
     std::cerr
-      << "usage: LacunaProperties outcome|abort|cycles|exhaustion [--seed N|clock] [--count N] "
-         "[--filter NAME]... [--output FOLDER]\n";
+      << "usage: LacunaProperties outcome|abort|abort-threads|cycles|exhaustion [--seed N|clock] "
+         "[--count N] [--filter NAME]... [--output FOLDER]\n";
     return 2;
   }
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  if (options.Test == "abort")
+  const bool areAtWork = options.Test == "abort-threads";
+  if (options.Test == "abort" || areAtWork)
   {
-    setenv("LACUNA_REPORT_INTERVAL", "0", 1);
+    setenv("LACUNA_REPORT_INTERVAL", areAtWork ? "0.02" : "0", 1);
   }
   // It forks, and VTK 9.3 and later would wait for threads that a fork has not.
   if (options.Test == "exhaustion")
@@ -249,7 +250,8 @@ int main(int argc, char* argv[])
       : TestSubject(options, subject, count,
           [&](std::uint64_t seed, Account& account)
           {
-            return options.Test == "abort"   ? TestAbort(subject, seed, account)
+            return options.Test == "abort" || areAtWork
+              ? TestAbort(subject, seed, areAtWork, account)
               : options.Test == "exhaustion" ? TestExhaustion(subject, seed, account)
                                              : TestOutcome(subject, seed, account);
           });

@@ -29,9 +29,11 @@ void StartClock();
 /// inputs stay as they were; sound inputs after an error give what they always give.
 std::string TestOutcome(const Subject& subject, std::uint64_t seed, Account& account);
 
-/// Stopped at any report of progress, of which there is one between any two ranges of its loops
-/// (LACUNA_REPORT_INTERVAL): no output and no error; the next run gives what a first one does.
-std::string TestAbort(const Subject& subject, std::uint64_t seed, Account& account);
+/// Stopped at any report of progress: no output and no error; the next run gives what a first one does.
+/// Reports come between any two ranges of its loops, of which the calling thread does all; or, where
+/// areAtWork, every 20 microseconds while threads are at work on larger inputs, so that a run need not come to
+/// the report at which it was to stop (LACUNA_REPORT_INTERVAL).
+std::string TestAbort(const Subject& subject, std::uint64_t seed, bool areAtWork, Account& account);
 
 /// Created, run and deleted `cycles` times, with the first inputs from this seed on that give an
 /// output: memory in use does not grow.

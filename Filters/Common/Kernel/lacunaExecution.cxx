@@ -19,12 +19,13 @@ namespace
 // Often enough for a progress bar and a prompt stop, rarely enough to cost nothing; or ms that the
 // environment gives. 0, for tests: after each range of a loop, which the calling thread does alone then,
 // so that a run repeats.
-std::chrono::milliseconds GetReportInterval()
+std::chrono::microseconds GetReportInterval()
 {
-  static const std::chrono::milliseconds interval = []
+  static const std::chrono::microseconds interval = []
   {
     const char* given = std::getenv("LACUNA_REPORT_INTERVAL");
-    return std::chrono::milliseconds(given ? std::max(0, std::atoi(given)) : 50);
+    const double ms = given ? std::clamp(std::atof(given), 0.0, 1e6) : 50;
+    return std::chrono::microseconds(static_cast<std::int64_t>(1000 * ms));
   }();
   return interval;
 }
@@ -83,8 +84,8 @@ void Execution::For(std::int64_t count, std::int64_t grain, const Body& body)
   std::mutex errorMutex;
   using Clock = std::chrono::steady_clock;
   const std::thread::id caller = std::this_thread::get_id();
-  const std::chrono::milliseconds interval = GetReportInterval();
-  const bool alone = interval == std::chrono::milliseconds::zero();
+  const std::chrono::microseconds interval = GetReportInterval();
+  const bool alone = interval == std::chrono::microseconds::zero();
   const bool works = alone || this->LaunchWorks();
   Clock::time_point next = Clock::now() + interval; // of the calling thread
   const auto report = [&] { this->Report(static_cast<double>(done) / static_cast<double>(count)); };
