@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether the modules compile with the headers of Debian's own VTK, which cannot be installed beside ParaView.
 
-check-vtk-headers.py [--guarded] BUILD     a build of the preset vtk
+check-vtk-headers.py [--guarded] [--suite SUITE] BUILD     a build of the preset vtk
 
 Takes the package's headers from apt and nothing else of it, and has the compiler read each source of the modules with them in the place of
-ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h).
+ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h). --suite: those
+of another Debian, bookworm (9.1), trixie (9.3) or sid, instead of this one's (DEBIAN_MIRROR).
 (Testing/Tools/chroot.sh builds and tests with that VTK.)
 """
 import argparse
@@ -22,14 +23,30 @@ PACKAGES = "libvtk9-dev", "libtbb-dev"  # whose headers VTK's include
 GUARDS = "vtkLacunaVersionCompat.h"
 
 
-def headers(folder):
+def apt(folder, suite):
+    """The command apt-get; with a suite that is not this system's it has lists of its own in folder."""
+    if not suite:
+        return ["apt-get", "-qq"]
+    sources = os.path.join(folder, "sources.list")
+    for part in "lists/partial", "cache/archives/partial":
+        os.makedirs(os.path.join(folder, part), exist_ok=True)
+    with open(sources, "w", encoding="ascii") as file:
+        # of a later Debian than the keys here may be; what is taken is read by the compiler and not run
+        file.write(f"deb [trusted=yes] {os.environ.get('DEBIAN_MIRROR', 'http://deb.debian.org/debian')} {suite} main\n")
+    own = {"Dir::Etc::SourceList": sources, "Dir::Etc::SourceParts": "-", "Dir::State::Lists": f"{folder}/lists", "Dir::State::Status": "/dev/null",
+           "Dir::Cache": f"{folder}/cache", "APT::Sandbox::User": "root", "Acquire::Check-Valid-Until": "false"}
+    return ["apt-get", "-qq", *(f"-o{name}={value}" for name, value in own.items())]
+
+
+def headers(folder, suite):
     """Folders of headers of the packages, unpacked."""
     own = os.path.join(folder, "usr", "include")
     if not glob.glob(os.path.join(own, "vtk-*")):
         os.makedirs(folder, exist_ok=True)
-        download = ["apt-get", "-qq", "download", *PACKAGES]
+        command = apt(folder, suite)
+        download = [*command, "download", *PACKAGES]
         if subprocess.run(download, cwd=folder, check=False, stderr=subprocess.DEVNULL).returncode != 0:  # without lists of packages?
-            subprocess.run(["apt-get", "-qq", "update"], check=False)
+            subprocess.run([*command, "update"], check=False)
             subprocess.run(download, cwd=folder, check=True)
         for package in glob.glob(os.path.join(folder, "*.deb")):
             subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
@@ -80,11 +97,12 @@ def complaint(job):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--guarded", action="store_true", help=f"only what includes {GUARDS}")
+    parser.add_argument("--suite", default="", help="of Debian")
     parser.add_argument("build", help="of the preset vtk")
     options = parser.parse_args()
     build = os.path.abspath(options.build)
-    unpacked = os.path.join(build, "headers")
-    folders = headers(unpacked)
+    unpacked = os.path.join(build, "-".join(filter(None, ("headers", options.suite))))
+    folders = headers(unpacked, options.suite)
     jobs = list(commands(build, [*folders, stand_in(os.path.join(unpacked, "stand-in"))]))
     jobs = guarded(jobs) if options.guarded else jobs
     if not jobs:

@@ -63,7 +63,7 @@ fi
 
 case $what in
   fresh)
-    inside 'cd /lacuna && ./test.sh && ./test.sh -L example && ./demo.sh'
+    inside 'cd /lacuna && ./test.sh && ./test.sh -L "system|example" && ./demo.sh'
     ;;
   vtk)
     inside 'apt-get -qq update'
