@@ -114,11 +114,15 @@ std::string TestAbort(const Subject& subject, std::uint64_t seed, bool areAtWork
   {
     return "messages when stopped: " + stopped.Errors + stopped.Stray;
   }
-  account.Succeeded = stopped.IsEmpty && !whole.IsEmpty;
-  if (!areAtWork && !stopper->HasStopped())
+  if (!stopper->HasStopped() && !areAtWork)
   {
     return "fewer reports the second time";
   }
+  if (!stopper->HasStopped() && stopped.IsEmpty && !whole.IsEmpty)
+  {
+    return "not stopped, and no output";
+  }
+  account.Succeeded = stopper->HasStopped() && stopped.IsEmpty && !whole.IsEmpty;
   if (!stopped.IsEmpty && stopper->HasStopped() && !stopper->WasReady)
   {
     return "stopped, and went on";

@@ -6,7 +6,7 @@ check-vtk-headers.py [--guarded] [--suite SUITE] BUILD     a build of the preset
 
 Takes the package's headers from apt and nothing else of it, and has the compiler read each source of the modules with them in the place of
 ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h). --suite: those
-of another Debian, bookworm (9.1), trixie (9.3) or sid, instead of this one's (DEBIAN_MIRROR).
+of another Debian, bookworm (9.1), trixie (9.3) or sid, instead of this one's (DEBIAN_MIRROR). They stay in BUILD: delete headers-sid for newer ones.
 (Testing/Tools/chroot.sh builds and tests with that VTK.)
 """
 import argparse
@@ -18,6 +18,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 
 PACKAGES = "libvtk9-dev", "libtbb-dev"  # whose headers VTK's include
 GUARDS = "vtkLacunaVersionCompat.h"
@@ -31,8 +32,7 @@ def apt(folder, suite):
     for part in "lists/partial", "cache/archives/partial":
         os.makedirs(os.path.join(folder, part), exist_ok=True)
     with open(sources, "w", encoding="ascii") as file:
-        # of a later Debian than the keys here may be; what is taken is read by the compiler and not run
-        file.write(f"deb [trusted=yes] {os.environ.get('DEBIAN_MIRROR', 'http://deb.debian.org/debian')} {suite} main\n")
+        file.write(f"deb {os.environ.get('DEBIAN_MIRROR', 'http://deb.debian.org/debian')} {suite} main\n")
     own = {"Dir::Etc::SourceList": sources, "Dir::Etc::SourceParts": "-", "Dir::State::Lists": f"{folder}/lists", "Dir::State::Status": "/dev/null",
            "Dir::Cache": f"{folder}/cache", "APT::Sandbox::User": "root", "Acquire::Check-Valid-Until": "false"}
     return ["apt-get", "-qq", *(f"-o{name}={value}" for name, value in own.items())]
@@ -40,16 +40,19 @@ def apt(folder, suite):
 
 def headers(folder, suite):
     """Folders of headers of the packages, unpacked."""
+    if not os.path.isdir(folder):
+        with tempfile.TemporaryDirectory(dir=os.path.dirname(folder)) as work:  # folder is there when all is in it
+            command = apt(work, suite)
+            download = [*command, "download", *PACKAGES]
+            if subprocess.run(download, cwd=work, check=False, stderr=subprocess.DEVNULL).returncode != 0:  # without lists of packages?
+                subprocess.run([*command, "update"], check=False)
+                if subprocess.run(download, cwd=work, check=False).returncode != 0:
+                    sys.exit(f"{' and '.join(PACKAGES)} of {suite or 'this Debian'} cannot be had; apt says why above")
+            unpacked = os.path.join(work, "unpacked")
+            for package in glob.glob(os.path.join(work, "*.deb")):
+                subprocess.run(["dpkg-deb", "-x", package, unpacked], check=True)
+            os.rename(unpacked, folder)
     own = os.path.join(folder, "usr", "include")
-    if not glob.glob(os.path.join(own, "vtk-*")):
-        os.makedirs(folder, exist_ok=True)
-        command = apt(folder, suite)
-        download = [*command, "download", *PACKAGES]
-        if subprocess.run(download, cwd=folder, check=False, stderr=subprocess.DEVNULL).returncode != 0:  # without lists of packages?
-            subprocess.run([*command, "update"], check=False)
-            subprocess.run(download, cwd=folder, check=True)
-        for package in glob.glob(os.path.join(folder, "*.deb")):
-            subprocess.run(["dpkg-deb", "-x", package, folder], check=True)
     return [*glob.glob(os.path.join(own, "vtk-*")), own]
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Tries the project on a machine that has nothing: a minimal Debian in a folder (root only).
-#   Testing/Tools/chroot.sh FOLDER fresh           ./test.sh, the examples and ./demo.sh in a clean clone, as a
+#   Testing/Tools/chroot.sh FOLDER fresh           all tests but soak, and ./demo.sh, in a clean clone, as a
 #                                                  newcomer runs them
 #   Testing/Tools/chroot.sh FOLDER vtk [SUITE]     modules only, against the VTK of that Debian:
 #                                                  bookworm (9.1, the default), trixie (9.3), sid

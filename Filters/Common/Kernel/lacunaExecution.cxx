@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <future>
+#include <locale>
 #include <mutex>
+#include <sstream>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -23,9 +26,15 @@ std::chrono::microseconds GetReportInterval()
 {
   static const std::chrono::microseconds interval = []
   {
-    const char* given = std::getenv("LACUNA_REPORT_INTERVAL");
-    const double ms = given ? std::clamp(std::atof(given), 0.0, 1e6) : 50;
-    return std::chrono::microseconds(static_cast<std::int64_t>(1000 * ms));
+    double ms = 50;
+    if (const char* given = std::getenv("LACUNA_REPORT_INTERVAL"))
+    {
+      std::istringstream text(given);
+      text.imbue(std::locale::classic()); // Qt has others
+      text >> ms;
+      ms = ms > 0 ? std::min(ms, 1e6) : 0;
+    }
+    return std::chrono::microseconds(static_cast<std::int64_t>(std::ceil(1000 * ms)));
   }();
   return interval;
 }
