@@ -34,7 +34,7 @@ void EmptyOutputs(vtkInformationVector* outputs)
   {
     if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
     {
-      output->Initialize();
+      output->ReleaseData(); // empty, and VTK asks again for it
     }
     // VTK forgets the combined request only after success: the next one would be united with it,
     // though the whole extent may have become smaller.
@@ -114,11 +114,19 @@ std::function<void(vtkLacunaExecution&)> WithSoundInputs(
   };
 }
 
-// Runs body and returns 1, or 0 after an error that was told. areToldAll: other ranks learn of it, and fail, too.
-int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
+// Runs body. error: its error, which was told, or that of an input; empty: none. areToldAll: other ranks learn of
+// it, and fail, too.
+void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body, std::string& error, bool areToldAll)
 {
   const bool isAlone = vtkLacunaRanks().GetNumber() == 1;
+  error = vtkLacunaFailure::GetUpstream(algorithm);
+  if (!error.empty())
+  {
+    EmptyOutputs(outputs);
+    vtkLacunaFailure::PassOn(algorithm, outputs, error);
+    return;
+  }
   const std::string announced = vtkLacunaFailure::GetAnnounced(algorithm);
   try
   {
@@ -136,7 +144,7 @@ int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     }
     if (error.empty())
     {
-      return 1;
+      return;
     }
     EmptyOutputs(outputs);
     if (!areToldAll && !announced.empty() && !isAlone &&
@@ -145,21 +153,18 @@ int RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
       // VTK would not execute what comes behind on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
       error.clear();
-      return 1;
+      return;
     }
     vtkLacunaFailure::Tell(algorithm, outputs, error);
-    return 0;
   }
   catch (const vtkLacunaGridChanged& changed)
   {
     EmptyOutputs(outputs);
     vtkErrorWithObjectMacro(algorithm, << changed.what());
-    return 1;
   }
   catch (const lacuna::Aborted&)
   {
-    EmptyOutputs(outputs);
-    return 1; // not an error: the user asked for it
+    EmptyOutputs(outputs); // not an error: the user asked for it
   }
 }
 }
@@ -181,7 +186,8 @@ int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVecto
     return 0;
   }
   std::string error;
-  return RunAndTell(algorithm, outputs, body, error, false);
+  RunAndTell(algorithm, outputs, body, error, false);
+  return 1;
 }
 
 //------------------------------------------------------------------------------
@@ -214,14 +220,13 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   if (own.empty() && agreed.empty())
   {
     vtkLacunaRequest::ForgetNothing(algorithm);
-    return 1;
   }
-  if (own.empty())
+  else if (own.empty())
   {
     EmptyOutputs(outputs);
     vtkLacunaFailure::Tell(algorithm, outputs, haveMet ? vtkLacunaFailure::Again(agreed) : agreed);
   }
-  return 0;
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -33,12 +33,12 @@ public:
   {
   }
 
-  /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). Returns 1, or
-  /// 0 after an exception, whose text becomes algorithm's error: each time data are asked for, until
-  /// something is changed (vtkLacunaFailure). When body fails or is stopped by the user all outputs are
-  /// emptied, so that no half result looks whole. After vtkLacunaGridChanged it returns 1 all the same:
-  /// writers of time steps would ask again for ever; and, of several ranks, after an error of
-  /// RunInformation: what comes behind may be made by all ranks together, who would wait for this one.
+  /// Runs the body of algorithm's RequestData if its inputs are sound (vtkLacunaInputs). When body throws or is
+  /// stopped, all outputs are emptied, so that no half result looks whole. An exception's text is algorithm's
+  /// error each time data are asked for, until something changes (vtkLacunaFailure). After an error of an
+  /// algorithm upstream body is not run, and the outputs hold that error, too. Returns 1, also after an error:
+  /// VTK goes on, so that views show the empty outputs, and no rank waits for one that has failed.
+  ///
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 

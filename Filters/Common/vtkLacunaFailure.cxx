@@ -2,10 +2,9 @@
 #include "vtkLacunaFailure.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
-#include "vtkExecutive.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
@@ -16,6 +15,7 @@
 #include "vtkNew.h"
 #include "vtkOutputWindow.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
@@ -167,7 +167,23 @@ std::vector<double> GetToldState(vtkAlgorithm* algorithm)
   return { state, state + own->Length(ToldOf()) };
 }
 
-// An error that is on the screen already: tells only who listens.
+// Leaves error in the outputs.
+void Leave(vtkInformationVector* outputs, const std::string& error)
+{
+  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
+  {
+    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
+    if (vtkDataObject* output = vtkDataObject::GetData(outputs, i))
+    {
+      vtkNew<vtkStringArray> array;
+      array->SetName(vtkLacunaFailure::FieldName);
+      array->InsertNextValue(error);
+      output->GetFieldData()->AddArray(array);
+    }
+  }
+}
+
+// An error that is on the screen already: reaches only those who listen.
 void Repeat(vtkAlgorithm* algorithm, const std::string& error)
 {
   vtkObject* listener = algorithm->HasObserver(vtkCommand::ErrorEvent)
@@ -175,12 +191,6 @@ void Repeat(vtkAlgorithm* algorithm, const std::string& error)
     : vtkOutputWindow::GetInstance();
   std::string copy = error;
   listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
-  // The executive adds that the algorithm has failed, unless it has an observer: one for once.
-  vtkNew<vtkCallbackCommand> once;
-  once->SetClientData(once);
-  once->SetCallback([](vtkObject* caller, unsigned long, void* self, void*)
-    { caller->RemoveObserver(static_cast<vtkCommand*>(self)); });
-  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, once);
 }
 }
 
@@ -252,13 +262,30 @@ std::string vtkLacunaFailure::Again(const std::string& error)
 }
 
 //------------------------------------------------------------------------------
+std::string vtkLacunaFailure::GetUpstream(vtkAlgorithm* algorithm)
+{
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      vtkDataObject* data = algorithm->GetInputDataObject(port, i);
+      auto* error = data ? vtkStringArray::SafeDownCast(
+                             data->GetFieldData()->GetAbstractArray(vtkLacunaFailure::FieldName))
+                         : nullptr;
+      if (error && error->GetNumberOfValues() > 0)
+      {
+        return error->GetValue(0);
+      }
+    }
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaFailure::Tell(
   vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
 {
-  for (int i = 0; i < outputs->GetNumberOfInformationObjects(); ++i)
-  {
-    outputs->GetInformationObject(i)->Set(vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1);
-  }
+  Leave(outputs, error);
   if (!vtkObject::GetGlobalWarningDisplay())
   {
     return;
@@ -278,4 +305,15 @@ void vtkLacunaFailure::Tell(
   own->Set(ToldAt(), GetSeconds());
   own->Set(ToldOnScreen(), algorithm->HasObserver(vtkCommand::ErrorEvent) ? 0 : 1);
   vtkErrorWithObjectMacro(algorithm, << error);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaFailure::PassOn(
+  vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error)
+{
+  Leave(outputs, error);
+  if (vtkObject::GetGlobalWarningDisplay())
+  {
+    Repeat(algorithm, error);
+  }
 }

@@ -9,11 +9,12 @@
 class vtkAlgorithm;
 class vtkInformationVector;
 
-/// Of empty data VTK takes for up to date nobody would hear any more, and writers would put nothing in the
-/// place of good files: so an algorithm fails for each who asks, until something is changed. ParaView asks
-/// several times for one command: within seconds the same error is shown once, and the same work not done
-/// again. What something else than a property or an input has mended (memory that was freed) may be told for
-/// some seconds more.
+/// A failed algorithm fails for each who asks, until something is changed. Its outputs are empty, and their field
+/// data hold the error under FieldName, which filters pass on. RequestData returns 1 all the same: VTK would not
+/// execute what follows, a view would keep the old picture, and ParaView would not update that view again.
+/// ParaView asks several times for one command: within seconds the same error is shown once, and the same work
+/// is not done again. What something else than a property or an input has mended (memory that was freed) may be
+/// reported for some seconds more.
 namespace vtkLacunaFailure
 {
 /// Says that the algorithm's outcome depends on files, which may be mended or changed without its knowledge, and
@@ -46,7 +47,16 @@ std::string Again(const std::string& error);
 /// Keeps what the ranks have agreed upon.
 void SetAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error);
 
-/// Makes error one of algorithm. Its outputs are marked as not generated.
+/// The array of an output's field data (vtkStringArray, one value) that holds the error.
+constexpr char FieldName[] = "LacunaError";
+
+/// The error that an input of algorithm holds; empty: none.
+std::string GetUpstream(vtkAlgorithm* algorithm);
+
+/// Makes error one of algorithm. Its outputs, which are empty, hold it and are marked as not generated.
 void Tell(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error);
+
+/// The same for an error of an input. It was shown: only those hear of it who listen.
+void PassOn(vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::string& error);
 }
 #endif

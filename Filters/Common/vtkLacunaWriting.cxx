@@ -7,6 +7,7 @@
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaFailure.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -46,6 +47,12 @@ unsigned long vtkLacunaWriting::Run(
     {
       code = vtkErrorCode::NoFileNameError;
       throw std::runtime_error("no FileName is given");
+    }
+    const std::string failed = vtkLacunaFailure::GetUpstream(writer);
+    if (!failed.empty())
+    {
+      throw std::runtime_error(
+        "nothing was written, because a filter before this one failed: " + failed);
     }
     vtkLacunaInputs::Check(writer);
     body();

@@ -85,21 +85,25 @@ for name, word in ("RecoveryNone.igs.mha", "RecoveryNone"), ("RecoveryCut.igs.mh
         except PipelineError as error:
             assert word in str(error), (proxy, str(error))
 
-# A file that is written again while something is wrong stays as it was, and each try says what is wrong: of
+# A file that Lacuna writes again while something is wrong stays as it was, and each try says what is wrong: of
 # announcements as of data, of the filter itself as of one upstream.
-skull = pv.SkullPhantom(Spacing=[5] * 3)
-caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=9)
-shader = pv.DepthMapShader(Input=caster)
-saved = output("RecoverySaved.vti")
-for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spacing is -1"),
-                                     (skull, "Spacing", [1e-3] * 3, [5] * 3, "bytes"),
-                                     (caster, "PixelSpacing", 1e-4, 9, "is too large"),
+skull = pv.SkullPhantom(Spacing=[4] * 3)
+caster = pv.BSplineIsoRayCaster(Input=skull, IsoValues=[500], PixelSpacing=3, ViewDirection=[-0.4, 0.2, -0.9])
+filler = pv.RBFHoleFiller(Input=caster, NodeSpacing=4, DefectRegion="Sphere")
+filler.DefectRegion.Center = [28, -14, 63]
+filler.DefectRegion.Radius = 39
+shader = pv.DepthMapShader(Input=filler)
+pixels = points(shader)
+saved = output("RecoverySaved.igs")
+for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [4] * 3, "Spacing is -1"),
+                                     (skull, "Spacing", [1e-3] * 3, [4] * 3, "bytes"),
+                                     (caster, "PixelSpacing", 1e-4, 3, "is too large"),
                                      (caster, "ViewUp", [0, 0, 0], [0, 1, 0], "view-up"),
-                                     (shader, "DepthArray", "Fitted", "Depth", "Fitted")):
-    pv.SaveData(saved, proxy=shader)
+                                     (filler, "SupportMargin", -1, 12, "SupportMargin is -1")):
+    pv.SaveData(saved, proxy=filler)
     before = open(saved, "rb").read()
     setattr(proxy, name, bad)
-    for update in (shader.UpdatePipeline, *[lambda: pv.SaveData(saved, proxy=shader)] * 2):
+    for update in (shader.UpdatePipeline, *[lambda: pv.SaveData(saved, proxy=filler)] * 2):
         try:
             with raising():
                 update()
@@ -107,8 +111,11 @@ for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [5] * 3, "Spac
         except PipelineError as error:
             assert word in str(error), (name, bad, str(error))
     assert open(saved, "rb").read() == before, (name, bad)
+    fields = pv.servermanager.Fetch(shader).GetFieldData()
+    assert word in fields.GetAbstractArray("LacunaError").GetValue(0), (name, bad)
     setattr(proxy, name, good)
     assert points(shader) == pixels, (name, good, points(shader))
+    assert not pv.servermanager.Fetch(shader).GetFieldData().HasArray("LacunaError"), (name, good)
 
 # of times an error belongs to its own
 class Sweeps(VTKPythonAlgorithmBase):
