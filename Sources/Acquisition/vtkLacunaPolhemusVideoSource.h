@@ -71,6 +71,14 @@ public:
   ///@}
 
   ///@{
+  /// s for which the last pose holds when no other comes. For trackers that send a pose only when it
+  /// changes, such as robots and 3D Slicer. Slices keep their own Timestamp; Residual is the age of
+  /// the pose; after that time SliceStatus is 1. Default: 0: no pose is held.
+  vtkSetMacro(HoldLastPose, double);
+  vtkGetMacro(HoldLastPose, double);
+  ///@}
+
+  ///@{
   /// What becomes a slice. Default: Movement.
   vtkSetClampMacro(CaptureMode, int, Movement, EveryFrame);
   vtkGetMacro(CaptureMode, int);
@@ -199,6 +207,7 @@ private:
   char* CalibrationFileName = nullptr;
   double PixelSpacing = 0;
   double TimeOffset = 0;
+  double HoldLastPose = 0;
   int CaptureMode = Movement;
   double MovementThreshold = 0.5;
   double SpeedLimit = 23;

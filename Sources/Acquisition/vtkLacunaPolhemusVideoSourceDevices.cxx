@@ -36,6 +36,7 @@ std::string vtkLacunaPolhemusVideoSource::DescribeRules() const
     .Add("CalibrationFileName", this->CalibrationFileName)
     .Add("PixelSpacing", this->PixelSpacing)
     .Add("TimeOffset", this->TimeOffset)
+    .Add("HoldLastPose", this->HoldLastPose)
     .Add("CaptureMode", this->CaptureMode)
     .Add("MovementThreshold", this->MovementThreshold)
     .Add("SpeedLimit", this->SpeedLimit)
@@ -165,6 +166,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
     rules.MovementThreshold = this->MovementThreshold;
     rules.SpeedLimit = this->SpeedLimit;
     rules.TimeOffset = this->TimeOffset;
+    rules.HoldLastPose = this->HoldLastPose;
     rules.RecordFileName = Text(this->RecordFileName);
     rules.RecordCompressionLevel = this->RecordCompression;
     rules.MemoryLimit = this->MemoryLimit * Mebibyte;

@@ -73,8 +73,8 @@ try:
     lacuna_test.check_defaults(
         source, lacuna.vtkLacunaPolhemusVideoSource(),
         ["BaudRate", "Station", "Hemisphere", "FiltersOff", "ButtonStarts", "CropRectangle", "VideoLatency",
-         "PixelSpacing", "TimeOffset", "MovementThreshold", "SpeedLimit", "MemoryLimit", "RecordCompression",
-         "LiveDisplay"],
+         "PixelSpacing", "TimeOffset", "HoldLastPose", "MovementThreshold", "SpeedLimit", "MemoryLimit",
+         "RecordCompression", "LiveDisplay"],
         {"Field": ["Both", "Top", "Bottom"], "CaptureMode": ["Movement", "EveryFrame"], "RecordFormat": ["Binary", "ASCII"],
          "RecordUnit": ["Centimetre", "Inch"], "TrackerReset": ["Nothing", "Frames", "Factory"]})
     hints = source.SMProxy.GetHints()

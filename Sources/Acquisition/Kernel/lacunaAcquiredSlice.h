@@ -23,6 +23,7 @@ struct AcquiredSlice
   unsigned char Status = 0;     ///< flags of Sweep::Flags
   double Residual = 0; ///< from the slice's instant to the nearest measurement of the tracker
   double Gap = 0;      ///< between the measurements on either side
+  bool Held = false;   ///< the pose is that of the last measurement, Residual before
   double Speed = 0;    ///< mm/s of the fastest extreme point since the frame before
   double Delay = 0;    ///< from the frame's arrival until the slice was there
 };

@@ -8,7 +8,9 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace lacuna
 {
@@ -30,6 +32,8 @@ public:
   /// the device tells: a frame grabber has a frame when its last line was sent, one frame's time
   /// after its first. 0: not known.
   virtual double GetLatency() const = 0;
+  /// See VideoSource.
+  virtual std::vector<std::optional<double>> TakeArrivals() { return {}; }
   virtual VideoSource::Counts GetCounts() const = 0;
   /// What is wrong with the frames now though they come, and what to do; empty: nothing.
   virtual std::string GetWarning() const { return {}; }

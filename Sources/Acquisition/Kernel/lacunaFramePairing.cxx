@@ -9,7 +9,8 @@ namespace lacuna
 {
 namespace
 {
-constexpr double LongestDelay = 1; // s of who takes the frames, after which those are dropped
+constexpr double LongestDelay = 1;   // s of who takes the frames, after which those are dropped
+constexpr double LongestUntimed = 3; // s: 25 frames at 9 a second
 }
 
 FramePairing::FramePairing(double patience)
@@ -19,7 +20,9 @@ FramePairing::FramePairing(double patience)
 
 void FramePairing::AddFrame(PairedFrame frame, double now)
 {
-  const double deadline = std::max(now, frame.Instant) + this->Patience;
+  frame.Timed = frame.Timed || !frame.Wanted; // who only looks does not wait
+  const double deadline =
+    std::max(now, frame.Instant) + (frame.Timed ? this->Patience : LongestUntimed);
   // the one before a wanted frame tells the speed at that
   auto kept = this->Frames.begin();
   for (auto i = kept; i != this->Frames.end(); ++i)
@@ -40,12 +43,42 @@ void FramePairing::AddPose(const TrackedPose& pose)
   this->Track.Add(pose);
   for (Waiting& waiting : this->Frames)
   {
-    if (!waiting.Settled && !this->Track.IsAhead(waiting.Frame.Instant))
-    {
-      waiting.Frame.Pose = this->Track.At(waiting.Frame.Instant);
-      waiting.Settled = true;
-    }
+    this->Settle(waiting);
   }
+}
+
+void FramePairing::Settle(Waiting& waiting)
+{
+  if (!waiting.Settled && waiting.Frame.Timed && !this->Track.IsAhead(waiting.Frame.Instant))
+  {
+    waiting.Frame.Pose = this->Track.At(waiting.Frame.Instant, waiting.Frame.Epoch);
+    waiting.Settled = true;
+  }
+}
+
+void FramePairing::SetTime(std::int64_t number, std::optional<double> later)
+{
+  const auto found = std::find_if(this->Frames.begin(), this->Frames.end(),
+    [&](const Waiting& waiting) { return waiting.Frame.Number == number; });
+  if (found == this->Frames.end() || found->Frame.Timed)
+  {
+    return;
+  }
+  if (!later)
+  {
+    found->Settled = true; // without a pose
+    return;
+  }
+  found->Frame.Instant += *later;
+  found->Frame.Timed = true;
+  this->Settle(*found);
+}
+
+std::optional<PairedFrame> FramePairing::FindUntimed() const
+{
+  return this->Frames.empty() || this->Frames.back().Frame.Timed
+    ? std::nullopt
+    : std::optional<PairedFrame>(this->Frames.back().Frame);
 }
 
 void FramePairing::Abandon()
@@ -64,11 +97,15 @@ std::vector<PairedFrame> FramePairing::Take(double now)
     Waiting& first = this->Frames.front();
     if (!first.Settled)
     {
-      if (this->Track.IsAhead(first.Frame.Instant) && now < first.Deadline)
+      const bool waits = !first.Frame.Timed || this->Track.IsAhead(first.Frame.Instant);
+      if (waits && now < first.Deadline)
       {
         break;
       }
-      first.Frame.Pose = this->Track.At(first.Frame.Instant);
+      if (first.Frame.Timed)
+      {
+        first.Frame.Pose = this->Track.At(first.Frame.Instant, first.Frame.Epoch);
+      }
     }
     ready.push_back(std::move(first.Frame));
     this->Frames.pop_front();

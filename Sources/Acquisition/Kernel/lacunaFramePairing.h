@@ -23,12 +23,15 @@ struct PairedFrame
   std::int64_t Number = 0; ///< of the video's frames
   double Instant = 0;      ///< s of the clock: when the probe saw it
   bool Wanted = false;     ///< it came during a capture
+  ClockEpoch Epoch;        ///< of Instant
+  bool Timed = true;       ///< false: Instant may be wrong, and is known better soon
   std::optional<PoseAtInstant> Pose;
 };
 
 /// Frames wait until a measurement later than their instant has come, so that they get a pose
 /// between two; nothing is extrapolated. One whose pose does not come within the patience gets none.
-/// Frames leave in the order in which they came. They may be taken late, while a disk is slow for
+/// Frames whose Instant is not known yet (Timed) wait up to 3 s for that when they are wanted, and get
+/// none otherwise. Frames leave in the order in which they came. They may be taken late, while a disk is slow for
 /// instance: a frame keeps its pose, and one that is not wanted, nor just before such a one, does
 /// not wait in memory for long.
 class FramePairing
@@ -40,12 +43,20 @@ public:
   /// Takes a frame at a time of the clock.
   void AddFrame(PairedFrame frame, double now);
   void AddPose(const TrackedPose& pose);
+  /// The instant of a frame that was not Timed is so many s later; nothing: it will never be known.
+  /// Frames that have left are passed over.
+  void SetTime(std::int64_t number, std::optional<double> later);
+  /// See PoseTrack.
+  void SetHold(double seconds) { this->Track.SetHold(seconds); }
+  void EndHold() { this->Track.EndHold(); }
   /// Poses that come next are another tracker's.
   void Break() { this->Track.Break(); }
   /// No poses will come for the frames there are: all may leave.
   void Abandon();
   /// The frames that have their pose or are let go.
   std::vector<PairedFrame> Take(double now);
+  /// The newest frame, when it waits for its time: to be shown.
+  std::optional<PairedFrame> FindUntimed() const;
   /// Of the frames that wait; nothing when none do.
   std::optional<double> GetLatestInstant() const;
 
@@ -57,6 +68,8 @@ private:
     double Expiry;        ///< until then it is kept though nobody wants it
     bool Settled = false; ///< its pose is known, or known to be none
   };
+  void Settle(Waiting& waiting);
+
   double Patience;
   PoseTrack Track;
   std::deque<Waiting> Frames;

@@ -44,6 +44,8 @@ public:
   virtual PoseCounts GetCounts() const = 0;
   /// What is wrong with the measurements now though they come, and what to do; empty: nothing.
   virtual std::string GetWarning() const = 0;
+  /// So many s without a measurement are no reason to warn: the last one holds as long.
+  virtual void AllowSilence(double /*seconds*/) {}
 };
 
 /// Opens a device; asked for another one after a failure. stopped says when to give up.

@@ -71,6 +71,7 @@ void SweepAcquisition::SetRules(const AcquisitionRules& rules)
     this->Work->Taking.SetRules(rules);
     const std::lock_guard<std::mutex> lock(this->Work->Mutex);
     this->Work->Rules = rules;
+    this->Work->Pairing.SetHold(rules.HoldLastPose);
   }
   this->Work->CatchUp();
 }

@@ -41,6 +41,8 @@ void SweepAcquisition::Core::TrackPoses(
     while (!control.IsStopped())
     {
       poses.clear();
+      const double hold = this->GetHold();
+      device->AllowSilence(hold);
       const bool came = device->Poll(poses);
       if (control.IsStopped())
       {
@@ -52,7 +54,7 @@ void SweepAcquisition::Core::TrackPoses(
         control.SetWorking();
         last = this->Time.Now();
       }
-      if (this->Time.Now() - last > LongestSilence)
+      if (this->Time.Now() - last > std::max(LongestSilence, hold))
       {
         const std::string why = device->GetWarning();
         throw std::runtime_error(!why.empty()
@@ -69,6 +71,12 @@ void SweepAcquisition::Core::TrackPoses(
     }
     throw;
   }
+}
+
+double SweepAcquisition::Core::GetHold() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return this->Rules.HoldLastPose;
 }
 
 void SweepAcquisition::Core::AddPoses(
@@ -126,6 +134,7 @@ void SweepAcquisition::Core::LosePoses()
     this->TrackerWarning.clear();
     this->PosesCome = false;
     this->ButtonBefore = this->ButtonDown; // one that is held is not pressed again
+    this->Pairing.EndHold();
     this->Pairing.Abandon();
   }
   this->Process();
@@ -150,6 +159,7 @@ void SweepAcquisition::Core::ReadFrames(
     }
     this->EarlierVideo = this->CountVideo();
     this->NewestVideo = {};
+    this->Untimed.clear();
     this->VideoWarning.clear();
   }
   while (!control.IsStopped())
@@ -174,14 +184,34 @@ void SweepAcquisition::Core::ReadFrames(
   }
 }
 
-void SweepAcquisition::Core::AddFrame(FramePointer frame, double latency, const FrameDevice& device)
+// With the lock.
+void SweepAcquisition::Core::SetTimes(const std::vector<std::optional<double>>& arrivals)
 {
+  for (const std::optional<double>& arrival : arrivals)
+  {
+    const auto [number, before] = this->Untimed.front();
+    this->Untimed.pop_front();
+    this->Pairing.SetTime(
+      number, arrival ? std::optional<double>(*arrival - before) : std::nullopt);
+  }
+}
+
+void SweepAcquisition::Core::AddFrame(FramePointer frame, double latency, FrameDevice& device)
+{
+  const std::vector<std::optional<double>> arrivals = device.TakeArrivals();
   const VideoSource::Counts counts = device.GetCounts();
   std::string warning = device.GetWarning();
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
+    this->SetTimes(arrivals);
     PairedFrame paired;
     paired.Instant = frame->Arrival - latency + this->Rules.TimeOffset;
+    paired.Epoch = frame->Epoch;
+    paired.Timed = frame->Timed;
+    if (!frame->Timed)
+    {
+      this->Untimed.emplace_back(this->NextNumber, frame->Arrival);
+    }
     paired.Frame = std::move(frame);
     paired.Number = this->NextNumber++;
     paired.Wanted = this->Capturing;
@@ -235,6 +265,12 @@ void SweepAcquisition::Core::TakeReady()
     const std::lock_guard<std::mutex> lock(this->Mutex);
     ready = this->Pairing.Take(this->Time.Now());
     this->HeedStart();
+    // what waits for its time is shown all the same
+    const std::optional<PairedFrame> untimed = this->Pairing.FindUntimed();
+    if (const auto window = untimed ? this->Taking.GetWindow(*untimed->Frame) : std::nullopt)
+    {
+      this->Live = std::pair(*untimed, *window);
+    }
   }
   if (ready.empty())
   {

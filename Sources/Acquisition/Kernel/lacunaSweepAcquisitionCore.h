@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <utility>
 
 namespace lacuna
@@ -23,17 +24,20 @@ struct SweepAcquisition::Core
     , Rules(rules)
     , Pairing(devices.Patience)
   {
+    this->Pairing.SetHold(rules.HoldLastPose);
   }
 
   void TrackPoses(const AcquisitionDevices& devices, DeviceThread::Control& control);
   void ReadFrames(const AcquisitionDevices& devices, DeviceThread::Control& control);
   void AddPoses(
     const std::vector<TrackedPose>& poses, bool came, const PoseDevice& device, int station);
+  double GetHold() const;
   void HeedButton(const TrackedPose& pose);
   void SetCapturing(bool on);
   void LosePoses();
   void BreakPoses();
-  void AddFrame(FramePointer frame, double latency, const FrameDevice& device);
+  void AddFrame(FramePointer frame, double latency, FrameDevice& device);
+  void SetTimes(const std::vector<std::optional<double>>& arrivals);
   void Process();
   void CatchUp();
   void TakeReady();
@@ -67,6 +71,8 @@ struct SweepAcquisition::Core
   bool ButtonBefore = false; // what the last record said
   double ButtonTime = 0;     // when that came
   std::int64_t NextNumber = 0;
+  std::deque<std::pair<std::int64_t, double>>
+    Untimed; // numbers and arrivals of frames of this video
   std::int64_t Pending = 0;
   std::int64_t Missing = 0;
   PoseCounts EarlierPoses; // of connections that ended

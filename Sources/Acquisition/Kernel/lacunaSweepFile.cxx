@@ -88,6 +88,10 @@ SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& fra
   }
   AddNumber(fields, "Timestamp", slice.Timestamp);
   AddNumber(fields, "Residual", slice.Residual);
+  if (slice.Held)
+  {
+    AddNumber(fields, "PoseHeld", slice.Residual);
+  }
   AddNumber(fields, "Speed", slice.Speed);
   fields.emplace_back("FrameNumber", std::to_string(slice.FrameNumber));
   fields.emplace_back("SliceStatus", std::to_string(int(slice.Status)));

@@ -106,6 +106,8 @@ void CheckRules(const AcquisitionRules& rules)
     "SpeedLimit is a speed in mm/s, or 0 for none");
   require(std::abs(rules.TimeOffset) <= LargestOffset,
     "TimeOffset is s from -1 to 1: a video that is later than that is no live image");
+  require(std::isfinite(rules.HoldLastPose) && rules.HoldLastPose >= 0,
+    "HoldLastPose is a time in s, or 0 to hold none");
   require(rules.MemoryLimit >= 0, "MemoryLimit is a size, or 0 for none");
   require(rules.RecordCompressionLevel >= 0 && rules.RecordCompressionLevel <= 9,
     "RecordCompression is 0 (none) to 9 (most)");
@@ -142,6 +144,7 @@ AcquiredSlice MakeSlice(const PairedFrame& frame, const SweepFrame& window, doub
     (frame.Pose ? 0 : Sweep::PoseInvalid) | (video.Damaged ? Sweep::ImageInvalid : 0));
   slice.Residual = frame.Pose ? frame.Pose->Nearest : NaN;
   slice.Gap = frame.Pose ? frame.Pose->Gap : NaN;
+  slice.Held = frame.Pose && frame.Pose->Held;
   slice.Speed = NaN;
   return slice;
 }

@@ -24,6 +24,7 @@ struct AcquisitionRules
   double MovementThreshold = 0.5; ///< mm
   double SpeedLimit = 23;         ///< mm/s (Carr 1996, ch. 2); 0: none
   double TimeOffset = 0;          ///< s, from temporal calibration; negative when the video is late
+  double HoldLastPose = 0;        ///< s, see PoseTrack::SetHold; 0: off
   std::optional<Matrix4> ImageToProbe; ///< (column, row, 0, 1) of the whole frame to mm
   Matrix4 TrackerToReference;
   bool ButtonStarts = false;      ///< a press of the stylus's button starts or stops the capture

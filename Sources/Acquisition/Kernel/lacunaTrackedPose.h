@@ -10,6 +10,19 @@
 
 namespace lacuna
 {
+/// By which estimate of a sender's clock a time is known. When the estimate changes by much, times before
+/// and after do not fit together.
+struct ClockEpoch
+{
+  const void* Sender = nullptr; ///< nothing: the time is of our own clock
+  int Number = 0;
+
+  bool Fits(const ClockEpoch& other) const
+  {
+    return this->Sender != other.Sender || this->Number == other.Number;
+  }
+};
+
 /// Times are s of the acquisition's clock.
 struct TrackedPose
 {
@@ -22,6 +35,7 @@ struct TrackedPose
   bool Usable = true;            ///< false: its code says not to rely on it, or it came too late
   bool Flipped = false;          ///< signs were set right for the other hemisphere
   std::optional<bool> Button;
+  ClockEpoch Epoch;
 };
 }
 #endif

@@ -19,6 +19,7 @@ public:
   VideoEvent Read(VideoFrame& frame) override { return this->Source.Read(frame); }
   /// One frame's time for a frame grabber (/dev/...) whose rate is known; else 0.
   double GetLatency() const override;
+  std::vector<std::optional<double>> TakeArrivals() override { return this->Source.TakeArrivals(); }
   VideoSource::Counts GetCounts() const override { return this->Source.GetCounts(); }
 
 private:

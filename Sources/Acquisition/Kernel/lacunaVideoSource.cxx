@@ -196,6 +196,7 @@ struct VideoSource::Stream
   int Index = -1;
   double Rate = 0;
   bool Paced = false;
+  bool Local = false; ///< it goes by our own clock, or none
   bool Ended = false;
   VideoGrey Grey;
   std::deque<std::pair<std::int64_t, double>> Arrivals; ///< packets' times and when they came
@@ -220,6 +221,7 @@ void VideoSource::Stream::Open()
   }
   this->Format->interrupt_callback = { Interrupt, this };
   this->Format->flags |= AVFMT_FLAG_NONBLOCK; // of devices, which no interrupt reaches
+  this->Local = address.Local;
   this->Paced = address.Local && this->Settings.InRealTime;
   this->OpenInput(address);
   if (!address.Device) // a device says all itself
@@ -415,6 +417,7 @@ void VideoSource::Stream::Fill(VideoFrame& frame, Counts& count)
     av_guess_sample_aspect_ratio(this->Format, this->Format->streams[this->Index], this->Picture);
   frame.PixelAspect = aspect.num > 0 && aspect.den > 0 ? av_q2d(aspect) : 1;
   frame.Arrival = this->FindArrival();
+  frame.Timed = true;
   frame.StreamTime.reset();
   if (picture.best_effort_timestamp != AV_NOPTS_VALUE)
   {
@@ -431,7 +434,9 @@ void VideoSource::Stream::Fill(VideoFrame& frame, Counts& count)
     // some formats have no times, FFmpeg counts frames; one that was lost would seem to be late
     if (this->Paced || (this->Format->iformat->flags & AVFMT_NOTIMESTAMPS) == 0)
     {
-      frame.Arrival = this->FrameTimes.FindArrival(frame.Arrival, time);
+      const FrameClock::Answer answer = this->FrameTimes.FindArrival(frame.Arrival, time);
+      frame.Arrival = answer.Arrival;
+      frame.Timed = answer.Known || this->Local;
     }
     frame.StreamTime = time;
     this->LastTime = time;
@@ -486,6 +491,12 @@ VideoEvent VideoSource::Read(VideoFrame& frame)
     input.CheckLeft();
     input.ReadPacket(this->Count);
   }
+}
+
+std::vector<std::optional<double>> VideoSource::TakeArrivals()
+{
+  std::vector<std::optional<double>> arrivals = this->Input->FrameTimes.TakeArrivals();
+  return this->Input->Local ? std::vector<std::optional<double>>() : arrivals;
 }
 
 double VideoSource::GetFrameRate() const

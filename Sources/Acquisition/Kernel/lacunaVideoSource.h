@@ -5,6 +5,7 @@
 #define lacunaVideoSource_h
 
 #include "lacunaClock.h"
+#include "lacunaTrackedPose.h"
 #include "lacunaVector.h"
 #include "lacunaVideoFields.h"
 
@@ -64,7 +65,9 @@ struct VideoFrame
   std::vector<std::uint8_t> Grey;   ///< the top line first (see lacunaVideoGrey.h for the rule)
   double PixelAspect = 1;           ///< width of a pixel by its height, where the stream says so
   double Arrival = 0;               ///< when its bytes were there, s of the clock; see FrameClock
+  bool Timed = true;                ///< false: Arrival may be late, see TakeArrivals
   std::optional<double> StreamTime; ///< s of the stream's own clock
+  ClockEpoch Epoch;                 ///< of Arrival
   bool Damaged = false;             ///< the decoder had to guess parts
   std::optional<Vec2> PixelSpacing; ///< mm of a column and a row, where and as the stream says
 };
@@ -102,6 +105,9 @@ public:
   VideoEvent Read(VideoFrame& frame);
   /// Frames a second by the stream's own account; 0: it says nothing.
   double GetFrameRate() const;
+  /// The arrivals of all frames that were not Timed, in order, once they are known (see FrameClock); of
+  /// those that never are, nothing. To be asked for after each Read.
+  std::vector<std::optional<double>> TakeArrivals();
   const Counts& GetCounts() const { return this->Count; }
 
 private:

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <random>
+#include <vector>
 
 using namespace lacuna;
 
@@ -29,6 +32,122 @@ struct Stream
       std::uniform_real_distribution<double>(0, this->Jitter)(this->Random);
   }
 };
+
+// As it is known when the frame comes.
+double Find(FrameClock& clock, double arrival, double streamTime)
+{
+  return clock.FindArrival(arrival, streamTime).Arrival;
+}
+
+// What is known of each frame in the end, in order; nothing: never.
+std::vector<std::optional<double>> FindAll(
+  const std::vector<double>& arrivals, const std::function<double(int)>& getTime, int& wrongAtOnce)
+{
+  FrameClock clock;
+  std::vector<std::optional<double>> found;
+  std::vector<double> early;
+  wrongAtOnce = 0;
+  for (std::size_t i = 0; i < arrivals.size(); ++i)
+  {
+    const FrameClock::Answer answer = clock.FindArrival(arrivals[i], getTime(static_cast<int>(i)));
+    for (const std::optional<double>& arrival : clock.TakeArrivals())
+    {
+      wrongAtOnce += arrival != early[found.size()] ? 1 : 0;
+      found.push_back(arrival);
+    }
+    early.push_back(answer.Arrival);
+    if (answer.Known)
+    {
+      EXPECT_EQ(found.size(), i) << "an earlier frame is forgotten";
+      found.emplace_back(answer.Arrival);
+    }
+  }
+  return found;
+}
+}
+
+TEST(FrameClock, FramesThatWereHeldUpBeforeItSettledGetTheirTimesOnceItHas)
+{
+  for (int first = 0; first < 12; ++first)
+  {
+    Stream stream;
+    std::vector<double> arrivals;
+    double free = 0;
+    for (int frame = 0; frame < 300; ++frame)
+    {
+      const double punctual = stream.GetArrival(frame);
+      if (frame >= first && (frame - first) % 9 == 0)
+      {
+        free = punctual + 0.02 + 0.01 * (frame % 11); // 20 to 120 ms
+      }
+      arrivals.push_back(std::max(punctual, free));
+    }
+    int wrongAtOnce = 0;
+    const auto found = FindAll(
+      arrivals, [&](int frame) { return stream.GetTime(frame); }, wrongAtOnce);
+    EXPECT_TRUE(wrongAtOnce > 2 || first >= 10) << first; // which had settled by then
+    ASSERT_EQ(found.size(), 300u) << first;
+    double before = 0;
+    for (int frame = 0; frame < 300; ++frame)
+    {
+      ASSERT_TRUE(found[frame]) << first << " " << frame;
+      ASSERT_NEAR(*found[frame], stream.GetEnd(frame) + Way, 0.0095) << first << " " << frame;
+      ASSERT_LE(*found[frame], arrivals[frame]);
+      ASSERT_GE(*found[frame], before) << first << " " << frame;
+      before = *found[frame];
+    }
+  }
+}
+
+TEST(FrameClock, ItSettlesAsSoonAsTenFramesAgree)
+{
+  Stream stream;
+  FrameClock clock;
+  for (int frame = 0; frame < 40; ++frame)
+  {
+    const double arrival = stream.GetArrival(frame);
+    const FrameClock::Answer answer = clock.FindArrival(arrival, stream.GetTime(frame));
+    EXPECT_EQ(answer.Known, frame >= 9) << frame;
+    EXPECT_EQ(answer.Arrival, arrival);
+    const auto arrivals = clock.TakeArrivals();
+    EXPECT_EQ(arrivals.size(), frame == 9 ? 9u : 0u) << frame;
+  }
+}
+
+TEST(FrameClock, OfAStreamThatIsNotInStepArrivalsStayAfterFiftyFrames)
+{
+  Stream stream;
+  std::vector<double> arrivals;
+  for (int frame = 0; frame < 100; ++frame) // in bursts of two
+  {
+    arrivals.push_back(stream.GetArrival(frame + 1 - frame % 2) + 0.0001 * (frame % 2));
+  }
+  int wrongAtOnce = 0;
+  const auto found = FindAll(
+    arrivals, [&](int frame) { return stream.GetTime(frame); }, wrongAtOnce);
+  ASSERT_EQ(found.size(), 100u);
+  for (std::size_t frame = 0; frame < 100; ++frame)
+  {
+    EXPECT_EQ(found[frame], arrivals[frame]) << frame;
+  }
+}
+
+TEST(FrameClock, OfFramesBeforeAStreamBeganAnewNothingIsKnown)
+{
+  Stream stream;
+  std::vector<double> arrivals;
+  for (int frame = 0; frame < 60; ++frame)
+  {
+    arrivals.push_back(stream.GetArrival(frame));
+  }
+  int wrongAtOnce = 0;
+  const auto found = FindAll(
+    arrivals, [&](int frame) { return stream.GetTime(frame) - (frame < 5 ? 0 : 7); }, wrongAtOnce);
+  ASSERT_EQ(found.size(), 60u);
+  for (std::size_t frame = 0; frame < 60; ++frame)
+  {
+    EXPECT_EQ(found[frame].has_value(), frame >= 5) << frame;
+  }
 }
 
 TEST(FrameClock, FramesThatWereHeldUpGetTheTimesThatTheyWouldHaveHad)
@@ -46,7 +165,7 @@ TEST(FrameClock, FramesThatWereHeldUpGetTheTimesThatTheyWouldHaveHad)
       free = punctual + 0.01 * (frame % 23); // up to five frames
     }
     const double arrival = std::max(punctual, free);
-    const double found = clock.FindArrival(arrival, stream.GetTime(frame));
+    const double found = Find(clock, arrival, stream.GetTime(frame));
     EXPECT_LE(found, arrival);
     EXPECT_GT(found, before);
     before = found;
@@ -77,7 +196,7 @@ TEST(FrameClock, StreamsOfAnotherRateThanTheySayKeepTheirArrivals)
     for (int frame = 0; frame < 1000; ++frame)
     {
       const double arrival = stream.GetArrival(frame);
-      ASSERT_EQ(clock.FindArrival(arrival, stream.GetTime(frame)), arrival) << rate << " " << frame;
+      ASSERT_EQ(Find(clock, arrival, stream.GetTime(frame)), arrival) << rate << " " << frame;
     }
   }
 }
@@ -89,7 +208,7 @@ TEST(FrameClock, StreamsThatComeInBurstsKeepTheirArrivals)
   for (int frame = 0; frame < 1000; ++frame)
   {
     const double arrival = stream.GetArrival(frame + 1 - frame % 2) + 0.0001 * (frame % 2);
-    ASSERT_EQ(clock.FindArrival(arrival, stream.GetTime(frame)), arrival) << frame;
+    ASSERT_EQ(Find(clock, arrival, stream.GetTime(frame)), arrival) << frame;
   }
 }
 
@@ -100,7 +219,7 @@ TEST(FrameClock, AWayThatBecomesLongerIsTheUsualOneSoon)
   for (int frame = 0; frame < 200; ++frame)
   {
     const double arrival = stream.GetArrival(frame) + (frame < 100 ? 0 : 0.03);
-    const double found = clock.FindArrival(arrival, stream.GetTime(frame));
+    const double found = Find(clock, arrival, stream.GetTime(frame));
     if (frame == 100)
     {
       ASSERT_LE(found, arrival); // it may have been held up
@@ -121,7 +240,7 @@ TEST(FrameClock, AStreamThatBeginsAnewIsLearntAnew)
     const double time = stream.GetTime(frame) - (frame < 200 ? 0 : 7);
     const bool late = frame == 201 || frame == 300;
     const double arrival = stream.GetArrival(frame) + (late ? 0.03 : 0);
-    const double found = clock.FindArrival(arrival, time);
+    const double found = Find(clock, arrival, time);
     if (frame == 300)
     {
       EXPECT_NEAR(found, stream.GetEnd(frame) + Way, 0.001);
@@ -150,7 +269,7 @@ TEST(FrameClock, ALongStallIsOneAtAnyRate)
         free = due + (frame == 300 ? 0.34 : 0.9);
       }
       free = std::max(due + jitter(random), free + std::min(0.6 * period, 0.01));
-      const double found = clock.FindArrival(free, 77 + frame * period);
+      const double found = Find(clock, free, 77 + frame * period);
       ASSERT_NEAR(found, due, 0.0095) << 1 / period << " " << frame;
       ASSERT_GE(found, before) << 1 / period << " " << frame;
       before = found;
@@ -168,7 +287,7 @@ TEST(FrameClock, ASenderThatCountsAndLosesFramesMisleadsForOneEach)
   {
     lost += frame > 100 && frame % 200 == 0 ? 1 : 0;
     const double arrival = stream.GetArrival(frame + lost);
-    wrong += clock.FindArrival(arrival, stream.GetTime(frame)) == arrival ? 0 : 1;
+    wrong += Find(clock, arrival, stream.GetTime(frame)) == arrival ? 0 : 1;
   }
   EXPECT_EQ(lost, 4);
   EXPECT_EQ(wrong, lost);
@@ -182,7 +301,7 @@ TEST(FrameClock, ATimeThatIsSetBackByLessThanASecondIsNoStall)
   {
     const double time = stream.GetTime(frame) - (frame < 200 ? 0 : 0.5);
     const double arrival = stream.GetArrival(frame);
-    ASSERT_EQ(clock.FindArrival(arrival, time), arrival) << frame;
+    ASSERT_EQ(Find(clock, arrival, time), arrival) << frame;
   }
 }
 
@@ -199,7 +318,7 @@ TEST(FrameClock, NoneOfTheFramesThatWereHeldUpIsEarlierThanTheOneBefore)
     {
       free = frame == stall ? stream.GetEnd(frame) + 0.2 : free;
       const double arrival = std::max(stream.GetArrival(frame), free);
-      const double found = clock.FindArrival(arrival, stream.GetTime(frame));
+      const double found = Find(clock, arrival, stream.GetTime(frame));
       ASSERT_GE(found, before) << stall << " " << frame;
       before = found;
     }

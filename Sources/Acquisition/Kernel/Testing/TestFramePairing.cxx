@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace lacuna;
 
 namespace
@@ -145,4 +147,115 @@ TEST(FramePairing, PatienceBeginsAtTheInstant)
   pairing.AddFrame(MakeFrame(0, 1.4), 1); // TimeOffset 0.4 s
   EXPECT_TRUE(pairing.Take(1.89).empty());
   EXPECT_EQ(pairing.Take(1.9).size(), 1u);
+}
+
+TEST(FramePairing, AFrameWhoseTimeIsNotKnownWaitsForItAndGetsThePoseOfThat)
+{
+  FramePairing pairing(0.5);
+  for (int i = 0; i < 100; ++i)
+  {
+    pairing.AddPose(MakePose(1 + 0.02 * i, 10 * i));
+  }
+  for (int i = 0; i < 4; ++i)
+  {
+    PairedFrame frame = MakeFrame(i, 1.5 + 0.04 * i); // 0.1 s late
+    frame.Timed = i == 3;
+    frame.Wanted = i != 0;
+    pairing.AddFrame(std::move(frame), 1.5 + 0.04 * i);
+  }
+  EXPECT_EQ(pairing.Take(1.7).size(), 1u); // who only looks does not wait
+  EXPECT_FALSE(pairing.FindUntimed());     // the newest does not
+  pairing.SetTime(0, -0.1);                // it has left
+  pairing.SetTime(1, -0.1);
+  pairing.SetTime(2, std::nullopt);
+  const std::vector<PairedFrame> ready = pairing.Take(1.7);
+  ASSERT_EQ(ready.size(), 3u);
+  EXPECT_NEAR(ready[0].Instant, 1.44, 1e-12);
+  ASSERT_TRUE(ready[0].Pose);
+  EXPECT_NEAR(ready[0].Pose->ReceiverToTransmitter(0, 3), 220, 1e-9);
+  EXPECT_FALSE(ready[1].Pose); // its time is never known
+  EXPECT_NEAR(ready[2].Pose->ReceiverToTransmitter(0, 3), 310, 1e-9);
+}
+
+TEST(FramePairing, AFrameWhoseTimeIsNotToldInThreeSecondsHasNoPose)
+{
+  FramePairing pairing(0.5);
+  pairing.AddPose(MakePose(1, 0));
+  pairing.AddPose(MakePose(1.1, 10));
+  PairedFrame frame = MakeFrame(0, 1.05);
+  frame.Timed = false;
+  pairing.AddFrame(std::move(frame), 1.05);
+  EXPECT_TRUE(pairing.FindUntimed());
+  EXPECT_TRUE(pairing.Take(4.04).empty());
+  const std::vector<PairedFrame> ready = pairing.Take(4.06);
+  ASSERT_EQ(ready.size(), 1u);
+  EXPECT_FALSE(ready[0].Pose);
+}
+
+TEST(PoseTrack, ByChoiceTheLastPoseHoldsForSoLong)
+{
+  PoseTrack track;
+  track.Add(MakePose(1, 10));
+  track.Add(MakePose(1.1, 11));
+  EXPECT_FALSE(track.At(1.2)); // off
+  track.SetHold(2);
+  EXPECT_NEAR(track.At(1.05)->ReceiverToTransmitter(0, 3), 10.5, 1e-9); // as ever
+  EXPECT_FALSE(track.At(1.05)->Held);
+  EXPECT_FALSE(track.At(0.9)); // before the first
+  const auto held = track.At(3.05);
+  ASSERT_TRUE(held);
+  EXPECT_TRUE(held->Held);
+  EXPECT_EQ(held->ReceiverToTransmitter(0, 3), 11);
+  EXPECT_NEAR(held->Nearest, 1.95, 1e-12);
+  EXPECT_TRUE(std::isnan(held->Gap));
+  EXPECT_FALSE(track.At(3.11));
+  track.Add(MakePose(30, 12)); // what is older than the track keeps holds all the same
+  EXPECT_EQ(track.At(3)->ReceiverToTransmitter(0, 3), 11);
+  EXPECT_FALSE(track.At(29.9));
+  EXPECT_EQ(track.At(31)->ReceiverToTransmitter(0, 3), 12);
+}
+
+TEST(PoseTrack, NoPoseHoldsOverWhatTheTrackerMarksAsInvalidNorOverItsEnd)
+{
+  PoseTrack track;
+  track.SetHold(10);
+  track.Add(MakePose(1, 10));
+  TrackedPose lost = MakePose(2, 999);
+  lost.Usable = false;
+  track.Add(lost);
+  EXPECT_TRUE(track.At(1.9));
+  EXPECT_FALSE(track.At(2.1));
+  track.Add(MakePose(3, 20));
+  EXPECT_FALSE(track.At(2.9)); // not before it was seen again
+  EXPECT_EQ(track.At(3.5)->ReceiverToTransmitter(0, 3), 20);
+  track.EndHold();
+  EXPECT_FALSE(track.At(3.5));
+  track.Add(MakePose(4, 30));
+  EXPECT_TRUE(track.At(5));
+  track.Break(); // another tracker
+  EXPECT_FALSE(track.At(5));
+  track.Add(MakePose(6, 40));
+  EXPECT_FALSE(track.At(5));
+  EXPECT_EQ(track.At(7)->ReceiverToTransmitter(0, 3), 40);
+}
+
+TEST(PoseTrack, TimesOfTwoEstimatesOfOneClockDoNotMeet)
+{
+  const int sender = 0;
+  const auto pose = [&](double time, double x, int epoch)
+  {
+    TrackedPose made = MakePose(time, x);
+    made.Epoch = { &sender, epoch };
+    return made;
+  };
+  PoseTrack track;
+  track.Add(pose(1.10, 10, 0)); // 0.1 s too late
+  track.Add(pose(1.12, 12, 0));
+  EXPECT_TRUE(track.At(1.11, { &sender, 0 }));
+  EXPECT_FALSE(track.At(1.11, { &sender, 1 }));
+  EXPECT_TRUE(track.At(1.11));  // a frame grabber's
+  track.Add(pose(1.04, 14, 1)); // is later, though its time is not
+  track.Add(pose(1.06, 16, 1));
+  EXPECT_FALSE(track.At(1.05, { &sender, 0 }));
+  EXPECT_NEAR(track.At(1.05, { &sender, 1 })->ReceiverToTransmitter(0, 3), 15, 1e-9);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The threads are real, the time is simulated.
 #include "WrittenSequence.h"
+#include "lacunaFrameClock.h"
 #include "lacunaSweep.h"
 #include "lacunaTestScene.h"
 
@@ -10,6 +11,8 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
 #include <malloc.h>
 
@@ -510,6 +513,8 @@ TEST(SweepAcquisition, RefusesRulesThatCannotBe)
   refuses([](auto& rules) { rules.MovementThreshold = -1; });
   refuses([](auto& rules) { rules.SpeedLimit = NAN; });
   refuses([](auto& rules) { rules.TimeOffset = 2; });
+  refuses([](auto& rules) { rules.HoldLastPose = -1; });
+  refuses([](auto& rules) { rules.HoldLastPose = NAN; });
   refuses([](auto& rules) { rules.MemoryLimit = -1; });
   refuses([](auto& rules) { rules.RecordFileName = "sweep.mha"; });
   refuses([](auto& rules) { rules.RecordFileName = "sweep.txt"; });
@@ -560,4 +565,115 @@ TEST(SweepAcquisition, ItsEndDoesNotWaitForDevicesThatHang)
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+// A robot that sends its pose only every 2 s, and nothing any more after 8 s.
+TEST(SweepAcquisition, TheLastPoseHoldsByChoiceAndUpToItsLimit)
+{
+  for (const double hold : { 0.0, 2.5 })
+  {
+    Scene scene(EveryFrame(), Room::NumberedFrame,
+      [](double time, std::vector<TrackedPose>& poses)
+      {
+        if (time < 8.01 && std::remainder(time, 2) > -0.009 && std::remainder(time, 2) < 0.011)
+        {
+          poses.push_back(Room::MakePose(time));
+        }
+      });
+    scene.Rules.HoldLastPose = hold;
+    scene.Devices.Patience = 0.5;
+    SweepAcquisition& acquisition = scene.Open();
+    acquisition.Start();
+    scene.Place.RunTo(300); // to 13 s
+    const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+    ASSERT_GT(slices.size(), 280u);
+    int held = 0;
+    for (const AcquiredSlice& slice : slices)
+    {
+      const double time = Room::FrameTime(static_cast<int>(slice.FrameNumber));
+      EXPECT_NEAR(slice.Timestamp, time, 1e-9); // its own
+      const double measured = std::min(2 * std::floor(0.5 * (time + 0.011)), 8.0);
+      const double age = time - measured;
+      const bool near = std::abs(age) < 0.021 || age > 1.979 || std::abs(age - hold) < 0.021;
+      if (near)
+      {
+        continue; // the room's times are rounded
+      }
+      const bool holds = measured > 0 && age < hold;
+      ASSERT_EQ(slice.Status, holds ? 0 : lacuna::Sweep::PoseInvalid) << time << " " << hold;
+      ASSERT_EQ(slice.Held, holds);
+      if (holds)
+      {
+        ++held;
+        EXPECT_LT(
+          Distance(slice.ProbeToTracker, lacunaTest::Sweep(time - slice.Residual, 1)), 1e-9);
+        EXPECT_NEAR(slice.Residual, age, 0.021);
+      }
+    }
+    EXPECT_EQ(held > 150, hold > 0) << held;
+    const SequenceFields fields = MakeSliceFields(slices.back(), SweepFrame());
+    EXPECT_EQ(std::count_if(fields.begin(), fields.end(),
+                [](const auto& field) { return field.first == "PoseHeld"; }),
+      slices.back().Held ? 1 : 0);
+  }
+}
+
+// A network that holds frames up in the first second, Start right after Connect. In the room a frame
+// comes on time; it is its stream time, when the probe saw it, that is earlier.
+TEST(SweepAcquisition, FramesThatWereHeldUpBeforeTheirClockSettledGetTheirTimes)
+{
+  static const auto stall = [](int number)
+  {
+    const int since = (number + 4) % 9;
+    return number < 3 || since > 2 ? 0.0 : 0.035 - 0.0125 * since;
+  };
+  class LateVideo : public FrameDevice
+  {
+  public:
+    explicit LateVideo(std::unique_ptr<FrameDevice> inner)
+      : Inner(std::move(inner))
+    {
+    }
+    VideoEvent Read(VideoFrame& frame) override
+    {
+      const VideoEvent event = this->Inner->Read(frame);
+      frame.StreamTime = frame.Arrival - stall(Room::ReadNumber(frame.Grey));
+      const FrameClock::Answer answer = this->Times.FindArrival(frame.Arrival, *frame.StreamTime);
+      frame.Arrival = answer.Arrival;
+      frame.Timed = answer.Known;
+      return event;
+    }
+    double GetLatency() const override { return 0; }
+    VideoSource::Counts GetCounts() const override { return this->Inner->GetCounts(); }
+    std::vector<std::optional<double>> TakeArrivals() override
+    {
+      return this->Times.TakeArrivals();
+    }
+
+  private:
+    std::unique_ptr<FrameDevice> Inner;
+    FrameClock Times;
+  };
+  Scene scene(EveryFrame());
+  scene.Devices.Frames = [inner = scene.Devices.Frames](const Room::Stopped& stopped)
+  { return std::make_unique<LateVideo>(inner(stopped)); };
+  SweepAcquisition& acquisition = scene.Open();
+  acquisition.Start();
+  scene.Place.RunTo(6);
+  EXPECT_TRUE(acquisition.TakeSlices().empty());
+  ASSERT_TRUE(acquisition.GetLive()); // is shown, without a pose
+  EXPECT_EQ(acquisition.GetLive()->Slice.FrameNumber, 5);
+  EXPECT_EQ(acquisition.GetLive()->Slice.Status, lacuna::Sweep::PoseInvalid);
+  scene.Place.RunTo(200);
+  acquisition.Stop();
+  const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+  ASSERT_EQ(slices.size(), 200u);
+  for (int i = 0; i < 200; ++i)
+  {
+    ASSERT_EQ(slices[i].FrameNumber, i);
+    ASSERT_EQ(slices[i].Status, 0) << i;
+    ASSERT_NEAR(slices[i].Timestamp, Room::FrameTime(i) - stall(i), 1e-9) << i;
+    ASSERT_LT(PoseError(slices[i]), 1e-9) << i;
+  }
+  ExpectNoneForgotten(acquisition.GetState(), false);
 }

@@ -92,6 +92,7 @@ void TestSettings()
   refuses([](auto* source) { source->SetMovementThreshold(-1); }, "MovementThreshold");
   refuses([](auto* source) { source->SetSpeedLimit(-1); }, "SpeedLimit");
   refuses([](auto* source) { source->SetTimeOffset(3); }, "TimeOffset");
+  refuses([](auto* source) { source->SetHoldLastPose(-1); }, "HoldLastPose");
   refuses([](auto* source) { source->SetCropRectangle(-1, 0, 0, 0); }, "crop");
   refuses([](auto* source) { source->SetRecordFileName("sweep.mha"); }, ".mhd or .nhdr");
   refuses([](auto* source) { source->SetCalibrationFileName("/none.xml"); }, "/none.xml");
