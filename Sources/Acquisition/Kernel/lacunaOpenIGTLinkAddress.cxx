@@ -99,13 +99,17 @@ void ReadOption(const std::string& text, std::string_view option, OpenIGTLinkAdd
   }
   else if (EqualLetters(name, "start") && EqualLetters(value, "TDATA"))
   {
-    address.StartTrackingData = true;
+    address.StartTrackingData = "TDATA";
+  }
+  else if (EqualLetters(name, "start") && EqualLetters(value, "QTDATA"))
+  {
+    address.StartTrackingData = "QTDATA";
   }
   else
   {
     Complain(text,
       "has the option '" + std::string(option) +
-        "', which is none of transform=NAME, image=NAME and start=TDATA");
+        "', which is none of transform=NAME, image=NAME, start=TDATA and start=QTDATA");
   }
 }
 }

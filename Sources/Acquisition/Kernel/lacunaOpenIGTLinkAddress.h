@@ -9,7 +9,7 @@
 namespace lacuna
 {
 /// "igtl://host:port?transform=ProbeToTracker&image=Image_Reference&start=TDATA". All but the host
-/// may be left out. An IPv6 address is in brackets, "igtl://[::1]:18944". In names, %20 stands for a
+/// may be left out; start is TDATA or QTDATA. An IPv6 address is in brackets, "igtl://[::1]:18944". In names, %20 stands for a
 /// blank, %26 for &, and so on.
 struct OpenIGTLinkAddress
 {
@@ -18,8 +18,9 @@ struct OpenIGTLinkAddress
   /// The device whose poses to take, or the element of tracking data, or an image, whose own
   /// position is then taken; empty: the only one that has poses.
   std::string Transform;
-  std::string Image;              ///< the device whose images to take; empty: the only one
-  bool StartTrackingData = false; ///< asks for tracking data, which many servers send only then
+  std::string Image; ///< the device whose images to take; empty: the only one
+  /// "TDATA" or "QTDATA": asks for tracking data, which many servers send only then; empty: does not.
+  std::string StartTrackingData;
 
   /// "igtl://host:port".
   std::string GetServer() const;

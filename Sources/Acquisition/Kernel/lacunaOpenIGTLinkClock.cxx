@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lacuna
 {
 namespace
 {
-constexpr double Step = 0.5; // s that a clock must jump to be another
+constexpr double Step = 0.5;          // s that a clock must jump to be another
+constexpr double Tolerance = 0.008;   // s, as of FrameClock: 0.2 mm at 23 mm/s
+constexpr double LargestDrift = 1e-3; // of clocks; 50 parts in a million are usual
 constexpr int NumberOfParts = 20;
 }
 
@@ -61,7 +64,35 @@ double OpenIGTLinkClock::ToLocal(const std::string& device, double stamp, double
     own.Parts.back().Smallest = std::min(own.Parts.back().Smallest, difference);
     own.Parts.back().Largest = std::max(own.Parts.back().Largest, difference);
   }
+  this->Revise(own, arrival);
   return std::min(stamp + this->GetOffset(own), arrival); // but for rounding it is never later
+}
+
+void OpenIGTLinkClock::Revise(Estimate& own, double arrival)
+{
+  const double offset = this->GetOffset(own);
+  const double passed = arrival - std::exchange(own.RevisedTime, arrival);
+  const double drift = own.Revised ? LargestDrift * std::max(passed, 0.0) : 0;
+  if (!own.Revised) // times of others of this clock are by their offset
+  {
+    own.Revised = offset;
+    for (const auto& [device, other] : this->Devices)
+    {
+      if (other.Revised && std::abs(*other.Revised - offset) < Step)
+      {
+        own.Revised = other.Revised;
+      }
+    }
+  }
+  own.Revised = *own.Revised + std::clamp(offset - *own.Revised, -drift, drift);
+  if (std::abs(*own.Revised - offset) > Tolerance)
+  {
+    ++this->Revision;
+    for (auto& [device, other] : this->Devices)
+    {
+      other.Revised = this->GetOffset(other);
+    }
+  }
 }
 
 double OpenIGTLinkClock::GetOffset(const Estimate& own) const

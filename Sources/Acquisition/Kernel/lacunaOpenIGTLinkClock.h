@@ -36,6 +36,10 @@ public:
   double GetStep(const std::string& a, const std::string& b) const;
   /// The longest time in the window that a device's message was on its way beyond the shortest.
   double GetJitter(const std::string& device) const;
+  /// How often the offset of a device, and so of all that share its clock, has changed by more than
+  /// 8 ms: times of another revision do not fit together. It mostly becomes smaller, in the first
+  /// seconds, when a message is faster than all before.
+  int GetRevision() const { return this->Revision; }
   /// How often a device's clock was set or began anew.
   int GetNumberOfSteps(const std::string& device) const;
 
@@ -51,13 +55,17 @@ private:
     std::deque<Part> Parts;
     double NewestStamp = 0;
     int Steps = 0;
+    std::optional<double> Revised; ///< offset that a revision is by, which follows drift
+    double RevisedTime = 0;
     double GetSmallest() const;
     double GetLargest() const;
   };
   double GetOffset(const Estimate& own) const;
+  void Revise(Estimate& own, double arrival);
 
   double Window;
   std::map<std::string, Estimate> Devices;
+  int Revision = 0;
 };
 }
 #endif

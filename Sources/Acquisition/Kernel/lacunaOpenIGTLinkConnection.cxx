@@ -18,7 +18,10 @@ constexpr double Patience = 5;                          // s for the rest of a m
 constexpr std::uint64_t LargestWanted = std::uint64_t{ 128 } << 20;
 constexpr std::size_t Piece = std::size_t{ 1 } << 20;
 constexpr std::size_t MostDevices = 64;
-constexpr double ConnectTime = 5; // s
+constexpr double ConnectTime = 5;  // s
+constexpr double AnswerTime = 0.3; // s for a server to change to version 2: PLUS looks every 0.1 s
+constexpr double RefusalTime = 1;  // s in which a server that cannot read version 2 hangs up
+constexpr int ManyRefusals = 2;
 
 void CheckStopped(const std::function<bool()>& stopped)
 {
@@ -33,12 +36,17 @@ std::string GetKey(const OpenIGTLinkHeader& header)
   return header.Type + " '" + header.Device + "'";
 }
 
-// Of the types whose stamps are instants of measurements.
-bool IsMeasured(const OpenIGTLinkHeader& header)
+bool IsMeasurement(const OpenIGTLinkHeader& header)
 {
   const std::array<const char*, 6> types{ "TRANSFORM", "POSITION", "QTRANS", "TDATA", "QTDATA",
     "IMAGE" };
-  return header.Stamp && std::find(types.begin(), types.end(), header.Type) != types.end();
+  return std::find(types.begin(), types.end(), header.Type) != types.end();
+}
+
+// Whether its stamp is the instant of a measurement.
+bool IsMeasured(const OpenIGTLinkHeader& header)
+{
+  return header.Stamp && IsMeasurement(header);
 }
 
 // Connections of one server that share a clock; locked while one is made.
@@ -46,6 +54,7 @@ struct Shared
 {
   std::mutex Mutex;
   std::weak_ptr<OpenIGTLinkConnection> Connection;
+  OpenIGTLinkConnection::Refusals Refusals = std::make_shared<std::atomic<int>>(0);
 };
 
 std::shared_ptr<Shared> FindShared(const std::string& server, const Clock& clock)
@@ -78,7 +87,7 @@ std::shared_ptr<OpenIGTLinkConnection> OpenIGTLinkConnection::Open(
     connection = std::make_shared<OpenIGTLinkConnection>(
       std::make_unique<TcpChannel>(
         address.Host, address.Port, address.GetServer(), ConnectTime, stopped),
-      clock);
+      clock, shared->Refusals);
     shared->Connection = connection;
   }
   return connection;
@@ -158,11 +167,19 @@ void OpenIGTLinkInbox::Break(const OpenIGTLinkBreak& reason)
 }
 
 OpenIGTLinkConnection::OpenIGTLinkConnection(
-  std::unique_ptr<ByteChannel> channel, const Clock& clock)
+  std::unique_ptr<ByteChannel> channel, const Clock& clock, Refusals refusals)
   : Channel(std::move(channel))
   , Time(clock)
-  , Reader([this] { this->Run(); })
+  , Refused(std::move(refusals))
+  , Asked(*this->Refused < ManyRefusals)
+  , Begin(clock.Now())
+  , Waits(this->Asked)
 {
+  if (this->Asked)
+  {
+    this->Channel->Write(MakeOpenIGTLinkStatusRequest());
+  }
+  this->Reader = std::thread([this] { this->Run(); });
 }
 
 OpenIGTLinkConnection::~OpenIGTLinkConnection()
@@ -197,6 +214,14 @@ std::string OpenIGTLinkConnection::GetDevices() const
     text += (text.empty() ? "" : ", ") + device.first;
   }
   return text;
+}
+
+bool OpenIGTLinkConnection::SendsPoses() const
+{
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  return std::any_of(this->Devices.begin(), this->Devices.end(),
+    [](const auto& device)
+    { return IsMeasurement(device.second) && device.second.Type != "IMAGE"; });
 }
 
 OpenIGTLinkClockState OpenIGTLinkConnection::GetClock(const OpenIGTLinkHeader& header) const
@@ -239,6 +264,10 @@ void OpenIGTLinkConnection::Run()
 
 void OpenIGTLinkConnection::Break(const OpenIGTLinkBreak& reason)
 {
+  this->EndWait();
+  const bool refused =
+    this->Asked && !this->Answered && this->Time.Now() - this->Begin < RefusalTime;
+  *this->Refused = refused ? *this->Refused + 1 : 0;
   const std::lock_guard<std::mutex> lock(this->Mutex);
   this->Reason = reason;
   this->Broken = true;
@@ -258,6 +287,10 @@ bool OpenIGTLinkConnection::Receive(char* bytes, std::size_t size, double patien
     if (this->Stop)
     {
       return false;
+    }
+    if (this->Waits && this->Time.Now() - this->Begin > AnswerTime)
+    {
+      this->EndWait();
     }
     const std::size_t more = this->Channel->Read(bytes + count, size - count, Interval.count());
     const double now = this->Time.Now();
@@ -318,6 +351,35 @@ void OpenIGTLinkConnection::NoteDamage(const OpenIGTLinkHeader& header, const st
   }
 }
 
+// What was measured before the first message of version 2 would have no status, however wrong it is.
+void OpenIGTLinkConnection::HeedAnswer(const OpenIGTLinkHeader& header)
+{
+  if (header.Version >= 2)
+  {
+    this->Answered = true;
+    this->Early.clear();
+    this->Waits = false;
+  }
+}
+
+// The server has no version 2: what waited is all that it gives.
+void OpenIGTLinkConnection::EndWait()
+{
+  this->Waits = false;
+  const std::lock_guard<std::mutex> lock(this->Mutex);
+  for (const auto& arrival : this->Early)
+  {
+    for (OpenIGTLinkInbox* inbox : this->Inboxes)
+    {
+      if (inbox->Wants(arrival->Message.Header))
+      {
+        inbox->Put(arrival);
+      }
+    }
+  }
+  this->Early.clear();
+}
+
 bool OpenIGTLinkConnection::Skip(std::uint64_t size)
 {
   std::vector<char> scrap(static_cast<std::size_t>(std::min<std::uint64_t>(size, Piece)));
@@ -355,8 +417,17 @@ void OpenIGTLinkConnection::Deliver(
   delivery->Message = MakeOpenIGTLinkMessage(header, std::move(body));
   delivery->Arrival = arrival;
   const std::lock_guard<std::mutex> lock(this->Mutex);
-  delivery->Time =
-    IsMeasured(header) ? this->Clocks.ToLocal(GetKey(header), *header.Stamp, arrival) : arrival;
+  delivery->Time = arrival;
+  if (IsMeasured(header))
+  {
+    delivery->Time = this->Clocks.ToLocal(GetKey(header), *header.Stamp, arrival);
+    delivery->Epoch = { this, this->Clocks.GetRevision() };
+  }
+  if (this->Waits && IsMeasurement(header))
+  {
+    this->Early.push_back(delivery);
+    return;
+  }
   for (OpenIGTLinkInbox* inbox : this->Inboxes)
   {
     if (inbox->Wants(header))
@@ -384,6 +455,7 @@ bool OpenIGTLinkConnection::ReadMessage()
     throw ChannelError(
       ChannelError::Kind::Other, "From the server " + this->GetName() + ": " + e.what());
   }
+  this->HeedAnswer(header);
   const bool wanted = this->NoteDevice(header);
   if (wanted && header.BodySize > LargestWanted)
   {
@@ -391,7 +463,9 @@ bool OpenIGTLinkConnection::ReadMessage()
       "The " + header.Type + " message of '" + header.Device + "' has " +
         std::to_string(header.BodySize) + " bytes, more than 128 MiB");
   }
-  if (!wanted || header.BodySize > LargestWanted)
+  // a device that is being opened beside another one may want what came when they connected
+  const bool mayBeWanted = this->Waits && IsMeasurement(header) && header.BodySize <= Piece;
+  if (!(wanted || mayBeWanted) || header.BodySize > LargestWanted)
   {
     this->NoteStamp(header);
     return this->Skip(header.BodySize);

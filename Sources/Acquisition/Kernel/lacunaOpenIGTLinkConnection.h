@@ -9,6 +9,7 @@
 #include "lacunaOpenIGTLinkAddress.h"
 #include "lacunaOpenIGTLinkClock.h"
 #include "lacunaOpenIGTLinkMessage.h"
+#include "lacunaTrackedPose.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -31,6 +32,7 @@ struct OpenIGTLinkArrival
   OpenIGTLinkMessage Message;
   double Arrival = 0; ///< when its last byte was there
   double Time = 0;    ///< the instant of its stamp (see OpenIGTLinkClock); without one, the arrival
+  ClockEpoch Epoch;   ///< of Time
 };
 
 struct OpenIGTLinkCounts
@@ -93,6 +95,11 @@ private:
 };
 
 /// Reads messages on a thread of its own, until the line breaks or garbage comes.
+///
+/// It begins with a message of header version 2 (see MakeOpenIGTLinkStatusRequest), because PLUS answers
+/// in the version of its client. What PLUS measures before it has read that message has no status. So
+/// measurements of version 1 wait for the answer, up to 0.3 s: once a message of version 2 comes, they
+/// are dropped. A server that twice ends the connection at that message is not sent it again.
 class OpenIGTLinkConnection
 {
 public:
@@ -103,8 +110,11 @@ public:
   static std::shared_ptr<OpenIGTLinkConnection> Open(
     const OpenIGTLinkAddress& address, const Clock& clock, const std::function<bool()>& stopped);
 
+  /// How many connections to a server in a row ended at the message of version 2.
+  using Refusals = std::shared_ptr<std::atomic<int>>;
   /// The clock must live longer, and have the channel's time.
-  OpenIGTLinkConnection(std::unique_ptr<ByteChannel> channel, const Clock& clock);
+  OpenIGTLinkConnection(
+    std::unique_ptr<ByteChannel> channel, const Clock& clock, Refusals refusals);
   ~OpenIGTLinkConnection();
   OpenIGTLinkConnection(const OpenIGTLinkConnection&) = delete;
   OpenIGTLinkConnection& operator=(const OpenIGTLinkConnection&) = delete;
@@ -118,6 +128,8 @@ public:
 
   /// What the server sends, "TRANSFORM ProbeToTracker, IMAGE Image_Reference", for messages.
   std::string GetDevices() const;
+  /// Whether any pose came, of whatever device.
+  bool SendsPoses() const;
   OpenIGTLinkClockState GetClock(const OpenIGTLinkHeader& header) const;
 
 private:
@@ -132,6 +144,8 @@ private:
   void NoteStamp(const OpenIGTLinkHeader& header);
   void Deliver(const OpenIGTLinkHeader& header, std::vector<char>&& body, double arrival);
   void NoteDamage(const OpenIGTLinkHeader& header, const std::string& fault);
+  void HeedAnswer(const OpenIGTLinkHeader& header);
+  void EndWait();
 
   std::unique_ptr<ByteChannel> Channel;
   const Clock& Time;
@@ -140,6 +154,13 @@ private:
   std::map<std::string, OpenIGTLinkHeader> Devices; ///< by key, the first message of each
   OpenIGTLinkClock Clocks;
   std::optional<OpenIGTLinkBreak> Reason;
+  Refusals Refused;
+  bool Asked = false;    ///< for version 2
+  bool Answered = false; ///< in version 2
+  double Begin = 0;
+  /// Of version 1, that wait for the answer; used by Reader only, as is whether there is a wait.
+  std::vector<std::shared_ptr<const OpenIGTLinkArrival>> Early;
+  bool Waits = false;
   std::atomic<bool> Broken{ false };
   std::atomic<bool> Stop{ false };
   std::thread Reader;

@@ -89,9 +89,9 @@ OpenIGTLinkPoseDevice::~OpenIGTLinkPoseDevice()
 void OpenIGTLinkPoseDevice::SetUp()
 {
   this->Connection->Attach(*this->Inbox);
-  if (this->Address.StartTrackingData)
+  if (!this->Address.StartTrackingData.empty())
   {
-    this->Connection->Send(MakeOpenIGTLinkTrackingRequest());
+    this->Connection->Send(MakeOpenIGTLinkTrackingRequest(this->Address.StartTrackingData));
   }
 }
 
@@ -157,7 +157,8 @@ void OpenIGTLinkPoseDevice::TakePose(
   const OpenIGTLinkHeader& header = arrival.Message.Header;
   const bool first = this->Poses == 0;
   if (!first &&
-    ((header.Stamp && header.Stamp == this->LastStamp) || arrival.Time <= this->LastTime))
+    ((header.Stamp && header.Stamp == this->LastStamp) ||
+      (arrival.Time <= this->LastTime && arrival.Epoch.Fits(this->LastEpoch))))
   {
     this->Repeats = true;
     return; // servers repeat the last one when there is none newer
@@ -165,6 +166,7 @@ void OpenIGTLinkPoseDevice::TakePose(
   this->Repeats = false;
   this->LastStamp = header.Stamp;
   this->LastTime = arrival.Time;
+  this->LastEpoch = arrival.Epoch;
   if (!pose.Fault.empty())
   {
     const std::string text =
@@ -177,7 +179,7 @@ void OpenIGTLinkPoseDevice::TakePose(
   }
   this->Faults = 0;
   this->WatchClock(arrival);
-  this->Status = pose.Status;
+  this->WatchStatus(pose, arrival);
   this->Usable = pose.Usable;
   TrackedPose tracked;
   tracked.Request = arrival.Time;
@@ -188,8 +190,28 @@ void OpenIGTLinkPoseDevice::TakePose(
   tracked.Usable = pose.Usable;
   tracked.Error = pose.Usable ? ' ' : 'I';
   tracked.Button = pose.Button;
+  tracked.Epoch = arrival.Epoch;
   poses.push_back(tracked);
   ++this->Poses;
+}
+
+// Once a connection: servers other than PLUS can do nothing about it.
+void OpenIGTLinkPoseDevice::WatchStatus(
+  const OpenIGTLinkPose& pose, const OpenIGTLinkArrival& arrival)
+{
+  this->Status = pose.Status;
+  if (!pose.Status.empty() || !pose.Usable)
+  {
+    this->NoStatusTime.reset();
+  }
+  else if (this->Poses == 0)
+  {
+    this->NoStatusTime = arrival.Arrival;
+  }
+  else if (this->NoStatusTime && arrival.Arrival > *this->NoStatusTime + TroubleLasts)
+  {
+    this->NoStatusTime.reset();
+  }
 }
 
 void OpenIGTLinkPoseDevice::WatchClock(const OpenIGTLinkArrival& arrival)
@@ -219,19 +241,37 @@ PoseCounts OpenIGTLinkPoseDevice::GetCounts() const
   return result;
 }
 
+// The usual reason of a tracker that sends nothing.
+std::string OpenIGTLinkPoseDevice::AdviseStart() const
+{
+  if (!this->Address.StartTrackingData.empty() || this->Poses > 0 || this->Connection->SendsPoses())
+  {
+    return {};
+  }
+  const std::string sign = this->Address.Transform.empty() ? "?" : "&";
+  return "Many trackers send poses only when asked: add " + sign + "start=TDATA (or " + sign +
+    "start=QTDATA) to the address";
+}
+
 std::string OpenIGTLinkPoseDevice::FindWarning() const
 {
   const std::string server = this->Connection->GetName();
   const std::string fault = this->Inbox->GetFault();
-  if (this->Silence > 0)
+  if (this->Silence > (this->Poses > 0 ? this->AllowedSilence : 0))
   {
-    return "No pose " +
+    std::string text = "No pose " +
       (this->Address.Transform.empty() ? "" : "of '" + this->Address.Transform + "' ") +
       "has come from " + server + " for " + std::to_string(this->Silence) + " s" +
-      DescribeDevices(*this->Connection) +
-      (this->Repeats ? ". The pose's time stamp stands still: does its tracker still measure?"
-                     : "") +
-      (this->Trouble.empty() ? "" : ". " + this->Trouble) + (fault.empty() ? "" : ". " + fault);
+      DescribeDevices(*this->Connection);
+    for (const std::string& more : { this->AdviseStart(),
+           std::string(this->Repeats
+               ? "The pose's time stamp stands still: does its tracker still measure?"
+               : ""),
+           this->Trouble, fault })
+    {
+      text += more.empty() ? "" : (text.back() == '?' ? " " : ". ") + more;
+    }
+    return text;
   }
   if (!this->Trouble.empty())
   {
@@ -254,6 +294,14 @@ std::string OpenIGTLinkPoseDevice::FindWarning() const
       " differ by " + FormatTenths(this->OtherStep) +
       " s: images get the poses of when they arrived, not of their stamps. Let one clock stamp "
       "both; if the images are that old, give VideoLatency their age";
+  }
+  if (this->NoStatusTime)
+  {
+    return "The poses of '" + this->Name + "' from " + server +
+      " have no status: nothing tells when the tracker does not see the tool, and a wrong pose may "
+      "be "
+      "taken for a right one. Have the server leave such poses out (PLUS: "
+      "SendValidTransformsOnly=\"true\")";
   }
   if (this->Jitter > WorstJitter)
   {
@@ -334,7 +382,8 @@ bool OpenIGTLinkFrameDevice::Take(const OpenIGTLinkArrival& arrival, VideoFrame&
     frame.PixelAspect = std::isfinite(aspect) && aspect > 0 ? aspect : 1;
     frame.Arrival = arrival.Time;
     frame.StreamTime = message.Header.Stamp;
-    frame.Damaged = false;
+    frame.Epoch = arrival.Epoch;
+    frame.Damaged = !image.Valid;
     return true;
   }
   catch (const OpenIGTLinkError& e)

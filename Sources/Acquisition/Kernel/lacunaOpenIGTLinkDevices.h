@@ -38,12 +38,15 @@ public:
   bool Poll(std::vector<TrackedPose>& poses) override;
   PoseCounts GetCounts() const override;
   std::string GetWarning() const override { return this->Warning; }
+  void AllowSilence(double seconds) override { this->AllowedSilence = seconds; }
 
 private:
   void Take(const OpenIGTLinkArrival& arrival, std::vector<TrackedPose>& poses);
   void TakePose(const OpenIGTLinkPose& pose, const OpenIGTLinkArrival& arrival,
     std::vector<TrackedPose>& poses);
   void WatchClock(const OpenIGTLinkArrival& arrival);
+  void WatchStatus(const OpenIGTLinkPose& pose, const OpenIGTLinkArrival& arrival);
+  std::string AdviseStart() const;
   std::string FindWarning() const;
 
   OpenIGTLinkAddress Address;
@@ -54,7 +57,9 @@ private:
   std::string Name; ///< the device that is taken; empty: none came yet
   std::optional<double> LastStamp;
   double LastTime = 0;
-  int Silence = 0;      ///< s without a pose
+  ClockEpoch LastEpoch;
+  int Silence = 0; ///< s without a pose
+  double AllowedSilence = 0;
   bool Usable = true;   ///< of the last pose
   bool Repeats = false; ///< the last message was as old as the one before
   std::optional<double> ClockOffset;
@@ -62,8 +67,9 @@ private:
   std::string OtherClock; ///< the images whose stamps are of another clock
   double OtherStep = 0;   ///< s
   double Jitter = 0;
-  std::string Status;  ///< what the sender said of the last pose
-  std::string Trouble; ///< what a STATUS message complained of, and the like
+  std::string Status;                 ///< what the sender said of the last pose
+  std::optional<double> NoStatusTime; ///< when the first pose came, that it said nothing of
+  std::string Trouble;                ///< what a STATUS message complained of, and the like
   double TroubleTime = 0;
   std::string Warning;
   std::uint64_t Poses = 0;

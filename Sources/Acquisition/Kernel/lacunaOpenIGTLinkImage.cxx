@@ -145,6 +145,7 @@ OpenIGTLinkImage ReadOpenIGTLinkImage(const OpenIGTLinkMessage& message)
     image.Grey.resize(columns * rows);
   }
   image.Plane.Name = message.GetDevice();
+  SetOpenIGTLinkStatuses(message, image);
   SetPlane(header, image);
   return image;
 }

@@ -104,6 +104,11 @@ void SetPose(const void* position, const void* quaternion, OpenIGTLinkPose& pose
   const Vec3 axis{ q[0], q[1], q[2] };
   const double sine = Norm(axis);
   const double norm = std::hypot(sine, q[3]);
+  if (norm == 0)
+  {
+    pose.Pose = Matrix4::Scaling({ 0, 0, 0 }); // of no tool that is seen
+    return;
+  }
   if (std::abs(norm - 1) > RigidTolerance)
   {
     pose.Fault = "its quaternion has the length " + std::to_string(norm) + " instead of 1";
@@ -113,12 +118,71 @@ void SetPose(const void* position, const void* quaternion, OpenIGTLinkPose& pose
     (sine == 0 ? Matrix4() : Matrix4::Rotation(axis, 2 * std::atan2(sine, q[3])));
 }
 
+// "ProbeToTracker" of "ProbeToTrackerStatus".
+std::optional<std::string> FindStem(const std::string& key, const std::string& ending)
+{
+  if (key.size() <= ending.size() ||
+    key.compare(key.size() - ending.size(), ending.size(), ending) != 0)
+  {
+    return std::nullopt;
+  }
+  return key.substr(0, key.size() - ending.size());
+}
+
 void SetStatus(const std::string& status, OpenIGTLinkPose& pose)
 {
+  if (status.empty())
+  {
+    return;
+  }
   pose.Status = status;
   const bool pressed = status.rfind("SWITCH", 0) == 0;
   pose.Button = pressed;
   pose.Usable = pressed || status == "OK";
+}
+
+// "OK", another status, or nothing. PLUS of 2018 has only TransformValid, 0 or 1.
+std::string FindStatus(const OpenIGTLinkMessage& message)
+{
+  const auto& data = message.MetaData;
+  for (const char* key : { "TransformStatus", "Status" })
+  {
+    if (const auto found = data.find(key); found != data.end())
+    {
+      return found->second;
+    }
+  }
+  const auto valid = data.find("TransformValid");
+  if (valid == data.end())
+  {
+    return {};
+  }
+  return valid->second == "1" || valid->second == "true" ? "OK" : "INVALID";
+}
+
+// Of an element, whose name may be cut: PLUS has NameStatus and NameIndex with the name in full.
+void SetElementStatus(const OpenIGTLinkMessage& message, std::size_t index, OpenIGTLinkPose& pose)
+{
+  const std::string cut = pose.Name;
+  for (const auto& [key, value] : message.MetaData)
+  {
+    const std::optional<std::string> name = FindStem(key, "Status");
+    if (!name || !IsOpenIGTLinkName(cut, *name))
+    {
+      continue;
+    }
+    const auto place = message.MetaData.find(*name + "Index");
+    if (place != message.MetaData.end() && place->second != std::to_string(index))
+    {
+      continue; // another element whose name begins with the same letters
+    }
+    pose.Name = *name;
+    SetStatus(value, pose);
+    if (!pose.Usable)
+    {
+      return;
+    }
+  }
 }
 
 void AddElements(const OpenIGTLinkMessage& message, std::vector<OpenIGTLinkPose>& poses)
@@ -153,21 +217,25 @@ void AddElements(const OpenIGTLinkMessage& message, std::vector<OpenIGTLinkPose>
     {
       pose.Fault = "the tracker follows this tool's tip and not its whole orientation";
     }
-    // PLUS names the status by the name in full
-    for (const auto& [key, value] : message.MetaData)
-    {
-      const std::string ending = "Status";
-      const std::size_t stem = key.size() - std::min(key.size(), ending.size());
-      if (key.substr(stem) == ending && IsOpenIGTLinkName(pose.Name, key.substr(0, stem)))
-      {
-        pose.Name = key.substr(0, stem);
-        SetStatus(value, pose);
-        break;
-      }
-    }
+    SetElementStatus(message, begin / size, pose);
     CheckOpenIGTLinkPose(pose);
     poses.push_back(pose);
   }
+}
+
+std::string MakeRequest(const std::string& type, int version, std::string body)
+{
+  igtl_header fields = {};
+  type.copy(fields.name, sizeof(fields.name));
+  const std::string client = "Lacuna";
+  client.copy(fields.device_name, sizeof(fields.device_name));
+  fields.body_size = body.size();
+  fields.crc = crc64(reinterpret_cast<unsigned char*>(body.data()), body.size(), 0);
+  igtl_header_convert_byte_order(&fields);
+  std::string bytes(sizeof(fields), '\0');
+  std::memcpy(bytes.data(), &fields, sizeof(fields));
+  bytes[1] = static_cast<char>(version);
+  return bytes + body;
 }
 }
 
@@ -240,18 +308,33 @@ bool IsOpenIGTLinkName(const std::string& name, const std::string& wanted)
   return name == printable || (name.size() == NameSize && name == printable.substr(0, NameSize));
 }
 
+namespace
+{
+// What senders write for a tool that is out of sight.
+bool IsNotSeen(const OpenIGTLinkPose& pose)
+{
+  constexpr double none = 1e27; // NDI's trackers have -3.7e28 for no number
+  bool identity = true;
+  bool number = true;
+  for (int i = 0; i < 16; ++i)
+  {
+    const double element = pose.Pose.Data()[i];
+    identity = identity && element == (i % 5 == 0 ? 1 : 0);
+    number = number && std::abs(element) < none; // false for NaN
+  }
+  const bool zero =
+    Norm(pose.Pose.Column(0)) + Norm(pose.Pose.Column(1)) + Norm(pose.Pose.Column(2)) == 0;
+  return !number || zero || (identity && pose.Status.empty());
+}
+}
+
 void CheckOpenIGTLinkPose(OpenIGTLinkPose& pose)
 {
   if (!pose.Fault.empty())
   {
     return;
   }
-  bool identity = true;
-  for (int i = 0; i < 16; ++i)
-  {
-    identity = identity && pose.Pose.Data()[i] == (i % 5 == 0 ? 1 : 0);
-  }
-  if (!pose.Pose.IsFinite() || (identity && pose.Status.empty()))
+  if (IsNotSeen(pose))
   {
     pose.Usable = false;
     return;
@@ -335,14 +418,41 @@ std::vector<OpenIGTLinkPose> ReadOpenIGTLinkPoses(const OpenIGTLinkMessage& mess
   {
     return poses;
   }
-  const auto status = message.MetaData.find("TransformStatus");
-  if (status != message.MetaData.end())
-  {
-    SetStatus(status->second, pose);
-  }
+  SetStatus(FindStatus(message), pose);
   CheckOpenIGTLinkPose(pose);
   poses.push_back(pose);
   return poses;
+}
+
+// PLUS sends all fields of its frame beside an image. Those of the transform that the device is named
+// after decide. Without them nothing says which transforms make it: it is as good as the worst.
+void SetOpenIGTLinkStatuses(const OpenIGTLinkMessage& message, OpenIGTLinkImage& image)
+{
+  const auto& data = message.MetaData;
+  if (const auto found = data.find("ImageStatus"); found != data.end())
+  {
+    image.Valid = found->second == "OK";
+  }
+  const std::string ending = "TransformStatus";
+  std::string own = image.Plane.Name;
+  if (const std::size_t line = own.find('_'); line != std::string::npos)
+  {
+    own.replace(line, 1, "To");
+  }
+  if (const auto found = data.find(own + ending); found != data.end())
+  {
+    SetStatus(found->second, image.Plane);
+    return;
+  }
+  for (auto i = data.begin(); i != data.end() && image.Plane.Usable; ++i)
+  {
+    const std::optional<std::string> name = FindStem(i->first, ending);
+    if (name)
+    {
+      SetStatus(i->second, image.Plane);
+      image.Plane.Status = image.Plane.Usable ? "OK" : *name + " is " + i->second;
+    }
+  }
 }
 
 std::string ReadOpenIGTLinkStatus(const OpenIGTLinkMessage& message)
@@ -371,17 +481,31 @@ std::string ReadOpenIGTLinkStatus(const OpenIGTLinkMessage& message)
     std::to_string(code) + (text.empty() ? "" : " (" + text + ")");
 }
 
-std::string MakeOpenIGTLinkTrackingRequest()
+std::string MakeOpenIGTLinkTrackingRequest(const std::string& type)
 {
-  igtl_header fields = {};
-  std::string body(IGTL_STT_TDATA_SIZE, '\0'); // no shortest interval, no name of coordinates
-  std::memcpy(fields.name, "STT_TDATA", 9);
-  fields.body_size = body.size();
-  fields.crc = crc64(reinterpret_cast<unsigned char*>(body.data()), body.size(), 0);
-  igtl_header_convert_byte_order(&fields);
-  std::string bytes(sizeof(fields), '\0');
-  std::memcpy(bytes.data(), &fields, sizeof(fields));
-  bytes[1] = 1; // the version
-  return bytes + body;
+  static_assert(IGTL_STT_QTDATA_SIZE == IGTL_STT_TDATA_SIZE);
+  // no shortest interval, no name of coordinates
+  return MakeRequest("STT_" + type, 1, std::string(IGTL_STT_TDATA_SIZE, '\0'));
+}
+
+std::string MakeOpenIGTLinkStatusRequest()
+{
+  // Extended header, index and text of one entry of meta data. All is as long as a header, and would be
+  // one of an unknown version, no type and no body: libopenigtlink 1.11 unpacks no header of version 2
+  // and reads the next one where this body begins.
+  const std::string key = "Client";
+  constexpr std::size_t indexSize = 10;
+  const std::size_t textSize = sizeof(igtl_header) - ExtendedHeaderSize - indexSize;
+  std::string body(sizeof(igtl_header), '\0');
+  body[1] = static_cast<char>(ExtendedHeaderSize);
+  body[3] = static_cast<char>(indexSize);
+  body[7] = static_cast<char>(textSize);
+  char* index = body.data() + ExtendedHeaderSize;
+  index[1] = 1; // entry
+  index[3] = static_cast<char>(key.size());
+  index[5] = 3; // US-ASCII
+  index[9] = static_cast<char>(textSize - key.size());
+  key.copy(index + indexSize, key.size());
+  return MakeRequest("GET_STATUS", 2, body);
 }
 }

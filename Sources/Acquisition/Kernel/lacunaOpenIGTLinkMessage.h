@@ -69,10 +69,12 @@ struct OpenIGTLinkPose
 {
   std::string Name; ///< the device, or the element of tracking data
   Matrix4 Pose;     ///< mm
-  /// False when the sender says so (PLUS's TransformStatus), or when the pose is no number or exactly
-  /// the identity, which older PLUS servers send for a tool that is out of sight.
+  /// False when the sender says so (Status), and for the values that senders write for a tool that is
+  /// out of sight: no number, a rotation of zeros only, and exactly the identity (unless Status is OK).
   bool Usable = true;
-  std::string Status;         ///< what the sender says of it, "OK", "OUT_OF_VIEW"; empty: nothing
+  /// What the meta data say of it, "OK", "OUT_OF_VIEW"; empty: nothing. Read from PLUS's
+  /// TransformStatus or TransformValid, an element's NameStatus, the statuses beside an image.
+  std::string Status;
   std::optional<bool> Button; ///< PLUS's SWITCH1_IS_ON and the like
   std::string Fault;          ///< why it never can be used; empty: it can
 };
@@ -98,16 +100,25 @@ struct OpenIGTLinkImage
   /// Of the image's plane: millimetres along the rows, the columns and its normal, from the centre of
   /// the first pixel, to the sender's frame (the message has that of the image's centre).
   OpenIGTLinkPose Plane;
+  bool Valid = true; ///< false: the meta data have an ImageStatus other than OK
 };
 
 /// Of an IMAGE message. Throws OpenIGTLinkError when the sizes do not fit, for volumes, parts of
 /// images, and levels that are not integers of 8 or 16 bits.
 OpenIGTLinkImage ReadOpenIGTLinkImage(const OpenIGTLinkMessage& message);
 
+/// Sets what the meta data say of an image and its Plane, whose Name is set.
+void SetOpenIGTLinkStatuses(const OpenIGTLinkMessage& message, OpenIGTLinkImage& image);
+
 /// What a STATUS message complains of; empty: all is well.
 std::string ReadOpenIGTLinkStatus(const OpenIGTLinkMessage& message);
 
-/// A message that asks a server for tracking data as fast as it has them.
-std::string MakeOpenIGTLinkTrackingRequest();
+/// A message that asks a server for tracking data as fast as it has them. type: "TDATA" or "QTDATA".
+/// Its header has version 1, which every server reads.
+std::string MakeOpenIGTLinkTrackingRequest(const std::string& type);
+
+/// A GET_STATUS message of header version 2. PLUS sends meta data, and so the status of poses, only to
+/// clients that have sent a message of version 2. Other servers answer or skip it.
+std::string MakeOpenIGTLinkStatusRequest();
 }
 #endif

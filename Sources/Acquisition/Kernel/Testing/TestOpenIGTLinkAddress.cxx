@@ -41,12 +41,13 @@ TEST(OpenIGTLinkAddress, Parts)
   EXPECT_EQ(all.Port, 23338);
   EXPECT_EQ(all.Transform, "ProbeToTracker");
   EXPECT_EQ(all.Image, "Image_Reference");
-  EXPECT_TRUE(all.StartTrackingData);
+  EXPECT_EQ(all.StartTrackingData, "TDATA");
   EXPECT_EQ(all.GetServer(), "igtl://scanner.local:23338");
   const OpenIGTLinkAddress least = ParseOpenIGTLinkAddress("igtl://10.0.0.7");
   EXPECT_EQ(least.Port, 18944);
   EXPECT_EQ(least.Transform + least.Image, "");
-  EXPECT_FALSE(least.StartTrackingData);
+  EXPECT_EQ(least.StartTrackingData, "");
+  EXPECT_EQ(ParseOpenIGTLinkAddress("igtl://host?start=qtdata").StartTrackingData, "QTDATA");
   const OpenIGTLinkAddress six = ParseOpenIGTLinkAddress("igtl://[fe80::1]:1?image=My%20B%26W");
   EXPECT_EQ(six.Host, "fe80::1");
   EXPECT_EQ(six.Image, "My B&W");

@@ -216,6 +216,7 @@ TEST(OpenIGTLinkDevices, TrackingDataAreAskedForAndTheElementChosen)
   Server server;
   const auto device = OpenPoses(server.GetAddress("?transform=Stylus&start=TDATA"));
   ASSERT_TRUE(server.Accept());
+  EXPECT_EQ(server.Receive(116).substr(2, 10), "GET_STATUS");
   EXPECT_EQ(server.Receive(94).substr(2, 9), "STT_TDATA");
   server.Send(
     TrackingBytes({ { "Probe", AsymmetricPose(1) }, { "Stylus", AsymmetricPose(2) } }, 3));
@@ -235,4 +236,129 @@ TEST(OpenIGTLinkDevices, UnusableImagesAreAnError)
   VideoFrame frame;
   EXPECT_HAS(Complaint<VideoError>(VideoError::Kind::Unsupported, [&] { scanner->Read(frame); }),
     "integers of 8 or 16 bits");
+}
+
+TEST(OpenIGTLinkDevices, QuaternionTrackingDataAreAskedFor)
+{
+  Server server;
+  const auto device = OpenPoses(server.GetAddress("?start=QTDATA"));
+  ASSERT_TRUE(server.Accept());
+  server.Receive(116);
+  EXPECT_EQ(server.Receive(94).substr(2, 10), "STT_QTDATA");
+  const auto message = igtl::QuaternionTrackingDataMessage::New();
+  igtl::QuaternionTrackingDataElement::Pointer element = igtl::QuaternionTrackingDataElement::New();
+  element->SetName("Probe");
+  element->SetType(2);
+  element->SetPosition(10, -20, 30);
+  element->SetQuaternion(0, 0, 0.6F, 0.8F);
+  message->AddQuaternionTrackingDataElement(element);
+  server.Send(Pack(*message, "Tracker", 3));
+  std::vector<TrackedPose> poses;
+  ASSERT_TRUE(device->Poll(poses));
+  EXPECT_LT(LargestDifference(poses[0].ReceiverToTransmitter,
+              Matrix4::Translation({ 10, -20, 30 }) *
+                Matrix4::Rotation({ 0, 0, 1 }, 2 * std::atan2(0.6, 0.8))),
+    Single);
+}
+
+// Whose first poses have no status: PLUS answers in the version that its client has used.
+TEST(OpenIGTLinkDevices, PosesBeforeTheAnswerInVersion2AreNotTaken)
+{
+  Server server;
+  const auto device = OpenPoses(server.GetAddress());
+  ASSERT_TRUE(server.Accept());
+  const OpenIGTLinkMessage request = Read(server.Receive(116));
+  EXPECT_EQ(request.Header.Type, "GET_STATUS");
+  EXPECT_EQ(request.Header.Version, 2);
+  const auto send = [&](int i, const std::string& status)
+  {
+    const std::string bytes = TransformBytes(AsymmetricPose(i), "ProbeToTracker", 1 + 0.02 * i);
+    server.Send(status.empty() ? bytes : WithMetaData(bytes, { { "TransformStatus", status } }));
+  };
+  send(0, "");
+  send(1, "");
+  send(2, "OK");
+  send(3, "OUT_OF_VIEW");
+  std::vector<TrackedPose> poses;
+  for (int i = 0; i < 3 && poses.size() < 2; ++i)
+  {
+    device->Poll(poses);
+  }
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_LT(LargestDifference(poses[0].ReceiverToTransmitter, AsymmetricPose(2)), Single * 4);
+  EXPECT_TRUE(poses[0].Usable);
+  EXPECT_FALSE(poses[1].Usable);
+  EXPECT_HAS(device->GetWarning(), "does not see 'ProbeToTracker' (OUT_OF_VIEW)");
+}
+
+TEST(OpenIGTLinkDevices, OfAServerOfVersion1AllPosesAreTakenAndWarnedOfOnce)
+{
+  SkippingClock clock;
+  Server server;
+  const auto device = MakeOpenIGTLinkPoseFactory(server.GetAddress(), 1, clock)(Always);
+  device->SetUp();
+  ASSERT_TRUE(server.Accept());
+  std::vector<TrackedPose> poses;
+  server.Send(TransformBytes(AsymmetricPose(0), "Probe", 1)); // as 3D Slicer: one when it connects
+  ASSERT_TRUE(device->Poll(poses));
+  server.Send(TransformBytes(AsymmetricPose(1), "Probe", 1.02));
+  ASSERT_TRUE(device->Poll(poses));
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_TRUE(poses[0].Usable && poses[1].Usable);
+  EXPECT_HAS(device->GetWarning(), "'Probe' from " + server.GetAddress() + " have no status");
+  EXPECT_HAS(device->GetWarning(), "SendValidTransformsOnly=\"true\"");
+  clock.Skipped = 11;
+  server.Send(TransformBytes(AsymmetricPose(2), "Probe", 12.04));
+  ASSERT_TRUE(device->Poll(poses));
+  EXPECT_EQ(device->GetWarning().find("no status"), std::string::npos) << device->GetWarning();
+}
+
+TEST(OpenIGTLinkDevices, AServerThatHangsUpAtVersion2IsNotAskedAThirdTime)
+{
+  Server server;
+  std::vector<TrackedPose> poses;
+  for (int i = 0; i < 2; ++i)
+  {
+    const auto device = OpenPoses(server.GetAddress());
+    ASSERT_TRUE(server.Accept());
+    server.Receive(116);
+    server.Hangup();
+    EXPECT_THROW(device->Poll(poses), std::runtime_error);
+  }
+  const auto device = OpenPoses(server.GetAddress("?start=TDATA"));
+  ASSERT_TRUE(server.Accept());
+  EXPECT_EQ(server.Receive(94).substr(2, 9), "STT_TDATA"); // nothing before it
+  server.Send(TransformBytes(AsymmetricPose(), "Probe", 1));
+  ASSERT_TRUE(device->Poll(poses));
+}
+
+TEST(OpenIGTLinkDevices, AnImageThatItsSenderMarksIsDamaged)
+{
+  Server server;
+  const auto scanner = OpenFrames(server.GetAddress());
+  ASSERT_TRUE(server.Accept());
+  VideoFrame frame;
+  for (int i = 0; i < 3; ++i)
+  {
+    server.Send(WithMetaData(
+      Grey(3, 2, "Image", 1 + 0.04 * i), { { "ImageStatus", i == 1 ? "INVALID" : "OK" } }));
+    EXPECT_EQ(scanner->Read(frame), VideoEvent::Frame);
+    EXPECT_EQ(frame.Damaged, i == 1);
+  }
+}
+
+// As 3D Slicer and robots do, which send a pose when a client connects and when it changes.
+TEST(OpenIGTLinkDevices, APoseThatIsSentOnceAtTheBeginningIsNotLost)
+{
+  Server server;
+  const Factories factories(server.GetAddress());
+  const auto scanner = factories.Frames(Always); // opens the connection
+  ASSERT_TRUE(server.Accept());
+  server.Send(TransformBytes(AsymmetricPose(), "Probe", 1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const auto tracker = factories.Poses(Always);
+  tracker->SetUp();
+  std::vector<TrackedPose> poses;
+  ASSERT_TRUE(tracker->Poll(poses));
+  EXPECT_LT(LargestDifference(poses[0].ReceiverToTransmitter, AsymmetricPose()), Single);
 }

@@ -7,7 +7,9 @@
 
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <random>
+#include <tuple>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -212,10 +214,10 @@ TEST(OpenIGTLinkMessage, OnlyRotationAndTranslationIsAPose)
                Matrix4::FromColumns(
                  { 1, 0, 0 }, { std::sin(angle), std::cos(angle), 0 }, { 0, 0, 1 }, { 0, 0, 0 })),
     "shears");
-  EXPECT_HAS(FaultOf(Matrix4::Scaling({ 0, 0, 0 })), "scales");
+  EXPECT_HAS(FaultOf(Matrix4::Scaling({ 0, 1, 1 })), "scales");
   EXPECT_EQ(FaultOf(Matrix4::Translation({ 0, -9e5, 0 }) * pose), "");
   EXPECT_HAS(FaultOf(Matrix4::Translation({ 0, -1.1e6, 0 }) * pose), "unit of length");
-  EXPECT_HAS(FaultOf(Matrix4::Translation({ 1e30, 0, 0 }) * pose), "unit of length");
+  EXPECT_HAS(FaultOf(Matrix4::Translation({ 1e20, 0, 0 }) * pose), "unit of length");
   Matrix4 nothing = pose;
   nothing(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ReadPose(TransformBytes(nothing, "ProbeToTracker")).Usable);
@@ -223,7 +225,20 @@ TEST(OpenIGTLinkMessage, OnlyRotationAndTranslationIsAPose)
   const std::string identity = TransformBytes(Matrix4(), "ProbeToTracker");
   EXPECT_FALSE(ReadPose(identity).Usable);
   EXPECT_TRUE(ReadPose(WithMetaData(identity, { { "TransformStatus", "OK" } })).Usable);
+  // what trackers send for a tool that they do not see
+  for (const Matrix4& unseen : { Matrix4::Scaling({ 0, 0, 0 }),
+         Matrix4::FromColumns({ 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 }, { 1, 2, 3 }),
+         Matrix4::Translation({ -3.697314e28, 0, 0 }) * pose })
+  {
+    const OpenIGTLinkPose read = ReadPose(TransformBytes(unseen, "ProbeToTracker"));
+    EXPECT_FALSE(read.Usable);
+    EXPECT_EQ(read.Fault, "");
+  }
   std::string turned = PositionBytes(pose);
+  const OpenIGTLinkPose zero =
+    ReadPose(WithBody(turned, turned.substr(58, 12) + std::string(16, '\0')));
+  EXPECT_FALSE(zero.Usable);
+  EXPECT_EQ(zero.Fault, "");
   turned = WithBody(turned, turned.substr(58, 24) + BigEndian(0x40000000, 4)); // w = 2
   EXPECT_HAS(ReadPose(turned).Fault, "quaternion has the length 2");
 }
@@ -441,9 +456,11 @@ TEST(OpenIGTLinkMessage, RandomBodiesAreReadOrRefused)
 
 TEST(OpenIGTLinkMessage, AsksForTrackingData)
 {
-  const OpenIGTLinkMessage request = Read(MakeOpenIGTLinkTrackingRequest());
+  EXPECT_EQ(Read(MakeOpenIGTLinkTrackingRequest("QTDATA")).Header.Type, "STT_QTDATA");
+  const OpenIGTLinkMessage request = Read(MakeOpenIGTLinkTrackingRequest("TDATA"));
   EXPECT_EQ(request.Header.Type, "STT_TDATA");
-  const std::string bytes = MakeOpenIGTLinkTrackingRequest();
+  EXPECT_EQ(request.Header.Version, 1); // version 2 has other bytes, which old servers misread
+  const std::string bytes = MakeOpenIGTLinkTrackingRequest("TDATA");
   const auto header = igtl::MessageHeader::New();
   header->InitPack();
   std::memcpy(header->GetPackPointer(), bytes.data(), 58);
@@ -455,4 +472,95 @@ TEST(OpenIGTLinkMessage, AsksForTrackingData)
   std::memcpy(message->GetPackBodyPointer(), bytes.data() + 58, bytes.size() - 58);
   EXPECT_TRUE(message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY);
   EXPECT_EQ(message->GetResolution(), 0);
+}
+
+TEST(OpenIGTLinkMessage, AsksForStatusInVersion2)
+{
+  const OpenIGTLinkMessage request = Read(MakeOpenIGTLinkStatusRequest());
+  EXPECT_EQ(request.Header.Type, "GET_STATUS");
+  EXPECT_EQ(request.Header.Version, 2);
+  EXPECT_EQ(request.ContentSize, 0u);
+  EXPECT_EQ(request.MetaData.size(), 1u);
+}
+
+// As the example servers of its library read, which does not know version 2.
+TEST(OpenIGTLinkMessage, AServerOfVersion1ReadsOnAfterTheRequestOfVersion2)
+{
+  const std::string bytes =
+    MakeOpenIGTLinkStatusRequest() + MakeOpenIGTLinkTrackingRequest("TDATA");
+  std::size_t position = 0;
+  const auto header = igtl::MessageHeader::New();
+  std::vector<std::string> types;
+  while (position + OpenIGTLinkHeader::Size <= bytes.size())
+  {
+    header->InitPack();
+    std::memcpy(header->GetPackPointer(), bytes.data() + position, OpenIGTLinkHeader::Size);
+    header->Unpack();
+    types.emplace_back(header->GetDeviceType());
+    position += OpenIGTLinkHeader::Size + static_cast<std::size_t>(header->GetBodySizeToRead());
+  }
+  EXPECT_EQ(position, bytes.size());
+  EXPECT_EQ(types.back(), "STT_TDATA");
+}
+
+TEST(OpenIGTLinkMessage, StatusesOfEveryKindOfMessage)
+{
+  const std::string pose = TransformBytes(AsymmetricPose(), "Probe");
+  using Data = std::map<std::string, std::string>;
+  for (const auto& [data, status, usable] : { std::tuple<Data, std::string, bool>{ {}, "", true },
+         { { { "TransformStatus", "OUT_OF_VOLUME" } }, "OUT_OF_VOLUME", false },
+         { { { "TransformStatus", "OK" }, { "TransformValid", "0" } }, "OK", true },
+         { { { "Status", "MISSING" } }, "MISSING", false },   // as PLUS reads positions
+         { { { "TransformValid", "0" } }, "INVALID", false }, // PLUS of 2018
+         { { { "TransformValid", "1" } }, "OK", true } })
+  {
+    for (const std::string& bytes : { pose, PositionBytes(AsymmetricPose()) })
+    {
+      const OpenIGTLinkPose read = ReadPose(WithMetaData(bytes, data));
+      EXPECT_EQ(read.Status, status);
+      EXPECT_EQ(read.Usable, usable) << status;
+    }
+  }
+  // two elements whose names are cut to the same 20 characters
+  const std::string name = "StylusTipToReference";
+  igtl::Matrix4x4 matrix;
+  ToIgtl(AsymmetricPose(), matrix);
+  const auto tracking = igtl::TrackingDataMessage::New();
+  for (int i = 0; i < 2; ++i)
+  {
+    igtl::TrackingDataElement::Pointer element = igtl::TrackingDataElement::New();
+    element->SetName(name.c_str());
+    element->SetType(2);
+    element->SetMatrix(matrix);
+    tracking->AddTrackingDataElement(element);
+  }
+  const auto elements = ReadOpenIGTLinkPoses(Read(WithMetaData(Pack(*tracking, "TDATA", 1),
+    { { name + "AStatus", "OK" }, { name + "AIndex", "1" }, { name + "BStatus", "MISSING" },
+      { name + "BIndex", "0" } })));
+  ASSERT_EQ(elements.size(), 2u);
+  EXPECT_EQ(elements[0].Name, name + "B");
+  EXPECT_FALSE(elements[0].Usable);
+  EXPECT_EQ(elements[1].Name, name + "A");
+  EXPECT_TRUE(elements[1].Usable);
+}
+
+TEST(OpenIGTLinkMessage, StatusesBesideAnImage)
+{
+  const std::string bytes = ImageBytes(3, 2, std::vector<char>(6, 1), "Image_Reference", 1);
+  const auto read = [&](const std::map<std::string, std::string>& data)
+  { return ReadOpenIGTLinkImage(Read(WithMetaData(bytes, data))); };
+  EXPECT_TRUE(read({}).Valid);
+  EXPECT_EQ(read({}).Plane.Status, "");
+  EXPECT_FALSE(read({ { "ImageStatus", "INVALID" } }).Valid);
+  EXPECT_TRUE(read({ { "ImageStatus", "OK" } }).Valid);
+  const std::map<std::string, std::string> good{ { "ProbeToTrackerTransform", "1 0 0 0" },
+    { "ProbeToTrackerTransformStatus", "OK" }, { "ReferenceToTrackerTransformStatus", "OK" } };
+  EXPECT_TRUE(read(good).Plane.Usable);
+  EXPECT_EQ(read(good).Plane.Status, "OK");
+  auto bad = good;
+  bad["ReferenceToTrackerTransformStatus"] = "OUT_OF_VIEW";
+  EXPECT_FALSE(read(bad).Plane.Usable);
+  EXPECT_EQ(read(bad).Plane.Status, "ReferenceToTracker is OUT_OF_VIEW");
+  bad["ImageToReferenceTransformStatus"] = "OK"; // the image's own
+  EXPECT_TRUE(read(bad).Plane.Usable);
 }

@@ -78,6 +78,7 @@ TEST(OpenIGTLinkTroubles, WhatIsWrongIsWarnedOf)
   EXPECT_FALSE(device->Poll(poses));
   EXPECT_LT(timer.GetSeconds(), 1.5);
   EXPECT_HAS(device->GetWarning(), "it sends nothing at all");
+  EXPECT_HAS(device->GetWarning(), "add &start=TDATA (or &start=QTDATA) to the address");
   server.Send(TransformBytes(AsymmetricPose(), "Prob", 1) + Grey(3, 2, "Image", 1));
   EXPECT_FALSE(device->Poll(poses));
   EXPECT_HAS(device->GetWarning(), "No pose of 'Probe' has come");
@@ -307,13 +308,9 @@ TEST(OpenIGTLinkTroubles, StopsWithinASecondWhateverItDoes)
 
 TEST(OpenIGTLinkTroubles, AComplaintIsShownForTenSeconds)
 {
-  // late enough that ten seconds and twice the time of the complaint are not alike
-  class SkippingClock : public Clock
-  {
-  public:
-    double Now() const override { return TheClock.Now() + this->Skipped; }
-    std::atomic<double> Skipped{ 5000 };
-  } clock;
+  SkippingClock clock;
+  clock.Skipped =
+    5000; // so late that ten seconds and twice the time of the complaint are not alike
   Server server;
   const auto device =
     MakeOpenIGTLinkPoseFactory(server.GetAddress("?transform=Probe"), 1, clock)(Always);

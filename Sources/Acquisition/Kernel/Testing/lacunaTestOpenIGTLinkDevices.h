@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,14 @@ inline const lacuna::SteadyClock TheClock;
 inline const auto Always = [] { return false; };
 constexpr double Single = 2e-5;       // mm
 constexpr double SenderAhead = 1.7e9; // s of the server's clock before ours
+
+/// The real time and what is added to it.
+class SkippingClock : public lacuna::Clock
+{
+public:
+  double Now() const override { return TheClock.Now() + this->Skipped; }
+  std::atomic<double> Skipped{ 0 };
+};
 
 struct Factories
 {
