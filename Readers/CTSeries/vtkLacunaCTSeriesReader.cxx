@@ -9,6 +9,7 @@
 #include "lacunaHounsfield.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaPatientIdentity.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -314,8 +315,19 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
   const lacuna::CTGeometry& geometry = this->Found->Geometry;
   const lacuna::CTFileHeader& header = *geometry.Slices[0].Frame.Header;
   vtkLacunaVolumeDirection::Record(output);
-  AddString(output, "PatientPosition", header.PatientPosition);
-  AddString(output, "ConvolutionKernel", header.ConvolutionKernel);
+  const std::pair<const char*, const std::string&> texts[] = { { "PatientPosition",
+                                                                 header.PatientPosition },
+    { "ConvolutionKernel", header.ConvolutionKernel }, { "PatientName", header.Patient.Name },
+    { "PatientID", header.Patient.Id }, { "PatientBirthDate", header.Patient.BirthDate },
+    { "PatientSex", header.Patient.Sex }, { "StudyDate", header.StudyDate },
+    { "StudyInstanceUID", header.StudyUid }, { "SeriesInstanceUID", header.SeriesUid } };
+  for (const auto& [name, text] : texts)
+  {
+    if (this->KeepPatientIdentity || !lacuna::IdentifiesPatient(name))
+    {
+      AddString(output, name, text);
+    }
+  }
   if (geometry.TiltDegrees != 0)
   {
     vtkLacunaFieldData::Set(output, "GantryTilt", { geometry.TiltDegrees }, 1);
@@ -329,16 +341,6 @@ void vtkLacunaCTSeriesReader::AddFieldData(vtkImageData* output) const
       array->InsertNextValue(plane);
     }
     output->GetFieldData()->AddArray(array);
-  }
-  if (this->KeepPatientIdentity)
-  {
-    AddString(output, "PatientName", header.Patient.Name);
-    AddString(output, "PatientID", header.Patient.Id);
-    AddString(output, "PatientBirthDate", header.Patient.BirthDate);
-    AddString(output, "PatientSex", header.Patient.Sex);
-    AddString(output, "StudyDate", header.StudyDate);
-    AddString(output, "StudyInstanceUID", header.StudyUid);
-    AddString(output, "SeriesInstanceUID", header.SeriesUid);
   }
   vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
   vtkLacunaProvenance::Record(
