@@ -2,6 +2,8 @@
 #include "vtkLacunaSequenceContent.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaPatientIdentity.h"
+#include "lacunaPixelSpacing.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
@@ -39,6 +41,9 @@ const std::set<std::string> OwnNames = { vtkLacunaTrackedSlices::ImageToReferenc
   vtkLacunaProvenance::ArrayName, vtkLacunaSequenceNames::Frames, vtkLacunaSequenceNames::ImageType,
   vtkLacunaSequenceNames::Orientation, ImageStatus };
 
+// Arrays that give the size of the pixels.
+const std::set<std::string> PixelSpacingNames = { lacuna::PixelSpacingField, "PixelSpacingMm" };
+
 std::string GetString(vtkImageData* stack, const char* name, vtkIdType i)
 {
   auto* array = vtkStringArray::SafeDownCast(stack->GetFieldData()->GetAbstractArray(name));
@@ -58,11 +63,13 @@ std::string FormatTuple(vtkDataArray* array, vtkIdType i)
 
 //------------------------------------------------------------------------------
 vtkLacunaSequenceContent::vtkLacunaSequenceContent(vtkImageData* stack,
-  const lacuna::SequenceKind& kind, vtkLacunaSliceStream* stream, lacuna::Execution& execution)
+  const lacuna::SequenceKind& kind, vtkLacunaSliceStream* stream, bool keepPatientIdentity,
+  lacuna::Execution& execution)
   : Stack(stack)
   , Whole(stream ? Place{ stream->GetExtent(), stream->GetOrigin(), stream->GetSpacing() }
                  : Place{ stack->GetExtent(), stack->GetOrigin(), stack->GetSpacing() })
   , Fields(kind, this->Content, this->Warnings)
+  , KeepPatientIdentity(keepPatientIdentity)
 {
   this->FindSlices();
   this->FindPixels();
@@ -110,6 +117,12 @@ void vtkLacunaSequenceContent::FindSlices()
   const std::string reference = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 1);
   this->ImageFrame = image.empty() ? this->ImageFrame : image;
   this->ReferenceFrame = reference.empty() ? this->ReferenceFrame : reference;
+  if (this->ImageFrame == lacuna::CroppedImageFrame)
+  {
+    const std::string name =
+      std::string(lacuna::WholeImageFrame) + "To" + lacuna::CroppedImageFrame;
+    this->Crops = vtkLacunaFieldData::Find(this->Stack, name.c_str(), 16, this->Count);
+  }
   this->SayWindow();
 }
 
@@ -149,6 +162,7 @@ void vtkLacunaSequenceContent::FindPixels()
   description.Type = vtkLacunaScalarType::Get(scalars);
   const std::string type = GetString(this->Stack, vtkLacunaSequenceNames::ImageType, 0);
   description.ImageType = type.empty() ? description.ImageType : type;
+  description.ScanLines = GetString(this->Stack, vtkLacunaSequenceNames::Orientation, 0) == "FM";
   const auto* pixels = static_cast<const unsigned char*>(scalars->GetVoidPointer(0));
   const std::size_t sliceSize = static_cast<std::size_t>(description.Columns * description.Rows) *
     lacuna::GetScalarSize(description.Type);
@@ -174,7 +188,8 @@ void vtkLacunaSequenceContent::AddArrays()
   }
   vtkDataArray* imageToProbe =
     vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::ImageToProbeName, 16, 1);
-  if (imageToProbe && !this->Fields.Find(0, this->ImageFrame + "ToProbeTransform"))
+  const std::string frame = this->Crops ? lacuna::WholeImageFrame : this->ImageFrame;
+  if (imageToProbe && !this->Fields.Find(0, frame + "ToProbeTransform"))
   {
     this->AddTransform(imageToProbe);
   }
@@ -185,14 +200,15 @@ void vtkLacunaSequenceContent::AddArray(vtkAbstractArray* array)
 {
   const std::string name = array->GetName();
   const vtkIdType tuples = array->GetNumberOfTuples();
-  if (lacuna::EqualsIgnoringCase(std::string_view(name).substr(0, 7), "Patient"))
-  {
-    this->Warnings.push_back("field data array '" + name +
-      "' is not written: a name that begins with Patient may tell who it is");
-    return;
-  }
   auto* numbers = vtkDataArray::SafeDownCast(array);
   auto* strings = vtkStringArray::SafeDownCast(array);
+  const bool transform = numbers && array->GetNumberOfComponents() == 16; // of the patient's frame?
+  if (!this->KeepPatientIdentity && !transform && lacuna::IdentifiesPatient(name))
+  {
+    this->Warnings.push_back("field data array '" + name +
+      "' is not written: it may identify the patient. Set KeepPatientIdentity to write it");
+    return;
+  }
   if ((tuples != this->Count && tuples != 1) || (!numbers && !strings) ||
     (strings && array->GetNumberOfComponents() != 1))
   {
@@ -247,7 +263,27 @@ void vtkLacunaSequenceContent::AddStrings(vtkStringArray* array)
       }
     }
   }
+  if (PixelSpacingNames.count(name) > 0)
+  {
+    std::transform(texts.begin(), texts.end(), texts.begin(),
+      [&](const std::string& text) { return this->ToPixelSpacing(text); });
+  }
   this->Fields.AddToFrames(name, texts);
+}
+
+//------------------------------------------------------------------------------
+// Of the pixels as they are now: of a stack of every second column they are twice as wide.
+std::string vtkLacunaSequenceContent::ToPixelSpacing(const std::string& text) const
+{
+  const lacuna::Vec2 said = lacuna::ReadPixelSpacing(text);
+  const lacuna::Vec2 scale = lacuna::GetPixelSpacing(this->PixelToImage);
+  if (!lacuna::IsPixelSpacing(said))
+  {
+    return std::isnan(said[0]) && std::isnan(said[1]) ? std::string() : text;
+  }
+  return !lacuna::SaysPixelSpacing(said) || !lacuna::SaysPixelSpacing(scale)
+    ? text
+    : lacuna::FormatNumber(said[0] * scale[0]) + " " + lacuna::FormatNumber(said[1] * scale[1]);
 }
 
 //------------------------------------------------------------------------------
@@ -261,7 +297,9 @@ void vtkLacunaSequenceContent::AddNumbers(vtkDataArray* array)
   std::vector<std::string> texts;
   for (const vtkIdType slice : this->Slices)
   {
-    texts.push_back(FormatTuple(array, slice));
+    const std::string text = FormatTuple(array, slice);
+    texts.push_back(
+      PixelSpacingNames.count(array->GetName()) > 0 ? this->ToPixelSpacing(text) : text);
   }
   this->Fields.AddToFrames(array->GetName(), texts);
 }
@@ -272,7 +310,11 @@ void vtkLacunaSequenceContent::AddTransform(vtkDataArray* array)
 {
   const bool imageToProbe =
     std::string(array->GetName()) == vtkLacunaTrackedSlices::ImageToProbeName;
-  const std::string name = imageToProbe ? this->ImageFrame + "ToProbe" : array->GetName();
+  // of the whole image, so that another calibration can take its place
+  const bool ofWhole = imageToProbe && this->Crops;
+  const std::string name = !imageToProbe ? std::string(array->GetName())
+    : ofWhole                            ? std::string(lacuna::WholeImageFrame) + "ToProbe"
+                                         : this->ImageFrame + "ToProbe";
   const bool constant = array->GetNumberOfTuples() != this->Count;
   const bool stated = !constant &&
     this->Stack->GetFieldData()->GetAbstractArray((name + StatusSuffix).c_str()) != nullptr;
@@ -280,8 +322,12 @@ void vtkLacunaSequenceContent::AddTransform(vtkDataArray* array)
   std::vector<std::string> matrices;
   for (std::size_t i = 0; i < this->Slices.size(); ++i)
   {
-    const lacuna::Matrix4 matrix =
+    lacuna::Matrix4 matrix =
       this->ToPixels(name, vtkLacunaFieldData::GetMatrix(array, constant ? 0 : this->Slices[i]));
+    if (ofWhole)
+    {
+      matrix = matrix * vtkLacunaFieldData::GetMatrix(this->Crops, this->Slices[i]);
+    }
     const bool finite = matrix.IsFinite();
     matrices.push_back(finite ? lacuna::FormatMatrix(matrix) : std::string());
     if (!stated || states[i].empty())
@@ -365,7 +411,7 @@ void vtkLacunaSequenceContent::AddPoses()
   {
     poses.push_back(vtkLacunaFieldData::GetMatrix(array, slice) * this->PixelToImage);
   }
-  if (this->Cropped && !this->Windowed)
+  if (this->Cropped && !this->Windowed && !this->Crops)
   {
     // the poses go in, so that no calibration of the whole picture takes their place
     this->Warnings.emplace_back(

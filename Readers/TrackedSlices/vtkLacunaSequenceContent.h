@@ -26,10 +26,11 @@ class vtkLacunaSequenceContent
 public:
   /// Collects the slices that stack holds, with their fields; stack must outlive this object.
   /// stream: when given, the slices are its own, and stack is a preview of them; both must outlive
-  /// this object. execution: for reading them. Throws std::runtime_error that names the array when
+  /// this object. keepPatientIdentity: whether to take fields that lacuna::IdentifiesPatient is true
+  /// of. execution: for reading them. Throws std::runtime_error that names the array when
   /// stack is not tracked slices.
   vtkLacunaSequenceContent(vtkImageData* stack, const lacuna::SequenceKind& kind,
-    vtkLacunaSliceStream* stream, lacuna::Execution& execution);
+    vtkLacunaSliceStream* stream, bool keepPatientIdentity, lacuna::Execution& execution);
 
   const lacuna::SequenceContent& Get() const { return this->Content; }
   /// What cannot be written, one sentence each.
@@ -47,6 +48,7 @@ private:
   void AddStrings(vtkStringArray* array);
   void AddNumbers(vtkDataArray* array);
   void AddTransform(vtkDataArray* array);
+  std::string ToPixelSpacing(const std::string& text) const;
   void AddStates();
   void AddPoses();
   void AddProvenance();
@@ -71,9 +73,12 @@ private:
   std::vector<vtkIdType> Slices;    ///< those in the stack
   std::vector<unsigned char> Status;
   bool PosesOnly = false;
+  bool KeepPatientIdentity;
   std::string ImageFrame = "Image";
   std::string ReferenceFrame = "Reference";
   bool Cropped = false;
+  vtkDataArray* Crops =
+    nullptr;                    // from the whole image to the pixels of each slice, as PLUS says it
   bool Windowed = false;        // to whole pixels of the picture, as the header says
   lacuna::Matrix4 PixelToImage; ///< (column, row) of the file to those of the sweep
 };

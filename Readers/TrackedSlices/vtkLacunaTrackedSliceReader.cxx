@@ -3,6 +3,7 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaPatientIdentity.h"
 #include "lacunaPropertyRange.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
@@ -58,11 +59,6 @@ std::string BaseName(const char* path)
 
 void AddStrings(vtkDataObject* data, const std::string& name, const std::vector<std::string>& texts)
 {
-  // Personal data stay in the file.
-  if (lacuna::EqualsIgnoringCase(std::string_view(name).substr(0, 7), "Patient"))
-  {
-    return;
-  }
   vtkNew<vtkStringArray> array;
   array->SetName(name.c_str());
   array->SetNumberOfValues(static_cast<vtkIdType>(texts.size()));
@@ -195,6 +191,7 @@ std::string vtkLacunaTrackedSliceReader::DescribeParameters(const std::string& c
     .Add("FrameRange", this->FrameRange)
     .Add("FrameStride", this->FrameStride)
     .Add("DropInvalidSlices", static_cast<bool>(this->DropInvalidSlices))
+    .Add("KeepPatientIdentity", static_cast<bool>(this->KeepPatientIdentity))
     .Add("ReplayInTime", static_cast<bool>(this->ReplayInTime));
   if (!chain.empty())
   {
@@ -219,8 +216,15 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
 
   // The arrays of the contract come last: no field of the file takes their place.
   std::vector<std::string> steps;
+  const auto isKept = [&](const std::string& name)
+  { return this->KeepPatientIdentity || !lacuna::IdentifiesPatient(name); };
   for (const auto& [name, value] : header.CustomFields)
   {
+    if (!isKept(name) ||
+      sweep.HeaderTransforms.count(lacuna::SweepTransforms::GetTransformName(name)) > 0)
+    {
+      continue; // a transform is written for each frame
+    }
     if (name.find(vtkLacunaSequenceNames::ProvenancePrefix) == 0)
     {
       steps.push_back(value);
@@ -233,7 +237,10 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
   for (const auto& [name, texts] : sweep.TextFields)
   {
-    AddStrings(output, name, texts);
+    if (isKept(name))
+    {
+      AddStrings(output, name, texts);
+    }
   }
   for (const auto& [name, matrices] : sweep.Transforms)
   {
@@ -246,13 +253,12 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
   if (!header.PosesOnly)
   {
-    const bool lines = header.ImageType.find("RF_") == 0; // else grey levels, also of colours
+    const bool signal = header.ImageType.find("RF_") == 0; // else grey levels, also of colours
     AddStrings(
-      output, vtkLacunaSequenceNames::ImageType, { lines ? header.ImageType : "BRIGHTNESS" });
-    AddStrings(output, vtkLacunaSequenceNames::Orientation, { lines ? "FM" : "MFA" });
+      output, vtkLacunaSequenceNames::ImageType, { signal ? header.ImageType : "BRIGHTNESS" });
+    AddStrings(output, vtkLacunaSequenceNames::Orientation, { header.Flips.Lines ? "FM" : "MFA" });
   }
-  AddStrings(
-    output, vtkLacunaSequenceNames::Frames, { options.ImageFrame, options.ReferenceFrame });
+  AddStrings(output, vtkLacunaSequenceNames::Frames, { sweep.ImageFrame, options.ReferenceFrame });
   vtkLacunaTrackedSlices::Write(
     output, sweep.ImageToReference, sweep.Timestamps, sweep.Status, sweep.FrameNumbers);
   if (!this->Preview.empty())
@@ -409,6 +415,7 @@ void vtkLacunaTrackedSliceReader::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FrameRange: " << this->FrameRange[0] << " " << this->FrameRange[1] << "\n";
   os << indent << "FrameStride: " << this->FrameStride << "\n";
   os << indent << "DropInvalidSlices: " << (this->DropInvalidSlices ? "on" : "off") << "\n";
+  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
   os << indent << "ReplayInTime: " << (this->ReplayInTime ? "on" : "off") << "\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
 }

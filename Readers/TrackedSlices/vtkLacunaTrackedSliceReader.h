@@ -18,17 +18,20 @@
  *   `FrameNumber`, each transform of the file under its name (`ProbeToTracker`, 16), the file's
  *   other fields as strings under their names; one tuple: `ImageToProbe` when known and constant,
  *   `UltrasoundImageType` and `UltrasoundImageOrientation` (of the slices as they are now); two
- *   strings `ImageToReferenceFrames`: what Image and Reference are called. Fields whose name begins
- *   with Patient are left out.
+ *   strings `ImageToReferenceFrames`: what Image and Reference are called. Fields that
+ *   may identify the patient (lacuna::IdentifiesPatient) are left out unless KeepPatientIdentity is on.
  *
  * **Chains.** ImageToReference is composed from the file's transforms of each frame and the
  * constant ones of the calibration file (CoordinateDefinitions), forwards or backwards, along the
- * shortest way from ImageFrame to ReferenceFrame. When no transform mentions ImageFrame and no
- * calibration file is given, the probe is not calibrated: the slices are read, with a warning,
- * without ImageToReference. Any other gap is an error that names the two unconnected groups of
- * frames.
+ * shortest way from ImageFrame to ReferenceFrame. When there is no way and no calibration file is
+ * given, the probe is not calibrated: the slices are read, with a warning, without ImageToReference.
+ * Any other gap is an error that names the two unconnected groups of frames.
  *
- * **Parts of pictures.** Slices that are a part of the scanner's picture (header fields FirstColumn and
+ * **Contradictions.** Slices whose pixels have another size by the file (ElementSpacing and the like)
+ * than by the chain are flagged (1), with a warning; see lacuna::BuildSweep.
+ *
+ * **Parts of pictures.** Frames that PLUS has cropped have a transform ImageToCroppedImage: their pixels
+ * are those of CroppedImage, from which the chain then leads. Slices that are a part of the scanner's picture (header fields FirstColumn and
  * FirstRow) have the origin there, so that their coordinates, ImageToReference and ImageToProbe are
  * those of the whole picture, for which a calibration file holds.
  *
@@ -96,7 +99,8 @@ public:
   ///@}
 
   ///@{
-  /// Name of the frame of pixel coordinates. Default: Image.
+  /// Name of the frame of pixel coordinates. Default: Image; of frames that PLUS has cropped
+  /// CroppedImage is meant by it.
   vtkSetStringMacro(ImageFrame);
   vtkGetStringMacro(ImageFrame);
   ///@}
@@ -124,6 +128,13 @@ public:
   vtkSetMacro(DropInvalidSlices, bool);
   vtkGetMacro(DropInvalidSlices, bool);
   vtkBooleanMacro(DropInvalidSlices, bool);
+  ///@}
+
+  ///@{
+  /// Whether fields that may identify the patient go into the field data. Default: off.
+  vtkSetMacro(KeepPatientIdentity, bool);
+  vtkGetMacro(KeepPatientIdentity, bool);
+  vtkBooleanMacro(KeepPatientIdentity, bool);
   ///@}
 
   ///@{
@@ -177,6 +188,7 @@ private:
   int FrameRange[2] = { 0, -1 };
   int FrameStride = 1;
   bool DropInvalidSlices = true;
+  bool KeepPatientIdentity = false;
   bool ReplayInTime = false;
   int MemoryLimit = 0;
   std::string Preview;

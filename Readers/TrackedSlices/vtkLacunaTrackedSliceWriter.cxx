@@ -116,7 +116,8 @@ void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
 {
   vtkLacunaExecution execution(this);
   const lacuna::SequenceKind kind(this->FileName, this->CompressionLevel > 0);
-  const vtkLacunaSequenceContent content(stack, kind, vtkLacunaSliceStream::Find(this), execution);
+  const vtkLacunaSequenceContent content(
+    stack, kind, vtkLacunaSliceStream::Find(this), this->KeepPatientIdentity, execution);
   const std::string neighbour = this->DescribeNeighbour(kind);
   this->FileSize =
     lacuna::WriteSequence(this->FileName, content.Get(), this->CompressionLevel, execution);
@@ -138,6 +139,7 @@ void vtkLacunaTrackedSliceWriter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
   os << indent << "CompressionLevel: " << this->CompressionLevel << "\n";
+  os << indent << "KeepPatientIdentity: " << (this->KeepPatientIdentity ? "on" : "off") << "\n";
   os << indent << "Piece: " << this->Piece << " of " << this->NumberOfPieces << "\n";
   os << indent << "FileSize: " << this->FileSize << "\n";
 }

@@ -20,8 +20,9 @@
  * Of a preview that a filter has changed the slices that there are are written, with a warning.
  *
  * In-plane crops and new pixel spacings go into the transforms from and to the image; a crop to
- * whole pixels is told by FirstColumn and FirstRow in the header. Arrays whose names begin with
- * Patient are left out. What cannot be written is named in a warning.
+ * whole pixels is told by FirstColumn and FirstRow in the header. Arrays that may identify
+ * the patient (lacuna::IdentifiesPatient) are left out unless KeepPatientIdentity is on. What cannot
+ * be written is named in a warning.
  *
  * In parallel each process has a writer of its own, with its number as Piece. All of them bring the
  * whole stack up to date; piece 0 writes it, the others write nothing.
@@ -70,6 +71,13 @@ public:
   ///@}
 
   ///@{
+  /// Whether arrays that may identify the patient are written. Default: off.
+  vtkSetMacro(KeepPatientIdentity, bool);
+  vtkGetMacro(KeepPatientIdentity, bool);
+  vtkBooleanMacro(KeepPatientIdentity, bool);
+  ///@}
+
+  ///@{
   /// Number of this process, and of processes; only piece 0 writes. ParaView sets them. Default: 0
   /// and 1.
   vtkSetClampMacro(Piece, int, 0, VTK_INT_MAX);
@@ -103,6 +111,7 @@ private:
 
   char* FileName = nullptr;
   int CompressionLevel = 1;
+  bool KeepPatientIdentity = false;
   int Piece = 0;
   int NumberOfPieces = 1;
   vtkTypeInt64 FileSize = 0;

@@ -211,6 +211,7 @@ void AddReaderSubjects(std::vector<Subject>& subjects)
       Wholes<2>("FrameRange", &T::SetFrameRange, -1, 7),
       Whole("FrameStride", &T::SetFrameStride, 1, 4),
       Switch("DropInvalidSlices", &T::SetDropInvalidSlices),
+      Switch("KeepPatientIdentity", &T::SetKeepPatientIdentity),
       Switch("ReplayInTime", &T::SetReplayInTime),
       Whole("MemoryLimit", &T::SetMemoryLimit, 0, 2) } };
   subject.Prepare = [](vtkAlgorithm* algorithm)

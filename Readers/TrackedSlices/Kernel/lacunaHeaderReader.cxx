@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderReader.h"
 
+#include "lacunaPatientIdentity.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
@@ -77,6 +78,7 @@ SequenceShape GetSequenceShape(const SequenceAxes& axes)
         " components but ElementNumberOfChannels " + std::to_string(axes.Channels));
     }
     shape.Channels = sizes[0];
+    shape.ColourFirst = true;
     sizes.erase(sizes.begin());
   }
 
@@ -142,8 +144,10 @@ bool HeaderReader::IsFrameField(std::string_view name)
 void HeaderReader::FailTwice(
   const std::string& field, const std::string& first, const std::string& second) const
 {
-  this->Lines.Fail(
-    "gives " + field + " again, as '" + second + "' after '" + first + "'; remove the wrong one");
+  this->Lines.Fail("gives header field " + field + " again" +
+    (IdentifiesPatient(field) ? ", with another text"
+                              : ", as '" + second + "' after '" + first + "'") +
+    "; remove the wrong one");
 }
 
 //------------------------------------------------------------------------------
@@ -198,8 +202,14 @@ void HeaderReader::SetShape(const SequenceAxes& axes)
 {
   if (this->FrameFields.empty())
   {
-    this->Fail(this->CutOff
-        ? "the header is cut off before the fields of the first frame"
+    const bool slicer =
+      std::any_of(this->Header.CustomFields.begin(), this->Header.CustomFields.end(),
+        [](const auto& field) { return EndsWithIgnoringCase(field.first, " index values"); });
+    this->Fail(this->CutOff ? "the header is cut off before the fields of the first frame"
+        : slicer
+        ? "these are pictures of 3D Slicer, whose poses are in another file. Export both to "
+          "one .mhd with Slicer's extension SlicerIGSIO (WriteSequenceMetafile), or give the "
+          "poses as a table to Assemble Tracked Slices"
         : "no field Seq_Frame0000_... describes a slice: this is an ordinary image without "
           "poses; open it with ParaView's own reader");
   }
@@ -213,6 +223,7 @@ void HeaderReader::SetShape(const SequenceAxes& axes)
   {
     this->Fail(e.what());
   }
+  this->FirstAxis = shape.ColourFirst ? 1 : 0;
   const std::string size = std::string(axes.SizeName) + " is " + axes.SizeText;
   if (shape.Columns == 0 && shape.Rows == 0)
   {
@@ -260,26 +271,68 @@ void HeaderReader::SetOrientation(
   {
     return; // nothing that could be turned
   }
-  if (!orientation)
+  if (!orientation || !IsKnownOrientation(*orientation))
   {
-    this->Header.Warnings.emplace_back(
-      name + " is missing; the slices are taken as they are stored");
+    this->Header.Warnings.push_back(name +
+      (orientation ? " is '" + *orientation + "', which says that it is not known"
+                   : " is missing") +
+      "; the slices are taken as they are stored");
+    orientation = nullptr;
   }
-  if (type)
+  if (type && !GetImageTypeName(*type).empty() && GetImageTypeName(*type) != "XX")
   {
     this->Header.ImageType = GetImageTypeName(*type);
   }
-  const bool lines = this->Header.ImageType.find("RF_") == 0;
+  const bool signal = this->Header.ImageType.find("RF_") == 0;
   try
   {
     this->Header.Flips = GetSliceFlips(orientation ? *orientation
-        : lines                                    ? "FM"
+        : signal                                   ? "FM"
                                                    : "MF",
       this->Header.ImageType);
   }
   catch (const std::invalid_argument& e)
   {
     this->Fail(e.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::ReportPlace(const std::string& name, const std::string* value, bool turns)
+{
+  if (!value || this->Header.PosesOnly)
+  {
+    return;
+  }
+  std::string numbers = *value;
+  std::replace_if(
+    numbers.begin(), numbers.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+  const auto words = SplitWords(numbers);
+  std::size_t size = 0; // of the matrix
+  while (turns && size * size < words.size())
+  {
+    ++size;
+  }
+  for (std::size_t i = 0; i < words.size(); ++i)
+  {
+    double number = 0;
+    const double none = turns && i / size == i % size ? 1 : 0;
+    if (ParseNumber(words[i], number) && number != none)
+    {
+      this->Header.Warnings.push_back("header field " + name + " is '" + *value +
+        "', which places the image in space. It is not used: each slice lies where its own "
+        "transforms put it");
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::SetPixelSpacing(const std::vector<std::string>& spacings)
+{
+  if (this->FirstAxis + 1 < spacings.size())
+  {
+    this->Header.PixelSpacing = spacings[this->FirstAxis] + " " + spacings[this->FirstAxis + 1];
   }
 }
 
@@ -390,8 +443,10 @@ void HeaderReader::SortFrameFields()
     std::string& value = values[static_cast<std::size_t>(field.Frame)];
     if (!value.empty() && value != field.Value)
     {
-      this->Fail("frame " + std::to_string(field.Frame) + " has field " + field.Name +
-        " twice, as '" + value + "' and as '" + field.Value + "'; remove the wrong one");
+      this->Fail("frame " + std::to_string(field.Frame) + " has field " + field.Name + " twice, " +
+        (IdentifiesPatient(field.Name) ? "with two texts"
+                                       : "as '" + value + "' and as '" + field.Value + "'") +
+        "; remove the wrong one");
     }
     value = std::move(field.Value);
   }

@@ -35,6 +35,7 @@ struct SequenceShape
   std::int64_t Depth = 1;
   std::int64_t Frames = 1;
   std::int64_t Channels = 1;
+  bool ColourFirst = false; ///< the first of the sizes counts the channels
 };
 
 /// Finds out which axis is what: colour first if any, columns, rows, layers if any, frames last. A
@@ -73,6 +74,12 @@ protected:
   /// Either may be null: name is the orientation field's.
   void SetOrientation(
     const std::string& name, const std::string* orientation, const std::string* type);
+  /// Warns of a field that places or turns the image in space: of slices, each has its own
+  /// transforms. value may be null, and of other characters than numbers. turns: the numbers are a
+  /// square matrix, which does nothing when it is the identity; else a vector.
+  void ReportPlace(const std::string& name, const std::string* value, bool turns);
+  /// Takes the pixel's size from the spacings of all axes in the file's order, one text for each.
+  void SetPixelSpacing(const std::vector<std::string>& spacings);
   /// Sets the place of the pixels to a file named in the header; name is the field's.
   void SetDataFile(const std::string& name, const std::string& value);
   /// Gives the frames their fields; reports what was ignored. The last step.
@@ -100,6 +107,7 @@ private:
   void CheckFrameFields() const;
 
   std::string SizeName;
+  std::size_t FirstAxis = 0; ///< of the columns: colours may come before it
   std::vector<FrameField> FrameFields;
   std::vector<std::string> Ignored;
 };

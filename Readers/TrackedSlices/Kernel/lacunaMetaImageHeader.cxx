@@ -14,7 +14,7 @@ namespace lacuna
 namespace
 {
 // Fields of MetaImage and of tracked sequences that are interpreted here or, like the position of
-// the image in space, do not apply to sequences.
+// the image in space, do not apply to sequences, which is told.
 const std::set<std::string> KnownFields = { "ObjectType", "ObjectSubType", "NDims", "BinaryData",
   "BinaryDataByteOrderMSB", "ElementByteOrderMSB", "CompressedData", "CompressedDataSize",
   "DimSize", "Kinds", "ElementNumberOfChannels", "ElementType", "ElementSpacing", "ElementSize",
@@ -73,6 +73,7 @@ public:
     this->ReadType();
     this->SetOrientation("UltrasoundImageOrientation", this->Find("UltrasoundImageOrientation"),
       this->Find("UltrasoundImageType"));
+    this->ReadSpace();
     this->ReadDataPlace();
     this->SortFrameFields();
     return std::move(this->Header);
@@ -94,6 +95,7 @@ private:
   bool FindDataOfCutOffHeader();
   void ReadSize();
   void ReadType();
+  void ReadSpace();
   void ReadDataPlace();
   void MoveDataPlace(std::int64_t headerSize);
 
@@ -184,7 +186,7 @@ void MetaImageHeaderReader::AddField(const std::string& name, const std::string&
   const auto inserted = this->Fields.emplace(name, value);
   if (!inserted.second && inserted.first->second != value)
   {
-    this->FailTwice("header field " + name, inserted.first->second, value);
+    this->FailTwice(name, inserted.first->second, value);
   }
   if (inserted.second && KnownFields.count(name) == 0)
   {
@@ -264,6 +266,23 @@ void MetaImageHeaderReader::ReadType()
   }
   this->Header.BigEndian =
     this->FindBool("BinaryDataByteOrderMSB", this->FindBool("ElementByteOrderMSB", false));
+}
+
+//------------------------------------------------------------------------------
+void MetaImageHeaderReader::ReadSpace()
+{
+  const std::string* spacing = this->Find("ElementSpacing");
+  spacing = spacing ? spacing : this->Find("ElementSize");
+  const auto words = SplitWords(spacing ? std::string_view(*spacing) : std::string_view());
+  this->SetPixelSpacing({ words.begin(), words.end() });
+  for (const char* name : { "Offset", "Position", "Origin" })
+  {
+    this->ReportPlace(name, this->Find(name), false);
+  }
+  for (const char* name : { "TransformMatrix", "Orientation", "Rotation" })
+  {
+    this->ReportPlace(name, this->Find(name), true);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderReader.h"
+#include "lacunaParameterText.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -122,6 +125,7 @@ public:
     this->ReadEncoding();
     this->SetOrientation("ultrasound image orientation", this->Find("ultrasound image orientation"),
       this->Find("ultrasound image type"));
+    this->ReadSpace();
     this->ReadDataPlace();
     this->SortFrameFields();
     return std::move(this->Header);
@@ -139,6 +143,7 @@ private:
   void ReadSize();
   void ReadType();
   void ReadEncoding();
+  void ReadSpace();
   void ReadDataPlace();
   std::int64_t FindSkip(const std::string& name, const std::string& otherName) const;
 
@@ -210,7 +215,7 @@ void NrrdHeaderReader::AddField(const NrrdLine& line)
   const auto inserted = this->Fields.emplace(key, line.Value);
   if (!inserted.second && inserted.first->second != line.Value)
   {
-    this->FailTwice("header field " + line.Name, inserted.first->second, line.Value);
+    this->FailTwice(line.Name, inserted.first->second, line.Value);
   }
   if (inserted.second && !known)
   {
@@ -314,6 +319,60 @@ std::int64_t NrrdHeaderReader::FindSkip(const std::string& name, const std::stri
       (name == "byte skip" ? ", or -1 for raw pixels at the end of the file" : ""));
   }
   return n;
+}
+
+//------------------------------------------------------------------------------
+void NrrdHeaderReader::ReadSpace()
+{
+  this->ReportPlace("space origin", this->Find("space origin"), false);
+  if (const std::string* spacings = this->Find("spacings"))
+  {
+    const auto words = SplitWords(*spacings);
+    this->SetPixelSpacing({ words.begin(), words.end() });
+  }
+  const std::string* directions = this->Find("space directions");
+  std::vector<std::string> lengths; // of the axes, "none" where one is not of space
+  std::string turns;                // the axes of unit length, which make a matrix
+  for (std::size_t at = 0; directions && at < directions->size();)
+  {
+    const std::size_t begin = directions->find_first_not_of(" \t", at);
+    if (begin == std::string::npos)
+    {
+      break;
+    }
+    const bool isVector = (*directions)[begin] == '(';
+    at =
+      std::min(directions->find_first_of(isVector ? ")" : " \t", begin), directions->size() - 1) +
+      1;
+    std::string text = directions->substr(begin, at - begin);
+    if (!isVector)
+    {
+      lengths.emplace_back(Trim(text));
+      continue;
+    }
+    std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+    double squares = 0;
+    std::vector<double> numbers;
+    for (const std::string_view word : SplitWords(text))
+    {
+      double number = std::numeric_limits<double>::quiet_NaN();
+      ParseNumber(word, number);
+      numbers.push_back(number);
+      squares += number * number;
+    }
+    const double length = std::sqrt(squares);
+    lengths.push_back(FormatNumber(length));
+    for (const double number : numbers)
+    {
+      turns += FormatNumber(number / length) + " ";
+    }
+  }
+  if (!lengths.empty())
+  {
+    this->SetPixelSpacing(lengths);
+    this->ReportPlace("space directions", &turns, true);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -34,7 +34,7 @@ const char* GetNrrdType(ScalarType type)
 // The orientation that pixels have in memory, see lacunaSliceOrientation.h.
 const char* GetOrientation(const SequenceDescription& description)
 {
-  return description.ImageType.find("RF_") == 0 ? "FM" : "MFA";
+  return description.ScanLines || description.ImageType.find("RF_") == 0 ? "FM" : "MFA";
 }
 
 std::string Pad(std::string text)

@@ -22,6 +22,11 @@ namespace lacuna
 constexpr const char* FirstColumnField = "FirstColumn";
 constexpr const char* FirstRowField = "FirstRow";
 
+/// PLUS crops pictures and leaves a transform between these frames with each: the pixels are in the
+/// second one.
+constexpr const char* WholeImageFrame = "Image";
+constexpr const char* CroppedImageFrame = "CroppedImage";
+
 /// Names and texts.
 using SequenceFields = std::vector<std::pair<std::string, std::string>>;
 
@@ -32,6 +37,7 @@ struct SequenceDescription
   std::int64_t Rows = 0;
   ScalarType Type = ScalarType::UInt8;
   std::string ImageType = "BRIGHTNESS"; ///< or RF_REAL ...
+  bool ScanLines = false;               ///< rows are scan lines, see lacunaSliceOrientation.h
   SequenceFields CustomFields;
 };
 

@@ -45,6 +45,8 @@ struct SequenceHeader
   PixelEncoding Encoding = PixelEncoding::Raw;
   SliceFlips Flips;
   std::string ImageType = "BRIGHTNESS"; ///< of the file, without the prefix US_IMG_
+  /// mm of a column and a row as the header gives them, for all frames; empty when it does not.
+  std::string PixelSpacing;
 
   std::string DataFileName;            ///< the file itself when the pixels follow the header
   std::int64_t DataOffset = 0;         ///< first byte of the pixels as they are encoded

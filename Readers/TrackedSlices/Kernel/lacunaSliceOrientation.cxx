@@ -10,6 +10,8 @@ namespace lacuna
 {
 namespace
 {
+constexpr std::string_view Brightness = "BRIGHTNESS";
+
 std::string WithoutPrefix(std::string_view text, std::string_view prefix)
 {
   text = Trim(text);
@@ -34,7 +36,15 @@ void ReverseRow(unsigned char* row, std::int64_t columns, std::size_t pixelSize)
 
 std::string GetImageTypeName(std::string_view imageType)
 {
-  return WithoutPrefix(imageType, "US_IMG_");
+  const std::string type = WithoutPrefix(imageType, "US_IMG_");
+  // 3D Slicer has put "BRIGHTNESS" in front of the type
+  return type.size() > Brightness.size() ? WithoutPrefix(type, Brightness) : type;
+}
+
+bool IsKnownOrientation(std::string_view orientation)
+{
+  const std::string letters = WithoutPrefix(orientation, "US_IMG_ORIENT_");
+  return !letters.empty() && letters != "XX" && letters != "??";
 }
 
 SliceFlips GetSliceFlips(std::string_view orientation, std::string_view imageType)
@@ -44,30 +54,35 @@ SliceFlips GetSliceFlips(std::string_view orientation, std::string_view imageTyp
     [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   const std::string type = GetImageTypeName(imageType);
   const bool complex = type == "RF_IQ_LINE" || type == "RF_I_LINE_Q_LINE";
-  const bool lines = complex || type == "RF_REAL";
-  if (!lines && !type.empty() && type != "BRIGHTNESS" && type != "RGB_COLOR")
+  const bool signal = complex || type == "RF_REAL";
+  if (!signal && !type.empty() && type != "XX" && type != Brightness && type != "RGB_COLOR")
   {
     throw std::invalid_argument("UltrasoundImageType '" + type +
       "' is unknown; known are BRIGHTNESS, RGB_COLOR, RF_REAL, RF_IQ_LINE and RF_I_LINE_Q_LINE");
   }
   const auto oneOf = [&](std::size_t i, std::string_view allowed)
   { return allowed.find(letters[i]) != std::string_view::npos; };
-  const bool known = (letters.size() == 2 || (letters.size() == 3 && oneOf(2, "AD"))) &&
-    (lines ? oneOf(0, "FN") && oneOf(1, "MU") : oneOf(0, "MU") && oneOf(1, "FN"));
-  if (!known)
+  SliceFlips flips;
+  const bool complete = letters.size() == 2 || (letters.size() == 3 && oneOf(2, "AD"));
+  flips.Lines = complete && oneOf(0, "FN") && oneOf(1, "MU");
+  const bool picture = complete && oneOf(0, "MU") && oneOf(1, "FN");
+  if (!flips.Lines && (signal || !picture))
   {
     throw std::invalid_argument("UltrasoundImageOrientation '" + letters +
       "' does not describe a " +
-      (lines ? "slice of radio-frequency lines; known are FM, FU, NM and NU"
-             : "slice of pixels; known are MF, MN, UF and UN, also with A or D added"));
+      (signal ? "slice of radio-frequency lines; known are FM, FU, NM and NU"
+              : "slice of pixels or of scan lines; known are MF, MN, UF and UN, also with A or D "
+                "added, and for lines FM, FU, NM and NU"));
   }
-  SliceFlips flips;
-  flips.X = letters[0] == (lines ? 'N' : 'U');
-  flips.Y = letters[1] == (lines ? 'U' : 'N');
-  if (complex && (flips.X || flips.Y))
+  flips.X = letters[0] == (flips.Lines ? 'N' : 'U');
+  flips.Y = letters[1] == (flips.Lines ? 'U' : 'N');
+  // with I and Q in rows of their own a row can be reversed, but rows cannot change places
+  const bool separate = type == "RF_I_LINE_Q_LINE";
+  if (complex && (flips.Y || (flips.X && !separate)))
   {
     throw std::invalid_argument("UltrasoundImageOrientation '" + letters + "' of " + type +
-      " data would need complex samples to be re-ordered; only FM is read");
+      " data would need complex samples to be re-ordered; only FM " +
+      (separate ? "and NM are" : "is") + " read");
   }
   return flips;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweep.h"
 
+#include "lacunaPixelSpacing.h"
+#include "lacunaPoseFields.h"
+#include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSweepTransforms.h"
 #include "lacunaTransformGraph.h"
@@ -22,12 +25,51 @@ const std::set<std::string> ReservedNames = { "ImageToReference", "ImageToProbe"
 
 constexpr std::size_t LongestQuotation = 40;
 
+// What a person sets on a scanner that changes where its pixels lie, as PLUS names it in frames.
+const char* const Settings[] = { "Depth", "DepthMm", "HorizontalBins", "SectorPercent",
+  "TransducerOriginPix", "VerticalBins", "ZoomFactor" };
+
+// "frames 0, 2, 5 to 9"
 std::string FrameList(const std::vector<std::size_t>& frames)
 {
   std::vector<std::string> numbers;
-  std::transform(frames.begin(), frames.end(), std::back_inserter(numbers),
-    [](std::size_t frame) { return std::to_string(frame); });
+  for (std::size_t i = 0; i < frames.size();)
+  {
+    std::size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1)
+    {
+      ++last;
+    }
+    last = last > i + 1 ? last : i; // two are listed
+    numbers.push_back(
+      std::to_string(frames[i]) + (last > i ? " to " + std::to_string(frames[last]) : ""));
+    i = last + 1;
+  }
   return (frames.size() > 1 ? "frames " : "frame ") + JoinSome(numbers);
+}
+
+// "one in frame 3, another in frames 0, 2"
+std::string ListFrames(
+  const std::map<std::string, std::vector<std::size_t>>& framesOf, const std::string& in)
+{
+  std::vector<std::string> parts;
+  for (const auto& [text, frames] : framesOf)
+  {
+    parts.push_back(text + in + FrameList(frames));
+  }
+  return JoinSome(parts);
+}
+
+Matrix4 NoPose()
+{
+  std::array<double, 16> none;
+  none.fill(std::numeric_limits<double>::quiet_NaN());
+  return Matrix4(none);
+}
+
+bool IsPictureFrame(const std::string& frame)
+{
+  return frame.find("Image") != std::string::npos;
 }
 
 class SweepBuilder
@@ -38,6 +80,7 @@ public:
     , Options(options)
     , Count(static_cast<std::size_t>(header.Frames))
     , Transforms(header, options.CalibrationFileName)
+    , ImageFrame(options.ImageFrame)
   {
   }
 
@@ -45,11 +88,14 @@ public:
   {
     this->Result.Warnings = this->Transforms.GetWarnings();
     this->Result.Status.assign(this->Count, Sweep::Valid);
+    this->FindPixels();
     this->KeepFields();
     this->ReadTimes();
     this->FlagImages();
     this->FindImageToProbe();
     this->BuildPoses();
+    this->CheckSpacings();
+    this->CheckSettings();
     const int accepted = this->Header.PosesOnly ? Sweep::ImageInvalid : Sweep::Valid;
     const bool none = std::none_of(this->Result.Status.begin(), this->Result.Status.end(),
       [&](unsigned char status) { return status == accepted; });
@@ -71,6 +117,7 @@ private:
   void Warn(const std::string& text) { this->Result.Warnings.push_back(text); }
   const TransformGraph& Graph() const { return this->Transforms.GetGraph(); }
 
+  void FindPixels();
   void KeepFields();
   static void RestateInPicture(const SweepTransform& transform, std::vector<std::string>& texts);
   void ReadTimes();
@@ -79,6 +126,11 @@ private:
   void FindImageToProbe();
   bool FindChain(Chain& chain);
   void BuildPoses();
+  bool IsUncalibrated() const;
+  const std::vector<std::string>* FindField(const std::string& name) const;
+  void CheckSpacings();
+  void CheckSettings();
+  void ReportPictures(const Chain& chain);
   void DescribeChain(const Chain& chain);
   void ReportBadFrames(const SweepTransform& transform);
   void ReportMirrors(const SweepTransform& transform);
@@ -87,9 +139,35 @@ private:
   const SweepOptions& Options;
   std::size_t Count;
   SweepTransforms Transforms;
+  std::string ImageFrame;                                   ///< of the pixels
   std::map<std::string, std::vector<std::size_t>> BadFlags; ///< frames by the text of SliceStatus
   Sweep Result;
 };
+
+//------------------------------------------------------------------------------
+void SweepBuilder::FindPixels()
+{
+  const std::vector<SweepTransform>& all = this->Transforms.GetAll();
+  const bool cropped = std::any_of(all.begin(), all.end(),
+    [](const SweepTransform& transform)
+    {
+      return !transform.FromCalibration &&
+        (transform.Name == std::string(WholeImageFrame) + "To" + CroppedImageFrame ||
+          transform.Name == std::string(CroppedImageFrame) + "To" + WholeImageFrame);
+    });
+  if (cropped && this->ImageFrame == WholeImageFrame)
+  {
+    this->ImageFrame = CroppedImageFrame;
+  }
+  this->Result.ImageFrame = this->ImageFrame;
+}
+
+//------------------------------------------------------------------------------
+const std::vector<std::string>* SweepBuilder::FindField(const std::string& name) const
+{
+  const auto field = this->Header.FrameFields.find(name);
+  return field == this->Header.FrameFields.end() ? nullptr : &field->second;
+}
 
 //------------------------------------------------------------------------------
 void SweepBuilder::KeepFields()
@@ -100,6 +178,16 @@ void SweepBuilder::KeepFields()
     {
       this->Result.Transforms[transform.Name] = transform.Matrices;
     }
+    if (transform.FromHeader)
+    {
+      this->Result.HeaderTransforms.insert(transform.Name);
+    }
+  }
+  const Vec2 spacing = ReadPixelSpacing(this->Header.PixelSpacing);
+  if (!this->Header.PosesOnly && IsPixelSpacing(spacing) && SaysPixelSpacing(spacing))
+  {
+    // for every frame, which is how a writer keeps it
+    this->Result.TextFields[PixelSpacingField].assign(this->Count, this->Header.PixelSpacing);
   }
   const bool cropped = !(GetPictureOrigin(this->Header) == Vec3{ 0, 0, 0 });
   for (const auto& [field, texts] : this->Header.FrameFields)
@@ -107,7 +195,11 @@ void SweepBuilder::KeepFields()
     const std::string name = SweepTransforms::GetTransformName(field);
     if (name.empty() || ReservedNames.count(name) > 0)
     {
-      this->Result.TextFields[field] = texts;
+      std::vector<std::string>& kept = this->Result.TextFields[field];
+      kept.resize(this->Count);
+      std::transform(texts.begin(), texts.end(), kept.begin(), kept.begin(),
+        [](const std::string& own, const std::string& before)
+        { return own.empty() ? before : own; });
     }
     for (const SweepTransform& transform : this->Transforms.GetAll())
     {
@@ -186,12 +278,8 @@ void SweepBuilder::FlagImages()
   }
   if (!this->BadFlags.empty())
   {
-    std::vector<std::string> texts;
-    for (const auto& [text, frames] : this->BadFlags)
-    {
-      texts.push_back("'" + text + "' in " + FrameList(frames));
-    }
-    this->Warn("field SliceStatus must be a whole number from 0 to 255, but is " + JoinSome(texts) +
+    this->Warn("field SliceStatus must be a whole number from 0 to 255, but is " +
+      ListFrames(this->BadFlags, " in ") +
       (this->Options.DropInvalid ? "; what it says against these slices is not known, so they "
                                    "count as image invalid (2)"
                                  : ""));
@@ -208,7 +296,7 @@ void SweepBuilder::AddFlags(std::size_t frame, const std::string& text)
   }
   if (!ParseInteger(text, given) || given < 0 || given > 255)
   {
-    this->BadFlags[text.substr(0, LongestQuotation)].push_back(frame);
+    this->BadFlags["'" + text.substr(0, LongestQuotation) + "'"].push_back(frame);
     given = Sweep::ImageInvalid;
   }
   else
@@ -226,7 +314,7 @@ void SweepBuilder::FindImageToProbe()
 {
   Chain chain;
   Matrix4 imageToProbe;
-  if (!this->Graph().FindChain(this->Options.ImageFrame, "Probe", chain) || chain.empty())
+  if (!this->Graph().FindChain(this->ImageFrame, "Probe", chain) || chain.empty())
   {
     return;
   }
@@ -262,10 +350,21 @@ void SweepBuilder::FindImageToProbe()
 }
 
 //------------------------------------------------------------------------------
+// Whether a calibration is missing, where there is no chain. One that is given has to lead on; one in
+// the sequence only has to be asked for a frame that there is.
+bool SweepBuilder::IsUncalibrated() const
+{
+  const std::vector<std::string> reached = this->Graph().GetReachable(this->ImageFrame);
+  const bool toProbe = std::find(reached.begin(), reached.end(), "Probe") != reached.end();
+  return this->Options.CalibrationFileName.empty() &&
+    (!toProbe || this->Graph().HasFrame(this->Options.ReferenceFrame));
+}
+
+//------------------------------------------------------------------------------
 // Returns false when the probe is not calibrated.
 bool SweepBuilder::FindChain(Chain& chain)
 {
-  const std::string& image = this->Options.ImageFrame;
+  const std::string& image = this->ImageFrame;
   const std::string& reference = this->Options.ReferenceFrame;
   if (image == reference)
   {
@@ -276,21 +375,23 @@ bool SweepBuilder::FindChain(Chain& chain)
   {
     return true;
   }
-  if (!this->Graph().HasFrame(image))
+  const std::string none = this->Graph().HasFrame(image)
+    ? "no chain of transforms leads from the image frame '" + image + "' to '" + reference + "'. "
+    : "no transform leads from or to the image frame '" + image + "'. ";
+  if (this->IsUncalibrated())
   {
-    const std::string none = "no transform leads from or to the image frame '" + image + "'. ";
-    if (!this->Options.CalibrationFileName.empty())
-    {
-      this->Fail(none +
-        "Set ImageFrame to the frame that the calibration is for, or give another "
-        "CalibrationFileName. " +
-        this->Transforms.Describe());
-    }
     this->Warn(none +
       "The slices are read without ImageToReference: filters that need positions will refuse them. "
       "Give the CalibrationFileName that holds " +
-      image + " to Probe. " + this->Transforms.Describe());
+      this->Options.ImageFrame + " to Probe. " + this->Transforms.Describe());
     return false;
+  }
+  if (!this->Graph().HasFrame(image))
+  {
+    this->Fail(none +
+      "Set ImageFrame to the frame that the calibration is for, or give another "
+      "CalibrationFileName. " +
+      this->Transforms.Describe());
   }
   const std::string reached = JoinSome(this->Graph().GetReachable(image), 20);
   if (!this->Graph().HasFrame(reference))
@@ -311,10 +412,18 @@ void SweepBuilder::BuildPoses()
 {
   Chain chain;
   const bool calibrated = this->FindChain(chain);
+  this->ReportPictures(chain);
   if (calibrated)
   {
     this->DescribeChain(chain);
     this->Result.ImageToReference.resize(this->Count);
+    if (this->Header.Flips.Lines && !this->Header.PosesOnly)
+    {
+      this->Warn(
+        "the slices are scan lines, which are not converted to pictures. ImageToReference "
+        "takes sample and line for column and row, which is right only for a calibration of "
+        "these lines");
+    }
   }
   else if (!this->Graph().FindChain("Probe", this->Options.ReferenceFrame, chain))
   {
@@ -329,9 +438,7 @@ void SweepBuilder::BuildPoses()
     if (!this->Transforms.Compose(chain, i, pose) || refused)
     {
       this->Result.Status[i] |= Sweep::PoseInvalid;
-      std::array<double, 16> none;
-      none.fill(std::numeric_limits<double>::quiet_NaN());
-      pose = Matrix4(none);
+      pose = NoPose();
     }
     if (calibrated)
     {
@@ -345,7 +452,7 @@ void SweepBuilder::BuildPoses()
     {
       this->ReportBadFrames(transform);
     }
-    const std::string& image = this->Options.ImageFrame;
+    const std::string& image = this->ImageFrame;
     // the third axis of a picture means nothing
     if (transform.From != image && transform.To != image)
     {
@@ -355,9 +462,129 @@ void SweepBuilder::BuildPoses()
 }
 
 //------------------------------------------------------------------------------
+// A transform between two pictures may mean that the pixels are those of the other one.
+void SweepBuilder::ReportPictures(const Chain& chain)
+{
+  for (const SweepTransform& transform : this->Transforms.GetAll())
+  {
+    const std::string& other = transform.From == this->ImageFrame ? transform.To : transform.From;
+    const bool leads = transform.From == this->ImageFrame || transform.To == this->ImageFrame;
+    const bool known = other == WholeImageFrame || other == CroppedImageFrame ||
+      std::any_of(chain.begin(), chain.end(),
+        [&](const TransformGraph::Link& link) { return link.To == other; });
+    const bool moves = !transform.IsConstant() || !IsNear(transform.Matrices.front(), Matrix4());
+    if (!transform.FromCalibration && leads && !known && IsPictureFrame(other) && moves)
+    {
+      this->Warn("transform " + transform.Name +
+        " joins two pictures. The pixels are taken to be in '" + this->ImageFrame +
+        "'; set ImageFrame to '" + other + "' if they are in that one");
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Compares what frames say of the size of their pixels with the chain.
+void SweepBuilder::CheckSpacings()
+{
+  if (this->Header.PosesOnly)
+  {
+    return;
+  }
+  const auto* sizes = this->FindField(PixelSpacingField);
+  const auto* sonixSizes = this->FindField("PixelSpacingMm"); // of Ultrasonix scanners
+  std::map<std::string, std::vector<std::size_t>> unreadable;
+  std::map<std::string, std::vector<std::size_t>> others; // by what they say and what is known
+  std::map<std::string, std::vector<std::size_t>> said;
+  for (std::size_t i = 0; i < this->Count; ++i)
+  {
+    const bool own = sizes && !(*sizes)[i].empty();
+    const bool sonix = !own && sonixSizes && !(*sonixSizes)[i].empty();
+    const std::string& text = own ? (*sizes)[i]
+      : sonix                     ? (*sonixSizes)[i]
+                                  : this->Header.PixelSpacing;
+    const std::string source = own ? PixelSpacingField : sonix ? "PixelSpacingMm" : "the header";
+    const Vec2 spacing = ReadPixelSpacing(text);
+    if (text.empty() || !SaysPixelSpacing(spacing))
+    {
+      continue;
+    }
+    if (!IsPixelSpacing(spacing))
+    {
+      unreadable[source + " is '" + text.substr(0, LongestQuotation) + "'"].push_back(i);
+      continue;
+    }
+    const std::string size = source + " says that pixels are " + FormatPixelSpacing(spacing);
+    said[size].push_back(i);
+    const bool posed =
+      !this->Result.ImageToReference.empty() && this->Result.ImageToReference[i].IsFinite();
+    if (!posed && this->Result.ImageToProbe.empty())
+    {
+      continue;
+    }
+    const Vec2 known =
+      GetPixelSpacing(posed ? this->Result.ImageToReference[i] : this->Result.ImageToProbe[0]);
+    if (IsSameSpacing(spacing, known))
+    {
+      continue;
+    }
+    others[size + ", the calibration that they are " + FormatPixelSpacing(known)].push_back(i);
+    if (this->Options.DropInvalid)
+    {
+      this->Result.Status[i] |= Sweep::PoseInvalid;
+      if (posed)
+      {
+        this->Result.ImageToReference[i] = NoPose();
+      }
+    }
+  }
+  if (!unreadable.empty())
+  {
+    this->Warn(ListFrames(unreadable, " in ") +
+      ", which is no size of a pixel: nothing tells whether the scanner's depth was that of the "
+      "calibration");
+  }
+  if (!others.empty())
+  {
+    this->Warn(ListFrames(others, ", in ") +
+      ". The scanner had another depth than the calibration. " +
+      (this->Options.DropInvalid
+          ? "These slices are flagged as pose invalid (1); give the calibration of their depth"
+          : "These slices are placed by it all the same, since DropInvalidSlices is off"));
+  }
+  if (said.size() > 1 && others.empty() && this->Result.ImageToReference.empty())
+  {
+    this->Warn(
+      ListFrames(said, " in ") + ". The scanner's depth was changed: no calibration holds for all");
+  }
+}
+
+//------------------------------------------------------------------------------
+// A calibration holds for one setting of the scanner.
+void SweepBuilder::CheckSettings()
+{
+  for (const char* name : Settings)
+  {
+    const auto* texts = this->FindField(name);
+    std::map<std::string, std::vector<std::size_t>> values;
+    for (std::size_t i = 0; texts && i < texts->size(); ++i)
+    {
+      if (!(*texts)[i].empty())
+      {
+        values["'" + (*texts)[i].substr(0, LongestQuotation) + "'"].push_back(i);
+      }
+    }
+    if (values.size() > 1)
+    {
+      this->Warn(std::string("field ") + name + " changes: " + ListFrames(values, " in ") +
+        ". A calibration holds for one setting of the scanner only");
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void SweepBuilder::DescribeChain(const Chain& chain)
 {
-  this->Result.Chain = this->Options.ImageFrame;
+  this->Result.Chain = this->ImageFrame;
   bool calibrationUsed = this->Options.CalibrationFileName.empty();
   for (const TransformGraph::Link& link : chain)
   {
@@ -367,8 +594,8 @@ void SweepBuilder::DescribeChain(const Chain& chain)
   if (!calibrationUsed)
   {
     this->Warn("the calibration file is not used: the sequence itself leads from '" +
-      this->Options.ImageFrame + "' to '" + this->Options.ReferenceFrame + "' (" +
-      this->Result.Chain + ")");
+      this->ImageFrame + "' to '" + this->Options.ReferenceFrame + "' (" + this->Result.Chain +
+      ")");
   }
 }
 
@@ -408,17 +635,11 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
       problems[problem].push_back(i);
     }
   }
-  std::vector<std::string> texts;
-  texts.reserve(problems.size());
-  for (const auto& [problem, frames] : problems)
+  if (!problems.empty())
   {
-    texts.push_back(problem + " in " + FrameList(frames));
+    this->Warn("transform " + transform.Name + " " + ListFrames(problems, " in "));
   }
-  if (!texts.empty())
-  {
-    this->Warn("transform " + transform.Name + " " + JoinSome(texts));
-  }
-  if (!transform.Status)
+  if (!transform.Status && !transform.FromHeader)
   {
     this->Warn("field " + transform.Name +
       "TransformStatus is missing in all frames; the transform is taken as valid");

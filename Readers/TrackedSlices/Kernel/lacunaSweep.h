@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct SweepOptions
   /// Device set configuration with constant transforms; empty for none. A transform in it replaces
   /// those of the sequence between the same two frames.
   std::string CalibrationFileName;
+  /// Frame of the pixels. When it is Image and the sequence has a transform between Image and
+  /// CroppedImage, as PLUS leaves it in cropped frames, the pixels are taken to be in CroppedImage.
   std::string ImageFrame = "Image";
   std::string ReferenceFrame = "Reference";
   /// Whether to flag frames of which the tracker or the video source said that they are not valid.
@@ -52,12 +55,15 @@ struct Sweep
   /// missing or unreadable. Not those that would take the place of ImageToReference or
   /// ImageToProbe: they stay in TextFields.
   std::map<std::string, std::vector<Matrix4>> Transforms;
+  /// Those among Transforms, and ImageToProbe, that the header gives for all frames.
+  std::set<std::string> HeaderTransforms;
   /// From the image to the frame "Probe", when it is known and constant; else empty.
   std::vector<Matrix4> ImageToProbe;
   /// The other fields of the frames as text: states of transforms and images, custom fields.
   std::map<std::string, std::vector<std::string>> TextFields;
 
-  std::string Chain; ///< "Image > Probe > Tracker > Reference"; empty when not calibrated
+  std::string ImageFrame; ///< of the pixels: that of the options, or CroppedImage
+  std::string Chain;      ///< "Image > Probe > Tracker > Reference"; empty when not calibrated
   std::vector<std::string> Warnings;
 };
 
@@ -70,8 +76,16 @@ struct Sweep
 /// SliceStatus adds its flags but ImageInvalid, which is found anew; one that is no whole number
 /// from 0 to 255 makes the image invalid, with a warning.
 ///
-/// Throws std::runtime_error when there is no chain, naming the missing link and the transforms
-/// there are, or when the calibration file cannot be used.
+/// Evidence of the pixels' size is compared with the chain: ElementSpacing of a frame, else
+/// PixelSpacingMm (both mm of a column and a row), else the header's spacing; 1 1 says nothing. A
+/// frame whose chain gives another size (by more than 2 %) has an invalid pose, with a warning that
+/// names the frames; without DropInvalid only the warning. Fields of the scanner's settings (depth,
+/// zoom, sector) that change within the sweep are warned of.
+///
+/// Without a chain the sweep is not calibrated when no calibration file is given. Otherwise throws
+/// std::runtime_error that names the missing link and the transforms there are; also when no
+/// transform mentions the reference frame though one leads to Probe, or when the calibration file
+/// cannot be used.
 Sweep BuildSweep(const SequenceHeader& header, const SweepOptions& options);
 
 /// The Timestamp of each frame in s; empty when no frame has one, NaN where one lacks it or has

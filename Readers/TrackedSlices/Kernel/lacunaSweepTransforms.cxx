@@ -17,6 +17,7 @@ namespace
 {
 constexpr std::string_view TransformSuffix = "Transform";
 constexpr std::string_view StatusSuffix = "TransformStatus";
+constexpr std::size_t MostHeaderTransforms = 16; // each takes room for every frame
 
 Matrix4 NoMatrix()
 {
@@ -73,7 +74,9 @@ SweepTransforms::SweepTransforms(
     this->ReadCalibration(calibrationFileName);
   }
   this->ReadFrames(header);
+  this->ReadHeader(header);
   this->NameFrames();
+  this->ReportUnnamed(header);
 }
 
 //------------------------------------------------------------------------------
@@ -122,6 +125,88 @@ void SweepTransforms::ReadFrames(const SequenceHeader& header)
       }
     }
     this->Transforms.push_back(std::move(transform));
+  }
+}
+
+//------------------------------------------------------------------------------
+// A transform of the header holds for every frame, unless frames have their own.
+void SweepTransforms::ReadHeader(const SequenceHeader& header)
+{
+  std::size_t count = 0;
+  for (const auto& [field, text] : header.CustomFields)
+  {
+    SweepTransform transform;
+    transform.Name = GetTransformName(field);
+    Matrix4 matrix;
+    if (transform.Name.empty())
+    {
+      continue;
+    }
+    if (++count > MostHeaderTransforms)
+    {
+      this->Warnings.push_back("the header has more than " + std::to_string(MostHeaderTransforms) +
+        " transforms; the others are kept but not used in chains");
+      return;
+    }
+    const std::string wrong = ParseMatrix(text, matrix);
+    const auto known = std::find_if(this->Transforms.begin(), this->Transforms.end(),
+      [&](const SweepTransform& other)
+      { return !other.FromCalibration && other.Name == transform.Name; });
+    const auto status = std::find_if(header.CustomFields.begin(), header.CustomFields.end(),
+      [&](const auto& other)
+      { return EqualsIgnoringCase(other.first, transform.Name + std::string(StatusSuffix)); });
+    if (known != this->Transforms.end())
+    {
+      this->Warnings.push_back(
+        "transform " + transform.Name + " of the header is not used: the frames have their own");
+    }
+    else if (!wrong.empty())
+    {
+      this->Warnings.push_back("transform " + transform.Name + " of the header " + wrong);
+    }
+    else if (status != header.CustomFields.end() && status->second != "OK")
+    {
+      this->Warnings.push_back("transform " + transform.Name +
+        " of the header is not used: its status is '" + status->second + "', not OK");
+    }
+    else
+    {
+      transform.FromHeader = true;
+      transform.Matrices.assign(static_cast<std::size_t>(header.Frames), matrix);
+      transform.Errors.resize(transform.Matrices.size());
+      this->Transforms.push_back(std::move(transform));
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// Sixteen numbers under another name might be the transform that is missed.
+void SweepTransforms::ReportUnnamed(const SequenceHeader& header)
+{
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, const std::string& text)
+  {
+    Matrix4 matrix;
+    if (GetTransformName(name).empty() && ParseMatrix(text, matrix).empty())
+    {
+      names.push_back(name);
+    }
+  };
+  for (const auto& [name, text] : header.CustomFields)
+  {
+    add(name, text);
+  }
+  for (const auto& [name, texts] : header.FrameFields)
+  {
+    const auto text =
+      std::find_if(texts.begin(), texts.end(), [](const std::string& one) { return !one.empty(); });
+    add(name, text == texts.end() ? std::string() : *text);
+  }
+  if (!names.empty())
+  {
+    this->Warnings.push_back("fields that have 16 numbers as a transform has, but a name that does "
+                             "not end in Transform, are kept but not used in chains: " +
+      JoinSome(names));
   }
 }
 

@@ -20,6 +20,7 @@ struct SweepTransform
   std::string From; ///< empty when the name does not tell the frames
   std::string To;
   bool FromCalibration = false;
+  bool FromHeader = false;         ///< one text for the whole sequence, given to every frame
   std::vector<Matrix4> Matrices;   ///< one, or one for each frame: NaN where Errors has a text
   std::vector<std::string> Errors; ///< what is wrong with a frame's text; empty when nothing is
   const std::vector<std::string>* Status = nullptr; ///< null when no frame has one
@@ -44,8 +45,8 @@ Vec3 GetPictureOrigin(const SequenceHeader& header);
 class SweepTransforms
 {
 public:
-  /// Reads the transforms of header's frames and those of the calibration file, if its name is not
-  /// empty. A transform of the calibration replaces those of the sequence between its two frames.
+  /// Reads the transforms of header's frames and of header itself, and those of the calibration file,
+  /// if its name is not empty. A transform of the calibration replaces those of the sequence between its two frames.
   /// header must outlive this object. Throws std::runtime_error when the calibration cannot be
   /// used.
   SweepTransforms(const SequenceHeader& header, const std::string& calibrationFileName);
@@ -73,6 +74,8 @@ public:
 private:
   void ReadCalibration(const std::string& fileName);
   void ReadFrames(const SequenceHeader& header);
+  void ReadHeader(const SequenceHeader& header);
+  void ReportUnnamed(const SequenceHeader& header);
   void NameFrames();
   static bool IsSame(
     const SweepTransform& transform, const SweepTransform& constant, bool forwards);

@@ -269,3 +269,43 @@ TEST(NrrdHeader, RecognisesItsFiles)
   EXPECT_FALSE(IsTracked("NRRD"));
   EXPECT_FALSE(IsTracked("NRRD0004\n\n"));
 }
+
+TEST(NrrdHeader, SpaceSaysThePixelsSizeAndNoPlace)
+{
+  NrrdFile file = MakeNrrd();
+  EXPECT_EQ(Read(file).PixelSpacing, "1 1");
+  EXPECT_TRUE(Read(file).Warnings.empty());
+  file.Set("space directions", "(0.25,0) (0, 0.5) none");
+  file.Set("space origin", "(0,0)");
+  EXPECT_EQ(Read(file).PixelSpacing, "0.25 0.5");
+  EXPECT_TRUE(Read(file).Warnings.empty());
+  file.Set("space directions", "(0,0.25) (0.5,0) none");
+  file.Set("space origin", "(0,7)");
+  const SequenceHeader turned = Read(file);
+  EXPECT_EQ(turned.PixelSpacing, "0.25 0.5");
+  ASSERT_EQ(turned.Warnings.size(), 2u);
+  EXPECT_NE(turned.Warnings[0].find("space origin is '(0,7)', which places"), std::string::npos);
+  EXPECT_NE(turned.Warnings[1].find("space directions"), std::string::npos);
+  file.Set("space origin", "(0,0)");
+  file.Set("space directions", "(-0.25,0) (0,0.5) none");
+  EXPECT_EQ(Read(file).Warnings.size(), 1u);
+  for (const char* odd : { "", "(", "none", "(a,b) (c,d) none", "((((", ") ) )" })
+  {
+    file.Set("space directions", odd);
+    EXPECT_NO_THROW(Read(file)) << odd;
+  }
+  file.Set("spacings", "0.3 0.4 NaN");
+  file.Set("space directions", "none");
+  EXPECT_EQ(Read(file).PixelSpacing, "0.3 0.4");
+}
+
+TEST(NrrdHeader, PicturesOfSlicerHaveTheirPosesElsewhere)
+{
+  const std::string header = "NRRD0005\ntype: uint8\ndimension: 4\nsizes: 2 2 1 3\n"
+                             "kinds: domain domain domain list\nencoding: raw\n"
+                             "DataNodeClassName:=vtkMRMLScalarVolumeNode\n"
+                             "axis 3 index values:=0 0.1 0.2\n\n";
+  ExpectError(header + std::string(12, 'x'),
+    { "pictures of 3D Slicer, whose poses are in another file", "WriteSequenceMetafile",
+      "Assemble Tracked Slices" });
+}

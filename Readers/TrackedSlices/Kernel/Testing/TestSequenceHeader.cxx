@@ -337,7 +337,7 @@ TEST(SequenceHeader, WrongFields)
   ExpectFieldError("BinaryData", "perhaps", "'perhaps'; it must be True or False");
   ExpectFieldError("CompressedData", "maybe", "'maybe'; it must be True or False");
   ExpectFieldError("CompressedDataSize", "many", "CompressedDataSize is 'many'");
-  ExpectFieldError("UltrasoundImageOrientation", "FM", "'FM'");
+  ExpectFieldError("UltrasoundImageOrientation", "AMF", "'AMF'");
   ExpectFieldError("UltrasoundImageType", "DOPPLER", "'DOPPLER'");
   SequenceFile file = MakeSequence();
   file.Remove("ElementType");
@@ -348,6 +348,48 @@ TEST(SequenceHeader, WrongFields)
   file = MakeSequence();
   file.Remove("UltrasoundImageOrientation");
   ExpectWarning(Read(file), "UltrasoundImageOrientation is missing");
+}
+
+TEST(SequenceHeader, OrientationsThatAreNotKnown)
+{
+  for (const char* unknown : { "XX", "??" })
+  {
+    SequenceFile file = MakeSequence();
+    file.Set("UltrasoundImageOrientation", unknown);
+    file.Set("UltrasoundImageType", "XX");
+    const SequenceHeader header = Read(file);
+    ExpectWarning(
+      header, "which says that it is not known; the slices are taken as they are stored");
+    EXPECT_EQ(header.ImageType, "BRIGHTNESS");
+    EXPECT_FALSE(header.Flips.X || header.Flips.Y || header.Flips.Lines);
+  }
+}
+
+TEST(SequenceHeader, ScanLinesOfGreyLevels)
+{
+  SequenceFile file = MakeSequence();
+  file.Set("UltrasoundImageOrientation", "NM");
+  const SequenceHeader header = Read(file);
+  EXPECT_TRUE(header.Warnings.empty());
+  EXPECT_TRUE(header.Flips.Lines && header.Flips.X && !header.Flips.Y);
+  EXPECT_EQ(header.ImageType, "BRIGHTNESS");
+}
+
+// A message goes to logs and screens: it has no patient's name.
+TEST(SequenceHeader, MessagesDoNotQuoteThePatient)
+{
+  SequenceFile file = MakeSequence();
+  file.AddLine("StudyPatientName = Doe^Jane");
+  file.AddLine("StudyPatientName = Roe^Jane");
+  std::string error = GetError([&] { Read(file); });
+  EXPECT_NE(error.find("StudyPatientName again, with another text"), std::string::npos) << error;
+  EXPECT_EQ(error.find("Jane"), std::string::npos) << error;
+  file = MakeSequence();
+  file.Append(1, "OperatorsName", "Roe");
+  file.Append(1, "OperatorsName", "Doe");
+  error = GetError([&] { Read(file); });
+  EXPECT_NE(error.find("OperatorsName twice, with two texts"), std::string::npos) << error;
+  EXPECT_EQ(error.find("oe'"), std::string::npos) << error;
 }
 
 TEST(SequenceHeader, ByteOrder)

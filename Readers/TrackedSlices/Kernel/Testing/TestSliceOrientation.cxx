@@ -13,7 +13,7 @@ namespace
 std::string Describe(const std::string& orientation, const std::string& type = {})
 {
   const SliceFlips flips = GetSliceFlips(orientation, type);
-  return std::string(flips.X ? "x" : "-") + (flips.Y ? "y" : "-");
+  return std::string(flips.X ? "x" : "-") + (flips.Y ? "y" : "-") + (flips.Lines ? "l" : "");
 }
 }
 
@@ -39,28 +39,46 @@ TEST(SliceOrientation, Pixels)
 
 TEST(SliceOrientation, Lines)
 {
-  EXPECT_EQ(Describe("FM", "RF_REAL"), "--");
-  EXPECT_EQ(Describe("NM", "RF_REAL"), "x-");
-  EXPECT_EQ(Describe("FU", "RF_REAL"), "-y");
-  EXPECT_EQ(Describe("NU", "US_IMG_RF_REAL"), "xy");
-  EXPECT_EQ(Describe("FM", "RF_IQ_LINE"), "--");
-  EXPECT_EQ(Describe("FM", "RF_I_LINE_Q_LINE"), "--");
-  EXPECT_EQ(Describe("FMA", "RF_REAL"), "--");
-  EXPECT_EQ(Describe("NUD", "RF_REAL"), "xy");
+  // grey levels before scan conversion are lines as signals are
+  for (const char* type : { "RF_REAL", "BRIGHTNESS", "", "US_IMG_BRIGHTNESS", "RGB_COLOR", "XX" })
+  {
+    EXPECT_EQ(Describe("FM", type), "--l") << type;
+    EXPECT_EQ(Describe("NM", type), "x-l") << type;
+    EXPECT_EQ(Describe("FU", type), "-yl") << type;
+    EXPECT_EQ(Describe("US_IMG_ORIENT_NU", type), "xyl") << type;
+    EXPECT_EQ(Describe("FMA", type), "--l") << type;
+    EXPECT_EQ(Describe("NUD", type), "xyl") << type;
+  }
+  EXPECT_EQ(Describe("FM", "RF_IQ_LINE"), "--l");
+  EXPECT_EQ(Describe("FM", "RF_I_LINE_Q_LINE"), "--l");
+  EXPECT_EQ(Describe("NM", "RF_I_LINE_Q_LINE"), "x-l"); // a row has I alone, or Q
 }
 
 TEST(SliceOrientation, RefusesWhatCannotBeRight)
 {
   const auto error = [](const char* orientation, const char* type)
   { return GetError([&] { GetSliceFlips(orientation, type); }); };
-  EXPECT_NE(error("FM", "BRIGHTNESS").find("'FM'"), std::string::npos);
   EXPECT_NE(error("MF", "RF_REAL").find("known are FM"), std::string::npos);
   EXPECT_NE(error("MF", "DOPPLER").find("'DOPPLER' is unknown"), std::string::npos);
   EXPECT_NE(error("NM", "RF_IQ_LINE").find("complex"), std::string::npos);
-  for (const char* bad : { "", "M", "XX", "MFX", "MFAA", "AMF", "MM" })
+  EXPECT_NE(error("FU", "RF_I_LINE_Q_LINE").find("complex"), std::string::npos);
+  for (const char* bad : { "", "M", "XX", "??", "MFX", "FMX", "MFAA", "AMF", "AUN", "MM", "FN" })
   {
     EXPECT_NE(error(bad, ""), "") << bad;
   }
+}
+
+TEST(SliceOrientation, NamesThatOthersWriteWhenTheyDoNotKnow)
+{
+  for (const char* unknown : { "", " ", "XX", "??", "US_IMG_ORIENT_XX" })
+  {
+    EXPECT_FALSE(IsKnownOrientation(unknown)) << unknown;
+  }
+  EXPECT_TRUE(IsKnownOrientation("MF"));
+  EXPECT_TRUE(IsKnownOrientation("AMF")); // known, but not read
+  EXPECT_EQ(GetImageTypeName("BRIGHTNESSBRIGHTNESS"), "BRIGHTNESS");
+  EXPECT_EQ(GetImageTypeName("BRIGHTNESSRF_REAL"), "RF_REAL");
+  EXPECT_EQ(GetImageTypeName(" US_IMG_BRIGHTNESS "), "BRIGHTNESS");
 }
 
 TEST(SliceOrientation, FlipsEverySizeOfPixel)

@@ -30,11 +30,13 @@ void TestDefaults()
   LACUNA_CHECK(reader->GetFrameRange()[0] == 0 && reader->GetFrameRange()[1] == -1);
   LACUNA_CHECK(reader->GetFrameStride() == 1);
   LACUNA_CHECK(reader->GetDropInvalidSlices());
+  LACUNA_CHECK(!reader->GetKeepPatientIdentity());
   LACUNA_CHECK(reader->GetMemoryLimit() == 0);
   std::ostringstream text;
   reader->Print(text);
-  for (const char* name : { "FileName", "CalibrationFileName", "ImageFrame", "ReferenceFrame",
-         "FrameRange", "FrameStride", "DropInvalidSlices", "ReplayInTime", "MemoryLimit" })
+  for (const char* name :
+    { "FileName", "CalibrationFileName", "ImageFrame", "ReferenceFrame", "FrameRange",
+      "FrameStride", "DropInvalidSlices", "KeepPatientIdentity", "ReplayInTime", "MemoryLimit" })
   {
     LACUNA_CHECK_CONTAINS(text.str(), std::string(name) + ": ");
   }
@@ -63,8 +65,10 @@ void CheckPixels(vtkImageData* output)
 void TestOutput()
 {
   SequenceFile file = MakeSequence(6);
-  file.Set("Operator", "none");
-  file.Set("PatientName", "Doe");
+  file.Set("Device", "none");
+  file.Set("StudyPatientName", "Doe");
+  file.Set("OperatorsName", "Roe");
+  file.Set("0010|0020", "1234");
   for (int i = 0; i < 6; ++i)
   {
     file.SetFrame(i, "FrameNumber", std::to_string(500 + 2 * i));
@@ -107,9 +111,13 @@ void TestOutput()
   auto* notes = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Note"));
   LACUNA_CHECK(notes && notes->GetNumberOfValues() == 6 && notes->GetValue(2) == "here");
   LACUNA_CHECK(fields->GetAbstractArray("ProbeToTrackerTransformStatus"));
-  auto* custom = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Operator"));
+  auto* custom = vtkStringArray::SafeDownCast(fields->GetAbstractArray("Device"));
   LACUNA_CHECK(custom && custom->GetNumberOfValues() == 1 && custom->GetValue(0) == "none");
-  LACUNA_CHECK(!fields->GetAbstractArray("PatientName") && !fields->GetAbstractArray("patientID"));
+  const char* const identity[] = { "StudyPatientName", "OperatorsName", "0010|0020", "patientID" };
+  for (const char* name : identity)
+  {
+    LACUNA_CHECK(!fields->GetAbstractArray(name));
+  }
 
   const std::vector<std::string> steps = vtkLacunaProvenance::Get(output);
   LACUNA_CHECK(steps.size() == 1);
@@ -119,6 +127,48 @@ void TestOutput()
   const std::string folder =
     std::filesystem::path(test.File.GetPath()).parent_path().filename().string();
   LACUNA_CHECK(steps.at(0).find(folder) == std::string::npos);
+
+  test.Reader->KeepPatientIdentityOn();
+  test.Reader->Update();
+  for (const char* name : identity)
+  {
+    LACUNA_CHECK(test.Reader->GetOutput()->GetFieldData()->GetAbstractArray(name));
+  }
+}
+
+// Lines of grey levels, as a scanner has them before it makes a picture of them.
+void TestScanLines()
+{
+  SequenceFile file = MakeSequence(3);
+  file.Set("UltrasoundImageOrientation", "FM");
+  ReaderOf test(file.GetContent(), false);
+  test.Reader->Update();
+  LACUNA_CHECK(test.Errors.empty());
+  vtkImageData* output = test.Reader->GetOutput();
+  CheckPixels(output);
+  const auto text = [&](const char* name)
+  {
+    return std::string(
+      vtkStringArray::SafeDownCast(output->GetFieldData()->GetAbstractArray(name))->GetValue(0));
+  };
+  LACUNA_CHECK(text("UltrasoundImageOrientation") == "FM");
+  LACUNA_CHECK(text("UltrasoundImageType") == "BRIGHTNESS");
+}
+
+// What contradicts the calibration is flagged, and said on the way out.
+void TestContradictions()
+{
+  SequenceFile file = MakeSequence(5);
+  for (int i = 0; i < 5; ++i)
+  {
+    file.SetFrame(i, "ElementSpacing", i < 3 ? "0.1 0.2 1" : "0.15 0.3 1");
+  }
+  ReaderOf test(file.GetContent());
+  test.Reader->Update();
+  LACUNA_CHECK_CONTAINS(test.Warnings, "in frames 3, 4");
+  const vtkLacunaTrackedSlices slices(test.Reader->GetOutput());
+  LACUNA_CHECK(slices.GetStatus(2) == 0 && slices.GetStatus(3) == 1 && slices.GetStatus(4) == 1);
+  LACUNA_CHECK(!slices.GetImageToReference(3).IsFinite());
 }
 
 void TestTypes()
@@ -240,6 +290,8 @@ int TestTrackedSliceReader(int, char*[])
   TestRequests();
   TestDropInvalidSlices();
   TestUncalibrated();
+  TestScanLines();
+  TestContradictions();
   TestAbort();
   return lacunaCheck::Result();
 }

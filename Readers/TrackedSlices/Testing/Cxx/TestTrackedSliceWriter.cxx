@@ -30,7 +30,7 @@ SequenceFile MakeRich()
 {
   SequenceFile file = MakeSequence(6);
   file.LineEnd = "  \r\n";
-  file.Set("Operator", "none");
+  file.Set("Remarks", "none");
   file.Set("Remark", std::string(3000, 'r') + " = longer than PLUS can read");
   for (int i = 0; i < 6; ++i)
   {
@@ -47,6 +47,19 @@ SequenceFile MakeRich()
   file.RemoveFrame(4, "ProbeToTrackerTransformStatus");
   file.RemoveFrame(5, "Timestamp");
   file.SetFrame(5, "Note", "only here, = with a sign and a \\backslash\\n");
+  return file;
+}
+
+/// As PLUS leaves a crop that begins at column 12 and row 6.
+SequenceFile MakeCropped(int frames)
+{
+  SequenceFile file = MakeSequence(frames);
+  for (int i = 0; i < frames; ++i)
+  {
+    file.SetFrame(i, "ImageToCroppedImageTransform", "1 0 0 -12 0 1 0 -6 0 0 1 0 0 0 0 1");
+    file.SetFrame(i, "ImageToCroppedImageTransformStatus", "OK");
+    file.SetFrame(i, "ElementSpacing", "0.1 0.2 0.1");
+  }
   return file;
 }
 
@@ -137,11 +150,12 @@ void TestDefaults()
   LACUNA_CHECK(!writer->GetFileName());
   LACUNA_CHECK(writer->GetCompressionLevel() == 1);
   LACUNA_CHECK(writer->GetFileSize() == 0);
+  LACUNA_CHECK(!writer->GetKeepPatientIdentity());
   writer->SetCompressionLevel(17);
   LACUNA_CHECK(writer->GetCompressionLevel() == 9);
   std::ostringstream text;
   writer->Print(text);
-  for (const char* name : { "FileName", "CompressionLevel", "FileSize" })
+  for (const char* name : { "FileName", "CompressionLevel", "KeepPatientIdentity", "FileSize" })
   {
     LACUNA_CHECK_CONTAINS(text.str(), std::string(name) + ": ");
   }
@@ -217,6 +231,16 @@ void TestEverythingComesBack()
     poses.RemoveFrame(i, "ImageStatus");
   }
   TestRoundTrip(poses.GetContent(), added, true);
+  SequenceFile scan = MakeSequence(2); // lines of grey levels
+  scan.Set("UltrasoundImageOrientation", "NM");
+  TestRoundTrip(scan.GetContent(), added, true);
+  TestRoundTrip(MakeCropped(3).GetContent(), added, true);
+  SequenceFile header = MakeSequence(3);
+  header.Set("StylusToTrackerTransform", "1 0 0 7 0 1 0 8 0 0 1 9 0 0 0 1");
+  header.Set("ElementSpacing", "0.1 0.2 1");
+  std::set<std::string> more = added;
+  more.insert("StylusToTrackerTransformStatus");
+  TestRoundTrip(header.GetContent(), more, true);
 }
 
 void TestWarnings()
@@ -237,7 +261,7 @@ void TestWarnings()
   odd->SetNumberOfValues(4);
   stack->GetFieldData()->AddArray(odd);
   vtkNew<vtkStringArray> patient;
-  patient->SetName("PatientName");
+  patient->SetName("StudyPatientName");
   patient->InsertNextValue("Doe");
   stack->GetFieldData()->AddArray(patient);
   vtkNew<vtkStringArray> lines;
@@ -247,7 +271,8 @@ void TestWarnings()
   WriterOf writer(stack, Beside(test, "copy.mha"));
   LACUNA_CHECK(writer.Writer->Write() == 1);
   LACUNA_CHECK_CONTAINS(writer.Warnings, "'Odd' is not written: it has 4 tuples");
-  LACUNA_CHECK_CONTAINS(writer.Warnings, "'PatientName' is not written");
+  LACUNA_CHECK_CONTAINS(
+    writer.Warnings, "'StudyPatientName' is not written: it may identify the patient");
   LACUNA_CHECK_CONTAINS(writer.Warnings, "'Lines' is not written: its text has a line break");
   LACUNA_CHECK_CONTAINS(
     writer.Warnings, "longer than 1000 characters; PLUS would cut them: Remark");
@@ -259,6 +284,75 @@ void TestWarnings()
   WriterOf nrrd(stack, Beside(test, "copy.nrrd"));
   LACUNA_CHECK(nrrd.Writer->Write() == 1);
   LACUNA_CHECK_CONTAINS(ReadAll(Beside(test, "copy.nrrd")), "\nLines:=one\\ntwo\n");
+  LACUNA_CHECK(ReadAll(Beside(test, "copy.nrrd")).find("Doe") == std::string::npos);
+  nrrd.Writer->KeepPatientIdentityOn();
+  LACUNA_CHECK(nrrd.Writer->Write() == 1);
+  LACUNA_CHECK_CONTAINS(ReadAll(Beside(test, "copy.nrrd")), "\nStudyPatientName:=Doe\n");
+}
+
+// A frame with "Patient" in its name is no patient's name: its transforms are written.
+void TestPatientsFrame()
+{
+  SequenceFile file = MakeSequence(2);
+  for (int i = 0; i < 2; ++i)
+  {
+    file.SetFrame(i, "PatientToReferenceTransform", "1 0 0 7 0 1 0 8 0 0 1 9 0 0 0 1");
+    file.SetFrame(i, "PatientToReferenceTransformStatus", "OK");
+  }
+  ReaderOf test(file.GetContent());
+  test.Reader->SetReferenceFrame("Patient");
+  test.Reader->Update();
+  const std::string path = Beside(test, "copy.mha");
+  WriterOf writer(test.Reader->GetOutputPort(), path);
+  LACUNA_CHECK(writer.Writer->Write() == 1);
+  LACUNA_CHECK(writer.Warnings.empty());
+  ReaderOf copy(ReadAll(path), false);
+  copy.Reader->SetReferenceFrame("Patient");
+  copy.Reader->Update();
+  const auto first = [](ReaderOf& reader)
+  {
+    return vtkLacunaTrackedSlices(reader.Reader->GetOutput())
+      .GetImageToReference(1)
+      .Point({ 1, 2, 0 });
+  };
+  LACUNA_CHECK(Norm(first(test) - first(copy)) < 1e-12);
+}
+
+// Parts of what PLUS has cropped, resampled or not, lie where they lie, and another calibration of
+// the whole picture takes the place of the first.
+void TestPartsOfCropped()
+{
+  ReaderOf test(MakeCropped(4).GetContent());
+  test.Reader->Update();
+  LACUNA_CHECK(test.Warnings.empty());
+  const vtkLacunaTrackedSlices whole(test.Reader->GetOutput());
+  vtkNew<vtkExtractVOI> part;
+  part->SetInputConnection(test.Reader->GetOutputPort());
+  part->SetVOI(1, 3, 1, 3, 0, 3);
+  for (const int step : { 1, 2 })
+  {
+    part->SetSampleRate(step, 1, 1);
+    const std::string path = Beside(test, "part.mha");
+    WriterOf writer(part->GetOutputPort(), path);
+    LACUNA_CHECK(writer.Writer->Write() == 1);
+    LACUNA_CHECK(writer.Warnings.empty());
+    LACUNA_CHECK_CONTAINS(
+      ReadAll(path), step == 1 ? "_ElementSpacing = 0.1 0.2 0.1\n" : "_ElementSpacing = 0.2 0.2\n");
+    ReaderOf copy(ReadAll(path), false);
+    copy.Reader->Update();
+    LACUNA_CHECK(copy.Errors.empty() && copy.Warnings.empty());
+    const vtkLacunaTrackedSlices slices(copy.Reader->GetOutput());
+    const lacuna::Vec3 there = whole.GetImageToReference(3).Point({ 3, 2, 0 });
+    LACUNA_CHECK(slices.GetStatus(3) == 0);
+    LACUNA_CHECK(Norm(slices.GetImageToReference(3).Point({ 2. / step, 1, 0 }) - there) < 1e-12);
+    // one with pixels of the same size, 4 mm further along z of the probe
+    copy.File.WriteBeside("other.xml", MakeCalibration("0.1 0 0 0 0 0.2 0 0 0 0 0.1 9 0 0 0 1"));
+    copy.Reader->SetCalibrationFileName(Beside(copy, "other.xml").c_str());
+    copy.Reader->Update();
+    const vtkLacunaTrackedSlices moved(copy.Reader->GetOutput());
+    const lacuna::Vec3 off = moved.GetImageToReference(3).Point({ 2. / step, 1, 0 }) - there;
+    LACUNA_CHECK(Norm(off - lacuna::Vec3{ 0, 0, 4 }) < 1e-12);
+  }
 }
 
 // Poses that are not those of the transforms, and flags.
@@ -470,6 +564,8 @@ int TestTrackedSliceWriter(int, char*[])
   TestDefaults();
   TestEverythingComesBack();
   TestWarnings();
+  TestPatientsFrame();
+  TestPartsOfCropped();
   TestCorrectedPoses();
   TestWindows();
   TestCrops();
