@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceStack.h"
 
+#include "lacunaPixelSpacing.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -11,6 +12,7 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -24,6 +26,13 @@ constexpr const char* TrackerToReferenceName = "TrackerToReference";
 std::unique_ptr<vtkLacunaGrowingArray> MakeMatrices(const char* name)
 {
   return std::make_unique<vtkLacunaGrowingArray>(name, VTK_DOUBLE, 16);
+}
+
+lacuna::Matrix4 NoPose()
+{
+  std::array<double, 16> none{};
+  none.fill(std::numeric_limits<double>::quiet_NaN());
+  return lacuna::Matrix4(none);
 }
 
 // Puts a range where an array keeps one that it has computed.
@@ -53,7 +62,8 @@ vtkLacunaSliceStack::vtkLacunaSliceStack(const lacuna::SweepFrame& frame, std::i
   , Pixels(std::make_unique<vtkLacunaGrowingArray>("Intensity", VTK_UNSIGNED_CHAR, 1))
   , ProbeToTracker("ProbeToTracker", VTK_DOUBLE, 16)
   , Timestamps(vtkLacunaTrackedSlices::TimestampName, VTK_DOUBLE, 1)
-  , Status(vtkLacunaTrackedSlices::SliceStatusName, VTK_UNSIGNED_CHAR, 1)
+  , GivenStatus("", VTK_UNSIGNED_CHAR, 1)
+  , PixelSpacings(lacuna::PixelSpacingField, VTK_DOUBLE, 2)
   , FrameNumbers(vtkLacunaTrackedSlices::FrameNumberName, VTK_INT, 1)
   , Residuals("Residual", VTK_DOUBLE, 1)
   , Speeds("Speed", VTK_DOUBLE, 1)
@@ -68,8 +78,6 @@ std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
   constexpr int columns = 768;
   constexpr int rows = 576;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  std::array<double, 16> noPose{};
-  noPose.fill(none);
   lacuna::SweepFrame frame;
   frame.Window = { 0, 0, columns, rows };
   lacuna::AcquiredSlice slice;
@@ -79,7 +87,7 @@ std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
     pixels->rbegin()[i] = static_cast<std::uint8_t>(255 - i % columns * 256 / columns);
   }
   slice.Pixels = std::move(pixels);
-  slice.ProbeToTracker = lacuna::Matrix4(noPose);
+  slice.ProbeToTracker = NoPose();
   slice.Status = vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::ImageInvalid;
   slice.Residual = slice.Speed = none;
   auto stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
@@ -91,11 +99,14 @@ std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
 void vtkLacunaSliceStack::Append(const lacuna::AcquiredSlice& slice)
 {
   const int number = static_cast<int>(slice.FrameNumber);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const lacuna::Vec2 spacing = slice.PixelSpacing.value_or(lacuna::Vec2{ none, none });
   const auto pixels = static_cast<vtkIdType>(slice.Pixels->size());
   this->Pixels->MakeRoom(pixels);
   for (vtkLacunaGrowingArray* array :
     { this->ImageToReference.get(), this->TrackerToReference.get(), &this->ProbeToTracker,
-      &this->Timestamps, &this->Status, &this->FrameNumbers, &this->Residuals, &this->Speeds })
+      &this->Timestamps, &this->GivenStatus, &this->PixelSpacings, this->Status.get(),
+      &this->FrameNumbers, &this->Residuals, &this->Speeds })
   {
     if (array)
     {
@@ -109,23 +120,36 @@ void vtkLacunaSliceStack::Append(const lacuna::AcquiredSlice& slice)
     this->Brightest = std::max(this->Brightest, pixel);
   }
   this->ProbeToTracker.Append(slice.ProbeToTracker.Data());
-  this->AppendPose(slice.ProbeToTracker);
+  this->GivenStatus.Append(&slice.Status);
+  this->PixelSpacings.Append(spacing.data());
+  this->HasPixelSpacings = this->HasPixelSpacings || slice.PixelSpacing.has_value();
+  this->AppendPose();
   this->Timestamps.Append(&slice.Timestamp);
   this->FrameNumbers.Append(&number);
   this->Residuals.Append(&slice.Residual);
   this->Speeds.Append(&slice.Speed);
-  this->Status.Append(&slice.Status);
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceStack::AppendPose(const lacuna::Matrix4& probeToTracker)
+// Of the first slice that has none.
+void vtkLacunaSliceStack::AppendPose()
 {
+  const vtkIdType i = this->Status->GetNumberOfTuples();
+  const lacuna::Matrix4 probeToTracker(
+    static_cast<const double*>(this->ProbeToTracker.GetTuple(i)));
+  const auto* said = static_cast<const double*>(this->PixelSpacings.GetTuple(i));
+  const lacuna::Vec2 spacing{ said[0], said[1] };
+  const bool contradicts = this->Frame.Calibrated && lacuna::IsPixelSpacing(spacing) &&
+    lacuna::SaysPixelSpacing(spacing) &&
+    !lacuna::IsSameSpacing(spacing, lacuna::GetPixelSpacing(this->Frame.ImageToProbe));
+  unsigned char status = *static_cast<const unsigned char*>(this->GivenStatus.GetTuple(i));
+  status |= contradicts ? vtkLacunaTrackedSlices::PoseInvalid : 0;
+  this->Status->Append(&status);
   this->TrackerToReference->Append(this->Frame.TrackerToReference.Data());
   if (this->ImageToReference)
   {
-    // NaN stays NaN in all elements
-    const lacuna::Matrix4 pose = std::isnan(probeToTracker(0, 0))
-      ? probeToTracker
+    const lacuna::Matrix4 pose = contradicts || std::isnan(probeToTracker(0, 0))
+      ? NoPose()
       : this->Frame.TrackerToReference * probeToTracker * this->Frame.ImageToProbe;
     this->ImageToReference->Append(pose.Data());
   }
@@ -136,9 +160,12 @@ void vtkLacunaSliceStack::Calibrate(const lacuna::SweepFrame& frame)
 {
   // outputs that were made keep the old ones
   auto tracker = MakeMatrices(TrackerToReferenceName);
+  auto status = std::make_unique<vtkLacunaGrowingArray>(
+    vtkLacunaTrackedSlices::SliceStatusName, VTK_UNSIGNED_CHAR, 1);
   auto image =
     frame.Calibrated ? MakeMatrices(vtkLacunaTrackedSlices::ImageToReferenceName) : nullptr;
   tracker->MakeRoom(this->GetNumberOfSlices());
+  status->MakeRoom(this->GetNumberOfSlices());
   if (image)
   {
     image->MakeRoom(this->GetNumberOfSlices());
@@ -147,10 +174,11 @@ void vtkLacunaSliceStack::Calibrate(const lacuna::SweepFrame& frame)
   this->Frame = frame;
   this->Frame.Window = window;
   this->TrackerToReference = std::move(tracker);
+  this->Status = std::move(status);
   this->ImageToReference = std::move(image);
   for (vtkIdType i = 0; i < this->GetNumberOfSlices(); ++i)
   {
-    this->AppendPose(lacuna::Matrix4(static_cast<const double*>(this->ProbeToTracker.GetTuple(i))));
+    this->AppendPose();
   }
 }
 
@@ -170,9 +198,10 @@ void vtkLacunaSliceStack::Fill(vtkImageData* output) const
   output->GetPointData()->SetScalars(pixels);
   vtkFieldData* fields = output->GetFieldData();
   using Array = const vtkLacunaGrowingArray*;
-  for (const Array array : std::initializer_list<Array>{ this->ImageToReference.get(),
-         this->TrackerToReference.get(), &this->ProbeToTracker, &this->Timestamps, &this->Status,
-         &this->FrameNumbers, &this->Residuals, &this->Speeds })
+  for (const Array array :
+    std::initializer_list<Array>{ this->ImageToReference.get(), this->TrackerToReference.get(),
+      &this->ProbeToTracker, &this->Timestamps, this->Status.get(), &this->FrameNumbers,
+      &this->Residuals, &this->Speeds, this->HasPixelSpacings ? &this->PixelSpacings : nullptr })
   {
     if (array)
     {

@@ -30,10 +30,10 @@ public:
   /// Takes the slice as a whole or, throwing std::bad_alloc, nothing of it.
   void Append(const lacuna::AcquiredSlice& slice);
   /// Takes the calibration of a frame for all slices, those that are there too; or, throwing
-  /// std::bad_alloc, for none.
+  /// std::bad_alloc, for none. Slices whose pixels have another size by the video are flagged.
   void Calibrate(const lacuna::SweepFrame& frame);
 
-  vtkIdType GetNumberOfSlices() const { return this->Status.GetNumberOfTuples(); }
+  vtkIdType GetNumberOfSlices() const { return this->Timestamps.GetNumberOfTuples(); }
   const lacuna::SweepFrame& GetFrame() const { return this->Frame; }
   /// Columns and rows, and where they begin in the whole frame: the stack's origin.
   const std::array<int, 4>& GetWindow() const { return this->Frame.Window; }
@@ -41,7 +41,7 @@ public:
   void Fill(vtkImageData* output) const;
 
 private:
-  void AppendPose(const lacuna::Matrix4& probeToTracker);
+  void AppendPose();
 
   lacuna::SweepFrame Frame;
   std::unique_ptr<vtkLacunaGrowingArray> Pixels;
@@ -51,7 +51,10 @@ private:
   std::unique_ptr<vtkLacunaGrowingArray> TrackerToReference;
   vtkLacunaGrowingArray ProbeToTracker;
   vtkLacunaGrowingArray Timestamps;
-  vtkLacunaGrowingArray Status;
+  vtkLacunaGrowingArray GivenStatus; ///< of the slices, before their pixels are compared
+  vtkLacunaGrowingArray PixelSpacings;
+  bool HasPixelSpacings = false;
+  std::unique_ptr<vtkLacunaGrowingArray> Status;
   vtkLacunaGrowingArray FrameNumbers;
   vtkLacunaGrowingArray Residuals;
   vtkLacunaGrowingArray Speeds;

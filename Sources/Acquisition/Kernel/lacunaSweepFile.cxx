@@ -3,6 +3,7 @@
 
 #include "lacunaOutputFile.h"
 #include "lacunaParameterText.h"
+#include "lacunaPixelSpacing.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
 
@@ -85,6 +86,11 @@ SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& fra
   {
     const Vec3 corner{ double(frame.Window[0]), double(frame.Window[1]), 0 };
     AddTransform(fields, "ImageToProbe", frame.ImageToProbe * Matrix4::Translation(corner), true);
+  }
+  if (slice.PixelSpacing)
+  {
+    const auto [column, row] = *slice.PixelSpacing;
+    fields.emplace_back(PixelSpacingField, FormatNumber(column) + " " + FormatNumber(row));
   }
   AddNumber(fields, "Timestamp", slice.Timestamp);
   AddNumber(fields, "Residual", slice.Residual);

@@ -23,8 +23,10 @@ namespace lacuna
 std::string FindFreeSweepName(const std::string& fileName, int compressionLevel);
 
 /// The fields with which a slice is stored: poses by their names with the states that readers ask
-/// for, ImageToProbe for the pixels of the file, Timestamp, FrameNumber, SliceStatus, Residual, Speed
-/// and, where the pose was held, PoseHeld (s since it was measured).
+/// for, ImageToProbe for the pixels of the file, ElementSpacing as the video says it, Timestamp,
+/// FrameNumber, SliceStatus, Residual, Speed and, where the pose was held, PoseHeld (s since it was
+/// measured). That the spacing contradicts the calibration is not written: a reader compares them,
+/// with the calibration that it is given.
 SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame);
 
 /// Opens its file by a free name with the first slice, since only then the size is known, on a thread

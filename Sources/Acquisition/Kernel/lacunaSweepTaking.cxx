@@ -2,11 +2,11 @@
 #include "lacunaSweepTaking.h"
 
 #include "lacunaOutputFile.h"
+#include "lacunaPixelSpacing.h"
 #include "lacunaSweep.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -37,44 +37,30 @@ std::string SpeedText(double speed)
   return std::to_string(std::lround(std::fmin(speed, most)));
 }
 
-std::string SpacingText(double x, double y)
-{
-  std::string text;
-  for (const double value : { x, y })
-  {
-    std::array<char, 32> digits{};
-    const auto result = std::to_chars(
-      digits.data(), digits.data() + digits.size(), value, std::chars_format::general, 4);
-    text += (text.empty() ? "" : " x ") + std::string(digits.data(), result.ptr);
-  }
-  return text + " mm";
-}
-
 // Whether the video says of its pixels what the calibration does.
 std::string CompareSpacings(const VideoFrame& frame, const std::optional<Matrix4>& imageToProbe)
 {
-  constexpr double tolerance = 0.02; // relative; Probe Calibration finds scales to some 0.5 %
   if (!frame.PixelSpacing || !imageToProbe)
   {
     return {};
   }
   const Vec2& said = *frame.PixelSpacing;
-  const Vec2 known{ Norm(imageToProbe->Column(0)), Norm(imageToProbe->Column(1)) };
-  const auto isLength = [](double length) { return std::isfinite(length) && length > 0; };
-  if (!isLength(said[0]) || !isLength(said[1]))
+  const Vec2 known = GetPixelSpacing(*imageToProbe);
+  if (!IsPixelSpacing(said))
   {
-    return "The video says that its pixels are " + SpacingText(said[0], said[1]) +
+    return "The video says that its pixels are " + FormatPixelSpacing(said) +
       ", which cannot be, so that nothing tells whether its depth is that of the calibration: "
       "mend what sends it, and compare the depth on the scanner's screen";
   }
-  const auto same = [](double a, double b) { return std::abs(a - b) <= tolerance * b; };
-  if (same(said[0], known[0]) && same(said[1], known[1]))
+  if (IsSameSpacing(said, known))
   {
     return {};
   }
-  return "The video says that its pixels are " + SpacingText(said[0], said[1]) +
-    ", the calibration that they are " + SpacingText(known[0], known[1]) +
-    ", which is used: set the scanner to the depth of the calibration, or take that of this depth";
+  return "The video says that its pixels are " + FormatPixelSpacing(said) +
+    ", the calibration that they are " + FormatPixelSpacing(known) +
+    ": such slices are flagged as pose invalid. Set the scanner to the depth of the calibration, "
+    "or "
+    "take that of this depth";
 }
 
 Matrix4 NoPose()
@@ -142,6 +128,7 @@ AcquiredSlice MakeSlice(const PairedFrame& frame, const SweepFrame& window, doub
   slice.ProbeToTracker = frame.Pose ? frame.Pose->ReceiverToTransmitter : NoPose();
   slice.Status = static_cast<unsigned char>(
     (frame.Pose ? 0 : Sweep::PoseInvalid) | (video.Damaged ? Sweep::ImageInvalid : 0));
+  slice.PixelSpacing = video.PixelSpacing;
   slice.Residual = frame.Pose ? frame.Pose->Nearest : NaN;
   slice.Gap = frame.Pose ? frame.Pose->Gap : NaN;
   slice.Held = frame.Pose && frame.Pose->Held;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WrittenSequence.h"
+#include "lacunaCalibrationFile.h"
 #include "lacunaOutputFile.h"
+#include "lacunaPatientIdentity.h"
 #include "lacunaSequenceText.h"
 #include "lacunaSweep.h"
 #include "lacunaSweepFile.h"
@@ -209,6 +211,49 @@ TEST(SweepFile, OthersReadItsTransformsOfItsPixels)
     }
   }
   ADD_FAILURE() << "no ImageToProbe";
+}
+
+// Whoever reads it compares it with the calibration at hand: what is recorded is what was said.
+TEST(SweepFile, KeepsTheSizeOfPixelsThatTheVideoTold)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "depth.mhd";
+  SweepFrame frame = MakeFrame(true); // for pixels of 0.1 x 0.2 mm
+  {
+    SweepFile file(path, 0);
+    for (int i = 0; i < 6; ++i)
+    {
+      AcquiredSlice slice = MakeSlice(i);
+      if (i > 0)
+      {
+        slice.PixelSpacing = i < 3 ? Vec2{ 0.1, 0.2 } : Vec2{ 0.2, 0.4 };
+      }
+      file.Add(slice, frame);
+    }
+    file.Finish();
+  }
+  SweepOptions options;
+  const SequenceHeader header = ReadSequenceHeader(path);
+  const lacuna::Sweep sweep = BuildSweep(header, options);
+  EXPECT_EQ(sweep.TextFields.at("ElementSpacing"),
+    (std::vector<std::string>{ "", "0.1 0.2", "0.1 0.2", "0.2 0.4", "0.2 0.4", "0.2 0.4" }));
+  EXPECT_EQ(sweep.Status, (std::vector<unsigned char>{ 0, 0, 0, 1, 1, 1 }));
+  // with the calibration of the other depth it is the first ones that are wrong
+  const std::string calibration = folder / "calibration.xml";
+  std::ofstream(calibration) << FormatCalibration(
+    { { "Image", "Probe", Matrix4::Scaling({ 0.2, 0.4, 1 }) } }, "another depth");
+  options.CalibrationFileName = calibration;
+  EXPECT_EQ(BuildSweep(header, options).Status, (std::vector<unsigned char>{ 0, 1, 1, 0, 0, 0 }));
+}
+
+TEST(SweepFile, NoFieldIdentifiesThePatient)
+{
+  AcquiredSlice slice = MakeSlice(0);
+  slice.PixelSpacing = Vec2{ 0.1, 0.2 };
+  for (const auto& [name, text] : MakeSliceFields(slice, MakeFrame(true)))
+  {
+    EXPECT_FALSE(IdentifiesPatient(name)) << name;
+  }
 }
 
 TEST(SweepFile, APartThatBeginsNowhereIsRefused)
