@@ -70,32 +70,41 @@ function (lacuna_test_cxx_executable target)
   lacuna_module_test_program(${target})
 endfunction ()
 
-# lacuna_add_kernel_test(<name> [SANITIZE] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)
-# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. SHARDS: so many of its
-# tests run at once, since they mostly wait or take long.
+# lacuna_add_kernel_test(<name> [SANITIZE] [REAL_TIME] [SHARDS <number>] SOURCES <file>... LIBRARIES <target>...)
+# A GoogleTest program without VTK, in ctest as Kernel.<name>. SANITIZE: see above. REAL_TIME: see
+# lacuna_tests_in_real_time. SHARDS: so many of its tests run at once, since they mostly wait or take long.
 function (lacuna_add_kernel_test name)
-  cmake_parse_arguments(arg "SANITIZE" "SHARDS" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "SANITIZE;REAL_TIME" "SHARDS" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(Test${name}Kernel ${arg_SOURCES})
   target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
   target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
   lacuna_test_program(Test${name}Kernel)
   lacuna_use_test_headers(Test${name}Kernel LacunaKernelTestHeaders)
-  set(shards)
-  if (arg_SHARDS)
-    set(shards "${CMAKE_SOURCE_DIR}/Testing/Tools/shards.sh" ${arg_SHARDS})
+  set(command)
+  if (NOT arg_REAL_TIME)
+    set(command ${LACUNA_BESIDE_REAL_TIME})
   endif ()
-  add_test(NAME Kernel.${name} COMMAND ${shards} "$<TARGET_FILE:Test${name}Kernel>")
+  if (arg_SHARDS)
+    list(APPEND command "${CMAKE_SOURCE_DIR}/Testing/Tools/shards.sh" ${arg_SHARDS})
+  endif ()
+  add_test(NAME Kernel.${name} COMMAND ${command} "$<TARGET_FILE:Test${name}Kernel>")
   set_tests_properties(Kernel.${name} PROPERTIES LABELS "kernel")
   if (arg_SANITIZE)
     set_property(TEST Kernel.${name} APPEND PROPERTY LABELS "sanitize")
     add_dependencies(LacunaSanitizeTests Test${name}Kernel)
   endif ()
+  if (arg_REAL_TIME)
+    lacuna_tests_in_real_time(Kernel.${name})
+  endif ()
 endfunction ()
 
 # lacuna_tests_in_real_time(<test>...)
-# Devices, frames and deadlines in real time: no other test runs beside them (ctest -j).
+# Devices, frames and deadlines in real time. They run one at a time and first: they mostly wait, so other
+# tests run beside them. Those yield the processor: their commands begin with LACUNA_BESIDE_REAL_TIME.
+set(LACUNA_BESIDE_REAL_TIME nice)
+set(_vtk_test_cxx_pre_args ${LACUNA_BESIDE_REAL_TIME}) # what vtk_add_test_cxx begins commands with
 function (lacuna_tests_in_real_time)
-  set_tests_properties(${ARGN} PROPERTIES RUN_SERIAL ON)
+  set_tests_properties(${ARGN} PROPERTIES RESOURCE_LOCK real-time COST 1000)
 endfunction ()
 
 # lacuna_tests_in_interpreters(<test>...)
@@ -132,24 +141,38 @@ function (lacuna_tests_with_emulated_ports)
     "LD_LIBRARY_PATH=path_list_prepend:$<TARGET_FILE_DIR:LacunaPseudoTerminalPorts>")
 endfunction ()
 
-# lacuna_add_paraview_test(<script.py> [NAME <name>] [LABELS <label>...] [ARGS <argument>...])
-# Runs a script of Testing/ParaView in pvpython with the plugin of the build tree at hand. A script
-# that lacks the real data leaves with code 77, which counts as skipped.
+# lacuna_add_paraview_test(<script.py> [REAL_TIME] [NAME <name>] [LABELS <label>...] [ARGS <argument>...])
+# Runs a script of Testing/ParaView in pvpython, with the plugin of the build tree at hand: in a fork of one
+# that all tests share (forked.py). In one of its own: REAL_TIME (see lacuna_tests_in_real_time), and with
+# sanitizers, which forbid forks of programs with threads. A script that lacks the real data leaves with
+# code 77, which counts as skipped.
 function (lacuna_add_paraview_test script)
-  cmake_parse_arguments(arg "" "NAME" "LABELS;ARGS" ${ARGN})
+  cmake_parse_arguments(arg "REAL_TIME" "NAME" "LABELS;ARGS" ${ARGN})
   get_filename_component(name "${script}" NAME_WE)
   set(name "ParaView.${name}")
   if (arg_NAME)
     set(name "${arg_NAME}")
   endif ()
+  set(pvpython "$<TARGET_FILE:ParaView::pvpython>")
+  if (arg_REAL_TIME)
+    set(command "${pvpython}" --force-offscreen-rendering)
+  elseif (LACUNA_SANITIZE)
+    set(command ${LACUNA_BESIDE_REAL_TIME} "${pvpython}" --force-offscreen-rendering)
+  else ()
+    find_package(Python3 REQUIRED COMPONENTS Interpreter)
+    set(command "${Python3_EXECUTABLE}"
+      "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView/forked.py" "${pvpython}")
+  endif ()
   add_test(NAME "${name}"
-    COMMAND "$<TARGET_FILE:ParaView::pvpython>" --force-offscreen-rendering
-      "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${arg_ARGS})
+    COMMAND ${command} "${CMAKE_CURRENT_SOURCE_DIR}/${script}" ${arg_ARGS})
   set_tests_properties("${name}" PROPERTIES
     LABELS "paraview;${arg_LABELS}"
     SKIP_RETURN_CODE 77
     ENVIRONMENT "LACUNA_PLUGIN=$<TARGET_FILE:LacunaPlugin>;LACUNA_TEST_DATA=${LACUNA_TEST_DATA};LACUNA_TEST_OUTPUT=${CMAKE_BINARY_DIR}/Testing/Temporary;PYTHONPATH=${CMAKE_BINARY_DIR}/${lacuna_python_destination}:${CMAKE_CURRENT_FUNCTION_LIST_DIR}/ParaView")
   lacuna_tests_in_interpreters("${name}")
+  if (arg_REAL_TIME)
+    lacuna_tests_with_emulated_ports("${name}")
+  endif ()
 endfunction ()
 
 # lacuna_add_example_test(<folder of Documentation/Examples> <script> [ARGS <argument>...])
