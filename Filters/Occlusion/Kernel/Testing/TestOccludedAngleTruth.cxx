@@ -96,7 +96,7 @@ TEST(OccludedAngleTruth, OutsideAClosedCircle)
 
 // The ends of a gap are uncertain by a pixel together: first order. Where the pixels end is chance, so
 // the order is of 100 gaps of about 40 degrees (Carr 1996, figure 5.13), anywhere on the circle, with
-// what it is uncertain by: 1.01 +- 0.08.
+// what it is uncertain by: 0.99 +- 0.08.
 TEST(OccludedAngleTruth, OneGap)
 {
   const int gaps = Sanitized ? 3 : 100;
@@ -114,7 +114,7 @@ TEST(OccludedAngleTruth, OneGap)
       { return Radius(x, y) < 0.8 ? 2 * Pi - GetGap(half, c * x + s * y, c * y - s * x) : None; } };
     for (int fine : { 0, 1 })
     {
-      const double error = circle.GetError(fine ? 80 : 20, 800);
+      const double error = circle.GetError(fine ? 80 : 20, 400);
       mean[fine] += error / gaps;
       square[fine] += error * error / gaps;
     }

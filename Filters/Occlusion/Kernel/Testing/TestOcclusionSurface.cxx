@@ -219,17 +219,13 @@ TEST(OcclusionSurface, CurvatureIsContinuous)
 
 TEST(OcclusionSurface, DoesNotDependOnThreads)
 {
-  const Ball ball(0.5); // enough nodes for the fast solution
+  const Ball ball(0.25); // enough nodes for the fast solution
   ThreadExecution one(1);
   const OcclusionSurface expected(one, ball.Get(), {});
   EXPECT_GT(expected.GetReport().Nodes, 1500);
   const std::vector<float> values = expected.EvaluateGrid(one);
-  for (const int threads : { 2, 5 })
-  {
-    ThreadExecution execution(threads);
-    const OcclusionSurface surface(execution, ball.Get(), {});
-    EXPECT_EQ(surface.EvaluateGrid(execution), values) << threads;
-  }
+  ThreadExecution five(5);
+  EXPECT_EQ(OcclusionSurface(five, ball.Get(), {}).EvaluateGrid(five), values);
 }
 
 TEST(OcclusionSurface, SmoothingStiffens)
