@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the times of the last run of .ci/run (build/ci/times.tsv) into README.md and CONTRIBUTING.md, between their markers."""
+"""Writes the times of the last run of .ci/run (build/ci/times.tsv) into README.md and CONTRIBUTING.md, at their markers.
+
+    times.py [MINUTES]     also the minutes of a first ./demo.sh: chroot.sh FOLDER demo prints its time
+"""
 import os
 import re
 import sys
@@ -12,8 +15,10 @@ try:
 except FileNotFoundError:
     sys.exit("build/ci/times.tsv is missing: run .ci/run first")
 minutes = {row[0]: float(row[1]) for row in rows}
+if len(sys.argv) > 1:
+    minutes["demo"] = float(sys.argv[1])
 measured = " and ".join(sorted({f"commit {commit} on {date}, {cores} cores" for *_, commit, date, cores in rows}))
-table = ["| measured | minutes | processor minutes | tests |", "|---|---|---|---|",
+table = ["| stage | minutes | processor minutes | tests |", "|---|---|---|---|",
          *(f"| {name} | {clock} | {processor} | {tests} |" for name, clock, processor, tests, *_ in rows), "", f"Measured at {measured}."]
 for page in "README.md", "CONTRIBUTING.md":
     with open(page, encoding="utf-8") as file:
