@@ -4,7 +4,8 @@
     python3 forked.py PVPYTHON SCRIPT [ARGUMENT...]     like: pvpython --force-offscreen-rendering SCRIPT ARGUMENT...
 
 Starting ParaView takes more than two seconds of processor time, forking takes none. The first test in a run of ctest
-starts this pvpython, which ends with ctest. Each script has its own process: scripts cannot disturb each other.
+starts this pvpython, which ends with ctest. Each script has its own process: scripts cannot disturb each other. It ends
+without ParaView's own exit, which tests in real time, of ranks, of windows and of servers try.
 """
 import errno
 import json
@@ -71,12 +72,12 @@ def serve(listener, ctest):
             continue
         if os.fork() == 0:
             listener.close()
-            serve_one(connection)
+            serve_one(connection, ctest)
         connection.close()
 
 
-def serve_one(connection):
-    """Runs a script in another fork, and kills it when its test ends first: ctest's time is up."""
+def serve_one(connection, ctest):
+    """Runs a script in another fork, and kills it when its test ends first (ctest's time is up), or ctest itself."""
     check_user(connection)
     message, files, _, _ = socket.recv_fds(connection, 1 << 20, 3)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -87,7 +88,10 @@ def serve_one(connection):
     for file in files:
         os.close(file)
     ended = os.pidfd_open(script)
-    if ended not in select.select([connection, ended], [], [])[0]:
+    ready = []
+    while not ready and os.path.exists(f"/proc/{ctest}"):
+        ready = select.select([connection, ended], [], [], 1)[0]
+    if ended not in ready:
         os.killpg(script, signal.SIGKILL)
     connection.send(struct.pack("i", os.waitpid(script, 0)[1]))
     os._exit(0)

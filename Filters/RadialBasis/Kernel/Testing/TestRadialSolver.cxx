@@ -294,9 +294,9 @@ TEST(RadialSolver, PartsOfAGridAreTheWhole)
 {
   lacuna::ThreadExecution execution(2);
   const Points<2> flat = Scatter<2>(2500);
-  const lacuna::RegularGrid<2> square{ { 3, -2 }, { 0.21, 0.19 }, { 410, 520 } };
+  const lacuna::RegularGrid<2> square{ { 3, -2 }, { 0.63, 0.57 }, { 137, 173 } };
   const Points<3> nodes = Scatter<3>(2500);
-  const lacuna::RegularGrid<3> cube{ { 0, 1, 2 }, { 1.7, 1.8, 1.9 }, { 57, 53, 51 } };
+  const lacuna::RegularGrid<3> cube{ { 0, 1, 2 }, { 3.4, 3.6, 3.8 }, { 29, 27, 26 } };
   for (const double accuracy : { 1e-4, 0.0 })
   {
     const auto check = [&](const auto& s, const auto& grid)
