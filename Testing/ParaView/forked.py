@@ -72,7 +72,10 @@ def serve(listener, ctest):
             continue
         if os.fork() == 0:
             listener.close()
-            serve_one(connection, ctest)
+            try:
+                serve_one(connection, ctest)
+            finally:
+                os._exit(1)  # never into ParaView's exit, where a fork hangs
         connection.close()
 
 
@@ -93,8 +96,9 @@ def serve_one(connection, ctest):
         ready = select.select([connection, ended], [], [], 1)[0]
     if ended not in ready:
         os.killpg(script, signal.SIGKILL)
-    connection.send(struct.pack("i", os.waitpid(script, 0)[1]))
-    os._exit(0)
+    status = os.waitpid(script, 0)[1]
+    if ended in ready:
+        connection.send(struct.pack("i", status))
 
 
 def run_here(files, folder, environment, arguments):
