@@ -17,9 +17,19 @@ def fetch(source):
     first rank, drops the direction and rounds origin and spacing to six digits. Arrays are the same bit for bit, in another
     order on several ranks perhaps: find them by name. Origin, spacing and direction come from points and may differ from those
     on the server in the last digits (1e-14 of the coordinates). Field data are those of the first rank that
-    has a part. Raises RuntimeError when the ranks' parts leave gaps, and PipelineError when it fails on a server, where
-    servermanager.Fetch would wait for ever.
+    has a part. Raises RuntimeError when the ranks' parts leave gaps, and PipelineError when the source has failed: its
+    output is then empty and holds the error.
     """
+    data = _fetch(source)
+    error = data.GetFieldData().GetAbstractArray("LacunaError") if data is not None else None
+    if error:
+        from lacuna.errors import PipelineError
+        raise PipelineError(error.GetValue(0))
+    return data
+
+
+def _fetch(source):
+    """See fetch."""
     from lacuna.errors import raising, set_aside
     from paraview import servermanager
     ranks = servermanager.ActiveConnection.GetNumberOfDataPartitions()
