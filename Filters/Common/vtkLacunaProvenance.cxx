@@ -6,6 +6,7 @@
 #include "vtkFieldData.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaMirrored.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -124,6 +125,7 @@ void Record(vtkDataObject* output, vtkObjectBase* algorithm,
     array->InsertNextValue(s);
   }
   output->GetFieldData()->AddArray(array);
+  vtkLacunaVolumeDirection::Update(output);
   if (!inputs.empty() && inputs.front() != output)
   {
     vtkLacunaMirrored::Pass(inputs.front(), output);

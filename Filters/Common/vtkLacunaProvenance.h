@@ -24,7 +24,8 @@ VTKLACUNAFILTERSCOMMON_EXPORT const char* GetVersion();
 /// each input's active point scalars (of a mesh without: its points; of a table: its numbers),
 /// parameters ("Name=value Name=value"). Never a patient's name. Of the first input, the one that
 /// output is made of, it also passes on the marks that it is mirrored (vtkLacunaMirrored) and in
-/// which coordinates it is (vtkLacunaCoordinates).
+/// which coordinates it is (vtkLacunaCoordinates). An image that is turned gets the record of its
+/// direction (vtkLacunaVolumeDirection), so its geometry must be set before.
 VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkDataObject* output, vtkObjectBase* algorithm,
   const std::vector<vtkDataObject*>& inputs, const std::string& parameters);
 

@@ -63,6 +63,20 @@ void Check(vtkDataObject* data)
 }
 
 //------------------------------------------------------------------------------
+void Update(vtkDataObject* output)
+{
+  vtkImageData* image = vtkImageData::SafeDownCast(output);
+  if (!image)
+  {
+    Remove(output);
+  }
+  else if (!image->GetDirectionMatrix()->IsIdentity() || image->GetFieldData()->HasArray(ArrayName))
+  {
+    Record(image);
+  }
+}
+
+//------------------------------------------------------------------------------
 void Remove(vtkDataObject* data)
 {
   data->GetFieldData()->RemoveArray(ArrayName);

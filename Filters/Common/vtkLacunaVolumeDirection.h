@@ -2,8 +2,9 @@
 /// @file
 /// A second record of a volume's direction matrix. Some filters of VTK (Median, Gradient Magnitude,
 /// Image Shrink) reset the direction of an image but keep its field data: the volume would then lie
-/// turned in the patient, left in the place of right. Sources that know the patient's axes write the
-/// record, and filters that take volumes compare. A volume without it is taken as it is.
+/// turned in the patient, left in the place of right. Every image of Lacuna that is turned has the record
+/// (vtkLacunaProvenance::Record sees to it), those of sources that know the patient's axes also when it is
+/// not; filters that take volumes compare. A volume without it is taken as it is.
 #ifndef vtkLacunaVolumeDirection_h
 #define vtkLacunaVolumeDirection_h
 
@@ -22,6 +23,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Record(vtkImageData* volume);
 /// Throws std::runtime_error when data is a volume with voxels and a record that disagrees with its
 /// direction matrix.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data);
+/// Makes the record of what Lacuna has made right: an image that is turned, or that has a record from its
+/// input, gets that of its own direction; other data lose it.
+VTKLACUNAFILTERSCOMMON_EXPORT void Update(vtkDataObject* output);
 /// Removes the record, which VTK passes from an input, from what has a geometry of its own.
 VTKLACUNAFILTERSCOMMON_EXPORT void Remove(vtkDataObject* data);
 }
