@@ -90,6 +90,25 @@ def series(slices):
     return CTSeriesReader(FileName=path("series"))
 
 
+def volume(slices):
+    """A NIfTI file of 512 x 512 voxels of 16 bits, whose slices come in reverse order."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, 512, 512, slices, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<8f", header, 76, 1, 0.5, 0.5, 1, 0, 0, 0, 0)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<B", header, 123, 2)
+    struct.pack_into("<2h", header, 252, 0, 1)
+    struct.pack_into("<12f", header, 280, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, -1, 0)
+    header[344:348] = b"n+1\0"
+    with open(path("volume.nii"), "wb") as file:
+        file.write(header)
+        for _ in range(slices):
+            file.write(np.arange(512 * 512, dtype="<i2").tobytes())
+    return VolumeReader(FileName=path("volume.nii"))
+
+
 def floor(slices, degrees):
     """Hundreds of scans of the floor of a bath, to and fro and tilted to all sides by so many degrees."""
     random = np.random.default_rng(1)
@@ -166,6 +185,7 @@ CASES = {
     "Incomplete Shape": shape,
     "Tracked Slice Reader": reader,
     "CT Series Reader": series,
+    "Volume Reader": volume,
     "Assemble Tracked Slices": assembled,
     "Gate Slices": lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6),
     "Scan Region": lambda n: ScanRegion(Input=floor(n, 25)),

@@ -16,7 +16,7 @@ if not os.path.exists(path):
     sys.exit(77)
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
-head = OpenDataFile(path)  # ParaView's own reader: a plain CT is no tracked sequence
+head = OpenDataFile(path)  # Volume Reader: a plain CT is no tracked sequence
 head.UpdatePipeline()
 volume = servermanager.Fetch(head)
 assert volume.GetDimensions() == (180, 244, 140), volume.GetDimensions()

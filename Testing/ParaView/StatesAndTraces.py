@@ -10,6 +10,7 @@ import os
 import sys
 
 import lacuna.plugin
+import numpy as np
 
 lacuna.plugin.load()
 import pipelines
@@ -18,6 +19,7 @@ from lacuna import states
 from lacuna.errors import raising
 from paraview import servermanager, smstate, smtrace
 from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
 def remember_definitions():
@@ -64,6 +66,19 @@ def run(text, name):
     exec(compile(text, name, "exec"), {"__name__": "__main__"})
 
 
+def check_directions(name, made):
+    """Every image that is turned says so twice, so that a filter which resets its direction is noticed; no other data do."""
+    for key, data in made.items():
+        record = data.GetFieldData().GetArray("DirectionMatrix")
+        if not data.IsA("vtkImageData"):
+            assert record is None, (name, key, "is no image")
+            continue
+        direction = np.array(data.GetDirectionMatrix().GetData())
+        turned_images.update({(name, key)} if not np.array_equal(direction, np.eye(3).ravel()) else ())
+        assert record is not None or (name, key) not in turned_images, (name, key, "has no record")
+        assert record is None or np.array_equal(vtk_to_numpy(record)[0], direction), (name, key)
+
+
 def check(pipeline):
     name = pipeline.__name__
     for each in written():
@@ -73,6 +88,7 @@ def check(pipeline):
         pipeline()
         trace = smtrace.stop_trace()
         made, panel, saved = pipelines.outputs(), properties(), written()
+    check_directions(name, made)
     kinds = {source.GetXMLName() for source in GetSources().values()}
     state = path(name + ".pvsm")
     SaveState(state)
@@ -99,10 +115,13 @@ def check(pipeline):
     return kinds | {kind for ending, kind in WRITERS.items() if f"written.{ending}" in saved}
 
 
+turned_images = set()
 remember_definitions()
 make_files("StatesAndTraces", *sys.argv[1:])
 seen = set()
 for pipeline in PIPELINES:
     seen |= check(pipeline)
+for name in ("Principal volume", "Turned volume", "Mirrored volume", "Turned angle", "Turned and warped", "Depth", "Filled"):
+    assert any(name == key[0] for _, key in turned_images), (name, "is not turned here", sorted(turned_images))
 missing = every_kind() - seen
 assert missing <= ({"LacunaCTSeriesReader"} if len(sys.argv) < 2 else set()), f"no pipeline here has {sorted(missing)}"

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which volumes in files are opened: those that ParaView reads to where they are, in mm. The letter-like object in all of
+"""Volumes in files are opened where they are, in mm, or refused. The letter-like object in all of
 them is at the same place of the room, however its file stores it."""
 import os
 import shutil
 
 import numpy as np
-from lacuna import volume_files
 from lacuna.data import fetch, open_volume
 from lacuna_test import output
 from paraview.simple import *
@@ -34,15 +33,17 @@ def written(name, header, values=letter):
     return path
 
 
-def meta(name, *lines):
-    head = ["ObjectType = Image", "NDims = 3", "DimSize = 12 5 6", "ElementType = MET_SHORT", "Offset = 10 -20 30"]
+def meta(name, *lines, values=letter):
+    head = ["ObjectType = Image", "NDims = 3", "DimSize = {} {} {}".format(*values.shape), "ElementType = MET_SHORT"]
+    if not any(line.startswith("Position") for line in lines):
+        head.append("Offset = 10 -20 30")
     if not any(line.startswith("ElementSpacing") for line in lines):
         head.append("ElementSpacing = 0.5 1.5 2")
-    return written(name, "\n".join(head + list(lines)) + "\nElementDataFile = LOCAL\n")
+    return written(name, "\n".join(head + list(lines)) + "\nElementDataFile = LOCAL\n", values)
 
 
 def nrrd(name, *lines, values=letter):
-    head = ["NRRD0005", "# of a test: no header", "type: int16", "dimension: 3", "sizes: 12 5 6", "endian: little",
+    head = ["NRRD0005", "# of a test: no header", "type: int16", "dimension: 3", "sizes: {} {} {}".format(*values.shape), "endian: little",
             "encoding: raw", "kinds: domain domain domain"]
     return written(name, "\n".join(head + list(lines)) + "\n\n", values)
 
@@ -51,7 +52,7 @@ indices = np.argwhere(letter > 0)
 weights = letter[letter > 0].astype(float)
 truth = (weights[:, None] * (np.array(ORIGIN) + np.array(SPACING) * indices)).sum(0) / weights.sum()
 
-# what ParaView reads where it is
+# what lies along the axes
 for path in (meta("plain.mha"), meta("units.mha", "DistanceUnits = mm", "AnatomicalOrientation = RAI"),
              meta("straight.mha", "TransformMatrix = 1 0 0 0 1 0 0 0 1", "AnatomicalOrientation = ???"),
              nrrd("lps.nrrd", "space: left-posterior-superior", "space origin: (10,-20,30)",
@@ -73,24 +74,55 @@ def refused(path, *texts):
     raise AssertionError(f"{path} was opened")
 
 
-# what it would turn, mirror or scale
-refused(meta("turned.mha", "TransformMatrix = -1 0 0 0 -1 0 0 0 1"), "TransformMatrix = -1", "turned, mirrored")
-refused(meta("colon.MHA", "TransformMatrix : 1 0 0 0 1 0 0 0 -1"), "TransformMatrix")
-refused(meta("late.mha", "Comment = " + 20000 * "x", "Rotation = 0 1 0 1 0 0 0 0 1"), "Rotation")
-refused(meta("words.mha", "Orientation = RAI"), "Orientation = RAI are not numbers")
-refused(meta("ras.mha", "AnatomicalOrientation = LPI"), "AnatomicalOrientation = LPI")
-refused(meta("centimetres.mha", "DistanceUnits = cm"), "DistanceUnits = cm")
-refused(meta("negative.mha", "ElementSpacing = 0.5 1.5 -2"), "ElementSpacing = 0.5 1.5 -2")
-refused(written("endless.mha", "NDims = 3\n"), "no ElementDataFile")
-up, down = "space directions: (0.5,0,0) (0,1.5,0) (0,0,2)", "space directions: (0.5,0,0) (0,1.5,0) (0,0,-2)"
-refused(nrrd("headfirst.nrrd", "space: LPS", down, values=letter[:, :, ::-1]), "space directions = (0.5,0,0)")
-refused(nrrd("ras.nrrd", "space: right-anterior-superior", up), "space = right-anterior-superior")
-refused(nrrd("swapped.nrrd", "space: LPS", "space directions: (0,0.5,0) (1.5,0,0) (0,0,2)"), "space directions")
-refused(nrrd("upper.nrrd", "Space Directions:(0.5,0,0) (0,-1.5,0) (0,0,2)"), "space directions")
-refused(nrrd("metres.nrrd", "space: LPS", up, 'space units: "m" "m" "m"'), "space units")
+# what is turned, in other units or in another sense lies where its file has it: files of the same letter
+def flipped(axes):
+    return np.flip(letter, axes)
+
+
+last = (np.array(SIZE) - 1) * SPACING + ORIGIN
+placed = [
+    meta("turned.mha", "TransformMatrix = -1 0 0 0 -1 0 0 0 1", f"Position = {last[0]} {last[1]} 30", values=flipped((0, 1))),
+    meta("colon.MHA", "TransformMatrix : 1 0 0 0 1 0 0 0 -1", f"Position = 10 -20 {last[2]}", values=flipped(2)),
+    meta("late.mha", "Comment = " + 20000 * "x", "Rotation = 0 1 0 1 0 0 0 0 1", "Position = 10 -20 30", "ElementSpacing = 1.5 0.5 2",
+         values=letter.swapaxes(0, 1)),
+    meta("centimetres.mha", "DistanceUnits = cm", "ElementSpacing = 0.05 0.15 0.2", "Position = 1 -2 3"),
+    nrrd("headfirst.nrrd", "space: LPS", "space directions: (0.5,0,0) (0,1.5,0) (0,0,-2)", f"space origin: (10,-20,{last[2]})",
+         values=flipped(2)),
+    nrrd("ras.nrrd", "space: right-anterior-superior", "space directions: (-0.5,0,0) (0,-1.5,0) (0,0,2)", "space origin: (-10,20,30)"),
+    nrrd("swapped.nrrd", "space: LPS", "space directions: (0,1.5,0) (0.5,0,0) (0,0,2)", "space origin: (10,-20,30)",
+         values=letter.swapaxes(0, 1)),
+    nrrd("metres.nrrd", "space: LPS", "space directions: (0.0005,0,0) (0,0.0015,0) (0,0,0.002)", "space origin: (0.01,-0.02,0.03)",
+         'space units: "m" "m" "m"')]
+for path in placed:
+    volume = open_volume(path)
+    assert volume.SMProxy.GetXMLName() == "LacunaVolumeReader"
+    assert np.abs(place(volume) - truth).max() < 1e-6, (path, place(volume), truth)
+    opened = OpenDataFile(path)  # as File > Open offers first
+    assert opened.SMProxy.GetXMLName() == "LacunaVolumeReader", path
+
+
+def refused(path, *texts):
+    try:
+        open_volume(path)
+    except (ValueError, RuntimeError) as error:
+        for text in (os.path.basename(path), *texts):
+            assert text in str(error), (text, str(error))
+        return
+    raise AssertionError(f"{path} was opened")
+
+
+# what is not certain
+refused(meta("words.mha", "Orientation = RAI"), "'RAI' is no finite number")
+refused(meta("letters.mha", "AnatomicalOrientation = LPI"), "AnatomicalOrientation is 'LPI'", "not known which is right")
+refused(meta("furlongs.mha", "DistanceUnits = furlong"), "DistanceUnits is 'furlong'")
+refused(meta("negative.mha", "ElementSpacing = 0.5 1.5 -2"), "must be positive")
+refused(written("endless.mha", "NDims = 3\n"), "its header has no end")
+refused(nrrd("sheared.nrrd", "space: LPS", "space directions: (0.5,0,0) (0,1.5,0.3) (0,0,2)", "space origin: (0,0,0)"), "right angles")
+refused(nrrd("scanner.nrrd", "space: scanner-xyz", "space directions: (0.5,0,0) (0,1.5,0) (0,0,2)"), "space is 'scanner-xyz'")
 refused(nrrd("negative.nrrd", "spacings: 0.5 -1.5 2"), "spacings")
-refused(written("text.nrrd", "no header"), "is no NRRD file")
-refused(written("head.nii", "n+1"), "it is not sure that ParaView heeds")
+refused(written("text.nrrd", "no header"), "line 1")
+refused(written("text.nii", 400 * "no header"), "not a NIfTI file")
+refused(written("head.vtk", "# vtk"), "it is not sure that ParaView heeds")
 refused(os.path.join(folder, "missing.mha"), "there is no such file")
 refused(written("broken.vti", "<VTKFile"), "")
 refused(written("damaged.dcm", "no DICOM"), "")
@@ -98,5 +130,5 @@ os.makedirs(os.path.join(folder, "empty"))
 refused(os.path.join(folder, "empty"), "")
 
 # files of DICOM are not for ParaView's own reader of them, whatever their names
-assert volume_files.check(written("IM0001", 128 * "\0" + "DICM")) == volume_files.DICOM
+refused(written("IM0001", 128 * "\0" + "DICM"), "IM0001")
 print("volumes are opened where they are, or not at all")

@@ -68,6 +68,10 @@ def make_files(test, *series):
     scans.open_wall(f"{test}/", random)
     scans.open_wires(f"{test}/", random)
     scans.open_receivers(f"{test}/", random)
+    with open(path("volume.nrrd"), "wb") as file:  # turned about z, from head to feet
+        file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 12 10 8\nencoding: raw\n"
+                   b"space directions: (0.6,0.8,0) (0.8,-0.6,0) (0,0,-2)\nspace origin: (5,-6,7)\n\n"
+                   + random.integers(0, 255, 960).astype(np.uint8).tobytes())
     for program in series:
         subprocess.run([program, path("series")], check=True, stdout=subprocess.DEVNULL)
     ResetSession()
@@ -96,11 +100,17 @@ output.RowData.append((time / 1.3) % 1, "Gate")""")
 def files():
     reader = TrackedSliceReader(registrationName="Reader", FileName=path("sweep.nhdr"), FrameStride=2)
     SweptVolume(registrationName="Volume", Input=reader, OutputSpacing=[2, 2, 2])
+    SweptVolume(registrationName="Principal volume", Input=reader, OutputSpacing=[3, 3, 3], OutputFrame="Principal")
     gate = CSVReader(registrationName="Gate", FileName=[path("gate.csv")])
     GateSlices(registrationName="Gated", Input=reader, GateTable=gate, GateType="Phase", GateRange=[0.9, 0.5])
     stack = XMLImageDataReader(registrationName="Stack", FileName=[path("stack.vti")])
     poses = CSVReader(registrationName="Poses", FileName=[path("poses.csv")])
     AssembleTrackedSlices(registrationName="Assembled", Input=stack, Poses=poses, PoseFormat="Matrix", PoseColumns=["m"], PixelSpacing=0.4)
+    turned = VolumeReader(registrationName="Turned volume", FileName=path("volume.nrrd"))
+    Mirror(registrationName="Mirrored volume", Input=turned, PlaneMethod="Given", Origin=[-11.9, 4.3, 0], Normal=[1, 0.02, 0])
+    OccludedAngle(registrationName="Turned angle", Input=turned, NumberOfDirections=8)
+    corners = Sphere(registrationName="Corners", Radius=9, ThetaResolution=4, PhiResolution=4)
+    RBFImageWarp(registrationName="Turned and warped", Input=turned, Landmarks=corners, Targets=corners)
     if os.path.isdir(path("series/oblique")):
         CTSeriesReader(registrationName="CT", FileName=path("series/oblique"), MissingSlices="Interpolate")
 

@@ -6,6 +6,7 @@
 #include "vtkLacunaPhantomSweep.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSliceWriter.h"
+#include "vtkLacunaVolumeReader.h"
 #ifdef LACUNA_WITH_CT_SERIES
 #include "CTTestSeries.h"
 #include "vtkLacunaCTSeriesReader.h"
@@ -126,6 +127,64 @@ Property FileName(const std::vector<std::string>& (*getFiles)(), MakeDamage make
     });
 }
 
+/// A volume of 7 x 6 x 5 voxels in three formats, left-handed.
+const std::vector<std::string>& GetVolumes()
+{
+  static const std::vector<std::string> files = []
+  {
+    const std::vector<std::string> made = { InFolder("volume.nrrd"), InFolder("volume.mha"),
+      InFolder("volume.nii") };
+    std::string voxels;
+    for (int i = 0; i < 210; ++i)
+    {
+      voxels += static_cast<char>(i);
+    }
+    Store(made[0],
+      "NRRD0004\ntype: uint8\ndimension: 3\nspace: RAS\nsizes: 7 6 5\nspace directions: "
+      "(0.6,0.8,0) (-0.8,0.6,0) (0,0,-2)\nspace origin: (1,2,3)\nencoding: raw\n\n" +
+        voxels);
+    Store(made[1],
+      "ObjectType = Image\nNDims = 3\nTransformMatrix = 0.6 0.8 0 -0.8 0.6 0 0 0 -1\nOffset = 1 2 "
+      "3\nElementSpacing = 1 1 2\nDimSize = 7 6 5\nElementType = MET_UCHAR\nElementDataFile = "
+      "LOCAL\n" +
+        voxels);
+    std::string header(352, '\0');
+    const auto put = [&](std::size_t at, auto value)
+    { header.replace(at, sizeof(value), reinterpret_cast<const char*>(&value), sizeof(value)); };
+    put(0, std::int32_t{ 348 });
+    const std::int16_t sizes[4] = { 3, 7, 6, 5 };
+    const float steps[4] = { 1, 1, 1, 2 };
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      put(40 + 2 * i, sizes[i]);
+      put(76 + 4 * i, steps[i]);
+    }
+    put(70, std::int16_t{ 2 });
+    put(108, 352.F);
+    put(123, char{ 2 });
+    put(252, std::int16_t{ 1 });
+    put(254, std::int16_t{ 1 });
+    put(280, 1.F); // both matrices say the same
+    put(300, 1.F);
+    put(320, 2.F);
+    header.replace(344, 3, "n+1");
+    Store(made[2], header + voxels);
+    return made;
+  }();
+  return files;
+}
+
+Subject MakeVolumeReader()
+{
+  using T = vtkLacunaVolumeReader;
+  Subject subject{ "VolumeReader", NewOf<T>, [](Dice&) -> Inputs { return {}; },
+    { FileName<T>(GetVolumes, MakeDamaged),
+      Whole("NIfTITransform", &T::SetNIfTITransform, 0, 2) } };
+  subject.Prepare = [](vtkAlgorithm* algorithm)
+  { Cast<T>(algorithm)->SetFileName(GetVolumes()[0].c_str()); };
+  return subject;
+}
+
 #ifdef LACUNA_WITH_CT_SERIES
 const std::vector<std::string>& GetSeries()
 {
@@ -217,6 +276,7 @@ void AddReaderSubjects(std::vector<Subject>& subjects)
   subject.Prepare = [](vtkAlgorithm* algorithm)
   { Cast<T>(algorithm)->SetFileName(GetSequences()[0].c_str()); };
   subjects.push_back(subject);
+  subjects.push_back(MakeVolumeReader());
 #ifdef LACUNA_WITH_CT_SERIES
   subjects.push_back(MakeCTSeriesReader());
 #endif

@@ -2,7 +2,7 @@
 """Data of ParaView's proxies, and volumes in files.
 
     from lacuna.data import fetch, open_volume
-    volume = open_volume("head.mha")   # an error if ParaView would drop how it lies
+    volume = open_volume("head.nii.gz")   # where it lies in the patient, or an error
     top = fetch(OutputPort(model, 1))
 """
 import os
@@ -117,23 +117,35 @@ def _place(image, source, servermanager):
     image.SetOrigin(first - direction @ (spacing * extent[::2]))
 
 
-def open_volume(path):
-    """The reader (a ParaView proxy) of a volume: of a folder with a DICOM series or a file of one, or of an image in a file.
+def _is_dicom(path):
+    """By the content; by the name for files that begin without the mark."""
+    with open(path, "rb") as file:
+        return file.read(132)[128:] == b"DICM" or path.lower().endswith((".dcm", ".dicom", ".ima"))
 
-    Raises ValueError for files whose orientation or unit ParaView's reader would drop, for formats of which that is not
-    known (lacuna.volume_files), and for what is no volume; PipelineError with what the reader says.
+
+def open_volume(path):
+    """The reader (a ParaView proxy) of a volume, updated: CT Series Reader for a folder with a DICOM series or a file of one, Volume
+    Reader for .mha, .mhd, .nrrd, .nhdr, .nii and .nii.gz, ParaView's own for .vti.
+
+    Raises ValueError for other formats, of which it is not known here that ParaView heeds how the patient lay, and for what
+    is no volume; PipelineError with what the reader says.
     """
     import lacuna.plugin
     import paraview.simple as pv
-    from lacuna import volume_files
     from lacuna.errors import raising
+    if not os.path.exists(path):
+        raise ValueError(f"{path}: there is no such file")
     lacuna.plugin.load()
-    if os.path.isdir(path) or volume_files.check(path) == volume_files.DICOM:
+    name = os.path.basename(path).lower()
+    if os.path.isdir(path) or _is_dicom(path):
         reader = pv.CTSeriesReader(FileName=path)
+    elif name.endswith((".mha", ".mhd", ".nrrd", ".nhdr", ".nii", ".nii.gz")):
+        reader = pv.VolumeReader(FileName=path)
+    elif name.endswith(".vti"):
+        reader = pv.XMLImageDataReader(FileName=[path])
     else:
-        reader = pv.OpenDataFile(path)
-    if reader is None:
-        raise ValueError(f"ParaView has no reader for {path}")
+        raise ValueError(f"{path}: volumes are read from DICOM series, .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz and .vti. Of other formats "
+                         "it is not sure that ParaView heeds how the patient lay")
     with raising():
         reader.UpdatePipeline()
     kind = reader.GetDataInformation().GetDataSetTypeAsString()

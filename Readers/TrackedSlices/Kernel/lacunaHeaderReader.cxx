@@ -128,10 +128,11 @@ bool HasSlices(const SequenceAxes& axes)
 }
 
 //------------------------------------------------------------------------------
-HeaderReader::HeaderReader(const std::string& fileName)
+HeaderReader::HeaderReader(const std::string& fileName, bool isVolume)
   : Lines(fileName)
 {
   this->Header.FileName = fileName;
+  this->Header.IsVolume = isVolume;
 }
 
 //------------------------------------------------------------------------------
@@ -198,6 +199,87 @@ std::int64_t HeaderReader::GetLastDescribedFrame() const
 }
 
 //------------------------------------------------------------------------------
+void HeaderReader::CheckSizes(const std::string& size, std::int64_t columns, std::int64_t rows,
+  std::int64_t frames, std::int64_t channels) const
+{
+  for (const std::int64_t n : { columns, rows, frames })
+  {
+    if (n < 1 || n > INT_MAX)
+    {
+      this->Fail(size + "; columns, rows and " + (this->Header.IsVolume ? "slices" : "frames") +
+        " must each be from 1 to " + std::to_string(INT_MAX) +
+        (n == 0 && n == frames && !this->Header.IsVolume
+            ? " (a recording that ended before its first slice?)"
+            : ""));
+    }
+  }
+  // 2^31 * 2^31 pixels of one byte fit in 64 bits, but not with frames and elements on top
+  const double bytes = 8.0 * static_cast<double>(columns) * static_cast<double>(rows) *
+    static_cast<double>(frames) * static_cast<double>(channels);
+  if (bytes > 1e18)
+  {
+    this->Fail(size + "; no file holds so much");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::size_t HeaderReader::SetVolumeShape(const SequenceAxes& axes)
+{
+  std::vector<std::int64_t> sizes = axes.Sizes;
+  std::vector<std::string> kinds = axes.Kinds;
+  const std::string size = std::string(axes.SizeName) + " is " + axes.SizeText;
+  if (!kinds.empty() && kinds.size() != sizes.size())
+  {
+    this->Fail(std::string(axes.KindName) + " lists " + std::to_string(kinds.size()) +
+      " dimensions, but " + size);
+  }
+  std::int64_t channels = std::max<std::int64_t>(1, axes.Channels);
+  const bool colourFirst = !kinds.empty() && IsColourKind(kinds[0]);
+  if (colourFirst)
+  {
+    channels = sizes[0];
+    sizes.erase(sizes.begin());
+    kinds.erase(kinds.begin());
+  }
+  for (const std::string& kind : kinds)
+  {
+    if (!IsFrameKind(kind) && kind != "domain" && kind != "space" && kind != "none" &&
+      kind != "???")
+    {
+      this->Fail(std::string(axes.KindName) + " has '" + kind +
+        "'; a volume has three axes of kind domain, before them perhaps one of components "
+        "(vector, RGB-color)");
+    }
+  }
+  while (sizes.size() > 3 && sizes.back() == 1)
+  {
+    sizes.pop_back();
+  }
+  kinds.resize(std::min(kinds.size(), sizes.size()));
+  const bool listed = std::any_of(kinds.begin(), kinds.end(), IsFrameKind);
+  if (sizes.size() != 3 || listed)
+  {
+    this->Fail(size + ": " +
+      (sizes.size() < 3
+          ? "an image, not a volume, which has three axes"
+          : "the file has several volumes or slices in a row. Save one volume in a file of its "
+            "own (3D Slicer: the proxy node of a sequence). Slices with the poses "
+            "of a tracker are opened by Tracked Slice Reader"));
+  }
+  if (channels < 1 || channels > 64)
+  {
+    this->Fail(size + "; voxels of " + std::to_string(channels) +
+      " components are not read, only of 1 to 64");
+  }
+  this->CheckSizes(size, sizes[0], sizes[1], sizes[2], channels);
+  this->Header.Columns = sizes[0];
+  this->Header.Rows = sizes[1];
+  this->Header.Frames = sizes[2];
+  this->Header.Channels = channels;
+  return colourFirst ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
 void HeaderReader::SetShape(const SequenceAxes& axes)
 {
   if (this->FrameFields.empty())
@@ -211,7 +293,7 @@ void HeaderReader::SetShape(const SequenceAxes& axes)
           "one .mhd with Slicer's extension SlicerIGSIO (WriteSequenceMetafile), or give the "
           "poses as a table to Assemble Tracked Slices"
         : "no field Seq_Frame0000_... describes a slice: this is an ordinary image without "
-          "poses; open it with ParaView's own reader");
+          "poses; open it with Volume Reader, or ParaView's own reader");
   }
   this->SizeName = axes.SizeName;
   SequenceShape shape;
@@ -234,29 +316,14 @@ void HeaderReader::SetShape(const SequenceAxes& axes)
   if (shape.Depth != 1)
   {
     this->Fail("the frames are volumes of " + std::to_string(shape.Depth) + " layers (" + size +
-      "), not slices; open a volume with ParaView's own reader");
-  }
-  for (const std::int64_t n : { shape.Columns, shape.Rows, shape.Frames })
-  {
-    if (n < 1 || n > INT_MAX)
-    {
-      this->Fail(size + "; columns, rows and frames must each be from 1 to " +
-        std::to_string(INT_MAX) +
-        (n == 0 && n == shape.Frames ? " (a recording that ended before its first slice?)" : ""));
-    }
+      "), not slices; open a volume with Volume Reader");
   }
   if (shape.Channels != 1 && shape.Channels != 3 && shape.Channels != 4)
   {
     this->Fail("pixels have " + std::to_string(shape.Channels) +
       " components; known are 1 (grey), 3 (RGB) and 4 (RGBA)");
   }
-  // 2^31 * 2^31 pixels of one byte fit in 64 bits, but not with frames and elements on top
-  const double bytes = 8.0 * static_cast<double>(shape.Columns) * static_cast<double>(shape.Rows) *
-    static_cast<double>(shape.Frames) * static_cast<double>(shape.Channels);
-  if (bytes > 1e18)
-  {
-    this->Fail(size + "; no file holds so much");
-  }
+  this->CheckSizes(size, shape.Columns, shape.Rows, shape.Frames, shape.Channels);
   this->Header.Columns = shape.Columns;
   this->Header.Rows = shape.Rows;
   this->Header.Frames = shape.Frames;

@@ -55,7 +55,7 @@ public:
   static bool IsFrameField(std::string_view name);
 
 protected:
-  explicit HeaderReader(const std::string& fileName);
+  HeaderReader(const std::string& fileName, bool isVolume);
 
   [[noreturn]] void Fail(const std::string& text) const { this->Lines.Fail(text, false); }
   [[noreturn]] void FailTwice(
@@ -71,6 +71,9 @@ protected:
   /// Sets the header's shape. Fails when there are no frame fields, when frames are not slices, or
   /// when sizes are impossible.
   void SetShape(const SequenceAxes& axes);
+  /// The same for one volume, whose third axis counts the frames. Returns the number of the axis of
+  /// the columns, 0 or 1. Fails for several volumes.
+  std::size_t SetVolumeShape(const SequenceAxes& axes);
   /// Either may be null: name is the orientation field's.
   void SetOrientation(
     const std::string& name, const std::string* orientation, const std::string* type);
@@ -103,6 +106,8 @@ private:
     std::string Name;
     std::string Value;
   };
+  void CheckSizes(const std::string& size, std::int64_t columns, std::int64_t rows,
+    std::int64_t frames, std::int64_t channels) const;
   void DropUnfinishedFrames();
   void CheckFrameFields() const;
 
@@ -115,14 +120,15 @@ private:
 /// The readers proper.
 SequenceHeader ReadMetaImageHeader(const std::string& fileName);
 SequenceHeader ReadNrrdHeader(const std::string& fileName);
+VolumeHeader ReadMetaImageVolumeHeader(const std::string& fileName);
+VolumeHeader ReadNrrdVolumeHeader(const std::string& fileName);
 
 /// Whether a header field of this name has a meaning in the format, so that no custom field can.
 bool IsMetaImageField(const std::string& name);
 bool IsNrrdField(const std::string& name);
 
-/// Whether the frames of a file are slices, by its lines up to the first frame field; false when
-/// there is none. May throw.
-bool IsTrackedMetaImage(HeaderLines& lines);
-bool IsTrackedNrrd(HeaderLines& lines);
+/// See GetImageFileKind. May throw.
+ImageFileKind GetMetaImageKind(HeaderLines& lines);
+ImageFileKind GetNrrdKind(HeaderLines& lines);
 }
 #endif

@@ -35,9 +35,11 @@ const Type Types[] = { { "MET_CHAR", ScalarType::Int8, false },
   { "MET_ULONG_LONG", ScalarType::UInt64, false }, { "MET_FLOAT", ScalarType::Float32, false },
   { "MET_DOUBLE", ScalarType::Float64, false } };
 
-bool SplitField(std::string_view line, std::string& name, std::string& value)
+// MetaImage's own library separates names and values by a colon, too; names of frame fields may have one.
+bool SplitField(
+  std::string_view line, std::string& name, std::string& value, const char* separators = "=")
 {
-  const std::size_t equals = line.find('=');
+  const std::size_t equals = line.find_first_of(separators);
   if (equals == std::string_view::npos)
   {
     return false;
@@ -61,15 +63,15 @@ std::vector<std::string> SplitKinds(const std::string& text)
 class MetaImageHeaderReader : public HeaderReader
 {
 public:
-  explicit MetaImageHeaderReader(const std::string& fileName)
-    : HeaderReader(fileName)
+  explicit MetaImageHeaderReader(const std::string& fileName, bool isVolume = false)
+    : HeaderReader(fileName, isVolume)
   {
   }
 
   SequenceHeader Read()
   {
     this->ReadLines();
-    this->ReadSize();
+    this->SetShape(this->ReadSize());
     this->ReadType();
     this->SetOrientation("UltrasoundImageOrientation", this->Find("UltrasoundImageOrientation"),
       this->Find("UltrasoundImageType"));
@@ -77,6 +79,20 @@ public:
     this->ReadDataPlace();
     this->SortFrameFields();
     return std::move(this->Header);
+  }
+
+  VolumeHeader ReadVolume()
+  {
+    this->ReadLines();
+    VolumeHeader volume;
+    const SequenceAxes axes = this->ReadSize();
+    volume.Axes = axes.Sizes.size();
+    volume.FirstAxis = this->SetVolumeShape(axes);
+    this->ReadType();
+    this->ReadDataPlace();
+    volume.Slices = std::move(this->Header);
+    volume.Fields = std::move(this->Fields);
+    return volume;
   }
 
 private:
@@ -93,7 +109,7 @@ private:
   void ReadLines();
   void AddField(const std::string& name, const std::string& value);
   bool FindDataOfCutOffHeader();
-  void ReadSize();
+  SequenceAxes ReadSize() const;
   void ReadType();
   void ReadSpace();
   void ReadDataPlace();
@@ -130,7 +146,7 @@ void MetaImageHeaderReader::ReadLines()
   {
     if (!this->Lines.Next(line))
     {
-      if (this->FindDataOfCutOffHeader())
+      if (!this->Header.IsVolume && this->FindDataOfCutOffHeader())
       {
         return;
       }
@@ -141,7 +157,7 @@ void MetaImageHeaderReader::ReadLines()
     {
       continue;
     }
-    const bool isField = SplitField(line, name, value);
+    const bool isField = SplitField(line, name, value, this->Header.IsVolume ? "=:" : "=");
     const bool isDataFile = isField && EqualsIgnoringCase(name, "ElementDataFile");
     if (!this->Lines.IsTerminated() && (!isDataFile || !EqualsIgnoringCase(value, "LOCAL")))
     {
@@ -181,8 +197,15 @@ void MetaImageHeaderReader::ReadLines()
 }
 
 //------------------------------------------------------------------------------
-void MetaImageHeaderReader::AddField(const std::string& name, const std::string& value)
+void MetaImageHeaderReader::AddField(const std::string& givenName, const std::string& value)
 {
+  std::string name = givenName;
+  if (this->Header.IsVolume) // no other spelling hides where a volume lies
+  {
+    const auto known = std::find_if(KnownFields.begin(), KnownFields.end(),
+      [&](const std::string& field) { return EqualsIgnoringCase(field, name); });
+    name = known == KnownFields.end() ? name : *known;
+  }
   const auto inserted = this->Fields.emplace(name, value);
   if (!inserted.second && inserted.first->second != value)
   {
@@ -215,7 +238,7 @@ bool MetaImageHeaderReader::FindDataOfCutOffHeader()
 }
 
 //------------------------------------------------------------------------------
-void MetaImageHeaderReader::ReadSize()
+SequenceAxes MetaImageHeaderReader::ReadSize() const
 {
   SequenceAxes axes;
   const std::string* size = this->Find("DimSize");
@@ -242,7 +265,7 @@ void MetaImageHeaderReader::ReadSize()
     this->Fail("NDims is " + std::to_string(dimensions[0]) + " but DimSize (" + axes.SizeText +
       ") has " + std::to_string(listed) + " numbers");
   }
-  this->SetShape(axes);
+  return axes;
 }
 
 //------------------------------------------------------------------------------
@@ -373,20 +396,29 @@ bool IsMetaImageField(const std::string& name)
 }
 
 //------------------------------------------------------------------------------
-bool IsTrackedMetaImage(HeaderLines& lines)
+VolumeHeader ReadMetaImageVolumeHeader(const std::string& fileName)
+{
+  return MetaImageHeaderReader(fileName, true).ReadVolume();
+}
+
+//------------------------------------------------------------------------------
+ImageFileKind GetMetaImageKind(HeaderLines& lines)
 {
   std::string line;
   std::string name;
   std::string value;
   SequenceAxes axes;
   bool tracked = false;
+  bool whole = false;
   while ((!tracked || axes.Kinds.empty()) && lines.Next(line)) // kinds may come late, or never
   {
     if (Trim(line).empty())
     {
       continue;
     }
-    if (!SplitField(line, name, value) || EqualsIgnoringCase(name, "ElementDataFile"))
+    const bool isField = SplitField(line, name, value, tracked ? "=" : "=:");
+    whole = isField && EqualsIgnoringCase(name, "ElementDataFile");
+    if (!isField || whole)
     {
       break;
     }
@@ -411,6 +443,11 @@ bool IsTrackedMetaImage(HeaderLines& lines)
       tracked = true;
     }
   }
-  return tracked && HasSlices(axes);
+  if (tracked && HasSlices(axes))
+  {
+    return ImageFileKind::Sequence;
+  }
+  return (tracked || whole) && axes.Sizes.size() >= 3 ? ImageFileKind::Volume
+                                                      : ImageFileKind::Other;
 }
 }

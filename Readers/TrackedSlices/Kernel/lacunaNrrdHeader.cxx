@@ -112,15 +112,17 @@ std::vector<std::string> SplitKinds(const std::string& text)
 class NrrdHeaderReader : public HeaderReader
 {
 public:
-  explicit NrrdHeaderReader(const std::string& fileName)
-    : HeaderReader(fileName)
+  explicit NrrdHeaderReader(const std::string& fileName, bool isVolume = false)
+    : HeaderReader(fileName, isVolume)
   {
   }
 
   SequenceHeader Read()
   {
     this->ReadLines();
-    this->ReadSize();
+    const SequenceAxes axes = this->ReadSize();
+    this->SetShape(axes);
+    this->FindCutOff();
     this->ReadType();
     this->ReadEncoding();
     this->SetOrientation("ultrasound image orientation", this->Find("ultrasound image orientation"),
@@ -129,6 +131,30 @@ public:
     this->ReadDataPlace();
     this->SortFrameFields();
     return std::move(this->Header);
+  }
+
+  VolumeHeader ReadVolume()
+  {
+    this->ReadLines();
+    VolumeHeader volume;
+    SequenceAxes axes = this->ReadSize();
+    // without a kind, an axis that has no direction in space and comes first is of components
+    const std::string* directions = this->Find("space directions");
+    if (directions && ToLower(*directions).rfind("none", 0) == 0 &&
+      (axes.Kinds.empty() || axes.Kinds[0] == "???" || axes.Kinds[0] == "none"))
+    {
+      axes.Kinds.resize(axes.Sizes.size(), "domain");
+      axes.Kinds[0] = "vector";
+    }
+    volume.IsNrrd = true;
+    volume.Axes = axes.Sizes.size();
+    volume.FirstAxis = this->SetVolumeShape(axes);
+    this->ReadType();
+    this->ReadEncoding();
+    this->ReadDataPlace();
+    volume.Slices = std::move(this->Header);
+    volume.Fields = std::move(this->Fields);
+    return volume;
   }
 
 private:
@@ -140,7 +166,8 @@ private:
   }
   void ReadLines();
   void AddField(const NrrdLine& line);
-  void ReadSize();
+  SequenceAxes ReadSize() const;
+  void FindCutOff();
   void ReadType();
   void ReadEncoding();
   void ReadSpace();
@@ -211,7 +238,7 @@ void NrrdHeaderReader::AddField(const NrrdLine& line)
   const std::string name = ToLower(line.Name);
   const bool ours = OwnKeys.count(name) > 0;
   const bool known = ours || (line.What == NrrdLine::Kind::Field && KnownFields.count(name) > 0);
-  const std::string& key = known ? name : line.Name;
+  const std::string key = known ? name : ":=" + line.Name; // a pair is no field of its name
   const auto inserted = this->Fields.emplace(key, line.Value);
   if (!inserted.second && inserted.first->second != line.Value)
   {
@@ -224,7 +251,7 @@ void NrrdHeaderReader::AddField(const NrrdLine& line)
 }
 
 //------------------------------------------------------------------------------
-void NrrdHeaderReader::ReadSize()
+SequenceAxes NrrdHeaderReader::ReadSize() const
 {
   SequenceAxes axes;
   axes.SizeName = "sizes";
@@ -241,7 +268,12 @@ void NrrdHeaderReader::ReadSize()
     this->Fail("dimension is " + std::to_string(dimension[0]) + " but sizes (" + axes.SizeText +
       ") has " + std::to_string(axes.Sizes.size()) + " numbers");
   }
-  this->SetShape(axes);
+  return axes;
+}
+
+//------------------------------------------------------------------------------
+void NrrdHeaderReader::FindCutOff()
+{
   // A detached header has no mark at its end: it is complete when its last frame is described.
   this->CutOff = this->CutOff ||
     (this->Find("data file", "datafile") && !this->Ended &&
@@ -406,7 +438,13 @@ bool IsNrrdField(const std::string& name)
 }
 
 //------------------------------------------------------------------------------
-bool IsTrackedNrrd(HeaderLines& lines)
+VolumeHeader ReadNrrdVolumeHeader(const std::string& fileName)
+{
+  return NrrdHeaderReader(fileName, true).ReadVolume();
+}
+
+//------------------------------------------------------------------------------
+ImageFileKind GetNrrdKind(HeaderLines& lines)
 {
   std::string text;
   SequenceAxes axes;
@@ -435,6 +473,10 @@ bool IsTrackedNrrd(HeaderLines& lines)
       tracked = true;
     }
   }
-  return tracked && HasSlices(axes);
+  if (tracked && HasSlices(axes))
+  {
+    return ImageFileKind::Sequence;
+  }
+  return axes.Sizes.size() >= 3 ? ImageFileKind::Volume : ImageFileKind::Other;
 }
 }

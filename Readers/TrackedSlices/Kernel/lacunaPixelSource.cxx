@@ -80,7 +80,8 @@ protected:
     const auto size = static_cast<std::size_t>(this->FrameSize);
     if (ReadBytes(this->Stream, pixels, size, this->Header.DataFileName) < size)
     {
-      this->Fail("the pixels of frame " + std::to_string(frame) + " cannot be read");
+      this->Fail(
+        "the pixels of " + this->FrameWord + " " + std::to_string(frame) + " cannot be read");
     }
   }
 
@@ -119,6 +120,12 @@ public:
       this->SkipBytes();
       const std::int64_t bytes = this->Stream->CountBytes();
       this->Divide(bytes, this->Stream->GetDamage());
+      if (header.IsVolume && header.Encoding == PixelEncoding::Zlib &&
+        !this->Stream->IsComplete() &&
+        this->WholeFrames == header.Frames) // else the reader reports the missing slices
+      {
+        this->Fail(this->Name + " are corrupt: their check sum is wrong or missing");
+      }
     }
     this->Restart();
   }
@@ -136,9 +143,11 @@ protected:
       {
         const std::string& damage = this->Stream->GetDamage();
         const std::string last = std::to_string(this->Next - 1);
-        this->Fail(this->Name + " " + (damage.empty() ? "end too early" : damage) + " in frame " +
-          std::to_string(this->Next) +
-          (this->Next > 0 ? "; FrameRange 0 " + last + " reads the frames before it" : ""));
+        this->Fail(this->Name + " " + (damage.empty() ? "end too early" : damage) + " in " +
+          this->FrameWord + " " + std::to_string(this->Next) +
+          (this->Next > 0 && !this->Header.IsVolume
+              ? "; FrameRange 0 " + last + " reads the frames before it"
+              : ""));
       }
     }
     if (this->SizeKnown && this->Next == this->Header.Frames)
@@ -162,7 +171,8 @@ private:
     if (static_cast<double>(wanted) > (static_cast<double>(stated) + 16) * BestCompression)
     {
       this->Fail(std::to_string(stated) + " bytes of compressed data cannot hold the " +
-        std::to_string(header.Frames) + " frames of " + std::to_string(header.GetFrameSize()) +
+        std::to_string(header.Frames) + " " + this->FrameWord + "s of " +
+        std::to_string(header.GetFrameSize()) +
         " bytes that the size and the element type call for");
     }
     return stated <= bytes;
@@ -240,6 +250,7 @@ protected:
 //------------------------------------------------------------------------------
 PixelSource::PixelSource(const SequenceHeader& header)
   : Header(header)
+  , FrameWord(header.IsVolume ? "slice" : "frame")
   , Type(header.Type)
   , FrameSize(header.GetFrameSize())
 {
@@ -276,21 +287,22 @@ void PixelSource::Divide(std::int64_t bytes, const std::string& damage)
   this->WholeFrames = std::min(this->Header.Frames, whole);
   if (this->WholeFrames == 0)
   {
-    this->Fail(damage.empty()
-        ? "there are " + std::to_string(bytes) + " bytes of pixels, but one frame has " +
+    this->Fail(damage.empty() ? "there are " + std::to_string(bytes) +
+          " bytes of pixels, but one " + this->FrameWord + " has " +
           std::to_string(this->FrameSize) + " (by the size and the element type in the header)"
-        : "the pixels " + damage + " in frame 0");
+                              : "the pixels " + damage + " in " + this->FrameWord + " 0");
   }
   if (whole < this->Header.Frames)
   {
     this->Warning = "the pixels " + (damage.empty() ? "are cut off" : damage) + ": " +
-      std::to_string(whole) + " of the " + std::to_string(this->Header.Frames) +
-      " frames are there";
+      std::to_string(whole) + " of the " + std::to_string(this->Header.Frames) + " " +
+      this->FrameWord + "s are there";
   }
   else if (bytes > this->FrameSize * this->Header.Frames && this->Header.SkippedBytes >= 0)
   {
     this->Warning = std::to_string(bytes - this->FrameSize * this->Header.Frames) +
-      " bytes after the last frame are ignored; are DimSize and ElementType right?";
+      " bytes after the last " + this->FrameWord +
+      " are ignored; are the size (DimSize or sizes) and the element type in the header right?";
   }
 }
 
@@ -299,8 +311,8 @@ void PixelSource::ReadFrame(std::int64_t frame, void* pixels)
 {
   if (frame < 0 || frame >= this->WholeFrames)
   {
-    this->Fail("frame " + std::to_string(frame) + " is not one of the " +
-      std::to_string(this->WholeFrames) + " frames in the file");
+    this->Fail(this->FrameWord + " " + std::to_string(frame) + " is not one of the " +
+      std::to_string(this->WholeFrames) + " " + this->FrameWord + "s in the file");
   }
   this->ReadStored(frame, static_cast<unsigned char*>(pixels));
   if (this->Header.Encoding != PixelEncoding::Text &&

@@ -51,6 +51,7 @@ protected:
   void Divide(std::int64_t bytes, const std::string& damage = {});
 
   const SequenceHeader& Header;
+  const std::string FrameWord; ///< what a frame is called in messages
   ScalarType Type;
   std::int64_t FrameSize = 0;
   std::int64_t WholeFrames = 0;

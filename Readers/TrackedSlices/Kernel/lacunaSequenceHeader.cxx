@@ -21,16 +21,27 @@ SequenceHeader ReadSequenceHeader(const std::string& fileName)
   return IsNrrd(lines) ? ReadNrrdHeader(fileName) : ReadMetaImageHeader(fileName);
 }
 
-bool IsTrackedSequence(const std::string& fileName)
+VolumeHeader ReadVolumeHeader(const std::string& fileName)
+{
+  HeaderLines lines(fileName);
+  return IsNrrd(lines) ? ReadNrrdVolumeHeader(fileName) : ReadMetaImageVolumeHeader(fileName);
+}
+
+ImageFileKind GetImageFileKind(const std::string& fileName)
 {
   try
   {
     HeaderLines lines(fileName);
-    return IsNrrd(lines) ? IsTrackedNrrd(lines) : IsTrackedMetaImage(lines);
+    return IsNrrd(lines) ? GetNrrdKind(lines) : GetMetaImageKind(lines);
   }
   catch (const std::exception&)
   {
-    return false; // whatever it is, it is not ours
+    return ImageFileKind::Other; // whatever it is, it is not ours
   }
+}
+
+bool IsTrackedSequence(const std::string& fileName)
+{
+  return GetImageFileKind(fileName) == ImageFileKind::Sequence;
 }
 }

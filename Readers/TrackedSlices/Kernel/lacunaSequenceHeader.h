@@ -43,6 +43,7 @@ struct SequenceHeader
   bool TypeIsLong = false;
   bool BigEndian = false;
   PixelEncoding Encoding = PixelEncoding::Raw;
+  bool IsVolume = false; ///< the frames are the slices of one volume; see ReadVolumeHeader
   SliceFlips Flips;
   std::string ImageType = "BRIGHTNESS"; ///< of the file, without the prefix US_IMG_
   /// mm of a column and a row as the header gives them, for all frames; empty when it does not.
@@ -77,9 +78,36 @@ struct SequenceHeader
 /// is read up to its last whole frame.
 SequenceHeader ReadSequenceHeader(const std::string& fileName);
 
-/// Whether fileName is a MetaImage or NRRD file with fields for its frames and frames that are
-/// slices: not an ordinary image, and not a reconstructed volume, which has frame fields too. Reads
-/// no further than the first frame field and the kinds of the axes, and does not throw.
+/// The header of an image that is one volume.
+struct VolumeHeader
+{
+  /// How the voxels are stored: Frames counts the slices along the third axis. It has no frame
+  /// fields and no flips.
+  SequenceHeader Slices;
+  bool IsNrrd = false;
+  /// The fields of the format, which say where the volume lies: MetaImage's by their names, NRRD's
+  /// in lower case. NRRD's key/value pairs are not among them.
+  std::map<std::string, std::string> Fields;
+  std::size_t Axes = 3;      ///< that the file lists
+  std::size_t FirstAxis = 0; ///< the columns: 1 where the first one is the voxels' components
+};
+
+/// Reads the header of a MetaImage or NRRD file with one volume. Throws std::runtime_error as
+/// ReadSequenceHeader does, also for several volumes in one file.
+VolumeHeader ReadVolumeHeader(const std::string& fileName);
+
+enum class ImageFileKind
+{
+  Other,
+  Sequence, ///< slices with fields for each
+  Volume    ///< three axes or more; also several volumes
+};
+
+/// What a MetaImage or NRRD file has, as far as its lines say. A reconstructed volume is one, though
+/// it has frame fields too. Reads no further than it must, and does not throw.
+ImageFileKind GetImageFileKind(const std::string& fileName);
+
+/// Whether that is a sequence.
 bool IsTrackedSequence(const std::string& fileName);
 }
 #endif

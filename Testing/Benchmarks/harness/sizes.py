@@ -7,6 +7,7 @@ SIZES = {
     "Incomplete Shape": (200, 400),
     "Tracked Slice Reader": (100, 400),
     "CT Series Reader": (60, 240),
+    "Volume Reader": (60, 240),
     "Assemble Tracked Slices": (50, 200),
     "Gate Slices": (100, 400),
     "Scan Region": (400, 1600),

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaVolumeReader.h"
+
+#include "lacunaMemory.h"
+#include "lacunaNiftiVolume.h"
+#include "lacunaParameterText.h"
+#include "lacunaPixelSource.h"
+#include "lacunaSequenceText.h"
+#include "lacunaVolumeGrid.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkErrorCode.h"
+#include "vtkExtentTranslator.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerRequestKey.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
+#include "vtkLacunaCoordinates.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaReading.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <array>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace
+{
+constexpr const char* ScalarsName = "Intensity";
+
+bool IsNamedNifti(const std::string& fileName)
+{
+  return lacuna::EndsWithIgnoringCase(fileName, ".nii") ||
+    lacuna::EndsWithIgnoringCase(fileName, ".nii.gz");
+}
+}
+
+struct vtkLacunaVolumeReader::Content
+{
+  lacuna::VolumeFile File;
+  lacuna::VolumeGrid Grid;
+  std::unique_ptr<lacuna::PixelSource> Pixels; // refers to File
+  lacuna::ScalarType Type = lacuna::ScalarType::UInt8;
+  bool Warned = false;
+};
+
+vtkStandardNewMacro(vtkLacunaVolumeReader);
+
+//------------------------------------------------------------------------------
+vtkLacunaVolumeReader::vtkLacunaVolumeReader()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaVolumeReader::~vtkLacunaVolumeReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaVolumeReader::CanReadFile(const char* fileName)
+{
+  if (!fileName || !*fileName)
+  {
+    return 0;
+  }
+  if (IsNamedNifti(fileName))
+  {
+    try
+    {
+      lacuna::ReadNiftiHeader(fileName);
+      return 1;
+    }
+    catch (const std::exception&)
+    {
+      return 0; // whatever it is
+    }
+  }
+  return lacuna::GetImageFileKind(fileName) == lacuna::ImageFileKind::Volume ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaVolumeReader::OpenVolume(Content& content)
+{
+  content.File = IsNamedNifti(this->FileName)
+    ? lacuna::MakeNiftiVolume(this->FileName, lacuna::ReadNiftiHeader(this->FileName),
+        static_cast<lacuna::NiftiTransform>(this->NIfTITransform))
+    : lacuna::ReadVolumeFile(this->FileName);
+  const lacuna::SequenceHeader& slices = content.File.Slices;
+  try
+  {
+    content.Grid = lacuna::FindVolumeGrid(
+      content.File.IndexToPatient, { slices.Columns, slices.Rows, slices.Frames });
+  }
+  catch (const std::invalid_argument& e)
+  {
+    throw std::runtime_error(std::string(this->FileName) + ": " + e.what());
+  }
+  content.Pixels = lacuna::PixelSource::Open(slices);
+  if (content.Pixels->GetNumberOfWholeFrames() < slices.Frames)
+  {
+    throw std::runtime_error(slices.DataFileName + ": " + content.Pixels->GetWarning() +
+      ". Copy or convert the file again");
+  }
+  if (!content.Pixels->GetWarning().empty())
+  {
+    content.File.Warnings.push_back(content.Pixels->GetWarning());
+  }
+  content.Type = lacuna::GetVolumeType(
+    content.Pixels->GetScalarType(), content.File.Slope, content.File.Intercept);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaVolumeReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->Opened.reset();
+  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
+    "a volume in a file (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz)",
+    [&]
+    {
+      auto content = std::make_unique<Content>();
+      this->OpenVolume(*content);
+      this->Opened = std::move(content);
+      this->Announce(outputs->GetInformationObject(0));
+    }));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaVolumeReader::Announce(vtkInformation* info) const
+{
+  const lacuna::VolumeGrid& grid = this->Opened->Grid;
+  int extent[6] = { 0, 0, 0, 0, 0, 0 };
+  double direction[9];
+  for (std::size_t i = 0; i < 3; ++i)
+  {
+    extent[2 * i + 1] = static_cast<int>(grid.Dimensions[i] - 1);
+    for (int row = 0; row < 3; ++row)
+    {
+      direction[3 * row + static_cast<int>(i)] = grid.Axes[i][row];
+    }
+  }
+  info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+  info->Set(vtkDataObject::ORIGIN(), grid.Origin.data(), 3);
+  info->Set(vtkDataObject::SPACING(), grid.Spacing.data(), 3);
+  info->Set(vtkDataObject::DIRECTION(), direction, 9);
+  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+  // ranks share out whole slices
+  info->Set(vtkExtentTranslator::UPDATE_SPLIT_MODE(), vtkExtentTranslator::Z_SLAB_MODE);
+  vtkDataObject::SetPointDataActiveScalarInfo(info, vtkLacunaScalarType::ToVTK(this->Opened->Type),
+    static_cast<int>(this->Opened->File.Slices.Channels));
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
+{
+  Content& content = *this->Opened;
+  vtkLacunaVolumeDirection::Record(output);
+  if (content.File.IsPatient)
+  {
+    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+  }
+  const char* const transforms[] = { "Automatic", "SForm", "QForm" };
+  std::error_code ignored;
+  vtkLacunaProvenance::Record(output, this, {},
+    lacuna::ParameterText()
+      // tells which file it was to one who has it, and no name of a patient
+      .Add("FileName",
+        "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
+      .Add("FileSize", std::filesystem::file_size(content.File.Slices.DataFileName, ignored))
+      .Add("NIfTITransform", transforms[this->NIfTITransform])
+      .Get());
+  if (!content.Warned)
+  {
+    for (const std::string& warning : content.File.Warnings)
+    {
+      vtkWarningMacro(<< this->FileName << ": " << warning);
+    }
+    content.Warned = true;
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaVolumeReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
+    [&](vtkLacunaExecution& execution)
+    {
+      Content& content = *this->Opened;
+      vtkInformation* info = outputs->GetInformationObject(0);
+      vtkImageData* output = vtkImageData::GetData(outputs, 0);
+      std::array<int, 6> extent{};
+      info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent.data());
+      output->SetOrigin(info->Get(vtkDataObject::ORIGIN()));
+      output->SetSpacing(info->Get(vtkDataObject::SPACING()));
+      output->SetDirectionMatrix(info->Get(vtkDataObject::DIRECTION()));
+      output->SetExtent(extent.data());
+      this->AddFieldData(output);
+      if (output->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      try
+      {
+        const std::int64_t channels = content.File.Slices.Channels;
+        lacuna::RequireMemory("The volume",
+          static_cast<double>(output->GetNumberOfPoints()) * static_cast<double>(channels) *
+              static_cast<double>(lacuna::GetScalarSize(content.Type)) +
+            static_cast<double>(content.Pixels->GetFrameSize()));
+        vtkSmartPointer<vtkDataArray> scalars;
+        scalars.TakeReference(
+          vtkDataArray::CreateDataArray(vtkLacunaScalarType::ToVTK(content.Type)));
+        scalars->SetName(ScalarsName);
+        scalars->SetNumberOfComponents(static_cast<int>(channels));
+        vtkLacunaArrays::SetNumberOfTuples(scalars, output->GetNumberOfPoints());
+        lacuna::ReadVolume(content.File, content.Grid, *content.Pixels, extent,
+          scalars->GetVoidPointer(0), execution);
+        output->GetPointData()->SetScalars(scalars);
+        this->SetErrorCode(vtkErrorCode::NoError);
+      }
+      catch (const lacuna::Aborted&)
+      {
+        throw;
+      }
+      catch (const std::exception&)
+      {
+        this->SetErrorCode(vtkErrorCode::FileFormatError);
+        throw;
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaVolumeReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
+  os << indent << "NIfTITransform: " << this->NIfTITransform << "\n";
+}
