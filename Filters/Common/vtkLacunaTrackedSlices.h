@@ -10,7 +10,7 @@
 /// - ImageToReference (double, 16 components): (column, row, 0, 1) to mm in the reference frame;
 ///   absent until the probe is calibrated. All NaN where there is no usable pose: test SliceStatus
 ///   first.
-/// - SliceStatus (unsigned char): flags, see Status; 0 = valid
+/// - SliceStatus (unsigned char): flags, see lacunaSliceFlags.h; 0 = valid
 /// - Timestamp (double): seconds; optional
 /// - FrameNumber (int): number in the file or of the frame grabber
 /// - ProbeToTracker, ... (double, 16 components): every transform of the file under its own name
@@ -22,6 +22,7 @@
 #define vtkLacunaTrackedSlices_h
 
 #include "lacunaMatrix4.h"
+#include "lacunaSliceFlags.h"
 #include "vtkLacunaFiltersCommonModule.h" // for export macro
 #include "vtkType.h"
 
@@ -31,7 +32,7 @@ class vtkDataArray;
 class vtkImageData;
 
 /// Slices that keep the contract, which is that of the file vtkLacunaTrackedSlices.h, and the contract's names.
-class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices
+class VTKLACUNAFILTERSCOMMON_EXPORT vtkLacunaTrackedSlices : public lacuna::SliceFlags
 {
 public:
   static constexpr const char* ImageToReferenceName = "ImageToReference";
@@ -41,16 +42,6 @@ public:
   static constexpr const char* FrameNumberName = "FrameNumber";
   static constexpr const char* PreviewName = "Preview";
   static constexpr const char* GrowingName = "Growing";
-
-  /// Flags of SliceStatus.
-  enum Status : unsigned char
-  {
-    Valid = 0,
-    PoseInvalid = 1,
-    ImageInvalid = 2,
-    TooFast = 4,
-    GatedOut = 8
-  };
 
   ///@{
   /// Whether slices are to come, so that too few to make anything of are no error yet.

@@ -313,6 +313,10 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
 
   const lacuna::PoseChain chain = lacuna::MakePoseChain(request.Poses);
   const vtkLacunaPoseRecords records(table, slices, this->GetSliceTimes(stack, slices), request);
+  if (!chain.Warning.empty())
+  {
+    vtkWarningMacro(<< chain.Warning);
+  }
   for (const std::string& warning : records.Warnings)
   {
     vtkWarningMacro(<< warning);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPoseJudge.h"
 
+#include "lacunaGeometryGate.h"
 #include "lacunaPoseOutliers.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
@@ -43,6 +44,13 @@ std::vector<std::string> vtkLacunaPoseJudge::FindUnusable(const std::vector<Slic
       problems[i] = error.what();
       problems[i].resize(
         std::min(problems[i].size(), problems[i].find(';'))); // there follows advice
+    }
+    const lacuna::GeometryFinding finding = lacuna::CheckImage(*slices[i].ImageToReference);
+    if (problems[i].empty() &&
+      lacuna::GetAction(lacuna::GeometryOrigin::Slices, finding.Fault) ==
+        lacuna::GeometryAction::Refuse)
+    {
+      problems[i] = slice.Label + ": its pose " + finding.Text;
     }
   }
   return problems;
@@ -100,7 +108,7 @@ vtkLacunaPoseJudge::Sweep vtkLacunaPoseJudge::JudgeSweep(
       image.PixelToReference = tracked.GetImageToReference(i) * pixelToImage;
       image.Label = MakeLabel(i, frames, "");
       images.push_back(image);
-      slices.push_back({ i, &images.back() });
+      slices.push_back({ i, &images.back(), &tracked.GetImageToReference(i) });
     }
   }
   std::vector<std::string> problems = FindUnusable(slices);

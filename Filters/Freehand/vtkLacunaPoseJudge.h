@@ -24,11 +24,12 @@ struct Slice
 {
   vtkIdType Number; ///< in the sweep
   const lacuna::SliceImage* Image;
+  const lacuna::Matrix4* ImageToReference; ///< of the scanner's pixels
 };
 
 /// For each slice of the sweep, in its order, an empty text when its pose can be used, else a
 /// sentence that names the slice and says what is wrong: the pose is not finite, not affine or
-/// singular, or a corner lies beyond LargestCoordinate.
+/// singular, a corner lies beyond LargestCoordinate, or lacunaGeometryGate.h refuses it.
 std::vector<std::string> FindUnusable(const std::vector<Slice>& slices);
 
 /// Adds a sentence for each slice without one whose pose is an outlier among those without one (see

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPoseRecords.h"
 
+#include "lacunaItemList.h"
 #include "lacunaPoseMatching.h"
 #include "vtkLacunaPoseColumns.h"
 #include "vtkLacunaTrackedSlices.h"

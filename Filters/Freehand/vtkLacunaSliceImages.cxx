@@ -147,7 +147,7 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
     vtkLacunaArrays::Copy(tracked.GetGreyLevels(), this->GreyLevels);
   }
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
-  this->DropBadPoses(candidates, selection);
+  this->DropBadPoses(tracked, candidates, selection);
   for (const bool hasImage : { true, false })
   {
     for (const Candidate& candidate : candidates)
@@ -273,32 +273,33 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceImages::DropBadPoses(
+void vtkLacunaSliceImages::DropBadPoses(const vtkLacunaTrackedSlices& tracked,
   std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection)
 {
   std::vector<vtkLacunaPoseJudge::Slice> slices;
   slices.reserve(candidates.size());
   for (const Candidate& candidate : candidates)
   {
-    slices.push_back({ candidate.Number, &candidate.Slice });
+    slices.push_back(
+      { candidate.Number, &candidate.Slice, &tracked.GetImageToReference(candidate.Number) });
   }
   const std::string place =
     std::string(" (field data array '") + vtkLacunaTrackedSlices::ImageToReferenceName + "'";
   const auto isBad = [](const std::string& problem) { return !problem.empty(); };
   std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(slices);
   const auto unusable = std::find_if(problems.begin(), problems.end(), isBad);
-  if (unusable != problems.end() && selection.BadPoses != vtkLacunaSliceSelection::LeaveOut)
+  if (unusable != problems.end() && selection.BadPoses != vtkLacunaSliceAlgorithm::LeaveOut)
   {
     throw std::runtime_error(*unusable +
       "; mark the slice invalid (SliceStatus 1) to leave it out, or mend its transform" + place +
       "), or set BadPoses to LeaveOut");
   }
-  if (selection.BadPoses != vtkLacunaSliceSelection::KeepOutliers)
+  if (selection.BadPoses != vtkLacunaSliceAlgorithm::KeepOutliers)
   {
     vtkLacunaPoseJudge::AddOutliers(slices, problems);
   }
   const auto outlier = std::find_if(problems.begin(), problems.end(), isBad);
-  if (outlier != problems.end() && selection.BadPoses == vtkLacunaSliceSelection::Refuse)
+  if (outlier != problems.end() && selection.BadPoses == vtkLacunaSliceAlgorithm::Refuse)
   {
     const auto count = std::count_if(problems.begin(), problems.end(), isBad);
     throw std::runtime_error(*outlier + place +

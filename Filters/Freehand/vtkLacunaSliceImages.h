@@ -31,21 +31,12 @@ struct vtkLacunaSliceSelection
   /// As the properties of filter say, for a stack in its input.
   static vtkLacunaSliceSelection Make(vtkLacunaSliceAlgorithm* filter, vtkInformation* input);
 
-  /// What to do with slices whose status says that their pose is fine, but it is not; see
-  /// vtkLacunaPoseJudge.h.
-  enum BadPoseRule
-  {
-    Refuse = 0,
-    LeaveOut = 1,
-    KeepOutliers = 2 ///< unusable ones are refused
-  };
-
   /// First column, first row, width and height, in pixels of the original slices; a width or height
   /// of 0 reaches to the edge.
   std::array<int, 4> Clip{ 0, 0, 0, 0 };
   /// Flags of SliceStatus that do not matter.
   unsigned char AcceptedFlags = 0;
-  int BadPoses = Refuse;
+  int BadPoses = 0; ///< vtkLacunaSliceAlgorithm::BadPoseRules
   /// The stack is replayed: slices whose image is invalid (2) are listed as Others, so that what is
   /// laid out by the poses of all does not depend on the time.
   bool IsReplay = false;
@@ -123,7 +114,8 @@ private:
   std::vector<bool> FindSlicesToCome(const vtkLacunaTrackedSlices& tracked) const;
   std::vector<Candidate> FindCandidates(
     const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);
-  void DropBadPoses(std::vector<Candidate>& candidates, const vtkLacunaSliceSelection& selection);
+  void DropBadPoses(const vtkLacunaTrackedSlices& tracked, std::vector<Candidate>& candidates,
+    const vtkLacunaSliceSelection& selection);
 
   std::array<int, 4> FlagCounts{ 0, 0, 0, 0 };
   int NumberLeftOut = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSlicePlanes.h"
 
+#include "lacunaItemList.h"
 #include "lacunaParameterText.h"
-#include "lacunaPoseTable.h"
 #include "lacunaPropertyRange.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -108,7 +108,7 @@ int vtkLacunaSlicePlanes::RequestData(
       options.SpeedLimit = this->SpeedLimit;
       options.OutlineOnly = this->OutlineOnly;
       options.InvalidSlices = this->InvalidSlices;
-      options.KeepOutliers = this->BadPoses == KeepOutliers;
+      options.KeepOutliers = this->BadPoses == vtkLacunaSliceAlgorithm::KeepOutliers;
       options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
       int whole[6];
       in->Get(SDDP::WHOLE_EXTENT(), whole);
@@ -223,7 +223,8 @@ std::string vtkLacunaSlicePlanes::DescribeParameters() const
     .Add("SpeedLimit", this->SpeedLimit)
     .Add("OutlineOnly", this->OutlineOnly)
     .Add("InvalidSlices", choices[this->InvalidSlices])
-    .Add("BadPoses", this->BadPoses == LeaveOutBad ? "LeaveOut" : "KeepOutliers")
+    .Add(
+      "BadPoses", this->BadPoses == vtkLacunaSliceAlgorithm::LeaveOut ? "LeaveOut" : "KeepOutliers")
     .Add("MaximumNumberOfPoints", this->MaximumNumberOfPoints)
     .Get();
 }

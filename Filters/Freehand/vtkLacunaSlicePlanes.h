@@ -39,6 +39,7 @@
 #define vtkLacunaSlicePlanes_h
 
 #include "vtkLacunaFiltersFreehandModule.h" // for export macro
+#include "vtkLacunaSliceAlgorithm.h"        // for BadPoseRules
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for std::string
@@ -63,11 +64,6 @@ public:
     LeaveOut = 0,
     Outline = 1,
     Show = 2
-  };
-  enum BadPoseRules // values as in vtkLacunaSweptVolume
-  {
-    LeaveOutBad = 1,
-    KeepOutliers = 2
   };
 
   ///@{
@@ -116,10 +112,11 @@ public:
 
   ///@{
   /// What to do with slices whose pose cannot be true though SliceStatus has nothing against it.
-  /// LeaveOutBad: a warning names them, they are not shown, and the speed of the next one is taken
+  /// Of vtkLacunaSliceAlgorithm::BadPoseRules, LeaveOut: a warning names them, they are not shown, and the speed of the next one is taken
   /// from the slice before them. KeepOutliers: only poses that cannot be drawn (not finite,
-  /// singular, a corner beyond 1e38 mm) are left out. Default: LeaveOutBad.
-  vtkSetClampMacro(BadPoses, int, LeaveOutBad, KeepOutliers);
+  /// singular, a corner beyond 1e38 mm) are left out. Default: LeaveOut.
+  vtkSetClampMacro(
+    BadPoses, int, vtkLacunaSliceAlgorithm::LeaveOut, vtkLacunaSliceAlgorithm::KeepOutliers);
   vtkGetMacro(BadPoses, int);
   ///@}
 
@@ -154,7 +151,7 @@ private:
   double SpeedLimit = 23;
   bool OutlineOnly = false;
   int InvalidSlices = LeaveOut;
-  int BadPoses = LeaveOutBad;
+  int BadPoses = vtkLacunaSliceAlgorithm::LeaveOut;
   int MaximumNumberOfPoints = 2000000;
 };
 #endif

@@ -154,6 +154,10 @@ void vtkLacunaPolhemusVideoSource::Configure()
       const lacuna::ProbeFrames frames = lacuna::ReadProbeFrames(calibration, this->PixelSpacing);
       rules.ImageToProbe = frames.ImageToProbe;
       rules.TrackerToReference = frames.TrackerToReference;
+      if (!frames.Warning.empty())
+      {
+        vtkWarningMacro(<< calibration << ": " << frames.Warning);
+      }
     }
     // One that is chosen together with other devices is theirs.
     const bool keepsCalibration = wait && now.Calibration.Calibrated;

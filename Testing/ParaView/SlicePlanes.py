@@ -27,9 +27,9 @@ enumerations = {
     "ColorBy": ["Intensity", "Speed", "RegistrationError"],
     "InvalidSlices": ["LeaveOut", "Outline", "Show"]}
 check_defaults(planes, plain, names, enumerations)
-assert planes.BadPoses == "LeaveOut" and plain.GetBadPoses() == plain.LeaveOutBad
+assert planes.BadPoses == "LeaveOut" and plain.GetBadPoses() == lacuna.vtkLacunaSliceAlgorithm.LeaveOut
 planes.BadPoses = "KeepOutliers"
-assert planes.GetClientSideObject().GetBadPoses() == plain.KeepOutliers
+assert planes.GetClientSideObject().GetBadPoses() == lacuna.vtkLacunaSliceAlgorithm.KeepOutliers
 planes.BadPoses = "LeaveOut"
 assert set(planes.ListProperties()) - {"PointData", "CellData", "FieldData"} == {"Input", "BadPoses", *names, *enumerations}
 

@@ -102,7 +102,7 @@ const std::string& GetCalibration()
     const std::string name = InFolder("calibration.xml");
     Store(name,
       "<PlusConfiguration><CoordinateDefinitions><Transform From=\"Image\" To=\"Probe\" "
-      "Matrix=\"0.1 0 0 0 0 0.2 0 0 0 0 0.1 5 0 0 0 1\"/></CoordinateDefinitions>"
+      "Matrix=\"0.1 0 0 0 0 0.2 0 0 0 0 0.15 5 0 0 0 1\"/></CoordinateDefinitions>"
       "</PlusConfiguration>");
     return name;
   }();

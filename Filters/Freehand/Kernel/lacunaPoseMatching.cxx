@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPoseMatching.h"
 
+#include "lacunaItemList.h"
+
 #include <algorithm>
 #include <climits>
 #include <cmath>

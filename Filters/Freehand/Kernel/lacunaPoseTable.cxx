@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPoseTable.h"
 
+#include "lacunaGeometryGate.h"
+#include "lacunaItemList.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,11 +15,6 @@ namespace lacuna
 namespace
 {
 using Quaternion = std::array<double, 4>; // x y z w
-
-// mm
-constexpr double Nanometre = 1e-6;
-constexpr double Metre = 1e3;
-constexpr double Kilometre = 1e6;
 
 bool IsPoseOfImage(const PoseTableOptions& options)
 {
@@ -40,14 +38,10 @@ Vec3 GetLengths(const Matrix4& m)
   return { Norm(m.Column(0)), Norm(m.Column(1)), Norm(m.Column(2)) };
 }
 
+// The size of a pixel that is given twice may be rounded.
 bool IsOne(double length)
 {
-  return std::abs(length - 1) <= RigidTolerance;
-}
-
-bool ArePerpendicular(const Vec3& a, const Vec3& b)
-{
-  return std::abs(Dot(a, b)) <= RigidTolerance * Norm(a) * Norm(b);
+  return std::abs(length - 1) <= 0.01;
 }
 
 std::string Join(const Vec3& v, int count = 3)
@@ -60,47 +54,9 @@ std::string Join(const Vec3& v, int count = 3)
   return text.str();
 }
 
-// What is wrong with a transform whose first two columns may carry pixel sizes; empty when it is
-// all right.
-std::string FindFault(const Matrix4& m, bool scaled)
+std::string Describe(const GeometryFinding& finding)
 {
-  std::ostringstream text;
-  if (!m.IsAffine())
-  {
-    text << "its last row is " << m(3, 0) << " " << m(3, 1) << " " << m(3, 2) << " " << m(3, 3)
-         << ", not 0 0 0 1";
-    if (m(0, 3) == 0 && m(1, 3) == 0 && m(2, 3) == 0 && m(3, 3) == 1)
-    {
-      text << "; it is transposed: the position belongs into the last column";
-    }
-    return text.str();
-  }
-  const Vec3 lengths = GetLengths(m);
-  const double determinant = m.Determinant3();
-  if (!(std::abs(determinant) > 1e-6 * lengths[0] * lengths[1] * lengths[2]))
-  {
-    return "it is singular";
-  }
-  if (determinant < 0)
-  {
-    text << "it mirrors (determinant " << determinant
-         << "): its axes are left-handed. Convert the poses to right-handed axes; where only the "
-            "third column, which no pixel uses, points the wrong way, change its sign";
-    return text.str();
-  }
-  if (!ArePerpendicular(m.Column(0), m.Column(1)) ||
-    (!scaled &&
-      (!ArePerpendicular(m.Column(0), m.Column(2)) || !ArePerpendicular(m.Column(1), m.Column(2)))))
-  {
-    return "it is not rigid: its axes are not perpendicular";
-  }
-  if (!scaled && !(IsOne(lengths[0]) && IsOne(lengths[1]) && IsOne(lengths[2])))
-  {
-    return "it is not rigid: its columns have the lengths " + Join(lengths) +
-      ", not 1 (where the matrices map pixels, set PoseTransform to ImageToReference and "
-      "PixelSpacing to 0)";
-  }
-  return {};
+  return "it " + finding.Text + "; " + finding.Advice;
 }
 
 Matrix4 ToMatrix(const Quaternion& q, const Vec3& position)
@@ -151,20 +107,13 @@ Quaternion ToQuaternion(const Matrix4& r)
   return q;
 }
 
-enum class Reading
-{
-  Pose,
-  Missing,
-  Fault
-};
-
-// One row as a transform in the table's unit. what says why it is none.
-Reading ReadRow(
-  const double* row, std::size_t count, PoseFormat format, Matrix4& pose, std::string& what)
+// One row as a transform in the table's unit. False when there is none. finding: of a quaternion.
+bool ReadRow(
+  const double* row, std::size_t count, PoseFormat format, Matrix4& pose, GeometryFinding& finding)
 {
   if (!std::all_of(row, row + count, [](double v) { return std::isfinite(v); }))
   {
-    return Reading::Missing;
+    return false;
   }
   if (format == PoseFormat::Matrix)
   {
@@ -172,8 +121,7 @@ Reading ReadRow(
     std::copy(row, row + count, elements.begin());
     pose = Matrix4(elements);
     const Vec3 lengths = GetLengths(pose);
-    const bool empty = lengths[0] == 0 && lengths[1] == 0 && lengths[2] == 0;
-    return empty ? Reading::Missing : Reading::Pose;
+    return lengths[0] != 0 || lengths[1] != 0 || lengths[2] != 0;
   }
   const Vec3 position{ row[0], row[1], row[2] };
   if (format == PoseFormat::Quaternion)
@@ -182,47 +130,38 @@ Reading ReadRow(
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (norm == 0)
     {
-      return Reading::Missing;
+      return false;
     }
-    if (!IsOne(norm))
-    {
-      std::ostringstream text;
-      text << "its quaternion has length " << norm << ", not 1";
-      what = text.str();
-      return Reading::Fault;
-    }
+    finding = CheckQuaternion(norm);
     for (double& part : q)
     {
       part /= norm;
     }
     pose = ToMatrix(q, position);
-    return Reading::Pose;
+    return true;
   }
   const double radians = std::acos(-1.0) / 180;
   pose = Matrix4::Translation(position) * Matrix4::Rotation({ 0, 0, 1 }, row[3] * radians) *
     Matrix4::Rotation({ 0, 1, 0 }, row[4] * radians) *
     Matrix4::Rotation({ 1, 0, 0 }, row[5] * radians);
-  return Reading::Pose;
+  return true;
 }
 
-// The transform of a row as it is used, in mm; what is not empty when it is none.
-Matrix4 Convert(Matrix4 pose, const PoseTableOptions& options, std::string& what)
+// The transform of a row as it is used, in mm, and what is wrong with it.
+GeometryFinding Convert(Matrix4& pose, const PoseTableOptions& options)
 {
   const bool scaled = IsScaled(options);
-  what = FindFault(pose, scaled);
-  const bool backwards = options.Transform == PoseTransform::ReferenceToProbe ||
-    options.Transform == PoseTransform::ReferenceToImage;
-  if (backwards && (what.empty() || (scaled && pose.IsAffine())))
+  const Matrix4 written = pose;
+  if (options.Transform == PoseTransform::ReferenceToProbe ||
+    options.Transform == PoseTransform::ReferenceToImage)
   {
     try
     {
       pose = pose.Inverse();
-      // the sizes of pixels are in the columns of what maps pixels
-      what = scaled ? FindFault(pose, true) : std::string();
     }
     catch (const std::invalid_argument&)
     {
-      what = "it is singular";
+      return scaled ? CheckImage(written) : CheckPose(written);
     }
   }
   const double mm = GetMillimetres(options.Unit);
@@ -233,20 +172,13 @@ Matrix4 Convert(Matrix4 pose, const PoseTableOptions& options, std::string& what
       pose(r, c) *= mm;
     }
   }
-  const Vec3 lengths = GetLengths(pose);
-  const auto isSize = [](double length) { return length >= Nanometre && length <= Metre; };
-  if (what.empty() && scaled && !(isSize(lengths[0]) && isSize(lengths[1]) && isSize(lengths[2])))
+  GeometryFinding finding = scaled ? CheckImage(pose) : CheckPose(pose);
+  if (finding.Fault == GeometryFault::NotRigid)
   {
-    what = "its columns have the lengths " + Join(lengths) +
-      " mm, which are no sizes of pixels: check the matrix and its unit";
+    finding.Advice += "; where the matrices map pixels, set PoseTransform to ImageToReference and "
+                      "PixelSpacing to 0";
   }
-  const Vec3 position = pose.Column(3);
-  if (what.empty() && !(Norm(position) <= Kilometre))
-  {
-    what = "it is more than a kilometre away, at " + Join(position) +
-      " mm: check the position and its unit";
-  }
-  return pose;
+  return finding;
 }
 
 // Pixel sizes that some matrix has, against those that another one has.
@@ -254,7 +186,7 @@ void CheckPixelSizes(const Vec3& first, std::size_t firstRow, const Vec3& length
 {
   for (int i = 0; i < 2; ++i)
   {
-    if (!(std::abs(lengths[i] - first[i]) <= RigidTolerance * first[i]))
+    if (!(IsOne(lengths[i] / first[i])))
     {
       throw std::runtime_error("the poses have pixels of " + Join(first, 2) + " mm in row " +
         std::to_string(firstRow) + " but of " + Join(lengths, 2) + " mm in row " +
@@ -279,6 +211,8 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   std::vector<std::size_t> faulty;
   std::vector<std::size_t> zero;
   std::string firstFault;
+  std::vector<std::size_t> doubtful;
+  std::string firstDoubt;
   Vec3 sizes{};
   std::size_t first = rows;
   for (std::size_t i = 0; i < rows; ++i)
@@ -289,26 +223,32 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
       continue;
     }
     Matrix4 pose;
-    std::string what;
-    const Reading reading = ReadRow(numbers.data() + i * count, count, options.Format, pose, what);
-    if (reading == Reading::Missing)
+    GeometryFinding finding;
+    if (!ReadRow(numbers.data() + i * count, count, options.Format, pose, finding))
     {
       missing.push_back(i);
       continue;
     }
-    if (reading == Reading::Pose)
-    {
-      pose = Convert(pose, options, what);
-    }
-    if (!what.empty())
+    const GeometryFinding converted = Convert(pose, options);
+    finding = GetAction(GeometryOrigin::Table, finding.Fault) < GeometryAction::Flag && converted
+      ? converted
+      : finding;
+    const GeometryAction action = GetAction(GeometryOrigin::Table, finding.Fault);
+    if (action == GeometryAction::Refuse)
     {
       if (!options.SkipInvalid)
       {
-        throw std::runtime_error("the pose in row " + std::to_string(i) + " is none: " + what);
+        throw std::runtime_error(
+          "the pose in row " + std::to_string(i) + " is none: " + Describe(finding));
       }
-      firstFault = faulty.empty() ? what : firstFault;
+      firstFault = faulty.empty() ? Describe(finding) : firstFault;
       faulty.push_back(i);
       continue;
+    }
+    if (action == GeometryAction::Warn)
+    {
+      firstDoubt = doubtful.empty() ? Describe(finding) : firstDoubt;
+      doubtful.push_back(i);
     }
     if (IsScaled(options))
     {
@@ -353,6 +293,11 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
     table.Warnings.push_back("what is in " + DescribeItems("row", faulty) +
       " is no pose (the first one: " + firstFault + "); flagged in SliceStatus");
   }
+  if (!doubtful.empty())
+  {
+    table.Warnings.push_back("the pose in " + DescribeItems("row", doubtful) +
+      " may be wrong (the first one: " + firstDoubt + "); it is used");
+  }
   return table;
 }
 
@@ -368,6 +313,15 @@ PoseChain MakePoseChain(const PoseTableOptions& options)
             << "; it must be mm above 0, or 0 where the matrices hold the size of a pixel";
     throw std::runtime_error(message.str());
   }
+  if (HasPixelSpacing(options))
+  {
+    const GeometryFinding finding =
+      CheckImage(Matrix4::Scaling({ spacing[0], spacing[1], std::sqrt(spacing[0] * spacing[1]) }));
+    if (GetAction(GeometryOrigin::Settings, finding.Fault) == GeometryAction::Refuse)
+    {
+      throw std::runtime_error("PixelSpacing " + finding.Text + "; " + finding.Advice);
+    }
+  }
   PoseChain chain;
   const Matrix4 identity;
   const bool known =
@@ -378,12 +332,15 @@ PoseChain MakePoseChain(const PoseTableOptions& options)
     : identity;
   if (known)
   {
-    const std::string fault = options.ImageToProbe.IsFinite()
-      ? FindFault(options.ImageToProbe, true)
-      : "it has elements that are not finite";
-    if (!fault.empty())
+    const GeometryFinding finding = CheckImage(options.ImageToProbe);
+    const GeometryAction action = GetAction(GeometryOrigin::Settings, finding.Fault);
+    if (action == GeometryAction::Refuse)
     {
-      throw std::runtime_error("ImageToProbe is no calibration: " + fault);
+      throw std::runtime_error("ImageToProbe is no calibration: " + Describe(finding));
+    }
+    if (action == GeometryAction::Warn)
+    {
+      chain.Warning = "ImageToProbe may be wrong: " + Describe(finding) + "; it is used";
     }
     const Vec3 lengths = GetLengths(options.ImageToProbe);
     const bool rigid = IsOne(lengths[0]) && IsOne(lengths[1]);
@@ -445,35 +402,5 @@ Matrix4 InterpolatePose(const Matrix4& first, const Matrix4& second, double t)
   const Vec3 position = (1 - t) * first.Column(3) + t * second.Column(3);
   return Matrix4::FromColumns(scale[0] * turned.Column(0), scale[1] * turned.Column(1),
     scale[2] * turned.Column(2), position);
-}
-
-//------------------------------------------------------------------------------
-std::string DescribeItems(const std::string& what, const std::vector<std::size_t>& items)
-{
-  constexpr int most = 8; // ranges
-  std::ostringstream text;
-  text << what << (items.size() > 1 ? "s " : " ");
-  int ranges = 0;
-  for (std::size_t i = 0; i < items.size();)
-  {
-    std::size_t last = i;
-    while (last + 1 < items.size() && items[last + 1] == items[last] + 1)
-    {
-      ++last;
-    }
-    if (ranges == most)
-    {
-      text << " and " << items.size() - i << " more";
-      break;
-    }
-    text << (ranges ? ", " : "") << items[i];
-    if (last > i)
-    {
-      text << (last == i + 1 ? ", " : " to ") << items[last];
-    }
-    ++ranges;
-    i = last + 1;
-  }
-  return text.str();
 }
 }

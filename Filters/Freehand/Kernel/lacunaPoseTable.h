@@ -44,26 +44,21 @@ struct PoseTable
   std::vector<std::string> Warnings; ///< for the user, naming rows
 };
 
-/// How far numbers may be from those of a rigid transform, relatively.
-constexpr double RigidTolerance = 0.01;
-
 /// Reads rows of numbers, count of them in each (12 or 16, 7, 6), as FindPoseColumns orders them.
 /// Rows that refused flags (empty: none does) are not looked at and not usable; a warning names
 /// them.
 ///
 /// A row without a pose (numbers that are not finite; a matrix or a quaternion of zeros, as some
 /// trackers write what they did not see) is not usable, and a warning names it. Everything else
-/// that is no pose throws std::runtime_error with its row (or becomes a warning, see SkipInvalid):
-/// a matrix with another last row than 0 0 0 1, a mirroring or singular one, one that is not
-/// rigid within RigidTolerance, a position beyond a kilometre, pixels below a nanometre or above
-/// a metre, a quaternion that is not of length 1 within RigidTolerance; it is normalised.
+/// that is no pose by lacunaGeometryGate.h throws std::runtime_error with its row, or becomes a
+/// warning (see SkipInvalid, and the table of rules in that file). Quaternions are normalised.
 /// Matrices are taken as they are. Angles are degrees: azimuth about z, elevation about the new
 /// y, roll about the new x (Carr 1996, ch. 2), so R = Rz(azimuth) Ry(elevation) Rx(roll). All 0
 /// is then a pose, but a warning names such rows after the first, since ParaView reads empty ones
 /// so.
 ///
 /// Only poses of an image frame in pixels may have columns of other lengths than 1: pixel sizes,
-/// the same in all rows within RigidTolerance.
+/// the same in all rows within a hundredth.
 PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   const std::vector<char>& refused, const PoseTableOptions& options);
 
@@ -75,20 +70,18 @@ struct PoseChain
   Matrix4 PixelToPose;
   bool HasImageToProbe = false;
   Matrix4 ImageToProbe; ///< (column, row, 0, 1) to mm
+  std::string Warning;  ///< for the user: ImageToProbe may be wrong; empty: it has no fault
 };
 
 /// Checks the calibration and the pixel spacing together. Not calibrated when the poses are the
 /// probe's, ImageToProbe is the identity and PixelSpacing 0 0. The columns of ImageToProbe have the
 /// length 1, or that of PixelSpacing once more, or carry the size of a pixel alone. Throws
 /// std::runtime_error when it is given twice and differently or not at all, and when ImageToProbe
-/// is singular, mirrors, or is not rigid but for pixel sizes.
+/// or PixelSpacing is no calibration by lacunaGeometryGate.h.
 PoseChain MakePoseChain(const PoseTableOptions& options);
 
 /// Between two rigid transforms (or with the same pixel sizes), at 0 <= t <= 1: straight on,
 /// turning evenly about one axis.
 Matrix4 InterpolatePose(const Matrix4& first, const Matrix4& second, double t);
-
-/// "row 3", "rows 3 to 7, 12 and 20 more": for messages; items ascend.
-std::string DescribeItems(const std::string& what, const std::vector<std::size_t>& items);
 }
 #endif

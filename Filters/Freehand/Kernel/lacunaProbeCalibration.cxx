@@ -5,7 +5,7 @@
 #include "lacunaCalibrationClusters.h"
 #include "lacunaCalibrationModel.h"
 #include "lacunaCalibrationStart.h"
-#include "lacunaRigidPose.h"
+#include "lacunaGeometryGate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +36,11 @@ void Check(const std::vector<CalibrationPick>& picks, const ProbeCalibrationOpti
 {
   for (std::size_t pick = 0; pick < picks.size(); ++pick)
   {
-    if (const std::string problem = DescribeNotRigid(picks[pick].ProbeToTracker); !problem.empty())
+    if (const GeometryFinding finding = CheckPose(picks[pick].ProbeToTracker);
+        GetAction(GeometryOrigin::Picks, finding.Fault) == GeometryAction::Refuse)
     {
-      throw std::invalid_argument("pick " + std::to_string(pick) + ": ProbeToTracker " + problem);
+      throw std::invalid_argument("pick " + std::to_string(pick) + ": ProbeToTracker " +
+        finding.Text + "; " + finding.Advice);
     }
     if (!std::isfinite(picks[pick].Pixel[0]) || !std::isfinite(picks[pick].Pixel[1]))
     {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaTrackerSelfTest.h"
 
+#include "lacunaGeometryGate.h"
 #include "lacunaReceiverPlaces.h"
-#include "lacunaRigidPose.h"
 
 #include <Eigen/Dense>
 
@@ -47,15 +47,12 @@ void Check(const std::vector<ReceiverPair>& pairs, const TrackerSelfTestOptions&
   {
     for (const Matrix4* pose : { &pair.First, &pair.Second })
     {
-      std::string problem = DescribeNotRigid(*pose);
-      if (problem.empty() && !(Norm(pose->Column(3)) < LargestCoordinate))
-      {
-        problem = "is more than a kilometre away: check the unit of length";
-      }
-      if (!problem.empty())
+      if (const GeometryFinding finding = CheckPose(*pose);
+          GetAction(GeometryOrigin::Picks, finding.Fault) == GeometryAction::Refuse)
       {
         throw std::invalid_argument("record " + std::to_string(pair.Record) + ": the pose of the " +
-          (pose == &pair.First ? "first" : "second") + " receiver " + problem);
+          (pose == &pair.First ? "first" : "second") + " receiver " + finding.Text + "; " +
+          finding.Advice);
       }
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweep.h"
 
+#include "lacunaGeometryGate.h"
+#include "lacunaItemList.h"
 #include "lacunaPixelSpacing.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceFormat.h"
@@ -133,13 +135,16 @@ private:
   void ReportPictures(const Chain& chain);
   void DescribeChain(const Chain& chain);
   void ReportBadFrames(const SweepTransform& transform);
-  void ReportMirrors(const SweepTransform& transform);
+  std::size_t CountImageLinks(const Chain& chain) const;
+  void JudgeChain(const Chain& chain, bool calibrated);
+  void Judge(const Chain& links, bool ofImage);
 
   const SequenceHeader& Header;
   const SweepOptions& Options;
   std::size_t Count;
   SweepTransforms Transforms;
   std::string ImageFrame;                                   ///< of the pixels
+  std::vector<char> Impossible;                             ///< frames whose pose the gate flags
   std::map<std::string, std::vector<std::size_t>> BadFlags; ///< frames by the text of SliceStatus
   Sweep Result;
 };
@@ -429,13 +434,14 @@ void SweepBuilder::BuildPoses()
   {
     return; // no pose to judge
   }
+  this->JudgeChain(chain, calibrated);
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const bool refused = this->Options.DropInvalid &&
       std::any_of(chain.begin(), chain.end(),
         [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
     Matrix4 pose;
-    if (!this->Transforms.Compose(chain, i, pose) || refused)
+    if (!this->Transforms.Compose(chain, i, pose) || refused || this->Impossible[i])
     {
       this->Result.Status[i] |= Sweep::PoseInvalid;
       pose = NoPose();
@@ -451,12 +457,6 @@ void SweepBuilder::BuildPoses()
     if (!transform.FromCalibration)
     {
       this->ReportBadFrames(transform);
-    }
-    const std::string& image = this->ImageFrame;
-    // the third axis of a picture means nothing
-    if (transform.From != image && transform.To != image)
-    {
-      this->ReportMirrors(transform);
     }
   }
 }
@@ -647,22 +647,85 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
 }
 
 //------------------------------------------------------------------------------
-void SweepBuilder::ReportMirrors(const SweepTransform& transform)
+// Links that belong to the calibration: from pixels to the first frame that a tracker could follow.
+std::size_t SweepBuilder::CountImageLinks(const Chain& chain) const
 {
-  std::vector<std::size_t> frames;
-  for (std::size_t i = 0; i < this->Count; ++i)
+  std::size_t count = std::min<std::size_t>(1, chain.size());
+  while (count < chain.size() &&
+    (this->Transforms.Get(chain[count]).FromCalibration || IsPictureFrame(chain[count - 1].To)))
   {
-    if (transform.Get(i).IsFinite() && transform.Get(i).Determinant3() < 0)
+    ++count;
+  }
+  return count;
+}
+
+//------------------------------------------------------------------------------
+void SweepBuilder::JudgeChain(const Chain& chain, bool calibrated)
+{
+  this->Impossible.assign(this->Count, 0);
+  const auto ofImage = static_cast<std::ptrdiff_t>(calibrated ? this->CountImageLinks(chain) : 0);
+  if (calibrated)
+  {
+    this->Judge(Chain(chain.begin(), chain.begin() + ofImage), true);
+  }
+  for (auto link = chain.begin() + ofImage; link != chain.end(); ++link)
+  {
+    this->Judge({ *link }, false);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Passes what links lead by together through the gate: refuses, flags or warns. What cannot be
+// composed at all, ReportBadFrames tells.
+void SweepBuilder::Judge(const Chain& links, bool ofImage)
+{
+  std::string name;
+  bool constant = true;
+  for (const TransformGraph::Link& link : links)
+  {
+    const SweepTransform& transform = this->Transforms.Get(link);
+    name += (name.empty() ? "" : " and ") + transform.Name;
+    constant = constant && transform.FromCalibration;
+  }
+  const GeometryOrigin origin =
+    constant ? GeometryOrigin::CalibrationFile : GeometryOrigin::Sequence;
+  std::map<GeometryFault, std::pair<GeometryFinding, std::vector<std::size_t>>> found;
+  for (std::size_t i = 0; i < (constant ? std::min<std::size_t>(1, this->Count) : this->Count); ++i)
+  {
+    const bool refused = this->Options.DropInvalid &&
+      std::any_of(links.begin(), links.end(),
+        [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
+    Matrix4 matrix;
+    if (refused || !this->Transforms.Compose(links, i, matrix))
     {
+      continue;
+    }
+    if (const GeometryFinding finding = ofImage ? CheckImage(matrix) : CheckPose(matrix))
+    {
+      auto& [first, frames] = found[finding.Fault];
+      first = frames.empty() ? finding : first;
       frames.push_back(i);
+      this->Impossible[i] |= GetAction(origin, finding.Fault) == GeometryAction::Flag ? 1 : 0;
     }
   }
-  if (!frames.empty())
+  for (const auto& [fault, each] : found)
   {
-    this->Warn("transform " + transform.Name + " mirrors (its axes are left-handed) in " +
-      FrameList(frames) +
-      ", which no tracker can move by: what is made of these slices may be a mirror image. Convert "
-      "the poses to right-handed axes; where only the pictures are mirrored, flip those instead");
+    const auto& [finding, frames] = each;
+    const std::string text = (links.size() > 1 ? "the product of transforms " : "transform ") +
+      name + " " + (constant ? "of the calibration file " : "") + finding.Text;
+    const std::string place = constant
+      ? std::string()
+      : " (frame " + std::to_string(frames.front()) + ") in " + DescribeItems("frame", frames);
+    switch (GetAction(origin, fault))
+    {
+      case GeometryAction::Refuse:
+        this->Fail(text + "; " + finding.Advice + ", or give another CalibrationFileName");
+      case GeometryAction::Flag:
+        this->Warn(text + place + "; flagged in SliceStatus (1, pose invalid); " + finding.Advice);
+        break;
+      default:
+        this->Warn(text + place + "; used nevertheless; " + finding.Advice);
+    }
   }
 }
 }

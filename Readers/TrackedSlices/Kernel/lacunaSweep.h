@@ -6,6 +6,7 @@
 
 #include "lacunaMatrix4.h"
 #include "lacunaSequenceHeader.h"
+#include "lacunaSliceFlags.h"
 
 #include <cstdint>
 #include <map>
@@ -31,18 +32,8 @@ struct SweepOptions
   std::int64_t FramesWithPixels = -1;
 };
 
-struct Sweep
+struct Sweep : SliceFlags
 {
-  /// Flags of Status.
-  enum Flags : unsigned char
-  {
-    Valid = 0,
-    PoseInvalid = 1,
-    ImageInvalid = 2,
-    TooFast = 4,
-    GatedOut = 8
-  };
-
   /// Maps (column, row, 0, 1) to mm in the reference frame. All NaN for a flagged pose: there is no
   /// pose that could be used by mistake. Empty when no transform has to do with the image frame,
   /// that is, when the probe is not calibrated.
@@ -70,7 +61,7 @@ struct Sweep
 /// Finds the chain of transforms from the image to the reference frame, the same one for the whole
 /// sweep: the shortest through the calibration's and the sequence's transforms, taken forwards or
 /// backwards. A frame's pose is valid when each of the sequence's transforms in the chain is there
-/// for the frame, is 16 finite numbers, can be inverted and has the status OK (any other word,
+/// for the frame, is 16 finite numbers, passes lacunaGeometryGate.h and has the status OK (any other word,
 /// known or not, is not valid; a transform that has no status in the whole file is taken as valid,
 /// with a warning). Its image is valid when ImageStatus is OK or absent. With DropInvalid a field
 /// SliceStatus adds its flags but ImageInvalid, which is found anew; one that is no whole number
@@ -85,7 +76,7 @@ struct Sweep
 /// Without a chain the sweep is not calibrated when no calibration file is given. Otherwise throws
 /// std::runtime_error that names the missing link and the transforms there are; also when no
 /// transform mentions the reference frame though one leads to Probe, or when the calibration file
-/// cannot be used.
+/// cannot be used, also by lacunaGeometryGate.h.
 Sweep BuildSweep(const SequenceHeader& header, const SweepOptions& options);
 
 /// The Timestamp of each frame in s; empty when no frame has one, NaN where one lacks it or has

@@ -21,7 +21,7 @@ struct AcquiredSlice
   std::int64_t FrameNumber = 0; ///< in the video, counted from the beginning of the acquisition
   double Timestamp = 0;         ///< when the probe saw it, since the beginning of the acquisition
   Matrix4 ProbeToTracker;       ///< mm; all NaN when there is no pose
-  unsigned char Status = 0;     ///< flags of Sweep::Flags, but for what PixelSpacing tells
+  unsigned char Status = 0;     ///< SliceFlags, but for what PixelSpacing tells
   std::optional<Vec2> PixelSpacing; ///< mm of a column and a row, as the video says
   double Residual = 0; ///< from the slice's instant to the nearest measurement of the tracker
   double Gap = 0;      ///< between the measurements on either side

@@ -2,6 +2,7 @@
 #include "lacunaFastrakRecord.h"
 
 #include "lacunaFastrakReply.h"
+#include "lacunaGeometryGate.h"
 
 #include <algorithm>
 #include <charconv>
@@ -19,7 +20,6 @@ constexpr std::size_t HeaderLength = 3;
 constexpr std::size_t MaximumItems = 32;
 constexpr std::size_t MaximumLength = 254;
 constexpr double MaximumDistance = 4000; // mm, twice what the widest position envelope allows
-constexpr double UnitTolerance = 0.02;
 
 using Values = std::array<double, 4>;
 
@@ -205,9 +205,10 @@ bool Keep(std::optional<T>& kept, const T& value)
   return true;
 }
 
-bool IsUnit(double squaredLength)
+// What the gate flags is a damaged record.
+bool IsUsable(const GeometryFinding& finding)
 {
-  return std::abs(std::sqrt(squaredLength) - 1) <= UnitTolerance;
+  return GetAction(GeometryOrigin::Live, finding.Fault) < GeometryAction::Flag;
 }
 
 bool IsPossible(FastrakItem item, const Values& v)
@@ -221,7 +222,9 @@ bool IsPossible(FastrakItem item, const Values& v)
       return std::abs(v[0]) <= MaximumDistance && std::abs(v[1]) <= MaximumDistance &&
         std::abs(v[2]) <= MaximumDistance;
     default:
-      return IsUnit(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
+      // an axis has three
+      return IsUsable(
+        CheckQuaternion(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3])));
   }
 }
 
@@ -387,12 +390,13 @@ std::optional<Matrix4> FastrakRecord::GetPose() const
   {
     return std::nullopt;
   }
+  if (!IsUsable(CheckPose(
+        Matrix4::FromColumns(*this->Axes[0], *this->Axes[1], *this->Axes[2], *this->Position))))
+  {
+    return std::nullopt;
+  }
   const Vec3 z = Normalized(Cross(*this->Axes[0], *this->Axes[1]));
   const Vec3 y = Normalized(Cross(z, *this->Axes[0]));
-  if (Dot(z, *this->Axes[2]) < 0.9 || Norm(y) < 0.9)
-  {
-    return std::nullopt; // a mirrored or flat frame
-  }
   return Matrix4::FromColumns(Cross(y, z), y, z, *this->Position);
 }
 

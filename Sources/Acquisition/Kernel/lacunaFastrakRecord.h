@@ -89,14 +89,15 @@ struct FastrakRecord
   std::optional<bool> Button;                      ///< whether it is pressed
 
   /// Receiver to transmitter, mm. From the angles or, where they are not listed, the quaternion or
-  /// the axes, made orthonormal. Nothing when the position or the orientation is missing.
+  /// the axes, made orthonormal. Nothing when the position or the orientation is missing, or when
+  /// lacunaGeometryGate.h flags the axes.
   std::optional<Matrix4> GetPose() const;
 };
 
 /// A record from all its bytes, or nothing when they cannot be one: another length; a header other
 /// than '0', a station and an error code; columns that are no number; numbers that are not finite
 /// or that no unit sends (further than 4 m, angles beyond +-180 and +-90 degrees, axes or
-/// quaternions that are not of length 1 within 2 %); an item listed twice with two values. The
+/// quaternions whose length lacunaGeometryGate.h flags); an item listed twice with two values. The
 /// records have no check sum: damage that leaves possible values is not seen here (see MotionCheck).
 std::optional<FastrakRecord> DecodeFastrakRecord(
   std::string_view bytes, const FastrakLayout& layout, const FastrakFormat& format);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaOpenIGTLinkMessage.h"
 
+#include "lacunaGeometryGate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -21,9 +23,6 @@ constexpr int NewestVersion = 3;
 constexpr std::size_t NameSize = IGTL_HEADER_NAME_SIZE;
 constexpr std::size_t ExtendedHeaderSize = 12;
 constexpr std::uint64_t LargestBody = std::uint64_t{ 1 } << 32; // of any message that makes sense
-// A float32 matrix or a tracker's own rounding; more is 0.3 mm at 300 mm from the receiver.
-constexpr double RigidTolerance = 1e-3;
-constexpr double Kilometre = 1e6; // mm
 
 // Big endian, as all of a message but the pixels is.
 std::uint64_t ReadNumber(std::string_view bytes, std::size_t position, std::size_t size)
@@ -94,6 +93,14 @@ Matrix4 MakeMatrix(const void* numbers)
     { n[0], n[1], n[2] }, { n[3], n[4], n[5] }, { n[6], n[7], n[8] }, { n[9], n[10], n[11] });
 }
 
+void SetFault(const GeometryFinding& finding, OpenIGTLinkPose& pose)
+{
+  if (GetAction(GeometryOrigin::Live, finding.Fault) == GeometryAction::Flag)
+  {
+    pose.Fault = "it " + finding.Text + ": " + finding.Advice;
+  }
+}
+
 // Of position and unit quaternion x y z w; another one has a fault.
 void SetPose(const void* position, const void* quaternion, OpenIGTLinkPose& pose)
 {
@@ -109,10 +116,9 @@ void SetPose(const void* position, const void* quaternion, OpenIGTLinkPose& pose
     pose.Pose = Matrix4::Scaling({ 0, 0, 0 }); // of no tool that is seen
     return;
   }
-  if (std::abs(norm - 1) > RigidTolerance)
+  if (std::isfinite(norm))
   {
-    pose.Fault = "its quaternion has the length " + std::to_string(norm) + " instead of 1";
-    return;
+    SetFault(CheckQuaternion(norm), pose);
   }
   pose.Pose = Matrix4::Translation({ p[0], p[1], p[2] }) *
     (sine == 0 ? Matrix4() : Matrix4::Rotation(axis, 2 * std::atan2(sine, q[3])));
@@ -339,30 +345,7 @@ void CheckOpenIGTLinkPose(OpenIGTLinkPose& pose)
     pose.Usable = false;
     return;
   }
-  const Vec3 x = pose.Pose.Column(0);
-  const Vec3 y = pose.Pose.Column(1);
-  const Vec3 z = pose.Pose.Column(2);
-  const double lengths[3] = { Norm(x), Norm(y), Norm(z) };
-  if (std::any_of(
-        lengths, lengths + 3, [](double length) { return std::abs(length - 1) > RigidTolerance; }))
-  {
-    pose.Fault = "it scales, by " + std::to_string(lengths[0]) + ", " + std::to_string(lengths[1]) +
-      " and " + std::to_string(lengths[2]) +
-      ": have the sender give the pose of the probe (ProbeToTracker), not of the image's pixels";
-  }
-  else if (std::max({ std::abs(Dot(x, y)), std::abs(Dot(y, z)), std::abs(Dot(z, x)) }) >
-    RigidTolerance)
-  {
-    pose.Fault = "it shears: only a rotation and a translation are the pose of a tracker";
-  }
-  else if (pose.Pose.Determinant3() < 0)
-  {
-    pose.Fault = "it mirrors: right-handed axes are needed on both sides";
-  }
-  else if (Norm(pose.Pose.Column(3)) > Kilometre)
-  {
-    pose.Fault = "it is more than a kilometre away: check the unit of length, which is mm";
-  }
+  SetFault(CheckPose(pose.Pose), pose);
 }
 
 std::vector<OpenIGTLinkPose> ReadOpenIGTLinkPoses(const OpenIGTLinkMessage& message)

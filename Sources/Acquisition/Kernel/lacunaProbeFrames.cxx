@@ -2,6 +2,7 @@
 #include "lacunaProbeFrames.h"
 
 #include "lacunaCalibrationFile.h"
+#include "lacunaGeometryGate.h"
 #include "lacunaPoseTable.h"
 #include "lacunaTransformGraph.h"
 
@@ -48,6 +49,14 @@ ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
   }
   ProbeFrames frames;
   frames.TrackerToReference = Compose(transforms, "Tracker", "Reference").value_or(Matrix4());
+  const GeometryFinding finding = CheckPose(frames.TrackerToReference);
+  const GeometryAction action = GetAction(GeometryOrigin::Settings, finding.Fault);
+  const std::string text = "TrackerToReference " + finding.Text + "; " + finding.Advice;
+  if (action == GeometryAction::Refuse)
+  {
+    throw std::runtime_error(fileName + ": " + text);
+  }
+  frames.Warning = action == GeometryAction::Warn ? text : std::string();
   PoseTableOptions options;
   options.ImageToProbe = *imageToProbe;
   options.PixelSpacing = { pixelSpacing, pixelSpacing };
@@ -59,6 +68,7 @@ ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
       throw std::runtime_error("ImageToProbe is the identity, which is no calibration");
     }
     frames.ImageToProbe = chain.ImageToProbe;
+    frames.Warning += (frames.Warning.empty() || chain.Warning.empty() ? "" : ". ") + chain.Warning;
   }
   catch (const std::runtime_error& e)
   {

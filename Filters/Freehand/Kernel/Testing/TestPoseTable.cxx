@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaItemList.h"
 #include "lacunaPoseTable.h"
 
 #include <gtest/gtest.h>
@@ -111,7 +112,7 @@ TEST(PoseTable, TheFormatsAgree)
       ExpectNear(ReadOne(row, Options(PoseFormat::Quaternion)), pose, 1e-12);
       for (int i = 3; i < 7; ++i)
       {
-        row[i] *= -1.004; // rounded, the other sign
+        row[i] *= -1.0009; // rounded, the other sign
       }
       ExpectNear(ReadOne(row, Options(PoseFormat::Quaternion)), pose, 1e-12);
     }
@@ -237,7 +238,11 @@ TEST(PoseTable, WhatIsNoPoseIsRefused)
   expect(Matrix4::Translation({ 0, 1.1e6, 0 }), "more than a kilometre away");
   expect(Matrix4::Translation({ 1e308, 1e308, 1e308 }), "more than a kilometre away");
   EXPECT_NO_THROW(ReadOne(ToRow(Matrix4::Translation({ 0, 9e5, 0 })), PoseTableOptions()));
-  EXPECT_NO_THROW(ReadOne(ToRow(Matrix4::Scaling({ 1.005, 1, 1 })), PoseTableOptions()));
+  const PoseTable rounded =
+    ReadPoseTable(ToRow(Matrix4::Scaling({ 1.005, 1, 1 })), 16, {}, PoseTableOptions());
+  EXPECT_EQ(rounded.Usable, std::vector<char>{ 1 });
+  ASSERT_EQ(rounded.Warnings.size(), 1u);
+  EXPECT_NE(rounded.Warnings[0].find("the pose in row 0 may be wrong"), std::string::npos);
 
   for (const double length : { 0.98, 1.02, 2.0 })
   {
@@ -245,7 +250,7 @@ TEST(PoseTable, WhatIsNoPoseIsRefused)
       [&] {
         ReadPoseTable({ 0, 0, 0, 0, length, 0, 0 }, 7, {}, Options(PoseFormat::Quaternion));
       },
-      "quaternion has length");
+      "it has a quaternion of length");
   }
 }
 
@@ -264,7 +269,7 @@ TEST(PoseTable, PixelSizesOfImagePoses)
       ReadPoseTable(ToRow(Matrix4::Scaling({ 0.2, -0.2, 0.2 })), 16, {}, options);
     },
     "mirrors");
-  // the third column is not looked at but for its side
+  // of length 1 the third column stands for nothing but a side
   EXPECT_NO_THROW(ReadPoseTable(ToRow(Matrix4::Scaling({ 0.2, 0.2, 1 })), 16, {}, options));
   for (const double size : { 1e-7, 1.1e3, 1e-182, 1e82 })
   {
@@ -272,9 +277,17 @@ TEST(PoseTable, PixelSizesOfImagePoses)
       [&] {
         ReadPoseTable(ToRow(Matrix4::Scaling({ 0.2, size, 0.2 })), 16, {}, options);
       },
-      size > 1e-100 ? "no sizes of pixels" : "");
+      size > 1e-100 ? "mm, which no ultrasound has" : "");
   }
-  EXPECT_NO_THROW(ReadPoseTable(ToRow(Matrix4::Scaling({ 1e-5, 0.9e3, 1 })), 16, {}, options));
+  EXPECT_NO_THROW(ReadPoseTable(ToRow(Matrix4::Scaling({ 0.002, 0.1, 0.051 })), 16, {}, options));
+  const PoseTable doubtful =
+    ReadPoseTable(ToRow(Matrix4::Scaling({ 0.3, 0.2, 0.2 })), 16, {}, options);
+  EXPECT_EQ(doubtful.Usable, (std::vector<char>{ 1 }));
+  ASSERT_EQ(doubtful.Warnings.size(), 1u);
+  EXPECT_NE(
+    doubtful.Warnings[0].find("the pose in row 0 may be wrong (the first one: it has pixels "
+                              "of 0.3 x 0.2 mm"),
+    std::string::npos);
   options.PixelSpacing = { 0.2, 0.2 };
   ExpectError([&] { ReadPoseTable(numbers, 16, {}, options); }, "not rigid");
 }
@@ -318,7 +331,19 @@ TEST(PoseTable, ChainOfTheImage)
   options.ImageToProbe = Matrix4::Scaling({ 1, 1, NaN });
   ExpectError([&] { MakePoseChain(options); }, "not finite");
 
+  options.PixelSpacing = { 0.2, 20 };
+  options.ImageToProbe = Matrix4();
+  ExpectError([&] { MakePoseChain(options); }, "PixelSpacing has pixels of 0.2 x 20 mm");
+  options.PixelSpacing = { 0, 0 };
+  options.ImageToProbe =
+    Matrix4::FromColumns({ 0.2, 0, 0 }, { 0.15, 0.2, 0 }, { 0, 0, 0.2 }, { 0, 0, 0 });
+  ExpectError([&] { MakePoseChain(options); }, "it is skewed: rows and columns meet at 53.1301");
+  options.ImageToProbe = Matrix4::Scaling({ 0.3, 0.2, 0.2 });
+  EXPECT_NE(MakePoseChain(options).Warning.find("ImageToProbe may be wrong: it has pixels"),
+    std::string::npos);
+
   // poses of the image: the calibration is only known
+  options.PixelSpacing = { 0.2, 0.2 };
   options.Transform = PoseTransform::ImageToReference;
   options.ImageToProbe = rigid;
   const PoseChain image = MakePoseChain(options);

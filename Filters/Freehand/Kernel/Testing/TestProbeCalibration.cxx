@@ -475,7 +475,7 @@ TEST(ProbeCalibration, RefusesWhatCannotBe)
   refused("14 equations for 12 unknowns", [](Picks& picks, Options&) { picks.resize(7); });
   refused("pick 3: ProbeToTracker has numbers that are not finite",
     [&](Picks& picks, Options&) { picks[3].ProbeToTracker(0, 3) = nan; });
-  refused("pick 3: ProbeToTracker is not a rotation",
+  refused("pick 3: ProbeToTracker is not rigid",
     [](Picks& picks, Options&) {
       picks[3].ProbeToTracker = picks[3].ProbeToTracker * Matrix4::Scaling({ 10, 10, 10 });
     });

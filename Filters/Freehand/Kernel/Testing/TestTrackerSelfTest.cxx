@@ -354,7 +354,7 @@ TEST(TrackerSelfTest, RefusesWhatCannotBe)
     [](Pairs& pairs, Options&) {
       pairs[4].First = pairs[4].First * Matrix4::Scaling({ 1, -1, 1 });
     });
-  refused("is not a rotation", [](Pairs& pairs, Options&) { pairs[4].First(0, 0) += 0.1; });
+  refused("is not rigid", [](Pairs& pairs, Options&) { pairs[4].First(0, 0) += 0.1; });
   refused("last row", [](Pairs& pairs, Options&) { pairs[4].First(3, 0) = 1; });
   refused("more than a kilometre", [](Pairs& pairs, Options&) { pairs[4].First(0, 3) = 1e300; });
   refused("SpeedLimit", [](Pairs&, Options& options) { options.SpeedLimit = -1; });

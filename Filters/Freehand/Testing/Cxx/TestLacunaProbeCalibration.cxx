@@ -212,7 +212,7 @@ void TestBadSlices()
   }
   LACUNA_CHECK_CONTAINS(
     error([](Image* s) { s->GetFieldData()->GetArray("ProbeToTracker")->SetComponent(5, 0, 3); }),
-    "pick 5: ProbeToTracker is not a rotation");
+    "pick 5: ProbeToTracker is not rigid");
   LACUNA_CHECK_CONTAINS(
     error([](Image* s) { s->GetFieldData()->GetArray("SliceStatus")->SetTuple1(2, 1); }),
     "slice 2, which has no pose");

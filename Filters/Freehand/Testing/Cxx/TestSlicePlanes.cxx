@@ -324,7 +324,7 @@ void TestBadPoses()
       LACUNA_CHECK_NEAR(GetCellValue(planes, "Speed", 7 * cells), way / 0.2, 1e-4);
       LACUNA_CHECK_NEAR(planes->GetBounds()[5], Run(MakeStack(12))->GetBounds()[5], 1e-4);
 
-      filter->SetBadPoses(vtkLacunaSlicePlanes::KeepOutliers);
+      filter->SetBadPoses(vtkLacunaSliceAlgorithm::KeepOutliers);
       filter->Update();
       LACUNA_CHECK(planes->GetNumberOfCells() == (problem == "an outlier" ? 12 : 11) * cells);
       LACUNA_CHECK_THAT(IsFinite(planes), problem);

@@ -180,7 +180,7 @@ inline SequenceFile MakeSequence(int frames = 3, int columns = 5, int rows = 4)
 
 /// Pixels of 0.1 x 0.2 mm, the image's origin 5 mm off the probe's along z.
 inline std::string MakeCalibration(
-  const std::string& matrix = "0.1 0 0 0 0 0.2 0 0 0 0 0.1 5 0 0 0 1")
+  const std::string& matrix = "0.1 0 0 0 0 0.2 0 0 0 0 0.15 5 0 0 0 1")
 {
   return "<PlusConfiguration version=\"2.1\">\n  <CoordinateDefinitions>\n"
          "    <Transform From=\"Image\" To=\"Probe\" Matrix=\"" +

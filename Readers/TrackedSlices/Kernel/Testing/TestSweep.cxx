@@ -304,17 +304,85 @@ TEST(Sweep, DamagedMatricesSpoilTheirFrame)
   ExpectContains(Warnings(sweep), { "transform ProbeToTracker is missing in frames 0, 2" });
 }
 
-// A tracker that is said to mirror would mirror the patient; of a picture's calibration the third axis means nothing.
-TEST(Sweep, PosesThatMirrorAreToldOf)
+TEST(Sweep, PosesThatCannotBeAreFlagged)
 {
-  SequenceFile file = MakeSequence();
-  file.SetFrame(1, "ProbeToTrackerTransform", "-1 0 0 4 0 1 0 0 0 0 1 30 0 0 0 1");
-  const Sweep sweep = Build(file);
-  EXPECT_EQ(sweep.Status, (Flags{ 0, 0, 0 }));
-  ExpectContains(Warnings(sweep), { "ProbeToTracker mirrors", "in frame 1,", "flip" });
-  EXPECT_EQ(sweep.Warnings.size(), 1u);
-  const std::string calibration = MakeCalibration("0.1 0 0 0 0 0.1 0 0 0 0 -0.1 0 0 0 0 1");
-  EXPECT_EQ(Warnings(Build(MakeSequence(), calibration)), "");
+  const std::pair<const char*, const char*> cases[] = {
+    { "-1 0 0 4 0 1 0 0 0 0 1 30 0 0 0 1",
+      "transform ProbeToTracker mirrors: its axes are left-handed (frame 1) in frames 1 to 3; "
+      "flagged in SliceStatus (1, pose invalid); convert the poses to right-handed axes" },
+    { "1.2 0 0 4 0 1.2 0 0 0 0 1.2 30 0 0 0 1",
+      "transform ProbeToTracker is not rigid: its columns have the lengths 1.2, 1.2 and 1.2, not 1 "
+      "(frame 1) in frames 1 to 3; flagged in SliceStatus (1, pose invalid); check its digits" },
+    { "1 0 0 4 0.9 1 0 0 0 0 1 30 0 0 0 1", "is not rigid" },
+    { "1 0 0 4 0 1 0 0 0 0 1 2e6 0 0 0 1", "is more than a kilometre away, at 4, 0 and 2e+06 mm" }
+  };
+  for (const auto& [text, warning] : cases)
+  {
+    SequenceFile file = MakeSequence(5);
+    for (int frame = 1; frame < 4; ++frame)
+    {
+      file.SetFrame(frame, "ProbeToTrackerTransform", text);
+    }
+    for (const bool drop : { true, false })
+    {
+      const Sweep sweep = drop ? Build(file) : BuildUnchecked(file);
+      EXPECT_EQ(sweep.Status, (Flags{ 0, 1, 1, 1, 0 })) << text;
+      EXPECT_TRUE(std::isnan(sweep.ImageToReference[1](0, 0))) << text;
+      EXPECT_FALSE(std::isnan(sweep.ImageToReference[4](0, 0))) << text;
+      ExpectContains(Warnings(sweep), { warning });
+      EXPECT_EQ(sweep.Warnings.size(), 1u) << Warnings(sweep);
+    }
+    // what the file calls invalid is no surprise
+    for (int frame = 1; frame < 4; ++frame)
+    {
+      file.SetFrame(frame, "ProbeToTrackerTransformStatus", "INVALID");
+    }
+    EXPECT_EQ(Warnings(Build(file)), "");
+  }
+  SequenceFile rounded = MakeSequence();
+  rounded.SetFrame(1, "ProbeToTrackerTransform", "0.7 -0.71 0 4 0.71 0.7 0 0 0 0 1 30 0 0 0 1");
+  EXPECT_EQ(Build(rounded).Status, (Flags{ 0, 0, 0 }));
+  ExpectContains(Warnings(Build(rounded)),
+    { "transform ProbeToTracker is not a rotation and a translation by 0.00", "in frame 1",
+      "used nevertheless", "record 5 decimals" });
+}
+
+TEST(Sweep, CalibrationsThatCannotBeAreRefused)
+{
+  const auto error = [](const std::string& matrix)
+  { return GetError([&] { Build(MakeSequence(), MakeCalibration(matrix)); }); };
+  ExpectContains(error("0.2 0.15 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1"),
+    { "transform ImageToProbe of the calibration file is skewed: rows and columns meet at 53.1301 "
+      "degrees, not 90; check its digits, or give another CalibrationFileName" });
+  ExpectContains(error("0.2 0 0 0 0 20 0 0 0 0 0.2 0 0 0 0 1"), { "has pixels of 0.2 x 20 mm" });
+  ExpectContains(error("2e-4 0 0 0 0 2e-4 0 0 0 0 2e-4 0 0 0 0 1"), { "check", "unit" });
+  const auto warnings = [](const std::string& matrix)
+  { return Warnings(Build(MakeSequence(), MakeCalibration(matrix))); };
+  EXPECT_EQ(warnings("0.2 0 0 0 0 0.1 0 0 0 0 0.15 0 0 0 0 1"), "");
+  ExpectContains(warnings("0.3 0 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1"),
+    { "transform ImageToProbe of the calibration file has pixels of 0.3 x 0.2 mm, which its third "
+      "column does not confirm",
+      "used nevertheless" });
+  ExpectContains(warnings("-0.2 0 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1"),
+    { "ImageToProbe of the calibration file mirrors", "change the sign of the third column" });
+  EXPECT_EQ(warnings("-0.2 0 0 0 0 0.2 0 0 0 0 -0.2 0 0 0 0 1"), "");
+}
+
+// The poses of pictures, without a calibration, have the size of a pixel.
+TEST(Sweep, PosesOfPicturesAreJudgedAsCalibrations)
+{
+  SequenceFile file = MakeSequence(5);
+  for (int frame = 0; frame < 5; ++frame)
+  {
+    file.SetFrame(frame, "ImageToReferenceTransform",
+      frame == 2 ? "0.2 0.15 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1"
+                 : "0.2 0 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1");
+    file.SetFrame(frame, "ImageToReferenceTransformStatus", "OK");
+  }
+  const Sweep sweep = Build(file, "");
+  EXPECT_EQ(sweep.Status, (Flags{ 0, 0, 1, 0, 0 }));
+  ExpectContains(Warnings(sweep),
+    { "transform ImageToReference is skewed", "in frame 2; flagged in SliceStatus" });
 }
 
 TEST(Sweep, NotOneValidSlice)

@@ -151,7 +151,7 @@ TEST(SweepEvidence, OtherTransformsBetweenPicturesAreToldOf)
   SetFrames(file, 0, 2, "ImageToFlippedImageTransform", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
   EXPECT_EQ(Warnings(Build(file)), "");
   SequenceFile scaled = MakeSequence();
-  SetFrames(scaled, 0, 2, "ImageToImageMmTransform", "0.1 0 0 0 0 0.2 0 0 0 0 0.1 0 0 0 0 1");
+  SetFrames(scaled, 0, 2, "ImageToImageMmTransform", "0.1 0 0 0 0 0.2 0 0 0 0 0.15 0 0 0 0 1");
   SetFrames(scaled, 0, 2, "ImageToImageMmTransformStatus", "OK");
   std::string calibration = MakeCalibration("1 0 0 0 0 1 0 0 0 0 1 5 0 0 0 1");
   calibration.replace(calibration.find("From=\"Image\""), 12, "From=\"ImageMm\"");
@@ -266,7 +266,7 @@ TEST(SweepEvidence, SettingsThatChangeAreToldOf)
 TEST(SweepEvidence, TransformsOfTheHeaderHoldForAllFrames)
 {
   SequenceFile file = MakeSequence();
-  file.Set("ImageToProbeTransform", "0.1 0 0 0 0 0.2 0 0 0 0 0.1 5 0 0 0 1");
+  file.Set("ImageToProbeTransform", "0.1 0 0 0 0 0.2 0 0 0 0 0.15 5 0 0 0 1");
   const Sweep sweep = Build(file, "");
   EXPECT_EQ(Warnings(sweep), "");
   ASSERT_EQ(sweep.ImageToReference.size(), 3u);

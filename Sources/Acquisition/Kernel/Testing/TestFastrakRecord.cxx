@@ -217,6 +217,23 @@ TEST(FastrakRecord, MirroredAxesAreNoPose)
   EXPECT_FALSE(record.GetPose());
 }
 
+TEST(FastrakRecord, DamagedAxesAndQuaternionsAreNoPose)
+{
+  FastrakRecord record = MakeRecord({ 1, 2, 3 }, { 10, 20, 30 });
+  record.Angles.reset();
+  record.Quaternion.reset();
+  record.Axes[0] = *record.Axes[0] + Vec3{ 0, 0.002, 0 };
+  EXPECT_FALSE(record.GetPose());
+
+  const FastrakLayout layout({ FastrakItem::Position, FastrakItem::Quaternion });
+  const std::string good = EncodeFastrakRecord(MakeRecord({ 1, 2, 3 }, { 0, 0, 90 }), layout, {});
+  ASSERT_TRUE(DecodeFastrakRecord(good, layout, {}));
+  const std::size_t digit = good.find("0.7071") + 3;
+  std::string bad = good;
+  bad[digit] = '1'; // 0.7171
+  EXPECT_FALSE(DecodeFastrakRecord(bad, layout, {}));
+}
+
 TEST(FastrakRecord, NumbersTooLongForTheirColumnsAreRefused)
 {
   EXPECT_THROW(EncodeFastrakRecord(MakeRecord({ 0, 0, -30000 }, { 0, 0, 0 }), FastrakLayout(),

@@ -140,7 +140,8 @@ TEST(OpenIGTLinkDevices, TakesTheOnlyDeviceAndAsksWhenThereAreTwo)
 
 TEST(OpenIGTLinkDevices, ScaledAndMirroredPosesAreRefused)
 {
-  for (const auto& [scale, word] : { std::pair<Vec3, std::string>{ { 0.2, 0.2, 0.2 }, "it scales" },
+  for (const auto& [scale, word] : { std::pair<Vec3, std::string>{ { 0.2, 0.2, 0.2 },
+                                       "it is not rigid: its columns have the lengths 0.2" },
          { { 1, -1, 1 }, "it mirrors" } })
   {
     Server server;
@@ -197,7 +198,7 @@ TEST(OpenIGTLinkDevices, SinglePosesAndImagesThatCannotBeUsedAreDamage)
   EXPECT_EQ(scanner->GetCounts().Frames, 5u);
   EXPECT_EQ(scanner->GetCounts().Undecodable, 9u);
   EXPECT_HAS(tracker->GetWarning(), "The pose of 'Probe' from " + server.GetAddress());
-  EXPECT_HAS(tracker->GetWarning(), "it scales");
+  EXPECT_HAS(tracker->GetWarning(), "it is not rigid: its columns have the lengths 1, 2 and 1");
   send(1, 5);
   EXPECT_EQ(scanner->Read(frame), VideoEvent::Frame);
   EXPECT_HAS(Complaint<VideoError>(VideoError::Kind::Unsupported, [&] { scanner->Read(frame); }),
@@ -208,7 +209,7 @@ TEST(OpenIGTLinkDevices, SinglePosesAndImagesThatCannotBeUsedAreDamage)
                  tracker->Poll(poses);
                  tracker->Poll(poses);
                }),
-    "it scales");
+    "it is not rigid: its columns have the lengths 1, 2 and 1");
 }
 
 TEST(OpenIGTLinkDevices, TrackingDataAreAskedForAndTheElementChosen)

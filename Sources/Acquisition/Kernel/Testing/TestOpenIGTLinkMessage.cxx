@@ -205,19 +205,21 @@ TEST(OpenIGTLinkMessage, OnlyRotationAndTranslationIsAPose)
 {
   const Matrix4 pose = AsymmetricPose();
   EXPECT_EQ(FaultOf(pose), "");
-  EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ 0.2, 0.2, 0.2 })), "scales, by 0.2");
-  EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ 1, 1, 1.002 })), "scales");
+  EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ 0.2, 0.2, 0.2 })),
+    "it is not rigid: its columns have the lengths 0.2, 0.2");
+  EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ 1, 1, 1.002 })),
+    "it is not a rotation and a translation by 0.004");
   EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ -1, 1, 1 })), "mirrors");
   EXPECT_HAS(FaultOf(pose * Matrix4::Scaling({ -1, -1, -1 })), "mirrors");
   const double angle = 0.002;
   EXPECT_HAS(FaultOf(pose *
                Matrix4::FromColumns(
                  { 1, 0, 0 }, { std::sin(angle), std::cos(angle), 0 }, { 0, 0, 1 }, { 0, 0, 0 })),
-    "shears");
-  EXPECT_HAS(FaultOf(Matrix4::Scaling({ 0, 1, 1 })), "scales");
+    "it is not a rotation and a translation by 0.00199999");
+  EXPECT_HAS(FaultOf(Matrix4::Scaling({ 0, 1, 1 })), "it is singular");
   EXPECT_EQ(FaultOf(Matrix4::Translation({ 0, -9e5, 0 }) * pose), "");
-  EXPECT_HAS(FaultOf(Matrix4::Translation({ 0, -1.1e6, 0 }) * pose), "unit of length");
-  EXPECT_HAS(FaultOf(Matrix4::Translation({ 1e20, 0, 0 }) * pose), "unit of length");
+  EXPECT_HAS(FaultOf(Matrix4::Translation({ 0, -1.1e6, 0 }) * pose), "its unit, which is mm");
+  EXPECT_HAS(FaultOf(Matrix4::Translation({ 1e20, 0, 0 }) * pose), "its unit, which is mm");
   Matrix4 nothing = pose;
   nothing(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ReadPose(TransformBytes(nothing, "ProbeToTracker")).Usable);
@@ -240,7 +242,7 @@ TEST(OpenIGTLinkMessage, OnlyRotationAndTranslationIsAPose)
   EXPECT_FALSE(zero.Usable);
   EXPECT_EQ(zero.Fault, "");
   turned = WithBody(turned, turned.substr(58, 24) + BigEndian(0x40000000, 4)); // w = 2
-  EXPECT_HAS(ReadPose(turned).Fault, "quaternion has the length 2");
+  EXPECT_HAS(ReadPose(turned).Fault, "a quaternion of length 2");
 }
 
 TEST(OpenIGTLinkMessage, ImageOfEveryIntegerTypeAndByteOrder)

@@ -87,4 +87,21 @@ TEST(ProbeFrames, RefusesWhatIsNoCalibration)
         R"(<Transform From="Image" To="Probe" Matrix="-.1 0 0 5  0 .1 0 6  0 0 .1 7  0 0 0 1"/>)"),
       0),
     "mirror");
+  EXPECT_HAS(
+    ErrorOf(
+      Write(folder,
+        R"(<Transform From="Image" To="Probe" Matrix=".2 .15 0 5  0 .2 0 6  0 0 .2 7  0 0 0 1"/>)"),
+      0),
+    "ImageToProbe is no calibration: it is skewed: rows and columns meet at 53.1301 degrees");
+  const std::string image =
+    R"(<Transform From="Image" To="Probe" Matrix=".3 0 0 5  0 .2 0 6  0 0 .2 7  0 0 0 1"/>)";
+  EXPECT_HAS(ReadProbeFrames(Write(folder, image), 0).Warning,
+    "ImageToProbe may be wrong: it has pixels of 0.3 x 0.2 mm");
+  EXPECT_HAS(
+    ErrorOf(
+      Write(folder,
+        image +
+          R"(<Transform From="Tracker" To="Reference" Matrix="1.2 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"/>)"),
+      0),
+    "TrackerToReference is not rigid: its columns have the lengths 1.2, 1 and 1");
 }
