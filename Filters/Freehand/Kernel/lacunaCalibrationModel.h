@@ -6,7 +6,7 @@
 
 #include "lacunaProbeCalibration.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <optional>
 #include <vector>

@@ -7,6 +7,8 @@
 #include "lacunaCalibrationStart.h"
 #include "lacunaGeometryGate.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

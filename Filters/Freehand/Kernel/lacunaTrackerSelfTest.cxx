@@ -4,7 +4,8 @@
 #include "lacunaGeometryGate.h"
 #include "lacunaReceiverPlaces.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
