@@ -17,8 +17,8 @@ function (lacuna_test_program target)
 endfunction ()
 
 # lacuna_test_headers(<target> <header>... LIBRARIES <target>...)
-# Headers that many tests include, compiled once for all programs that lacuna_use_test_headers names:
-# a third to a half of what these tests take to compile. Each test includes what it needs all the same.
+# Headers for all test programs that lacuna_use_headers names: a third to a half of what these tests take to
+# compile.
 function (lacuna_test_headers target)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
   set(source "${CMAKE_BINARY_DIR}/Testing/${target}.cxx")
@@ -26,19 +26,7 @@ function (lacuna_test_headers target)
   add_executable(${target} "${source}") # with the options of programs
   target_link_libraries(${target} PRIVATE ${arg_LIBRARIES})
   lacuna_test_program(${target})
-  list(TRANSFORM arg_UNPARSED_ARGUMENTS REPLACE ".+" "<\\0>")
-  target_precompile_headers(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS})
-  if (CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp") # for ccache
-  endif ()
-endfunction ()
-
-# lacuna_use_test_headers(<target> <headers>)
-function (lacuna_use_test_headers target headers)
-  target_precompile_headers(${target} REUSE_FROM ${headers})
-  if (CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
-  endif ()
+  lacuna_precompile(${target} ${arg_UNPARSED_ARGUMENTS})
 endfunction ()
 
 lacuna_test_headers(LacunaKernelTestHeaders
@@ -60,7 +48,7 @@ function (lacuna_module_test_program target)
       algorithm cmath cstring fstream functional limits sstream string vector
       LIBRARIES VTK::CommonCore VTK::CommonDataModel VTK::CommonExecutionModel)
   endif ()
-  lacuna_use_test_headers(${target} LacunaModuleTestHeaders)
+  lacuna_use_headers(${target} LacunaModuleTestHeaders)
 endfunction ()
 
 # lacuna_test_cxx_executable(<target> <name of the list of tests> [source...])
@@ -79,7 +67,7 @@ function (lacuna_add_kernel_test name)
   target_link_libraries(Test${name}Kernel PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gtest_main)
   target_compile_definitions(Test${name}Kernel PRIVATE LACUNA_TEST_DATA="${LACUNA_TEST_DATA}")
   lacuna_test_program(Test${name}Kernel)
-  lacuna_use_test_headers(Test${name}Kernel LacunaKernelTestHeaders)
+  lacuna_use_headers(Test${name}Kernel LacunaKernelTestHeaders)
   set(command)
   if (NOT arg_REAL_TIME)
     set(command ${LACUNA_BESIDE_REAL_TIME})

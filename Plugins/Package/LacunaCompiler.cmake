@@ -41,3 +41,46 @@ if (LACUNA_COVERAGE)
   add_compile_options(--coverage -Wno-error=maybe-uninitialized) # which counters cause by mistake
   add_link_options(--coverage)
 endif ()
+
+# lacuna_precompile(<target> <header>...)
+# Headers that many sources include, compiled once for all targets that lacuna_use_headers names. A source
+# includes what it needs all the same: CMAKE_DISABLE_PRECOMPILE_HEADERS must change nothing.
+function (lacuna_precompile target)
+  set(headers ${ARGN})
+  list(TRANSFORM headers REPLACE ".+" "<\\0>")
+  target_precompile_headers(${target} PRIVATE ${headers})
+  if (CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp") # for ccache
+  endif ()
+endfunction ()
+
+# lacuna_use_headers(<target> <target of lacuna_precompile>)
+function (lacuna_use_headers target headers)
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  if (CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess) # for ccache
+  endif ()
+endfunction ()
+
+# lacuna_use_library_headers(<headers> <header>... LIBRARIES <target>... MODULES <module>...)
+# Precompiles headers as libraries are compiled, and uses them in the modules.
+function (lacuna_use_library_headers headers)
+  cmake_parse_arguments(arg "" "" "LIBRARIES;MODULES" ${ARGN})
+  set(source "${CMAKE_BINARY_DIR}/Headers/${headers}.cxx")
+  file(CONFIGURE OUTPUT "${source}" CONTENT "")
+  add_library(${headers} OBJECT "${source}")
+  target_link_libraries(${headers} PRIVATE ${arg_LIBRARIES})
+  lacuna_precompile(${headers} ${arg_UNPARSED_ARGUMENTS})
+  foreach (module IN LISTS arg_MODULES)
+    get_target_property(library ${module} ALIASED_TARGET)
+    lacuna_use_headers(${library} ${headers})
+  endforeach ()
+endfunction ()
+
+# lacuna_use_kernel_headers(<kernel>...)
+function (lacuna_use_kernel_headers)
+  lacuna_use_library_headers(LacunaKernelHeaders
+    algorithm array cmath cstddef cstdint cstring functional limits memory optional sstream stdexcept string
+    string_view utility vector
+    MODULES ${ARGN})
+endfunction ()

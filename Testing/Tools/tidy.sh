@@ -9,7 +9,7 @@ cd "$(dirname "$0")/../.."
 lacuna_install_packages
 lacuna_install_packages packages-ci.txt
 # configured is enough: no header of these sources is made by the build
-lacuna_configure release
+lacuna_configure tidy
 all=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/) # ends here without git
 mapfile -t all <<<"$all"
 changed() {
@@ -32,7 +32,7 @@ if [ ${#sources[@]} = 0 ]; then echo "clang-tidy: nothing changed"; exit 0; fi
 failed=0
 # warnings of the compiler are GCC's, which knows attributes that clang does not
 printf '%s\n' "${sources[@]}" |
-  xargs -P "$(nproc)" -n 4 clang-tidy-14 --quiet -p build/release --extra-arg=-Wno-error 2>&1 |
+  xargs -P "$(nproc)" -n 4 clang-tidy-14 --quiet -p build/tidy --extra-arg=-Wno-error 2>&1 |
   grep -v ' warnings\? generated' || failed=${PIPESTATUS[1]}
 echo "clang-tidy: ${#sources[@]} sources"
 [ "$failed" = 0 ] || { echo "clang-tidy: findings, see above" >&2; exit 1; }
