@@ -10,7 +10,8 @@ for argument in "$@"; do
     exec python3 "$top/Plugins/Python/lacuna/demo.py" --help
   fi
 done
-(cd "$top" && . Testing/Tools/setup.sh && lacuna_install_packages && lacuna_build release)
+(cd "$top" && . Testing/Tools/setup.sh && lacuna_install_packages packages-debian.txt &&
+  lacuna_build release --target LacunaForUsers)
 . "$top/Testing/Tools/setup.sh"
 . "$top/build/release/lacuna-env.sh"
 case " $* " in

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Tries the project on a machine that has nothing: a minimal Debian in a folder (root only).
-#   Testing/Tools/chroot.sh FOLDER fresh           all tests but soak, and ./demo.sh, in a clean clone, as a
-#                                                  newcomer runs them
+#   Testing/Tools/chroot.sh FOLDER fresh           ./demo.sh twice (how long each takes), then all tests but
+#                                                  soak, in a clean clone, as a newcomer runs them
+#   Testing/Tools/chroot.sh FOLDER demo            only ./demo.sh, twice
 #   Testing/Tools/chroot.sh FOLDER vtk [SUITE]     modules only, against the VTK of that Debian:
 #                                                  bookworm (9.1, the default), trixie (9.3), sid
 #   Testing/Tools/chroot.sh FOLDER package         installs, uses and purges build/package/lacuna*.deb
@@ -12,7 +13,7 @@
 # CCACHE_DIR is set, the compiler's results are kept there.
 # Debian's VTK and ParaView's Python cannot share a system: use one folder for each, and for each SUITE.
 set -euo pipefail
-[[ ${2:-} =~ ^(fresh|vtk|package)$ ]] || { sed -n '3,14s/^# \?//p' "$0" >&2; exit 2; }
+[[ ${2:-} =~ ^(demo|fresh|vtk|package)$ ]] || { sed -n '3,15s/^# \?//p' "$0" >&2; exit 2; }
 folder=$1
 what=$2
 suite=${3:-bookworm}
@@ -62,13 +63,16 @@ if [ "$what" != package ]; then
 fi
 
 case $what in
+  demo)
+    inside 'cd /lacuna && time ./demo.sh && time ./demo.sh'
+    ;;
   fresh)
-    inside 'cd /lacuna && ./test.sh && ./test.sh -L "system|example" && ./demo.sh'
+    inside 'cd /lacuna && time ./demo.sh && time ./demo.sh && ./test.sh && ./test.sh -L "system|example"'
     ;;
   vtk)
     inside 'apt-get -qq update'
     packages=$launcher
-    for package in $(grep -v -e '^#' -e paraview -e openmpi -e occt "$source/Testing/Tools/packages-debian.txt"); do
+    for package in $(grep -hv -e '^#' -e paraview -e openmpi -e occt "$source"/Testing/Tools/packages-{debian,tests}.txt); do
       if inside "apt-cache show $package >/dev/null 2>&1"; then
         packages+=" $package"
       else

@@ -7,8 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 . Testing/Tools/setup.sh
-lacuna_install_packages
-lacuna_install_packages packages-packaging.txt
+lacuna_install_packages packages-debian.txt packages-packaging.txt
 if [ "${1:-}" != --no-site ]; then
   rm -rf build/site # pages that are no more
   Documentation/build-site.sh
