@@ -100,10 +100,13 @@ def read_property(element):
 
     ranges = [domain for tag in ("DoubleRangeDomain", "IntRangeDomain") for domain in element.findall(tag)]
     domain = ranges[0] if ranges else ET.Element("none")
+    default = element.get("default_values", "")
+    if element.find("EnumerationDomain") is not None and domain.get("default_mode") == "min":
+        default = find("EnumerationDomain")[0].get("value")  # default_values are those of states from before
     return Property(
         name=element.get("name"), kind=re.sub(r"(Vector)?Property$", "", element.tag), help=words(find("Documentation").text),
         advanced=element.get("panel_visibility") == "advanced", hidden=element.get("panel_visibility") == "never",
-        information=element.get("information_only") == "1", default=element.get("default_values", "").split(),
+        information=element.get("information_only") == "1", default=default.split(),
         entries={entry.get("value"): entry.get("text") for entry in find("EnumerationDomain")},
         boolean=element.find("BooleanDomain") is not None,
         low=domain.get("min", "").split(), high=domain.get("max", "").split(),
@@ -120,7 +123,8 @@ def read_proxy(element, group):
     proxy = Proxy(name=element.get("name"), cls=element.get("class"), label=element.get("label"),
                   short_help=documentation.get("short_help"), kind=kind,
                   extensions="" if factory is None else " ".join(dict.fromkeys(factory.get("extensions").lower().split())),
-                  properties=[read_property(child) for child in element if child.tag.endswith("Property")])
+                  properties=[read_property(child) for child in element
+                              if child.tag.endswith("Property") and child.get("is_internal") != "1"])
     for panel in element.findall("PropertyGroup"):
         members = [member.get("name") for member in panel]
         for own in proxy.properties:

@@ -2,14 +2,20 @@
 #include "vtkLacunaSliceAlgorithm.h"
 
 #include "vtkAlgorithmOutput.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaFieldData.h"
 #include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSliceStream.h"
+#include "vtkNew.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
+#include <array>
 #include <utility>
 
 using SDDP = vtkStreamingDemandDrivenPipeline;
@@ -80,6 +86,36 @@ int vtkLacunaSliceAlgorithm::RequestInformation(
     connection->GetProducer()->Update(connection->GetIndex());
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceAlgorithm::RecordSweeps(const std::vector<const vtkLacunaSliceImages*>& inputs,
+  double maximumGap, vtkImageData* output, std::map<std::string, std::string>& warnings)
+{
+  this->SweepDescription.clear();
+  std::vector<double> gaps;
+  vtkNew<vtkIntArray> sweeps;
+  sweeps->SetName("Sweeps");
+  sweeps->SetNumberOfComponents(3);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+  {
+    const vtkLacunaSliceImages& input = *inputs[i];
+    this->SweepDescription += (this->SweepDescription.empty() ? "" : "\n") + input.DescribeSweeps();
+    for (const vtkLacunaSliceImages::Sweep& sweep : input.Sweeps)
+    {
+      const std::array<int, 3> tuple{ static_cast<int>(i), sweep.First, sweep.Last };
+      sweeps->InsertNextTypedTuple(tuple.data());
+      gaps.push_back(sweep.WidestStep);
+    }
+    if (!input.JoinedEnds.empty() && this->GapMethod == GivenGap && maximumGap == 0)
+    {
+      warnings["joined " + input.JoinedEnds] =
+        "slices of different sweeps seem to be joined through the air: " + input.JoinedEnds +
+        ". Set GapMethod to Automatic to leave that empty, or to Unlimited if it is meant";
+    }
+  }
+  output->GetFieldData()->AddArray(sweeps);
+  vtkLacunaFieldData::Set(output, "SweepGap", gaps, 1);
 }
 
 //------------------------------------------------------------------------------

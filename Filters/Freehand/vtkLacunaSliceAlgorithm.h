@@ -32,6 +32,8 @@
 #include <string>
 #include <vector>
 
+struct vtkLacunaSliceImages;
+
 class VTKLACUNAFILTERSFREEHAND_EXPORT vtkLacunaSliceAlgorithm : public vtkImageAlgorithm
 {
 public:
@@ -101,6 +103,30 @@ public:
   void SetBadPosesToKeepOutliers() { this->SetBadPoses(KeepOutliers); }
   ///@}
 
+  enum GapMethods // other names than those of a subclass's FanMask
+  {
+    AutomaticGap = 0,
+    GivenGap = 1,
+    UnlimitedGap = 2
+  };
+
+  ///@{
+  /// Where nothing is interpolated between two slices, because they lie too far apart. Automatic:
+  /// where a sweep ends and another one begins, which the poses and times of the slices tell
+  /// (lacunaSweepEnds.h); a largest gap that is given counts, too. Given: the largest gap that is
+  /// given, alone; 0 is no limit. Unlimited: nowhere. Default: Automatic.
+  vtkSetClampMacro(GapMethod, int, AutomaticGap, UnlimitedGap);
+  vtkGetMacro(GapMethod, int);
+  void SetGapMethodToAutomatic() { this->SetGapMethod(AutomaticGap); }
+  void SetGapMethodToGiven() { this->SetGapMethod(GivenGap); }
+  void SetGapMethodToUnlimited() { this->SetGapMethod(UnlimitedGap); }
+  ///@}
+
+  /// The sweeps of the last update, one line for each input: "2 sweeps: slices 0 to 20, at most 1
+  /// mm apart; slices 21 to 41, at most 1 mm apart; not joined: 28.3 mm and 5 s from slice 20 to 21
+  /// (the limit is 3 mm)". Empty before it.
+  const char* GetSweepDescription() const { return this->SweepDescription.c_str(); }
+
   int ProcessRequest(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -118,6 +144,14 @@ protected:
   /// of a preview is a preview, and a warning says so. Default: no.
   virtual bool TakesStreams() const { return false; }
 
+  /// Keeps what GetSweepDescription says, and writes it to output as field data: Sweeps (int, 3
+  /// components: number of the input, first and last slice) and SweepGap (double, mm; the largest
+  /// distance between consecutive slices), one tuple for each sweep. Adds a warning where sweeps
+  /// are joined because no gap is given, which states from before GapMethod have not chosen.
+  /// maximumGap: mm; 0 = none.
+  void RecordSweeps(const std::vector<const vtkLacunaSliceImages*>& inputs, double maximumGap,
+    vtkImageData* output, std::map<std::string, std::string>& warnings);
+
   /// Gives those warnings of an update that the one before did not give. warnings: the text for
   /// each fact, by a name that stays the same while it is the same fact. leftOut: the sentences
   /// about slices with bad poses.
@@ -132,6 +166,7 @@ protected:
   bool UseTooFast = false;
   bool UseGatedOut = false;
   int BadPoses = Refuse;
+  int GapMethod = AutomaticGap;
 
 private:
   vtkLacunaSliceAlgorithm(const vtkLacunaSliceAlgorithm&) = delete;
@@ -141,5 +176,6 @@ private:
   void AskForSlices(vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::set<std::string> KnownFacts;
+  std::string SweepDescription;
 };
 #endif

@@ -19,6 +19,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -125,6 +127,7 @@ struct vtkLacunaSliceImages::Candidate
   vtkIdType Number;
   int Layer; // index along z
   bool HasImage;
+  bool IsGatedOut; // not taken, but its pose says where the probe was
   lacuna::SliceImage Slice;
 };
 
@@ -147,7 +150,12 @@ vtkLacunaSliceImages::vtkLacunaSliceImages(
     vtkLacunaArrays::Copy(tracked.GetGreyLevels(), this->GreyLevels);
   }
   std::vector<Candidate> candidates = this->FindCandidates(tracked, selection);
+  const auto gated = std::stable_partition(candidates.begin(), candidates.end(),
+    [](const Candidate& candidate) { return !candidate.IsGatedOut; });
+  const std::vector<Candidate> gatedOut(gated, candidates.end());
+  candidates.erase(gated, candidates.end());
   this->DropBadPoses(tracked, candidates, selection);
+  this->FindSweeps(tracked, selection, gatedOut, candidates);
   for (const bool hasImage : { true, false })
   {
     for (const Candidate& candidate : candidates)
@@ -247,12 +255,16 @@ std::vector<vtkLacunaSliceImages::Candidate> vtkLacunaSliceImages::FindCandidate
       }
       ++this->NumberLeftOut;
     }
-    if (tracked.IsUsable(number, orExpected))
+    const bool isCandidate = tracked.IsUsable(number, orExpected);
+    const bool isGatedOut = !isCandidate &&
+      tracked.IsUsable(number, selection.AcceptedFlags | vtkLacunaTrackedSlices::GatedOut);
+    if (isCandidate || isGatedOut)
     {
       Candidate candidate;
       candidate.Number = number;
       candidate.Layer = static_cast<int>(layer) + extent[4];
       candidate.HasImage = isUsable;
+      candidate.IsGatedOut = isGatedOut;
       lacuna::SliceImage& slice = candidate.Slice;
       slice.Type = type;
       if (isUsable && !this->Stream)
@@ -319,6 +331,137 @@ void vtkLacunaSliceImages::DropBadPoses(const vtkLacunaTrackedSlices& tracked,
     }
   }
   candidates = kept;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceImages::FindSweeps(const vtkLacunaTrackedSlices& tracked,
+  const vtkLacunaSliceSelection& selection, const std::vector<Candidate>& gatedOut,
+  std::vector<Candidate>& candidates)
+{
+  // all slices of which it is known where the probe was
+  std::vector<vtkLacunaPoseJudge::Slice> others;
+  for (const Candidate& candidate : gatedOut)
+  {
+    others.push_back({ candidate.Number, &candidate.Slice });
+  }
+  const std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(others);
+  std::vector<const Candidate*> known;
+  for (std::size_t i = 0; i < gatedOut.size(); ++i)
+  {
+    if (problems[i].empty())
+    {
+      known.push_back(&gatedOut[i]);
+    }
+  }
+  for (const Candidate& candidate : candidates)
+  {
+    if (candidate.HasImage)
+    {
+      known.push_back(&candidate);
+    }
+  }
+  std::sort(known.begin(), known.end(),
+    [](const Candidate* a, const Candidate* b) { return a->Number < b->Number; });
+  const bool hasTimes = vtkLacunaFieldData::Find(this->Stack, vtkLacunaTrackedSlices::TimestampName,
+                          1, tracked.GetNumberOfSlices()) != nullptr;
+  std::vector<lacuna::SlicePlace> places;
+  std::vector<double> times;
+  for (const Candidate* candidate : known)
+  {
+    places.push_back({ candidate->Number, lacuna::GetCorners(candidate->Slice) });
+    times.push_back(hasTimes ? tracked.GetTimestamp(candidate->Number)
+                             : std::numeric_limits<double>::quiet_NaN());
+  }
+  const std::vector<lacuna::SweepEnd> ends = lacuna::FindSweepEnds(places, times);
+
+  std::size_t next = 0;   // of ends
+  std::size_t before = 0; // of places: the slice before that is taken
+  bool isEnded = false;   // since that slice
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    if (next < ends.size() && ends[next].Next == i)
+    {
+      isEnded = !this->Sweeps.empty();
+      if (isEnded)
+      {
+        this->Sweeps.back().End = ends[next];
+      }
+      ++next;
+    }
+    if (known[i]->IsGatedOut)
+    {
+      continue;
+    }
+    const int number = static_cast<int>(known[i]->Number);
+    if (this->Sweeps.empty() || isEnded)
+    {
+      this->Sweeps.push_back({ number, number, 0, {} });
+    }
+    else
+    {
+      Sweep& sweep = this->Sweeps.back();
+      sweep.Last = number;
+      sweep.WidestStep = std::max(sweep.WidestStep, lacuna::GetStep(places[before], places[i]));
+    }
+    before = i;
+    isEnded = false;
+  }
+  if (!selection.HasSweepEnds && this->Sweeps.size() > 1)
+  {
+    this->JoinedEnds = this->DescribeEnds();
+    Sweep all = this->Sweeps.front();
+    all.Last = this->Sweeps.back().Last;
+    for (const Sweep& sweep : this->Sweeps)
+    {
+      all.WidestStep = std::max({ all.WidestStep, sweep.WidestStep, sweep.End.Distance });
+    }
+    this->Sweeps = { all };
+  }
+  std::size_t sweep = 1;
+  for (Candidate& candidate : candidates)
+  {
+    if (sweep < this->Sweeps.size() && candidate.Number == this->Sweeps[sweep].First)
+    {
+      candidate.Slice.BeginsSweep = true;
+      ++sweep;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribeEnds() const
+{
+  std::ostringstream text;
+  text << std::setprecision(3);
+  for (std::size_t s = 1; s < this->Sweeps.size(); ++s)
+  {
+    const lacuna::SweepEnd& end = this->Sweeps[s - 1].End;
+    text << (s > 1 ? ", " : "") << end.Distance << " mm";
+    if (std::isfinite(end.Time))
+    {
+      text << " and " << end.Time << " s";
+    }
+    text << " from slice " << this->Sweeps[s - 1].Last << " to " << this->Sweeps[s].First
+         << " (the limit is " << end.Limit << " mm)";
+  }
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceImages::DescribeSweeps() const
+{
+  std::ostringstream text;
+  text << std::setprecision(3) << this->Sweeps.size()
+       << (this->Sweeps.size() == 1 ? " sweep" : " sweeps");
+  const char* separator = ": ";
+  for (const Sweep& sweep : this->Sweeps)
+  {
+    text << separator << "slices " << sweep.First << " to " << sweep.Last << ", at most "
+         << sweep.WidestStep << " mm apart";
+    separator = "; ";
+  }
+  const std::string ends = this->DescribeEnds();
+  return text.str() + (ends.empty() ? "" : "; not joined: " + ends);
 }
 
 //------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #define vtkLacunaSliceImages_h
 
 #include "lacunaSliceImage.h"
+#include "lacunaSweepEnds.h"
 #include "vtkLacunaSliceFan.h"
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -42,6 +43,8 @@ struct vtkLacunaSliceSelection
   bool IsReplay = false;
   /// The last time step of the replay is reached: no slices are to come.
   bool IsAtEnd = false;
+  /// Where sweeps end is found in the slices (lacunaSweepEnds.h), and slices are marked there.
+  bool HasSweepEnds = true;
   /// Ends the name of a slice in errors.
   std::string Suffix;
 };
@@ -75,6 +78,16 @@ struct vtkLacunaSliceImages
   std::vector<lacuna::SliceImage> Load(const std::vector<std::size_t>& indices,
     std::vector<unsigned char>& storage, lacuna::Execution& execution) const;
 
+  /// Slices that were taken without lifting the probe.
+  struct Sweep
+  {
+    int First, Last;      ///< numbers of slices
+    double WidestStep;    ///< mm that a corner moves at most from one of them to the next
+    lacuna::SweepEnd End; ///< of the sweep; not of the last one
+  };
+  /// "2 sweeps: slices 0 to 20, at most 1 mm apart; slices 21 to 41, ..."; and where they end.
+  std::string DescribeSweeps() const;
+
   /// How many slices of the stack are flagged with what, for a message: "20 of 21 are left out: 18
   /// pose invalid, 2 gated out".
   std::string DescribeFlags() const;
@@ -103,6 +116,10 @@ struct vtkLacunaSliceImages
   std::vector<lacuna::Matrix4> Poses;
   /// Columns and rows of the slices' windows in the original slices.
   vtkLacunaSliceFan::Window Window;
+  /// In the order of Slices, which are marked where one begins; only one without HasSweepEnds.
+  std::vector<Sweep> Sweeps;
+  /// Where sweeps end that are joined; only without HasSweepEnds, and mostly empty.
+  std::string JoinedEnds;
   /// One sentence for each slice that is left out because of a bad pose.
   std::vector<std::string> LeftOut;
 
@@ -114,6 +131,9 @@ private:
   std::vector<bool> FindSlicesToCome(const vtkLacunaTrackedSlices& tracked) const;
   std::vector<Candidate> FindCandidates(
     const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection);
+  void FindSweeps(const vtkLacunaTrackedSlices& tracked, const vtkLacunaSliceSelection& selection,
+    const std::vector<Candidate>& gatedOut, std::vector<Candidate>& candidates);
+  std::string DescribeEnds() const;
   void DropBadPoses(const vtkLacunaTrackedSlices& tracked, std::vector<Candidate>& candidates,
     const vtkLacunaSliceSelection& selection);
 

@@ -39,6 +39,9 @@ namespace
 {
 using SDDP = vtkStreamingDemandDrivenPipeline;
 
+// Far above rounding: of slices at the widest distance, none is cut off by chance.
+constexpr double GapTolerance = 1e-6;
+
 bool IsSame(const lacuna::ImagePlane& a, const lacuna::ImagePlane& b)
 {
   return a.Origin == b.Origin && a.Right == b.Right && a.Down == b.Down && a.View == b.View &&
@@ -78,8 +81,10 @@ public:
     {
       throw std::runtime_error("MaximumGap must be positive, or 0 for no limit");
     }
-    this->Images = std::make_unique<vtkLacunaSliceImages>(
-      stack, vtkLacunaSliceSelection::Make(self, inputs->GetInformationObject(0)));
+    vtkLacunaSliceSelection selection =
+      vtkLacunaSliceSelection::Make(self, inputs->GetInformationObject(0));
+    selection.HasSweepEnds = self->GapMethod == AutomaticGap;
+    this->Images = std::make_unique<vtkLacunaSliceImages>(stack, selection);
     if (this->GetSlices().empty() && !this->IsMoreToCome())
     {
       std::ostringstream message;
@@ -102,6 +107,15 @@ public:
       this->Images->ApplyFan(fan);
     }
     this->ChoosePlane(self);
+    this->MaximumGap = self->GapMethod == UnlimitedGap ? 0 : self->MaximumGap;
+    if (self->GapMethod == AutomaticGap)
+    {
+      const double widest =
+        (1 + GapTolerance) * lacuna::GetWidestStepAlongRays(this->GetSlices(), this->Plane);
+      this->MaximumGap = this->MaximumGap > 0 && this->MaximumGap < widest ? this->MaximumGap
+        : widest > 0                                                       ? widest
+                                                                           : this->MaximumGap;
+    }
   }
 
   bool IsEmpty() const { return !this->Images; }
@@ -111,6 +125,7 @@ public:
 
   std::unique_ptr<vtkLacunaSliceImages> Images;
   lacuna::ImagePlane Plane;
+  double MaximumGap = 0; ///< mm along the rays; 0 = no limit
 
 private:
   void ChoosePlane(vtkLacunaSliceRayCaster* self)
@@ -283,9 +298,10 @@ int vtkLacunaSliceRayCaster::RequestData(
         this->NumberOfCastSlices =
           static_cast<vtkIdType>(this->Kept->Update(this, plan, part, execution));
         execution.SetStage(0.9, 1);
-        this->Kept->Caster->Write(this->MaximumGap,
+        this->Kept->Caster->Write(plan.MaximumGap,
           { part, depth->GetPointer(0), mask->GetPointer(0), normals->GetPointer(0) }, execution);
-        this->WarnAbout(plan, std::count(mask->GetPointer(0), mask->GetPointer(pixels), 1) > 0);
+        this->WarnAbout(
+          plan, std::count(mask->GetPointer(0), mask->GetPointer(pixels), 1) > 0, output);
       }
       output->GetPointData()->SetScalars(depth);
       output->GetPointData()->AddArray(mask);
@@ -296,9 +312,11 @@ int vtkLacunaSliceRayCaster::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
+void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface, vtkImageData* output)
 {
   std::map<std::string, std::string> warnings;
+  this->RecordSweeps({ plan.Images.get() }, this->MaximumGap, output, warnings);
+  vtkLacunaFieldData::Set(output, "RayGap", { plan.MaximumGap }, 1);
   const std::string preview = plan.Images->DescribePreview();
   if (!preview.empty())
   {
@@ -360,9 +378,11 @@ void vtkLacunaSliceRayCaster::WarnAbout(const Plan& plan, bool hasSurface)
 std::string vtkLacunaSliceRayCaster::DescribeParameters() const
 {
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
+  constexpr std::array<const char*, 3> gapMethods{ "Automatic", "Given", "Unlimited" };
   return lacuna::ParameterText()
     .Add("IsoValue", this->IsoValue)
     .Add("SolidSide", this->SolidSide == Above ? "Above" : "Below")
+    .Add("GapMethod", gapMethods[this->GapMethod])
     .Add("MaximumGap", this->MaximumGap)
     .Add("ViewDirection", this->ViewDirection)
     .Add("ViewUp", this->ViewUp)

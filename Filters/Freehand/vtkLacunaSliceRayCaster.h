@@ -24,8 +24,9 @@
  * y = down (ViewUp reversed and made orthogonal), z = ViewDirection. Point data: Depth (double, mm
  * along the ray, NaN where there is none; active scalars), vtkValidPointMask (char), Normals (float
  * x 3, unit, reference frame, towards the viewer; from the slopes of the depth by the rule in
- * lacunaDepthDiscontinuity.h). Field data: ImageToWorld, IsoValues, Provenance. Requested extents are
- * honoured.
+ * lacunaDepthDiscontinuity.h). Field data: ImageToWorld, IsoValues, Sweeps and SweepGap (see
+ * vtkLacunaSliceAlgorithm.h), RayGap (double, mm: the limit along the rays that was taken; 0 = none),
+ * Provenance. Requested extents are honoured.
  *
  * The map depends on the poses, which are known when the input has been executed: so the input is
  * brought up to date already when information about the output is asked for.
@@ -81,7 +82,9 @@ public:
 
   ///@{
   /// mm along the ray: where the solid sample and the one in front of it are further apart, the
-  /// depth of the solid sample is taken. 0 = no limit. Default: 0.
+  /// depth of the solid sample is taken. 0 = no limit. With GapMethod Automatic this limit is at most
+  /// the widest step along the rays within a sweep (lacunaSliceRayCaster.h); Unlimited has none.
+  /// Default: 0.
   vtkSetMacro(MaximumGap, double);
   vtkGetMacro(MaximumGap, double);
   ///@}
@@ -146,7 +149,7 @@ private:
 
   class Plan;
   class State;
-  void WarnAbout(const Plan& plan, bool hasSurface);
+  void WarnAbout(const Plan& plan, bool hasSurface, vtkImageData* output);
   std::string DescribeParameters() const;
 
   double IsoValue = 128;

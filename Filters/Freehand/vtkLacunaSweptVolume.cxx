@@ -332,6 +332,12 @@ int vtkLacunaSweptVolume::RequestData(
         }
         this->Growing->Finish();
       }
+      std::vector<const vtkLacunaSliceImages*> swept;
+      for (const vtkLacunaSliceImages& sweep : plan.Sweeps)
+      {
+        swept.push_back(&sweep);
+      }
+      this->RecordSweeps(swept, this->MaximumSliceGap, output, warnings);
       this->WarnOfNews(warnings, plan.LeftOut);
       output->GetPointData()->SetScalars(intensity);
       output->GetPointData()->AddArray(contributions);
@@ -352,6 +358,7 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
   constexpr std::array<const char*, 2> compoundings{ "Mean", "Maximum" };
   constexpr std::array<const char*, 3> fanMasks{ "Given", "Automatic", "None" };
   constexpr std::array<const char*, 3> badPoses{ "Refuse", "LeaveOut", "KeepOutliers" };
+  constexpr std::array<const char*, 3> gapMethods{ "Automatic", "Given", "Unlimited" };
   constexpr std::array<const char*, 2> types{ "Input", "Float" };
   return lacuna::ParameterText()
     .Add("OutputSpacing", this->OutputSpacing)
@@ -362,6 +369,7 @@ std::string vtkLacunaSweptVolume::DescribeParameters() const
     .Add("FootprintAcrossSlices", this->FootprintAcrossSlices)
     .Add("Interpolation", interpolations[this->Interpolation])
     .Add("Compounding", compoundings[this->Compounding])
+    .Add("GapMethod", gapMethods[this->GapMethod])
     .Add("MaximumSliceGap", this->MaximumSliceGap)
     .Add("ClipRectangle", this->ClipRectangle)
     .Add("FanMask", fanMasks[this->FanMask])

@@ -12,7 +12,8 @@
  * threads, pieces or ranks, bit by bit.
  *
  * Input (repeatable): tracked slices, taken in the order of the stack. Where slices are left out,
- * their neighbours form the pair. Different inputs form no pairs.
+ * their neighbours form the pair. Different inputs form no pairs, nor do the sweeps of which an
+ * input is made (GapMethod).
  *
  * Output: an image along the axes of OutputFrame, mm in the reference frame, whose whole extent
  * starts at 0: voxel 0 lies at the minimum of the box of all slices' corner pixel centres (or of
@@ -22,7 +23,7 @@
  * | Intensity         | see OutputScalarType  | grey level, active scalars; 0 where there is none|
  * | Contributions     | unsigned int          | how many samples made the voxel                  |
  * | vtkValidPointMask | char                  | 1 where there are samples, else 0                |
- * Field data: Provenance; with FanMask Automatic also FanOrigin, FanAngles, FanRadii (double, 2
+ * Field data: Sweeps and SweepGap (vtkLacunaSliceAlgorithm.h), Provenance; with FanMask Automatic also FanOrigin, FanAngles, FanRadii (double, 2
  * components) and ClipRectangle (int, 4), one tuple for each input, as the properties would have
  * them; the radii are 0 where there is no sector, and all is 0 while a replay has not shown enough.
  *
@@ -171,7 +172,7 @@ public:
 
   ///@{
   /// Voxels at which two consecutive slices are further apart than this many mm stay empty. Only
-  /// for BetweenSlices. 0 = no limit. Default: 0.
+  /// for BetweenSlices, and not for GapMethod Unlimited. 0 = no limit. Default: 0.
   vtkSetMacro(MaximumSliceGap, double);
   vtkGetMacro(MaximumSliceGap, double);
   ///@}

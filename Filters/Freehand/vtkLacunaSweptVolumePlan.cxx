@@ -76,6 +76,7 @@ void vtkLacunaSweptVolumePlan::ReadSweeps(
     vtkLacunaSliceSelection selection =
       vtkLacunaSliceSelection::Make(filter, inputs->GetInformationObject(i));
     this->IsReplay |= selection.IsReplay;
+    selection.HasSweepEnds = filter->GetGapMethod() == vtkLacunaSweptVolume::AutomaticGap;
     selection.Suffix = count > 1 ? " of input " + std::to_string(i) : "";
     this->Sweeps.emplace_back(stack, selection, vtkLacunaSliceStream::Find(filter, 0, i));
     const vtkLacunaSliceImages& sweep = this->Sweeps.back();
@@ -202,7 +203,8 @@ void vtkLacunaSweptVolumePlan::ChooseOptions(vtkLacunaSweptVolume* filter)
   }
   this->Options.FootprintScale = filter->GetFootprintScale();
   this->Options.FootprintAcrossSlices = filter->GetFootprintAcrossSlices();
-  this->Options.MaximumSliceGap = filter->GetMaximumSliceGap();
+  this->Options.MaximumSliceGap =
+    filter->GetGapMethod() == vtkLacunaSweptVolume::UnlimitedGap ? 0 : filter->GetMaximumSliceGap();
 
   const int first = this->Sweeps.front().GreyLevels->GetDataType();
   const bool ofInput = filter->GetOutputScalarType() == vtkLacunaSweptVolume::Input;

@@ -81,7 +81,8 @@ def slopes(depth, spacing):
 def check_panel():
     proxy = SliceRayCaster(Input=PhantomSweep(NumberOfSlices=2, ImageSize=[8, 8]))
     own = lacuna.vtkLacunaSliceRayCaster()
-    enumerations = {"SolidSide": ["Above", "Below"], "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"]}
+    enumerations = {"SolidSide": ["Above", "Below"], "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
+                    "GapMethod": ["Automatic", "Given", "Unlimited"]}
     names = ["IsoValue", "MaximumGap", "ViewDirection", "ViewUp", "FocalPoint", "PlaneOrigin",
              "PixelSpacing", "ImageSize", "ClipRectangle", "FanOrigin", "FanAngles", "FanRadii",
              "UseTooFast", "UseGatedOut", "UseImageInvalid"]

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Swept Volume through ParaView: defaults, arrays, state."""
 import os
+import xml.etree.ElementTree as ET
 
 import numpy as np
 from paraview.simple import *
 from paraview import servermanager
 
-from lacuna_test import check_defaults
+from lacuna_test import check_defaults, output
 from tracked_slice_files import array, open_slices
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
@@ -26,6 +27,7 @@ def check_panel():
         "OutputScalarType": ["Input", "Float"],
         "FanMask": ["Given", "Automatic", "None"],
         "BadPoses": ["Refuse", "LeaveOut", "KeepOutliers"],
+        "GapMethod": ["Automatic", "Given", "Unlimited"],
     }
     names = ["OutputSpacing", "OutputBounds", "MaximumSliceGap", "ClipRectangle", "FanOrigin",
              "FanAngles", "FanRadii", "FootprintScale", "FootprintAcrossSlices", "UseTooFast",
@@ -56,7 +58,7 @@ def check_compounding():
     assert (array(proxy, "Contributions") == 2).all()
     assert (array(proxy, "vtkValidPointMask") == 1).all()
     names = [proxy.FieldData[i].GetName() for i in range(proxy.FieldData.GetNumberOfArrays())]
-    assert names == ["Provenance"], names
+    assert sorted(names) == ["Provenance", "SweepGap", "Sweeps"], names
     proxy.Compounding = "Maximum"
     proxy.OutputScalarType = "Float"
     assert array(proxy, "Intensity").dtype == np.float32
@@ -74,6 +76,47 @@ def check_compounding():
     LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 
 
+def check_sweeps():
+    """Two strips in one input, 20 mm of air between them; states from before GapMethod."""
+    poses = np.tile(np.diag([0.5, 0.5, 1, 1]), (12, 1, 1))
+    poses[:, 2, 3] = [0, 1, 2, 3, 4, 5, 25, 26, 27, 28, 29, 30]
+    proxy = SweptVolume(Input=open_slices("SweptVolumeStrips", np.full((12, 9, 11), 40, np.uint8), poses),
+                        OutputSpacing=[0.5] * 3)
+    filled = np.arange(61) / 2
+    filled = (filled <= 5) | (filled >= 25)
+
+    def layers(volume):
+        return array(volume, "vtkValidPointMask")[:, 4, 5]
+
+    assert proxy.GapMethod == "Automatic" and (layers(proxy) == filled).all()
+    proxy.UpdatePropertyInformation()
+    description = proxy.GetProperty("SweepDescription").GetData()
+    assert "not joined: 20 mm and 0.1 s from slice 5 to 6" in description, description
+    state = output("SweptVolumeSweeps.pvsm")
+    SaveState(state)
+    tree = ET.parse(state)
+    for element in list(tree.iter("Proxy")):
+        for child in list(element):
+            if child.get("name") == "GapMethod":
+                element.remove(child)
+    tree.write(output("SweptVolumeSweepsBefore.pvsm"))
+    for file, method, truth in ((state, "Automatic", filled), (output("SweptVolumeSweepsBefore.pvsm"), "Given", True)):
+        ResetSession()
+        LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
+        LoadState(file)
+        loaded = FindSource("SweptVolume1")
+        assert loaded.GapMethod == method and loaded.MaximumSliceGap == 0, (file, loaded.GapMethod)
+        assert (layers(loaded) == truth).all(), file
+    loaded.GapMethod = "Unlimited"
+    assert layers(loaded).all()
+    # scripts from before: a limit still limits, and 0 no longer joins what a lift parts
+    strips = loaded.Input[0]
+    assert not layers(SweptVolume(Input=strips, OutputSpacing=[0.5] * 3, MaximumSliceGap=0.9))[[1, 30]].any()
+    explicit = SweptVolume(Input=strips, OutputSpacing=[0.5] * 3, MaximumSliceGap=0)
+    assert explicit.GapMethod == "Automatic" and (layers(explicit) == filled).all()
+
+
 check_panel()
 check_compounding()
+check_sweeps()
 print("ok")

@@ -51,7 +51,7 @@ std::vector<Property> SliceProperties()
     Reals<2>("FanRadii", &Base::SetFanRadii, 0, 20),
     Switch("UseImageInvalid", &Base::SetUseImageInvalid),
     Switch("UseTooFast", &Base::SetUseTooFast), Switch("UseGatedOut", &Base::SetUseGatedOut),
-    Whole("BadPoses", &Base::SetBadPoses, 0, 2) };
+    Whole("BadPoses", &Base::SetBadPoses, 0, 2), Whole("GapMethod", &Base::SetGapMethod, 0, 2) };
 }
 
 void Append(std::vector<Property>& properties, const std::vector<Property>& more)

@@ -21,22 +21,13 @@ double GetMedian(std::vector<double> values)
   return *middle;
 }
 
-double GetDistance(const SlicePlace& a, const SlicePlace& b)
-{
-  double largest = 0;
-  for (std::size_t c = 0; c < 4; ++c)
-  {
-    largest = std::max(largest, Norm(a.Corners[c] - b.Corners[c]));
-  }
-  return largest;
-}
-
 // Groups among which a slice after a jump looks for the one it continues.
 constexpr std::size_t GroupsToSearch = 8;
 
-double GetStep(const SlicePlace& a, const SlicePlace& b)
+// mm for each slice number.
+double GetStepPerNumber(const SlicePlace& a, const SlicePlace& b)
 {
-  return GetDistance(a, b) / static_cast<double>(std::max<std::int64_t>(1, b.Number - a.Number));
+  return GetStep(a, b) / static_cast<double>(std::max<std::int64_t>(1, b.Number - a.Number));
 }
 
 // The slices of each group, in their order.
@@ -48,7 +39,7 @@ std::vector<std::vector<std::size_t>> MakeGroups(
   for (std::size_t i = 1; i < slices.size(); ++i)
   {
     const auto continues = [&](std::size_t group)
-    { return GetStep(slices[groups[group].back()], slices[i]) <= longestStep; };
+    { return GetStepPerNumber(slices[groups[group].back()], slices[i]) <= longestStep; };
     if (!continues(current))
     {
       const std::size_t oldest = groups.size() - std::min(GroupsToSearch, groups.size());
@@ -73,6 +64,16 @@ std::vector<std::vector<std::size_t>> MakeGroups(
 }
 }
 
+double GetStep(const SlicePlace& a, const SlicePlace& b)
+{
+  double largest = 0;
+  for (std::size_t c = 0; c < 4; ++c)
+  {
+    largest = std::max(largest, Norm(a.Corners[c] - b.Corners[c]));
+  }
+  return largest;
+}
+
 PoseOutliers FindPoseOutliers(const std::vector<SlicePlace>& slices)
 {
   PoseOutliers found;
@@ -88,7 +89,7 @@ PoseOutliers FindPoseOutliers(const std::vector<SlicePlace>& slices)
     diagonals.push_back(std::max(Norm(corners[3] - corners[0]), Norm(corners[2] - corners[1])));
     if (i > 0)
     {
-      steps.push_back(GetStep(slices[i - 1], slices[i]));
+      steps.push_back(GetStepPerNumber(slices[i - 1], slices[i]));
     }
   }
   found.MedianStep = GetMedian(steps);
@@ -126,7 +127,7 @@ PoseOutliers FindPoseOutliers(const std::vector<SlicePlace>& slices)
     {
       if (kept < slices.size())
       {
-        outlier.Distance = std::min(outlier.Distance, GetDistance(slices[i], slices[kept]));
+        outlier.Distance = std::min(outlier.Distance, GetStep(slices[i], slices[kept]));
       }
     }
     found.Outliers.push_back(outlier);

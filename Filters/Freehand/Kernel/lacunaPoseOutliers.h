@@ -31,6 +31,9 @@ struct SlicePlace
   std::array<Vec3, 4> Corners;
 };
 
+/// The largest distance between the same corners of two slices, mm.
+double GetStep(const SlicePlace& a, const SlicePlace& b);
+
 struct PoseOutliers
 {
   /// Longest step, in mm from slice number to slice number, that is no jump; 0 when there are fewer

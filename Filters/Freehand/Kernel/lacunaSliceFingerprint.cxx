@@ -8,6 +8,7 @@ namespace lacuna
 SliceFingerprint::SliceFingerprint(const SliceImage& slice, bool withPixels)
   : Type(slice.Type)
   , Size{ slice.Width, slice.Height }
+  , BeginsSweep(slice.BeginsSweep)
   , HasFan(slice.Fan != nullptr)
 {
   std::copy_n(slice.PixelToReference.Data(), 16, this->Pose.begin());
@@ -27,7 +28,8 @@ SliceFingerprint::SliceFingerprint(const SliceImage& slice, bool withPixels)
 bool SliceFingerprint::HasGeometryOf(const SliceFingerprint& other) const
 {
   return this->Type == other.Type && this->Size == other.Size && this->Pose == other.Pose &&
-    this->HasFan == other.HasFan && this->Fan == other.Fan;
+    this->BeginsSweep == other.BeginsSweep && this->HasFan == other.HasFan &&
+    this->Fan == other.Fan;
 }
 
 std::vector<SliceFingerprint> GetFingerprints(

@@ -24,6 +24,7 @@ struct SliceFingerprint
   ScalarType Type = ScalarType::UInt8;
   std::array<int, 2> Size{};
   std::array<double, 16> Pose{};
+  bool BeginsSweep = false;
   bool HasFan = false;
   std::array<double, 8> Fan{}; ///< origin, angles, radii, pixel spacing
   PixelHash Pixels;

@@ -29,7 +29,8 @@ struct SliceImage
   Matrix4 PixelToReference;
   /// When set, only what lies in the fan exists; made for the window's size and pixel spacing.
   std::shared_ptr<const FanMask> Fan;
-  std::string Label; ///< what errors call it, for example "slice 17"
+  bool BeginsSweep = false; ///< there is nothing between it and the slice before it
+  std::string Label;        ///< what errors call it, for example "slice 17"
 };
 
 /// Throws std::invalid_argument, saying which slice, what is wrong and what to do, unless the

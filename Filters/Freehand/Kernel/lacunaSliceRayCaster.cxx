@@ -34,6 +34,32 @@ double Sample(const SliceProjection& projection, std::int64_t i, std::int64_t j)
 }
 }
 
+double GetWidestStepAlongRays(const std::vector<SliceImage>& slices, const ImagePlane& plane)
+{
+  double widest = 0;
+  for (std::size_t i = 1; i < slices.size(); ++i)
+  {
+    const SliceImage& a = slices[i - 1];
+    const SliceImage& b = slices[i];
+    if (b.BeginsSweep || SliceProjection::IsEdgeOn(a, plane) || SliceProjection::IsEdgeOn(b, plane))
+    {
+      continue;
+    }
+    const auto measure = [&](const SliceImage& from, const SliceImage& to)
+    {
+      const Vec3 normal = Cross(to.PixelToReference.Column(0), to.PixelToReference.Column(1));
+      for (const Vec3& corner : GetCorners(from))
+      {
+        const Vec3 way = to.PixelToReference.Column(3) - corner;
+        widest = std::max(widest, std::abs(Dot(way, normal) / Dot(plane.View, normal)));
+      }
+    };
+    measure(a, b);
+    measure(b, a);
+  }
+  return widest;
+}
+
 /// The state of a row of pixels; the first one is that of the extent's first column.
 struct SliceRayCaster::Row
 {

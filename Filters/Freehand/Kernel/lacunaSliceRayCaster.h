@@ -30,6 +30,10 @@
 
 namespace lacuna
 {
+/// mm along the rays: how far apart the planes of consecutive slices of a sweep are at most, at the
+/// corners of the two; 0 when there are no two. Slices seen edge-on do not count.
+double GetWidestStepAlongRays(const std::vector<SliceImage>& slices, const ImagePlane& plane);
+
 /// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice, inside its fan if
 /// it has one, samples it bilinearly; samples that are not finite do not exist. Of several samples
 /// at the same depth of a ray only the most solid one counts. Slices seen edge-on

@@ -233,9 +233,10 @@ void SweptVolume::AddPairs(
 
     std::vector<SlicePair> pairs;
     const SampledSlice* previous = this->Previous.get();
-    for (const SampledSlice& slice : sampled)
+    for (std::size_t n = 0; n < count; ++n)
     {
-      if (previous)
+      const SampledSlice& slice = sampled[n];
+      if (previous && !slices[begin + n].BeginsSweep)
       {
         if (!previous->Fan != !slice.Fan)
         {

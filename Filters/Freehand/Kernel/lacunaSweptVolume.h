@@ -68,7 +68,7 @@ public:
   /// The next slice starts a new sweep: it forms no pair with the one before.
   void BeginSweep();
 
-  /// Adds slices in the order of the sweep. The pixels are not needed any more when it returns.
+  /// Adds slices in the order of the sweep, or of several ones, which their BeginsSweep tells apart. The pixels are not needed any more when it returns.
   /// Progress covers first..last of the whole. Throws std::invalid_argument for unusable slices
   /// (none is added then), Aborted when stopped (the volume is then to be thrown away).
   void AddSlices(

@@ -85,7 +85,7 @@ void TestContract()
   LACUNA_CHECK_NEAR(normal[2], -10 / length, 1e-6);
 
   vtkFieldData* fields = map->GetFieldData();
-  LACUNA_CHECK(fields->GetNumberOfArrays() == 3);
+  LACUNA_CHECK(fields->GetNumberOfArrays() == 6); // with Sweeps, SweepGap and RayGap
   LACUNA_CHECK(fields->GetArray("IsoValues")->GetTuple1(0) == 30);
   LACUNA_CHECK(fields->GetArray("ImageToWorld")->GetNumberOfComponents() == 16);
   const std::vector<std::string> steps = vtkLacunaProvenance::Get(map);

@@ -77,8 +77,8 @@ void TestContract()
   LACUNA_CHECK_THAT(GetValue(volume, "Contributions", 6, 2, 5) == 1, "one sample between slices");
   LACUNA_CHECK_THAT(
     GetValue(volume, "vtkValidPointMask", 12, 4, 8) == 1, "the last voxel is filled");
-  LACUNA_CHECK_THAT(
-    volume->GetFieldData()->GetNumberOfArrays() == 1, "only Provenance in the field data");
+  LACUNA_CHECK_THAT(volume->GetFieldData()->GetNumberOfArrays() == 3,
+    "only Provenance, Sweeps and SweepGap in the field data");
   const std::vector<std::string> steps = vtkLacunaProvenance::Get(volume);
   LACUNA_CHECK_THAT(steps.size() == 1 && Contains(steps[0], "vtkLacunaSweptVolume") &&
       Contains(steps[0], "OutputSpacing=0.5,1,0.5") &&
