@@ -19,6 +19,7 @@ from proxies import ROOT, read_proxies
 GUIDE = "Documentation/UserGuide"
 EXAMPLES = "Documentation/Examples"
 DEVELOPERS = "Documentation/DeveloperGuide"
+DECISIONS = f"{DEVELOPERS}/decisions"
 BENCHMARKS = "Documentation/Benchmarks"
 PACKAGE = "Plugins/Python/lacuna"
 PICTURES = (".png", ".jpg", ".svg")
@@ -202,7 +203,7 @@ def python_reference():
 
 def stage(target):
     pages = {"index.md": read("README.md"), "CHANGELOG.md": read("CHANGELOG.md"), "CONTRIBUTING.md": read("CONTRIBUTING.md")}
-    for folder in (GUIDE, DEVELOPERS):
+    for folder in (GUIDE, DEVELOPERS, DECISIONS):
         pages.update({f"{folder}/{name}": read(f"{folder}/{name}") for name in names(folder, ".md")})
     pages[f"{BENCHMARKS}/README.md"] = read(f"{BENCHMARKS}/README.md")
     proxies = read_proxies()
@@ -223,7 +224,7 @@ def stage(target):
     sections = navigation()
     pages["index.md"] += toctree([f"{GUIDE}/README", f"{EXAMPLES}/index"])
     pages["index.md"] += "".join(toctree(paths, caption) for caption, paths in sections)
-    pages["index.md"] += toctree([f"{DEVELOPERS}/{name}" for name in names(DEVELOPERS, ".md")] +
+    pages["index.md"] += toctree([f"{folder}/{name}" for folder in (DEVELOPERS, DECISIONS) for name in names(folder, ".md")] +
                                  [f"{BENCHMARKS}/README", f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
 
     shutil.rmtree(target, ignore_errors=True)
