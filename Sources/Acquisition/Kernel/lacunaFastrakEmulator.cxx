@@ -120,7 +120,9 @@ void FastrakEmulator::Take(char c, double begin, double end)
   this->Line += c;
   if (this->Line.size() > LongestLine)
   {
-    this->Complain(std::exchange(this->Line, std::string()).substr(0, 8), Unknown, end);
+    const std::string start = this->Line.substr(0, 8);
+    this->Line.clear();
+    this->Complain(start, Unknown, end);
   }
 }
 
