@@ -120,8 +120,8 @@ void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body, std::string& error, bool areToldAll)
 {
   const bool isAlone = vtkLacunaRanks().GetNumber() == 1;
-  error = vtkLacunaFailure::GetUpstream(algorithm);
-  if (!error.empty())
+  error = isAlone ? vtkLacunaFailure::GetUpstream(algorithm) : std::string();
+  if (!error.empty()) // of several ranks each still meets the others in body
   {
     EmptyOutputs(outputs);
     vtkLacunaFailure::PassOn(algorithm, outputs, error);
@@ -150,7 +150,7 @@ void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     if (!areToldAll && !announced.empty() && !isAlone &&
       vtkLacunaFailure::MayBeOfOneRank(algorithm))
     {
-      // VTK would not execute what comes behind on this rank, and others would wait there.
+      // What comes behind would not do its work on this rank, and others would wait there.
       vtkErrorWithObjectMacro(algorithm, << error);
       error.clear();
       return;

@@ -37,8 +37,7 @@ public:
   /// stopped, all outputs are emptied, so that no half result looks whole. An exception's text is algorithm's
   /// error each time data are asked for, until something changes (vtkLacunaFailure). After an error of an
   /// algorithm upstream body is not run, and the outputs hold that error, too. Returns 1, also after an error:
-  /// VTK goes on, so that views show the empty outputs, and no rank waits for one that has failed.
-  ///
+  /// VTK goes on, so that views show the empty outputs.
   static int Run(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
     const std::function<void(vtkLacunaExecution&)>& body);
 

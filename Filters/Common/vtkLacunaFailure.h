@@ -9,7 +9,7 @@
 class vtkAlgorithm;
 class vtkInformationVector;
 
-/// A failed algorithm fails for each who asks, until something is changed. Its outputs are empty, and their field
+/// A failed algorithm fails each time VTK executes it, until something is changed. Its outputs are empty, and their field
 /// data hold the error under FieldName, which filters pass on. RequestData returns 1 all the same: VTK would not
 /// execute what follows, a view would keep the old picture, and ParaView would not update that view again.
 /// ParaView asks several times for one command: within seconds the same error is shown once, and the same work

@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkLacunaFailure.h"
 #include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkMatrix3x3.h"
@@ -239,6 +240,11 @@ void vtkLacunaInputs::Check(vtkDataObject* data, const std::string& name)
 //------------------------------------------------------------------------------
 void vtkLacunaInputs::Check(vtkAlgorithm* algorithm)
 {
+  const std::string failed = vtkLacunaFailure::GetUpstream(algorithm);
+  if (!failed.empty())
+  {
+    throw std::runtime_error(failed);
+  }
   for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
   {
     Check(algorithm, port);

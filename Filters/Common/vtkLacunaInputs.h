@@ -20,7 +20,8 @@ namespace vtkLacunaInputs
 /// without points, cells and rows are sound.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data, const std::string& name);
 
-/// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an image was refused
+/// All inputs that algorithm has, by the numbers of their ports. Throws, too, when an input holds the error of an
+/// algorithm upstream (vtkLacunaFailure), when an image was refused
 /// (vtkLacunaRequest::Whole), or less of it arrived than algorithm asked for, as behind ParaView's
 /// Resample To Image on several ranks, or when it is known of a filter upstream that it gives ranks
 /// different points or rows, whatever they ask for, as Redistribute Data Set does.

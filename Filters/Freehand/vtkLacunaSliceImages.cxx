@@ -342,7 +342,8 @@ void vtkLacunaSliceImages::FindSweeps(const vtkLacunaTrackedSlices& tracked,
   std::vector<vtkLacunaPoseJudge::Slice> others;
   for (const Candidate& candidate : gatedOut)
   {
-    others.push_back({ candidate.Number, &candidate.Slice });
+    others.push_back(
+      { candidate.Number, &candidate.Slice, &tracked.GetImageToReference(candidate.Number) });
   }
   const std::vector<std::string> problems = vtkLacunaPoseJudge::FindUnusable(others);
   std::vector<const Candidate*> known;

@@ -50,6 +50,7 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaSweptVolume": ("OutputSpacing", [-1, 1, 1]),
     "LacunaTemporalCalibration": ("MaximumLag", -1),
     "LacunaTrackedSliceReader": ("FileName", "none"),
+    "LacunaVolumeReader": ("FileName", "none"),
     "LacunaTrackerSelfTest": ("SpeedLimit", -1),
 }
 NOT_SHOWN = "LacunaPolhemusVideoSource", "LacunaIGESWriter", "LacunaTrackedSliceWriter", "LacunaGCodeWriter"
