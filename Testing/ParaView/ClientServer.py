@@ -50,7 +50,7 @@ def client(port):
     from lacuna import coordinates
     from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
-    from paraview.simple import (BSplineIsoRayCaster, DepthMapSurface, FindSource, GetActiveViewOrCreate, PhantomSweep, RBFHoleFiller, SaveData, SkullPhantom,
+    from paraview.simple import (BSplineIsoRayCaster, DepthMapSurface, FindSource, GetActiveViewOrCreate, PhantomSweep, RBFHoleFiller, Render, SaveData, Show, SkullPhantom,
                                  SweptVolume)
     for view, up in (((0, 1, 0), (0, 0, 1)), ((0.4, 0.3, -0.8), (0, 1, 0))):
         depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500], ViewDirection=view, ViewUp=up)
