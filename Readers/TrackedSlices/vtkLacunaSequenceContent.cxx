@@ -59,6 +59,30 @@ std::string FormatTuple(vtkDataArray* array, vtkIdType i)
   }
   return text;
 }
+
+// The factor of the third column when pixels become spacing times as large. The column places no pixel, but
+// readers compare it with the others: where it was as long as their mean it must stay so.
+double GetDepthScale(vtkImageData* stack, vtkIdType count, const double* spacing)
+{
+  vtkDataArray* poses =
+    vtkLacunaFieldData::Find(stack, vtkLacunaTrackedSlices::ImageToReferenceName, 16, count);
+  const bool isSampled = spacing[0] != 1 || spacing[1] != 1;
+  for (vtkIdType slice = 0; poses && isSampled && slice < count; ++slice)
+  {
+    const lacuna::Matrix4 matrix = vtkLacunaFieldData::GetMatrix(poses, slice);
+    if (matrix.IsFinite())
+    {
+      const double x = lacuna::Norm(matrix.Column(0));
+      const double y = lacuna::Norm(matrix.Column(1));
+      const double z = lacuna::Norm(matrix.Column(2));
+      const bool isMean = std::abs(z - (x + y) / 2) <= 1e-3 * z;
+      const bool isGeometric = std::abs(z - std::sqrt(x * y)) <= 1e-3 * z;
+      return isMean ? (spacing[0] * x + spacing[1] * y) / (2 * z)
+                    : (isGeometric ? std::sqrt(spacing[0] * spacing[1]) : 1);
+    }
+  }
+  return 1;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -111,7 +135,8 @@ void vtkLacunaSequenceContent::FindSlices()
 
   this->PixelToImage = lacuna::Matrix4::Translation({ origin[0] + spacing[0] * extent[0],
                          origin[1] + spacing[1] * extent[2], 0 }) *
-    lacuna::Matrix4::Scaling({ spacing[0], spacing[1], 1 });
+    lacuna::Matrix4::Scaling(
+      { spacing[0], spacing[1], GetDepthScale(this->Stack, this->Count, spacing) });
   this->Cropped = !lacuna::IsNear(this->PixelToImage, lacuna::Matrix4());
   const std::string image = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 0);
   const std::string reference = GetString(this->Stack, vtkLacunaSequenceNames::Frames, 1);
