@@ -57,7 +57,7 @@ check(port, coordinates.PRESS)
 check(GroupDatasets(Input=[model, port]), coordinates.UNKNOWN)
 bounds = model.GetClientSideObject().GetOutputDataObject(1).GetBounds()
 assert fetch(port).GetBounds() == bounds != fetch(model).GetBounds()
-record = save_solid(output("Coordinates.vts"), port)
+record = save_solid(output("Coordinates.vts"), port, DataMode="Binary")
 assert record["coordinates"] == coordinates.PRESS and tuple(record["bounds"]) == bounds, record
 assert fetch(OpenDataFile(output("Coordinates.vts"))).GetBounds() == bounds
 try:

@@ -135,7 +135,7 @@ series = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "GridsInTime.vtp")
 said = ""
 try:
     with raising():
-        pv.SaveData(series, pv.ExtractSurface(Input=interpolator()), Writetimestepsasfileseries=1)
+        pv.SaveData(series, pv.ExtractSurface(Input=interpolator()), Writetimestepsasfileseries=1, DataMode="Binary")
 except RuntimeError as error:
     said = str(error)
 assert "since the grid was announced" in said, said

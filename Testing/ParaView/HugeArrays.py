@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What an XML image takes: all arrays that are switched on, also those that are not the active scalars, and no others."""
+import base64
 import os
 import resource
+import struct
+import zlib
 
 import lacuna
 from lacuna.errors import PipelineError, raising
@@ -14,29 +17,24 @@ LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
 N = 256
 LARGE = 9 * 8 * N**3  # bytes of nine doubles for each point
 SMALL = 2 * N**3
+BLOCK = 1 << 20
 
 
 def write(name, attributes, *arrays):
-    """A sparse image of zeros; arrays: name, type, components and bytes of each."""
-    offset, header, places = 0, "", []
+    """An image of zeros; arrays: name, type, components and bytes of each. Large ones, which nobody may read, hold nothing."""
+    body = ""
     for array, kind, components, size in arrays:
-        header += (f'<DataArray type="{kind}" Name="{array}" NumberOfComponents="{components}" format="appended" '
-                   f'offset="{offset}"/>')
-        places.append((offset, size))
-        offset += 8 + size
+        blocks = [] if size == LARGE else [len(zlib.compress(bytes(BLOCK)))] * (size // BLOCK)
+        sizes = base64.b64encode(struct.pack(f"<{3 + len(blocks)}Q", len(blocks), BLOCK, 0, *blocks))
+        values = base64.b64encode(zlib.compress(bytes(BLOCK)) * len(blocks))
+        body += (f'<DataArray type="{kind}" Name="{array}" NumberOfComponents="{components}" format="binary">'
+                 f'{(sizes + values).decode()}</DataArray>')
     extent = f"0 {N - 1} 0 {N - 1} 0 {N - 1}"
-    header = (f'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64"><ImageData '
-              f'WholeExtent="{extent}" Origin="0 0 0" Spacing="1 1 1"><Piece Extent="{extent}"><PointData {attributes}>'
-              f'{header}</PointData></Piece></ImageData><AppendedData encoding="raw">_').encode()
     path = output(name)
-    with open(path, "wb") as file:
-        file.write(header)
-        for place, size in places:
-            file.seek(len(header) + place)
-            file.write(size.to_bytes(8, "little"))
-        file.truncate(len(header) + offset)
-        file.seek(0, os.SEEK_END)
-        file.write(b"</AppendedData></VTKFile>")
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64" '
+                   f'compressor="vtkZLibDataCompressor"><ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="1 1 1">'
+                   f'<Piece Extent="{extent}"><PointData {attributes}>{body}</PointData></Piece></ImageData></VTKFile>')
     return path
 
 

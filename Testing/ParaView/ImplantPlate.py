@@ -160,7 +160,7 @@ for move in ({"Translate": [1, 0, 0]}, {"Scale": [-1, 1, 1]}, {"Rotate": [0, 0, 
 # Files: ParaView's writers, in the same coordinates, and what says where they come from.
 for name in ("plate.stl", "plate.ply", "plate.vtp"):
     path = output(name)
-    save_solid(path, plate)
+    save_solid(path, plate, **({"DataMode": "Binary"} if name.endswith("vtp") else {}))
     again = OpenDataFile(path)
     again.UpdatePipeline()
     bounds = np.array(again.GetDataInformation().GetBounds())

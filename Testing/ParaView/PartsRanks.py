@@ -59,6 +59,7 @@ def after_serial():
             source.SetXMag(1 + time)
             writer.SetInputConnection(source.GetOutputPort())
             writer.SetFileName(file)
+            writer.SetDataModeToBinary()
             writer.Write()
     controller.Barrier()
     smooth = pv.SpeckleFilter(Input=pv.XMLImageDataReader(FileName=files), KernelSize=[3, 3, 1])

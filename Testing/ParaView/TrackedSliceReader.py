@@ -61,9 +61,9 @@ ordinary = [write("ct.mha", common + local, pixels),
             # a reconstructed volume has frame fields too
             write("volume.mha", common + "Kinds = domain domain domain\n"
                   "Seq_Frame0000_ImageStatus = OK\n" + local, pixels),
-            write("ct.nrrd", nrrd + "kinds: domain domain domain\n\n", pixels),
+            write("ct.nrrd", nrrd + "spacings: 1 1 1\nkinds: domain domain domain\n\n", pixels),
             write("ct.nhdr", nrrd + "data file: pixels.raw\nSeq_Frame0000_Status:=OK\n"
-                  "kinds: domain domain domain\n")]
+                  "spacings: 1 1 1\nkinds: domain domain domain\n")]
 
 # Which reader opens what: with OpenDataFile, and in the list from which the user interface chooses.
 factory = servermanager.vtkSMProxyManager.GetProxyManager().GetReaderFactory()
@@ -89,8 +89,8 @@ for path in tracked:
 for path in ordinary:
     own = "NrrdReader" if path.endswith(("nrrd", "nhdr")) else "MetaImageReader"
     reader = OpenDataFile(path)
-    assert reader.SMProxy.GetXMLName() == own, path
-    assert candidates(path) == [own], candidates(path)
+    assert reader.SMProxy.GetXMLName() == "LacunaVolumeReader", path
+    assert candidates(path) == ["LacunaVolumeReader", own], candidates(path)
     reader.UpdatePipeline()
     assert reader.GetDataInformation().GetNumberOfPoints() > 0
     Delete(reader)

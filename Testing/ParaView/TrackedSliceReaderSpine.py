@@ -27,7 +27,7 @@ for axis, (low, size) in enumerate(((-74.5217, 147), (165.573, 106), (29.072, 10
 
 # A CT is not claimed.
 head = OpenDataFile(data("ct_head/head.mha"))
-assert head.SMProxy.GetXMLName() == "MetaImageReader"
+assert head.SMProxy.GetXMLName() == "LacunaVolumeReader"
 
 # Written and read again, without the calibration file, it is the same.
 for extension in ("igs.mha", "igs.nrrd", "mhd", "nhdr"):

@@ -22,7 +22,7 @@ MAKE = """
 import lacuna.plugin
 lacuna.plugin.load()
 from paraview.simple import *
-SaveData("skull.vti", proxy=SkullPhantom())
+SaveData("skull.vti", proxy=SkullPhantom(), DataMode="Binary")
 SaveData("sweep.igs.mha", proxy=PhantomSweep())
 """
 OPEN, SAVE_DATA, APPLY, RESET_CAMERA = (28, 42), (62, 42), (49, 462), (712, 82)
