@@ -146,7 +146,7 @@ void vtkLacunaSequenceContent::FindSlices()
   {
     const std::string name =
       std::string(lacuna::WholeImageFrame) + "To" + lacuna::CroppedImageFrame;
-    this->Crops = vtkLacunaFieldData::Find(this->Stack, name.c_str(), 16, this->Count);
+    this->Crops = vtkLacunaFieldData::Find(this->Stack, name, 16, this->Count);
   }
   this->SayWindow();
 }

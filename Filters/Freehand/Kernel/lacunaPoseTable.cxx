@@ -234,9 +234,9 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
       ? converted
       : finding;
     const GeometryAction action = GetAction(GeometryOrigin::Table, finding.Fault);
-    if (action == GeometryAction::Refuse)
+    if (action >= GeometryAction::Flag)
     {
-      if (!options.SkipInvalid)
+      if (action == GeometryAction::Refuse && !options.SkipInvalid)
       {
         throw std::runtime_error(
           "the pose in row " + std::to_string(i) + " is none: " + Describe(finding));

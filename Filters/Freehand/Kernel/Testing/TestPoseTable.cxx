@@ -254,6 +254,26 @@ TEST(PoseTable, WhatIsNoPoseIsRefused)
   }
 }
 
+// Finite numbers whose inverse is not.
+TEST(PoseTable, AnInverseThatIsNotFiniteIsFlagged)
+{
+  PoseTableOptions options;
+  options.Transform = PoseTransform::ReferenceToImage;
+  std::vector<double> numbers = ToRow(Matrix4::Scaling({ 5, 5, 5 }));
+  const std::vector<double> overflow =
+    ToRow(Matrix4::Translation({ 1e10, 0, 0 }) * Matrix4::Scaling({ 1e-300, 1, 1 }));
+  numbers.insert(numbers.end(), overflow.begin(), overflow.end());
+  for (const bool skip : { false, true })
+  {
+    options.SkipInvalid = skip;
+    const PoseTable table = ReadPoseTable(numbers, 16, {}, options);
+    EXPECT_EQ(table.Usable, (std::vector<char>{ 1, 0 }));
+    EXPECT_FALSE(table.ToReference[1].IsFinite());
+    ASSERT_EQ(table.Warnings.size(), 1u);
+    EXPECT_NE(table.Warnings[0].find("not finite"), std::string::npos) << table.Warnings[0];
+  }
+}
+
 TEST(PoseTable, PixelSizesOfImagePoses)
 {
   PoseTableOptions options;
