@@ -226,37 +226,40 @@ void FilterIntegerMean(const ImageView<const T>& input, const ImageView<T>& outp
 {
   using Key = KeyOf<T>;
   const S n = static_cast<S>(window.GetNumberOfSamples());
-  FilterSeparably<S>(
-    input, output.Box, Reach(window), BoxSum<S>{ window.GetSize(), set },
-    [](T value) { return static_cast<S>(OrderedKey<T>::From(value)); },
-    [&](const S* row, int x0, int x1, int y, int z)
+  SeparableSteps<S> steps;
+  steps.Load = [&](const Extent& box, S* to)
+  {
+    CopyReplicated(
+      input, box, to, [](T value) { return static_cast<S>(OrderedKey<T>::From(value)); });
+  };
+  steps.Along = BoxSum<S>{ window.GetSize(), set };
+  steps.Store = [&](const S* row, int x0, int x1, int y, int z)
+  {
+    T* to = output.At(x0, y, z);
+    for (int i = 0; i <= x1 - x0; ++i)
     {
-      T* to = output.At(x0, y, z);
-      for (int i = 0; i <= x1 - x0; ++i)
+      // Rounds halves up. A correctly rounded quotient of whole numbers below 2^53 is not below
+      // a whole number when the true quotient is not, so division in double is exact here.
+      Key key;
+      if constexpr (sizeof(S) == 4)
       {
-        // Rounds halves up. A correctly rounded quotient of whole numbers below 2^53 is not below
-        // a whole number when the true quotient is not, so division in double is exact here.
-        Key key;
-        if constexpr (sizeof(S) == 4)
-        {
-          key = static_cast<Key>(static_cast<std::int32_t>(
-            static_cast<double>(static_cast<std::int32_t>(row[i] + n / 2)) /
-            static_cast<double>(n)));
-        }
-        else
-        {
-          key = static_cast<Key>((row[i] + n / 2) / n);
-        }
-        to[i * output.Stride[0]] = OrderedKey<T>::To(key);
+        key = static_cast<Key>(static_cast<std::int32_t>(
+          static_cast<double>(static_cast<std::int32_t>(row[i] + n / 2)) / static_cast<double>(n)));
       }
-    },
-    execution);
+      else
+      {
+        key = static_cast<Key>((row[i] + n / 2) / n);
+      }
+      to[i * output.Stride[0]] = OrderedKey<T>::To(key);
+    }
+  };
+  FilterSeparably(input.Box, output.Box, Reach(window), steps, execution);
 }
 
-/// Weighted means with NaN left out: sums of samples and of weights, NaN counting as 0, by op.
-template <class S, class T, class Op, class Total>
+/// Weighted means with NaN left out: sums of samples and of weights, NaN counting as 0, by along.
+template <class S, class T, class Along>
 void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, const Reach& reach,
-  const Op& op, const Total& total, Execution& execution)
+  const Along& along, S total, Execution& execution)
 {
   const Execution::NestedStages stages(execution);
   execution.SetStage(0, 0.1);
@@ -266,31 +269,40 @@ void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, 
     static_cast<double>(sizeof(S)) * static_cast<double>(weightCount));
   std::vector<S> weightMemory(weightCount);
   const ImageView<S> weightView(weightMemory.data(), output.Box);
-  if (nan)
+  SeparableSteps<S> steps;
+  steps.Along = along;
+  if constexpr (std::is_floating_point_v<T>)
   {
-    execution.SetStage(0.1, 0.5);
-    FilterSeparably<S>(
-      input, output.Box, reach, op, [](T value) { return S(value == value ? 1 : 0); },
-      [&](const S* row, int x0, int x1, int y, int z)
-      { std::copy(row, row + (x1 - x0 + 1), weightView.At(x0, y, z)); },
-      execution);
+    if (nan)
+    {
+      execution.SetStage(0.1, 0.5);
+      steps.Load = [&](const Extent& box, S* to)
+      { CopyReplicated(input, box, to, [](T value) { return S(value == value ? 1 : 0); }); };
+      steps.Store = [&](const S* row, int x0, int x1, int y, int z)
+      { std::copy(row, row + (x1 - x0 + 1), weightView.At(x0, y, z)); };
+      FilterSeparably(input.Box, output.Box, reach, steps, execution);
+    }
   }
   execution.SetStage(nan ? 0.5 : 0.1, 1);
-  FilterSeparably<S>(
-    input, output.Box, reach, op,
-    [](T value) { return value == value ? static_cast<S>(value) : S(0); },
-    [&](const S* row, int x0, int x1, int y, int z)
+  steps.Load = [&](const Extent& box, S* to)
+  {
+    CopyReplicated(
+      input, box, to, [](T value) { return value == value ? static_cast<S>(value) : S(0); });
+  };
+  steps.Store = [&](const S* row, int x0, int x1, int y, int z)
+  {
+    T* to = output.At(x0, y, z);
+    const std::int64_t step = output.Stride[0];
+    if (!nan)
     {
-      T* to = output.At(x0, y, z);
-      const std::int64_t step = output.Stride[0];
-      if (!nan)
+      for (int i = 0; i <= x1 - x0; ++i)
       {
-        for (int i = 0; i <= x1 - x0; ++i)
-        {
-          to[i * step] = RoundTo<T>(total == S(1) ? row[i] : row[i] / total);
-        }
-        return;
+        to[i * step] = RoundTo<T>(total == S(1) ? row[i] : row[i] / total);
       }
+      return;
+    }
+    if constexpr (std::is_floating_point_v<T>)
+    {
       const T* centre = input.At(x0, y, z);
       const S* weights = weightView.At(x0, y, z);
       for (int i = 0; i <= x1 - x0; ++i)
@@ -304,8 +316,9 @@ void FilterNumbers(const ImageView<const T>& input, const ImageView<T>& output, 
         to[i * step] =
           original == original ? RoundTo<T>(weight == S(1) ? row[i] : row[i] / weight) : original;
       }
-    },
-    execution);
+    }
+  };
+  FilterSeparably(input.Box, output.Box, reach, steps, execution);
 }
 
 template <class S>
@@ -338,7 +351,7 @@ void FilterMean(const ImageView<const T>& input, const ImageView<T>& output, con
 {
   if constexpr (std::is_floating_point_v<T>)
   {
-    FilterNumbers<double>(input, output, Reach(window), BoxSum<double>{ window.GetSize(), set },
+    FilterNumbers(input, output, Reach(window), BoxSum<double>{ window.GetSize(), set },
       static_cast<double>(window.GetNumberOfSamples()), execution);
   }
   else if constexpr (sizeof(T) == 8)
@@ -419,7 +432,7 @@ void FilterGaussian(const ImageView<const T>& input, const ImageView<T>& output,
   {
     convolution.Weights[a] = FirstHalf<S>(GaussianWeights(deviations[a], reach.Lower[a]));
   }
-  FilterNumbers<S>(input, output, reach, convolution, S(1), execution);
+  FilterNumbers(input, output, reach, convolution, S(1), execution);
 }
 
 template <class T>
@@ -452,17 +465,19 @@ void FilterLaplacianOfGaussian(const ImageView<const T>& input,
       }
       convolution.Weights[a] = FirstHalf<S>(weights);
     }
-    FilterSeparably<S>(
-      input, output.Box, reach, convolution, [](T value) { return static_cast<S>(value); },
-      [&](const S* row, int x0, int x1, int y, int z)
+    SeparableSteps<S> steps;
+    steps.Load = [&](const Extent& box, S* to)
+    { CopyReplicated(input, box, to, [](T value) { return static_cast<S>(value); }); };
+    steps.Along = convolution;
+    steps.Store = [&](const S* row, int x0, int x1, int y, int z)
+    {
+      for (int x = x0; x <= x1; ++x)
       {
-        for (int x = x0; x <= x1; ++x)
-        {
-          Out& out = *output.At(x, y, z);
-          out = static_cast<Out>(first ? row[x - x0] : out + row[x - x0]);
-        }
-      },
-      execution);
+        Out& out = *output.At(x, y, z);
+        out = static_cast<Out>(first ? row[x - x0] : out + row[x - x0]);
+      }
+    };
+    FilterSeparably(input.Box, output.Box, reach, steps, execution);
     first = false;
   }
   if (first)

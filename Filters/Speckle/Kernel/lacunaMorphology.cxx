@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaMorphology.h"
 
+#include "lacunaBlocks.h"
+
 #include "lacunaOrderedKey.h"
 #include "lacunaScalarType.h"
 #include "lacunaSeparable.h"
@@ -49,35 +51,20 @@ public:
   {
   }
 
-  template <class T>
-  void Filter(const ImageView<const T>& input, const ImageView<T>& output, Execution& execution)
+  /// steps: what loads keys and stores extremes.
+  void Filter(const Extent& inputBox, const Extent& box, SeparableSteps<Key>& steps,
+    Execution& execution) const
   {
-    // NaN must not win, nor be brought back by the other NaN that a neighbour may be.
-    const auto load = [](T value)
-    {
-      const Key key = OrderedKey<T>::From(value);
-      return std::is_floating_point_v<T> && Which == Extreme::Greatest && key == OrderedKey<T>::NaN
-        ? Key(0)
-        : key;
-    };
-    const auto store = [&](const Key* row, int x0, int x1, int y, int z)
-    {
-      for (int x = x0; x <= x1; ++x)
-      {
-        const T centre = std::is_floating_point_v<T> ? *input.At(x, y, z) : T(0);
-        *output.At(x, y, z) = centre == centre ? OrderedKey<T>::To(row[x - x0]) : centre;
-      }
-    };
     if (this->Shape.IsBox())
     {
-      const auto op =
+      steps.Along =
         [this](int axis, Key* data, std::int64_t count, std::int64_t shift, std::vector<Key>&)
       { this->SlideRun(data, count, shift, this->Shape.GetSize(axis)); };
-      FilterSeparably<Key>(input, output.Box, Reach(this->Shape), op, load, store, execution);
+      FilterSeparably(inputBox, box, Reach(this->Shape), steps, execution);
     }
     else
     {
-      this->FilterEllipsoid(input, output.Box, load, store, execution);
+      this->FilterEllipsoid(box, steps, execution);
     }
   }
 
@@ -102,19 +89,19 @@ private:
     RunWith<Combine<Key, Which>>(this->Set, combine);
   }
 
-  template <class T, class Load, class Store>
-  void FilterEllipsoid(const ImageView<const T>& input, const Extent& box, const Load& load,
-    const Store& store, Execution& execution) const
+  void FilterEllipsoid(
+    const Extent& box, const SeparableSteps<Key>& steps, Execution& execution) const
   {
     ForEachBlock(
       box, { 512, 64, 1 }, execution, [] { return std::make_unique<Buffers>(); },
       [&](Buffers& buffers, const Extent& block)
       {
-        this->FilterBlock(input, block, load, buffers);
+        this->FilterBlock(block, steps, buffers);
         const std::int64_t pitch = SizeOf(this->Shape.Grow(block), 0);
         for (int y = block[2]; y <= block[3]; ++y)
         {
-          store(buffers.Result.data() + (y - block[2]) * pitch, block[0], block[1], y, block[4]);
+          steps.Store(
+            buffers.Result.data() + (y - block[2]) * pitch, block[0], block[1], y, block[4]);
         }
       });
   }
@@ -127,9 +114,7 @@ private:
   };
 
   /// Result: the rows of block, which has one slice, at the pitch of the grown block.
-  template <class T, class Load>
-  void FilterBlock(
-    const ImageView<const T>& input, const Extent& block, const Load& load, Buffers& buffers) const
+  void FilterBlock(const Extent& block, const SeparableSteps<Key>& steps, Buffers& buffers) const
   {
     auto& [slice, runs, result] = buffers;
     Extent grown = this->Shape.Grow(block);
@@ -148,7 +133,7 @@ private:
         ++last;
       }
       grown[4] = grown[5] = z0 + rows[first].Z;
-      CopyReplicated(input, grown, slice.data(), load);
+      steps.Load(grown, slice.data());
       // The rows of a slice of an ellipsoid grow towards its middle and are nested: each row's
       // extremes come from the next shorter one's, and the rows at equal distance from the middle
       // share them.
@@ -195,13 +180,35 @@ template <class T>
 void FilterExtreme(const ImageView<const T>& input, const ImageView<T>& output,
   const Window& window, Extreme extreme, VectorUnit set, Execution& execution)
 {
+  using Key = KeyOf<T>;
+  SeparableSteps<Key> steps;
+  steps.Load = [&](const Extent& box, Key* to)
+  {
+    // NaN must not win, nor be brought back by the other NaN that a neighbour may be.
+    const bool zeroNaN = std::is_floating_point_v<T> && extreme == Extreme::Greatest;
+    CopyReplicated(input, box, to,
+      [zeroNaN](T value)
+      {
+        const Key key = OrderedKey<T>::From(value);
+        return zeroNaN && key == OrderedKey<T>::NaN ? Key(0) : key;
+      });
+  };
+  steps.Store = [&](const Key* row, int x0, int x1, int y, int z)
+  {
+    for (int x = x0; x <= x1; ++x)
+    {
+      const T centre = std::is_floating_point_v<T> ? *input.At(x, y, z) : T(0);
+      *output.At(x, y, z) = centre == centre ? OrderedKey<T>::To(row[x - x0]) : centre;
+    }
+  };
   if (extreme == Extreme::Least)
   {
-    ExtremeFilter<KeyOf<T>, Extreme::Least>(window, set).Filter(input, output, execution);
+    ExtremeFilter<Key, Extreme::Least>(window, set).Filter(input.Box, output.Box, steps, execution);
   }
   else
   {
-    ExtremeFilter<KeyOf<T>, Extreme::Greatest>(window, set).Filter(input, output, execution);
+    ExtremeFilter<Key, Extreme::Greatest>(window, set)
+      .Filter(input.Box, output.Box, steps, execution);
   }
 }
 

@@ -3,8 +3,9 @@
 #include "lacunaCGALSolid.h"
 #include "lacunaDefectModelScene.h"
 
-#include <CGAL/Polygon_mesh_processing/intersection.h>
+#include <gtest/gtest.h>
 
+#include <iostream>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -79,9 +80,7 @@ TEST(DefectModelCGAL, ThePlateFits)
       options.Floor = floor;
       options.DefectDepth = 3.05;
       const DefectModel model = DefectModelScene(*scene).Make(options);
-      const SolidMesh a = MakeMesh(plate);
-      const SolidMesh b = MakeMesh(model);
-      EXPECT_FALSE(CGAL::Polygon_mesh_processing::do_intersect(a, b));
+      EXPECT_FALSE(Intersect(plate, model));
     }
   }
 }
