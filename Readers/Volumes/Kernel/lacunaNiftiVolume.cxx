@@ -18,6 +18,8 @@ namespace lacuna
 {
 namespace
 {
+// Of the header and the four bytes behind it that say whether extensions follow, by version.
+constexpr std::int64_t FirstVoxel[] = { 352, 544 };
 constexpr double SameMatrices = 0.05; // mm, at the corners
 
 [[noreturn]] void Fail(const std::string& fileName, const std::string& text)
@@ -147,11 +149,14 @@ void SetVoxels(VolumeFile& volume, const NiftiHeader& header)
       "voxels have the type " + std::to_string(header.DataType) +
         "; known are integers of 8 to 64 bits, float, double, RGB and RGBA");
   }
-  if (header.VoxelOffset < 348)
+  const std::int64_t first = FirstVoxel[header.Version - 1];
+  if (header.VoxelOffset < first)
   {
     Fail(name,
       "vox_offset is " + std::to_string(header.VoxelOffset) +
-        ": the voxels would begin within the header");
+        ": the voxels would begin within the header. In a .nii file of NIfTI-" +
+        std::to_string(header.Version) + " they begin at byte " + std::to_string(first) +
+        " or later. Save the volume anew in the program that made it");
   }
   const double bytes =
     32.0 * static_cast<double>(dim[1]) * static_cast<double>(dim[2]) * static_cast<double>(dim[3]);
@@ -315,6 +320,7 @@ NiftiHeader ReadNiftiHeader(const std::string& fileName)
     {
       found =
         GetHeader<std::int64_t, std::int32_t, std::int32_t, std::int64_t, double>(header, Nifti2);
+      found.Version = 2;
     }
     else
     {

@@ -22,6 +22,7 @@ namespace lacuna
 /// What a header says, NIfTI-1 or NIfTI-2.
 struct NiftiHeader
 {
+  int Version = 1;
   std::array<std::int64_t, 8> Dim{};
   std::array<double, 8> PixDim{};
   int DataType = 0;
