@@ -228,7 +228,14 @@ void vtkLacunaSequenceContent::AddArray(vtkAbstractArray* array)
   auto* numbers = vtkDataArray::SafeDownCast(array);
   auto* strings = vtkStringArray::SafeDownCast(array);
   const bool transform = numbers && array->GetNumberOfComponents() == 16; // of the patient's frame?
-  if (!this->KeepPatientIdentity && !transform && lacuna::IdentifiesPatient(name))
+  std::vector<std::string> texts;
+  for (vtkIdType i = 0; strings && i < strings->GetNumberOfValues(); ++i)
+  {
+    texts.push_back(strings->GetValue(i));
+  }
+  const bool identifies =
+    strings ? lacuna::IdentifiesPatient(name, texts) : lacuna::IdentifiesPatient(name);
+  if (!this->KeepPatientIdentity && !transform && identifies)
   {
     this->Warnings.push_back("field data array '" + name +
       "' is not written: it may identify the patient. Set KeepPatientIdentity to write it");

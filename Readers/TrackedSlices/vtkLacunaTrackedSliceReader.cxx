@@ -3,7 +3,6 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "lacunaPatientIdentity.h"
 #include "lacunaPropertyRange.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
@@ -216,11 +215,11 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
 
   // The arrays of the contract come last: no field of the file takes their place.
   std::vector<std::string> steps;
-  const auto isKept = [&](const std::string& name)
-  { return this->KeepPatientIdentity || !lacuna::IdentifiesPatient(name); };
+  const auto isKept = [&](const std::string& name, const std::vector<std::string>& texts)
+  { return this->KeepPatientIdentity || !lacuna::IdentifiesPatient(name, texts); };
   for (const auto& [name, value] : header.CustomFields)
   {
-    if (!isKept(name) ||
+    if (!isKept(name, { value }) ||
       sweep.HeaderTransforms.count(lacuna::SweepTransforms::GetTransformName(name)) > 0)
     {
       continue; // a transform is written for each frame
@@ -237,7 +236,7 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
   for (const auto& [name, texts] : sweep.TextFields)
   {
-    if (isKept(name))
+    if (isKept(name, texts))
     {
       AddStrings(output, name, texts);
     }

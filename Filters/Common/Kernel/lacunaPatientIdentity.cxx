@@ -59,19 +59,6 @@ bool Has(const List& list, std::string_view key)
   return std::find(std::begin(list), std::end(list), key) != std::end(list);
 }
 
-bool EndsWith(std::string_view text, std::string_view end)
-{
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
-// Sixteen numbers, or whether they are valid: where something is, not who it is.
-bool IsTransform(std::string_view name)
-{
-  const bool suffix = EndsWith(name, "Transform") || EndsWith(name, "TransformStatus");
-  const std::size_t to = name.find("To", 1);
-  return suffix && to != std::string_view::npos;
-}
-
 bool IsTag(std::string_view key)
 {
   return key.size() == 8 &&
@@ -83,7 +70,7 @@ bool IsTag(std::string_view key)
 bool IdentifiesPatient(std::string_view name)
 {
   const std::string key = MakeKey(name);
-  if (Has(Geometry, key) || IsTransform(name))
+  if (Has(Geometry, key))
   {
     return false;
   }

@@ -13,15 +13,14 @@ namespace lacuna
 /// punctuation do not count. A name identifies when
 ///
 /// - it contains "patient": all but DICOM's four attributes of geometry (PatientPosition,
-///   PatientOrientation, ImagePositionPatient, ImageOrientationPatient) and transforms from or to a
-///   frame with this word, such as PatientToTracker with the suffix Transform or TransformStatus;
+///   PatientOrientation, ImagePositionPatient, ImageOrientationPatient);
 /// - it contains "physician", "operator", "institution" or "birth", or the like;
 /// - it is the keyword of another identifying attribute of DICOM (PS3.15, table E.1-1), such as
 ///   AccessionNumber or StudyID;
 /// - it is the tag of such an attribute, as ITK writes it: "0010|0010", "(0010,0010)".
 ///
 /// What describes the scan and the device, not the person, is kept: modality, protocol, series
-/// number, kernel, manufacturer.
+/// number, kernel, manufacturer. lacunaSequenceText.h looks at texts, too, and keeps transforms.
 bool IdentifiesPatient(std::string_view name);
 }
 #endif

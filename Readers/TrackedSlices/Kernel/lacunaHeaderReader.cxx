@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderReader.h"
 
-#include "lacunaPatientIdentity.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
@@ -146,8 +145,8 @@ void HeaderReader::FailTwice(
   const std::string& field, const std::string& first, const std::string& second) const
 {
   this->Lines.Fail("gives header field " + field + " again" +
-    (IdentifiesPatient(field) ? ", with another text"
-                              : ", as '" + second + "' after '" + first + "'") +
+    (IdentifiesPatient(field, { first, second }) ? ", with another text"
+                                                 : ", as '" + second + "' after '" + first + "'") +
     "; remove the wrong one");
 }
 
@@ -511,8 +510,9 @@ void HeaderReader::SortFrameFields()
     if (!value.empty() && value != field.Value)
     {
       this->Fail("frame " + std::to_string(field.Frame) + " has field " + field.Name + " twice, " +
-        (IdentifiesPatient(field.Name) ? "with two texts"
-                                       : "as '" + value + "' and as '" + field.Value + "'") +
+        (IdentifiesPatient(field.Name, { value, field.Value })
+            ? "with two texts"
+            : "as '" + value + "' and as '" + field.Value + "'") +
         "; remove the wrong one");
     }
     value = std::move(field.Value);

@@ -2,10 +2,12 @@
 #include "lacunaSequenceText.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaPatientIdentity.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <limits>
 
 namespace lacuna
@@ -119,6 +121,28 @@ std::string ParseMatrix(std::string_view text, Matrix4& matrix)
     }
   }
   return {};
+}
+
+bool IsPoseStatus(std::string_view text)
+{
+  static constexpr std::string_view states[] = { "OK", "MISSING", "OUT_OF_VIEW", "OUT_OF_VOLUME",
+    "SWITCH1_IS_ON", "SWITCH2_IS_ON", "SWITCH3_IS_ON", "REQ_TIMEOUT", "INVALID", "PATH_NOT_FOUND",
+    "UNKNOWN" };
+  return std::find(std::begin(states), std::end(states), text) != std::end(states);
+}
+
+bool IdentifiesPatient(std::string_view name, const std::vector<std::string>& texts)
+{
+  const bool matrix = EndsWithIgnoringCase(name, "Transform");
+  const bool status = EndsWithIgnoringCase(name, "TransformStatus");
+  const bool transform = (matrix || status) && name.find("To", 1) != std::string_view::npos &&
+    std::all_of(texts.begin(), texts.end(),
+      [&](const std::string& text)
+      {
+        Matrix4 ignored;
+        return text.empty() || (status ? IsPoseStatus(text) : ParseMatrix(text, ignored).empty());
+      });
+  return !transform && IdentifiesPatient(name);
 }
 
 std::string FormatMatrix(const Matrix4& matrix)

@@ -36,6 +36,15 @@ bool ParseNumber(std::string_view word, double& value);
 /// ("has 15 numbers, not 16"), a word that is no number, a number that is not finite.
 std::string ParseMatrix(std::string_view text, Matrix4& matrix);
 
+/// Whether a program that measures poses states this of one: "OK", "OUT_OF_VIEW" and the like, as PLUS
+/// writes them.
+bool IsPoseStatus(std::string_view text);
+
+/// IdentifiesPatient of lacunaPatientIdentity.h, of a field with these texts. A transform of a frame with the word
+/// "Patient" is kept (PatientToTrackerTransform, ...TransformStatus), if all texts that are not
+/// empty are matrices of finite numbers or statuses.
+bool IdentifiesPatient(std::string_view name, const std::vector<std::string>& texts);
+
 /// 16 numbers as FormatNumber writes them, row by row.
 std::string FormatMatrix(const Matrix4& matrix);
 

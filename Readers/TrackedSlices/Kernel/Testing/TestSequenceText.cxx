@@ -9,6 +9,30 @@
 
 using namespace lacuna;
 
+TEST(SequenceText, TransformsOfAPatientsFrameIdentifyNobody)
+{
+  using Field = std::pair<const char*, std::vector<std::string>>;
+  const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1";
+  const Field kept[] = { { "PatientToTrackerTransform", { matrix, "", matrix } },
+    { "ReferenceToPatientTransform", {} }, { "PatientToTrackerTransformStatus", { "OK" } },
+    { "PatientToTrackerTransformStatus", { "OUT_OF_VIEW", "" } }, { "Note", { "Doe^Jane" } } };
+  for (const auto& [name, texts] : kept)
+  {
+    EXPECT_FALSE(IdentifiesPatient(name, texts)) << name;
+  }
+  const Field dropped[] = { { "PatientNameTransform", { "Doe^Jane" } },
+    { "PatientToTownTransform", { "Doe^Jane" } },
+    { "PatientToTrackerTransform", { matrix, "Doe^Jane" } },
+    { "PatientToTrackerTransform", { "1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 x" } },
+    { "PatientToTrackerTransformStatus", { "Doe^Jane" } },
+    { "PatientToTrackerTransformStatus", { "DOE" } }, { "PatientTransform", { matrix } },
+    { "PatientToTracker", { matrix } }, { "StudyPatientName", { matrix } } };
+  for (const auto& [name, texts] : dropped)
+  {
+    EXPECT_TRUE(IdentifiesPatient(name, texts)) << name;
+  }
+}
+
 TEST(SequenceText, SplitsOnRunsOfBlanks)
 {
   EXPECT_EQ(Trim(" \t a b \r\n"), "a b");

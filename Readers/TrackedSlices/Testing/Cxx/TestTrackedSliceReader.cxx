@@ -136,6 +136,31 @@ void TestOutput()
   }
 }
 
+// Only what is a matrix or a status is taken for one.
+void TestTextsUnderNamesOfTransforms()
+{
+  SequenceFile file = MakeSequence(2);
+  file.Set("PatientToTownTransform", "Doe");
+  file.SetFrame(0, "PatientToTrackerTransform", "1 0 0 7 0 1 0 8 0 0 1 9 0 0 0 1");
+  file.SetFrame(0, "PatientToTrackerTransformStatus", "OK");
+  file.SetFrame(1, "PatientToRoomTransformStatus", "Doe");
+  ReaderOf test(file.GetContent());
+  for (const bool keep : { false, true })
+  {
+    test.Reader->SetKeepPatientIdentity(keep);
+    test.Reader->Update();
+    vtkFieldData* fields = test.Reader->GetOutput()->GetFieldData();
+    LACUNA_CHECK(fields->GetAbstractArray("PatientToTracker"));
+    LACUNA_CHECK(fields->GetAbstractArray("PatientToTrackerTransformStatus"));
+    for (const char* name : { "PatientToTownTransform", "PatientToRoomTransformStatus" })
+    {
+      LACUNA_CHECK((fields->GetAbstractArray(name) != nullptr) == keep);
+    }
+  }
+  LACUNA_CHECK_CONTAINS(test.Warnings, "PatientToTown of the header does not have 16");
+  LACUNA_CHECK(test.Warnings.find("Doe") == std::string::npos);
+}
+
 // Lines of grey levels, as a scanner has them before it makes a picture of them.
 void TestScanLines()
 {
@@ -286,6 +311,7 @@ int TestTrackedSliceReader(int, char*[])
 {
   TestDefaults();
   TestOutput();
+  TestTextsUnderNamesOfTransforms();
   TestTypes();
   TestRequests();
   TestDropInvalidSlices();

@@ -264,6 +264,10 @@ void TestWarnings()
   patient->SetName("StudyPatientName");
   patient->InsertNextValue("Doe");
   stack->GetFieldData()->AddArray(patient);
+  vtkNew<vtkStringArray> town; // is no transform
+  town->SetName("PatientToTownTransform");
+  town->InsertNextValue("Doe");
+  stack->GetFieldData()->AddArray(town);
   vtkNew<vtkStringArray> lines;
   lines->SetName("Lines");
   lines->InsertNextValue("one\ntwo");
@@ -273,6 +277,7 @@ void TestWarnings()
   LACUNA_CHECK_CONTAINS(writer.Warnings, "'Odd' is not written: it has 4 tuples");
   LACUNA_CHECK_CONTAINS(
     writer.Warnings, "'StudyPatientName' is not written: it may identify the patient");
+  LACUNA_CHECK_CONTAINS(writer.Warnings, "'PatientToTownTransform' is not written: it may");
   LACUNA_CHECK_CONTAINS(writer.Warnings, "'Lines' is not written: its text has a line break");
   LACUNA_CHECK_CONTAINS(
     writer.Warnings, "longer than 1000 characters; PLUS would cut them: Remark");
