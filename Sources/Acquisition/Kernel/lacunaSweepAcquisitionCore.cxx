@@ -175,16 +175,13 @@ void SweepAcquisition::Core::ReadFrames(
       }
       throw DeviceEnded(text + ": no more frames come");
     }
-    if (control.IsStopped())
-    {
-      return; // there may be another video
-    }
     control.SetWorking();
-    this->AddFrame(std::move(frame), latency, *device);
+    this->AddFrame(std::move(frame), latency, *device, control);
   }
 }
 
-// With the lock.
+// With the lock, from the thread of the present video: each arrival belongs to a frame that it gave
+// with Timed false, so Untimed has as many at least.
 void SweepAcquisition::Core::SetTimes(const std::vector<std::optional<double>>& arrivals)
 {
   for (const std::optional<double>& arrival : arrivals)
@@ -196,13 +193,18 @@ void SweepAcquisition::Core::SetTimes(const std::vector<std::optional<double>>& 
   }
 }
 
-void SweepAcquisition::Core::AddFrame(FramePointer frame, double latency, FrameDevice& device)
+void SweepAcquisition::Core::AddFrame(
+  FramePointer frame, double latency, FrameDevice& device, const DeviceThread::Control& control)
 {
   const std::vector<std::optional<double>> arrivals = device.TakeArrivals();
   const VideoSource::Counts counts = device.GetCounts();
   std::string warning = device.GetWarning();
   {
     const std::lock_guard<std::mutex> lock(this->Mutex);
+    if (control.IsStopped())
+    {
+      return; // another video may count by now, and these are not its frames
+    }
     this->SetTimes(arrivals);
     PairedFrame paired;
     paired.Instant = frame->Arrival - latency + this->Rules.TimeOffset;

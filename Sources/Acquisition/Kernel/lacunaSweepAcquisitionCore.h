@@ -36,7 +36,8 @@ struct SweepAcquisition::Core
   void SetCapturing(bool on);
   void LosePoses();
   void BreakPoses();
-  void AddFrame(FramePointer frame, double latency, FrameDevice& device);
+  void AddFrame(
+    FramePointer frame, double latency, FrameDevice& device, const DeviceThread::Control& control);
   void SetTimes(const std::vector<std::optional<double>>& arrivals);
   void Process();
   void CatchUp();

@@ -5,7 +5,11 @@
 #include "lacunaTestScene.h"
 
 #include <gtest/gtest.h>
+
+#include <future>
 #include <limits>
+#include <memory>
+#include <optional>
 
 using namespace lacuna;
 using namespace lacunaTest;
@@ -108,6 +112,97 @@ TEST(AcquisitionDevices, ABrokenVideoIsReplacedDuringACapture)
   for (const AcquiredSlice& slice : slices)
   {
     EXPECT_NEAR(slice.Timestamp, Room::FrameTime(static_cast<int>(slice.FrameNumber)) - 0.1, 1e-9);
+  }
+}
+
+// It is stopped after it has read a frame, and gives times of its frames when another video has frames
+// that wait for theirs.
+TEST(AcquisitionDevices, AVideoThatIsLateSetsNoTimesOfItsSuccessor)
+{
+  struct Meeting
+  {
+    std::promise<void> Stuck;
+    std::promise<void> Released;
+    std::promise<void> Gone;
+  };
+  struct First : public FrameDevice
+  {
+    explicit First(std::shared_ptr<Meeting> meeting)
+      : Point(std::move(meeting))
+    {
+    }
+    ~First() override { this->Point->Gone.set_value(); }
+    VideoEvent Read(VideoFrame& frame) override
+    {
+      frame.Arrival = 0.1 * ++this->Frames;
+      frame.Timed = false;
+      return Room::NumberedFrame(1000 + this->Frames, frame);
+    }
+    std::vector<std::optional<double>> TakeArrivals() override
+    {
+      if (this->Frames < 2)
+      {
+        return {};
+      }
+      this->Point->Stuck.set_value();
+      this->Point->Released.get_future().wait();
+      return { 0.05 };
+    }
+    double GetLatency() const override { return 0; }
+    VideoSource::Counts GetCounts() const override { return {}; }
+    std::shared_ptr<Meeting> Point;
+    int Frames = 0;
+  };
+  struct Second : public FrameDevice
+  {
+    explicit Second(std::unique_ptr<FrameDevice> inner)
+      : Inner(std::move(inner))
+    {
+    }
+    VideoEvent Read(VideoFrame& frame) override
+    {
+      const VideoEvent event = this->Inner->Read(frame);
+      this->Number = Room::ReadNumber(frame.Grey);
+      frame.Timed = this->Number >= 10;
+      return event;
+    }
+    std::vector<std::optional<double>> TakeArrivals() override
+    {
+      std::vector<std::optional<double>> arrivals;
+      for (int i = 0; this->Number == 10 && i < 10; ++i)
+      {
+        arrivals.emplace_back(Room::FrameTime(i) - 0.01);
+      }
+      return arrivals;
+    }
+    double GetLatency() const override { return 0; }
+    VideoSource::Counts GetCounts() const override { return this->Inner->GetCounts(); }
+    std::unique_ptr<FrameDevice> Inner;
+    int Number = -1;
+  };
+  Scene scene(EveryFrame());
+  const FrameDeviceFactory works = scene.Devices.Frames;
+  const auto meeting = std::make_shared<Meeting>();
+  scene.Devices.Frames = [meeting](const Room::Stopped&)
+  { return std::make_unique<First>(meeting); };
+  SweepAcquisition& acquisition = scene.Open();
+  meeting->Stuck.get_future().wait();
+  scene.Devices.Frames = [works](const Room::Stopped& stopped)
+  { return std::make_unique<Second>(works(stopped)); };
+  acquisition.ReplaceVideo(scene.Devices);
+  acquisition.Start();
+  scene.Place.RunTo(10);
+  meeting->Released.set_value();
+  meeting->Gone.get_future().wait();
+  scene.Place.RunTo(20);
+  acquisition.Stop();
+  const std::vector<AcquiredSlice> slices = acquisition.TakeSlices();
+  ASSERT_EQ(slices.size(), 20u);
+  for (int i = 0; i < 20; ++i)
+  {
+    EXPECT_EQ(Room::ReadNumber(*slices[i].Pixels), i);
+    EXPECT_NEAR(slices[i].Timestamp, Room::FrameTime(i) - (i < 10 ? 0.01 : 0), 1e-9) << i;
+    EXPECT_EQ(slices[i].Status, 0) << i;
   }
 }
 
