@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSliceStack.h"
 
+#include "lacunaGeometryGate.h"
 #include "lacunaPixelSpacing.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -26,13 +27,6 @@ constexpr const char* TrackerToReferenceName = "TrackerToReference";
 std::unique_ptr<vtkLacunaGrowingArray> MakeMatrices(const char* name)
 {
   return std::make_unique<vtkLacunaGrowingArray>(name, VTK_DOUBLE, 16);
-}
-
-lacuna::Matrix4 NoPose()
-{
-  std::array<double, 16> none{};
-  none.fill(std::numeric_limits<double>::quiet_NaN());
-  return lacuna::Matrix4(none);
 }
 
 // Puts a range where an array keeps one that it has computed.
@@ -87,7 +81,7 @@ std::unique_ptr<vtkLacunaSliceStack> vtkLacunaSliceStack::MakeBlank()
     pixels->rbegin()[i] = static_cast<std::uint8_t>(255 - i % columns * 256 / columns);
   }
   slice.Pixels = std::move(pixels);
-  slice.ProbeToTracker = NoPose();
+  slice.ProbeToTracker = lacuna::NoPose();
   slice.Status = vtkLacunaTrackedSlices::PoseInvalid | vtkLacunaTrackedSlices::ImageInvalid;
   slice.Residual = slice.Speed = none;
   auto stack = std::make_unique<vtkLacunaSliceStack>(frame, 0);
@@ -149,7 +143,7 @@ void vtkLacunaSliceStack::AppendPose()
   if (this->ImageToReference)
   {
     const lacuna::Matrix4 pose = contradicts || std::isnan(probeToTracker(0, 0))
-      ? NoPose()
+      ? lacuna::NoPose()
       : this->Frame.TrackerToReference * probeToTracker * this->Frame.ImageToProbe;
     this->ImageToReference->Append(pose.Data());
   }

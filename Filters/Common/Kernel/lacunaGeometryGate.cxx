@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <sstream>
 
 namespace lacuna
@@ -16,10 +17,10 @@ constexpr double Kilometre = 1e6;      // mm
 constexpr double SmallestPixel = 1e-3; // mm
 constexpr double LargestPixel = 10;    // mm
 constexpr double LongestPixel = 50;    // times its width
-constexpr double LongestUnconfirmedPixel = 1.5;
 constexpr double LargestCosine = 0.1;
 constexpr double ExactCosine = 0.0025;
 constexpr double ExactLength = 0.001;
+constexpr double RoundedPixel = 0.01; // pixels are mm already, within this part
 
 double GetCosine(const Vec3& a, const Vec3& b)
 {
@@ -76,15 +77,10 @@ GeometryFinding CheckTransform(const Matrix4& m)
 // Whether the third column confirms the first two, of lengths l.
 bool FitsThirdColumn(const Vec3& l)
 {
-  const auto isThird = [&](double wanted, double tolerance)
-  { return std::abs(l[2] - wanted) <= tolerance * wanted; };
-  if (isThird((l[0] + l[1]) / 2, ExactLength) || isThird(std::sqrt(l[0] * l[1]), ExactLength))
-  {
-    return true;
-  }
-  // 1 mm stands for nothing, unless one of the others was as long
-  const bool unit = isThird(1, ExactLength) && std::abs(l[0] - 1) > 0.1 && std::abs(l[1] - 1) > 0.1;
-  return unit && std::max(l[0] / l[1], l[1] / l[0]) <= LongestUnconfirmedPixel;
+  const auto isSame = [](double a, double b) { return std::abs(a - b) <= ExactLength * b; };
+  // 1 stands for nothing: then the sides confirm each other
+  return isSame(l[2], (l[0] + l[1]) / 2) || isSame(l[2], std::sqrt(l[0] * l[1])) ||
+    (isSame(l[2], 1) && isSame(l[0], l[1]));
 }
 
 double GetDegrees(double cosine)
@@ -197,12 +193,52 @@ GeometryFinding CheckImage(const Matrix4& m)
     return { GeometryFault::Inexact,
       Join("has pixels of ", lengths[0], " x ", lengths[1],
         " mm, which its third column does not confirm: it is ",
-        upright ? Join(lengths[2], " long, neither the mean of both nor 1")
+        upright ? Join(lengths[2], " long, not their mean ", (lengths[0] + lengths[1]) / 2)
                 : "not perpendicular to rows and columns"),
-      "check the digits; where the matrix is right, make the third column perpendicular to the "
-      "others and as long as the mean of their lengths" };
+      "compare the pixels with the depth scale in the picture and check the digits; where the "
+      "matrix is right, make the third column perpendicular to the others and as long as the mean "
+      "of their lengths" };
   }
   return {};
+}
+
+GeometryFinding CheckImageChain(const std::vector<Matrix4>& links, std::size_t& link)
+{
+  Matrix4 product;
+  for (const Matrix4& matrix : links)
+  {
+    product = matrix * product;
+  }
+  link = links.size();
+  if (GeometryFinding finding = CheckImage(product))
+  {
+    return finding;
+  }
+  product = Matrix4();
+  bool inMillimetres = false;
+  for (std::size_t i = 0; i < links.size(); ++i)
+  {
+    GeometryFinding finding = inMillimetres ? CheckPose(links[i]) : GeometryFinding();
+    if (finding.Fault == GeometryFault::NotRigid || finding.Fault == GeometryFault::Rounded)
+    {
+      link = i;
+      return { finding.Fault == GeometryFault::NotRigid ? GeometryFault::Inexact : finding.Fault,
+        finding.Text + ", though the transforms before it have turned pixels into mm",
+        "check its digits" };
+    }
+    product = links[i] * product;
+    const Vec3 lengths = GetLengths(product);
+    inMillimetres =
+      std::abs(lengths[0] - 1) > RoundedPixel || std::abs(lengths[1] - 1) > RoundedPixel;
+  }
+  return {};
+}
+
+Matrix4 NoPose()
+{
+  std::array<double, 16> none{};
+  none.fill(std::numeric_limits<double>::quiet_NaN());
+  return Matrix4(none);
 }
 
 GeometryAction GetAction(GeometryOrigin origin, GeometryFault fault)

@@ -5,13 +5,16 @@
 /// A pose is a rotation and a translation. A calibration maps pixels (column, row, 0, 1) to mm: its
 /// first two columns are perpendicular and as long as a pixel. Its third column places no pixel.
 /// It tells of damage all the same, since programs derive it from the first two: it is perpendicular
-/// to both, and its length is their mean (PLUS: arithmetic, Lacuna: geometric) or 1.
+/// to both, and its length is their mean (PLUS: arithmetic, Lacuna: geometric), or 1, which confirms
+/// square pixels only.
 #ifndef lacunaGeometryGate_h
 #define lacunaGeometryGate_h
 
 #include "lacunaMatrix4.h"
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace lacuna
 {
@@ -55,10 +58,17 @@ GeometryFinding CheckQuaternion(double length);
 /// to 10 mm (100 MHz sampling makes 0.008 mm; the deepest picture has 300 mm, 30 such pixels), not
 /// more than 50 times as long as wide (scan lines 0.6 mm apart, sampled at 40 MHz: 0.019 mm), rows
 /// and columns at 84.3 to 95.7 degrees (cosine 0.1; PLUS's least squares fits have up to 0.048).
-/// Inexact: a cosine above 0.0025 (0.5 mm at 200 mm), a third column that does not fit within
-/// 0.1 %, or pixels more than 1.5 times as long as wide where that column has the length 1, which
-/// does not confirm them.
+/// Inexact: a cosine above 0.0025 (0.5 mm at 200 mm), or a third column that is neither the mean of
+/// the other two within 0.1 %, nor 1 with sides that agree within 0.1 %.
 GeometryFinding CheckImage(const Matrix4& imageToMillimetres);
+
+/// Of transforms that together map pixels to mm, in this order. Their product has to pass CheckImage.
+/// Each one after the product has the unit mm has to be rigid: as a factor it would look like the
+/// pixels of another scanner. link: the one that is wrong, or links.size() for the product.
+GeometryFinding CheckImageChain(const std::vector<Matrix4>& links, std::size_t& link);
+
+/// In place of a pose where there is none: NaN.
+Matrix4 NoPose();
 
 /// Where a matrix comes from.
 enum class GeometryOrigin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaPoseMatching.h"
 
+#include "lacunaGeometryGate.h"
 #include "lacunaItemList.h"
 
 #include <algorithm>
@@ -211,9 +212,7 @@ std::string DescribeEmptyKeys(const std::string& name, const std::vector<double>
 //------------------------------------------------------------------------------
 std::vector<Matrix4> GatherPoses(const PoseTable& table, const std::vector<PoseMatch>& matches)
 {
-  std::array<double, 16> nothing;
-  nothing.fill(std::numeric_limits<double>::quiet_NaN());
-  std::vector<Matrix4> poses(matches.size(), Matrix4(nothing));
+  std::vector<Matrix4> poses(matches.size(), NoPose());
   for (std::size_t i = 0; i < matches.size(); ++i)
   {
     const PoseMatch& match = matches[i];

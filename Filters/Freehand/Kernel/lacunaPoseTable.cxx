@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -201,10 +200,8 @@ PoseTable ReadPoseTable(const std::vector<double>& numbers, std::size_t count,
   const std::vector<char>& refused, const PoseTableOptions& options)
 {
   const std::size_t rows = count > 0 ? numbers.size() / count : 0;
-  std::array<double, 16> nothing;
-  nothing.fill(std::numeric_limits<double>::quiet_NaN());
   PoseTable table;
-  table.ToReference.assign(rows, Matrix4(nothing));
+  table.ToReference.assign(rows, NoPose());
   table.Usable.assign(rows, 0);
   std::vector<std::size_t> stated;
   std::vector<std::size_t> missing;

@@ -3,6 +3,7 @@
 
 #include "lacunaGeometryGate.h"
 #include "lacunaItemList.h"
+#include "lacunaPatientIdentity.h"
 #include "lacunaPixelSpacing.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceFormat.h"
@@ -31,25 +32,6 @@ constexpr std::size_t LongestQuotation = 40;
 const char* const Settings[] = { "Depth", "DepthMm", "HorizontalBins", "SectorPercent",
   "TransducerOriginPix", "VerticalBins", "ZoomFactor" };
 
-// "frames 0, 2, 5 to 9"
-std::string FrameList(const std::vector<std::size_t>& frames)
-{
-  std::vector<std::string> numbers;
-  for (std::size_t i = 0; i < frames.size();)
-  {
-    std::size_t last = i;
-    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1)
-    {
-      ++last;
-    }
-    last = last > i + 1 ? last : i; // two are listed
-    numbers.push_back(
-      std::to_string(frames[i]) + (last > i ? " to " + std::to_string(frames[last]) : ""));
-    i = last + 1;
-  }
-  return (frames.size() > 1 ? "frames " : "frame ") + JoinSome(numbers);
-}
-
 // "one in frame 3, another in frames 0, 2"
 std::string ListFrames(
   const std::map<std::string, std::vector<std::size_t>>& framesOf, const std::string& in)
@@ -57,16 +39,9 @@ std::string ListFrames(
   std::vector<std::string> parts;
   for (const auto& [text, frames] : framesOf)
   {
-    parts.push_back(text + in + FrameList(frames));
+    parts.push_back(text + in + DescribeItems("frame", frames));
   }
   return JoinSome(parts);
-}
-
-Matrix4 NoPose()
-{
-  std::array<double, 16> none;
-  none.fill(std::numeric_limits<double>::quiet_NaN());
-  return Matrix4(none);
 }
 
 bool IsPictureFrame(const std::string& frame)
@@ -138,6 +113,7 @@ private:
   std::size_t CountImageLinks(const Chain& chain) const;
   void JudgeChain(const Chain& chain, bool calibrated);
   void Judge(const Chain& links, bool ofImage);
+  std::string NameTransforms(const Chain& links) const;
 
   const SequenceHeader& Header;
   const SweepOptions& Options;
@@ -245,7 +221,8 @@ void SweepBuilder::ReadTimes()
   }
   if (!missing.empty())
   {
-    this->Warn("field Timestamp is missing or not a finite number in " + FrameList(missing));
+    this->Warn(
+      "field Timestamp is missing or not a finite number in " + DescribeItems("frame", missing));
   }
   this->Result.TextFields.erase("Timestamp");
   const auto numbers = this->Header.FrameFields.find("FrameNumber");
@@ -603,9 +580,6 @@ void SweepBuilder::DescribeChain(const Chain& chain)
 // What the file itself calls invalid is no surprise and not reported.
 void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
 {
-  static const std::set<std::string> states = { "OK", "MISSING", "OUT_OF_VIEW", "OUT_OF_VOLUME",
-    "SWITCH1_IS_ON", "SWITCH2_IS_ON", "SWITCH3_IS_ON", "REQ_TIMEOUT", "INVALID", "PATH_NOT_FOUND",
-    "UNKNOWN" };
   std::map<std::string, std::vector<std::size_t>> problems;
   for (std::size_t i = 0; i < this->Count; ++i)
   {
@@ -625,10 +599,12 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
         problem = std::string("cannot be used (") + e.what() + ")";
       }
     }
-    else if (states.count((*transform.Status)[i]) == 0)
+    else if (!IsPoseStatus((*transform.Status)[i]))
     {
       const std::string& state = (*transform.Status)[i];
-      problem = state.empty() ? "has no status" : "has the unknown status '" + state + "'";
+      problem = state.empty()               ? "has no status"
+        : IdentifiesPatient(transform.Name) ? "has an unknown status"
+                                            : "has the unknown status '" + state + "'";
     }
     if (!problem.empty())
     {
@@ -647,12 +623,12 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
 }
 
 //------------------------------------------------------------------------------
-// Links that belong to the calibration: from pixels to the first frame that a tracker could follow.
+// Links that belong to the calibration: from pixels to the first frame that moves.
 std::size_t SweepBuilder::CountImageLinks(const Chain& chain) const
 {
   std::size_t count = std::min<std::size_t>(1, chain.size());
   while (count < chain.size() &&
-    (this->Transforms.Get(chain[count]).FromCalibration || IsPictureFrame(chain[count - 1].To)))
+    (this->Transforms.Get(chain[count]).IsFixed() || IsPictureFrame(chain[count - 1].To)))
   {
     ++count;
   }
@@ -675,58 +651,88 @@ void SweepBuilder::JudgeChain(const Chain& chain, bool calibrated)
 }
 
 //------------------------------------------------------------------------------
-// Passes what links lead by together through the gate: refuses, flags or warns. What cannot be
-// composed at all, ReportBadFrames tells.
+// Passes transforms through the gate: refuses, flags or warns. What cannot be composed at all,
+// ReportBadFrames tells.
 void SweepBuilder::Judge(const Chain& links, bool ofImage)
 {
-  std::string name;
-  bool constant = true;
+  // from one picture to another is no link of its own: pixels may become larger
+  std::vector<Chain> parts;
   for (const TransformGraph::Link& link : links)
   {
-    const SweepTransform& transform = this->Transforms.Get(link);
-    name += (name.empty() ? "" : " and ") + transform.Name;
-    constant = constant && transform.FromCalibration;
+    if (parts.empty() || !IsPictureFrame(parts.back().back().To))
+    {
+      parts.emplace_back();
+    }
+    parts.back().push_back(link);
   }
+  const bool constant = std::all_of(links.begin(), links.end(),
+    [&](const TransformGraph::Link& link) { return this->Transforms.Get(link).FromCalibration; });
   const GeometryOrigin origin =
     constant ? GeometryOrigin::CalibrationFile : GeometryOrigin::Sequence;
-  std::map<GeometryFault, std::pair<GeometryFinding, std::vector<std::size_t>>> found;
+  struct Found
+  {
+    std::string Text;
+    std::string Advice;
+    std::vector<std::size_t> Frames;
+  };
+  std::map<GeometryFault, Found> found;
+  std::vector<Matrix4> matrices(parts.size());
   for (std::size_t i = 0; i < (constant ? std::min<std::size_t>(1, this->Count) : this->Count); ++i)
   {
     const bool refused = this->Options.DropInvalid &&
       std::any_of(links.begin(), links.end(),
         [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
-    Matrix4 matrix;
-    if (refused || !this->Transforms.Compose(links, i, matrix))
+    bool usable = !refused;
+    for (std::size_t part = 0; usable && part < parts.size(); ++part)
+    {
+      usable = this->Transforms.Compose(parts[part], i, matrices[part]);
+    }
+    if (!usable)
     {
       continue;
     }
-    if (const GeometryFinding finding = ofImage ? CheckImage(matrix) : CheckPose(matrix))
+    std::size_t part = 0;
+    if (const GeometryFinding finding =
+          ofImage ? CheckImageChain(matrices, part) : CheckPose(matrices[0]))
     {
-      auto& [first, frames] = found[finding.Fault];
-      first = frames.empty() ? finding : first;
-      frames.push_back(i);
+      Found& of = found[finding.Fault];
+      if (of.Frames.empty())
+      {
+        of.Text = this->NameTransforms(part < parts.size() ? parts[part] : links) +
+          (constant ? " of the calibration file " : " ") + finding.Text;
+        of.Advice = finding.Advice;
+      }
+      of.Frames.push_back(i);
       this->Impossible[i] |= GetAction(origin, finding.Fault) == GeometryAction::Flag ? 1 : 0;
     }
   }
-  for (const auto& [fault, each] : found)
+  for (const auto& [fault, of] : found)
   {
-    const auto& [finding, frames] = each;
-    const std::string text = (links.size() > 1 ? "the product of transforms " : "transform ") +
-      name + " " + (constant ? "of the calibration file " : "") + finding.Text;
-    const std::string place = constant
-      ? std::string()
-      : " (frame " + std::to_string(frames.front()) + ") in " + DescribeItems("frame", frames);
+    const std::string place = constant ? std::string()
+                                       : " (frame " + std::to_string(of.Frames.front()) + ") in " +
+        DescribeItems("frame", of.Frames);
     switch (GetAction(origin, fault))
     {
       case GeometryAction::Refuse:
-        this->Fail(text + "; " + finding.Advice + ", or give another CalibrationFileName");
+        this->Fail(of.Text + "; " + of.Advice + ", or give another CalibrationFileName");
       case GeometryAction::Flag:
-        this->Warn(text + place + "; flagged in SliceStatus (1, pose invalid); " + finding.Advice);
+        this->Warn(of.Text + place + "; flagged in SliceStatus (1, pose invalid); " + of.Advice);
         break;
       default:
-        this->Warn(text + place + "; used nevertheless; " + finding.Advice);
+        this->Warn(of.Text + place + "; used nevertheless; " + of.Advice);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+std::string SweepBuilder::NameTransforms(const Chain& links) const
+{
+  std::string names;
+  for (const TransformGraph::Link& link : links)
+  {
+    names += (names.empty() ? "" : " and ") + this->Transforms.Get(link).Name;
+  }
+  return (links.size() > 1 ? "the product of transforms " : "transform ") + names;
 }
 }
 

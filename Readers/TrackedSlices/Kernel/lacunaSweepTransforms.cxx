@@ -2,12 +2,13 @@
 #include "lacunaSweepTransforms.h"
 
 #include "lacunaCalibrationFile.h"
+#include "lacunaGeometryGate.h"
+#include "lacunaPatientIdentity.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -19,11 +20,16 @@ constexpr std::string_view TransformSuffix = "Transform";
 constexpr std::string_view StatusSuffix = "TransformStatus";
 constexpr std::size_t MostHeaderTransforms = 16; // each takes room for every frame
 
-Matrix4 NoMatrix()
+bool IsSame(const Matrix4& a, const Matrix4& b)
 {
-  std::array<double, 16> elements;
-  elements.fill(std::numeric_limits<double>::quiet_NaN());
-  return Matrix4(elements);
+  return std::equal(a.Data(), a.Data() + 16, b.Data());
+}
+
+// As ParseMatrix, but a name that stands in place of numbers gets into no message.
+std::string ReadTransform(const std::string& field, const std::string& text, Matrix4& matrix)
+{
+  const std::string wrong = ParseMatrix(text, matrix);
+  return wrong.empty() || !IdentifiesPatient(field) ? wrong : "does not have 16 finite numbers";
 }
 }
 
@@ -51,8 +57,28 @@ Vec3 GetPictureOrigin(const SequenceHeader& header)
 bool SweepTransform::IsConstant() const
 {
   return std::all_of(this->Matrices.begin(), this->Matrices.end(),
-    [&](const Matrix4& matrix)
-    { return std::equal(matrix.Data(), matrix.Data() + 16, this->Matrices[0].Data()); });
+    [&](const Matrix4& matrix) { return IsSame(matrix, this->Matrices[0]); });
+}
+
+//------------------------------------------------------------------------------
+bool SweepTransform::IsFixed() const
+{
+  // the vote of Boyer and Moore: what more than half agree on is left over
+  const Matrix4* most = nullptr;
+  std::size_t votes = 0;
+  std::size_t given = 0;
+  for (const Matrix4& matrix : this->Matrices)
+  {
+    if (matrix.IsFinite())
+    {
+      ++given;
+      most = votes == 0 ? &matrix : most;
+      votes = IsSame(matrix, *most) ? votes + 1 : votes - 1;
+    }
+  }
+  const auto same = std::count_if(this->Matrices.begin(), this->Matrices.end(),
+    [&](const Matrix4& matrix) { return most && IsSame(matrix, *most); });
+  return most && 4 * static_cast<std::size_t>(same) >= 3 * given;
 }
 
 //------------------------------------------------------------------------------
@@ -109,8 +135,8 @@ void SweepTransforms::ReadFrames(const SequenceHeader& header)
     for (const std::string& text : texts)
     {
       Matrix4 matrix;
-      transform.Errors.push_back(text.empty() ? "is missing" : ParseMatrix(text, matrix));
-      transform.Matrices.push_back(transform.Errors.back().empty() ? matrix : NoMatrix());
+      transform.Errors.push_back(text.empty() ? "is missing" : ReadTransform(field, text, matrix));
+      transform.Matrices.push_back(transform.Errors.back().empty() ? matrix : NoPose());
     }
     const std::string status = transform.Name + std::string(StatusSuffix);
     // fields stand by their names
@@ -148,7 +174,7 @@ void SweepTransforms::ReadHeader(const SequenceHeader& header)
         " transforms; the others are kept but not used in chains");
       return;
     }
-    const std::string wrong = ParseMatrix(text, matrix);
+    const std::string wrong = ReadTransform(field, text, matrix);
     const auto known = std::find_if(this->Transforms.begin(), this->Transforms.end(),
       [&](const SweepTransform& other)
       { return !other.FromCalibration && other.Name == transform.Name; });
@@ -167,7 +193,8 @@ void SweepTransforms::ReadHeader(const SequenceHeader& header)
     else if (status != header.CustomFields.end() && status->second != "OK")
     {
       this->Warnings.push_back("transform " + transform.Name +
-        " of the header is not used: its status is '" + status->second + "', not OK");
+        " of the header is not used: its status is " +
+        (IsPoseStatus(status->second) ? "'" + status->second + "', " : "") + "not OK");
     }
     else
     {
@@ -332,7 +359,7 @@ bool SweepTransforms::Compose(
   }
   catch (const std::invalid_argument&)
   {
-    product = NoMatrix();
+    product = NoPose();
   }
   return product.IsFinite();
 }

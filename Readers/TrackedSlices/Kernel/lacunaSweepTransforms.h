@@ -33,6 +33,9 @@ struct SweepTransform
   bool IsValid(std::size_t frame) const { return !this->Status || (*this->Status)[frame] == "OK"; }
   /// Whether it is the same in all frames.
   bool IsConstant() const;
+  /// Whether it does not move: it is the same in three of four frames that have it, since others may be
+  /// damaged.
+  bool IsFixed() const;
 };
 
 /// Column and row of the scanner's picture at which the slices begin: 0 0 unless the header has the

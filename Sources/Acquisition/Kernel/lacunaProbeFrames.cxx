@@ -14,7 +14,13 @@ namespace lacuna
 {
 namespace
 {
-std::optional<Matrix4> Compose(
+struct Link
+{
+  std::string Name;
+  Matrix4 Matrix;
+};
+
+std::optional<std::vector<Link>> FindLinks(
   const std::vector<NamedTransform>& transforms, const std::string& from, const std::string& to)
 {
   TransformGraph graph;
@@ -27,20 +33,45 @@ std::optional<Matrix4> Compose(
   {
     return std::nullopt;
   }
-  Matrix4 product;
+  std::vector<Link> links;
   for (const TransformGraph::Link& link : chain)
   {
-    const Matrix4& matrix = transforms[static_cast<std::size_t>(link.Transform)].Matrix;
-    product = (link.Inverse ? matrix.Inverse() : matrix) * product;
+    const NamedTransform& named = transforms[static_cast<std::size_t>(link.Transform)];
+    links.push_back(
+      { named.From + "To" + named.To, link.Inverse ? named.Matrix.Inverse() : named.Matrix });
+  }
+  return links;
+}
+
+Matrix4 Compose(const std::vector<Link>& links)
+{
+  Matrix4 product;
+  for (const Link& link : links)
+  {
+    product = link.Matrix * product;
   }
   return product;
+}
+
+// What the product alone, which MakePoseChain judges, does not show.
+std::string FindBadLink(const std::vector<Link>& links)
+{
+  std::vector<Matrix4> matrices;
+  for (const Link& link : links)
+  {
+    matrices.push_back(link.Matrix);
+  }
+  std::size_t bad = 0;
+  const GeometryFinding finding = CheckImageChain(matrices, bad);
+  return bad < links.size() ? links[bad].Name + " " + finding.Text + "; " + finding.Advice
+                            : std::string();
 }
 }
 
 ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
 {
   const std::vector<NamedTransform> transforms = ReadCalibrationFile(fileName);
-  const auto imageToProbe = Compose(transforms, "Image", "Probe");
+  const auto imageToProbe = FindLinks(transforms, "Image", "Probe");
   if (!imageToProbe)
   {
     throw std::runtime_error(fileName +
@@ -48,7 +79,8 @@ ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
       "written?");
   }
   ProbeFrames frames;
-  frames.TrackerToReference = Compose(transforms, "Tracker", "Reference").value_or(Matrix4());
+  frames.TrackerToReference =
+    Compose(FindLinks(transforms, "Tracker", "Reference").value_or(std::vector<Link>()));
   const GeometryFinding finding = CheckPose(frames.TrackerToReference);
   const GeometryAction action = GetAction(GeometryOrigin::Settings, finding.Fault);
   const std::string text = "TrackerToReference " + finding.Text + "; " + finding.Advice;
@@ -58,7 +90,7 @@ ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
   }
   frames.Warning = action == GeometryAction::Warn ? text : std::string();
   PoseTableOptions options;
-  options.ImageToProbe = *imageToProbe;
+  options.ImageToProbe = Compose(*imageToProbe);
   options.PixelSpacing = { pixelSpacing, pixelSpacing };
   try
   {
@@ -68,7 +100,10 @@ ProbeFrames ReadProbeFrames(const std::string& fileName, double pixelSpacing)
       throw std::runtime_error("ImageToProbe is the identity, which is no calibration");
     }
     frames.ImageToProbe = chain.ImageToProbe;
-    frames.Warning += (frames.Warning.empty() || chain.Warning.empty() ? "" : ". ") + chain.Warning;
+    for (const std::string& warning : { chain.Warning, FindBadLink(*imageToProbe) })
+    {
+      frames.Warning += (frames.Warning.empty() || warning.empty() ? "" : ". ") + warning;
+    }
   }
   catch (const std::runtime_error& e)
   {

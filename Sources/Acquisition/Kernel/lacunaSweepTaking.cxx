@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweepTaking.h"
 
+#include "lacunaGeometryGate.h"
 #include "lacunaOutputFile.h"
 #include "lacunaPixelSpacing.h"
 #include "lacunaSweep.h"
@@ -61,13 +62,6 @@ std::string CompareSpacings(const VideoFrame& frame, const std::optional<Matrix4
     ": such slices are flagged as pose invalid. Set the scanner to the depth of the calibration, "
     "or "
     "take that of this depth";
-}
-
-Matrix4 NoPose()
-{
-  std::array<double, 16> elements{};
-  elements.fill(NaN);
-  return Matrix4(elements);
 }
 
 CaptureRule MakeRule(const AcquisitionRules& rules, const std::array<int, 4>& window)

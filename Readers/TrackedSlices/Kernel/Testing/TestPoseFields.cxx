@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaGeometryGate.h"
 #include "lacunaParameterText.h"
 #include "lacunaPoseFields.h"
 #include "lacunaSequenceText.h"
@@ -55,9 +56,7 @@ TEST(PoseFields, InvalidPoses)
   std::vector<Matrix4> poses = MakePoses();
   // used although the file does not call it valid: the file can tell it
   EXPECT_TRUE(TellPoses(MakeFrames("INVALID"), "Image", "Reference", poses));
-  std::array<double, 16> none;
-  none.fill(std::nan(""));
-  poses[1] = Matrix4(none);
+  poses[1] = NoPose();
   EXPECT_TRUE(TellPoses(MakeFrames("INVALID"), "Image", "Reference", poses));
   EXPECT_FALSE(TellPoses(MakeFrames(), "Image", "Reference", poses)); // found invalid later
 }

@@ -385,6 +385,71 @@ TEST(Sweep, PosesOfPicturesAreJudgedAsCalibrations)
     { "transform ImageToReference is skewed", "in frame 2; flagged in SliceStatus" });
 }
 
+// As PLUS has them: the size of a pixel is in the middle of transforms that do not move.
+TEST(Sweep, FixedTransformsOfASequenceAreOneCalibration)
+{
+  const std::string turned = "0 -1 0 3 1 0 0 40 0 0 1 -7 0 0 0 1";
+  const auto make = [&](const std::string& size, const std::string& mount)
+  {
+    SequenceFile file = MakeSequence(5);
+    const std::pair<const char*, std::string> links[] = { { "ImageToTransducerOriginPixelTransform",
+                                                            "1 0 0 -3 0 1 0 -2 0 0 1 0 0 0 0 1" },
+      { "TransducerOriginPixelToTransducerOriginTransform", size },
+      { "TransducerOriginToProbeTransform", mount } };
+    for (int frame = 0; frame < 5; ++frame)
+    {
+      for (const auto& [name, text] : links)
+      {
+        file.SetFrame(frame, name, text);
+        file.SetFrame(frame, name + std::string("Status"), "OK");
+      }
+    }
+    return file;
+  };
+  const std::string size = "0.2 0 0 0 0 0.1 0 0 0 0 0.15 0 0 0 0 1";
+  SequenceFile file = make(size, turned);
+  const Sweep sweep = Build(file, "");
+  EXPECT_EQ(Warnings(sweep), "");
+  EXPECT_EQ(sweep.Status, (Flags(5, 0)));
+  // pixel (8, 12) lies 5 columns and 10 rows from the origin: (1, 1) mm, on the probe (2, 41, -7)
+  ExpectPoint(sweep.ImageToProbe.at(0).Point({ 8, 12, 0 }), { 2, 41, -7 });
+  const Sweep whole =
+    Build(MakeSequence(5), MakeCalibration("0 -0.1 0 3.2 0.2 0 0 39.4 0 0 0.15 -7 0 0 0 1"));
+  ExpectPoint(
+    sweep.ImageToReference[3].Point({ 8, 12, 0 }), whole.ImageToReference[3].Point({ 8, 12, 0 }));
+  // a frame that is damaged spoils no other one
+  file.SetFrame(3, "TransducerOriginPixelToTransducerOriginTransform",
+    "0.2 0 0 0 0.5 0.1 0 0 0 0 0.15 0 0 0 0 1");
+  EXPECT_EQ(Build(file, "").Status, (Flags{ 0, 0, 0, 1, 0 }));
+  ExpectContains(Warnings(Build(file, "")),
+    { "the product of transforms ImageToTransducerOriginPixel and "
+      "TransducerOriginPixelToTransducerOrigin and TransducerOriginToProbe is skewed",
+      "in frame 3; flagged in SliceStatus" });
+  // the product of these would be pixels of another scanner
+  const Sweep larger = Build(make(size, "1.2 0 0 3 0 1.2 0 40 0 0 1.2 -7 0 0 0 1"), "");
+  EXPECT_EQ(larger.Status, (Flags(5, 0)));
+  ExpectContains(Warnings(larger),
+    { "transform TransducerOriginToProbe is not rigid: its columns have the lengths 1.2, 1.2 and "
+      "1.2, not 1, though the transforms before it have turned pixels into mm (frame 0) in frames "
+      "0 to 4; used nevertheless; check its digits" });
+  ExpectContains(Warnings(Build(make("0.2 0 0 0 0 0.1 0 0 0 0 1 0 0 0 0 1", turned), "")),
+    { "has pixels of 0.2 x 0.1 mm, which its third column does not confirm: it is 1 long" });
+}
+
+// A name or an address under the name of a transform is in no message.
+TEST(Sweep, TextsInPlaceOfTransformsOfAPatientAreNotQuoted)
+{
+  SequenceFile file = MakeSequence();
+  file.Set("PatientToTownTransform", "Doe^Jane");
+  file.Set("PatientToRoomTransform", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
+  file.Set("PatientToRoomTransformStatus", "Doe^Jane");
+  const std::string warnings = Warnings(Build(file));
+  ExpectContains(warnings,
+    { "PatientToTown of the header does not have 16 finite numbers",
+      "PatientToRoom of the header is not used: its status is not OK" });
+  EXPECT_EQ(warnings.find("Doe"), std::string::npos) << warnings;
+}
+
 TEST(Sweep, NotOneValidSlice)
 {
   SequenceFile file = MakeSequence(12);

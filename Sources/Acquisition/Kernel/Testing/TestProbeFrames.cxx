@@ -53,6 +53,20 @@ TEST(ProbeFrames, ChainsLeadToTheProbeAndTheReference)
   EXPECT_LT(Norm(chained.TrackerToReference.Point({ 0, 0, 0 }) - Vec3{ 0, 0, -9 }), 1e-12);
 }
 
+// The product of these would be the pixels of another scanner.
+TEST(ProbeFrames, ALinkBehindTheSizeOfAPixelIsRigid)
+{
+  const TemporaryFolder folder;
+  const ProbeFrames frames = ReadProbeFrames(Write(folder, R"(
+    <Transform From="Image" To="Mount" Matrix="0.1 0 0 0  0 0.1 0 0  0 0 0.1 0  0 0 0 1"/>
+    <Transform From="Mount" To="Probe" Matrix="1.2 0 0 5  0 1.2 0 0  0 0 1.2 0  0 0 0 1"/>)"),
+    0);
+  EXPECT_NEAR(frames.ImageToProbe(0, 0), 0.12, 1e-12); // used, since it may be as it was made
+  EXPECT_HAS(frames.Warning,
+    "MountToProbe is not rigid: its columns have the lengths 1.2, 1.2 and 1.2, not 1, though the "
+    "transforms before it have turned pixels into mm; check its digits");
+}
+
 TEST(ProbeFrames, TheSizeOfAPixelIsAskedForAndNeverAssumed)
 {
   const TemporaryFolder folder;
