@@ -364,7 +364,8 @@ std::vector<std::string> SweepAcquisition::Core::DescribePoses() const
   {
     messages.push_back(
       "The newest frames have no pose: no two measurements of the tracker, at most "
-      "0.25 s apart, are around their instants");
+      "0.25 s apart, are around their instants. See whether the tracker stutters; if it "
+      "sends a pose only when it changes, set HoldLastPose");
   }
   const std::uint64_t flipped = this->CountFlipped() - this->FlippedBefore;
   if (flipped > 0)

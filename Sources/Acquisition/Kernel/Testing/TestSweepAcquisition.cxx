@@ -240,6 +240,7 @@ TEST(SweepAcquisition, ASilentTrackerIsOpenedAgain)
   scene.Place.RunTo(120);
   EXPECT_EQ(opened, 1);
   EXPECT_TRUE(HasMessage(acquisition.GetState(), "have no pose"));
+  EXPECT_TRUE(HasMessage(acquisition.GetState(), "only when it changes, set HoldLastPose"));
   EXPECT_EQ(acquisition.GetLive()->Slice.Status, lacuna::Sweep::PoseInvalid);
   scene.Place.RunTo(200);
   EXPECT_EQ(opened, 2);
