@@ -13,12 +13,34 @@ import lacuna_window
 import numpy as np
 from lacuna_window import PANEL
 
+NIFTI_AXES = [[0.8, 0.6, 0], [0.6, -0.8, 0], [0, 0, -1]]  # of columns, rows and slices, as coordinates to the right, the front and up
+NIFTI_SPACING, NIFTI_ORIGIN = [0.6, 0.7, 2], [-5, 6, 7]
 FOLDER = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "WindowFiles")
 MACROS = "LACUNA_MACROS"
 
 
 def path(name):
     return os.path.join(FOLDER, name)
+
+
+def write_nifti(name):
+    """A turned volume whose voxels are numbered, by VTK's writer."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkCommonMath import vtkMatrix4x4
+    from vtkmodules.vtkIOImage import vtkNIFTIImageHeader, vtkNIFTIImageWriter
+    image, place, header, writer = vtkImageData(), vtkMatrix4x4(), vtkNIFTIImageHeader(), vtkNIFTIImageWriter()
+    image.SetDimensions(7, 6, 5)
+    image.SetSpacing(NIFTI_SPACING)
+    image.GetPointData().SetScalars(numpy_to_vtk(np.arange(7 * 6 * 5, dtype=np.int16)))
+    place.DeepCopy([x for row, start in zip(NIFTI_AXES, NIFTI_ORIGIN) for x in (*row, start)] + [0, 0, 0, 1])
+    header.SetXYZTUnits(header.UnitsMM)
+    writer.SetInputData(image)
+    writer.SetNIFTIHeader(header)
+    writer.SetSFormMatrix(place)
+    writer.SetQFormMatrix(place)
+    writer.SetFileName(name)
+    writer.Write()
 
 
 def test(window):
@@ -61,6 +83,17 @@ def test(window):
         window.apply()
         assert fetch(GetActiveSource()).GetDimensions()[2] == len(series)
 
+    # a NIfTI volume, which other formats and readers do not contend for
+    window.open_file(path("turned.nii"))
+    reader = GetActiveSource()
+    assert reader.SMProxy.GetXMLName() == "LacunaVolumeReader"
+    window.apply()
+    volume = fetch(reader)
+    assert np.array_equal(vtk_to_numpy(volume.GetPointData().GetScalars()), np.arange(7 * 6 * 5))
+    index = [6, 5, 4]
+    right, front, up = np.array(NIFTI_AXES) @ (np.array(NIFTI_SPACING) * index) + NIFTI_ORIGIN
+    assert np.allclose(volume.GetPoint(volume.GetNumberOfPoints() - 1), [-right, -front, up], atol=1e-5)  # LPS; of 32-bit numbers
+
     # macros: imported once, then they are in the menu
     for name in ("Lacuna_Sweep_to_surface", "Lacuna_CT_to_IGES"):
         file = os.path.join(os.environ[MACROS], name + ".py")
@@ -80,6 +113,7 @@ if lacuna_window.IS_INSIDE:
 else:
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
+    write_nifti(path("turned.nii"))
     if len(sys.argv) > 2:
         subprocess.run([sys.argv[2], path("ct")], check=True)
     said = lacuna_window.run(__file__, **{MACROS: sys.argv[1]})

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every entry of Sources > Lacuna and Filters > Lacuna in the ParaView application: chosen, Apply with defaults, and there is something.
+After an error of one of them the view and the Information panel are empty, and the next good value brings both back.
 
 Those that the other Window tests make from the menu (of a CT to its files) are not made again, but must be in the menu.
 Polhemus Video Source is in LiveToolbar.py.
@@ -9,6 +10,7 @@ from xml.etree import ElementTree
 
 import lacuna_window
 
+ERROR = "Stride is 0; give 1 or more"
 MENUS = "LACUNA_MENUS"  # names of the proxies in the menus, without Lacuna
 ELSEWHERE = {"PolhemusVideoSource", "SkullPhantom", "BSplineIsoRayCaster", "DepthMapSurface", "Mirror", "RBFHoleFiller",
              "ImplantPlate", "DefectModel", "PressOrientation", "MillingToolPath"}
@@ -16,10 +18,13 @@ ELSEWHERE = {"PolhemusVideoSource", "SkullPhantom", "BSplineIsoRayCaster", "Dept
 
 def test(window):
     import calibration_scans as scans
+    import lacuna_test
     import numpy as np
     from paraview.simple import (BSplineIsoRayCaster, Calculator, GetActiveSource, GetSources, SetActiveSource, SkullPhantom, Sphere,
                                  Transform)
     from tracked_slice_files import open_slices
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOImage import vtkPNGReader
     made, faults = {}, []
 
     def label(source):
@@ -54,14 +59,45 @@ def test(window):
         print(f"{text}: {count} points", flush=True)
         return proxy
 
+    def look():
+        """The colours of the view, and the numbers of points and cells in the Information panel."""
+        window.wait(300)
+        file = lacuna_test.output("WindowMenus-view.png")
+        window.save(file, lacuna_window.VIEW)
+        reader = vtkPNGReader()
+        reader.SetFileName(file)
+        reader.Update()
+        return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).copy(), [window.get("informationWidget/" + name).split()[0] for name in ("pointCount", "cellCount")]
+
+    def recovers(field, bad, good, says):
+        """A bad value typed into the panel empties the view and the Information panel; the good one brings both back."""
+        shown, numbers = look()
+        window.type(lacuna_window.PANEL + field, bad)
+        window.press(lacuna_window.ACCEPT)
+        said = window.take_messages()
+        assert says in said, said
+        empty, none = look()
+        changed = empty[(shown != empty).any(axis=-1)]
+        assert len(changed) > 0.03 * len(shown), f"{field} {bad}: the view shows the old result"
+        _, counts = np.unique(changed, axis=0, return_counts=True)
+        assert counts.max() > 0.99 * len(changed), "and nothing but the background behind it"
+        assert none == ["0", "0"] and "0" not in numbers, (numbers, none)
+        window.type(lacuna_window.PANEL + field, good)
+        window.apply()
+        again, same = look()
+        assert np.array_equal(again, shown) and same == numbers, (numbers, same)
+        print(f"{field} {bad}: the view is empty, and comes back", flush=True)
+
     def names():
         return {source: name for (name, _), source in GetSources().items()}
 
     window.resize(1300, 900)
     random = np.random.default_rng(3)
     sweep = make("Sources", "Phantom Sweep", NumberOfSlices=12, ImageSize=[80, 60], PixelSpacing=0.8)
+    make("Filters", "Slice Planes", sweep)
+    recovers("Stride/LineEdit0", 0, 1, ERROR)
     make("Filters", "Gate Slices", sweep, SpeedLimit=200)
-    for text in ("Speckle Filter", "Slice Planes", "Slice Ray Caster"):
+    for text in ("Speckle Filter", "Slice Ray Caster"):
         make("Filters", text, sweep)
     window.compare("MenusSweep")
     volume = make("Filters", "Swept Volume", sweep)
@@ -105,5 +141,5 @@ else:
     folder = os.path.dirname(os.path.abspath(__file__))
     menus = ElementTree.parse(os.path.join(folder, "..", "..", "Plugins", "Lacuna", "LacunaMenus.xml"))
     names = [entry.get("name")[len("Lacuna"):] for entry in menus.getroot().iter("Proxy")]
-    lacuna_window.run(__file__, **{MENUS: " ".join(names)})
+    lacuna_window.run(__file__, expected=ERROR, **{MENUS: " ".join(names)})
     print("ok")
