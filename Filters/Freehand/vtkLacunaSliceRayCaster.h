@@ -6,11 +6,12 @@
  * Looks at tracked slices (see vtkLacunaTrackedSlices.h) from one direction. The parallel ray of
  * each pixel meets each slice at most once; the surface lies where these samples, from the viewer
  * on, first turn solid: the crossing of the iso-value is interpolated linearly between the nearest
- * solid sample and the sample just in front of it. If the two are further apart than MaximumGap, or
- * nothing lies in front, the depth is that of the solid sample (Carr 1996, 4.3). It is the quick
- * look: a volume (vtkLacunaSweptVolume) gives better surfaces, and can be measured.
+ * solid sample and the sample of the same sweep just in front of it. If the two are further apart than
+ * MaximumGap, or nothing lies in front, the depth is that of the solid sample (Carr 1996, 4.3). It is
+ * the quick look: a volume (vtkLacunaSweptVolume) gives better surfaces, and can be measured.
  *
- * The map depends on the set of slices only, not on their order, on threads or pieces, bit by bit.
+ * The map depends on the slices of each sweep (GapMethod) only, not on their order, on threads or pieces,
+ * bit by bit.
  * When the input comes again with more slices at its end and the view is the same, only the new
  * ones are cast. The map of a replay (an input with time steps) shows the whole sweep from the
  * beginning, since its poses are known; for a live source keep the map from following the bounds of
@@ -82,8 +83,9 @@ public:
 
   ///@{
   /// mm along the ray: where the solid sample and the one in front of it are further apart, the
-  /// depth of the solid sample is taken. 0 = no limit. With GapMethod Automatic this limit is at most
-  /// the widest step along the rays within a sweep (lacunaSliceRayCaster.h); Unlimited has none.
+  /// depth of the solid sample is taken. 0 = no limit. With GapMethod Automatic samples of different
+  /// sweeps are not interpolated, and this limit is at most the widest step along the rays within a
+  /// sweep (lacunaSliceRayCaster.h); Unlimited has none.
   /// Default: 0.
   vtkSetMacro(MaximumGap, double);
   vtkGetMacro(MaximumGap, double);

@@ -30,8 +30,8 @@ with open(poses, "w") as file:
 environment = {key: value for key, value in os.environ.items() if key != "LD_PRELOAD"}
 
 
-def plug_in(*options):
-    emulator = subprocess.Popen([sys.argv[1], "--link", link, "--baud", "115200", "--poses", poses, "--loop", *options],
+def plug_in(*options, motion=poses):
+    emulator = subprocess.Popen([sys.argv[1], "--link", link, "--baud", "115200", "--poses", motion, "--loop", *options],
                                 stdout=subprocess.PIPE, text=True, env=environment)
     assert "115200 baud" in emulator.stdout.readline()
     return emulator
@@ -244,6 +244,38 @@ try:
     # they stay, and with them the frames before the press that still waited for their poses
     assert taken <= live.get(source, "SliceCount") == len(slices_of(source)[1]["SliceStatus"])
     Delete(planes)
+    Delete(reader)
+
+    # the probe is lifted and put down elsewhere, again and again: live and from the recording its sweeps have the same ends
+    strips = os.path.join(folder, "strips.txt")
+    with open(strips, "w") as file:
+        file.write("0 1 150 30 -40 10 20 30\n1.2 1 150 42 -40 10 20 30\n")
+    emulator.terminate()
+    emulator.wait()
+    emulator = plug_in(motion=strips)
+    live.connect(source)
+    live.clear(source)
+    source.ButtonStarts = False
+    source.SpeedLimit = 0
+    source.RecordFileName = os.path.join(folder, "strips.mhd")
+    live.start(source)
+    wait(source, lambda: live.get(source, "SliceCount") >= 90, "strips")
+    live.stop(source)
+    count = live.get(source, "SliceCount")
+    wait(source, lambda: live.get(source, "RecordedSlices") == count, "the strips on the disk")
+    reader = TrackedSliceReader(FileName=live.get(source, "RecordedFileName"), CalibrationFileName=calibration)
+    for make, settings in ((SweptVolume, {"OutputSpacing": [2, 2, 2]}), (SliceRayCaster, {"IsoValue": 100})):
+        ends = []
+        for slices in source, reader:
+            proxy = make(Input=slices, BadPoses="LeaveOut", **settings)  # one may be of the way in between
+            arrays = slices_of(proxy)[1]
+            proxy.UpdatePropertyInformation()
+            ends.append((arrays["Sweeps"].tolist(), arrays["SweepGap"].tolist(), proxy.GetProperty("SweepDescription").GetData()))
+            Delete(proxy)
+        print(ends[0][2], flush=True)
+        assert ends[0] == ends[1], ends
+        assert len(ends[0][0]) > 1 and max(ends[0][1]) < 9 and "not joined" in ends[0][2], ends[0]
+    live.disconnect(source)
     Delete(reader)
     Delete(source)
 finally:

@@ -77,18 +77,25 @@ def check_compounding():
 
 
 def check_sweeps():
-    """Two strips in one input, 20 mm of air between them; states from before GapMethod."""
+    """Two strips in one input, 20 mm of air between them; states from before GapMethod, also of Slice Ray Caster."""
     poses = np.tile(np.diag([0.5, 0.5, 1, 1]), (12, 1, 1))
     poses[:, 2, 3] = [0, 1, 2, 3, 4, 5, 25, 26, 27, 28, 29, 30]
-    proxy = SweptVolume(Input=open_slices("SweptVolumeStrips", np.full((12, 9, 11), 40, np.uint8), poses),
-                        OutputSpacing=[0.5] * 3)
+    pixels = np.full((12, 9, 11), 40, np.uint8)
+    pixels[6:] = 80
+    strips = open_slices("SweptVolumeStrips", pixels, poses)
+    proxy = SweptVolume(Input=strips, OutputSpacing=[0.5] * 3)
+    caster = SliceRayCaster(Input=strips, IsoValue=60, ViewDirection=[0, 0, 1], ViewUp=[0, -1, 0])
     filled = np.arange(61) / 2
     filled = (filled <= 5) | (filled >= 25)
 
     def layers(volume):
         return array(volume, "vtkValidPointMask")[:, 4, 5]
 
+    def depth(caster):
+        return array(caster, "Depth")[0, 4, 5]
+
     assert proxy.GapMethod == "Automatic" and (layers(proxy) == filled).all()
+    assert caster.GapMethod == "Automatic" and depth(caster) == 25  # the second strip begins there
     proxy.UpdatePropertyInformation()
     description = proxy.GetProperty("SweepDescription").GetData()
     assert "not joined: 20 mm and 0.1 s from slice 5 to 6" in description, description
@@ -100,15 +107,17 @@ def check_sweeps():
             if child.get("name") == "GapMethod":
                 element.remove(child)
     tree.write(output("SweptVolumeSweepsBefore.pvsm"))
-    for file, method, truth in ((state, "Automatic", filled), (output("SweptVolumeSweepsBefore.pvsm"), "Given", True)):
+    for file, method, truth, surface in ((state, "Automatic", filled, 25), (output("SweptVolumeSweepsBefore.pvsm"), "Given", True, 15)):
         ResetSession()
         LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
         LoadState(file)
         loaded = FindSource("SweptVolume1")
         assert loaded.GapMethod == method and loaded.MaximumSliceGap == 0, (file, loaded.GapMethod)
         assert (layers(loaded) == truth).all(), file
-    loaded.GapMethod = "Unlimited"
-    assert layers(loaded).all()
+        caster = FindSource("SliceRayCaster1")
+        assert caster.GapMethod == method and caster.MaximumGap == 0 and depth(caster) == surface, (file, caster.GapMethod, depth(caster))
+    loaded.GapMethod = caster.GapMethod = "Unlimited"
+    assert layers(loaded).all() and depth(caster) == 15
     # scripts from before: a limit still limits, and 0 no longer joins what a lift parts
     strips = loaded.Input[0]
     assert not layers(SweptVolume(Input=strips, OutputSpacing=[0.5] * 3, MaximumSliceGap=0.9))[[1, 30]].any()

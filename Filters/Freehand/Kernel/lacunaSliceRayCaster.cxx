@@ -67,6 +67,7 @@ struct SliceRayCaster::Row
   double* SolidLevel;
   double* FrontDepth;
   double* FrontLevel;
+  std::int32_t* Sweep;
   double* NearestDepth;
 };
 
@@ -96,6 +97,7 @@ SliceRayCaster::SliceRayCaster(
   this->SolidLevel.resize(size);
   this->FrontDepth.assign(size, -NoDepth);
   this->FrontLevel.resize(size);
+  this->Sweep.resize(size);
   this->NearestDepth.assign(size, NoDepth);
 }
 
@@ -104,7 +106,7 @@ SliceRayCaster::Row SliceRayCaster::GetRow(std::int64_t j)
   const std::int64_t start =
     (j - this->Extent[2]) * (static_cast<std::int64_t>(this->Extent[1]) - this->Extent[0] + 1);
   return { this->SolidDepth.data() + start, this->SolidLevel.data() + start,
-    this->FrontDepth.data() + start, this->FrontLevel.data() + start,
+    this->FrontDepth.data() + start, this->FrontLevel.data() + start, this->Sweep.data() + start,
     this->NearestDepth.data() + start };
 }
 
@@ -112,21 +114,27 @@ void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution&
 {
   std::vector<SliceProjection> added;
   std::vector<std::int64_t> numbers;
+  std::vector<std::int32_t> sweeps;
   std::int64_t number = this->NumberOfSlices;
+  std::int32_t sweep = this->LastSweep;
   for (const SliceImage& slice : slices)
   {
     CheckSlice(slice);
+    sweep += slice.BeginsSweep ? 1 : 0;
     if (!SliceProjection::IsEdgeOn(slice, this->Plane))
     {
       added.emplace_back(slice, this->Plane);
       numbers.push_back(number);
+      sweeps.push_back(sweep);
     }
     ++number;
   }
   this->NumberOfSlices = number;
+  this->LastSweep = sweep;
   const std::size_t first = this->Projections.size();
   this->Projections.insert(this->Projections.end(), added.begin(), added.end());
   this->Numbers.insert(this->Numbers.end(), numbers.begin(), numbers.end());
+  this->Sweeps.insert(this->Sweeps.end(), sweeps.begin(), sweeps.end());
   if (added.empty())
   {
     return;
@@ -139,16 +147,15 @@ void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution&
       std::vector<char> incomplete(static_cast<std::size_t>(end - begin));
       for (std::size_t s = first; s < this->Projections.size(); ++s)
       {
-        const SliceProjection& projection = this->Projections[s];
-        DispatchScalarType(projection.GetSlice().Type,
+        const SliceImage& slice = this->Projections[s].GetSlice();
+        DispatchScalarType(slice.Type,
           [&](auto zero)
           {
             for (std::int64_t y = begin; y < end; ++y)
             {
               const std::int64_t j = this->Extent[2] + y;
-              const bool displaced = projection.GetSlice().Fan
-                ? this->AddToRow<decltype(zero), true>(projection, j)
-                : this->AddToRow<decltype(zero), false>(projection, j);
+              const bool displaced = slice.Fan ? this->AddToRow<decltype(zero), true>(s, j)
+                                               : this->AddToRow<decltype(zero), false>(s, j);
               incomplete[y - begin] |= displaced ? 1 : 0;
             }
           });
@@ -165,8 +172,9 @@ void SliceRayCaster::AddSlices(const std::vector<SliceImage>& slices, Execution&
 
 // Returns true when front samples are to be found.
 template <class T, bool HasFan>
-bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
+bool SliceRayCaster::AddToRow(std::size_t slice, std::int64_t j)
 {
+  const SliceProjection& projection = this->Projections[slice];
   const IndexInterval columns = projection.GetRow(j, { this->Extent[0], this->Extent[1] });
   if (columns.IsEmpty())
   {
@@ -178,6 +186,7 @@ bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
   const SliceProjection::RowSampler<T> sample(projection, j);
   const double sign = this->Sign;
   const double threshold = this->Threshold;
+  const std::int32_t sweep = this->Sweeps[slice];
   bool incomplete = false;
   for (std::int64_t i = columns.First; i <= columns.Last; ++i)
   {
@@ -208,7 +217,7 @@ bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
     {
       if (depth < solid)
       {
-        if (row.FrontDepth[x] >= depth)
+        if (row.Sweep[x] != sweep || row.FrontDepth[x] >= depth)
         {
           const bool hasFront = row.NearestDepth[x] < depth;
           row.FrontDepth[x] = hasFront ? ToBeFound : -NoDepth;
@@ -216,10 +225,20 @@ bool SliceRayCaster::AddToRow(const SliceProjection& projection, std::int64_t j)
         }
         row.SolidDepth[x] = depth;
         row.SolidLevel[x] = level;
+        row.Sweep[x] = sweep;
       }
-      else
+      else if (row.Sweep[x] == sweep)
       {
         row.SolidLevel[x] = std::max(row.SolidLevel[x], level);
+      }
+    }
+    else if (row.Sweep[x] != sweep)
+    {
+      if (solid == NoDepth) // and no earlier sweep will get a solid sample any more
+      {
+        row.FrontLevel[x] = level;
+        row.FrontDepth[x] = depth;
+        row.Sweep[x] = sweep;
       }
     }
     else if (depth < solid && depth >= row.FrontDepth[x])
@@ -248,13 +267,21 @@ void SliceRayCaster::FindFronts(std::int64_t j)
   for (std::int64_t i = this->Extent[0]; i <= this->Extent[1]; ++i)
   {
     const std::int64_t x = i - this->Extent[0];
+    if (row.FrontDepth[x] != ToBeFound)
+    {
+      continue;
+    }
+    const auto [first, last] =
+      std::equal_range(this->Sweeps.begin(), this->Sweeps.end(), row.Sweep[x]);
+    const auto begin = static_cast<std::size_t>(first - this->Sweeps.begin());
+    const auto end = static_cast<std::size_t>(last - this->Sweeps.begin());
     double limit = row.SolidDepth[x];
     const auto column = static_cast<double>(i);
     // Once at most, but where all samples at the depth found are not finite.
     while (row.FrontDepth[x] == ToBeFound)
     {
       double front = -NoDepth;
-      for (std::size_t s = 0; s < count; ++s)
+      for (std::size_t s = begin; s < end; ++s)
       {
         const double depth = depthAtRow[s] + depthStep[s] * column;
         if (depth < limit && depth > front && this->Projections[s].Meets(i, j))
@@ -263,7 +290,7 @@ void SliceRayCaster::FindFronts(std::int64_t j)
         }
       }
       double level = -NoDepth;
-      for (std::size_t s = 0; s < count && front > -NoDepth; ++s)
+      for (std::size_t s = begin; s < end && front > -NoDepth; ++s)
       {
         if (depthAtRow[s] + depthStep[s] * column == front && this->Projections[s].Meets(i, j))
         {

@@ -4,17 +4,17 @@
 ///
 /// The parallel ray of a pixel meets each slice at most once: that gives a sample, a depth and a
 /// grey level. The surface lies where the samples, taken in the order of their depths, first turn
-/// solid: between the nearest solid sample and the sample just in front of it. No volume is made,
-/// and the slices may come in any order and orientation.
+/// solid: between the nearest solid sample and the sample of the same sweep just in front of it. No
+/// volume is made, and the slices of a sweep may come in any order and orientation.
 ///
-/// A pixel's state is the nearest solid sample, the sample just in front of it and the depth of the
-/// nearest sample of all. A new slice changes only the pixels whose rays it meets in front of what
-/// is solid there. When a new solid sample comes to lie in front of the front sample, then the
-/// sample in front of it may be one that an earlier front sample has displaced (the nearest sample
-/// of all tells whether there can be one): the earlier slices are searched once more at this pixel.
-/// For the depths alone decide there, since all that lies in front of the nearest solid sample is
-/// not solid, this takes some nanoseconds per slice. So the state, and the map, depend on the set
-/// of slices only, bit by bit.
+/// A pixel's state is the nearest solid sample, the sample of its sweep just in front of it and the
+/// depth of the nearest sample of all. A new slice changes only the pixels whose rays it meets in
+/// front of what is solid there. When a new solid sample is in front of the front sample, or of
+/// another sweep, then the sample in front of it may be one that was not kept (the nearest sample
+/// of all tells whether there can be one): the earlier slices of the sweep are searched once more at
+/// this pixel. The depths alone decide there, since all that lies in front of the nearest solid
+/// sample is not solid. So this takes some nanoseconds per slice, and the state and the map depend
+/// on the slices of each sweep only, bit by bit.
 #ifndef lacunaSliceRayCaster_h
 #define lacunaSliceRayCaster_h
 
@@ -36,9 +36,10 @@ double GetWidestStepAlongRays(const std::vector<SliceImage>& slices, const Image
 
 /// Rules. A grey level equal to the iso-value is solid. A ray that meets a slice, inside its fan if
 /// it has one, samples it bilinearly; samples that are not finite do not exist. Of several samples
-/// at the same depth of a ray only the most solid one counts. Slices seen edge-on
-/// (SliceProjection::IsEdgeOn) are left out. A ray whose nearest sample of all is solid has its
-/// surface there.
+/// at the same depth of a ray only the most solid one of a sweep counts, and of solid ones the first
+/// sweep's. Slices seen edge-on (SliceProjection::IsEdgeOn) are left out. Nothing was seen between
+/// sweeps, which SliceImage::BeginsSweep separates: a solid sample with none of its sweep in front
+/// of it is the surface.
 class SliceRayCaster
 {
 public:
@@ -49,9 +50,12 @@ public:
     const ImagePlane& plane, const std::array<int, 4>& extent, double isoValue, SolidSide side);
 
   /// Memory that this class takes per pixel.
-  static constexpr std::int64_t GetBytesPerPixel() { return 5 * sizeof(double); }
+  static constexpr std::int64_t GetBytesPerPixel()
+  {
+    return 5 * sizeof(double) + sizeof(std::int32_t);
+  }
 
-  /// Adds slices. Their pixels are referred to as long as there is this object, or until
+  /// Adds slices, in the order of their sweeps. Their pixels are referred to as long as there is this object, or until
   /// MoveSlices. Throws std::invalid_argument for unusable slices (none is added then), Aborted
   /// when stopped (this object is then to be thrown away).
   void AddSlices(const std::vector<SliceImage>& slices, Execution& execution);
@@ -79,7 +83,7 @@ private:
 
   Row GetRow(std::int64_t j);
   template <class T, bool HasFan>
-  bool AddToRow(const SliceProjection& projection, std::int64_t j);
+  bool AddToRow(std::size_t slice, std::int64_t j);
   void FindFronts(std::int64_t j);
   double GetDepth(std::size_t pixel, double maximumGap) const;
 
@@ -93,10 +97,13 @@ private:
   std::int64_t NumberOfSlices = 0;
   std::vector<SliceProjection> Projections; ///< not those seen edge-on
   std::vector<std::int64_t> Numbers;        ///< of their slices
+  std::vector<std::int32_t> Sweeps;         ///< of their slices, ascending
+  std::int32_t LastSweep = 0;
 
   // The state of each pixel of Extent; grey levels times Sign.
   std::vector<double> SolidDepth, SolidLevel; ///< the nearest solid sample; NoDepth = none
   std::vector<double> FrontDepth, FrontLevel; ///< the sample just in front of it; -NoDepth = none
+  std::vector<std::int32_t> Sweep;            ///< of both
   std::vector<double> NearestDepth;           ///< of all samples in front of or at the solid one
 };
 }

@@ -14,9 +14,10 @@ constexpr double Nothing = std::numeric_limits<double>::quiet_NaN();
 // Level slices of 3 x 3 pixels of 1 mm at the given heights, each of one grey level.
 struct Stack
 {
-  void Add(double height, double grey)
+  void Add(double height, double grey, bool beginsSweep = false)
   {
     this->Sweep.Add(Matrix4::Translation({ -1, -1, height }), [=](int, int) { return grey; });
+    this->Sweep.Slices.back().BeginsSweep = beginsSweep;
   }
   /// Depth below height 10 of what is seen from the top.
   double Cast(double isoValue, SolidSide side = SolidSide::Above, double maximumGap = 0) const
@@ -134,6 +135,85 @@ TEST(SliceRayCaster, TheMostSolidOfSamplesAtOneDepthCounts)
   EXPECT_DOUBLE_EQ(stack.Cast(15, SolidSide::Below), 4);
 }
 
+TEST(SliceRayCaster, NothingIsInterpolatedBetweenSweeps)
+{
+  Stack stack;
+  stack.Add(6, 0);
+  stack.Add(2, 100, true);
+  EXPECT_DOUBLE_EQ(stack.Cast(25), 8) << "nothing of its sweep lies in front of the solid sample";
+  stack.Add(3, 20);
+  EXPECT_DOUBLE_EQ(stack.Cast(25), 7.0625);
+  EXPECT_DOUBLE_EQ(stack.Cast(10), 7) << "both of the second sweep are solid";
+}
+
+TEST(SliceRayCaster, SweepsThatOverlapAreInterpolatedEachForItself)
+{
+  Stack stack;
+  stack.Add(2, 100);
+  stack.Add(6, 0);
+  stack.Add(1, 100, true);
+  stack.Add(5, 20);
+  EXPECT_DOUBLE_EQ(stack.Cast(50), 6) << "of the first sweep, in spite of the other slice between";
+  stack.Add(3, 60);
+  EXPECT_DOUBLE_EQ(stack.Cast(50), 6.5) << "of the second sweep, which now is nearer";
+  EXPECT_DOUBLE_EQ(stack.Cast(80), 7.2) << "again of the first sweep";
+  stack.Add(7, 100, true);
+  stack.Add(9, 0);
+  EXPECT_DOUBLE_EQ(stack.Cast(50), 2);
+  stack.Add(7, 200, true);
+  stack.Add(8, 0);
+  EXPECT_DOUBLE_EQ(stack.Cast(50), 2) << "of solid samples at one depth that of the first sweep";
+}
+
+TEST(SliceRayCaster, TwoStripsSeenObliquely)
+{
+  // Two strips, 0.2 mm from slice to slice; the second one goes on 0.15 mm higher and 5 mm to the side.
+  // Along rays at 80 degrees to the slices' normal the air is narrower than the limit that follows from
+  // the steps, so that the limit alone lets them be joined.
+  SyntheticSweep<double> strips(31, 25, ScalarType::Float64);
+  const auto field = [](const Vec3& p)
+  { return 100 + 40 * std::sin(0.9 * p[0]) * std::cos(0.7 * p[1]) - 6 * p[2]; };
+  for (int strip = 0; strip < 2; ++strip)
+  {
+    for (int n = 0; n < 11; ++n)
+    {
+      strips.AddField(Matrix4::Translation({ 5.0 * strip, 0.5 * strip, 2.15 * strip + 0.2 * n }) *
+          Matrix4::Rotation({ 1, 0, 0 }, 0.001 * n) * Matrix4::Scaling({ 0.3, 0.3, 1 }),
+        field);
+      strips.Slices.back().BeginsSweep = n == 0;
+    }
+  }
+  std::int64_t joined = 0;
+  for (const double way : { 1.0, -1.0 })
+  {
+    const ImagePlane plane = MakePlane(
+      strips.Slices, { way * std::sin(80 * Degree), 0.05, way * std::cos(80 * Degree) }, 0.2);
+    const double gap = GetWidestStepAlongRays(strips.Slices, plane);
+    ASSERT_GT(gap, 1.15);
+    for (const double maximumGap : { gap, 0.0 })
+    {
+      const WrittenMap map =
+        Cast(strips.Slices, plane, GetExtent(plane), 95, SolidSide::Above, maximumGap);
+      std::vector<SliceImage> one = strips.Slices;
+      one[11].BeginsSweep = false;
+      for (int j = 0; j < plane.Size[1]; ++j)
+      {
+        for (int i = 0; i < plane.Size[0]; ++i)
+        {
+          const auto cast = [&](const std::vector<SliceImage>& slices)
+          { return CastOneRay<double>(slices, plane, i, j, 95, SolidSide::Above, maximumGap); };
+          const double expected = cast(strips.Slices);
+          ASSERT_TRUE(std::isnan(expected) ? std::isnan(map.At(i, j))
+                                           : std::abs(map.At(i, j) - expected) < 1e-8)
+            << i << " " << j << ": " << map.At(i, j) << " instead of " << expected;
+          joined += cast(one) < expected - 0.1 ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(joined, 50) << "rays that would meet a surface in the air";
+}
+
 TEST(SliceRayCaster, SamplesThatAreNotFiniteDoNotExist)
 {
   const double infinity = std::numeric_limits<double>::infinity();
@@ -178,6 +258,12 @@ TEST(SliceRayCaster, AgreesWithAllRaysTimesAllSlices)
       CompareWithOracle(bytes, direction, 120);
       CompareWithOracle(numbers, direction, 110.3);
     }
+    for (const std::size_t n : { 0, 3, 4, 8 }) // sweeps that cross each other
+    {
+      bytes.Slices[n].BeginsSweep = numbers.Slices[n].BeginsSweep = true;
+    }
+    CompareWithOracle(bytes, { 0.3, 0.2, -0.5 }, 120);
+    CompareWithOracle(numbers, { 1, 0.3, 0.1 }, 110.3);
     const auto fan = std::make_shared<FanMask>(
       Fan{ { 14.2, -3 }, { -40, 35 }, { 1.5, 6 } }, 31, 25, Vec2{ 0.31, 0.23 });
     for (std::size_t n = 0; n < numbers.Slices.size(); ++n)

@@ -140,7 +140,7 @@ bool IntersectRay(
   return std::isfinite(level);
 }
 
-/// The depth at a pixel: all slices, sorted.
+/// The depth at a pixel: all slices, sorted; the sample in front is the nearest one of the same sweep.
 template <class T>
 double CastOneRay(const std::vector<SliceImage>& slices, const ImagePlane& plane, int i, int j,
   double isoValue, SolidSide side, double maximumGap)
@@ -148,11 +148,14 @@ double CastOneRay(const std::vector<SliceImage>& slices, const ImagePlane& plane
   struct Sample
   {
     double Depth, Level;
+    int Sweep;
   };
   std::vector<Sample> samples;
+  int sweep = 0;
   for (const SliceImage& slice : slices)
   {
-    Sample sample{};
+    sweep += slice.BeginsSweep ? 1 : 0;
+    Sample sample{ 0, 0, sweep };
     if (!SliceProjection::IsEdgeOn(slice, plane) &&
       IntersectRay<T>(slice, plane.PixelPosition(i, j), plane.View, sample.Depth, sample.Level))
     {
@@ -166,11 +169,13 @@ double CastOneRay(const std::vector<SliceImage>& slices, const ImagePlane& plane
     const Sample& solid = samples[n];
     if (side == SolidSide::Above ? solid.Level >= isoValue : solid.Level <= isoValue)
     {
-      if (n == 0 || (maximumGap > 0 && solid.Depth - samples[n - 1].Depth > maximumGap))
+      const auto found = std::find_if(samples.rbegin() + (samples.size() - n), samples.rend(),
+        [&](const Sample& sample) { return sample.Sweep == solid.Sweep; });
+      if (found == samples.rend() || (maximumGap > 0 && solid.Depth - found->Depth > maximumGap))
       {
         return solid.Depth;
       }
-      const Sample& front = samples[n - 1];
+      const Sample& front = *found;
       return front.Depth +
         (isoValue - front.Level) / (solid.Level - front.Level) * (solid.Depth - front.Depth);
     }
