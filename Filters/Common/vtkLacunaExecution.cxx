@@ -114,6 +114,31 @@ std::function<void(vtkLacunaExecution&)> WithSoundInputs(
   };
 }
 
+// Whether an input has blocks, which is then the error of the outputs. The ranks do not meet: they know all blocks, but
+// a rank without data in them is not executed.
+bool TellOfBlocks(vtkAlgorithm* algorithm, vtkInformationVector* outputs)
+{
+  try
+  {
+    vtkLacunaInputs::CheckSingle(algorithm);
+    return false;
+  }
+  catch (const std::runtime_error& blocks)
+  {
+    EmptyOutputs(outputs);
+    const std::string upstream = vtkLacunaFailure::GetUpstream(algorithm);
+    if (upstream.empty())
+    {
+      vtkLacunaFailure::Tell(algorithm, outputs, blocks.what());
+    }
+    else
+    {
+      vtkLacunaFailure::PassOn(algorithm, outputs, upstream);
+    }
+    return true;
+  }
+}
+
 // Runs body. error: its error, which was told, or that of an input; empty: none. areToldAll: other ranks learn of
 // it, and fail, too.
 void RunAndTell(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
@@ -180,13 +205,11 @@ int vtkLacunaExecution::Run(vtkAlgorithm* algorithm, vtkInformationVector* outpu
 int vtkLacunaExecution::RunTogether(vtkAlgorithm* algorithm, vtkInformationVector* outputs,
   const std::function<void(vtkLacunaExecution&)>& body)
 {
-  if (!vtkLacunaInputs::AreSingle(algorithm))
-  {
-    EmptyOutputs(outputs);
-    return 0;
-  }
   std::string error;
-  RunAndTell(algorithm, outputs, body, error, false);
+  if (!TellOfBlocks(algorithm, outputs))
+  {
+    RunAndTell(algorithm, outputs, body, error, false);
+  }
   return 1;
 }
 
@@ -200,10 +223,9 @@ int vtkLacunaExecution::RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector*
   {
     return isWanted ? Run(algorithm, outputs, body) : 1;
   }
-  if (!vtkLacunaInputs::AreSingle(algorithm))
+  if (TellOfBlocks(algorithm, outputs))
   {
-    EmptyOutputs(outputs);
-    return 0;
+    return 1;
   }
   std::string agreed;
   const bool haveMet = vtkLacunaFailure::GetAgreed(algorithm, outputs, agreed);
@@ -242,12 +264,14 @@ int vtkLacunaExecution::RunInformation(
   }
   try
   {
-    if (!vtkLacunaInputs::AreSingle(algorithm))
-    {
-      return 0;
-    }
     bool isOfMemory = false; // of which one rank may have less
-    error = ErrorOf(body, &isOfMemory);
+    error = ErrorOf(
+      [&]
+      {
+        vtkLacunaInputs::CheckSingle(algorithm);
+        body();
+      },
+      &isOfMemory);
     if (error.empty())
     {
       return 1;

@@ -56,10 +56,12 @@ public:
   static int RunAgreed(vtkAlgorithm* algorithm, vtkInformationVector* outputs, bool isWanted,
     const std::function<void(vtkLacunaExecution&)>& body);
 
-  /// Runs the body of algorithm's RequestInformation and returns 1. After an exception the outputs are empty,
-  /// have an empty whole extent and no remembered request, so that the next update starts afresh when the
-  /// cause is mended. The text is an error only when data are asked for (Run): ParaView asks for information
-  /// as soon as one of several properties is set, and never again before the data.
+  /// Runs the body of algorithm's RequestInformation. Each filter uses it. Returns 1, also after an error:
+  /// otherwise VTK would not execute what follows, and views would keep the old picture. After an exception, or
+  /// when an input has blocks (vtkLacunaInputs::CheckSingle), the outputs are empty, have an empty whole extent
+  /// and no remembered request, so that the next update starts afresh when the cause is mended. The text is an
+  /// error only when data are asked for (Run): ParaView asks for information as soon as one of several
+  /// properties is set, and never again before the data.
   static int RunInformation(
     vtkAlgorithm* algorithm, vtkInformationVector* outputs, const std::function<void()>& body);
 

@@ -3,6 +3,8 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -14,6 +16,7 @@
 #include "vtkLacunaRequest.h"
 #include "vtkNew.h"
 #include "vtkOutputWindow.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
@@ -192,6 +195,27 @@ void Repeat(vtkAlgorithm* algorithm, const std::string& error)
   std::string copy = error;
   listener->InvokeEvent(vtkCommand::ErrorEvent, copy.data());
 }
+
+// The error that data or one of its blocks holds; empty: none.
+std::string GetError(vtkDataObject* data)
+{
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto block = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
+    for (block->InitTraversal(); !block->IsDoneWithTraversal(); block->GoToNextItem())
+    {
+      const std::string error = GetError(block->GetCurrentDataObject());
+      if (!error.empty())
+      {
+        return error;
+      }
+    }
+  }
+  auto* error = data ? vtkStringArray::SafeDownCast(
+                         data->GetFieldData()->GetAbstractArray(vtkLacunaFailure::FieldName))
+                     : nullptr;
+  return error && error->GetNumberOfValues() > 0 ? error->GetValue(0) : std::string();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -268,13 +292,10 @@ std::string vtkLacunaFailure::GetUpstream(vtkAlgorithm* algorithm)
   {
     for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
     {
-      vtkDataObject* data = algorithm->GetInputDataObject(port, i);
-      auto* error = data ? vtkStringArray::SafeDownCast(
-                             data->GetFieldData()->GetAbstractArray(vtkLacunaFailure::FieldName))
-                         : nullptr;
-      if (error && error->GetNumberOfValues() > 0)
+      const std::string error = GetError(algorithm->GetInputDataObject(port, i));
+      if (!error.empty())
       {
-        return error->GetValue(0);
+        return error;
       }
     }
   }

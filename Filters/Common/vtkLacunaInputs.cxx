@@ -279,9 +279,9 @@ void vtkLacunaInputs::Check(vtkAlgorithm* algorithm, int port)
 }
 
 //------------------------------------------------------------------------------
-bool vtkLacunaInputs::AreSingle(vtkAlgorithm* algorithm)
+void vtkLacunaInputs::CheckSingle(vtkAlgorithm* algorithm)
 {
-  // VTK goes on to execute block by block, and shows one only then.
+  // VTK executes block by block and shows one only then. The time tells that it is of the same input.
   static vtkInformationDoubleKey* const refused =
     vtkInformationDoubleKey::MakeKey("TIME_OF_BLOCKS", "vtkLacunaInputs");
   vtkInformation* own = algorithm->GetInformation();
@@ -300,8 +300,7 @@ bool vtkLacunaInputs::AreSingle(vtkAlgorithm* algorithm)
       if (hasBlocks || (own->Has(refused) && own->Get(refused) == time))
       {
         own->Set(refused, time);
-        vtkErrorWithObjectMacro(algorithm, "input " << port << HasBlocks);
-        return false;
+        throw std::runtime_error("input " + std::to_string(port) + HasBlocks);
       }
     }
   }
@@ -309,5 +308,4 @@ bool vtkLacunaInputs::AreSingle(vtkAlgorithm* algorithm)
   {
     own->Remove(refused);
   }
-  return true;
 }

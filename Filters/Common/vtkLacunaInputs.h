@@ -30,9 +30,8 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm);
 /// Those of one port.
 VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkAlgorithm* algorithm, int port);
 
-/// For RequestInformation, which shall return 0 otherwise: whether no input has blocks, unless algorithm
-/// takes them. An error of algorithm says so: VTK would execute it block by block, with what was
-/// announced for all of them. Also false for each block, where VTK goes on.
-VTKLACUNAFILTERSCOMMON_EXPORT bool AreSingle(vtkAlgorithm* algorithm);
+/// Throws std::runtime_error when an input has blocks and algorithm does not take them: VTK would execute it
+/// block by block, with what was announced for all of them. Also throws for each of these blocks.
+VTKLACUNAFILTERSCOMMON_EXPORT void CheckSingle(vtkAlgorithm* algorithm);
 }
 #endif

@@ -12,7 +12,6 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaPoseJudge.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -163,15 +162,15 @@ void vtkLacunaGateSlices::SetKeyColumn(const char* name)
 int vtkLacunaGateSlices::RequestInformation(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  vtkInformation* info = outputs->GetInformationObject(0);
-  vtkLacunaSliceStream::Pass(this, info);
-  // Each rank asks for the extent that VTK turns its piece into.
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  return this->Superclass::RequestInformation(request, inputs, outputs);
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      vtkInformation* info = outputs->GetInformationObject(0);
+      vtkLacunaSliceStream::Pass(this, info);
+      // Each rank asks for the extent that VTK turns its piece into.
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      this->Superclass::RequestInformation(request, inputs, outputs);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -12,7 +12,6 @@
 #include "vtkLacunaCalibrationReport.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
@@ -172,34 +171,33 @@ void vtkLacunaProbeCalibration::SetWireRanges(const char* ranges)
 int vtkLacunaProbeCalibration::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  // The map of expected errors has a grid of its own; a request in that of the slices would never be
-  // met and calculate everything anew each time.
-  vtkInformation* slices = inputs[0]->GetInformationObject(0);
-  int extent[6] = { 0, -1, 0, -1, 0, -1 };
-  double origin[3] = { 0, 0, 0 }, spacing[3] = { 1, 1, 1 };
-  if (slices->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-  {
-    slices->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-  }
-  if (slices->Has(vtkDataObject::ORIGIN()))
-  {
-    slices->Get(vtkDataObject::ORIGIN(), origin);
-  }
-  if (slices->Has(vtkDataObject::SPACING()))
-  {
-    slices->Get(vtkDataObject::SPACING(), spacing);
-  }
-  const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
-  vtkInformation* map = outputs->GetInformationObject(3);
-  map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
-  map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
-  map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
-  vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      // The map of expected errors has a grid of its own; a request in that of the slices would never be
+      // met and calculate everything anew each time.
+      vtkInformation* slices = inputs[0]->GetInformationObject(0);
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      double origin[3] = { 0, 0, 0 }, spacing[3] = { 1, 1, 1 };
+      if (slices->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      {
+        slices->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+      }
+      if (slices->Has(vtkDataObject::ORIGIN()))
+      {
+        slices->Get(vtkDataObject::ORIGIN(), origin);
+      }
+      if (slices->Has(vtkDataObject::SPACING()))
+      {
+        slices->Get(vtkDataObject::SPACING(), spacing);
+      }
+      const vtkLacunaCalibrationOutputs::ErrorMapGrid grid(extent, origin, spacing);
+      vtkInformation* map = outputs->GetInformationObject(3);
+      map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
+      map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
+      map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
+      vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -8,7 +8,6 @@
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSliceImages.h"
 #include "vtkLacunaSliceStream.h"
@@ -70,13 +69,8 @@ void vtkLacunaSliceAlgorithm::AskForSlices(
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaSliceAlgorithm::RequestInformation(
-  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector*)
+void vtkLacunaSliceAlgorithm::UpdateSlices(vtkInformationVector** inputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
   // Downstream divides the whole extent into pieces before any data are asked for: so the inputs
   // must be executed now. When they are up to date, as they usually are, this does nothing.
   this->AskForSlices(inputs, nullptr);
@@ -85,7 +79,6 @@ int vtkLacunaSliceAlgorithm::RequestInformation(
     vtkAlgorithmOutput* connection = this->GetInputConnection(0, i);
     connection->GetProducer()->Update(connection->GetIndex());
   }
-  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -134,9 +134,8 @@ protected:
   vtkLacunaSliceAlgorithm() = default;
   ~vtkLacunaSliceAlgorithm() override = default;
 
-  /// Asks for all of the inputs and updates them. Subclasses call it first.
-  int RequestInformation(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  /// Asks for all of the inputs and updates them; for RequestInformation of subclasses, before anything else.
+  void UpdateSlices(vtkInformationVector** inputs);
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 

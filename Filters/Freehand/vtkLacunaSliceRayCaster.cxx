@@ -221,15 +221,12 @@ vtkLacunaSliceRayCaster::~vtkLacunaSliceRayCaster() = default;
 
 //------------------------------------------------------------------------------
 int vtkLacunaSliceRayCaster::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!this->Superclass::RequestInformation(request, inputs, outputs))
-  {
-    return 0;
-  }
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      this->UpdateSlices(inputs);
       vtkLacunaInputs::Check(this);
       vtkInformation* info = outputs->GetInformationObject(0);
       const Plan plan(this, inputs[0]);

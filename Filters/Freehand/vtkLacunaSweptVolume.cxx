@@ -201,15 +201,12 @@ int vtkLacunaSweptVolume::FillInputPortInformation(int, vtkInformation* info)
 
 //------------------------------------------------------------------------------
 int vtkLacunaSweptVolume::RequestInformation(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!this->Superclass::RequestInformation(request, inputs, outputs))
-  {
-    return 0;
-  }
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      this->UpdateSlices(inputs);
       vtkLacunaInputs::Check(this);
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };

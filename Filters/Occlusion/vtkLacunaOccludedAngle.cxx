@@ -15,7 +15,6 @@
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaFunctionText.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaOcclusionInput.h"
 #include "vtkLacunaProvenance.h"
@@ -358,25 +357,24 @@ int vtkLacunaOccludedAngle::FillInputPortInformation(int port, vtkInformation* i
 int vtkLacunaOccludedAngle::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
-  if (this->KeepIterations) // instead of the input's time
-  {
-    std::vector<double> steps(this->ThresholdsOverPi.size());
-    for (std::size_t i = 0; i < steps.size(); ++i)
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
     {
-      steps[i] = static_cast<double>(i) + 1;
-    }
-    const double range[2] = { 1, static_cast<double>(steps.size()) };
-    info->Set(
-      vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
-  }
-  return 1;
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
+      if (this->KeepIterations) // instead of the input's time
+      {
+        std::vector<double> steps(this->ThresholdsOverPi.size());
+        for (std::size_t i = 0; i < steps.size(); ++i)
+        {
+          steps[i] = static_cast<double>(i) + 1;
+        }
+        const double range[2] = { 1, static_cast<double>(steps.size()) };
+        info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps.data(),
+          static_cast<int>(steps.size()));
+        info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------

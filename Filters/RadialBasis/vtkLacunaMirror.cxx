@@ -22,7 +22,6 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaMaskedVolume.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaMirrored.h"
@@ -369,19 +368,18 @@ int vtkLacunaMirror::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkLacunaMirror::RequestInformation(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  vtkInformation* info = outputVector->GetInformationObject(0);
-  // Each rank makes the extent that VTK turns its piece into.
-  info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  // a volume keeps its type; depths may come in any, and become double
-  if (IsAnnouncedDepthMap(inputVector[0]->GetInformationObject(0)))
-  {
-    vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
-  }
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      // Each rank makes the extent that VTK turns its piece into.
+      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      // a volume keeps its type; depths may come in any, and become double
+      if (IsAnnouncedDepthMap(inputVector[0]->GetInformationObject(0)))
+      {
+        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_DOUBLE, 1);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------

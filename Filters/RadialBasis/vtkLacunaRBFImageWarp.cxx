@@ -14,7 +14,6 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaLandmarkWarp.h"
 #include "vtkLacunaMeeting.h"
 #include "vtkLacunaProvenance.h"
@@ -235,13 +234,12 @@ int vtkLacunaRBFImageWarp::FillInputPortInformation(int port, vtkInformation* in
 int vtkLacunaRBFImageWarp::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  // Each rank makes the extent that VTK turns its piece into.
-  outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      // Each rank makes the extent that VTK turns its piece into.
+      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+    });
 }
 
 //------------------------------------------------------------------------------

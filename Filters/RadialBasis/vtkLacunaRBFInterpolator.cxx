@@ -270,16 +270,12 @@ int vtkLacunaRBFInterpolator::RequestUpdateExtent(
 int vtkLacunaRBFInterpolator::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  // The grid follows from the points, and is asked for before any data are.
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), nullptr);
-  this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());
   return vtkLacunaExecution::RunInformation(this, outputs,
     [&]
     {
+      // The grid follows from the points, and is asked for before any data are.
+      vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), nullptr);
+      this->GetInputAlgorithm(0, 0)->Update(this->GetInputConnection(0, 0)->GetIndex());
       vtkLacunaInputs::Check(this);
       vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
       vtkInformation* info = outputs->GetInformationObject(0);

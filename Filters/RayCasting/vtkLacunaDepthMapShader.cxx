@@ -16,7 +16,6 @@
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFunctionText.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -292,14 +291,13 @@ int vtkLacunaDepthMapShader::FillInputPortInformation(int port, vtkInformation* 
 int vtkLacunaDepthMapShader::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  vtkInformation* outInfo = outputVector->GetInformationObject(0);
-  outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_CHAR, 3);
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    {
+      vtkInformation* outInfo = outputVector->GetInformationObject(0);
+      outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      vtkDataObject::SetPointDataActiveScalarInfo(outInfo, VTK_UNSIGNED_CHAR, 3);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -16,7 +16,6 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaMapDepths.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
@@ -111,12 +110,9 @@ int vtkLacunaDepthMapSurface::FillInputPortInformation(int, vtkInformation* info
 int vtkLacunaDepthMapSurface::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputVector,
+    [&]
+    { outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1); });
 }
 
 //------------------------------------------------------------------------------

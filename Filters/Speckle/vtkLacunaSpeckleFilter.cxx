@@ -10,7 +10,6 @@
 #include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
@@ -175,24 +174,24 @@ void FilterArray(const T* from, const lacuna::Extent& fromBox, vtkDataArray* to,
 int vtkLacunaSpeckleFilter::RequestInformation(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (!vtkLacunaInputs::AreSingle(this))
-  {
-    return 0;
-  }
-  // VTK turns the piece that a rank is asked for into its extent.
-  outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-  vtkInformation* scalars =
-    vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
-      vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
-  const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
-    (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
-  {
-    const bool isDouble = scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
-    vtkDataObject::SetPointDataActiveScalarInfo(
-      outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
-  }
-  return 1;
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      // VTK turns the piece that a rank is asked for into its extent.
+      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
+      vtkInformation* scalars =
+        vtkDataObject::GetActiveFieldInformation(inputs[0]->GetInformationObject(0),
+          vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
+      const char* active = scalars ? scalars->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+      if (this->Operation == LAPLACIAN_OF_GAUSSIAN &&
+        (this->ScalarArray.empty() || (active && this->ScalarArray == active)))
+      {
+        const bool isDouble =
+          scalars && scalars->Get(vtkDataObject::FIELD_ARRAY_TYPE()) == VTK_DOUBLE;
+        vtkDataObject::SetPointDataActiveScalarInfo(
+          outputs->GetInformationObject(0), isDouble ? VTK_DOUBLE : VTK_FLOAT, -1);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------

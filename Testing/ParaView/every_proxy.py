@@ -141,8 +141,8 @@ def live():
 
 
 def implant():
-    skull = SkullPhantom(registrationName="Skull", Spacing=[2, 2, 3], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8], NoiseLevel=5)
-    depth = BSplineIsoRayCaster(registrationName="Depth", Input=skull, IsoValues=[500, 900], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=1.2,
+    skull = SkullPhantom(registrationName="Skull", Spacing=[3, 3, 4], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8], NoiseLevel=5)
+    depth = BSplineIsoRayCaster(registrationName="Depth", Input=skull, IsoValues=[500, 900], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2,
                                 ComputeThickness=1)
     opened = BSplineIsoRayCaster(registrationName="Opened", Input=skull, IsoValues=[500], PixelSpacing=2, CutAway="Box")
     with applied(opened):
@@ -153,14 +153,14 @@ def implant():
     Mirror(registrationName="Mirror", Input=depth, PlaneMethod="Given", Origin=[1, 0, 0], Normal=[1, 0.02, 0])
     Mirror(registrationName="Mirrored skull", Input=skull)
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
-    whole = SkullPhantom(registrationName="Whole skull", Spacing=[2, 2, 3], DefectRadius=0)
+    whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
-    filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=10, NodeSpacing=2, DefectRegion="Sphere")
+    filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=14, NodeSpacing=3, DefectRegion="Sphere")
     with applied(filled):
         filled.DefectRegion.Center = [37, -15, 60]
         filled.DefectRegion.Radius = 34
     handles = PolyLineSource(registrationName="Handles", Points=[37, -15, 61, 33, -12, 64])
-    looped = RBFHoleFiller(registrationName="Looped", Input=depth, NodeSpacing=2.5, Kernel="Cubic", CutoffWavelength=8, ControlPoints=handles,
+    looped = RBFHoleFiller(registrationName="Looped", Input=depth, NodeSpacing=3.5, Kernel="Cubic", CutoffWavelength=8, ControlPoints=handles,
                            PriorSurface=prior, DefectRegion="Spline Loop")
     with applied(looped):
         looped.DefectRegion.Points = [70, -15, 45, 45, 25, 55, 5, 10, 75, 15, -50, 65]
