@@ -7,6 +7,7 @@ import lacuna
 import lacuna.plugin
 import numpy as np
 import paraview.simple as pv
+from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
 from lacuna_test import output
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -116,6 +117,43 @@ for proxy, name, bad, good, word in ((skull, "Spacing", [-1] * 3, [4] * 3, "Spac
     setattr(proxy, name, good)
     assert points(shader) == pixels, (name, good, points(shader))
     assert not pv.servermanager.Fetch(shader).GetFieldData().HasArray("LacunaError"), (name, good)
+
+# What ParaView's own filters make of the rest passes for the whole: raising() looks behind it, fetch() into its blocks.
+planes = pv.SlicePlanes(Input=pv.PhantomSweep(NumberOfSlices=4, ImageSize=[20, 20], PixelSpacing=1))
+ball = pv.Sphere()
+joined = [make(Input=both) for make in (pv.AppendGeometry, pv.AppendDatasets, pv.GroupDatasets) for both in ([planes, ball], [ball, planes])]
+for stride, expected in (1, 1600 + 50), (0, 50), (2, 800 + 50):
+    planes.Stride = stride
+    for each in (planes, *joined):
+        for _ in range(2):  # what has failed before does not say so again
+            try:
+                with raising(proxies=[each]):
+                    each.UpdatePipeline()
+                assert stride, f"{each}: nothing is said"
+            except PipelineError as error:
+                assert str(error) == "Stride is 0; give 1 or more" and not stride, (each, stride, str(error))
+        assert each == planes or each.GetDataInformation().GetNumberOfPoints() == expected, (each, stride)
+    for group in joined[-2:]:
+        try:
+            fetch(group)
+            assert stride, "fetch says nothing"
+        except PipelineError as error:
+            assert "Stride" in str(error) and not stride, error
+
+# a writer that takes blocks does not leave out the one that has failed
+model = pv.GroupDatasets(Input=[pv.Ellipse(), filler])
+saved = output("RecoveryBlocks.igs")
+pv.SaveData(saved, proxy=model)
+before = open(saved, "rb").read()
+filler.SupportMargin = -1
+try:
+    with raising():
+        pv.SaveData(saved, proxy=model)
+    raise AssertionError("nothing is said of the block that has failed")
+except PipelineError as error:
+    assert "SupportMargin is -1" in str(error), error
+assert open(saved, "rb").read() == before
+filler.SupportMargin = 12
 
 # of times an error belongs to its own
 class Sweeps(VTKPythonAlgorithmBase):

@@ -18,14 +18,28 @@ def fetch(source):
     order on several ranks perhaps: find them by name. Origin, spacing and direction come from points and may differ from those
     on the server in the last digits (1e-14 of the coordinates). Field data are those of the first rank that
     has a part. Raises RuntimeError when the ranks' parts leave gaps, and PipelineError when the source has failed: its
-    output is then empty and holds the error.
+    output, or a block of it, is then empty and holds the error.
     """
     data = _fetch(source)
-    error = data.GetFieldData().GetAbstractArray("LacunaError") if data is not None else None
-    if error:
-        from lacuna.errors import PipelineError
-        raise PipelineError(error.GetValue(0))
+    for block in _blocks(data):
+        error = block.GetFieldData().GetAbstractArray("LacunaError")
+        if error:
+            from lacuna.errors import PipelineError
+            raise PipelineError(error.GetValue(0))
     return data
+
+
+def _blocks(data):
+    """The data, and all that are in them."""
+    if data is None:
+        return
+    yield data
+    if data.IsA("vtkCompositeDataSet"):
+        blocks = data.NewIterator()
+        blocks.InitTraversal()
+        while not blocks.IsDoneWithTraversal():
+            yield blocks.GetCurrentDataObject()
+            blocks.GoToNextItem()
 
 
 def _fetch(source):

@@ -38,11 +38,26 @@ def _clean(text):
     return re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", " ".join(line.strip() for line in lines)).strip()
 
 
+def _check_outputs(proxy):
+    """Raises the error that an output of proxy, or of one of those before it, holds."""
+    from lacuna.data import fetch
+    from paraview import servermanager
+    for port in range(proxy.SMProxy.GetNumberOfOutputPorts()):
+        if proxy.SMProxy.GetDataInformation(port).GetFieldDataInformation().GetArrayInformation("LacunaError"):
+            fetch(servermanager.OutputPort(proxy, port))
+    for name in proxy.ListProperties():
+        prop = proxy.SMProxy.GetProperty(name)
+        for i in range(prop.GetNumberOfProxies() if prop.IsA("vtkSMInputProperty") else 0):
+            _check_outputs(servermanager._getPyProxy(prop.GetProxy(i)))
+
+
 @contextlib.contextmanager
-def raising(warnings=None):
+def raising(warnings=None, proxies=()):
     """Raises PipelineError at the end of the block when an algorithm reported an error in it.
 
     warnings: a list that receives the texts of warnings, or None.
+    proxies: sources and filters of ParaView. An error that their outputs, or those of filters before them, hold is raised, too: ParaView
+    does not execute again what has failed in an earlier block, and its own filters pass on what is left.
     """
     errors = []
 
@@ -71,3 +86,5 @@ def raising(warnings=None):
         # of several ranks an error that is kept is told again with a hint
         told = dict.fromkeys(text for text in errors if text.removesuffix(_AGAIN) == text or text.removesuffix(_AGAIN) not in errors)
         raise PipelineError("; ".join(told)) from consequence
+    for proxy in proxies:
+        _check_outputs(proxy)
