@@ -204,7 +204,7 @@ std::string GetError(vtkDataObject* data)
     const auto block = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
     for (block->InitTraversal(); !block->IsDoneWithTraversal(); block->GoToNextItem())
     {
-      const std::string error = GetError(block->GetCurrentDataObject());
+      std::string error = GetError(block->GetCurrentDataObject());
       if (!error.empty())
       {
         return error;
@@ -292,7 +292,7 @@ std::string vtkLacunaFailure::GetUpstream(vtkAlgorithm* algorithm)
   {
     for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
     {
-      const std::string error = GetError(algorithm->GetInputDataObject(port, i));
+      std::string error = GetError(algorithm->GetInputDataObject(port, i));
       if (!error.empty())
       {
         return error;

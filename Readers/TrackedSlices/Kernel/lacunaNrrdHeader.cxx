@@ -140,7 +140,7 @@ public:
     SequenceAxes axes = this->ReadSize();
     // without a kind, an axis that has no direction in space and comes first is of components
     const std::string* directions = this->Find("space directions");
-    if (directions && ToLower(*directions).rfind("none", 0) == 0 &&
+    if (!axes.Sizes.empty() && directions && ToLower(*directions).rfind("none", 0) == 0 &&
       (axes.Kinds.empty() || axes.Kinds[0] == "???" || axes.Kinds[0] == "none"))
     {
       axes.Kinds.resize(axes.Sizes.size(), "domain");

@@ -217,6 +217,12 @@ TEST(NrrdVolume, WhatIsWrong)
   NrrdFile file = MakeVolume();
   file.Remove("space origin");
   ExpectParts(Read(file).Warnings.at(0), { "first voxel" });
+  for (const char* field : { "dimension", "sizes", "kinds" })
+  {
+    file.Remove(field);
+  }
+  file.Set("space directions", "none (1,0,0) (0,1,0) (0,0,1)");
+  ExpectParts(GetFileError("ct.nrrd", file.GetContent()), { "sizes is missing" });
 }
 
 TEST(NrrdVolume, ValuesBeforeTheyWereStored)
