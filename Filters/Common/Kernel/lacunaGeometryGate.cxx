@@ -219,10 +219,11 @@ GeometryFinding CheckImageChain(const std::vector<Matrix4>& links, std::size_t& 
   for (std::size_t i = 0; i < links.size(); ++i)
   {
     GeometryFinding finding = inMillimetres ? CheckPose(links[i]) : GeometryFinding();
-    if (finding.Fault == GeometryFault::NotRigid || finding.Fault == GeometryFault::Rounded)
+    if (finding.Fault == GeometryFault::NotRigid || finding.Fault == GeometryFault::Rounded ||
+      finding.Fault == GeometryFault::Mirrored)
     {
       link = i;
-      return { finding.Fault == GeometryFault::NotRigid ? GeometryFault::Inexact : finding.Fault,
+      return { finding.Fault == GeometryFault::Rounded ? finding.Fault : GeometryFault::Inexact,
         finding.Text + ", though the transforms before it have turned pixels into mm",
         "check its digits" };
     }

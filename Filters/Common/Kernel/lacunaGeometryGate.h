@@ -63,8 +63,8 @@ GeometryFinding CheckQuaternion(double length);
 GeometryFinding CheckImage(const Matrix4& imageToMillimetres);
 
 /// Of transforms that together map pixels to mm, in this order. Their product has to pass CheckImage.
-/// Each one after the product has the unit mm has to be rigid: as a factor it would look like the
-/// pixels of another scanner. link: the one that is wrong, or links.size() for the product.
+/// Each one after the product has the unit mm has to be rigid and right-handed: a factor would look
+/// like the pixels of another scanner, and two mirrors like none. link: the one that is wrong, or links.size() for the product.
 GeometryFinding CheckImageChain(const std::vector<Matrix4>& links, std::size_t& link);
 
 /// In place of a pose where there is none: NaN.

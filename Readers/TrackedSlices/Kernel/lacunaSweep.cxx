@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSweep.h"
 
+#include "lacunaChainJudge.h"
 #include "lacunaGeometryGate.h"
 #include "lacunaItemList.h"
 #include "lacunaPatientIdentity.h"
@@ -42,11 +43,6 @@ std::string ListFrames(
     parts.push_back(text + in + DescribeItems("frame", frames));
   }
   return JoinSome(parts);
-}
-
-bool IsPictureFrame(const std::string& frame)
-{
-  return frame.find("Image") != std::string::npos;
 }
 
 class SweepBuilder
@@ -110,17 +106,12 @@ private:
   void ReportPictures(const Chain& chain);
   void DescribeChain(const Chain& chain);
   void ReportBadFrames(const SweepTransform& transform);
-  std::size_t CountImageLinks(const Chain& chain) const;
-  void JudgeChain(const Chain& chain, bool calibrated);
-  void Judge(const Chain& links, bool ofImage);
-  std::string NameTransforms(const Chain& links) const;
 
   const SequenceHeader& Header;
   const SweepOptions& Options;
   std::size_t Count;
   SweepTransforms Transforms;
   std::string ImageFrame;                                   ///< of the pixels
-  std::vector<char> Impossible;                             ///< frames whose pose the gate flags
   std::map<std::string, std::vector<std::size_t>> BadFlags; ///< frames by the text of SliceStatus
   Sweep Result;
 };
@@ -411,14 +402,21 @@ void SweepBuilder::BuildPoses()
   {
     return; // no pose to judge
   }
-  this->JudgeChain(chain, calibrated);
+  const ChainJudgement judgement =
+    JudgeChain(this->Transforms, chain, this->Count, calibrated, this->Options.DropInvalid);
+  if (!judgement.Refusal.empty())
+  {
+    this->Fail(judgement.Refusal);
+  }
+  this->Result.Warnings.insert(
+    this->Result.Warnings.end(), judgement.Warnings.begin(), judgement.Warnings.end());
   for (std::size_t i = 0; i < this->Count; ++i)
   {
     const bool refused = this->Options.DropInvalid &&
       std::any_of(chain.begin(), chain.end(),
         [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
     Matrix4 pose;
-    if (!this->Transforms.Compose(chain, i, pose) || refused || this->Impossible[i])
+    if (!this->Transforms.Compose(chain, i, pose) || refused || judgement.Impossible[i])
     {
       this->Result.Status[i] |= Sweep::PoseInvalid;
       pose = NoPose();
@@ -620,119 +618,6 @@ void SweepBuilder::ReportBadFrames(const SweepTransform& transform)
     this->Warn("field " + transform.Name +
       "TransformStatus is missing in all frames; the transform is taken as valid");
   }
-}
-
-//------------------------------------------------------------------------------
-// Links that belong to the calibration: from pixels to the first frame that moves.
-std::size_t SweepBuilder::CountImageLinks(const Chain& chain) const
-{
-  std::size_t count = std::min<std::size_t>(1, chain.size());
-  while (count < chain.size() &&
-    (this->Transforms.Get(chain[count]).IsFixed() || IsPictureFrame(chain[count - 1].To)))
-  {
-    ++count;
-  }
-  return count;
-}
-
-//------------------------------------------------------------------------------
-void SweepBuilder::JudgeChain(const Chain& chain, bool calibrated)
-{
-  this->Impossible.assign(this->Count, 0);
-  const auto ofImage = static_cast<std::ptrdiff_t>(calibrated ? this->CountImageLinks(chain) : 0);
-  if (calibrated)
-  {
-    this->Judge(Chain(chain.begin(), chain.begin() + ofImage), true);
-  }
-  for (auto link = chain.begin() + ofImage; link != chain.end(); ++link)
-  {
-    this->Judge({ *link }, false);
-  }
-}
-
-//------------------------------------------------------------------------------
-// Passes transforms through the gate: refuses, flags or warns. What cannot be composed at all,
-// ReportBadFrames tells.
-void SweepBuilder::Judge(const Chain& links, bool ofImage)
-{
-  // from one picture to another is no link of its own: pixels may become larger
-  std::vector<Chain> parts;
-  for (const TransformGraph::Link& link : links)
-  {
-    if (parts.empty() || !IsPictureFrame(parts.back().back().To))
-    {
-      parts.emplace_back();
-    }
-    parts.back().push_back(link);
-  }
-  const bool constant = std::all_of(links.begin(), links.end(),
-    [&](const TransformGraph::Link& link) { return this->Transforms.Get(link).FromCalibration; });
-  const GeometryOrigin origin =
-    constant ? GeometryOrigin::CalibrationFile : GeometryOrigin::Sequence;
-  struct Found
-  {
-    std::string Text;
-    std::string Advice;
-    std::vector<std::size_t> Frames;
-  };
-  std::map<GeometryFault, Found> found;
-  std::vector<Matrix4> matrices(parts.size());
-  for (std::size_t i = 0; i < (constant ? std::min<std::size_t>(1, this->Count) : this->Count); ++i)
-  {
-    const bool refused = this->Options.DropInvalid &&
-      std::any_of(links.begin(), links.end(),
-        [&](const TransformGraph::Link& link) { return !this->Transforms.Get(link).IsValid(i); });
-    bool usable = !refused;
-    for (std::size_t part = 0; usable && part < parts.size(); ++part)
-    {
-      usable = this->Transforms.Compose(parts[part], i, matrices[part]);
-    }
-    if (!usable)
-    {
-      continue;
-    }
-    std::size_t part = 0;
-    if (const GeometryFinding finding =
-          ofImage ? CheckImageChain(matrices, part) : CheckPose(matrices[0]))
-    {
-      Found& of = found[finding.Fault];
-      if (of.Frames.empty())
-      {
-        of.Text = this->NameTransforms(part < parts.size() ? parts[part] : links) +
-          (constant ? " of the calibration file " : " ") + finding.Text;
-        of.Advice = finding.Advice;
-      }
-      of.Frames.push_back(i);
-      this->Impossible[i] |= GetAction(origin, finding.Fault) == GeometryAction::Flag ? 1 : 0;
-    }
-  }
-  for (const auto& [fault, of] : found)
-  {
-    const std::string place = constant ? std::string()
-                                       : " (frame " + std::to_string(of.Frames.front()) + ") in " +
-        DescribeItems("frame", of.Frames);
-    switch (GetAction(origin, fault))
-    {
-      case GeometryAction::Refuse:
-        this->Fail(of.Text + "; " + of.Advice + ", or give another CalibrationFileName");
-      case GeometryAction::Flag:
-        this->Warn(of.Text + place + "; flagged in SliceStatus (1, pose invalid); " + of.Advice);
-        break;
-      default:
-        this->Warn(of.Text + place + "; used nevertheless; " + of.Advice);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-std::string SweepBuilder::NameTransforms(const Chain& links) const
-{
-  std::string names;
-  for (const TransformGraph::Link& link : links)
-  {
-    names += (names.empty() ? "" : " and ") + this->Transforms.Get(link).Name;
-  }
-  return (links.size() > 1 ? "the product of transforms " : "transform ") + names;
 }
 }
 

@@ -239,6 +239,12 @@ TEST(GeometryGate, AChainIsJudgedAsAWhole)
     EXPECT_EQ(link, 2u);
     EXPECT_NE(finding.Text.find("is not rigid"), std::string::npos) << finding.Text;
   }
+  // two mirrors, of which the product shows nothing
+  const Matrix4 mirror = Matrix4::Scaling({ 1, -1, 1 });
+  const GeometryFinding twice = CheckImageChain({ mirror * pixels, mount * mirror }, link);
+  EXPECT_EQ(twice.Fault, GeometryFault::Inexact);
+  EXPECT_EQ(link, 1u);
+  EXPECT_NE(twice.Text.find("mirrors"), std::string::npos) << twice.Text;
 }
 
 TEST(GeometryGate, NoDamagedDigitOfAChainPassesInSilence)

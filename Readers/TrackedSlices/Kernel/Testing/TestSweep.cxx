@@ -386,6 +386,27 @@ TEST(Sweep, PosesOfPicturesAreJudgedAsCalibrations)
 }
 
 // As PLUS has them: the size of a pixel is in the middle of transforms that do not move.
+// A probe that is held still has poses all the same: what is wrong with them is no calibration's
+// fault, and they place no slice.
+TEST(Sweep, PosesOfAProbeThatIsHeldStillAreJudgedAsPoses)
+{
+  for (const int frames : { 1, 5 })
+  {
+    for (const std::string pose : { "1 0 0 3 0 1 0 40 0 0 -1 -7 0 0 0 1", // mirrored
+           "1.2 0 0 3 0 1.2 0 40 0 0 1.2 -7 0 0 0 1" })
+    {
+      SequenceFile file = MakeSequence(frames);
+      for (int frame = 0; frame < frames; ++frame)
+      {
+        file.SetFrame(frame, "ProbeToTrackerTransform", pose);
+      }
+      const Sweep sweep = Build(file, MakeCalibration("0.2 0 0 0 0 0.2 0 0 0 0 0.2 0 0 0 0 1"));
+      EXPECT_EQ(sweep.Status, (Flags(frames, 1))) << pose;
+      ExpectContains(Warnings(sweep), { "transform ProbeToTracker ", "flagged in SliceStatus" });
+    }
+  }
+}
+
 TEST(Sweep, FixedTransformsOfASequenceAreOneCalibration)
 {
   const std::string turned = "0 -1 0 3 1 0 0 40 0 0 1 -7 0 0 0 1";
