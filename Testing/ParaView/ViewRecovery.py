@@ -4,8 +4,8 @@
 ViewRecovery.py [program that makes a CT series]
 
 Each proxy is shown beside what follows it. One of its properties gets a value that is an error, then the good one again; then
-the same with an input of blocks. What is shown must be empty in between, and the same picture as before at the end: twice, since
-ParaView once stopped updating a view after the first error. Nothing is updated but by rendering.
+the same with an input of blocks, or that value once more. What is shown must be empty in between, and the same picture as before
+at the end: twice, since ParaView once stopped updating a view after the first error. Nothing is updated but by rendering.
 """
 import sys
 
@@ -135,14 +135,17 @@ class Views:
 
 
 def bad_values(proxy):
-    """(property, its value, a value that is an error): of the properties, then blocks as the input."""
+    """(property, its value, a value that is an error): of the properties, then blocks as the input, or the same again."""
     name, bad = BAD[kind(proxy)]
     good = getattr(proxy, name)
     good = good.GetData() if hasattr(good, "GetData") else good
-    yield name, list(good) if hasattr(good, "__len__") and not isinstance(good, str) else good, bad
+    good = list(good) if hasattr(good, "__len__") and not isinstance(good, str) else good
+    yield name, good, bad
     if connected(proxy) and kind(proxy) not in TAKE_BLOCKS:
         good = connected(proxy)
         yield "Input", good if len(good) > 1 else good[0], pv.GroupDatasets(registrationName="Blocks", Input=good[:1])
+    else:
+        yield name, good, bad
 
 
 def check(proxy, among, views):
