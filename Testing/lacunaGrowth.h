@@ -7,10 +7,12 @@
 #include "lacunaProcessMemory.h"
 #include "lacunaSanitized.h"
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include <malloc.h>
 
@@ -27,6 +29,19 @@ inline long CountEntries(const char* folder)
 {
   const std::filesystem::directory_iterator entries(folder);
   return std::distance(begin(entries), end(entries));
+}
+
+/// The threads of this process. One that was joined stays listed until the kernel has put it away, so more
+/// than expected are counted again for some seconds.
+inline long CountThreads(long expected)
+{
+  long count = CountEntries("/proc/self/task");
+  for (int i = 0; i < 500 && count > expected; ++i)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    count = CountEntries("/proc/self/task");
+  }
+  return count;
 }
 
 /// run(count) does it so many times, and has been called for what is made once. Gives what grows; empty
@@ -55,7 +70,7 @@ inline std::string FindGrowth(int cycles, const std::function<void(int)>& run, s
   {
     return "files stay open";
   }
-  if (CountEntries("/proc/self/task") > threads)
+  if (CountThreads(threads) > threads)
   {
     return "threads stay";
   }
