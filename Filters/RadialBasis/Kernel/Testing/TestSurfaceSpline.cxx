@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSurfaceSpline.h"
+
+#include "lacunaExecution.h"
+#include "lacunaTestShapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace
+{
+using lacuna::TestShape;
+using lacuna::Vec3;
+
+lacuna::SurfaceSpline Fit(const lacuna::OrientedPoints& data,
+  const lacuna::SurfaceSplineOptions& options = {}, int threads = 2)
+{
+  lacuna::ThreadExecution execution(threads);
+  return { execution, data, options };
+}
+
+// RMS distance of points of the true surface from the fitted one, to first order.
+double GetError(const lacuna::SurfaceSpline& spline, const TestShape& shape)
+{
+  lacuna::ThreadExecution execution(2);
+  const auto truth = shape.Sample(2000, 99);
+  std::vector<double> values(truth.Points.size());
+  std::vector<Vec3> gradients(truth.Points.size());
+  spline.Evaluate(execution, truth.Points, values, &gradients);
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const double d = values[i] / lacuna::Norm(gradients[i]);
+    sum += d * d / static_cast<double>(values.size());
+  }
+  return std::sqrt(sum);
+}
+}
+
+TEST(SurfaceSpline, ExactPointsGiveTheShape)
+{
+  // bent and tapered, without symmetry in x and y
+  const TestShape shape(TestShape::Kumara);
+  const auto spline = Fit(shape.SampleNoisy(4000, 0, false, 1));
+  EXPECT_LT(GetError(spline, shape), 0.01);
+  EXPECT_LT(spline.GetReport().HeldOutError, 0.02);
+}
+
+TEST(SurfaceSpline, RecoversTheErrorsOfItsData)
+{
+  const TestShape shape(TestShape::Ellipsoid);
+  for (const double sigma : { 0.2, 0.5 })
+  {
+    const auto spline = Fit(shape.SampleNoisy(4000, sigma, false, 2));
+    EXPECT_NEAR(spline.GetReport().PointError, sigma, 0.12 * sigma);
+    EXPECT_NEAR(spline.GetReport().NormalError, 5 * std::atan(1.0) / 45 / std::sqrt(2.0), 0.015);
+    // noise of 4000 points is averaged by far more than a local mean of ten would
+    EXPECT_LT(GetError(spline, shape), 0.15 * sigma);
+  }
+}
+
+TEST(SurfaceSpline, CrossesPatchesWithoutPoints)
+{
+  const TestShape shape(TestShape::Torus);
+  const auto spline = Fit(shape.SampleNoisy(5000, 0, true, 3));
+  EXPECT_LT(GetError(spline, shape), 0.03);
+}
+
+TEST(SurfaceSpline, GradientsAreThoseOfTheValues)
+{
+  for (const auto kernel : { lacuna::RadialKernel::Cubic, lacuna::RadialKernel::Linear })
+  {
+    lacuna::SurfaceSplineOptions options;
+    options.Kernel = kernel;
+    const auto spline = Fit(TestShape(TestShape::Kumara).SampleNoisy(1500, 0.1, false, 4), options);
+    lacuna::ThreadExecution execution(1);
+    constexpr double step = 1e-4;
+    const std::vector<Vec3> at{ { 10, 5, 8 }, { 10 - step, 5, 8 }, { 10 + step, 5, 8 },
+      { 10, 5 - step, 8 }, { 10, 5 + step, 8 }, { 10, 5, 8 - step }, { 10, 5, 8 + step } };
+    std::vector<double> values(at.size());
+    std::vector<Vec3> gradients(at.size());
+    spline.Evaluate(execution, at, values, &gradients);
+    for (int c = 0; c < 3; ++c)
+    {
+      EXPECT_NEAR(gradients[0][c], (values[2 * c + 2] - values[2 * c + 1]) / (2 * step), 1e-5);
+    }
+    std::vector<double> alone(at.size());
+    spline.Evaluate(execution, at, alone, nullptr);
+    EXPECT_EQ(alone, values);
+  }
+}
+
+TEST(SurfaceSpline, UnitsOfLengthDoNotMatter)
+{
+  const TestShape shape(TestShape::Ellipsoid);
+  const auto data = shape.SampleNoisy(1000, 0.3, false, 5);
+  auto moved = data;
+  for (Vec3& p : moved.Points)
+  {
+    p = 1000.0 * p + Vec3{ 5e5, -2e5, 1e5 };
+  }
+  lacuna::SurfaceSplineOptions options;
+  const auto spline = Fit(data, options);
+  options.Accuracy *= 1000;
+  const auto scaled = Fit(moved, options);
+  EXPECT_NEAR(scaled.GetReport().PointError, 1000 * spline.GetReport().PointError, 0.1);
+  lacuna::ThreadExecution execution(1);
+  std::vector<double> a(20);
+  std::vector<double> b(20);
+  spline.Evaluate(execution, { data.Points.begin(), data.Points.begin() + 20 }, a, nullptr);
+  scaled.Evaluate(execution, { moved.Points.begin(), moved.Points.begin() + 20 }, b, nullptr);
+  for (int i = 0; i < 20; ++i)
+  {
+    EXPECT_NEAR(b[i], 1000 * a[i], 0.1);
+  }
+}
+
+TEST(SurfaceSpline, PointsWithLargeErrorsCountLess)
+{
+  const TestShape shape(TestShape::Sphere);
+  auto data = shape.SampleNoisy(2000, 0.05, false, 6);
+  data.Errors.assign(data.Points.size(), 1.0);
+  for (std::size_t i = 0; i < data.Points.size(); i += 3)
+  {
+    // a third is 1 mm too far out on one side
+    data.Points[i] = data.Points[i] + (data.Points[i][0] > 0 ? 1.0 : 0.0) * data.Normals[i];
+    data.Errors[i] = 20;
+  }
+  const double weighted = GetError(Fit(data), shape);
+  data.Errors.clear();
+  const double alike = GetError(Fit(data), shape);
+  EXPECT_LT(weighted, 0.03);
+  EXPECT_GT(alike, 5 * weighted);
+}
+
+TEST(SurfaceSpline, DoesNotDependOnThreads)
+{
+  const auto data = TestShape(TestShape::Kumara).SampleNoisy(1000, 0.2, false, 7);
+  lacuna::ThreadExecution execution(1);
+  std::vector<double> one(100);
+  std::vector<double> three(100);
+  const std::vector<Vec3> at(data.Points.begin(), data.Points.begin() + 100);
+  Fit(data, {}, 1).Evaluate(execution, at, one, nullptr);
+  Fit(data, {}, 3).Evaluate(execution, at, three, nullptr);
+  EXPECT_EQ(one, three);
+}
+
+TEST(SurfaceSpline, RefusesBadData)
+{
+  const auto good = TestShape(TestShape::Sphere).Sample(200, 8);
+  auto bad = good;
+  bad.Points[7][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  bad = good;
+  bad.Normals[7] = {};
+  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  bad = good;
+  bad.Normals.pop_back();
+  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  bad = good;
+  bad.Errors.assign(200, 0.0);
+  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  bad = good;
+  bad.Points.assign(200, { 1, 2, 3 });
+  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  EXPECT_THROW(Fit({}), std::invalid_argument);
+  lacuna::SurfaceSplineOptions options;
+  options.PointError = -1;
+  EXPECT_THROW(Fit(good, options), std::invalid_argument);
+  options = {};
+  options.Kernel = lacuna::RadialKernel::ThinPlate;
+  EXPECT_THROW(Fit(good, options), std::invalid_argument);
+}

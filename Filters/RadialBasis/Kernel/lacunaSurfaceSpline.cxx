@@ -1,0 +1,828 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSurfaceSpline.h"
+
+#include "lacunaExecution.h"
+#include "lacunaSingleBlasThread.h"
+#include "lacunaSymmetricFactorization.h"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+// Fortran interfaces; the last arguments are the lengths of the character arguments.
+extern "C"
+{
+  void dgeqrf_(const int* rows, const int* columns, double* a, const int* lda, double* tau,
+    double* work, const int* workLength, int* info);
+  void dormqr_(const char* side, const char* transposed, const int* rows, const int* columns,
+    const int* reflectors, const double* a, const int* lda, const double* tau, double* c,
+    const int* ldc, double* work, const int* workLength, int* info, std::size_t, std::size_t);
+  void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info, std::size_t);
+}
+
+namespace lacuna
+{
+namespace
+{
+constexpr int Terms = 4; // of the linear polynomial
+// Of the points held out: a tenth, or where that are few a quarter.
+constexpr std::size_t FewHeldOut = 50;
+constexpr std::size_t MostHeldOut = 1500;
+constexpr double LeastImprovement = 0.95; // of the held-out error, for more nodes
+// What is taken for no error, of the extent of the points: the rounding of 32-bit coordinates.
+constexpr double SmallestPointError = 1e-7;
+constexpr double SmallestNormalError = 1e-4;
+constexpr int Rounds = 3;
+const char* const Unsolvable =
+  "the equations of the surface cannot be solved; give a larger expected "
+  "error of the points";
+constexpr std::size_t BlockPoints = 256;
+
+// Column after column, aligned so that BLAS always takes the same path.
+class Matrix
+{
+public:
+  Matrix() = default;
+  Matrix(std::size_t rows, std::size_t columns)
+    : Rows(rows)
+    , Columns(columns)
+    , Elements(new (std::align_val_t(64)) double[rows * columns]())
+  {
+  }
+
+  std::size_t GetRows() const { return this->Rows; }
+  std::size_t GetColumns() const { return this->Columns; }
+  double* Column(std::size_t column) { return this->Elements.get() + column * this->Rows; }
+  const double* Column(std::size_t column) const
+  {
+    return this->Elements.get() + column * this->Rows;
+  }
+
+private:
+  std::size_t Rows = 0;
+  std::size_t Columns = 0;
+  std::unique_ptr<double[], FreeAligned> Elements;
+};
+
+// A number that looks random, the same for the same index on all machines (splitmix64).
+std::uint64_t Scramble(std::uint64_t x)
+{
+  x += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+double GetRootMeanSquare(const std::vector<double>& values)
+{
+  double sum = 0;
+  for (const double v : values)
+  {
+    sum += v * v;
+  }
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::string DescribePoint(const Vec3& p)
+{
+  return "(" + std::to_string(p[0]) + ", " + std::to_string(p[1]) + ", " + std::to_string(p[2]) +
+    ")";
+}
+
+void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
+{
+  if (data.Normals.size() != data.Points.size() ||
+    (!data.Errors.empty() && data.Errors.size() != data.Points.size()))
+  {
+    throw std::invalid_argument("there must be as many normals and errors as points");
+  }
+  if (data.Points.size() < SurfaceSpline::FewestPoints)
+  {
+    throw std::invalid_argument("there are " + std::to_string(data.Points.size()) +
+      " points; a surface needs " + std::to_string(SurfaceSpline::FewestPoints) + " or more");
+  }
+  for (std::size_t i = 0; i < data.Points.size(); ++i)
+  {
+    if (!IsFinite(data.Points[i]) || !(std::abs(Norm(data.Normals[i]) - 1) < 1e-3))
+    {
+      throw std::invalid_argument("point " + std::to_string(i) + " at " +
+        DescribePoint(data.Points[i]) +
+        " or its normal is not finite, or this has another length "
+        "than 1");
+    }
+    if (!data.Errors.empty() && (!(data.Errors[i] > 0) || !std::isfinite(data.Errors[i])))
+    {
+      throw std::invalid_argument("the error of point " + std::to_string(i) + " at " +
+        DescribePoint(data.Points[i]) + " must be a finite number above 0");
+    }
+  }
+  if (options.Kernel != RadialKernel::Cubic && options.Kernel != RadialKernel::Linear)
+  {
+    throw std::invalid_argument("the kernel must be r^3 or r");
+  }
+  for (const double x : { options.PointError, options.LeastNormalError, options.Accuracy })
+  {
+    if (!(x >= 0) || !std::isfinite(x))
+    {
+      throw std::invalid_argument("errors and Accuracy must be finite numbers >= 0");
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+// The least-squares problem, in units of the points' extent.
+class SurfaceSpline::Fit
+{
+public:
+  Fit(Execution& execution, const OrientedPoints& data, const SurfaceSplineOptions& options,
+    const Vec3& origin, double scale)
+    : Runner(execution)
+    , Options(options)
+    , Scale(scale)
+    , Normals(data.Normals)
+  {
+    this->Points.reserve(data.Points.size());
+    for (const Vec3& point : data.Points)
+    {
+      this->Points.push_back((1 / scale) * (point - origin));
+    }
+    this->Weights.assign(data.Points.size(), 1.0);
+    for (std::size_t i = 0; i < data.Errors.size(); ++i)
+    {
+      this->Weights[i] = 1 / data.Errors[i];
+    }
+    this->Share();
+  }
+
+  void Run(SurfaceSplineReport& report)
+  {
+    const SingleBlasThread single(this->Runner.GetNumberOfThreads());
+    double stage = 0;
+    double error = std::numeric_limits<double>::infinity();
+    double stiffness = 1;
+    this->AddSpreadNodes(std::min(FewestNodes, this->Known.size()));
+    for (;;)
+    {
+      this->Runner.SetStage(stage, stage + 0.5 * (1 - stage));
+      stage += 0.5 * (1 - stage);
+      this->SetUp();
+      const bool first = !std::isfinite(error);
+      const double held = this->Tune(stiffness, first, report);
+      const bool better = held < LeastImprovement * error;
+      error = std::min(error, held);
+      this->AddHeldOut();
+      const std::vector<double> solution = this->Solve(report, stiffness);
+      if (solution.empty())
+      {
+        throw std::runtime_error(Unsolvable);
+      }
+      if (better || first)
+      {
+        this->Keep(solution);
+        report.Nodes = this->Nodes.size();
+        report.HeldOutError = held * this->Scale;
+        this->Best = report;
+      }
+      report = this->Best;
+      const std::size_t room = std::min(MostNodes, this->Known.size()) - this->Nodes.size();
+      if (!better || room == 0 || held * this->Scale <= this->Options.Accuracy)
+      {
+        return;
+      }
+      const std::size_t added = std::min(room, this->Nodes.size());
+      this->AddMissedNodes(added / 2, solution);
+      this->AddSpreadNodes(this->Nodes.size() + added - added / 2);
+    }
+  }
+
+  // Of the best fit.
+  std::vector<Vec3> Centers;
+  std::vector<double> Coefficients;
+  std::array<double, 4> Polynomial{};
+
+private:
+  // Which points count, and which of them are held out at first.
+  void Share()
+  {
+    const std::size_t n = this->Points.size();
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(),
+      [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
+    const std::size_t held = std::min(MostHeldOut, std::max(n / 10, std::min(n / 4, FewHeldOut)));
+    this->HeldOut.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(held));
+    const std::size_t last = std::min(n, held + MaximumPoints);
+    this->Known.assign(order.begin() + static_cast<std::ptrdiff_t>(held),
+      order.begin() + static_cast<std::ptrdiff_t>(last));
+    this->WithNormals = std::min(this->Known.size(), MaximumNormals);
+    this->Distances.assign(this->Known.size(), std::numeric_limits<double>::infinity());
+  }
+
+  void AddNode(std::size_t known)
+  {
+    const Vec3& node = this->Points[this->Known[known]];
+    this->Nodes.push_back(this->Known[known]);
+    for (std::size_t i = 0; i < this->Known.size(); ++i)
+    {
+      this->Distances[i] = std::min(this->Distances[i], Norm(this->Points[this->Known[i]] - node));
+    }
+  }
+
+  // Each as far from those there are as possible, up to a number of nodes.
+  void AddSpreadNodes(std::size_t count)
+  {
+    if (this->Nodes.empty() && count > 0)
+    {
+      this->AddNode(0);
+    }
+    while (this->Nodes.size() < count)
+    {
+      const auto farthest = std::max_element(this->Distances.begin(), this->Distances.end());
+      if (*farthest <= 0)
+      {
+        return; // all other points repeat nodes
+      }
+      this->AddNode(static_cast<std::size_t>(farthest - this->Distances.begin()));
+    }
+  }
+
+  // Where the fit misses most, but not beside nodes.
+  void AddMissedNodes(std::size_t count, const std::vector<double>& solution)
+  {
+    const std::vector<double> missed = this->GetMisses(solution);
+    std::vector<double> sorted = this->Distances;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double nearest = 0.7 * *middle;
+    std::vector<std::size_t> order(this->Known.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::sort(order.begin(), order.end(),
+      [&](std::size_t a, std::size_t b)
+      { return missed[a] != missed[b] ? missed[a] > missed[b] : a < b; });
+    const std::size_t last = this->Nodes.size() + count;
+    for (std::size_t i = 0; i < order.size() && this->Nodes.size() < last; ++i)
+    {
+      if (this->Distances[order[i]] > nearest)
+      {
+        this->AddNode(order[i]);
+      }
+    }
+  }
+
+  // The centres of the nodes, and their radial functions made orthonormal: each function of them
+  // that the polynomial's side conditions allow then has the energy |y|^2 of its coefficients y.
+  void SetUp()
+  {
+    const std::size_t nodes = this->Nodes.size();
+    this->Trial.clear();
+    for (const std::size_t node : this->Nodes)
+    {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const std::size_t other : this->Nodes)
+      {
+        const double distance = Norm(this->Points[other] - this->Points[node]);
+        nearest = distance > 0 ? std::min(nearest, distance) : nearest;
+      }
+      for (const double side : { -0.5, 0.5 })
+      {
+        this->Trial.push_back(this->Points[node] + side * nearest * this->Normals[node]);
+      }
+    }
+    const std::size_t size = 2 * nodes;
+    const int n = static_cast<int>(size);
+    this->Reflectors = Matrix(size, Terms);
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      this->Reflectors.Column(0)[i] = 1;
+      for (int c = 0; c < 3; ++c)
+      {
+        this->Reflectors.Column(c + 1)[i] = this->Trial[i][c];
+      }
+    }
+    this->ReflectorScales.assign(Terms, 0.0);
+    int info = 0;
+    const int terms = Terms;
+    std::vector<double> work(64 * size);
+    const int length = static_cast<int>(work.size());
+    dgeqrf_(&n, &terms, this->Reflectors.Column(0), &n, this->ReflectorScales.data(), work.data(),
+      &length, &info);
+    for (int c = 0; c < Terms; ++c)
+    {
+      if (std::abs(this->Reflectors.Column(c)[c]) < 1e-9)
+      {
+        throw std::invalid_argument("all points lie on one line or in one place");
+      }
+    }
+    Matrix energy(size, size);
+    this->Runner.For(static_cast<std::int64_t>(size), 16,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t j = begin; j < end; ++j)
+        {
+          this->FillColumn(this->Trial, 0, size, this->Trial[j], energy.Column(j), nullptr);
+        }
+      });
+    this->Reflect('L', 'T', energy);
+    this->Reflect('R', 'N', energy);
+    const std::size_t rest = size - Terms;
+    this->Root = Matrix(rest, rest);
+    double trace = 0;
+    for (std::size_t j = 0; j < rest; ++j)
+    {
+      std::copy_n(energy.Column(j + Terms) + Terms, rest, this->Root.Column(j));
+      trace += this->Root.Column(j)[j];
+    }
+    for (std::size_t j = 0; j < rest; ++j)
+    {
+      this->Root.Column(j)[j] += 1e-13 * trace / static_cast<double>(rest);
+    }
+    const int m = static_cast<int>(rest);
+    dpotrf_("L", &m, this->Root.Column(0), &m, &info, 1);
+    if (info != 0)
+    {
+      throw std::runtime_error("nodes lie too close together for the equations to be solved; thin "
+                               "the points out");
+    }
+    this->ValueProducts = Matrix(size, size);
+    this->SlopeProducts = Matrix(size, size);
+    this->SlopeRight.assign(size, 0.0);
+    this->Accumulate(this->Known, this->WithNormals);
+    this->HeldRows = this->MakeRows(this->HeldOut, 0, this->HeldOut.size(), true);
+  }
+
+  // values[i] = phi(|points[first + i] - center|), gradients[c * count + i] its derivatives by
+  // points.
+  void FillColumn(const std::vector<Vec3>& points, std::size_t first, std::size_t count,
+    const Vec3& center, double* values, double* gradients) const
+  {
+    const bool cubic = this->Options.Kernel == RadialKernel::Cubic;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Vec3 d = points[first + i] - center;
+      const double r = Norm(d);
+      values[i] = cubic ? r * r * r : -r;
+      if (gradients)
+      {
+        const double slope = cubic ? 3 * r : (r > 0 ? -1 / r : 0);
+        for (int c = 0; c < 3; ++c)
+        {
+          gradients[c * count + i] = slope * d[c];
+        }
+      }
+    }
+  }
+
+  void Reflect(char side, char transposed, Matrix& matrix) const
+  {
+    const int rows = static_cast<int>(matrix.GetRows());
+    const int columns = static_cast<int>(matrix.GetColumns());
+    const int terms = Terms;
+    const int size = static_cast<int>(this->Reflectors.GetRows());
+    std::vector<double> work(64 * static_cast<std::size_t>(std::max(rows, columns)));
+    const int length = static_cast<int>(work.size());
+    int info = 0;
+    dormqr_(&side, &transposed, &rows, &columns, &terms, this->Reflectors.Column(0), &size,
+      this->ReflectorScales.data(), matrix.Column(0), &rows, work.data(), &length, &info, 1, 1);
+  }
+
+  // Equations of points: one row for the value of each, then (with normals) one for each
+  // derivative. The first columns are those of the polynomial.
+  Matrix MakeRows(
+    const std::vector<std::size_t>& which, std::size_t begin, std::size_t end, bool normals) const
+  {
+    const std::size_t count = end - begin;
+    std::vector<Vec3> points;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      points.push_back(this->Points[which[i]]);
+    }
+    Matrix rows(count * (normals ? 4 : 1), this->Trial.size());
+    if (count == 0)
+    {
+      return rows;
+    }
+    for (std::size_t j = 0; j < this->Trial.size(); ++j)
+    {
+      double* column = rows.Column(j);
+      this->FillColumn(
+        points, 0, count, this->Trial[j], column, normals ? column + count : nullptr);
+    }
+    this->Reflect('R', 'N', rows);
+    const int height = static_cast<int>(rows.GetRows());
+    const int rest = static_cast<int>(this->Root.GetRows());
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, height, rest, 1.0,
+      this->Root.Column(0), rest, rows.Column(Terms), height);
+    for (int term = 0; term < Terms; ++term)
+    {
+      double* column = rows.Column(term);
+      std::fill_n(column, rows.GetRows(), 0.0);
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        column[i] = term == 0 ? 1 : points[i][term - 1];
+        if (normals && term > 0)
+        {
+          column[static_cast<std::size_t>(term) * count + i] = 1;
+        }
+      }
+    }
+    return rows;
+  }
+
+  // Adds the products of equations to the normal equations. Values count with their weights.
+  void Accumulate(const std::vector<std::size_t>& which, std::size_t withNormals)
+  {
+    // So many blocks are made side by side; then columns of the products are.
+    constexpr std::size_t blocks = 16;
+    const std::size_t size = this->Trial.size();
+    for (std::size_t at = 0; at < which.size(); at += blocks * BlockPoints)
+    {
+      std::vector<Matrix> rows(blocks);
+      std::vector<std::size_t> begins(blocks + 1);
+      for (std::size_t b = 0; b <= blocks; ++b)
+      {
+        begins[b] = std::min(which.size(), at + b * BlockPoints);
+      }
+      const auto hasNormals = [&](std::size_t b) { return begins[b] < withNormals; };
+      this->Runner.For(blocks, 1,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t b = begin; b < end; ++b)
+          {
+            rows[b] = this->MakeRows(which, begins[b], begins[b + 1], hasNormals(b));
+            for (std::size_t j = 0; j < size; ++j)
+            {
+              for (std::size_t i = begins[b]; i < begins[b + 1]; ++i)
+              {
+                rows[b].Column(j)[i - begins[b]] *= this->Weights[which[i]];
+              }
+            }
+          }
+        });
+      constexpr std::size_t panel = 96;
+      this->Runner.For(static_cast<std::int64_t>((size + panel - 1) / panel), 1,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t p = begin; p < end; ++p)
+          {
+            const std::size_t first = static_cast<std::size_t>(p) * panel;
+            const std::size_t width = std::min(panel, size - first);
+            for (std::size_t b = 0; b < blocks; ++b)
+            {
+              this->AddProducts(rows[b], begins[b + 1] - begins[b], first, width);
+            }
+          }
+        });
+      for (std::size_t b = 0; b < blocks; ++b)
+      {
+        this->AddRight(rows[b], which, begins[b], begins[b + 1]);
+      }
+    }
+  }
+
+  // Columns of the lower triangles of the products.
+  void AddProducts(const Matrix& rows, std::size_t count, std::size_t first, std::size_t width)
+  {
+    const int height = static_cast<int>(rows.GetRows());
+    const int size = static_cast<int>(this->Trial.size());
+    const int values = static_cast<int>(count);
+    if (values == 0)
+    {
+      return;
+    }
+    const int at = static_cast<int>(first);
+    const int columns = static_cast<int>(width);
+    cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size - at, columns, values, 1.0,
+      rows.Column(first), height, rows.Column(first), height, 1.0,
+      this->ValueProducts.Column(first) + first, size);
+    if (height > values)
+    {
+      cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, size - at, columns, height - values, 1.0,
+        rows.Column(first) + count, height, rows.Column(first) + count, height, 1.0,
+        this->SlopeProducts.Column(first) + first, size);
+    }
+  }
+
+  void AddRight(
+    const Matrix& rows, const std::vector<std::size_t>& which, std::size_t begin, std::size_t end)
+  {
+    const std::size_t count = end - begin;
+    if (rows.GetRows() <= count)
+    {
+      return;
+    }
+    std::vector<double> normals(3 * count);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        normals[c * count + i] = this->Normals[which[begin + i]][c];
+      }
+    }
+    const int height = static_cast<int>(rows.GetRows());
+    cblas_dgemv(CblasColMajor, CblasTrans, static_cast<int>(3 * count),
+      static_cast<int>(this->Trial.size()), 1.0, rows.Column(0) + count, height, normals.data(), 1,
+      1.0, this->SlopeRight.data(), 1);
+  }
+
+  // Coefficients of the orthonormal functions; errors in the report, mm.
+  std::vector<double> Solve(const SurfaceSplineReport& report, double stiffness) const
+  {
+    const std::size_t size = this->Trial.size();
+    const double point = report.PointError / this->Scale;
+    const double value = 1 / (point * point);
+    const double slope = 1 / (report.NormalError * report.NormalError);
+    Matrix matrix(size, size);
+    for (std::size_t j = 0; j < size; ++j)
+    {
+      for (std::size_t i = j; i < size; ++i)
+      {
+        matrix.Column(j)[i] =
+          value * this->ValueProducts.Column(j)[i] + slope * this->SlopeProducts.Column(j)[i];
+      }
+      matrix.Column(j)[j] += j < Terms ? 1e-12 * matrix.Column(j)[j] : 1 / (stiffness * stiffness);
+    }
+    std::vector<double> solution(this->SlopeRight);
+    for (double& x : solution)
+    {
+      x *= slope;
+    }
+    const int n = static_cast<int>(size);
+    int info = 0;
+    dpotrf_("L", &n, matrix.Column(0), &n, &info, 1);
+    if (info != 0)
+    {
+      return {}; // rounding errors outweigh the energy: as bad as a fit can be
+    }
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, matrix.Column(0), n,
+      solution.data(), 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, matrix.Column(0), n,
+      solution.data(), 1);
+    return solution;
+  }
+
+  struct Misses
+  {
+    double Points = 0; // RMS of weighted values
+    double Normals = 0;
+  };
+
+  Misses Predict(const std::vector<double>& solution) const
+  {
+    const std::size_t count = this->HeldOut.size();
+    std::vector<double> result(4 * count);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, static_cast<int>(4 * count),
+      static_cast<int>(this->Trial.size()), 1.0, this->HeldRows.Column(0),
+      static_cast<int>(4 * count), solution.data(), 1, 0.0, result.data(), 1);
+    std::vector<double> values;
+    std::vector<double> slopes;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      double square = 0;
+      double difference = 0;
+      for (int c = 0; c < 3; ++c)
+      {
+        const double g = result[(c + 1) * count + i];
+        square += g * g;
+        const double d = g - this->Normals[this->HeldOut[i]][c];
+        difference += d * d / 2; // two directions along the surface
+      }
+      // a distance, so that a function that is small everywhere gains nothing
+      const double slope = std::sqrt(square);
+      values.push_back(this->Weights[this->HeldOut[i]] * result[i] / std::clamp(slope, 0.1, 1.0));
+      slopes.push_back(std::sqrt(difference));
+    }
+    return { GetRootMeanSquare(values), GetRootMeanSquare(slopes) };
+  }
+
+  // Errors and stiffness that predict points held out best; returns by how much these are missed.
+  double Tune(double& stiffness, bool first, SurfaceSplineReport& report)
+  {
+    if (first)
+    {
+      report.PointError =
+        this->Options.PointError > 0 ? this->Options.PointError : 0.003 * this->Scale;
+      report.NormalError = std::max(0.15, this->Options.LeastNormalError);
+    }
+    Misses best;
+    for (int round = 0; round < (first ? Rounds : 2); ++round)
+    {
+      const auto score = [&](const Misses& misses)
+      {
+        const double p = misses.Points * this->Scale / report.PointError;
+        const double n = misses.Normals / report.NormalError;
+        return p * p + 2 * n * n;
+      };
+      const auto attempt = [&](double t, Misses& misses)
+      {
+        const std::vector<double> solution = this->Solve(report, t);
+        if (solution.empty())
+        {
+          return std::numeric_limits<double>::infinity();
+        }
+        misses = this->Predict(solution);
+        return score(misses);
+      };
+      // from the stiffness there is, downhill in steps of half a decade
+      constexpr double factor = 3.1623;
+      double least = attempt(stiffness, best);
+      for (const double step : { factor, 1 / factor })
+      {
+        constexpr double largest = 1e4;
+        bool moved = false;
+        for (double t = stiffness * step; t < largest && t > 1 / largest; t *= step)
+        {
+          Misses misses;
+          const double s = attempt(t, misses);
+          if (!(s < least))
+          {
+            break;
+          }
+          least = s;
+          best = misses;
+          stiffness = t;
+          moved = true;
+        }
+        if (moved)
+        {
+          break;
+        }
+      }
+      if (!std::isfinite(least))
+      {
+        throw std::runtime_error(Unsolvable);
+      }
+      if (!(this->Options.PointError > 0))
+      {
+        report.PointError = std::max(best.Points * this->Scale, SmallestPointError * this->Scale);
+      }
+      report.NormalError =
+        std::max({ best.Normals, SmallestNormalError, this->Options.LeastNormalError });
+    }
+    return best.Points;
+  }
+
+  void AddHeldOut()
+  {
+    this->Accumulate(this->HeldOut, this->HeldOut.size());
+    this->HeldRows = Matrix();
+  }
+
+  // Of the known points, weighted, without sign.
+  std::vector<double> GetMisses(const std::vector<double>& solution) const
+  {
+    std::vector<double> misses(this->Known.size());
+    this->Runner.For(static_cast<std::int64_t>((misses.size() + BlockPoints - 1) / BlockPoints), 1,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t b = begin; b < end; ++b)
+        {
+          const std::size_t from = static_cast<std::size_t>(b) * BlockPoints;
+          const std::size_t to = std::min(misses.size(), from + BlockPoints);
+          const Matrix rows = this->MakeRows(this->Known, from, to, false);
+          cblas_dgemv(CblasColMajor, CblasNoTrans, static_cast<int>(to - from),
+            static_cast<int>(this->Trial.size()), 1.0, rows.Column(0), static_cast<int>(to - from),
+            solution.data(), 1, 0.0, misses.data() + from, 1);
+          for (std::size_t i = from; i < to; ++i)
+          {
+            misses[i] = std::abs(misses[i]) * this->Weights[this->Known[i]];
+          }
+        }
+      });
+    return misses;
+  }
+
+  void Keep(const std::vector<double>& solution)
+  {
+    this->Centers = this->Trial;
+    std::copy_n(solution.begin(), Terms, this->Polynomial.begin());
+    Matrix coefficients(this->Trial.size(), 1);
+    std::copy(solution.begin() + Terms, solution.end(), coefficients.Column(0) + Terms);
+    const int rest = static_cast<int>(this->Root.GetRows());
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, rest, this->Root.Column(0),
+      rest, coefficients.Column(0) + Terms, 1);
+    this->Reflect('L', 'N', coefficients);
+    this->Coefficients.assign(coefficients.Column(0), coefficients.Column(0) + this->Trial.size());
+  }
+
+  Execution& Runner;
+  const SurfaceSplineOptions& Options;
+  double Scale;
+  std::vector<Vec3> Points;
+  const std::vector<Vec3>& Normals;
+  std::vector<double> Weights;
+  std::vector<std::size_t> HeldOut;
+  std::vector<std::size_t> Known;
+  std::size_t WithNormals = 0;   // so many of Known
+  std::vector<double> Distances; // of Known from the nearest node
+  std::vector<std::size_t> Nodes;
+  SurfaceSplineReport Best;
+
+  // of the nodes at hand
+  std::vector<Vec3> Trial; // centres
+  Matrix Reflectors;       // of the polynomial at the centres: what is orthogonal to it
+  std::vector<double> ReflectorScales;
+  Matrix Root;          // Cholesky factor of the energy
+  Matrix ValueProducts; // lower triangles
+  Matrix SlopeProducts;
+  std::vector<double> SlopeRight;
+  Matrix HeldRows;
+};
+
+//------------------------------------------------------------------------------
+SurfaceSpline::SurfaceSpline(
+  Execution& execution, const OrientedPoints& data, const SurfaceSplineOptions& options)
+  : Loops(GetRadialLoops<3>(options.Kernel, BestInstructionSet()))
+{
+  Check(data, options);
+  Vec3 low = data.Points[0];
+  Vec3 high = data.Points[0];
+  for (const Vec3& point : data.Points)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      low[c] = std::min(low[c], point[c]);
+      high[c] = std::max(high[c], point[c]);
+    }
+  }
+  this->Origin = 0.5 * (low + high);
+  this->Scale = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
+  if (!(this->Scale > 0) || !std::isfinite(this->Scale))
+  {
+    throw std::invalid_argument("all points lie in one place, or too far apart");
+  }
+  const Execution::NestedStages stages(execution);
+  Fit fit(execution, data, options, this->Origin, this->Scale);
+  fit.Run(this->Report);
+  for (const Vec3& center : fit.Centers)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->Centers[c].push_back(center[c]);
+    }
+  }
+  this->Coefficients = std::move(fit.Coefficients);
+  this->Polynomial = fit.Polynomial;
+}
+
+//------------------------------------------------------------------------------
+void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& points,
+  std::vector<double>& values, std::vector<Vec3>* gradients) const
+{
+  const Coordinates<3> centers{ { this->Centers[0].data(), this->Centers[1].data(),
+    this->Centers[2].data() } };
+  const auto blocks = static_cast<std::int64_t>((points.size() + RadialBlock - 1) / RadialBlock);
+  execution.For(blocks, 4,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t b = begin; b < end; ++b)
+      {
+        const std::size_t from = static_cast<std::size_t>(b) * RadialBlock;
+        double at[3][RadialBlock];
+        double sums[RadialBlock];
+        double slopes[3 * RadialBlock];
+        for (std::size_t i = 0; i < RadialBlock; ++i)
+        {
+          const Vec3 u =
+            (1 / this->Scale) * (points[std::min(from + i, points.size() - 1)] - this->Origin);
+          for (int c = 0; c < 3; ++c)
+          {
+            at[c][i] = u[c];
+          }
+        }
+        const Coordinates<3> where{ { at[0], at[1], at[2] } };
+        if (gradients)
+        {
+          this->Loops.SumAndGradient(
+            centers, this->Coefficients.data(), this->Coefficients.size(), where, sums, slopes);
+        }
+        else
+        {
+          this->Loops.Sum(
+            centers, this->Coefficients.data(), this->Coefficients.size(), where, sums);
+        }
+        for (std::size_t i = 0; i < std::min(RadialBlock, points.size() - from); ++i)
+        {
+          double s = sums[i] + this->Polynomial[0];
+          for (int c = 0; c < 3; ++c)
+          {
+            s += this->Polynomial[c + 1] * at[c][i];
+            if (gradients)
+            {
+              (*gradients)[from + i][c] = slopes[c * RadialBlock + i] + this->Polynomial[c + 1];
+            }
+          }
+          values[from + i] = this->Scale * s;
+        }
+      }
+    });
+}
+}
