@@ -26,6 +26,14 @@ const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
     "ColorSpace": "Diverging", "RGBPoints":
     [-1, 0.23, 0.3, 0.75, 0, 0.87, 0.87, 0.87, 1, 0.71, 0.02, 0.15],
     "ScalarRangeInitialized": 1, "AutomaticRescaleRangeMode": -1, "NanOpacity": 0 } },
+  "Distance": { "Title": "Distance (mm)" },
+  "Residual": { "Title": "Residual (mm)", "PVLookupTable": {
+    "ColorSpace": "Diverging", "RGBPoints":
+    [-1, 0.23, 0.3, 0.75, 0, 0.87, 0.87, 0.87, 1, 0.71, 0.02, 0.15] } },
+  "Support": { "Title": "Distance from the data / their spacing", "PVLookupTable": {
+    "ColorSpace": "Lab", "RGBPoints":
+    [0, 0.1, 0.57, 0.5, 1, 0.87, 0.84, 0.77, 5, 0.85, 0.45, 0.1],
+    "ScalarRangeInitialized": 1, "AutomaticRescaleRangeMode": -1 } },
   "Asymmetry": { "Title": "Asymmetry (given - mirrored)", "PVLookupTable": { "NanOpacity": 0 } },
   "Thickness": { "Title": "Thickness (mm)", "PVLookupTable": { "NanOpacity": 0 } },
   "NormalDifference": { "Title": "Normal difference (degrees)", "PVLookupTable": {

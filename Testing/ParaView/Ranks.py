@@ -37,7 +37,7 @@ WHOLE = {"OccludedAngle", "ProbeCalibration"}
 MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
 FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "PressOrientation",
-         "ScanRegion", "TemporalCalibration", "TrackerSelfTest"}
+         "RBFSurface", "ScanRegion", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so
 REFUSED = {"PolhemusVideoSource"}

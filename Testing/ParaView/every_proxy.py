@@ -183,6 +183,7 @@ def radial_basis():
     sphere = Sphere(registrationName="Places", Radius=50, ThetaResolution=20, PhiResolution=12)
     warmth = Calculator(registrationName="Warmth", Input=sphere, ResultArrayName="Warmth", Function="20 + coordsX/10 + sin(coordsZ/15)")
     volume = RBFInterpolator(registrationName="Interpolated", Input=warmth, ScalarArray="Warmth", Kernel="Linear", OutputSpacing=[9, 9, 9], Smoothing=0.1)
+    RBFSurface(registrationName="Closed", Input=sphere, OutputSpacing=8)
     moved = Transform(registrationName="Targets", Input=sphere)
     with applied(moved):
         moved.Transform.Rotate = [0, 0, 10]

@@ -100,9 +100,10 @@ std::string DescribePoint(const Vec3& p)
 void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
 {
   if (data.Normals.size() != data.Points.size() ||
-    (!data.Errors.empty() && data.Errors.size() != data.Points.size()))
+    (!data.Errors.empty() && data.Errors.size() != data.Points.size()) ||
+    (!data.Free.empty() && data.Free.size() != data.Points.size()))
   {
-    throw std::invalid_argument("there must be as many normals and errors as points");
+    throw std::invalid_argument("there must be as many normals, errors and directions as points");
   }
   if (data.Points.size() < SurfaceSpline::FewestPoints)
   {
@@ -149,6 +150,7 @@ public:
     , Options(options)
     , Scale(scale)
     , Normals(data.Normals)
+    , Free(data.Free)
   {
     this->Points.reserve(data.Points.size());
     for (const Vec3& point : data.Points)
@@ -180,8 +182,8 @@ public:
       const bool better = held < LeastImprovement * error;
       error = std::min(error, held);
       this->AddHeldOut();
-      const std::vector<double> solution = this->Solve(report, stiffness);
-      if (solution.empty())
+      std::vector<double> solution;
+      if (!std::isfinite(this->Solve(report, stiffness, solution)))
       {
         throw std::runtime_error(Unsolvable);
       }
@@ -225,6 +227,12 @@ private:
       order.begin() + static_cast<std::ptrdiff_t>(last));
     this->WithNormals = std::min(this->Known.size(), MaximumNormals);
     this->Distances.assign(this->Known.size(), std::numeric_limits<double>::infinity());
+  }
+
+  // What is known of a slope at a point.
+  Vec3 GetKnown(std::size_t point, const Vec3& slope) const
+  {
+    return this->Free.empty() ? slope : slope - Dot(slope, this->Free[point]) * this->Free[point];
   }
 
   void AddNode(std::size_t known)
@@ -434,6 +442,19 @@ private:
         }
       }
     }
+    for (std::size_t i = 0; normals && !this->Free.empty() && i < count; ++i)
+    {
+      for (std::size_t j = 0; j < this->Trial.size(); ++j)
+      {
+        double* slope = rows.Column(j) + count + i;
+        const Vec3 known =
+          this->GetKnown(which[begin + i], { slope[0], slope[count], slope[2 * count] });
+        for (int c = 0; c < 3; ++c)
+        {
+          slope[c * count] = known[c];
+        }
+      }
+    }
     return rows;
   }
 
@@ -522,9 +543,10 @@ private:
     std::vector<double> normals(3 * count);
     for (std::size_t i = 0; i < count; ++i)
     {
+      const Vec3 known = this->GetKnown(which[begin + i], this->Normals[which[begin + i]]);
       for (int c = 0; c < 3; ++c)
       {
-        normals[c * count + i] = this->Normals[which[begin + i]][c];
+        normals[c * count + i] = known[c];
       }
     }
     const int height = static_cast<int>(rows.GetRows());
@@ -533,8 +555,11 @@ private:
       1.0, this->SlopeRight.data(), 1);
   }
 
-  // Coefficients of the orthonormal functions; errors in the report, mm.
-  std::vector<double> Solve(const SurfaceSplineReport& report, double stiffness) const
+  // Coefficients of the orthonormal functions; errors in the report, mm. Returns how unlikely the data
+  // are with this stiffness and these errors, whatever the coefficients: -2 log of their density but for
+  // what does not depend on the stiffness; infinity where rounding errors outweigh the energy.
+  double Solve(
+    const SurfaceSplineReport& report, double stiffness, std::vector<double>& solution) const
   {
     const std::size_t size = this->Trial.size();
     const double point = report.PointError / this->Scale;
@@ -550,7 +575,7 @@ private:
       }
       matrix.Column(j)[j] += j < Terms ? 1e-12 * matrix.Column(j)[j] : 1 / (stiffness * stiffness);
     }
-    std::vector<double> solution(this->SlopeRight);
+    solution = this->SlopeRight;
     for (double& x : solution)
     {
       x *= slope;
@@ -560,13 +585,18 @@ private:
     dpotrf_("L", &n, matrix.Column(0), &n, &info, 1);
     if (info != 0)
     {
-      return {}; // rounding errors outweigh the energy: as bad as a fit can be
+      return std::numeric_limits<double>::infinity();
     }
     cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, matrix.Column(0), n,
       solution.data(), 1);
+    double unlikely = 2 * static_cast<double>(size - Terms) * std::log(stiffness);
+    for (std::size_t j = 0; j < size; ++j)
+    {
+      unlikely += 2 * std::log(matrix.Column(j)[j]) - solution[j] * solution[j];
+    }
     cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, matrix.Column(0), n,
       solution.data(), 1);
-    return solution;
+    return unlikely;
   }
 
   struct Misses
@@ -588,11 +618,12 @@ private:
     {
       double square = 0;
       double difference = 0;
+      const Vec3 known = this->GetKnown(this->HeldOut[i], this->Normals[this->HeldOut[i]]);
       for (int c = 0; c < 3; ++c)
       {
         const double g = result[(c + 1) * count + i];
         square += g * g;
-        const double d = g - this->Normals[this->HeldOut[i]][c];
+        const double d = g - known[c];
         difference += d * d / 2; // two directions along the surface
       }
       // a distance, so that a function that is small everywhere gains nothing
@@ -603,7 +634,8 @@ private:
     return { GetRootMeanSquare(values), GetRootMeanSquare(slopes) };
   }
 
-  // Errors and stiffness that predict points held out best; returns by how much these are missed.
+  // The stiffness with which the data are most likely, and the errors of points held out, in turns;
+  // returns by how much these are missed.
   double Tune(double& stiffness, bool first, SurfaceSplineReport& report)
   {
     if (first)
@@ -612,46 +644,30 @@ private:
         this->Options.PointError > 0 ? this->Options.PointError : 0.003 * this->Scale;
       report.NormalError = std::max(0.15, this->Options.LeastNormalError);
     }
-    Misses best;
+    Misses misses;
     for (int round = 0; round < (first ? Rounds : 2); ++round)
     {
-      const auto score = [&](const Misses& misses)
-      {
-        const double p = misses.Points * this->Scale / report.PointError;
-        const double n = misses.Normals / report.NormalError;
-        return p * p + 2 * n * n;
-      };
-      const auto attempt = [&](double t, Misses& misses)
-      {
-        const std::vector<double> solution = this->Solve(report, t);
-        if (solution.empty())
-        {
-          return std::numeric_limits<double>::infinity();
-        }
-        misses = this->Predict(solution);
-        return score(misses);
-      };
       // from the stiffness there is, downhill in steps of half a decade
       constexpr double factor = 3.1623;
-      double least = attempt(stiffness, best);
+      constexpr double largest = 1e4;
+      std::vector<double> best;
+      double least = this->Solve(report, stiffness, best);
       for (const double step : { factor, 1 / factor })
       {
-        constexpr double largest = 1e4;
-        bool moved = false;
-        for (double t = stiffness * step; t < largest && t > 1 / largest; t *= step)
+        const double start = stiffness;
+        std::vector<double> solution;
+        for (double t = start * step; t < largest && t > 1 / largest; t *= step)
         {
-          Misses misses;
-          const double s = attempt(t, misses);
-          if (!(s < least))
+          const double unlikely = this->Solve(report, t, solution);
+          if (!(unlikely < least) && std::isfinite(least))
           {
             break;
           }
-          least = s;
-          best = misses;
+          least = unlikely;
+          best = solution;
           stiffness = t;
-          moved = true;
         }
-        if (moved)
+        if (stiffness != start && std::isfinite(least))
         {
           break;
         }
@@ -660,14 +676,15 @@ private:
       {
         throw std::runtime_error(Unsolvable);
       }
+      misses = this->Predict(best);
       if (!(this->Options.PointError > 0))
       {
-        report.PointError = std::max(best.Points * this->Scale, SmallestPointError * this->Scale);
+        report.PointError = std::max(misses.Points, SmallestPointError) * this->Scale;
       }
       report.NormalError =
-        std::max({ best.Normals, SmallestNormalError, this->Options.LeastNormalError });
+        std::max({ misses.Normals, SmallestNormalError, this->Options.LeastNormalError });
     }
-    return best.Points;
+    return misses.Points;
   }
 
   void AddHeldOut()
@@ -718,6 +735,7 @@ private:
   double Scale;
   std::vector<Vec3> Points;
   const std::vector<Vec3>& Normals;
+  const std::vector<Vec3>& Free;
   std::vector<double> Weights;
   std::vector<std::size_t> HeldOut;
   std::vector<std::size_t> Known;
@@ -824,5 +842,33 @@ void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& poin
         }
       }
     });
+}
+
+//------------------------------------------------------------------------------
+SurfaceSpline FitOutlines(
+  Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options)
+{
+  constexpr int rounds = 5;
+  const Execution::NestedStages stages(execution);
+  for (int round = 0;; ++round)
+  {
+    execution.SetStage(static_cast<double>(round) / rounds, (round + 1.0) / rounds);
+    SurfaceSpline spline(execution, data, options);
+    if (round == rounds - 1)
+    {
+      return spline;
+    }
+    std::vector<double> values(data.Points.size());
+    std::vector<Vec3> gradients(data.Points.size());
+    spline.Evaluate(execution, data.Points, values, &gradients);
+    for (std::size_t i = 0; i < data.Points.size(); ++i)
+    {
+      // a normal that has turned over is of no use
+      if (data.Free.size() > i && Norm(data.Free[i]) > 0 && Dot(gradients[i], data.Normals[i]) > 0)
+      {
+        data.Normals[i] = Normalized(gradients[i]);
+      }
+    }
+  }
 }
 }

@@ -21,8 +21,11 @@ struct OrientedPoints
 {
   std::vector<Vec3> Points;  ///< mm
   std::vector<Vec3> Normals; ///< unit, outwards, as many
-  std::vector<double>
-    Errors; ///< expected error of each point, relative to the others; empty: all 1
+  /// Expected error of each point, relative to the others. Empty: all 1.
+  std::vector<double> Errors;
+  /// Unit directions along which the surface's slope at a point is not known: across the plane of an
+  /// outline. Zero vectors for other points. Empty: all slopes are known.
+  std::vector<Vec3> Free;
 };
 
 struct SurfaceSplineOptions
@@ -55,11 +58,11 @@ struct SurfaceSplineReport
 ///   sum_i (s(x_i) / (e e_i))^2 + sum_i |grad s(x_i) - n_i|^2 / g^2 + E(s) / t^2
 ///
 /// over the coefficients, with all points, E the energy of the kernel. So gradients are data with an
-/// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of
-/// the points is held out at first. t is the value that predicts them best, e and g are the root mean
-/// squares by which they are missed, in some rounds. The number of nodes doubles while that lowers
-/// this error; half of the new ones lie where the misses are largest, so at creases. Then all points
-/// count.
+/// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of the
+/// points is held out at first: e and g are the root mean squares by which these are missed, and t is
+/// the value with which the data are most likely (the evidence of a Gaussian process), in some rounds.
+/// The number of nodes doubles while that lowers the misses; half of the new ones lie where they are
+/// largest, so at creases. Then all points count.
 ///
 /// Time grows in proportion to the number of points (see MaximumPoints) and to the square of the
 /// nodes.
@@ -95,5 +98,11 @@ private:
   std::array<double, 4> Polynomial{};
   SurfaceSplineReport Report;
 };
+
+/// A spline through outlines (points with Free directions) and other points. The normals of outlines
+/// are known within their planes only, but the slope there depends on the angle between plane and
+/// surface. So the fit is repeated with the normals of the last one. data's normals become these.
+SurfaceSpline FitOutlines(
+  Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options);
 }
 #endif

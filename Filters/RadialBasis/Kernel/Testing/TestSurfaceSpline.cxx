@@ -139,6 +139,53 @@ TEST(SurfaceSpline, PointsWithLargeErrorsCountLess)
   EXPECT_GT(alike, 5 * weighted);
 }
 
+// Slices of a tilted ellipsoid: normals within their planes are not those of the surface.
+TEST(SurfaceSpline, OutlinesGiveTheVolume)
+{
+  const Vec3 axes{ 40, 28, 20 };
+  const double pi = std::acos(-1.0);
+  // slices across a direction that is none of the axes
+  const Vec3 across = lacuna::Normalized({ 0.8, 0.5, 0.33 });
+  const Vec3 u = lacuna::Normalized(lacuna::Cross(across, { 0, 0, 1 }));
+  const Vec3 v = lacuna::Cross(across, u);
+  const auto scaled = [&](const Vec3& x) -> Vec3 {
+    return { x[0] / axes[0], x[1] / axes[1], x[2] / axes[2] };
+  };
+  const double half =
+    lacuna::Norm({ axes[0] * across[0], axes[1] * across[1], axes[2] * across[2] });
+  lacuna::OrientedPoints data;
+  for (const double at : { -0.9, -0.45, 0.0, 0.45, 0.9 })
+  {
+    // |scaled(p + a u + b v)|^2 = 1 with p on the line of the slices' centres
+    const Vec3 p = (at / half) *
+      Vec3{ axes[0] * axes[0] * across[0], axes[1] * axes[1] * across[1],
+        axes[2] * axes[2] * across[2] };
+    for (int k = 0; k < 40; ++k)
+    {
+      const double angle = 2 * pi * k / 40;
+      const Vec3 ray = std::cos(angle) * u + std::sin(angle) * v;
+      const double length =
+        std::sqrt(1 - at * at) / lacuna::Norm(scaled(ray)); // p is the centre of the slice
+      const Vec3 x = p + length * ray;
+      const Vec3 gradient{ x[0] / axes[0] / axes[0], x[1] / axes[1] / axes[1],
+        x[2] / axes[2] / axes[2] };
+      ASSERT_NEAR(lacuna::Norm(scaled(x)), 1, 1e-9);
+      data.Points.push_back(x);
+      data.Normals.push_back(lacuna::Normalized(gradient - lacuna::Dot(gradient, across) * across));
+      data.Free.push_back(across);
+    }
+  }
+  lacuna::ThreadExecution execution(2);
+  const auto spline = lacuna::FitOutlines(execution, data, {});
+  lacuna::SurfaceFollowerOptions options;
+  options.EdgeLength = 1;
+  options.Bounds = { -60, 60, -60, 60, -60, 60 };
+  const auto followed = lacuna::FollowSurface(execution, spline, data.Points, options);
+  EXPECT_TRUE(lacuna::FindTopology(followed.Surface).IsClosed());
+  const double truth = 4 * pi / 3 * axes[0] * axes[1] * axes[2];
+  EXPECT_NEAR(followed.Surface.GetVolume(), truth, 0.01 * truth);
+}
+
 TEST(SurfaceSpline, DoesNotDependOnThreads)
 {
   const auto data = TestShape(TestShape::Kumara).SampleNoisy(1000, 0.2, false, 7);

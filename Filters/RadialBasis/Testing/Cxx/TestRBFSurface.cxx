@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points, meshes and outlines become closed surfaces of the right volume; errors.
+#include "lacunaCheck.h"
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFeatureEdges.h"
+#include "vtkFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRBFSurface.h"
+#include "vtkMassProperties.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkReverseSense.h"
+#include "vtkSphereSource.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace
+{
+const double Pi = 3.14159265358979323846;
+// an ellipsoid without symmetry about the origin
+const double Axes[3] = { 30, 22, 16 };
+const double Center[3] = { 10, -4, 7 };
+const double Volume = 4 * Pi / 3 * Axes[0] * Axes[1] * Axes[2] / 1000; // ml
+
+void AddPoint(double x, double y, double z, vtkPoints* points, vtkDoubleArray* normals)
+{
+  const double u[3] = { x, y, z }; // on the unit sphere
+  double p[3];
+  double n[3];
+  double length = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    p[c] = Center[c] + Axes[c] * u[c];
+    n[c] = u[c] / Axes[c];
+    length += n[c] * n[c];
+  }
+  points->InsertNextPoint(p);
+  for (double& c : n)
+  {
+    c /= std::sqrt(length);
+  }
+  normals->InsertNextTuple(n);
+}
+
+vtkSmartPointer<vtkPolyData> MakePoints(int count, bool withNormals)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  for (int i = 0; i < count; ++i)
+  {
+    const double z = 1 - (2 * i + 1.0) / count;
+    const double angle = 2.399963229728653 * i;
+    const double r = std::sqrt(1 - z * z);
+    AddPoint(r * std::cos(angle), r * std::sin(angle), z, points, normals);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  if (withNormals)
+  {
+    data->GetPointData()->AddArray(normals);
+  }
+  return data;
+}
+
+// Slices across z; outlines may run either way round.
+vtkSmartPointer<vtkPolyData> MakeOutlines(bool closed)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> normals;
+  normals->SetNumberOfComponents(3);
+  vtkNew<vtkCellArray> lines;
+  int slice = 0;
+  for (const double z : { -0.9, -0.6, -0.2, 0.2, 0.6, 0.9 })
+  {
+    std::vector<vtkIdType> ids;
+    for (int k = 0; k < 30; ++k)
+    {
+      const double angle = (slice % 2 ? -1 : 1) * 2 * Pi * k / 30;
+      ids.push_back(points->GetNumberOfPoints());
+      AddPoint(std::sqrt(1 - z * z) * std::cos(angle), std::sqrt(1 - z * z) * std::sin(angle), z,
+        points, normals);
+    }
+    if (closed)
+    {
+      ids.push_back(ids.front());
+    }
+    lines->InsertNextCell(static_cast<vtkIdType>(ids.size()), ids.data());
+    ++slice;
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(lines);
+  return data;
+}
+
+double GetField(vtkPolyData* surface, const char* name)
+{
+  return surface->GetFieldData()->GetArray(name)->GetComponent(0, 0);
+}
+
+// By VTK's own judgement: closed, a manifold, of the right volume, normals outwards.
+void CheckSurface(vtkPolyData* surface, double tolerance, const char* what)
+{
+  LACUNA_CHECK(surface->GetNumberOfCells() > 1000);
+  if (surface->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(surface);
+  edges->FeatureEdgesOff();
+  edges->Update();
+  LACUNA_CHECK(edges->GetOutput()->GetNumberOfCells() == 0);
+  vtkNew<vtkMassProperties> mass;
+  mass->SetInputData(surface);
+  mass->Update();
+  std::cout << what << ": " << mass->GetVolume() / 1000 << " of " << Volume << " ml\n";
+  LACUNA_CHECK_NEAR(mass->GetVolume() / 1000, Volume, tolerance * Volume);
+  LACUNA_CHECK_NEAR(GetField(surface, "SurfaceVolume"), mass->GetVolume() / 1000, 1e-3 * Volume);
+  LACUNA_CHECK_NEAR(
+    GetField(surface, "SurfaceArea"), mass->GetSurfaceArea(), 1e-3 * mass->GetSurfaceArea());
+  vtkDataArray* normals = surface->GetPointData()->GetNormals();
+  vtkDataArray* distance = surface->GetPointData()->GetArray("Distance");
+  LACUNA_CHECK(normals && distance && surface->GetPointData()->GetArray("Residual") &&
+    surface->GetPointData()->GetArray("Support"));
+  int inward = 0;
+  for (vtkIdType i = 0; normals && i < surface->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    surface->GetPoint(i, x);
+    double dot = 0;
+    for (int c = 0; c < 3; ++c)
+    {
+      dot += normals->GetComponent(i, c) * (x[c] - Center[c]);
+    }
+    inward += dot <= 0;
+  }
+  LACUNA_CHECK(inward == 0);
+}
+
+void CheckPoints()
+{
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputData(MakePoints(1500, true));
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.004, "points with normals");
+  LACUNA_CHECK(GetField(filter->GetOutput(), "ResidualMaximum") < 0.05);
+  const std::vector<std::string> steps = vtkLacunaProvenance::Get(filter->GetOutput());
+  LACUNA_CHECK(
+    steps.size() == 1 && steps[0].find("Kernel=1 Smoothing=0 Accuracy=0.01") != std::string::npos);
+  // the nearest of 1500 points on 5500 mm^2 is within 2 mm
+  double range[2];
+  filter->GetOutput()->GetPointData()->GetArray("Distance")->GetRange(range);
+  LACUNA_CHECK(range[1] < 2);
+
+  filter->SetInputData(MakePoints(1500, false));
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.01, "points without normals");
+
+  // two inputs, each a half
+  vtkSmartPointer<vtkPolyData> all = MakePoints(1500, true);
+  vtkNew<vtkLacunaRBFSurface> both;
+  both->SetOutputSpacing(1);
+  for (int half = 0; half < 2; ++half)
+  {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkDoubleArray> normals;
+    normals->SetName("Normals");
+    normals->SetNumberOfComponents(3);
+    for (vtkIdType i = 750 * half; i < 750 * (half + 1); ++i)
+    {
+      points->InsertNextPoint(all->GetPoint(i));
+      normals->InsertNextTuple(all->GetPointData()->GetArray("Normals")->GetTuple(i));
+    }
+    vtkNew<vtkPolyData> part;
+    part->SetPoints(points);
+    part->GetPointData()->SetNormals(normals);
+    both->AddInputDataObject(part);
+  }
+  both->Update();
+  CheckSurface(both->GetOutput(), 0.004, "two halves");
+}
+
+void CheckMeshes()
+{
+  // A hole of 60 degrees is closed; triangles that are seen from inside are turned over.
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetRadius(std::cbrt(Axes[0] * Axes[1] * Axes[2]));
+  sphere->SetCenter(Center);
+  sphere->SetThetaResolution(48);
+  sphere->SetPhiResolution(32);
+  sphere->SetStartPhi(30);
+  sphere->GenerateNormalsOff();
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputConnection(sphere->GetOutputPort());
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.01, "mesh with a hole");
+  double range[2];
+  filter->GetOutput()->GetPointData()->GetArray("Support")->GetRange(range);
+  LACUNA_CHECK(range[1] > 3); // in the middle of the hole
+  sphere->SetStartPhi(0);
+  vtkNew<vtkReverseSense> turned;
+  turned->SetInputConnection(sphere->GetOutputPort());
+  filter->SetInputConnection(turned->GetOutputPort());
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.01, "mesh seen from inside");
+}
+
+void CheckOutlines()
+{
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputData(MakeOutlines(true));
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.01, "outlines");
+}
+
+void CheckError(const std::function<void(vtkLacunaRBFSurface*)>& spoil, const std::string& text)
+{
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetInputData(MakePoints(300, true));
+  spoil(filter);
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  messages->Watch(filter->GetExecutive());
+  filter->Update();
+  if (!messages->HasError(text))
+  {
+    lacunaCheck::Fail(__FILE__, __LINE__, "no error with '" + text + "' but: " + messages->Errors);
+  }
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+}
+
+void CheckErrors()
+{
+  using Filter = vtkLacunaRBFSurface;
+  CheckError([](Filter* f) { f->SetKernel(2); }, "Kernel is 2");
+  CheckError([](Filter* f) { f->SetSmoothing(-1); }, "Smoothing must be");
+  CheckError([](Filter* f) { f->SetTolerance(0); }, "Tolerance must be");
+  CheckError([](Filter* f) { f->SetErrorArray("Nothing"); }, "no point array 'Nothing'");
+  CheckError([](Filter* f) { f->SetInputData(vtkNew<vtkPolyData>()); }, "no points of a surface");
+  CheckError([](Filter* f) { f->SetInputData(MakePoints(5, true)); }, "needs 10 or more");
+  CheckError([](Filter* f) { f->SetInputData(MakeOutlines(false)); }, "is not closed");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkSmartPointer<vtkPolyData> data = MakePoints(300, true);
+      vtkDataArray* normals = data->GetPointData()->GetArray("Normals");
+      for (vtkIdType i = 0; i < 900; ++i)
+      {
+        normals->SetComponent(
+          i / 3, static_cast<int>(i % 3), -normals->GetComponent(i / 3, static_cast<int>(i % 3)));
+      }
+      f->SetInputData(data);
+    },
+    "point into the solid");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkSmartPointer<vtkPolyData> data = MakePoints(300, true);
+      data->GetPoints()->SetPoint(7, 1, std::numeric_limits<double>::quiet_NaN(), 2);
+      f->SetInputData(data);
+    },
+    "point 7");
+  CheckError(
+    [](Filter* f)
+    {
+      // each point twice, with opposite normals
+      vtkSmartPointer<vtkPolyData> data = MakePoints(300, true);
+      vtkDataArray* normals = data->GetPointData()->GetArray("Normals");
+      for (vtkIdType i = 0; i < 300; ++i)
+      {
+        data->GetPoints()->InsertNextPoint(data->GetPoint(i));
+        double n[3];
+        normals->GetTuple(i, n);
+        normals->InsertNextTuple3(-n[0], -n[1], -n[2]);
+      }
+      f->SetInputData(data);
+    },
+    "normals contradict each other");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkNew<vtkPoints> points;
+      for (int i = 0; i < 50; ++i)
+      {
+        points->InsertNextPoint(i, 2 * i, 3);
+      }
+      vtkNew<vtkPolyData> data;
+      data->SetPoints(points);
+      f->SetInputData(data);
+    },
+    "lie on lines");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkNew<vtkPoints> points;
+      for (int i = 0; i < 400; ++i)
+      {
+        points->InsertNextPoint(i % 20, i / 20, 5);
+      }
+      vtkNew<vtkPolyData> data;
+      data->SetPoints(points);
+      f->SetInputData(data);
+    },
+    "lie in one plane");
+}
+}
+
+int TestRBFSurface(int, char*[])
+{
+  CheckPoints();
+  CheckMeshes();
+  CheckOutlines();
+  CheckErrors();
+  return lacunaCheck::Result();
+}

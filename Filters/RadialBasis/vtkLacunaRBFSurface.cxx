@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaRBFSurface.h"
+
+#include "lacunaParameterText.h"
+#include "lacunaPointNormals.h"
+#include "lacunaSurfaceFollower.h"
+#include "lacunaSurfaceSpline.h"
+#include "vtkDataSet.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaInputs.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkLacunaSurfacePoints.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeInt64Array.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaRBFSurface);
+
+namespace
+{
+using lacuna::Vec3;
+
+// Normals from neighbours share their errors with these, so that held-out ones are predicted too well:
+// they are to say the side mostly.
+constexpr double EstimatedNormalError = 0.1;
+// Of the longest extent of the points.
+constexpr double BoundsMargin = 0.25;
+constexpr double FinestEdge = 1.0 / 200;
+constexpr double CoarsestEdge = 1.0 / 40;
+// Of all points, with an opposite normal beside them: above, these are not merely thin walls.
+constexpr double MostOpposed = 0.02;
+
+std::array<double, 6> GetBounds(const std::vector<Vec3>& points)
+{
+  std::array<double, 6> bounds{ points[0][0], points[0][0], points[0][1], points[0][1],
+    points[0][2], points[0][2] };
+  for (const Vec3& x : points)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      bounds[2 * c] = std::min(bounds[2 * c], x[c]);
+      bounds[2 * c + 1] = std::max(bounds[2 * c + 1], x[c]);
+    }
+  }
+  return bounds;
+}
+
+double GetExtent(const std::array<double, 6>& bounds)
+{
+  return std::max({ bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] });
+}
+
+vtkFloatArray* AddArray(vtkPolyData* output, const char* name, vtkIdType tuples)
+{
+  vtkNew<vtkFloatArray> array;
+  array->SetName(name);
+  vtkLacunaArrays::SetNumberOfTuples(array, tuples);
+  output->GetPointData()->AddArray(array);
+  return array;
+}
+
+void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
+{
+  const auto n = static_cast<vtkIdType>(followed.Surface.Points.size());
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToFloat();
+  vtkLacunaArrays::SetNumberOfPoints(points, n);
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  vtkLacunaArrays::SetNumberOfTuples(normals, n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    points->SetPoint(i, followed.Surface.Points[i].data());
+    normals->SetTuple(i, followed.Normals[i].data());
+  }
+  vtkNew<vtkTypeInt64Array> corners;
+  vtkLacunaArrays::SetNumberOfTuples(
+    corners, 3 * static_cast<vtkIdType>(followed.Surface.Triangles.size()));
+  vtkIdType at = 0;
+  for (const auto& triangle : followed.Surface.Triangles)
+  {
+    for (const std::int32_t p : triangle)
+    {
+      corners->SetValue(at++, p);
+    }
+  }
+  output->SetPoints(points);
+  vtkLacunaArrays::SetTriangles(output, corners);
+  output->GetPointData()->SetNormals(normals);
+}
+
+// Distances of points from the surface, positive outside, to first order.
+std::vector<double> GetResiduals(lacuna::Execution& execution, const lacuna::SurfaceSpline& spline,
+  const std::vector<Vec3>& points)
+{
+  std::vector<double> values(points.size());
+  std::vector<Vec3> gradients(points.size());
+  spline.Evaluate(execution, points, values, &gradients);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const double slope = lacuna::Norm(gradients[i]);
+    values[i] = slope > 0 ? values[i] / slope : values[i];
+  }
+  return values;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::SetErrorArray(const char* name)
+{
+  const std::string given = name && std::strcmp(name, "None") != 0 ? name : "";
+  if (given != this->ErrorArray)
+  {
+    this->ErrorArray = given;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFSurface::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFSurface::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*)
+{
+  return vtkLacunaInputs::AreSingle(this) ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFSurface::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
+  {
+    vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(i), outputs);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaRBFSurface::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+    [&](vtkLacunaExecution& execution)
+    {
+      if (this->Kernel != Biharmonic && this->Kernel != Triharmonic)
+      {
+        throw std::runtime_error("Kernel is " + std::to_string(this->Kernel) +
+          "; it must be 0 (Biharmonic) or 1 (Triharmonic)");
+      }
+      const std::pair<const char*, double> positive[] = { { "Accuracy", this->Accuracy },
+        { "Tolerance", this->Tolerance } };
+      for (const auto& property : positive)
+      {
+        if (!(property.second > 0) || !std::isfinite(property.second))
+        {
+          throw std::runtime_error(
+            std::string(property.first) + " must be a finite number above 0, in mm");
+        }
+      }
+      for (const auto& property : { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
+             { "OutputSpacing", this->OutputSpacing } })
+      {
+        if (!(property.second >= 0) || !std::isfinite(property.second))
+        {
+          throw std::runtime_error(
+            std::string(property.first) + " must be a finite number >= 0, in mm");
+        }
+      }
+      const auto start = std::chrono::steady_clock::now();
+      execution.SetStage(0, 0.05);
+      vtkLacunaSurfacePoints collected;
+      std::vector<vtkDataObject*> sources;
+      for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
+      {
+        vtkDataSet* data = vtkDataSet::GetData(inputs[0], i);
+        if (auto* image = vtkImageData::SafeDownCast(data))
+        {
+          vtkLacunaVolumeDirection::Check(image);
+        }
+        collected.Add(execution, data, i + 1, this->ErrorArray);
+        if (data)
+        {
+          sources.push_back(data);
+        }
+      }
+      lacuna::OrientedPoints& points = collected.Data;
+      if (points.Points.empty())
+      {
+        throw std::runtime_error("the input has no points of a surface");
+      }
+      const std::array<double, 6> own = GetBounds(points.Points);
+      const double extent = GetExtent(own);
+      const double spacing = lacuna::FindPointSpacing(execution, points.Points);
+      this->CheckNormals(execution, points, 0.5 * spacing);
+
+      execution.SetStage(0.05, 0.7);
+      lacuna::SurfaceSplineOptions options;
+      options.Kernel =
+        this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
+      options.PointError = this->Smoothing;
+      options.Accuracy = this->Accuracy;
+      options.LeastNormalError = collected.HasEstimatedNormals ? EstimatedNormalError : 0;
+      if (!collected.HasOutlines)
+      {
+        points.Free.clear();
+      }
+      const lacuna::SurfaceSpline spline = collected.HasOutlines
+        ? lacuna::FitOutlines(execution, points, options)
+        : lacuna::SurfaceSpline(execution, points, options);
+
+      execution.SetStage(0.7, 0.95);
+      lacuna::SurfaceFollowerOptions follow;
+      follow.EdgeLength = this->OutputSpacing > 0
+        ? this->OutputSpacing
+        : std::clamp(spacing, FinestEdge * extent, CoarsestEdge * extent);
+      follow.Tolerance = this->Tolerance;
+      follow.Cap = this->CapBoundary;
+      for (int c = 0; c < 3; ++c)
+      {
+        const bool given = this->OutputBounds[2 * c] <= this->OutputBounds[2 * c + 1];
+        follow.Bounds[2 * c] =
+          given ? this->OutputBounds[2 * c] : own[2 * c] - BoundsMargin * extent;
+        follow.Bounds[2 * c + 1] =
+          given ? this->OutputBounds[2 * c + 1] : own[2 * c + 1] + BoundsMargin * extent;
+      }
+      const lacuna::FollowedSurface followed =
+        lacuna::FollowSurface(execution, spline, points.Points, follow);
+      this->CheckSurface(followed, collected.Warnings);
+
+      execution.SetStage(0.95, 1);
+      const std::vector<double> residuals = GetResiduals(execution, spline, points.Points);
+      vtkPolyData* output = vtkPolyData::GetData(outputs);
+      SetSurface(output, followed);
+      const vtkIdType n = output->GetNumberOfPoints();
+      vtkFloatArray* distance = AddArray(output, "Distance", n);
+      vtkFloatArray* residual = AddArray(output, "Residual", n);
+      vtkFloatArray* support = AddArray(output, "Support", n);
+      const lacuna::PointNeighbors neighbors(points.Points);
+      execution.For(n, 1024,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          std::vector<std::size_t> nearest;
+          std::vector<double> away;
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            neighbors.Find(followed.Surface.Points[i], 1, nearest, &away);
+            distance->SetValue(i, static_cast<float>(away[0]));
+            residual->SetValue(i, static_cast<float>(residuals[nearest[0]]));
+            support->SetValue(i, static_cast<float>(spacing > 0 ? away[0] / spacing : 0));
+          }
+        });
+      double squares = 0;
+      double largest = 0;
+      for (const double r : residuals)
+      {
+        squares += r * r / static_cast<double>(residuals.size());
+        largest = std::max(largest, std::abs(r));
+      }
+      const auto set = [output](const char* name, double value)
+      { vtkLacunaFieldData::Set(output, name, { value }, 1); };
+      const lacuna::SurfaceSplineReport& report = spline.GetReport();
+      set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
+      set("SurfaceArea", followed.Surface.GetArea());
+      set("ResidualRMS", std::sqrt(squares));
+      set("ResidualMaximum", largest);
+      set("PointError", report.PointError);
+      set("NormalError", std::atan(report.NormalError) * 180 / std::acos(-1.0));
+      set("CenterCount", 2.0 * static_cast<double>(report.Nodes));
+      set(
+        "FitTime", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      lacuna::ParameterText parameters;
+      parameters.Add("Kernel", this->Kernel)
+        .Add("Smoothing", this->Smoothing)
+        .Add("Accuracy", this->Accuracy)
+        .Add("Tolerance", this->Tolerance)
+        .Add("ErrorArray", this->ErrorArray)
+        .Add("OutputSpacing", this->OutputSpacing)
+        .Add("OutputBounds", this->OutputBounds)
+        .Add("CapBoundary", this->CapBoundary);
+      vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckNormals(
+  lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing)
+{
+  Vec3 at{};
+  const std::int64_t opposed =
+    lacuna::FindOpposedNormals(execution, points.Points, points.Normals, spacing, at);
+  if (opposed == 0)
+  {
+    return;
+  }
+  std::ostringstream message;
+  message
+    << opposed << " of " << points.Points.size()
+    << " points have a neighbour within half of the points' spacing whose normal is opposite, "
+       "one at ("
+    << at[0] << ", " << at[1] << ", " << at[2] << ") mm";
+  if (static_cast<double>(opposed) > MostOpposed * static_cast<double>(points.Points.size()))
+  {
+    throw std::runtime_error(message.str() +
+      ": normals contradict each other. Check which side they point to, remove duplicate points, "
+      "or "
+      "remove the array of normals so that they are estimated");
+  }
+  vtkWarningMacro(
+    << message.str()
+    << ": sheets closer than the points cannot be told apart; the surface may be wrong "
+       "there. Add points, or correct the normals");
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckSurface(
+  const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings)
+{
+  const lacuna::SurfaceTopology topology = lacuna::FindTopology(followed.Surface);
+  if (!topology.IsManifold() || (this->CapBoundary && !topology.IsClosed()))
+  {
+    throw std::runtime_error("the surface could not be closed; choose a smaller OutputSpacing");
+  }
+  if (topology.IsClosed() && !followed.ReachesBounds && followed.Surface.GetVolume() < 0)
+  {
+    throw std::runtime_error(
+      "the normals of the input point into the solid, so that the surface would be "
+      "inside out; reverse them (Surface Normals with Flip Normals, or Reverse "
+      "Sense)");
+  }
+  for (const std::string& warning : warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
+  if (followed.ReachesBounds)
+  {
+    vtkWarningMacro(
+      << "the surface reaches OutputBounds, where it "
+      << (this->CapBoundary ? "is closed by planes" : "is open")
+      << ": the data do not close it, or the bounds cut it off. Add points on the open "
+         "side, or change OutputBounds");
+  }
+  if (followed.LargestDistance > this->Tolerance)
+  {
+    vtkWarningMacro(<< "points of the surface are up to " << followed.LargestDistance
+                    << " mm from it, more than Tolerance; choose a smaller OutputSpacing");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Kernel: " << this->Kernel << "\n";
+  os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "Accuracy: " << this->Accuracy << "\n";
+  os << indent << "Tolerance: " << this->Tolerance << "\n";
+  os << indent << "ErrorArray: " << this->ErrorArray << "\n";
+  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
+  os << indent << "OutputBounds:";
+  for (const double b : this->OutputBounds)
+  {
+    os << " " << b;
+  }
+  os << "\n" << indent << "CapBoundary: " << this->CapBoundary << "\n";
+}

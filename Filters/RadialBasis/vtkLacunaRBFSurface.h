@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaRBFSurface
+ * @brief makes a closed surface of points, outlines, meshes and depth maps
+ *
+ * Input: one or more data sets, in mm:
+ * - points with or without normals (the active ones, or the point array `Normals`; they leave the
+ *   solid). Without, they are estimated from neighbours;
+ * - triangle meshes, open or closed. Without normals, those of the triangles;
+ * - depth maps (vtkLacunaDepthMap) with `Normals`, several views together;
+ * - outlines: closed polylines, each in a plane of its own.
+ *
+ * A smooth function, about the signed distance, is fitted to all points and normals at once
+ * (lacuna::SurfaceSpline); the surface is where it is 0. The error of the points is Smoothing, or it is
+ * estimated from points that are held out at first. Where there are no points the surface goes on with
+ * as little bending as possible.
+ *
+ * Output: vtkPolyData, triangles, closed and seen counter-clockwise from outside. Point data:
+ * | array    | type       | meaning                                                          |
+ * |----------|------------|------------------------------------------------------------------|
+ * | Normals  | float x 3  | unit, outwards: the function's gradient                          |
+ * | Distance | float, mm  | from the nearest point of the input                              |
+ * | Residual | float, mm  | of that point: how far outside the surface it lies (signed)      |
+ * | Support  | float      | Distance in units of the points' spacing; far above 1 the        |
+ * |          |            | surface is extrapolated                                          |
+ * Field data, one tuple each: `SurfaceVolume` (ml), `SurfaceArea` (mm^2), `ResidualRMS` and
+ * `ResidualMaximum` (mm, of all points), `PointError` (mm, given or estimated), `NormalError`
+ * (degrees, each of two directions), `CenterCount`, `FitTime` (s; not the same twice).
+ *
+ * The output is one piece, whole, the same for any number of threads; further pieces are empty.
+ *
+ * Errors: too few points, points or normals that are not finite, points on a line or in a plane
+ * without normals, outlines that are open or not planar, normals that contradict each other or point
+ * inwards, a surface that cannot be closed, properties out of range.
+ *
+ * Source: Carr et al., SIGGRAPH 2001; Carr et al., GRAPHITE 2003.
+ */
+#ifndef vtkLacunaRBFSurface_h
+#define vtkLacunaRBFSurface_h
+
+#include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"            // for stops
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // for ivars
+#include <vector> // for warnings
+
+namespace lacuna
+{
+class Execution;
+struct FollowedSurface;
+struct OrientedPoints;
+}
+
+class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFSurface : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaRBFSurface* New();
+  vtkTypeMacro(vtkLacunaRBFSurface, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
+
+  enum KernelType
+  {
+    Biharmonic = 0, ///< r: follows detail, less smooth
+    Triharmonic = 1 ///< r^3: smooth curvature
+  };
+
+  ///@{
+  /** Radial function in space. Default Triharmonic. */
+  vtkSetMacro(Kernel, int);
+  vtkGetMacro(Kernel, int);
+  ///@}
+
+  ///@{
+  /**
+   * Expected error of the points, mm, >= 0. Default 0: estimated from the data. With ErrorArray it
+   * multiplies the array's values.
+   */
+  vtkSetMacro(Smoothing, double);
+  vtkGetMacro(Smoothing, double);
+  ///@}
+
+  ///@{
+  /**
+   * mm, above 0. Centres are added while points that were held out are missed by more, and while
+   * that helps. Default 0.01.
+   */
+  vtkSetMacro(Accuracy, double);
+  vtkGetMacro(Accuracy, double);
+  ///@}
+
+  ///@{
+  /** Largest distance of the triangles' points from the zeros of the function, mm. Default 0.001. */
+  vtkSetMacro(Tolerance, double);
+  vtkGetMacro(Tolerance, double);
+  ///@}
+
+  ///@{
+  /** Point array with one component, > 0: expected error of each point. Default "": all the same. */
+  void SetErrorArray(const char* name);
+  const char* GetErrorArray() const { return this->ErrorArray.c_str(); }
+  ///@}
+
+  ///@{
+  /**
+   * Edges of the triangles, mm, >= 0. Default 0: the spacing of the points, at least a 200th and at
+   * most a 40th of their extent.
+   */
+  vtkSetMacro(OutputSpacing, double);
+  vtkGetMacro(OutputSpacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * xmin xmax ymin ymax zmin zmax, mm; the surface ends there. An axis with min > max has the bounds of
+   * the points and a quarter of their longest extent on both sides. Default all.
+   */
+  vtkSetVector6Macro(OutputBounds, double);
+  vtkGetVector6Macro(OutputBounds, double);
+  ///@}
+
+  ///@{
+  /** Closes the surface where it reaches the bounds. Default on. */
+  vtkSetMacro(CapBoundary, bool);
+  vtkGetMacro(CapBoundary, bool);
+  vtkBooleanMacro(CapBoundary, bool);
+  ///@}
+
+protected:
+  vtkLacunaRBFSurface() = default;
+  ~vtkLacunaRBFSurface() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  void CheckNormals(
+    lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing);
+  void CheckSurface(
+    const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings);
+
+  vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;
+  void operator=(const vtkLacunaRBFSurface&) = delete;
+
+  std::string ErrorArray;
+  int Kernel = Triharmonic;
+  double Smoothing = 0;
+  double Accuracy = 0.01;
+  double Tolerance = 0.001;
+  double OutputSpacing = 0;
+  double OutputBounds[6] = { 1, -1, 1, -1, 1, -1 };
+  bool CapBoundary = true;
+};
+#endif

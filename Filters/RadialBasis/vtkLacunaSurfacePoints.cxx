@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSurfacePoints.h"
+
+#include "lacunaPointNormals.h"
+#include "lacunaTriangleSurface.h"
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkImageData.h"
+#include "vtkLacunaDepthMap.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataNormals.h"
+#include "vtkStripper.h"
+#include "vtkTriangleFilter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace
+{
+std::string Describe(const lacuna::Vec3& p)
+{
+  std::ostringstream text;
+  text << "(" << p[0] << ", " << p[1] << ", " << p[2] << ") mm";
+  return text.str();
+}
+
+lacuna::Vec3 GetPoint(vtkDataSet* data, vtkIdType i)
+{
+  lacuna::Vec3 x;
+  data->GetPoint(i, x.data());
+  return x;
+}
+
+vtkDataArray* FindErrors(vtkDataSet* data, const std::string& array, const std::string& name)
+{
+  if (array.empty())
+  {
+    return nullptr;
+  }
+  vtkDataArray* errors = data->GetPointData()->GetArray(array.c_str());
+  if (!errors || errors->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error(
+      "ErrorArray: " + name + " has no point array '" + array + "' of one component");
+  }
+  return errors;
+}
+
+// Normals that belong to points, by the name that all filters give them or as the active ones.
+vtkDataArray* FindNormals(vtkDataSet* data)
+{
+  vtkDataArray* normals = data->GetPointData()->GetNormals();
+  normals = normals ? normals : data->GetPointData()->GetArray("Normals");
+  return normals && normals->GetNumberOfComponents() == 3 ? normals : nullptr;
+}
+
+// A closed mesh whose triangles are seen from inside, or turned against each other, is mended here:
+// which side is out is then certain.
+void MakeMeshNormals(vtkPolyData* mesh, vtkPolyData* result)
+{
+  vtkNew<vtkTriangleFilter> triangles;
+  triangles->SetInputData(mesh);
+  triangles->PassLinesOff();
+  triangles->PassVertsOff();
+  vtkNew<vtkPolyDataNormals> normals;
+  normals->SetInputConnection(triangles->GetOutputPort());
+  normals->SplittingOff();
+  normals->ConsistencyOn();
+  normals->NonManifoldTraversalOff();
+  normals->Update();
+  result->ShallowCopy(normals->GetOutput());
+  lacuna::TriangleSurface surface;
+  for (vtkIdType i = 0; i < result->GetNumberOfPoints(); ++i)
+  {
+    surface.Points.push_back(GetPoint(result, i));
+  }
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType t = 0; t < result->GetNumberOfCells(); ++t)
+  {
+    result->GetCellPoints(t, cell);
+    if (cell->GetNumberOfIds() == 3)
+    {
+      surface.Triangles.push_back({ static_cast<std::int32_t>(cell->GetId(0)),
+        static_cast<std::int32_t>(cell->GetId(1)), static_cast<std::int32_t>(cell->GetId(2)) });
+    }
+  }
+  vtkDataArray* array = result->GetPointData()->GetNormals();
+  if (array && lacuna::FindTopology(surface).IsClosed() && surface.GetVolume() < 0)
+  {
+    for (vtkIdType i = 0; i < 3 * array->GetNumberOfTuples(); ++i)
+    {
+      array->SetComponent(
+        i / 3, static_cast<int>(i % 3), -array->GetComponent(i / 3, static_cast<int>(i % 3)));
+    }
+  }
+}
+
+bool LieInPlane(const std::vector<lacuna::Vec3>& points, const lacuna::Vec3& across)
+{
+  double size = 0;
+  double leaves = 0;
+  for (const lacuna::Vec3& x : points)
+  {
+    size = std::max(size, lacuna::Norm(x - points[0]));
+    leaves = std::max(leaves, std::abs(lacuna::Dot(x - points[0], across)));
+  }
+  return leaves <= 1e-6 * size; // as exact as 32-bit coordinates
+}
+
+// Normal of the plane through a closed line by its area (Newell), of that length.
+lacuna::Vec3 GetAreaVector(const std::vector<lacuna::Vec3>& loop)
+{
+  lacuna::Vec3 area{};
+  for (std::size_t i = 0; i < loop.size(); ++i)
+  {
+    area = area + 0.5 * lacuna::Cross(loop[i] - loop[0], loop[(i + 1) % loop.size()] - loop[0]);
+  }
+  return area;
+}
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::AddPoint(
+  const double* x, const lacuna::Vec3& normal, const lacuna::Vec3& free, double error)
+{
+  this->Data.Points.push_back({ x[0], x[1], x[2] });
+  this->Data.Normals.push_back(lacuna::Normalized(normal));
+  this->Data.Free.push_back(free);
+  this->Data.Errors.push_back(error);
+}
+
+void vtkLacunaSurfacePoints::Add(
+  lacuna::Execution& execution, vtkDataSet* data, int number, const std::string& errorArray)
+{
+  const std::string name = "input " + std::to_string(number);
+  if (!data || data->GetNumberOfPoints() == 0)
+  {
+    this->Warnings.push_back(name + " has no points and does not count");
+    return;
+  }
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    this->AddMap(image);
+    return;
+  }
+  vtkDataArray* errors = FindErrors(data, errorArray, name);
+  auto* poly = vtkPolyData::SafeDownCast(data);
+  if (poly && poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0)
+  {
+    vtkNew<vtkPolyData> mesh;
+    if (FindNormals(poly))
+    {
+      mesh->ShallowCopy(poly);
+    }
+    else
+    {
+      MakeMeshNormals(poly, mesh);
+      errors = FindErrors(mesh, errorArray, name);
+    }
+    this->AddPoints(execution, mesh, name, errors);
+  }
+  else if (poly && poly->GetNumberOfLines() > 0)
+  {
+    this->AddOutlines(poly, name, errors);
+  }
+  else
+  {
+    this->AddPoints(execution, data, name, errors);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::AddMap(vtkImageData* image)
+{
+  const vtkLacunaDepthMap map(image);
+  vtkDataArray* normals = image->GetPointData()->GetArray(vtkLacunaDepthMap::NormalsName);
+  if (!normals || normals->GetNumberOfComponents() != 3)
+  {
+    throw std::runtime_error("the depth map has no point array 'Normals' of 3 components; use the "
+                             "output of B-Spline Iso Ray Caster, or apply Depth Map Shader");
+  }
+  const int* extent = image->GetExtent();
+  vtkIdType i = 0;
+  for (int row = extent[2]; row <= extent[3]; ++row)
+  {
+    for (int column = extent[0]; column <= extent[1]; ++column, ++i)
+    {
+      const double depth = map.GetDepth()->GetComponent(i, 0);
+      lacuna::Vec3 normal;
+      normals->GetTuple(i, normal.data());
+      if (std::isfinite(depth) && lacuna::HasDirection(normal))
+      {
+        this->AddPoint(map.GetPoint(column, row, depth).data(), normal, {}, 1);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::AddPoints(
+  lacuna::Execution& execution, vtkDataSet* data, const std::string& name, vtkDataArray* errors)
+{
+  vtkDataArray* normals = FindNormals(data);
+  const vtkIdType n = data->GetNumberOfPoints();
+  std::vector<lacuna::Vec3> points(n);
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    points[i] = GetPoint(data, i);
+    if (!lacuna::IsFinite(points[i]))
+    {
+      throw std::runtime_error("point " + std::to_string(i) + " of " + name +
+        " has a coordinate that is not a finite number; remove it (Threshold, or Clean to Grid)");
+    }
+  }
+  lacuna::PointNormals estimated;
+  if (!normals)
+  {
+    estimated = lacuna::EstimateNormals(execution, points);
+    this->HasEstimatedNormals = true;
+    if (2 * estimated.Linear > n)
+    {
+      throw std::runtime_error("most points of " + name + " lie on lines (one at " +
+        Describe(estimated.LinearAt) +
+        "), so that normals cannot be estimated; give the points normals, or join those of "
+        "outlines "
+        "to closed polylines");
+    }
+    if (LieInPlane(points, estimated.Normals[0]))
+    {
+      throw std::runtime_error("the points of " + name +
+        " lie in one plane, so that they do not say where the solid is; give them normals, or join "
+        "those of an outline to a closed polyline");
+    }
+    if (estimated.Conflicts > 0)
+    {
+      this->Warnings.push_back("the sides of " + name + " are not certain at " +
+        std::to_string(estimated.Conflicts) + " pairs of neighbouring points, first at " +
+        Describe(estimated.ConflictAt) +
+        ": the points are too sparse there, or sheets come too close; give the points normals");
+    }
+    if (estimated.Parts > 1)
+    {
+      this->Warnings.push_back(name + " has " + std::to_string(estimated.Parts) +
+        " parts that do not touch; each was oriented for itself. Give the points normals if a part "
+        "is inside out");
+    }
+  }
+  for (vtkIdType i = 0; i < n; ++i)
+  {
+    lacuna::Vec3 normal;
+    if (normals)
+    {
+      normals->GetTuple(i, normal.data());
+      if (!lacuna::HasDirection(normal))
+      {
+        throw std::runtime_error("the normal of point " + std::to_string(i) + " of " + name +
+          " at " + Describe(points[i]) +
+          " is zero or not finite; remove the point, or the array of "
+          "normals");
+      }
+    }
+    else
+    {
+      normal = estimated.Normals[i];
+    }
+    this->AddPoint(points[i].data(), normal, {}, errors ? errors->GetComponent(i, 0) : 1);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::AddOutlines(
+  vtkPolyData* lines, const std::string& name, vtkDataArray* errors)
+{
+  vtkNew<vtkPolyData> only;
+  only->SetPoints(lines->GetPoints());
+  only->SetLines(lines->GetLines());
+  vtkNew<vtkStripper> joined;
+  joined->SetInputData(only);
+  joined->JoinContiguousSegmentsOn();
+  joined->Update();
+  vtkPolyData* loops = joined->GetOutput();
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType c = 0; c < loops->GetNumberOfLines(); ++c)
+  {
+    loops->GetCellPoints(c, cell);
+    std::vector<vtkIdType> ids;
+    std::vector<lacuna::Vec3> loop;
+    for (vtkIdType k = 0; k < cell->GetNumberOfIds(); ++k)
+    {
+      const lacuna::Vec3 x = GetPoint(loops, cell->GetId(k));
+      if (!lacuna::IsFinite(x))
+      {
+        throw std::runtime_error("a point of an outline of " + name + " is not finite");
+      }
+      if (loop.empty() || !(x == loop.back()))
+      {
+        loop.push_back(x);
+        ids.push_back(cell->GetId(k));
+      }
+    }
+    if (loop.size() < 4 || !(loop.front() == loop.back()))
+    {
+      throw std::runtime_error("an outline of " + name + " that starts at " +
+        Describe(loop.empty() ? lacuna::Vec3{} : loop.front()) +
+        " is not closed, or has fewer than 3 points; join its ends");
+    }
+    loop.pop_back();
+    const lacuna::Vec3 area = GetAreaVector(loop);
+    const lacuna::Vec3 across = lacuna::Normalized(area);
+    double size = 0;
+    double leaves = 0;
+    for (const lacuna::Vec3& x : loop)
+    {
+      size = std::max(size, lacuna::Norm(x - loop[0]));
+      leaves = std::max(leaves, std::abs(lacuna::Dot(x - loop[0], across)));
+    }
+    constexpr double flatness = 0.05;
+    if (!(lacuna::Norm(area) > 1e-6 * size * size) || leaves > flatness * size)
+    {
+      throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
+        " does not lie in a plane (it leaves it by " + std::to_string(leaves) +
+        " mm); outlines must be planar");
+    }
+    const std::size_t n = loop.size();
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      // the tangent of the circle through three points
+      const lacuna::Vec3 before = loop[i] - loop[(i + n - 1) % n];
+      const lacuna::Vec3 after = loop[(i + 1) % n] - loop[i];
+      const double a = lacuna::Norm(before);
+      const double b = lacuna::Norm(after);
+      const lacuna::Vec3 tangent = (b / a) * before + (a / b) * after;
+      const lacuna::Vec3 normal = lacuna::Cross(tangent, across);
+      this->AddPoint(loop[i].data(), normal, across, errors ? errors->GetComponent(ids[i], 0) : 1);
+    }
+  }
+  this->HasOutlines = true;
+}
