@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFSurface.h"
 
+#include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
 #include "lacunaSurfaceFollower.h"
@@ -243,6 +244,12 @@ int vtkLacunaRBFSurface::RequestData(
         ? this->OutputSpacing
         : std::clamp(spacing, FinestEdge * extent, CoarsestEdge * extent);
       follow.Tolerance = this->Tolerance;
+      // each point stands for a square of the spacing
+      const double squares = static_cast<double>(points.Points.size()) * spacing * spacing /
+        (follow.EdgeLength * follow.EdgeLength);
+      constexpr double bytesPerSquare = 1500; // cells, nodes and triangles
+      lacuna::RequireMemory("a surface of such small triangles (choose a larger OutputSpacing)",
+        bytesPerSquare * squares);
       follow.Cap = this->CapBoundary;
       for (int c = 0; c < 3; ++c)
       {
@@ -278,11 +285,11 @@ int vtkLacunaRBFSurface::RequestData(
             support->SetValue(i, static_cast<float>(spacing > 0 ? away[0] / spacing : 0));
           }
         });
-      double squares = 0;
+      double sum = 0;
       double largest = 0;
       for (const double r : residuals)
       {
-        squares += r * r / static_cast<double>(residuals.size());
+        sum += r * r / static_cast<double>(residuals.size());
         largest = std::max(largest, std::abs(r));
       }
       const auto set = [output](const char* name, double value)
@@ -290,7 +297,7 @@ int vtkLacunaRBFSurface::RequestData(
       const lacuna::SurfaceSplineReport& report = spline.GetReport();
       set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
       set("SurfaceArea", followed.Surface.GetArea());
-      set("ResidualRMS", std::sqrt(squares));
+      set("ResidualRMS", std::sqrt(sum));
       set("ResidualMaximum", largest);
       set("PointError", report.PointError);
       set("NormalError", std::atan(report.NormalError) * 180 / std::acos(-1.0));

@@ -13,6 +13,7 @@
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaRBFInterpolator.h"
+#include "vtkLacunaRBFSurface.h"
 #include "vtkLacunaSplineLoop.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
@@ -152,6 +153,21 @@ Subject MakeInterpolator()
   return subject;
 }
 
+Subject MakeClosedSurface()
+{
+  using T = vtkLacunaRBFSurface;
+  Subject subject{ "RBFSurface", NewOf<T>,
+    [](Dice& dice) -> Inputs { return { RandomPoints(dice, dice.Chance(0.1) ? 0 : 4, 40) }; },
+    { Whole("Kernel", &T::SetKernel, 0, 1), Real("Smoothing", &T::SetSmoothing, 0, 2),
+      Real("Accuracy", &T::SetAccuracy, 0.001, 1), Real("Tolerance", &T::SetTolerance, 1e-4, 0.1),
+      Word("ErrorArray", &T::SetErrorArray, { "", "Error", "None" }),
+      Real("OutputSpacing", &T::SetOutputSpacing, 2, 10),
+      Reals<6>("OutputBounds", &T::SetOutputBounds, -20, 20),
+      Switch("CapBoundary", &T::SetCapBoundary) } };
+  subject.Cost = 4;
+  return subject;
+}
+
 Subject MakePlate()
 {
   using T = vtkLacunaImplantPlate;
@@ -224,6 +240,7 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
 {
   subjects.push_back(MakeHoleFiller());
   subjects.push_back(MakeInterpolator());
+  subjects.push_back(MakeClosedSurface());
   subjects.push_back(MakePlate());
   {
     using T = vtkLacunaDefectModel;
