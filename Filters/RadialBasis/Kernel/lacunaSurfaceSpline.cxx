@@ -182,8 +182,8 @@ public:
       const bool better = held < LeastImprovement * error;
       error = std::min(error, held);
       this->AddHeldOut();
-      std::vector<double> solution;
-      if (!std::isfinite(this->Solve(report, stiffness, solution)))
+      const std::vector<double> solution = this->Solve(report, stiffness);
+      if (solution.empty())
       {
         throw std::runtime_error(Unsolvable);
       }
@@ -555,11 +555,8 @@ private:
       1.0, this->SlopeRight.data(), 1);
   }
 
-  // Coefficients of the orthonormal functions; errors in the report, mm. Returns how unlikely the data
-  // are with this stiffness and these errors, whatever the coefficients: -2 log of their density but for
-  // what does not depend on the stiffness; infinity where rounding errors outweigh the energy.
-  double Solve(
-    const SurfaceSplineReport& report, double stiffness, std::vector<double>& solution) const
+  // Coefficients of the orthonormal functions; errors in the report, mm.
+  std::vector<double> Solve(const SurfaceSplineReport& report, double stiffness) const
   {
     const std::size_t size = this->Trial.size();
     const double point = report.PointError / this->Scale;
@@ -575,7 +572,7 @@ private:
       }
       matrix.Column(j)[j] += j < Terms ? 1e-12 * matrix.Column(j)[j] : 1 / (stiffness * stiffness);
     }
-    solution = this->SlopeRight;
+    std::vector<double> solution(this->SlopeRight);
     for (double& x : solution)
     {
       x *= slope;
@@ -585,18 +582,13 @@ private:
     dpotrf_("L", &n, matrix.Column(0), &n, &info, 1);
     if (info != 0)
     {
-      return std::numeric_limits<double>::infinity();
+      return {}; // rounding errors outweigh the energy: as bad as a fit can be
     }
     cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, matrix.Column(0), n,
       solution.data(), 1);
-    double unlikely = 2 * static_cast<double>(size - Terms) * std::log(stiffness);
-    for (std::size_t j = 0; j < size; ++j)
-    {
-      unlikely += 2 * std::log(matrix.Column(j)[j]) - solution[j] * solution[j];
-    }
     cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, matrix.Column(0), n,
       solution.data(), 1);
-    return unlikely;
+    return solution;
   }
 
   struct Misses
@@ -634,8 +626,7 @@ private:
     return { GetRootMeanSquare(values), GetRootMeanSquare(slopes) };
   }
 
-  // The stiffness with which the data are most likely, and the errors of points held out, in turns;
-  // returns by how much these are missed.
+  // Errors and stiffness that predict points held out best; returns by how much these are missed.
   double Tune(double& stiffness, bool first, SurfaceSplineReport& report)
   {
     if (first)
@@ -644,30 +635,46 @@ private:
         this->Options.PointError > 0 ? this->Options.PointError : 0.003 * this->Scale;
       report.NormalError = std::max(0.15, this->Options.LeastNormalError);
     }
-    Misses misses;
+    Misses best;
     for (int round = 0; round < (first ? Rounds : 2); ++round)
     {
+      const auto score = [&](const Misses& misses)
+      {
+        const double p = misses.Points * this->Scale / report.PointError;
+        const double n = misses.Normals / report.NormalError;
+        return p * p + 2 * n * n;
+      };
+      const auto attempt = [&](double t, Misses& misses)
+      {
+        const std::vector<double> solution = this->Solve(report, t);
+        if (solution.empty())
+        {
+          return std::numeric_limits<double>::infinity();
+        }
+        misses = this->Predict(solution);
+        return score(misses);
+      };
       // from the stiffness there is, downhill in steps of half a decade
       constexpr double factor = 3.1623;
-      constexpr double largest = 1e4;
-      std::vector<double> best;
-      double least = this->Solve(report, stiffness, best);
+      double least = attempt(stiffness, best);
       for (const double step : { factor, 1 / factor })
       {
-        const double start = stiffness;
-        std::vector<double> solution;
-        for (double t = start * step; t < largest && t > 1 / largest; t *= step)
+        constexpr double largest = 1e4;
+        bool moved = false;
+        for (double t = stiffness * step; t < largest && t > 1 / largest; t *= step)
         {
-          const double unlikely = this->Solve(report, t, solution);
-          if (!(unlikely < least) && std::isfinite(least))
+          Misses misses;
+          const double s = attempt(t, misses);
+          if (!(s < least))
           {
             break;
           }
-          least = unlikely;
-          best = solution;
+          least = s;
+          best = misses;
           stiffness = t;
+          moved = true;
         }
-        if (stiffness != start && std::isfinite(least))
+        if (moved)
         {
           break;
         }
@@ -676,15 +683,14 @@ private:
       {
         throw std::runtime_error(Unsolvable);
       }
-      misses = this->Predict(best);
       if (!(this->Options.PointError > 0))
       {
-        report.PointError = std::max(misses.Points, SmallestPointError) * this->Scale;
+        report.PointError = std::max(best.Points * this->Scale, SmallestPointError * this->Scale);
       }
       report.NormalError =
-        std::max({ misses.Normals, SmallestNormalError, this->Options.LeastNormalError });
+        std::max({ best.Normals, SmallestNormalError, this->Options.LeastNormalError });
     }
-    return misses.Points;
+    return best.Points;
   }
 
   void AddHeldOut()

@@ -58,11 +58,11 @@ struct SurfaceSplineReport
 ///   sum_i (s(x_i) / (e e_i))^2 + sum_i |grad s(x_i) - n_i|^2 / g^2 + E(s) / t^2
 ///
 /// over the coefficients, with all points, E the energy of the kernel. So gradients are data with an
-/// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of the
-/// points is held out at first: e and g are the root mean squares by which these are missed, and t is
-/// the value with which the data are most likely (the evidence of a Gaussian process), in some rounds.
-/// The number of nodes doubles while that lowers the misses; half of the new ones lie where they are
-/// largest, so at creases. Then all points count.
+/// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of
+/// the points is held out at first. t is the value that predicts them best, e and g are the root mean
+/// squares by which they are missed, in some rounds. The number of nodes doubles while that lowers
+/// this error; half of the new ones lie where the misses are largest, so at creases. Then all points
+/// count.
 ///
 /// Time grows in proportion to the number of points (see MaximumPoints) and to the square of the
 /// nodes.
