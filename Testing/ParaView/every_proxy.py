@@ -155,6 +155,7 @@ def implant():
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
+    RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6)
     filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=14, NodeSpacing=3, DefectRegion="Sphere")
     with applied(filled):
         filled.DefectRegion.Center = [37, -15, 60]
@@ -183,7 +184,6 @@ def radial_basis():
     sphere = Sphere(registrationName="Places", Radius=50, ThetaResolution=20, PhiResolution=12)
     warmth = Calculator(registrationName="Warmth", Input=sphere, ResultArrayName="Warmth", Function="20 + coordsX/10 + sin(coordsZ/15)")
     volume = RBFInterpolator(registrationName="Interpolated", Input=warmth, ScalarArray="Warmth", Kernel="Linear", OutputSpacing=[9, 9, 9], Smoothing=0.1)
-    RBFSurface(registrationName="Closed", Input=sphere, OutputSpacing=8)
     moved = Transform(registrationName="Targets", Input=sphere)
     with applied(moved):
         moved.Transform.Rotate = [0, 0, 10]

@@ -164,7 +164,7 @@ Subject MakeClosedSurface()
       Real("OutputSpacing", &T::SetOutputSpacing, 2, 10),
       Reals<6>("OutputBounds", &T::SetOutputBounds, -20, 20),
       Switch("CapBoundary", &T::SetCapBoundary) } };
-  subject.Cost = 4;
+  subject.Cost = 20;
   return subject;
 }
 
