@@ -4,6 +4,7 @@
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
+#include "lacunaSurfaceFit.h"
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
 #include "vtkDataSet.h"
@@ -112,12 +113,12 @@ void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
 }
 
 // Distances of points from the surface, positive outside, to first order.
-std::vector<double> GetResiduals(lacuna::Execution& execution, const lacuna::SurfaceSpline& spline,
-  const std::vector<Vec3>& points)
+std::vector<double> GetResiduals(lacuna::Execution& execution,
+  const lacuna::ImplicitFunction& function, const std::vector<Vec3>& points)
 {
   std::vector<double> values(points.size());
   std::vector<Vec3> gradients(points.size());
-  spline.Evaluate(execution, points, values, &gradients);
+  function.Evaluate(execution, points, values, &gradients);
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const double slope = lacuna::Norm(gradients[i]);
@@ -224,7 +225,7 @@ int vtkLacunaRBFSurface::RequestData(
       this->CheckNormals(execution, points, 0.5 * spacing);
 
       execution.SetStage(0.05, 0.7);
-      lacuna::SurfaceSplineOptions options;
+      lacuna::SurfaceFitOptions options;
       options.Kernel =
         this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
       options.PointError = this->Smoothing;
@@ -234,9 +235,11 @@ int vtkLacunaRBFSurface::RequestData(
       {
         points.Free.clear();
       }
-      const lacuna::SurfaceSpline spline = collected.HasOutlines
-        ? lacuna::FitOutlines(execution, points, options)
-        : lacuna::SurfaceSpline(execution, points, options);
+      if (collected.HasOutlines)
+      {
+        lacuna::FindOutlineNormals(execution, points, options);
+      }
+      const lacuna::SurfaceFit fit(execution, points, options);
 
       execution.SetStage(0.7, 0.95);
       lacuna::SurfaceFollowerOptions follow;
@@ -260,11 +263,11 @@ int vtkLacunaRBFSurface::RequestData(
           given ? this->OutputBounds[2 * c + 1] : own[2 * c + 1] + BoundsMargin * extent;
       }
       const lacuna::FollowedSurface followed =
-        lacuna::FollowSurface(execution, spline, points.Points, follow);
+        lacuna::FollowSurface(execution, fit, points.Points, follow);
       this->CheckSurface(followed, collected.Warnings);
 
       execution.SetStage(0.95, 1);
-      const std::vector<double> residuals = GetResiduals(execution, spline, points.Points);
+      const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
       vtkPolyData* output = vtkPolyData::GetData(outputs);
       SetSurface(output, followed);
       const vtkIdType n = output->GetNumberOfPoints();
@@ -294,14 +297,14 @@ int vtkLacunaRBFSurface::RequestData(
       }
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-      const lacuna::SurfaceSplineReport& report = spline.GetReport();
+      const lacuna::SurfaceFitReport& report = fit.GetReport();
       set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
       set("SurfaceArea", followed.Surface.GetArea());
       set("ResidualRMS", std::sqrt(sum));
       set("ResidualMaximum", largest);
       set("PointError", report.PointError);
-      set("NormalError", std::atan(report.NormalError) * 180 / std::acos(-1.0));
-      set("CenterCount", 2.0 * static_cast<double>(report.Nodes));
+      set("NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
+      set("CenterCount", static_cast<double>(report.Centers));
       set(
         "FitTime", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
       lacuna::ParameterText parameters;

@@ -2,6 +2,7 @@
 #include "lacunaSurfaceSpline.h"
 
 #include "lacunaExecution.h"
+#include "lacunaScramble.h"
 #include "lacunaSingleBlasThread.h"
 #include "lacunaSymmetricFactorization.h"
 
@@ -36,7 +37,6 @@ constexpr int Terms = 4; // of the linear polynomial
 // Of the points held out: a tenth, or where that are few a quarter.
 constexpr std::size_t FewHeldOut = 50;
 constexpr std::size_t MostHeldOut = 1500;
-constexpr double LeastImprovement = 0.95; // of the held-out error, for more nodes
 // What is taken for no error, of the extent of the points: the rounding of 32-bit coordinates.
 constexpr double SmallestPointError = 1e-7;
 constexpr double SmallestNormalError = 1e-4;
@@ -72,15 +72,6 @@ private:
   std::unique_ptr<double[], FreeAligned> Elements;
 };
 
-// A number that looks random, the same for the same index on all machines (splitmix64).
-std::uint64_t Scramble(std::uint64_t x)
-{
-  x += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
 double GetRootMeanSquare(const std::vector<double>& values)
 {
   double sum = 0;
@@ -101,9 +92,12 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
 {
   if (data.Normals.size() != data.Points.size() ||
     (!data.Errors.empty() && data.Errors.size() != data.Points.size()) ||
-    (!data.Free.empty() && data.Free.size() != data.Points.size()))
+    (!data.Free.empty() && data.Free.size() != data.Points.size()) ||
+    (!data.Values.empty() && data.Values.size() != data.Points.size()) ||
+    (!data.Slopes.empty() && data.Slopes.size() != data.Points.size()))
   {
-    throw std::invalid_argument("there must be as many normals, errors and directions as points");
+    throw std::invalid_argument(
+      "there must be as many normals, errors, directions and values as points");
   }
   if (data.Points.size() < SurfaceSpline::FewestPoints)
   {
@@ -129,11 +123,11 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
   {
     throw std::invalid_argument("the kernel must be r^3 or r");
   }
-  for (const double x : { options.PointError, options.LeastNormalError, options.Accuracy })
+  for (const double x : { options.PointError, options.LeastNormalError })
   {
     if (!(x >= 0) || !std::isfinite(x))
     {
-      throw std::invalid_argument("errors and Accuracy must be finite numbers >= 0");
+      throw std::invalid_argument("errors must be finite numbers >= 0");
     }
   }
 }
@@ -150,8 +144,14 @@ public:
     , Options(options)
     , Scale(scale)
     , Normals(data.Normals)
+    , Slopes(data.Slopes.empty() ? data.Normals : data.Slopes)
     , Free(data.Free)
   {
+    this->Values.assign(data.Points.size(), 0.0);
+    for (std::size_t i = 0; i < data.Values.size(); ++i)
+    {
+      this->Values[i] = data.Values[i] / scale;
+    }
     this->Points.reserve(data.Points.size());
     for (const Vec3& point : data.Points)
     {
@@ -168,45 +168,21 @@ public:
   void Run(SurfaceSplineReport& report)
   {
     const SingleBlasThread single(this->Runner.GetNumberOfThreads());
-    double stage = 0;
-    double error = std::numeric_limits<double>::infinity();
+    this->AddSpreadNodes(std::min(this->Options.Nodes, this->Known.size()));
+    this->SetUp();
     double stiffness = 1;
-    this->AddSpreadNodes(std::min(FewestNodes, this->Known.size()));
-    for (;;)
+    report.HeldOutError = this->Scale * this->Tune(stiffness, report);
+    report.Gain = this->GetGain(report, stiffness);
+    this->AddHeldOut();
+    const std::vector<double> solution = this->Solve(report, stiffness);
+    if (solution.empty())
     {
-      this->Runner.SetStage(stage, stage + 0.5 * (1 - stage));
-      stage += 0.5 * (1 - stage);
-      this->SetUp();
-      const bool first = !std::isfinite(error);
-      const double held = this->Tune(stiffness, first, report);
-      const bool better = held < LeastImprovement * error;
-      error = std::min(error, held);
-      this->AddHeldOut();
-      const std::vector<double> solution = this->Solve(report, stiffness);
-      if (solution.empty())
-      {
-        throw std::runtime_error(Unsolvable);
-      }
-      if (better || first)
-      {
-        this->Keep(solution);
-        report.Nodes = this->Nodes.size();
-        report.HeldOutError = held * this->Scale;
-        this->Best = report;
-      }
-      report = this->Best;
-      const std::size_t room = std::min(MostNodes, this->Known.size()) - this->Nodes.size();
-      if (!better || room == 0 || held * this->Scale <= this->Options.Accuracy)
-      {
-        return;
-      }
-      const std::size_t added = std::min(room, this->Nodes.size());
-      this->AddMissedNodes(added / 2, solution);
-      this->AddSpreadNodes(this->Nodes.size() + added - added / 2);
+      throw std::runtime_error(Unsolvable);
     }
+    this->Keep(solution);
+    report.Nodes = this->Nodes.size();
   }
 
-  // Of the best fit.
   std::vector<Vec3> Centers;
   std::vector<double> Coefficients;
   std::array<double, 4> Polynomial{};
@@ -260,29 +236,6 @@ private:
         return; // all other points repeat nodes
       }
       this->AddNode(static_cast<std::size_t>(farthest - this->Distances.begin()));
-    }
-  }
-
-  // Where the fit misses most, but not beside nodes.
-  void AddMissedNodes(std::size_t count, const std::vector<double>& solution)
-  {
-    const std::vector<double> missed = this->GetMisses(solution);
-    std::vector<double> sorted = this->Distances;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double nearest = 0.7 * *middle;
-    std::vector<std::size_t> order(this->Known.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::sort(order.begin(), order.end(),
-      [&](std::size_t a, std::size_t b)
-      { return missed[a] != missed[b] ? missed[a] > missed[b] : a < b; });
-    const std::size_t last = this->Nodes.size() + count;
-    for (std::size_t i = 0; i < order.size() && this->Nodes.size() < last; ++i)
-    {
-      if (this->Distances[order[i]] > nearest)
-      {
-        this->AddNode(order[i]);
-      }
     }
   }
 
@@ -363,6 +316,7 @@ private:
     this->ValueProducts = Matrix(size, size);
     this->SlopeProducts = Matrix(size, size);
     this->SlopeRight.assign(size, 0.0);
+    this->ValueRight.assign(size, 0.0);
     this->Accumulate(this->Known, this->WithNormals);
     this->HeldRows = this->MakeRows(this->HeldOut, 0, this->HeldOut.size(), true);
   }
@@ -536,23 +490,31 @@ private:
     const Matrix& rows, const std::vector<std::size_t>& which, std::size_t begin, std::size_t end)
   {
     const std::size_t count = end - begin;
-    if (rows.GetRows() <= count)
+    if (count == 0)
     {
       return;
     }
-    std::vector<double> normals(3 * count);
+    std::vector<double> values(count);
+    std::vector<double> slopes(3 * count);
     for (std::size_t i = 0; i < count; ++i)
     {
-      const Vec3 known = this->GetKnown(which[begin + i], this->Normals[which[begin + i]]);
+      const std::size_t point = which[begin + i];
+      values[i] = this->Values[point] * this->Weights[point];
+      const Vec3 known = this->GetKnown(point, this->Slopes[point]);
       for (int c = 0; c < 3; ++c)
       {
-        normals[c * count + i] = known[c];
+        slopes[c * count + i] = known[c];
       }
     }
     const int height = static_cast<int>(rows.GetRows());
-    cblas_dgemv(CblasColMajor, CblasTrans, static_cast<int>(3 * count),
-      static_cast<int>(this->Trial.size()), 1.0, rows.Column(0) + count, height, normals.data(), 1,
-      1.0, this->SlopeRight.data(), 1);
+    const int size = static_cast<int>(this->Trial.size());
+    cblas_dgemv(CblasColMajor, CblasTrans, static_cast<int>(count), size, 1.0, rows.Column(0),
+      height, values.data(), 1, 1.0, this->ValueRight.data(), 1);
+    if (rows.GetRows() > count)
+    {
+      cblas_dgemv(CblasColMajor, CblasTrans, static_cast<int>(3 * count), size, 1.0,
+        rows.Column(0) + count, height, slopes.data(), 1, 1.0, this->SlopeRight.data(), 1);
+    }
   }
 
   // Coefficients of the orthonormal functions; errors in the report, mm.
@@ -572,10 +534,10 @@ private:
       }
       matrix.Column(j)[j] += j < Terms ? 1e-12 * matrix.Column(j)[j] : 1 / (stiffness * stiffness);
     }
-    std::vector<double> solution(this->SlopeRight);
-    for (double& x : solution)
+    std::vector<double> solution(size);
+    for (std::size_t i = 0; i < size; ++i)
     {
-      x *= slope;
+      solution[i] = value * this->ValueRight[i] + slope * this->SlopeRight[i];
     }
     const int n = static_cast<int>(size);
     int info = 0;
@@ -593,8 +555,9 @@ private:
 
   struct Misses
   {
-    double Points = 0; // RMS of weighted values
+    double Points = 0; // RMS of weighted distances
     double Normals = 0;
+    std::vector<double> Distances; // the former, of each point held out
   };
 
   Misses Predict(const std::vector<double>& solution) const
@@ -610,33 +573,57 @@ private:
     {
       double square = 0;
       double difference = 0;
-      const Vec3 known = this->GetKnown(this->HeldOut[i], this->Normals[this->HeldOut[i]]);
+      const std::size_t point = this->HeldOut[i];
+      const Vec3 missed = Vec3{ result[count + i], result[2 * count + i], result[3 * count + i] } -
+        this->GetKnown(point, this->Slopes[point]);
+      // of the surface, whose normals are the data
+      const Vec3 whole = missed + this->GetKnown(point, this->Normals[point]);
       for (int c = 0; c < 3; ++c)
       {
-        const double g = result[(c + 1) * count + i];
-        square += g * g;
-        const double d = g - known[c];
-        difference += d * d / 2; // two directions along the surface
+        square += whole[c] * whole[c];
+        difference += missed[c] * missed[c] / 2; // two directions along the surface
       }
       // a distance, so that a function that is small everywhere gains nothing
       const double slope = std::sqrt(square);
-      values.push_back(this->Weights[this->HeldOut[i]] * result[i] / std::clamp(slope, 0.1, 1.0));
+      values.push_back(
+        this->Weights[point] * (result[i] - this->Values[point]) / std::clamp(slope, 0.1, 1.0));
       slopes.push_back(std::sqrt(difference));
     }
-    return { GetRootMeanSquare(values), GetRootMeanSquare(slopes) };
+    return { GetRootMeanSquare(values), GetRootMeanSquare(slopes), std::move(values) };
+  }
+
+  // See SurfaceSplineReport.
+  double GetGain(const SurfaceSplineReport& report, double stiffness) const
+  {
+    const std::vector<double> without =
+      this->Predict(std::vector<double>(this->Trial.size(), 0.0)).Distances;
+    const std::vector<double> solution = this->Solve(report, stiffness);
+    if (solution.empty())
+    {
+      return 0;
+    }
+    const std::vector<double> with = this->Predict(solution).Distances;
+    const auto n = static_cast<double>(with.size());
+    double sum = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < with.size(); ++i)
+    {
+      const double d = without[i] * without[i] - with[i] * with[i];
+      sum += d;
+      squares += d * d;
+    }
+    const double variance = squares / n - (sum / n) * (sum / n);
+    return variance > 0 ? sum / n / std::sqrt(variance / n) : 0;
   }
 
   // Errors and stiffness that predict points held out best; returns by how much these are missed.
-  double Tune(double& stiffness, bool first, SurfaceSplineReport& report)
+  double Tune(double& stiffness, SurfaceSplineReport& report)
   {
-    if (first)
-    {
-      report.PointError =
-        this->Options.PointError > 0 ? this->Options.PointError : 0.003 * this->Scale;
-      report.NormalError = std::max(0.15, this->Options.LeastNormalError);
-    }
+    report.PointError =
+      this->Options.PointError > 0 ? this->Options.PointError : 0.003 * this->Scale;
+    report.NormalError = std::max(0.15, this->Options.LeastNormalError);
     Misses best;
-    for (int round = 0; round < (first ? Rounds : 2); ++round)
+    for (int round = 0; round < Rounds; ++round)
     {
       const auto score = [&](const Misses& misses)
       {
@@ -699,30 +686,6 @@ private:
     this->HeldRows = Matrix();
   }
 
-  // Of the known points, weighted, without sign.
-  std::vector<double> GetMisses(const std::vector<double>& solution) const
-  {
-    std::vector<double> misses(this->Known.size());
-    this->Runner.For(static_cast<std::int64_t>((misses.size() + BlockPoints - 1) / BlockPoints), 1,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t b = begin; b < end; ++b)
-        {
-          const std::size_t from = static_cast<std::size_t>(b) * BlockPoints;
-          const std::size_t to = std::min(misses.size(), from + BlockPoints);
-          const Matrix rows = this->MakeRows(this->Known, from, to, false);
-          cblas_dgemv(CblasColMajor, CblasNoTrans, static_cast<int>(to - from),
-            static_cast<int>(this->Trial.size()), 1.0, rows.Column(0), static_cast<int>(to - from),
-            solution.data(), 1, 0.0, misses.data() + from, 1);
-          for (std::size_t i = from; i < to; ++i)
-          {
-            misses[i] = std::abs(misses[i]) * this->Weights[this->Known[i]];
-          }
-        }
-      });
-    return misses;
-  }
-
   void Keep(const std::vector<double>& solution)
   {
     this->Centers = this->Trial;
@@ -741,14 +704,15 @@ private:
   double Scale;
   std::vector<Vec3> Points;
   const std::vector<Vec3>& Normals;
+  const std::vector<Vec3>& Slopes; // what gradients shall be
   const std::vector<Vec3>& Free;
+  std::vector<double> Values; // what the function shall be
   std::vector<double> Weights;
   std::vector<std::size_t> HeldOut;
   std::vector<std::size_t> Known;
   std::size_t WithNormals = 0;   // so many of Known
   std::vector<double> Distances; // of Known from the nearest node
   std::vector<std::size_t> Nodes;
-  SurfaceSplineReport Best;
 
   // of the nodes at hand
   std::vector<Vec3> Trial; // centres
@@ -757,6 +721,7 @@ private:
   Matrix Root;          // Cholesky factor of the energy
   Matrix ValueProducts; // lower triangles
   Matrix SlopeProducts;
+  std::vector<double> ValueRight;
   std::vector<double> SlopeRight;
   Matrix HeldRows;
 };
@@ -798,11 +763,51 @@ SurfaceSpline::SurfaceSpline(
 }
 
 //------------------------------------------------------------------------------
-void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& points,
-  std::vector<double>& values, std::vector<Vec3>* gradients) const
+void SurfaceSpline::EvaluateBlock(
+  const Vec3* points, std::size_t count, double* values, Vec3* gradients) const
 {
   const Coordinates<3> centers{ { this->Centers[0].data(), this->Centers[1].data(),
     this->Centers[2].data() } };
+  double at[3][RadialBlock];
+  double sums[RadialBlock];
+  double slopes[3 * RadialBlock];
+  for (std::size_t i = 0; i < RadialBlock; ++i)
+  {
+    const Vec3 u = (1 / this->Scale) * (points[std::min(i, count - 1)] - this->Origin);
+    for (int c = 0; c < 3; ++c)
+    {
+      at[c][i] = u[c];
+    }
+  }
+  const Coordinates<3> where{ { at[0], at[1], at[2] } };
+  const std::size_t size = this->Coefficients.size();
+  if (gradients)
+  {
+    this->Loops.SumAndGradient(centers, this->Coefficients.data(), size, where, sums, slopes);
+  }
+  else
+  {
+    this->Loops.Sum(centers, this->Coefficients.data(), size, where, sums);
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    double s = sums[i] + this->Polynomial[0];
+    for (int c = 0; c < 3; ++c)
+    {
+      s += this->Polynomial[c + 1] * at[c][i];
+      if (gradients)
+      {
+        gradients[i][c] = slopes[c * RadialBlock + i] + this->Polynomial[c + 1];
+      }
+    }
+    values[i] = this->Scale * s;
+  }
+}
+
+//------------------------------------------------------------------------------
+void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& points,
+  std::vector<double>& values, std::vector<Vec3>* gradients) const
+{
   const auto blocks = static_cast<std::int64_t>((points.size() + RadialBlock - 1) / RadialBlock);
   execution.For(blocks, 4,
     [&](std::int64_t begin, std::int64_t end)
@@ -810,67 +815,29 @@ void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& poin
       for (std::int64_t b = begin; b < end; ++b)
       {
         const std::size_t from = static_cast<std::size_t>(b) * RadialBlock;
-        double at[3][RadialBlock];
-        double sums[RadialBlock];
-        double slopes[3 * RadialBlock];
-        for (std::size_t i = 0; i < RadialBlock; ++i)
-        {
-          const Vec3 u =
-            (1 / this->Scale) * (points[std::min(from + i, points.size() - 1)] - this->Origin);
-          for (int c = 0; c < 3; ++c)
-          {
-            at[c][i] = u[c];
-          }
-        }
-        const Coordinates<3> where{ { at[0], at[1], at[2] } };
-        if (gradients)
-        {
-          this->Loops.SumAndGradient(
-            centers, this->Coefficients.data(), this->Coefficients.size(), where, sums, slopes);
-        }
-        else
-        {
-          this->Loops.Sum(
-            centers, this->Coefficients.data(), this->Coefficients.size(), where, sums);
-        }
-        for (std::size_t i = 0; i < std::min(RadialBlock, points.size() - from); ++i)
-        {
-          double s = sums[i] + this->Polynomial[0];
-          for (int c = 0; c < 3; ++c)
-          {
-            s += this->Polynomial[c + 1] * at[c][i];
-            if (gradients)
-            {
-              (*gradients)[from + i][c] = slopes[c * RadialBlock + i] + this->Polynomial[c + 1];
-            }
-          }
-          values[from + i] = this->Scale * s;
-        }
+        this->EvaluateBlock(points.data() + from, std::min(RadialBlock, points.size() - from),
+          values.data() + from, gradients ? gradients->data() + from : nullptr);
       }
     });
 }
 
 //------------------------------------------------------------------------------
-SurfaceSpline FitOutlines(
+void FindOutlineNormals(
   Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options)
 {
-  constexpr int rounds = 5;
+  constexpr int rounds = 4;
   const Execution::NestedStages stages(execution);
-  for (int round = 0;; ++round)
+  for (int round = 0; round < rounds; ++round)
   {
     execution.SetStage(static_cast<double>(round) / rounds, (round + 1.0) / rounds);
-    SurfaceSpline spline(execution, data, options);
-    if (round == rounds - 1)
-    {
-      return spline;
-    }
+    const SurfaceSpline spline(execution, data, options);
     std::vector<double> values(data.Points.size());
     std::vector<Vec3> gradients(data.Points.size());
     spline.Evaluate(execution, data.Points, values, &gradients);
-    for (std::size_t i = 0; i < data.Points.size(); ++i)
+    for (std::size_t i = 0; i < data.Free.size(); ++i)
     {
       // a normal that has turned over is of no use
-      if (data.Free.size() > i && Norm(data.Free[i]) > 0 && Dot(gradients[i], data.Normals[i]) > 0)
+      if (Norm(data.Free[i]) > 0 && Dot(gradients[i], data.Normals[i]) > 0)
       {
         data.Normals[i] = Normalized(gradients[i]);
       }

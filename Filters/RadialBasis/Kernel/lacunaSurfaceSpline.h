@@ -26,6 +26,9 @@ struct OrientedPoints
   /// Unit directions along which the surface's slope at a point is not known: across the plane of an
   /// outline. Zero vectors for other points. Empty: all slopes are known.
   std::vector<Vec3> Free;
+  /// What a function shall be at the points, mm, and its gradients. Empty: 0 and the normals.
+  std::vector<double> Values;
+  std::vector<Vec3> Slopes;
 };
 
 struct SurfaceSplineOptions
@@ -37,9 +40,7 @@ struct SurfaceSplineOptions
   double PointError = 0;
   /// The same for normals, as a tangent; never taken smaller than this.
   double LeastNormalError = 0;
-  /// More nodes are taken while points that were held out are missed by more than this, mm, and
-  /// while that helps.
-  double Accuracy = 0.01;
+  std::size_t Nodes = 300; ///< at most, above 0
 };
 
 struct SurfaceSplineReport
@@ -48,6 +49,9 @@ struct SurfaceSplineReport
   double PointError = 0;   ///< mm, of points along the normal: given, or of held-out points (RMS)
   double NormalError = 0;  ///< tangent of the angle, in each of two directions (RMS)
   double HeldOutError = 0; ///< RMS distance of points that a fit did not know, mm
+  /// Mean of the squares by which these are missed less than by the function 0, in its standard
+  /// errors: above 2 or 3 the spline is surely of use.
+  double Gain = 0;
 };
 
 /// s(x) = p(x) + sum_j a_j phi(|x - c_j|), about the signed distance in mm, negative inside. p is
@@ -55,16 +59,15 @@ struct SurfaceSplineReport
 /// distance of nodes away. Two layers of them can follow place and slope of a surface alike. s
 /// minimises
 ///
-///   sum_i (s(x_i) / (e e_i))^2 + sum_i |grad s(x_i) - n_i|^2 / g^2 + E(s) / t^2
+///   sum_i ((s(x_i) - v_i) / (e e_i))^2 + sum_i |grad s(x_i) - n_i|^2 / g^2 + E(s) / t^2
 ///
 /// over the coefficients, with all points, E the energy of the kernel. So gradients are data with an
 /// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of
 /// the points is held out at first. t is the value that predicts them best, e and g are the root mean
-/// squares by which they are missed, in some rounds. The number of nodes doubles while that lowers
-/// this error; half of the new ones lie where the misses are largest, so at creases. Then all points
-/// count.
+/// squares by which they are missed, in some rounds. Then all points count. Nodes are spread evenly
+/// over the points.
 ///
-/// Time grows in proportion to the number of points (see MaximumPoints) and to the square of the
+/// Time grows in proportion to the number of points (up to MaximumPoints) and to the square of the
 /// nodes.
 class SurfaceSpline : public ImplicitFunction
 {
@@ -72,8 +75,6 @@ public:
   /// So many points count with their places and normals at most, chosen evenly by their order.
   static constexpr std::size_t MaximumPoints = 100000;
   static constexpr std::size_t MaximumNormals = 15000;
-  static constexpr std::size_t FewestNodes = 300;
-  static constexpr std::size_t MostNodes = 1200;
   static constexpr std::size_t FewestPoints = 10;
 
   /// Throws std::invalid_argument for fewer than FewestPoints points, numbers that are not finite,
@@ -84,6 +85,8 @@ public:
 
   void Evaluate(Execution& execution, const std::vector<Vec3>& points, std::vector<double>& values,
     std::vector<Vec3>* gradients) const override;
+  /// The same of up to RadialBlock points, on the calling thread.
+  void EvaluateBlock(const Vec3* points, std::size_t count, double* values, Vec3* gradients) const;
 
   const SurfaceSplineReport& GetReport() const { return this->Report; }
 
@@ -99,10 +102,10 @@ private:
   SurfaceSplineReport Report;
 };
 
-/// A spline through outlines (points with Free directions) and other points. The normals of outlines
-/// are known within their planes only, but the slope there depends on the angle between plane and
-/// surface. So the fit is repeated with the normals of the last one. data's normals become these.
-SurfaceSpline FitOutlines(
+/// Finds the normals of outlines (points with Free directions). They are known within their planes
+/// only, but the slope there depends on the angle between plane and surface. So a spline is fitted
+/// several times, each with the normals of the last one. data's normals become these.
+void FindOutlineNormals(
   Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options);
 }
 #endif

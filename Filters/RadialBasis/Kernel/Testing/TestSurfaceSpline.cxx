@@ -105,10 +105,8 @@ TEST(SurfaceSpline, UnitsOfLengthDoNotMatter)
   {
     p = 1000.0 * p + Vec3{ 5e5, -2e5, 1e5 };
   }
-  lacuna::SurfaceSplineOptions options;
-  const auto spline = Fit(data, options);
-  options.Accuracy *= 1000;
-  const auto scaled = Fit(moved, options);
+  const auto spline = Fit(data);
+  const auto scaled = Fit(moved);
   EXPECT_NEAR(scaled.GetReport().PointError, 1000 * spline.GetReport().PointError, 0.1);
   lacuna::ThreadExecution execution(1);
   std::vector<double> a(20);
@@ -176,7 +174,8 @@ TEST(SurfaceSpline, OutlinesGiveTheVolume)
     }
   }
   lacuna::ThreadExecution execution(2);
-  const auto spline = lacuna::FitOutlines(execution, data, {});
+  lacuna::FindOutlineNormals(execution, data, {});
+  const lacuna::SurfaceSpline spline(execution, data, {});
   lacuna::SurfaceFollowerOptions options;
   options.EdgeLength = 1;
   options.Bounds = { -60, 60, -60, 60, -60, 60 };

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSurfaceFit.h"
+
+#include "lacunaExecution.h"
+#include "lacunaTestShapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace
+{
+using lacuna::TestShape;
+using lacuna::Vec3;
+
+double GetError(const lacuna::ImplicitFunction& function, const lacuna::OrientedPoints& truth)
+{
+  lacuna::ThreadExecution execution(2);
+  std::vector<double> values(truth.Points.size());
+  std::vector<Vec3> gradients(truth.Points.size());
+  function.Evaluate(execution, truth.Points, values, &gradients);
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const double d = values[i] / lacuna::Norm(gradients[i]);
+    sum += d * d / static_cast<double>(values.size());
+  }
+  return std::sqrt(sum);
+}
+
+// A sphere of 40 mm with waves of about 12 mm, other ones along each axis.
+lacuna::OrientedPoints MakeWaves(std::size_t count, unsigned seed)
+{
+  const auto value = [](const Vec3& x)
+  {
+    return lacuna::Norm(x) - 40 -
+      0.5 * std::sin(0.5 * x[0]) * std::cos(0.4 * x[1] + 0.3) * std::sin(0.45 * x[2] + 1);
+  };
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0, 1);
+  lacuna::OrientedPoints data;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Vec3 ray = lacuna::Normalized({ normal(random), normal(random), normal(random) });
+    double r = 40;
+    for (int step = 0; step < 30; ++step)
+    {
+      r -= value(r * ray);
+    }
+    const Vec3 x = r * ray;
+    Vec3 gradient{};
+    for (int c = 0; c < 3; ++c)
+    {
+      constexpr double h = 1e-5;
+      Vec3 low = x;
+      Vec3 high = x;
+      low[c] -= h;
+      high[c] += h;
+      gradient[c] = (value(high) - value(low)) / (2 * h);
+    }
+    data.Points.push_back(x);
+    data.Normals.push_back(lacuna::Normalized(gradient));
+  }
+  return data;
+}
+}
+
+TEST(SurfaceFit, FollowsDetailThatOneSplineCannot)
+{
+  lacuna::ThreadExecution execution(2);
+  const auto data = MakeWaves(30000, 1);
+  const auto truth = MakeWaves(2000, 2);
+  const lacuna::SurfaceFit fit(execution, data, {});
+  EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.05);
+  EXPECT_LT(GetError(fit, truth), 0.005);
+  EXPECT_GT(fit.GetReport().LocalSplines, 100u);
+  EXPECT_LT(fit.GetReport().PointError, 0.01);
+}
+
+TEST(SurfaceFit, FollowsCreases)
+{
+  lacuna::ThreadExecution execution(2);
+  const TestShape cup(TestShape::Cup);
+  const auto data = cup.SampleNoisy(10000, 0, false, 1);
+  const auto truth = cup.Sample(2000, 99);
+  EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.2);
+  EXPECT_LT(GetError(lacuna::SurfaceFit(execution, data, {}), truth), 0.08);
+}
+
+TEST(SurfaceFit, DoesNotFollowNoise)
+{
+  lacuna::ThreadExecution execution(2);
+  const TestShape torus(TestShape::Torus);
+  const auto data = torus.SampleNoisy(6000, 0.5, false, 3);
+  const lacuna::SurfaceFit fit(execution, data, {});
+  EXPECT_LT(GetError(fit, torus.Sample(2000, 99)), 0.06);
+  EXPECT_NEAR(fit.GetReport().PointError, 0.5, 0.05);
+}
+
+TEST(SurfaceFit, IsSmoothAndItsGradientsAreThoseOfItsValues)
+{
+  lacuna::ThreadExecution execution(2);
+  const auto data = TestShape(TestShape::Cup).SampleNoisy(3000, 0, false, 4);
+  const lacuna::SurfaceFit fit(execution, data, {});
+  ASSERT_GT(fit.GetReport().LocalSplines, 10u);
+  // along a line that leaves the balls of the local splines on both sides of the wall
+  constexpr double step = 1e-3;
+  std::vector<Vec3> at;
+  for (int i = 0; i < 60000; ++i)
+  {
+    at.push_back({ step * i, 3.3, 37.5 });
+  }
+  std::vector<double> values(at.size());
+  std::vector<Vec3> gradients(at.size());
+  fit.Evaluate(execution, at, values, &gradients);
+  for (std::size_t i = 1; i + 1 < at.size(); ++i)
+  {
+    const double slope = (values[i + 1] - values[i - 1]) / (2 * step);
+    ASSERT_NEAR(gradients[i][0], slope, 1e-4 * (1 + std::abs(slope))) << "at x = " << at[i][0];
+  }
+  std::vector<double> alone(at.size());
+  fit.Evaluate(execution, at, alone, nullptr);
+  EXPECT_EQ(alone, values);
+}
+
+TEST(SurfaceFit, DoesNotDependOnThreads)
+{
+  const auto data = TestShape(TestShape::Cup).SampleNoisy(3000, 0.1, false, 5);
+  const auto evaluate = [&](int threads)
+  {
+    lacuna::ThreadExecution execution(threads);
+    const lacuna::SurfaceFit fit(execution, data, {});
+    std::vector<double> values(data.Points.size());
+    fit.Evaluate(execution, data.Points, values, nullptr);
+    return values;
+  };
+  EXPECT_EQ(evaluate(1), evaluate(3));
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A smooth function near any number of oriented points: one spline for all, and local ones upon it.
+#ifndef lacunaSurfaceFit_h
+#define lacunaSurfaceFit_h
+
+#include "lacunaSurfaceFollower.h"
+#include "lacunaSurfaceSpline.h"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace lacuna
+{
+class Execution;
+
+struct SurfaceFitOptions : SurfaceSplineOptions
+{
+  /// Local splines are added where points are missed by more than this (RMS), mm.
+  double Accuracy = 0.01;
+};
+
+struct SurfaceFitReport
+{
+  SurfaceSplineReport Spline; ///< of all points
+  /// mm, of points along the normal (RMS): given, or where points were held out how far they are
+  /// missed, or the residuals.
+  double PointError = 0;
+  std::size_t LocalSplines = 0; ///< that were of use
+  std::size_t Centers = 0;      ///< radial functions in all
+};
+
+/// One SurfaceSpline of all points carries the surface over places without points. Where it misses
+/// points by more than they predict each other, local splines of the differences are added: in balls
+/// of a few hundred points that overlap, blended by smooth weights (a partition of unity). Further
+/// levels have smaller balls, until all points count. A local spline stays only if it predicts the
+/// points better that it does not know. So creases and fine detail are followed, and noise is not.
+///
+/// Time grows in proportion to the number of points.
+class SurfaceFit : public ImplicitFunction
+{
+public:
+  /// Throws as SurfaceSpline does.
+  SurfaceFit(
+    Execution& execution, const OrientedPoints& data, const SurfaceFitOptions& options);
+  ~SurfaceFit() override;
+  SurfaceFit(SurfaceFit&&) noexcept;
+
+  void Evaluate(Execution& execution, const std::vector<Vec3>& points, std::vector<double>& values,
+    std::vector<Vec3>* gradients) const override;
+
+  const SurfaceFitReport& GetReport() const { return this->Report; }
+
+private:
+  class Level;
+
+  std::unique_ptr<SurfaceSpline> Whole;
+  std::vector<std::unique_ptr<Level>> Levels;
+  SurfaceFitReport Report;
+};
+}
+#endif
