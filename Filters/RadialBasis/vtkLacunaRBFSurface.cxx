@@ -2,6 +2,7 @@
 #include "vtkLacunaRBFSurface.h"
 
 #include "lacunaMemory.h"
+#include "lacunaOutlines.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
 #include "lacunaSurfaceFit.h"
@@ -235,8 +236,9 @@ int vtkLacunaRBFSurface::RequestData(
       {
         points.Free.clear();
       }
-      if (collected.HasOutlines)
+      else
       {
+        options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
         lacuna::FindOutlineNormals(execution, points, options);
       }
       const lacuna::SurfaceFit fit(execution, points, options);
@@ -299,6 +301,11 @@ int vtkLacunaRBFSurface::RequestData(
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
       const lacuna::SurfaceFitReport& report = fit.GetReport();
       set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
+      if (collected.HasOutlines)
+      {
+        set("SurfaceVolumeError",
+          lacuna::EstimateVolumeError(execution, points, options, followed.Surface) / 1000);
+      }
       set("SurfaceArea", followed.Surface.GetArea());
       set("ResidualRMS", std::sqrt(sum));
       set("ResidualMaximum", largest);

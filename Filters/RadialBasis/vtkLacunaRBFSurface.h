@@ -23,7 +23,8 @@
  * | Residual | float, mm  | of that point: how far outside the surface it lies (signed)      |
  * | Support  | float      | Distance in units of the points' spacing; far above 1 the        |
  * |          |            | surface is extrapolated                                          |
- * Field data, one tuple each: `SurfaceVolume` (ml), `SurfaceArea` (mm^2), `ResidualRMS` and
+ * Field data, one tuple each: `SurfaceVolume` (ml), `SurfaceVolumeError` (ml, standard error, with
+ * outlines only), `SurfaceArea` (mm^2), `ResidualRMS` and
  * `ResidualMaximum` (mm, of all points), `PointError` (mm, given or estimated), `NormalError`
  * (degrees, each of two directions), `CenterCount`, `FitTime` (s; not the same twice).
  *

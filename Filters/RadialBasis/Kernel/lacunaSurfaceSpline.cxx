@@ -41,6 +41,7 @@ constexpr std::size_t MostHeldOut = 1500;
 constexpr double SmallestPointError = 1e-7;
 constexpr double SmallestNormalError = 1e-4;
 constexpr int Rounds = 3;
+constexpr double RunLength = 0.2; // of the extent
 const char* const Unsolvable =
   "the equations of the surface cannot be solved; give a larger expected "
   "error of the points";
@@ -134,6 +135,23 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::size_t> FindRuns(
+  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest)
+{
+  std::vector<std::size_t> runs(points.size(), 0);
+  double length = 0;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+  {
+    length += Norm(points[i] - points[i - 1]);
+    const bool goesOn =
+      !free.empty() && HasDirection(free[i]) && free[i] == free[i - 1] && length <= longest;
+    runs[i] = runs[i - 1] + (goesOn ? 0 : 1);
+    length = goesOn ? length : 0;
+  }
+  return runs;
+}
+
+//------------------------------------------------------------------------------
 // The least-squares problem, in units of the points' extent.
 class SurfaceSpline::Fit
 {
@@ -194,9 +212,14 @@ private:
     const std::size_t n = this->Points.size();
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t(0));
+    // Along outlines errors may be alike from point to point: runs are held out.
+    const std::vector<std::size_t> runs = FindRuns(this->Points, this->Free, RunLength);
     std::sort(order.begin(), order.end(),
-      [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
-    const std::size_t held = std::min(MostHeldOut, std::max(n / 10, std::min(n / 4, FewHeldOut)));
+      [&](std::size_t a, std::size_t b)
+      { return runs[a] != runs[b] ? Scramble(runs[a]) < Scramble(runs[b]) : a < b; });
+    const std::size_t held = this->Free.empty()
+      ? std::min(MostHeldOut, std::max(n / 10, std::min(n / 4, FewHeldOut)))
+      : n / 4;
     this->HeldOut.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(held));
     const std::size_t last = std::min(n, held + MaximumPoints);
     this->Known.assign(order.begin() + static_cast<std::ptrdiff_t>(held),
@@ -819,29 +842,5 @@ void SurfaceSpline::Evaluate(Execution& execution, const std::vector<Vec3>& poin
           values.data() + from, gradients ? gradients->data() + from : nullptr);
       }
     });
-}
-
-//------------------------------------------------------------------------------
-void FindOutlineNormals(
-  Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options)
-{
-  constexpr int rounds = 4;
-  const Execution::NestedStages stages(execution);
-  for (int round = 0; round < rounds; ++round)
-  {
-    execution.SetStage(static_cast<double>(round) / rounds, (round + 1.0) / rounds);
-    const SurfaceSpline spline(execution, data, options);
-    std::vector<double> values(data.Points.size());
-    std::vector<Vec3> gradients(data.Points.size());
-    spline.Evaluate(execution, data.Points, values, &gradients);
-    for (std::size_t i = 0; i < data.Free.size(); ++i)
-    {
-      // a normal that has turned over is of no use
-      if (Norm(data.Free[i]) > 0 && Dot(gradients[i], data.Normals[i]) > 0)
-      {
-        data.Normals[i] = Normalized(gradients[i]);
-      }
-    }
-  }
 }
 }

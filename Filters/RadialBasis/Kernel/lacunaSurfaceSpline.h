@@ -63,7 +63,8 @@ struct SurfaceSplineReport
 ///
 /// over the coefficients, with all points, E the energy of the kernel. So gradients are data with an
 /// error of their own (Carr et al. 2001 take points beside the surface instead). A tenth of
-/// the points is held out at first. t is the value that predicts them best, e and g are the root mean
+/// the points is held out at first (of outlines a quarter, in pieces of a fifth of the extent: errors
+/// of a hand that draws are alike along the line). t is the value that predicts them best, e and g are the root mean
 /// squares by which they are missed, in some rounds. Then all points count. Nodes are spread evenly
 /// over the points.
 ///
@@ -102,10 +103,9 @@ private:
   SurfaceSplineReport Report;
 };
 
-/// Finds the normals of outlines (points with Free directions). They are known within their planes
-/// only, but the slope there depends on the angle between plane and surface. So a spline is fitted
-/// several times, each with the normals of the last one. data's normals become these.
-void FindOutlineNormals(
-  Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options);
+/// Numbers the pieces of outlines (points with Free directions, one after the other), each at most so
+/// long, mm: one number for each point. Other points have one each.
+std::vector<std::size_t> FindRuns(
+  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest);
 }
 #endif

@@ -2,6 +2,7 @@
 #include "lacunaSurfaceSpline.h"
 
 #include "lacunaExecution.h"
+#include "lacunaOutlines.h"
 #include "lacunaTestShapes.h"
 
 #include <gtest/gtest.h>
@@ -174,15 +175,18 @@ TEST(SurfaceSpline, OutlinesGiveTheVolume)
     }
   }
   lacuna::ThreadExecution execution(2);
-  lacuna::FindOutlineNormals(execution, data, {});
-  const lacuna::SurfaceSpline spline(execution, data, {});
+  lacuna::SurfaceSplineOptions how;
+  how.LeastNormalError = lacuna::OutlineNormalError;
+  lacuna::FindOutlineNormals(execution, data, how);
+  const lacuna::SurfaceSpline spline(execution, data, how);
   lacuna::SurfaceFollowerOptions options;
   options.EdgeLength = 1;
   options.Bounds = { -60, 60, -60, 60, -60, 60 };
   const auto followed = lacuna::FollowSurface(execution, spline, data.Points, options);
   EXPECT_TRUE(lacuna::FindTopology(followed.Surface).IsClosed());
   const double truth = 4 * pi / 3 * axes[0] * axes[1] * axes[2];
-  EXPECT_NEAR(followed.Surface.GetVolume(), truth, 0.01 * truth);
+  EXPECT_NEAR(followed.Surface.GetVolume(), truth, 0.003 * truth);
+  EXPECT_LT(lacuna::EstimateVolumeError(execution, data, how, followed.Surface), 0.02 * truth);
 }
 
 TEST(SurfaceSpline, DoesNotDependOnThreads)
