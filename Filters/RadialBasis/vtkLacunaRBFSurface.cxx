@@ -304,7 +304,9 @@ int vtkLacunaRBFSurface::RequestData(
       if (collected.HasOutlines)
       {
         set("SurfaceVolumeError",
-          lacuna::EstimateVolumeError(execution, points, options, followed.Surface) / 1000);
+          lacuna::EstimateVolumeError(
+            execution, points, options, fit.GetReport().Spline, followed.Surface) /
+            1000);
       }
       set("SurfaceArea", followed.Surface.GetArea());
       set("ResidualRMS", std::sqrt(sum));

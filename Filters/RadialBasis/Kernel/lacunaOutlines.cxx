@@ -62,12 +62,15 @@ void FindOutlineNormals(
 
 //------------------------------------------------------------------------------
 double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
-  const SurfaceSplineOptions& options, const TriangleSurface& surface)
+  const SurfaceSplineOptions& options, const SurfaceSplineReport& fit,
+  const TriangleSurface& surface)
 {
-  constexpr std::size_t groups = 12;
-  constexpr double pieces = 12; // of the longest extent
+  constexpr std::size_t trials = 16;
+  constexpr double pieces = 3; // of the longest extent
   constexpr int rounds = 3;
   SurfaceSplineOptions coarse = options;
+  coarse.PointError = fit.PointError;
+  coarse.Stiffness = fit.Stiffness;
   coarse.Nodes = std::min<std::size_t>(150, options.Nodes);
   Vec3 low = data.Points.at(0);
   Vec3 high = low;
@@ -81,59 +84,57 @@ double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
   }
   const double extent = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
   const std::vector<std::size_t> runs = FindRuns(data.Points, data.Free, extent / pieces);
-  std::vector<std::size_t> order(runs.back() + 1);
-  for (std::size_t r = 0; r < order.size(); ++r)
-  {
-    order[r] = r;
-  }
-  std::sort(order.begin(), order.end(),
-    [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
-  std::vector<std::size_t> groupOf(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-  {
-    groupOf[order[k]] = k % groups;
-  }
   const std::vector<double> areas = GetAreas(surface);
-  std::vector<double> volumes(groups, 0.0); // beyond the surface
+  // of the surface, by how much the zeros of a spline enclose more, mm^3
+  const auto getVolume = [&](Execution& runner, const SurfaceSpline& spline)
+  {
+    std::vector<double> values(areas.size());
+    std::vector<Vec3> gradients(areas.size());
+    spline.Evaluate(runner, surface.Points, values, &gradients);
+    double volume = 0;
+    for (std::size_t p = 0; p < areas.size(); ++p)
+    {
+      volume -= areas[p] * values[p] / std::max(0.3, Norm(gradients[p]));
+    }
+    return volume;
+  };
+  const SurfaceSpline middle(execution, data, coarse);
+  std::vector<double> misses(data.Points.size());
+  middle.Evaluate(execution, data.Points, misses, nullptr);
+  double squares = 0;
+  for (std::size_t i = 0; i < misses.size(); ++i)
+  {
+    const double miss = misses[i] / (data.Errors.empty() ? 1 : data.Errors[i]);
+    squares += miss * miss / static_cast<double>(misses.size());
+  }
+  // The surface follows errors in part, so what it misses is too little.
+  const double factor = squares > 0 ? std::max(1.0, fit.PointError / std::sqrt(squares)) : 1;
+  const double reference = getVolume(execution, middle);
+  std::vector<double> volumes(trials);
   const SingleBlasThread single(execution.GetNumberOfThreads());
-  execution.For(groups, 1,
+  execution.For(trials, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      for (std::int64_t g = begin; g < end; ++g)
+      for (std::int64_t t = begin; t < end; ++t)
       {
-        OrientedPoints rest;
-        for (std::size_t i = 0; i < data.Points.size(); ++i)
+        OrientedPoints other = data;
+        other.Values.resize(data.Points.size());
+        for (std::size_t i = 0; i < misses.size(); ++i)
         {
-          if (groupOf[runs[i]] != static_cast<std::size_t>(g))
-          {
-            rest.Points.push_back(data.Points[i]);
-            rest.Normals.push_back(data.Normals[i]);
-            rest.Free.push_back(data.Free[i]);
-            rest.Errors.push_back(data.Errors.empty() ? 1 : data.Errors[i]);
-          }
+          const bool turned =
+            (Scramble(trials * runs[i] + static_cast<std::uint64_t>(t)) & 1) != 0;
+          other.Values[i] = misses[i] + (turned ? factor : -factor) * misses[i];
         }
         ThreadExecution alone(1);
-        Refine(alone, rest, coarse, rounds - 1);
-        const SurfaceSpline spline(alone, rest, coarse);
-        std::vector<double> values(areas.size());
-        std::vector<Vec3> gradients(areas.size());
-        spline.Evaluate(alone, surface.Points, values, &gradients);
-        for (std::size_t p = 0; p < areas.size(); ++p)
-        {
-          volumes[g] -= areas[p] * values[p] / std::max(0.3, Norm(gradients[p]));
-        }
+        Refine(alone, other, coarse, rounds - 1);
+        volumes[t] = getVolume(alone, SurfaceSpline(alone, other, coarse)) - reference;
       }
     });
-  double mean = 0;
+  double sum = 0;
   for (const double v : volumes)
   {
-    mean += v / groups;
+    sum += v * v;
   }
-  double squares = 0;
-  for (const double v : volumes)
-  {
-    squares += (v - mean) * (v - mean);
-  }
-  return std::sqrt(squares * (groups - 1) / groups);
+  return std::sqrt(sum / trials);
 }
 }

@@ -22,12 +22,14 @@ constexpr double OutlineNormalError = 0.1;
 void FindOutlineNormals(
   Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options);
 
-/// Standard error of the volume in a surface through outlines that errors of these cause, mm^3. Pieces
-/// of outlines in twelve groups are left out, one group after the other (the jackknife), so errors may
-/// be alike along a piece. What no outline shows (a bulge between two of them) is not in it.
+/// Standard error of the volume in a surface through outlines that errors of these cause, mm^3. The
+/// misses of the outlines change their signs at random, a third of the extent at once since errors may
+/// be alike along a line, and the surface is fitted again, 16 times (the wild bootstrap of clusters).
+/// What no outline shows (a bulge between two of them) is not in it.
 ///
-/// data as FindOutlineNormals leaves it; surface is the one that is fitted to all.
+/// data as FindOutlineNormals leaves it; fit and surface are those of all points.
 double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
-  const SurfaceSplineOptions& options, const TriangleSurface& surface);
+  const SurfaceSplineOptions& options, const SurfaceSplineReport& fit,
+  const TriangleSurface& surface);
 }
 #endif

@@ -40,6 +40,8 @@ constexpr std::size_t MostHeldOut = 1500;
 // What is taken for no error, of the extent of the points: the rounding of 32-bit coordinates.
 constexpr double SmallestPointError = 1e-7;
 constexpr double SmallestNormalError = 1e-4;
+constexpr double LargestNormalError = 0.5; // so that normals always keep the function from being 0
+constexpr double LargestMiss = 0.1;        // of the extent
 constexpr int Rounds = 3;
 constexpr double RunLength = 0.2; // of the extent
 const char* const Unsolvable =
@@ -124,11 +126,11 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
   {
     throw std::invalid_argument("the kernel must be r^3 or r");
   }
-  for (const double x : { options.PointError, options.LeastNormalError })
+  for (const double x : { options.PointError, options.LeastNormalError, options.Stiffness })
   {
     if (!(x >= 0) || !std::isfinite(x))
     {
-      throw std::invalid_argument("errors must be finite numbers >= 0");
+      throw std::invalid_argument("errors and stiffness must be finite numbers >= 0");
     }
   }
 }
@@ -188,7 +190,7 @@ public:
     const SingleBlasThread single(this->Runner.GetNumberOfThreads());
     this->AddSpreadNodes(std::min(this->Options.Nodes, this->Known.size()));
     this->SetUp();
-    double stiffness = 1;
+    double stiffness = this->Options.Stiffness > 0 ? this->Options.Stiffness : 1;
     report.HeldOutError = this->Scale * this->Tune(stiffness, report);
     report.Gain = this->GetGain(report, stiffness);
     this->AddHeldOut();
@@ -198,6 +200,7 @@ public:
       throw std::runtime_error(Unsolvable);
     }
     this->Keep(solution);
+    report.Stiffness = stiffness;
     report.Nodes = this->Nodes.size();
   }
 
@@ -606,10 +609,12 @@ private:
         square += whole[c] * whole[c];
         difference += missed[c] * missed[c] / 2; // two directions along the surface
       }
-      // a distance, so that a function that is small everywhere gains nothing
-      const double slope = std::sqrt(square);
-      values.push_back(
-        this->Weights[point] * (result[i] - this->Values[point]) / std::clamp(slope, 0.1, 1.0));
+      // A distance, so that a function that is small everywhere gains nothing; at most so large, so
+      // that where the function has no slope counts, and not for all.
+      const double slope = std::clamp(std::sqrt(square), 1e-3, 1.0);
+      const double distance =
+        std::clamp((result[i] - this->Values[point]) / slope, -LargestMiss, LargestMiss);
+      values.push_back(this->Weights[point] * distance);
       slopes.push_back(std::sqrt(difference));
     }
     return { GetRootMeanSquare(values), GetRootMeanSquare(slopes), std::move(values) };
@@ -669,6 +674,10 @@ private:
       double least = attempt(stiffness, best);
       for (const double step : { factor, 1 / factor })
       {
+        if (this->Options.Stiffness > 0)
+        {
+          break;
+        }
         constexpr double largest = 1e4;
         bool moved = false;
         for (double t = stiffness * step; t < largest && t > 1 / largest; t *= step)
@@ -698,7 +707,8 @@ private:
         report.PointError = std::max(best.Points * this->Scale, SmallestPointError * this->Scale);
       }
       report.NormalError =
-        std::max({ best.Normals, SmallestNormalError, this->Options.LeastNormalError });
+        std::clamp(best.Normals, std::max(SmallestNormalError, this->Options.LeastNormalError),
+          std::max(LargestNormalError, this->Options.LeastNormalError));
     }
     return best.Points;
   }

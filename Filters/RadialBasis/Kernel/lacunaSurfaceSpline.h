@@ -40,6 +40,7 @@ struct SurfaceSplineOptions
   double PointError = 0;
   /// The same for normals, as a tangent; never taken smaller than this.
   double LeastNormalError = 0;
+  double Stiffness = 0;    ///< t below; 0: what predicts held-out points best
   std::size_t Nodes = 300; ///< at most, above 0
 };
 
@@ -48,6 +49,7 @@ struct SurfaceSplineReport
   std::size_t Nodes = 0;   ///< points of the data that carry radial functions, two each
   double PointError = 0;   ///< mm, of points along the normal: given, or of held-out points (RMS)
   double NormalError = 0;  ///< tangent of the angle, in each of two directions (RMS)
+  double Stiffness = 0;
   double HeldOutError = 0; ///< RMS distance of points that a fit did not know, mm
   /// Mean of the squares by which these are missed less than by the function 0, in its standard
   /// errors: above 2 or 3 the spline is surely of use.
