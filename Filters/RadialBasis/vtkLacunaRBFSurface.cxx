@@ -20,6 +20,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSurfacePoints.h"
+#include "vtkLacunaSurfacePrior.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -33,6 +34,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -129,6 +131,17 @@ std::vector<double> GetResiduals(lacuna::Execution& execution,
 }
 }
 
+vtkLacunaRBFSurface::vtkLacunaRBFSurface()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::RemovePriorSurface()
+{
+  this->SetInputConnection(1, nullptr);
+}
+
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::SetErrorArray(const char* name)
 {
@@ -141,10 +154,11 @@ void vtkLacunaRBFSurface::SetErrorArray(const char* name)
 }
 
 //------------------------------------------------------------------------------
-int vtkLacunaRBFSurface::FillInputPortInformation(int, vtkInformation* info)
+int vtkLacunaRBFSurface::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
-  info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), port == 0 ? 1 : 0);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), port == 0 ? 0 : 1);
   return 1;
 }
 
@@ -159,9 +173,12 @@ int vtkLacunaRBFSurface::RequestInformation(
 int vtkLacunaRBFSurface::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
+  for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
-    vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(i), outputs);
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      vtkLacunaRequest::Whole(this, inputs[port]->GetInformationObject(i), outputs);
+    }
   }
   return 1;
 }
@@ -220,6 +237,21 @@ int vtkLacunaRBFSurface::RequestData(
       {
         throw std::runtime_error("the input has no points of a surface");
       }
+      collected.CheckOutlines();
+      std::unique_ptr<vtkLacunaSurfacePrior> prior;
+      if (inputs[1]->GetNumberOfInformationObjects() > 0)
+      {
+        vtkDataSet* data = vtkDataSet::GetData(inputs[1], 0);
+        if (data && data->GetNumberOfPoints() > 0)
+        {
+          prior = std::make_unique<vtkLacunaSurfacePrior>(data);
+          sources.push_back(data);
+        }
+        else
+        {
+          collected.Warnings.push_back("PriorSurface has no points and does not count");
+        }
+      }
       const std::array<double, 6> own = GetBounds(points.Points);
       const double extent = GetExtent(own);
       const double spacing = lacuna::FindPointSpacing(execution, points.Points);
@@ -241,7 +273,7 @@ int vtkLacunaRBFSurface::RequestData(
         options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
         lacuna::FindOutlineNormals(execution, points, options);
       }
-      const lacuna::SurfaceFit fit(execution, points, options);
+      const lacuna::SurfaceFit fit(execution, points, options, prior.get());
 
       execution.SetStage(0.7, 0.95);
       lacuna::SurfaceFollowerOptions follow;
@@ -311,6 +343,10 @@ int vtkLacunaRBFSurface::RequestData(
       set("SurfaceArea", followed.Surface.GetArea());
       set("ResidualRMS", std::sqrt(sum));
       set("ResidualMaximum", largest);
+      if (prior)
+      {
+        set("PriorUsed", fit.GetReport().UsesPrior ? 1 : 0);
+      }
       set("PointError", report.PointError);
       set("NormalError", std::atan(report.Spline.NormalError) * 180 / std::acos(-1.0));
       set("CenterCount", static_cast<double>(report.Centers));

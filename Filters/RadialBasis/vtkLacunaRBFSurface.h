@@ -10,8 +10,12 @@
  * - depth maps (vtkLacunaDepthMap) with `Normals`, several views together;
  * - outlines: closed polylines, each in a plane of its own.
  *
+ * Second input, optional (PriorSurface): a surface like the one that is sought, in the same place: a
+ * closed mesh, or an image of the signed distance (mm, negative inside). What differs from it is fitted
+ * if this predicts points better that are held out.
+ *
  * A smooth function, about the signed distance, is fitted to all points and normals at once
- * (lacuna::SurfaceSpline); the surface is where it is 0. The error of the points is Smoothing, or it is
+ * (lacuna::SurfaceFit); the surface is where it is 0. The error of the points is Smoothing, or it is
  * estimated from points that are held out at first. Where there are no points the surface goes on with
  * as little bending as possible.
  *
@@ -25,7 +29,7 @@
  * |          |            | surface is extrapolated                                          |
  * Field data, one tuple each: `SurfaceVolume` (ml), `SurfaceVolumeError` (ml, standard error, with
  * outlines only), `SurfaceArea` (mm^2), `ResidualRMS` and
- * `ResidualMaximum` (mm, of all points), `PointError` (mm, given or estimated), `NormalError`
+ * `ResidualMaximum` (mm, of all points), `PriorUsed` (1 or 0, with a prior only), `PointError` (mm, given or estimated), `NormalError`
  * (degrees, each of two directions), `CenterCount`, `FitTime` (s; not the same twice).
  *
  * The output is one piece, whole, the same for any number of threads; further pieces are empty.
@@ -84,8 +88,8 @@ public:
 
   ///@{
   /**
-   * mm, above 0. Centres are added while points that were held out are missed by more, and while
-   * that helps. Default 0.01.
+   * mm, above 0. Local functions are added where points are missed by more (RMS), and where that
+   * helps. Default 0.01.
    */
   vtkSetMacro(Accuracy, double);
   vtkGetMacro(Accuracy, double);
@@ -102,6 +106,8 @@ public:
   void SetErrorArray(const char* name);
   const char* GetErrorArray() const { return this->ErrorArray.c_str(); }
   ///@}
+
+  void RemovePriorSurface(); ///< disconnects the second input
 
   ///@{
   /**
@@ -129,7 +135,7 @@ public:
   ///@}
 
 protected:
-  vtkLacunaRBFSurface() = default;
+  vtkLacunaRBFSurface();
   ~vtkLacunaRBFSurface() override = default;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;

@@ -28,6 +28,9 @@ public:
   void Add(
     lacuna::Execution& execution, vtkDataSet* data, int number, const std::string& errorArray);
 
+  /// After all inputs: throws std::runtime_error when outlines are all there is, in one plane.
+  void CheckOutlines() const;
+
   lacuna::OrientedPoints Data;
   bool HasOutlines = false;
   bool HasEstimatedNormals = false;

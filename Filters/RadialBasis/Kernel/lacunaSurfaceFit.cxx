@@ -294,8 +294,8 @@ std::vector<Members> CoverPoints(const std::vector<Vec3>& all,
 }
 
 //------------------------------------------------------------------------------
-SurfaceFit::SurfaceFit(
-  Execution& execution, const OrientedPoints& data, const SurfaceFitOptions& options)
+SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
+  const SurfaceFitOptions& options, const ImplicitFunction* prior)
 {
   if (!(options.Accuracy >= 0))
   {
@@ -304,10 +304,29 @@ SurfaceFit::SurfaceFit(
   const Execution::NestedStages stages(execution);
   execution.SetStage(0, 0.3);
   this->Whole = std::make_unique<SurfaceSpline>(execution, data, options);
+  const std::size_t n = data.Points.size();
+  std::vector<double> values(n);
+  std::vector<Vec3> gradients(n);
+  if (prior)
+  {
+    prior->Evaluate(execution, data.Points, values, &gradients);
+    OrientedPoints difference = data;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      difference.Values.push_back(-values[i]);
+      difference.Slopes.push_back(data.Normals[i] - gradients[i]);
+    }
+    auto spline = std::make_unique<SurfaceSpline>(execution, difference, options);
+    if (spline->GetReport().HeldOutError < this->Whole->GetReport().HeldOutError)
+    {
+      this->Whole = std::move(spline);
+      this->Prior = prior;
+      this->Report.UsesPrior = true;
+    }
+  }
   this->Report.Spline = this->Whole->GetReport();
   this->Report.PointError = this->Report.Spline.PointError;
   this->Report.Centers = 2 * this->Report.Spline.Nodes;
-  const std::size_t n = data.Points.size();
   if (this->Report.Spline.HeldOutError <= options.Accuracy || !data.Free.empty())
   {
     return;
@@ -317,9 +336,7 @@ SurfaceFit::SurfaceFit(
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::sort(order.begin(), order.end(),
     [](std::size_t a, std::size_t b) { return Scramble(a) < Scramble(b); });
-  std::vector<double> values(n);
-  std::vector<Vec3> gradients(n);
-  this->Whole->Evaluate(execution, data.Points, values, &gradients);
+  this->Evaluate(execution, data.Points, values, &gradients);
   std::vector<char> open(n, 1);
   std::vector<double> squares(n, -1); // of the expected errors
   SurfaceSplineOptions local = options;
@@ -431,6 +448,20 @@ void SurfaceFit::Evaluate(Execution& execution, const std::vector<Vec3>& points,
   std::vector<double>& values, std::vector<Vec3>* gradients) const
 {
   this->Whole->Evaluate(execution, points, values, gradients);
+  if (this->Prior)
+  {
+    std::vector<double> base(points.size());
+    std::vector<Vec3> slopes(gradients ? points.size() : 0);
+    this->Prior->Evaluate(execution, points, base, gradients ? &slopes : nullptr);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      values[i] += base[i];
+      if (gradients)
+      {
+        (*gradients)[i] = (*gradients)[i] + slopes[i];
+      }
+    }
+  }
   for (const auto& level : this->Levels)
   {
     level->Add(execution, points, values, gradients);

@@ -27,6 +27,7 @@ struct SurfaceFitReport
   /// mm, of points along the normal (RMS): given, or where points were held out how far they are
   /// missed, or the residuals.
   double PointError = 0;
+  bool UsesPrior = false;
   std::size_t LocalSplines = 0; ///< that were of use
   std::size_t Centers = 0;      ///< radial functions in all
 };
@@ -41,9 +42,11 @@ struct SurfaceFitReport
 class SurfaceFit : public ImplicitFunction
 {
 public:
-  /// Throws as SurfaceSpline does.
-  SurfaceFit(
-    Execution& execution, const OrientedPoints& data, const SurfaceFitOptions& options);
+  /// prior, if not null, is about the signed distance from a surface like this one, mm. Then splines
+  /// of the difference are tried, too, and kept if they predict held-out points better; it must live
+  /// as long as this. Throws as SurfaceSpline does.
+  SurfaceFit(Execution& execution, const OrientedPoints& data, const SurfaceFitOptions& options,
+    const ImplicitFunction* prior = nullptr);
   ~SurfaceFit() override;
   SurfaceFit(SurfaceFit&&) noexcept;
 
@@ -55,6 +58,7 @@ public:
 private:
   class Level;
 
+  const ImplicitFunction* Prior = nullptr;
   std::unique_ptr<SurfaceSpline> Whole;
   std::vector<std::unique_ptr<Level>> Levels;
   SurfaceFitReport Report;

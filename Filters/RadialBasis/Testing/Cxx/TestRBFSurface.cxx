@@ -2,17 +2,23 @@
 // Points, meshes and outlines become closed surfaces of the right volume; errors.
 #include "lacunaCheck.h"
 #include "vtkCellArray.h"
+#include "vtkCleanPolyData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
+#include "vtkImplicitPolyDataDistance.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkMassProperties.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkRegularPolygonSource.h"
 #include "vtkReverseSense.h"
+#include "vtkSampleFunction.h"
 #include "vtkSphereSource.h"
+#include "vtkTransform.h"
+#include "vtkTransformPolyDataFilter.h"
 
 #include <cmath>
 #include <functional>
@@ -227,6 +233,56 @@ void CheckOutlines()
   CheckSurface(filter->GetOutput(), 0.01, "outlines");
 }
 
+// A fine mesh of the shape, moved by 0.5 mm, predicts 60 points better than these do; one of another
+// shape does not. An image of distances serves as well.
+void CheckPrior()
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetRadius(1);
+  sphere->SetThetaResolution(160);
+  sphere->SetPhiResolution(120);
+  vtkNew<vtkTransform> scale;
+  scale->Translate(Center[0] + 0.5, Center[1], Center[2]);
+  scale->Scale(Axes);
+  vtkNew<vtkTransformPolyDataFilter> shape;
+  shape->SetInputConnection(sphere->GetOutputPort());
+  shape->SetTransform(scale);
+  vtkNew<vtkCleanPolyData> prior;
+  prior->SetInputConnection(shape->GetOutputPort());
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputData(MakePoints(60, true));
+  filter->SetInputConnection(1, prior->GetOutputPort());
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.004, "with a mesh as prior");
+  LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
+
+  vtkNew<vtkImplicitPolyDataDistance> distance;
+  prior->Update();
+  distance->SetInput(prior->GetOutput());
+  vtkNew<vtkSampleFunction> image;
+  image->SetImplicitFunction(distance);
+  image->ComputeNormalsOff();
+  image->SetSampleDimensions(60, 50, 40);
+  const double* bounds = prior->GetOutput()->GetBounds();
+  image->SetModelBounds(bounds[0] - 3, bounds[1] + 3, bounds[2] - 3, bounds[3] + 3,
+    bounds[4] - 3, bounds[5] + 3);
+  filter->SetInputConnection(1, image->GetOutputPort());
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.004, "with an image as prior");
+  LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
+
+  sphere->SetRadius(0.4);
+  filter->SetInputData(MakePoints(600, true));
+  filter->SetInputConnection(1, sphere->GetOutputPort());
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.004, "with a prior of no use");
+  LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 0);
+  filter->SetInputConnection(1, nullptr);
+  filter->Update();
+  LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("PriorUsed"));
+}
+
 void CheckError(const std::function<void(vtkLacunaRBFSurface*)>& spoil, const std::string& text)
 {
   vtkNew<vtkLacunaRBFSurface> filter;
@@ -316,6 +372,39 @@ void CheckErrors()
       f->SetInputData(data);
     },
     "lie in one plane");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkNew<vtkPoints> points;
+      for (int i = 0; i < 50; ++i)
+      {
+        points->InsertNextPoint(1, 2, 3);
+      }
+      vtkNew<vtkPolyData> data;
+      data->SetPoints(points);
+      f->SetInputData(data);
+    },
+    "lie in one place, at (1, 2, 3) mm");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkNew<vtkRegularPolygonSource> outline;
+      outline->GeneratePolygonOff();
+      outline->SetNumberOfSides(30);
+      outline->SetRadius(20);
+      outline->Update();
+      f->SetInputData(outline->GetOutput());
+    },
+    "outlines lie in one plane");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkNew<vtkSphereSource> open;
+      open->SetStartPhi(30);
+      open->Update();
+      f->SetInputData(1, open->GetOutput());
+    },
+    "not closed");
 }
 }
 
@@ -324,6 +413,7 @@ int TestRBFSurface(int, char*[])
   CheckPoints();
   CheckMeshes();
   CheckOutlines();
+  CheckPrior();
   CheckErrors();
   return lacunaCheck::Result();
 }
