@@ -221,8 +221,8 @@ void vtkLacunaSurfacePoints::AddPoints(
   lacuna::PointNormals estimated;
   if (!normals)
   {
-    if (std::all_of(points.begin(), points.end(),
-          [&](const lacuna::Vec3& x) { return x == points[0]; }))
+    if (std::all_of(
+          points.begin(), points.end(), [&](const lacuna::Vec3& x) { return x == points[0]; }))
     {
       throw std::runtime_error("all points of " + name + " lie in one place, at " +
         Describe(points[0]) + "; check the coordinates and what made them");
@@ -356,8 +356,7 @@ void vtkLacunaSurfacePoints::CheckOutlines() const
     [](const lacuna::Vec3& across) { return lacuna::HasDirection(across); });
   if (this->HasOutlines && onlyOutlines && LieInPlane(this->Data.Points, this->Data.Free[0]))
   {
-    throw std::runtime_error("all outlines lie in one plane, at " +
-      Describe(this->Data.Points[0]) +
+    throw std::runtime_error("all outlines lie in one plane, at " + Describe(this->Data.Points[0]) +
       ", so that the solid has no height; add outlines in other planes");
   }
 }

@@ -41,8 +41,9 @@ vtkLacunaSurfacePrior::vtkLacunaSurfacePrior(vtkDataSet* data)
     if (!scalars || scalars->GetNumberOfComponents() != 1 ||
       std::min({ dimensions[0], dimensions[1], dimensions[2] }) < 2)
     {
-      throw std::runtime_error("PriorSurface is an image without scalars of one component, or flat; "
-                               "it must hold the signed distance in mm, negative inside");
+      throw std::runtime_error(
+        "PriorSurface is an image without scalars of one component, or flat; "
+        "it must hold the signed distance in mm, negative inside");
     }
     this->Image = image;
     return;
@@ -50,8 +51,9 @@ vtkLacunaSurfacePrior::vtkLacunaSurfacePrior(vtkDataSet* data)
   auto* poly = vtkPolyData::SafeDownCast(data);
   if (!poly || poly->GetNumberOfPolys() + poly->GetNumberOfStrips() == 0)
   {
-    throw std::runtime_error("PriorSurface has no triangles; give a closed mesh, or an image of the "
-                             "signed distance in mm");
+    throw std::runtime_error(
+      "PriorSurface has no triangles; give a closed mesh, or an image of the "
+      "signed distance in mm");
   }
   vtkNew<vtkTriangleFilter> triangles;
   triangles->SetInputData(poly);
@@ -84,8 +86,8 @@ double vtkLacunaSurfacePrior::GetValue(const lacuna::Vec3& x) const
   lacuna::Vec3 beyond{};
   for (int c = 0; c < 3; ++c)
   {
-    const double inside = std::clamp(index[c], static_cast<double>(extent[2 * c]),
-      static_cast<double>(extent[2 * c + 1]));
+    const double inside = std::clamp(
+      index[c], static_cast<double>(extent[2 * c]), static_cast<double>(extent[2 * c + 1]));
     beyond[c] = (index[c] - inside) * this->Image->GetSpacing()[c];
     low[c] = std::min(static_cast<int>(std::floor(inside)), extent[2 * c + 1] - 1);
     part[c] = inside - low[c];

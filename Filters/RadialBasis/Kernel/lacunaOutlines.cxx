@@ -121,8 +121,7 @@ double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
         other.Values.resize(data.Points.size());
         for (std::size_t i = 0; i < misses.size(); ++i)
         {
-          const bool turned =
-            (Scramble(trials * runs[i] + static_cast<std::uint64_t>(t)) & 1) != 0;
+          const bool turned = (Scramble(trials * runs[i] + static_cast<std::uint64_t>(t)) & 1) != 0;
           other.Values[i] = misses[i] + (turned ? factor : -factor) * misses[i];
         }
         ThreadExecution alone(1);

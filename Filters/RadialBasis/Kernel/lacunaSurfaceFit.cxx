@@ -23,8 +23,8 @@ constexpr std::size_t BallPoints = 200;
 constexpr std::size_t BallNodes = 80;
 // Points that count at the first level; each further one has four times as many.
 constexpr std::size_t LevelPoints = 20000;
-constexpr double Overlap = 0.7; // of the radius: points nearer than this need no further ball
-constexpr double LeastGain = 1.5; // standard errors
+constexpr double Overlap = 0.7;   // of the radius: points nearer than this need no further ball
+constexpr double LeastGain = 2; // standard errors
 
 // Where the sum of the weights is below this, the local splines fade out.
 constexpr double LeastWeight = 0.02;
@@ -117,8 +117,8 @@ private:
     for (int c = 0; c < 3; ++c)
     {
       constexpr double most = 1e15;
-      cell[c] = static_cast<std::int64_t>(
-        std::floor(std::clamp(std::ldexp(x[c], -scale), -most, most)));
+      cell[c] =
+        static_cast<std::int64_t>(std::floor(std::clamp(std::ldexp(x[c], -scale), -most, most)));
     }
     return cell;
   }
@@ -227,8 +227,8 @@ private:
           values[i] += factor * sum;
           if (gradients)
           {
-            const double change = u < 1 ? (2 * u - 3) / (LeastWeight * LeastWeight)
-                                        : -1 / (weights * weights);
+            const double change =
+              u < 1 ? (2 * u - 3) / (LeastWeight * LeastWeight) : -1 / (weights * weights);
             gradients[i] = gradients[i] + factor * sumSlope + (change * sum) * weightSlope;
           }
         }
@@ -347,8 +347,8 @@ SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
     count = std::min(count, n);
     execution.SetStage(stage, count == n ? 1 : stage + 0.3 * (1 - stage));
     stage += 0.3 * (1 - stage);
-    const std::vector<Members> cover = CoverPoints(data.Points,
-      { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count) }, open);
+    const std::vector<Members> cover = CoverPoints(
+      data.Points, { order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count) }, open);
     std::vector<Level::Ball> balls(cover.size());
     execution.For(static_cast<std::int64_t>(cover.size()), 1,
       [&](std::int64_t begin, std::int64_t end)
@@ -389,8 +389,8 @@ SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
           }
         }
       });
-    balls.erase(std::remove_if(balls.begin(), balls.end(),
-                  [](const Level::Ball& ball) { return !ball.Spline; }),
+    balls.erase(std::remove_if(
+                  balls.begin(), balls.end(), [](const Level::Ball& ball) { return !ball.Spline; }),
       balls.end());
     if (balls.empty())
     {
@@ -435,8 +435,8 @@ SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
         squares[i] = values[i] * values[i] / (slope * slope);
       }
     }
-    this->Report.PointError = std::sqrt(
-      std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(n));
+    this->Report.PointError =
+      std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(n));
   }
 }
 

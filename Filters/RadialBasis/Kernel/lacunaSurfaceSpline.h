@@ -46,9 +46,9 @@ struct SurfaceSplineOptions
 
 struct SurfaceSplineReport
 {
-  std::size_t Nodes = 0;   ///< points of the data that carry radial functions, two each
-  double PointError = 0;   ///< mm, of points along the normal: given, or of held-out points (RMS)
-  double NormalError = 0;  ///< tangent of the angle, in each of two directions (RMS)
+  std::size_t Nodes = 0;  ///< points of the data that carry radial functions, two each
+  double PointError = 0;  ///< mm, of points along the normal: given, or of held-out points (RMS)
+  double NormalError = 0; ///< tangent of the angle, in each of two directions (RMS)
   double Stiffness = 0;
   double HeldOutError = 0; ///< RMS distance of points that a fit did not know, mm
   /// Mean of the squares by which these are missed less than by the function 0, in its standard

@@ -186,7 +186,8 @@ TEST(SurfaceSpline, OutlinesGiveTheVolume)
   EXPECT_TRUE(lacuna::FindTopology(followed.Surface).IsClosed());
   const double truth = 4 * pi / 3 * axes[0] * axes[1] * axes[2];
   EXPECT_NEAR(followed.Surface.GetVolume(), truth, 0.003 * truth);
-  EXPECT_LT(lacuna::EstimateVolumeError(execution, data, how, spline.GetReport(), followed.Surface), 0.02 * truth);
+  EXPECT_LT(lacuna::EstimateVolumeError(execution, data, how, spline.GetReport(), followed.Surface),
+    0.02 * truth);
 }
 
 TEST(SurfaceSpline, DoesNotDependOnThreads)

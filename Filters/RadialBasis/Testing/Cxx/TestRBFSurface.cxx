@@ -265,8 +265,8 @@ void CheckPrior()
   image->ComputeNormalsOff();
   image->SetSampleDimensions(60, 50, 40);
   const double* bounds = prior->GetOutput()->GetBounds();
-  image->SetModelBounds(bounds[0] - 3, bounds[1] + 3, bounds[2] - 3, bounds[3] + 3,
-    bounds[4] - 3, bounds[5] + 3);
+  image->SetModelBounds(
+    bounds[0] - 3, bounds[1] + 3, bounds[2] - 3, bounds[3] + 3, bounds[4] - 3, bounds[5] + 3);
   filter->SetInputConnection(1, image->GetOutputPort());
   filter->Update();
   CheckSurface(filter->GetOutput(), 0.004, "with an image as prior");
