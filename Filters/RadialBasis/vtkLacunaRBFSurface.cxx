@@ -47,7 +47,7 @@ using lacuna::Vec3;
 
 // Normals from neighbours share their errors with these, so that held-out ones are predicted too well:
 // they are to say the side mostly.
-constexpr double EstimatedNormalError = 0.1;
+constexpr double EstimatedNormalError = 0.5;
 // Of the longest extent of the points.
 constexpr double BoundsMargin = 0.25;
 constexpr double FinestEdge = 1.0 / 200;
