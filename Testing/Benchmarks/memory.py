@@ -209,6 +209,7 @@ CASES = {
     "RBF Hole Filler": filled,
     "RBF Interpolator": interpolate,
     "RBF Image Warp": warp,
+    "RBF Surface": lambda n: RBFSurface(Input=Sphere(Radius=50, ThetaResolution=n, PhiResolution=n // 2)),
     "Occluded Angle": angle,
     "Occlusion Surface": occlusion_surface,
     "Implant Plate": lambda n: ImplantPlate(Input=filled(n), Thickness=2, EdgeClearance=0.5),

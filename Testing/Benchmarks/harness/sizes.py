@@ -31,6 +31,7 @@ SIZES = {
     "RBF Hole Filler": (0.25, 0.15),
     "RBF Interpolator": (0.5, 0.3),
     "RBF Image Warp": (160, 256),
+    "RBF Surface": (200, 600),
     "Occluded Angle": (160, 320),
     "Occlusion Surface": (100, 160),
     "Implant Plate": (0.3, 0.15),
