@@ -58,4 +58,5 @@ assert found == {
     "LacunaPhantomSweep": {"Input"},
     "LacunaProbeCalibration": {"Picks"},
     "LacunaRBFHoleFiller": {"Surface", "Selection", "ControlPoints", "PriorSurface"},
+    "LacunaRBFSurface": {"PriorSurface"},
 }

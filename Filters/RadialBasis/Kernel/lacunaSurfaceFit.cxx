@@ -23,7 +23,7 @@ constexpr std::size_t BallPoints = 200;
 constexpr std::size_t BallNodes = 80;
 // Points that count at the first level; each further one has four times as many.
 constexpr std::size_t LevelPoints = 20000;
-constexpr double Overlap = 0.7;   // of the radius: points nearer than this need no further ball
+constexpr double Overlap = 0.7; // of the radius: points nearer than this need no further ball
 constexpr double LeastGain = 2; // standard errors
 
 // Where the sum of the weights is below this, the local splines fade out.
