@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaRBFSurface.h"
 
+#include "lacunaBlendedSpline.h"
 #include "lacunaMemory.h"
 #include "lacunaOutlines.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
-#include "lacunaSurfaceFit.h"
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
 #include "vtkDataSet.h"
@@ -258,7 +258,7 @@ int vtkLacunaRBFSurface::RequestData(
       this->CheckNormals(execution, points, 0.5 * spacing);
 
       execution.SetStage(0.05, 0.7);
-      lacuna::SurfaceFitOptions options;
+      lacuna::BlendedSplineOptions options;
       options.Kernel =
         this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
       options.PointError = this->Smoothing;
@@ -273,7 +273,7 @@ int vtkLacunaRBFSurface::RequestData(
         options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
         lacuna::FindOutlineNormals(execution, points, options);
       }
-      const lacuna::SurfaceFit fit(execution, points, options, prior.get());
+      const lacuna::BlendedSpline fit(execution, points, options, prior.get());
 
       execution.SetStage(0.7, 0.95);
       lacuna::SurfaceFollowerOptions follow;
@@ -331,7 +331,7 @@ int vtkLacunaRBFSurface::RequestData(
       }
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-      const lacuna::SurfaceFitReport& report = fit.GetReport();
+      const lacuna::BlendedSplineReport& report = fit.GetReport();
       set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
       if (collected.HasOutlines)
       {

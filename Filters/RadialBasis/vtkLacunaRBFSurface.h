@@ -15,7 +15,7 @@
  * if this predicts points better that are held out.
  *
  * A smooth function, about the signed distance, is fitted to all points and normals at once
- * (lacuna::SurfaceFit); the surface is where it is 0. The error of the points is Smoothing, or it is
+ * (lacuna::BlendedSpline); the surface is where it is 0. The error of the points is Smoothing, or it is
  * estimated from points that are held out at first. Where there are no points the surface goes on with
  * as little bending as possible.
  *

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// A smooth function near any number of oriented points: one spline for all, and local ones upon it.
-#ifndef lacunaSurfaceFit_h
-#define lacunaSurfaceFit_h
+#ifndef lacunaBlendedSpline_h
+#define lacunaBlendedSpline_h
 
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
@@ -15,13 +15,13 @@ namespace lacuna
 {
 class Execution;
 
-struct SurfaceFitOptions : SurfaceSplineOptions
+struct BlendedSplineOptions : SurfaceSplineOptions
 {
   /// Local splines are added where points are missed by more than this (RMS), mm.
   double Accuracy = 0.01;
 };
 
-struct SurfaceFitReport
+struct BlendedSplineReport
 {
   SurfaceSplineReport Spline; ///< of all points
   /// mm, of points along the normal (RMS): given, or where points were held out how far they are
@@ -39,21 +39,21 @@ struct SurfaceFitReport
 /// points better that it does not know. So creases and fine detail are followed, and noise is not.
 ///
 /// Time grows in proportion to the number of points.
-class SurfaceFit : public ImplicitFunction
+class BlendedSpline : public ImplicitFunction
 {
 public:
   /// prior, if not null, is about the signed distance from a surface like this one, mm. Then splines
   /// of the difference are tried, too, and kept if they predict held-out points better; it must live
   /// as long as this. Throws as SurfaceSpline does.
-  SurfaceFit(Execution& execution, const OrientedPoints& data, const SurfaceFitOptions& options,
-    const ImplicitFunction* prior = nullptr);
-  ~SurfaceFit() override;
-  SurfaceFit(SurfaceFit&&) noexcept;
+  BlendedSpline(Execution& execution, const OrientedPoints& data,
+    const BlendedSplineOptions& options, const ImplicitFunction* prior = nullptr);
+  ~BlendedSpline() override;
+  BlendedSpline(BlendedSpline&&) noexcept;
 
   void Evaluate(Execution& execution, const std::vector<Vec3>& points, std::vector<double>& values,
     std::vector<Vec3>* gradients) const override;
 
-  const SurfaceFitReport& GetReport() const { return this->Report; }
+  const BlendedSplineReport& GetReport() const { return this->Report; }
 
 private:
   class Level;
@@ -61,7 +61,7 @@ private:
   const ImplicitFunction* Prior = nullptr;
   std::unique_ptr<SurfaceSpline> Whole;
   std::vector<std::unique_ptr<Level>> Levels;
-  SurfaceFitReport Report;
+  BlendedSplineReport Report;
 };
 }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaSurfaceFit.h"
+#include "lacunaBlendedSpline.h"
 
 #include "lacunaExecution.h"
 #include "lacunaPointNormals.h"
@@ -40,7 +40,7 @@ double GetWeight(double r, double& slope)
 
 //------------------------------------------------------------------------------
 // Local splines, and which of them are near a point.
-class SurfaceFit::Level
+class BlendedSpline::Level
 {
 public:
   struct Ball
@@ -294,8 +294,8 @@ std::vector<Members> CoverPoints(const std::vector<Vec3>& all,
 }
 
 //------------------------------------------------------------------------------
-SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
-  const SurfaceFitOptions& options, const ImplicitFunction* prior)
+BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
+  const BlendedSplineOptions& options, const ImplicitFunction* prior)
 {
   if (!(options.Accuracy >= 0))
   {
@@ -440,11 +440,11 @@ SurfaceFit::SurfaceFit(Execution& execution, const OrientedPoints& data,
   }
 }
 
-SurfaceFit::~SurfaceFit() = default;
-SurfaceFit::SurfaceFit(SurfaceFit&&) noexcept = default;
+BlendedSpline::~BlendedSpline() = default;
+BlendedSpline::BlendedSpline(BlendedSpline&&) noexcept = default;
 
 //------------------------------------------------------------------------------
-void SurfaceFit::Evaluate(Execution& execution, const std::vector<Vec3>& points,
+void BlendedSpline::Evaluate(Execution& execution, const std::vector<Vec3>& points,
   std::vector<double>& values, std::vector<Vec3>* gradients) const
 {
   this->Whole->Evaluate(execution, points, values, gradients);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lacunaSurfaceFit.h"
+#include "lacunaBlendedSpline.h"
 
 #include "lacunaExecution.h"
 #include "lacunaTestShapes.h"
@@ -91,61 +91,61 @@ lacuna::OrientedPoints MakeWaves(std::size_t count, unsigned seed)
 }
 }
 
-TEST(SurfaceFit, FollowsDetailThatOneSplineCannot)
+TEST(BlendedSpline, FollowsDetailThatOneSplineCannot)
 {
   lacuna::ThreadExecution execution(2);
   const auto data = MakeWaves(15000, 1);
   const auto truth = MakeWaves(2000, 2);
-  const lacuna::SurfaceFit fit(execution, data, {});
+  const lacuna::BlendedSpline fit(execution, data, {});
   EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.05);
   EXPECT_LT(GetError(fit, truth), 0.005);
   EXPECT_GT(fit.GetReport().LocalSplines, 100u);
   EXPECT_LT(fit.GetReport().PointError, 0.02);
 }
 
-TEST(SurfaceFit, KeepsAPriorIfThatPredictsBetter)
+TEST(BlendedSpline, KeepsAPriorIfThatPredictsBetter)
 {
   lacuna::ThreadExecution execution(2);
   const auto data = MakeWaves(500, 3);
   const auto truth = MakeWaves(2000, 2);
   const Waves prior;
-  const lacuna::SurfaceFit fit(execution, data, {}, &prior);
+  const lacuna::BlendedSpline fit(execution, data, {}, &prior);
   EXPECT_TRUE(fit.GetReport().UsesPrior);
-  EXPECT_GT(GetError(lacuna::SurfaceFit(execution, data, {}), truth), 0.05);
+  EXPECT_GT(GetError(lacuna::BlendedSpline(execution, data, {}), truth), 0.05);
   EXPECT_LT(GetError(fit, truth), 0.002);
   // waves say nothing of a torus
   const TestShape torus(TestShape::Torus);
   const auto other = torus.SampleNoisy(2000, 0, false, 1);
-  const lacuna::SurfaceFit alone(execution, other, {}, &prior);
+  const lacuna::BlendedSpline alone(execution, other, {}, &prior);
   EXPECT_FALSE(alone.GetReport().UsesPrior);
   EXPECT_LT(GetError(alone, torus.Sample(1000, 99)), 0.02);
 }
 
-TEST(SurfaceFit, FollowsCreases)
+TEST(BlendedSpline, FollowsCreases)
 {
   lacuna::ThreadExecution execution(2);
   const TestShape cup(TestShape::Cup);
   const auto data = cup.SampleNoisy(10000, 0, false, 1);
   const auto truth = cup.Sample(2000, 99);
   EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.2);
-  EXPECT_LT(GetError(lacuna::SurfaceFit(execution, data, {}), truth), 0.08);
+  EXPECT_LT(GetError(lacuna::BlendedSpline(execution, data, {}), truth), 0.08);
 }
 
-TEST(SurfaceFit, DoesNotFollowNoise)
+TEST(BlendedSpline, DoesNotFollowNoise)
 {
   lacuna::ThreadExecution execution(2);
   const TestShape torus(TestShape::Torus);
   const auto data = torus.SampleNoisy(6000, 0.5, false, 3);
-  const lacuna::SurfaceFit fit(execution, data, {});
+  const lacuna::BlendedSpline fit(execution, data, {});
   EXPECT_LT(GetError(fit, torus.Sample(2000, 99)), 0.06);
   EXPECT_NEAR(fit.GetReport().PointError, 0.5, 0.05);
 }
 
-TEST(SurfaceFit, IsSmoothAndItsGradientsAreThoseOfItsValues)
+TEST(BlendedSpline, IsSmoothAndItsGradientsAreThoseOfItsValues)
 {
   lacuna::ThreadExecution execution(2);
   const auto data = TestShape(TestShape::Cup).SampleNoisy(3000, 0, false, 4);
-  const lacuna::SurfaceFit fit(execution, data, {});
+  const lacuna::BlendedSpline fit(execution, data, {});
   ASSERT_GT(fit.GetReport().LocalSplines, 10u);
   // along a line that leaves the balls of the local splines on both sides of the wall
   constexpr double step = 1e-3;
@@ -167,13 +167,13 @@ TEST(SurfaceFit, IsSmoothAndItsGradientsAreThoseOfItsValues)
   EXPECT_EQ(alone, values);
 }
 
-TEST(SurfaceFit, DoesNotDependOnThreads)
+TEST(BlendedSpline, DoesNotDependOnThreads)
 {
   const auto data = TestShape(TestShape::Cup).SampleNoisy(3000, 0.1, false, 5);
   const auto evaluate = [&](int threads)
   {
     lacuna::ThreadExecution execution(threads);
-    const lacuna::SurfaceFit fit(execution, data, {});
+    const lacuna::BlendedSpline fit(execution, data, {});
     std::vector<double> values(data.Points.size());
     fit.Evaluate(execution, data.Points, values, nullptr);
     return values;
