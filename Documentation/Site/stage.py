@@ -203,9 +203,8 @@ def python_reference():
 
 def stage(target):
     pages = {"index.md": read("README.md"), "CHANGELOG.md": read("CHANGELOG.md"), "CONTRIBUTING.md": read("CONTRIBUTING.md")}
-    for folder in (GUIDE, DEVELOPERS, DECISIONS):
+    for folder in (GUIDE, DEVELOPERS, DECISIONS, BENCHMARKS):
         pages.update({f"{folder}/{name}": read(f"{folder}/{name}") for name in names(folder, ".md")})
-    pages[f"{BENCHMARKS}/README.md"] = read(f"{BENCHMARKS}/README.md")
     proxies = read_proxies()
     for proxy in proxies:
         if f"{GUIDE}/{proxy.page}.md" in pages:
@@ -224,8 +223,8 @@ def stage(target):
     sections = navigation()
     pages["index.md"] += toctree([f"{GUIDE}/README", f"{EXAMPLES}/index"])
     pages["index.md"] += "".join(toctree(paths, caption) for caption, paths in sections)
-    pages["index.md"] += toctree([f"{folder}/{name}" for folder in (DEVELOPERS, DECISIONS) for name in names(folder, ".md")] +
-                                 [f"{BENCHMARKS}/README", f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
+    pages["index.md"] += toctree([f"{folder}/{name}" for folder in (DEVELOPERS, DECISIONS, BENCHMARKS) for name in names(folder, ".md")] +
+                                 [f"{DEVELOPERS}/classes", f"{DEVELOPERS}/python", "CONTRIBUTING", "CHANGELOG"], "Development")
 
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(os.path.join(ROOT, "Documentation"), os.path.join(target, "Documentation"), ignore=shutil.ignore_patterns("*.md", "Site", "__pycache__"))

@@ -77,6 +77,7 @@ class Page:
                 f"{others}are of {'one run' if runs == 1 else f'{runs} runs'} of {results['minutes']:.0f} minutes: each row and its peers were measured in turns, {results['rounds']} rounds "
                 "(less where a table says so); given are the median and, in parentheses, the least and the largest of the rounds. A ratio is taken within a round. "
                 "*Clock* is the time one waits, *processor* the time of all threads together, both in ms.\n\n"
+                "How far surfaces are from the truth, beside other programs, is on the page of [surfaces from points](surfaces-from-points.md).\n\n"
                 f"{quick}{noise}\n\n| | |\n|---|---|\n{facts}")
 
     def compared(self, wanted):
