@@ -2,8 +2,8 @@
 """RBF Surface beside other programs that make surfaces of points: thirty cases with known surfaces, and larger ones.
 
     . build/release/lacuna-env.sh
-    /usr/bin/python3 Testing/Science/surface_peers.py --out FOLDER --poisson PATH/PoissonRecon [--polatory PATH/polatory] [--cgal]
-                     [--parts cases,normals,large,heads] [--only REGEX] [--again PROGRAM] [--pictures]
+    /usr/bin/python3 Testing/Science/surface_peers.py --out FOLDER --poisson PATH/PoissonRecon [--cgal]
+                     [--parts cases,normals,large,heads] [--only REGEX] [--again PROGRAM]
 
 cases: sphere, torus, ellipsoid, kumara and cup of about 80 mm. 10 000 points uniform by area; errors of 0, 0.2 and 0.5 mm RMS on each axis;
 normals off by 5 degrees RMS; all points, or 30 % of them missing in 12 patches of 7 to 19 mm radius, each on one side. normals: the same
@@ -17,6 +17,7 @@ keeps what was measured, and a later call measures only what is missing; --again
 import argparse
 import csv
 import glob
+import importlib.util
 import json
 import os
 import re
@@ -36,16 +37,14 @@ sys.path.insert(0, os.path.join(HERE, "..", "Benchmarks"))
 from harness import machine  # noqa: E402
 
 THREADS = 2
-EDGE = 0.7  # mm, of Lacuna's and polatory's triangles: none is longer than 1 mm
+EDGE = 0.7  # mm, of the triangles of Lacuna and CGAL Poisson
 PLACES = 6000  # where distances are measured, on either surface
 SIGMAS = (0.0, 0.2, 0.5)
 SETTINGS = {
     # depth, point weight, samples per node
-    "PoissonRecon": [(7, 2, 1.5), (6, 2, 5), (7, 10, 1.5), (8, 2, 1.5), (6, 10, 1.5), (5, 10, 1.5), (7, 2, 15), (6, 2, 15)],
-    # radial function, nugget (smoothing)
-    "polatory": [("bh3", 0.0), ("bh3", 1.0), ("th3", 0.0), ("th3", 100.0)],
+    "PoissonRecon": [(7, 2, 1.5), (6, 2, 5), (6, 0.5, 5), (6, 2, 15), (6, 0.1, 15), (8, 2, 1.5), (8, 10, 1.5), (7, 10, 1.5)],
     # distance of triangles, mm
-    "CGAL Poisson": [(0.02,), (0.1,)],
+    "CGAL Poisson": [(0.1,), (0.02,)],
     "CGAL advancing front": [()],
     "Lacuna": [()],
 }
@@ -79,9 +78,8 @@ def read_points(path):
 def read_mesh(path):
     """vtkPolyData of triangles."""
     from vtkmodules.vtkFiltersCore import vtkTriangleFilter
-    from vtkmodules.vtkIOGeometry import vtkOBJReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
-    reader = vtkOBJReader() if path.endswith(".obj") else vtkPLYReader()
+    reader = vtkPLYReader()
     reader.SetFileName(path)
     triangles = vtkTriangleFilter()
     triangles.PassVertsOff()
@@ -201,19 +199,6 @@ def poisson(options, setting, source, out):
                                    "--samplesPerNode", samples)[0]
 
 
-def polatory(options, setting, source, out):
-    kernel, nugget = setting
-    points, normals = read_points(source)
-    np.savetxt(out + ".csv", np.concatenate([points, normals], axis=1), delimiter=",", fmt="%.7g")
-    low, high = points.min(axis=0) - 5, points.max(axis=0) + 5
-    steps = [["normals-to-sdf", "--in", out + ".csv", "--out", out + "-sdf.csv"],
-             ["fit", "--dim", 3, "--in", out + "-sdf.csv", "--rbf", kernel, "1", "--deg", 0 if kernel == "bh3" else 1, "--nug", nugget, "--tol", options.tolerance,
-              "--out", out + ".fit"],
-             ["isosurface", "--in", out + ".fit", "--bbox", *low, *high, "--res", EDGE, "--out", out + ".obj"]]
-    used = [run(options.polatory, *step)[0] for step in steps]
-    return out + ".obj", np.array([sum(u[0] for u in used), sum(u[1] for u in used), max(u[2] for u in used)])
-
-
 def cgal(task):
     return lambda options, setting, source, out: (out + ".ply", run(options.cgal_program, task, source, out + ".ply", *((EDGE, *setting) if setting else ()))[0])
 
@@ -223,7 +208,7 @@ def lacuna(options, setting, source, out):
     return out + ".ply", np.array(json.loads(said.splitlines()[-1]))
 
 
-PROGRAMS = {"PoissonRecon": poisson, "polatory": polatory, "CGAL Poisson": cgal("poisson"), "CGAL advancing front": cgal("front"), "Lacuna": lacuna}
+PROGRAMS = {"PoissonRecon": poisson, "CGAL Poisson": cgal("poisson"), "CGAL advancing front": cgal("front"), "Lacuna": lacuna}
 
 
 def run_lacuna(source, target, edge):
@@ -380,85 +365,14 @@ def tables(rows, facts):
                 shown.append("–")
             text.append("| " + " | ".join(shown) + " |")
         if ratios:
-            text += ["", f"{sum(r <= 0.7 for r in ratios)} of {len(ratios)} cases at most 0.7 times the best peer's RMS; largest ratio {max(ratios):.2f}."]
+            text += ["", f"In {sum(r <= 0.7 for r in ratios)} of {len(ratios)} cases RBF Surface has at most 0.7 times the best peer's RMS. The largest ratio is {max(ratios):.2f}."]
         text.append("")
     return "\n".join(text)
 
 
-# Pictures
-
-def picture(options, rows):
-    """Each shape of 0.2 mm with patches, whole and coloured by the distance from the truth: Lacuna, and the best peer."""
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkLookupTable
-    from vtkmodules.vtkIOImage import vtkPNGWriter
-    from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderWindow, vtkRenderer, vtkTextActor, vtkWindowToImageFilter
-    import vtkmodules.vtkRenderingFreeType  # noqa: F401
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetSize(1500, 640)
-    colors = vtkLookupTable()
-    colors.SetNumberOfTableValues(255)
-    colors.SetRange(-0.5, 0.5)
-    for i in range(255):  # blue, white, red
-        t = i / 127 - 1
-        colors.SetTableValue(i, min(1, 1 + 0.9 * t), 1 - 0.75 * abs(t), min(1, 1 - 0.85 * t), 1)
-    for column, name in enumerate(shapes.NAMES):
-        case = f"{name}, 0.2 mm, patches"
-        for line in (0, 1):
-            row = best([row for row in rows if row["part"] == "cases" and row["case"] == case and (row["program"] == "Lacuna") == (line == 0)])
-            view = vtkRenderer()
-            view.SetBackground(1, 1, 1)
-            view.SetViewport(column * 0.18, 0.5 - 0.5 * line, (column + 1) * 0.18, 1 - 0.5 * line)
-            window.AddRenderer(view)
-            if not row or not row["rms"]:
-                continue
-            mesh = read_mesh(mesh_path(options, row))
-            error = numpy_to_vtk(shapes.make(name).distance(corners(mesh)[0]), deep=True)
-            error.SetName("Error, mm")
-            mesh.GetPointData().SetScalars(error)
-            mapper, actor, title = vtkPolyDataMapper(), vtkActor(), vtkTextActor()
-            mapper.SetInputData(mesh)
-            mapper.SetLookupTable(colors)
-            mapper.UseLookupTableScalarRangeOn()
-            actor.SetMapper(mapper)
-            view.AddActor(actor)
-            title.SetInput(f"{row['program']}\n{name}: RMS {float(row['rms']):.3f} mm")
-            title.GetTextProperty().SetColor(0, 0, 0)
-            title.GetTextProperty().SetFontSize(15)
-            title.SetPosition(8, 8)
-            view.AddActor(title)
-            camera = view.GetActiveCamera()
-            camera.SetPosition(1, -2.2, 1.6)
-            camera.SetViewUp(0, 0, 1)
-            view.ResetCamera()
-            camera.Zoom(1.25)
-    view, bar = vtkRenderer(), vtkScalarBarActor()
-    view.SetBackground(1, 1, 1)
-    view.SetViewport(0.9, 0, 1, 1)
-    bar.SetLookupTable(colors)
-    bar.SetTitle("Error, mm")
-    bar.SetNumberOfLabels(5)
-    bar.SetPosition(0.1, 0.1)
-    bar.SetPosition2(0.8, 0.8)
-    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
-        text.SetColor(0, 0, 0)
-        text.ShadowOff()
-    view.AddActor(bar)
-    window.AddRenderer(view)
-    window.Render()
-    grab, writer = vtkWindowToImageFilter(), vtkPNGWriter()
-    grab.SetInput(window)
-    writer.SetInputConnection(grab.GetOutputPort())
-    writer.SetFileName(os.path.join(options.out, "errors.png"))
-    writer.Write()
-
-
 def mesh_path(options, row):
     stem = re.sub(r"[^A-Za-z0-9.]+", "-", "-".join([row["part"], row["case"], row["program"], row["setting"]])).strip("-")
-    return os.path.join(options.out, "meshes", stem + (".obj" if row["program"] == "polatory" else ".ply"))
+    return os.path.join(options.out, "meshes", stem + ".ply")
 
 
 def measure(options, part, case, program, setting, source, truth):
@@ -482,15 +396,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", metavar="FOLDER", help="points, meshes and tables")
     parser.add_argument("--poisson", metavar="PATH", help="the program PoissonRecon")
-    parser.add_argument("--polatory", metavar="PATH", help="the program polatory")
     parser.add_argument("--cgal", action="store_true", help="compile surface_peers_cgal.cxx and run it")
     parser.add_argument("--parts", default="cases,normals,large,heads", help="default: all")
     parser.add_argument("--only", default="", metavar="REGEX", help="cases by name")
     parser.add_argument("--settings", type=int, default=99, metavar="N", help="of each peer the first N")
     parser.add_argument("--programs", default=",".join(PROGRAMS), help="default: all")
     parser.add_argument("--again", action="append", default=[], metavar="PROGRAM", help="measure it anew")
-    parser.add_argument("--tolerance", type=float, default=0.01, help="polatory's fit, mm")
-    parser.add_argument("--pictures", action="store_true")
     parser.add_argument("--lacuna", nargs=3, metavar=("IN", "OUT", "EDGE"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.lacuna:
@@ -499,13 +410,15 @@ def main():
         parser.error("--out FOLDER is missing")
     options.parts = options.parts.split(",")
     os.makedirs(os.path.join(options.out, "meshes"), exist_ok=True)
-    import lacuna as package
-    build = os.path.abspath(os.path.join(os.path.dirname(package.__file__), *[".."] * 4))
+    package = importlib.util.find_spec("lacuna")
+    if not package:
+        sys.exit("there is no Python package lacuna: . build/release/lacuna-env.sh")
+    build = os.path.abspath(os.path.join(os.path.dirname(package.origin), *[".."] * 4))
     cache = machine.read(os.path.join(build, "CMakeCache.txt"))
     source = re.search(r"CMAKE_HOME_DIRECTORY:\w+=(.*)", cache)
     options.version = machine.output("git", "-C", source.group(1) if source else HERE, "log", "-1", "--format=%h")
     options.cgal_program = build_cgal(options.out) if options.cgal else None
-    programs = {"Lacuna": True, "PoissonRecon": options.poisson, "polatory": options.polatory, "CGAL Poisson": options.cgal_program, "CGAL advancing front": options.cgal_program}
+    programs = {"Lacuna": True, "PoissonRecon": options.poisson, "CGAL Poisson": options.cgal_program, "CGAL advancing front": options.cgal_program}
     table, rows = os.path.join(options.out, "results.csv"), []
     if os.path.exists(table):
         with open(table, encoding="utf-8", newline="") as file:
@@ -529,8 +442,6 @@ def main():
                 save()
     with open(os.path.join(options.out, "results.md"), "w", encoding="utf-8") as file:
         file.write(tables(rows, machine.describe(os.path.join(HERE, "..", ".."), build)))
-    if options.pictures:
-        picture(options, rows)
     return 0
 
 
