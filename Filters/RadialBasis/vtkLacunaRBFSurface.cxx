@@ -16,7 +16,6 @@
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
-#include "vtkLacunaInputs.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSurfacePoints.h"
@@ -164,9 +163,9 @@ int vtkLacunaRBFSurface::FillInputPortInformation(int port, vtkInformation* info
 
 //------------------------------------------------------------------------------
 int vtkLacunaRBFSurface::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  return vtkLacunaInputs::AreSingle(this) ? 1 : 0;
+  return vtkLacunaExecution::RunInformation(this, outputs, [] {});
 }
 
 //------------------------------------------------------------------------------
