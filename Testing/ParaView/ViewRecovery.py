@@ -41,6 +41,7 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaRBFHoleFiller": ("SupportMargin", -1),
     "LacunaRBFImageWarp": ("Smoothing", -1),
     "LacunaRBFInterpolator": ("Smoothing", -1),
+    "LacunaRBFSurface": ("Smoothing", -1),
     "LacunaScanRegion": ("TickLength", -1),
     "LacunaSkullPhantom": ("Spacing", [-1, 1, 1]),
     "LacunaSlicePlanes": ("Stride", 0),

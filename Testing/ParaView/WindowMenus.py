@@ -129,6 +129,7 @@ def test(window):
     moved.Transform.Rotate = [0, 0, 10]
     moved.UpdatePipeline()
     make("Filters", "RBF Image Warp", cloud, {"Landmarks": places, "Targets": moved})
+    make("Filters", "RBF Surface", places, OutputSpacing=9)
 
     assert not faults, "\n".join(faults)
     missing = set(os.environ[MENUS].split()) - set(made) - ELSEWHERE
