@@ -380,12 +380,9 @@ BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
               balls[b] = { cover[b].Center, cover[b].Radius, std::move(spline) };
             }
           }
-          catch (const std::invalid_argument&)
+          catch (const SurfaceSpline::Unsolvable&)
           {
             // too few places in this ball: what there is stays
-          }
-          catch (const std::runtime_error&)
-          {
           }
         }
       });

@@ -44,7 +44,7 @@ constexpr double LargestNormalError = 0.5; // so that normals always keep the fu
 constexpr double LargestMiss = 0.1;        // of the extent
 constexpr int Rounds = 3;
 constexpr double RunLength = 0.2; // of the extent
-const char* const Unsolvable =
+const char* const Outweighed =
   "the equations of the surface cannot be solved; give a larger expected "
   "error of the points";
 constexpr std::size_t BlockPoints = 256;
@@ -197,7 +197,7 @@ public:
     const std::vector<double> solution = this->Solve(report, stiffness);
     if (solution.empty())
     {
-      throw std::runtime_error(Unsolvable);
+      throw Unsolvable(Outweighed);
     }
     this->Keep(solution);
     report.Stiffness = stiffness;
@@ -306,7 +306,7 @@ private:
     {
       if (std::abs(this->Reflectors.Column(c)[c]) < 1e-9)
       {
-        throw std::invalid_argument("all points lie on one line or in one place");
+        throw Unsolvable("all points lie on one line or in one place");
       }
     }
     Matrix energy(size, size);
@@ -336,8 +336,8 @@ private:
     dpotrf_("L", &m, this->Root.Column(0), &m, &info, 1);
     if (info != 0)
     {
-      throw std::runtime_error("nodes lie too close together for the equations to be solved; thin "
-                               "the points out");
+      throw Unsolvable(
+        "nodes lie too close together for the equations to be solved; thin the points out");
     }
     this->ValueProducts = Matrix(size, size);
     this->SlopeProducts = Matrix(size, size);
@@ -700,7 +700,7 @@ private:
       }
       if (!std::isfinite(least))
       {
-        throw std::runtime_error(Unsolvable);
+        throw Unsolvable(Outweighed);
       }
       if (!(this->Options.PointError > 0))
       {
@@ -779,7 +779,7 @@ SurfaceSpline::SurfaceSpline(
   this->Scale = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
   if (!(this->Scale > 0) || !std::isfinite(this->Scale))
   {
-    throw std::invalid_argument("all points lie in one place, or too far apart");
+    throw Unsolvable("all points lie in one place, or too far apart");
   }
   const Execution::NestedStages stages(execution);
   Fit fit(execution, data, options, this->Origin, this->Scale);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 namespace lacuna
@@ -80,9 +81,16 @@ public:
   static constexpr std::size_t MaximumNormals = 15000;
   static constexpr std::size_t FewestPoints = 10;
 
+  /// What is wrong lies in the places of the points.
+  class Unsolvable : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
   /// Throws std::invalid_argument for fewer than FewestPoints points, numbers that are not finite,
-  /// points in one place, lists of different lengths and options out of range; std::runtime_error
-  /// when the equations cannot be solved.
+  /// lists of different lengths and options out of range; Unsolvable when points lie in one place or
+  /// on a line, or when rounding errors outweigh the equations.
   SurfaceSpline(
     Execution& execution, const OrientedPoints& data, const SurfaceSplineOptions& options);
 
