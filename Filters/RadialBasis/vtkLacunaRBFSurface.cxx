@@ -6,17 +6,20 @@
 #include "lacunaOutlines.h"
 #include "lacunaParameterText.h"
 #include "lacunaPointNormals.h"
+#include "lacunaSurfaceDistance.h"
 #include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
 #include "vtkDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaSurfacePoints.h"
 #include "vtkLacunaSurfacePrior.h"
@@ -26,6 +29,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTypeInt64Array.h"
 
 #include <algorithm>
@@ -54,19 +58,32 @@ constexpr double CoarsestEdge = 1.0 / 40;
 // Of all points, with an opposite normal beside them: above, these are not merely thin walls.
 constexpr double MostOpposed = 0.02;
 
-std::array<double, 6> GetBounds(const std::vector<Vec3>& points)
+std::array<double, 6> GetBounds(const std::vector<Vec3>& points, const std::vector<Vec3>& more)
 {
   std::array<double, 6> bounds{ points[0][0], points[0][0], points[0][1], points[0][1],
     points[0][2], points[0][2] };
-  for (const Vec3& x : points)
+  for (const std::vector<Vec3>* list : { &points, &more })
   {
-    for (int c = 0; c < 3; ++c)
+    for (const Vec3& x : *list)
     {
-      bounds[2 * c] = std::min(bounds[2 * c], x[c]);
-      bounds[2 * c + 1] = std::max(bounds[2 * c + 1], x[c]);
+      for (int c = 0; c < 3; ++c)
+      {
+        bounds[2 * c] = std::min(bounds[2 * c], x[c]);
+        bounds[2 * c + 1] = std::max(bounds[2 * c + 1], x[c]);
+      }
     }
   }
   return bounds;
+}
+
+void SetName(vtkObject* owner, std::string& name, const char* given)
+{
+  const std::string text = given && std::strcmp(given, "None") != 0 ? given : "";
+  if (text != name)
+  {
+    name = text;
+    owner->Modified();
+  }
 }
 
 double GetExtent(const std::array<double, 6>& bounds)
@@ -133,7 +150,10 @@ std::vector<double> GetResiduals(lacuna::Execution& execution,
 vtkLacunaRBFSurface::vtkLacunaRBFSurface()
 {
   this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
 }
+
+vtkLacunaRBFSurface::~vtkLacunaRBFSurface() = default;
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::RemovePriorSurface()
@@ -144,12 +164,28 @@ void vtkLacunaRBFSurface::RemovePriorSurface()
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::SetErrorArray(const char* name)
 {
-  const std::string given = name && std::strcmp(name, "None") != 0 ? name : "";
-  if (given != this->ErrorArray)
+  SetName(this, this->ErrorArray, name);
+}
+
+void vtkLacunaRBFSurface::SetSideArray(const char* name)
+{
+  SetName(this, this->SideArray, name);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::SetPriorFunction(vtkImplicitFunction* function)
+{
+  if (this->PriorFunction != function)
   {
-    this->ErrorArray = given;
+    this->PriorFunction = function;
     this->Modified();
   }
+}
+
+vtkMTimeType vtkLacunaRBFSurface::GetMTime()
+{
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  return this->PriorFunction ? std::max(own, this->PriorFunction->GetMTime()) : own;
 }
 
 //------------------------------------------------------------------------------
@@ -162,10 +198,46 @@ int vtkLacunaRBFSurface::FillInputPortInformation(int port, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
+int vtkLacunaRBFSurface::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+bool vtkLacunaRBFSurface::HasOutputBounds() const
+{
+  const double* b = this->OutputBounds;
+  return b[0] <= b[1] && b[2] <= b[3] && b[4] <= b[5];
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaRBFSurface::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  return vtkLacunaExecution::RunInformation(this, outputs, [] {});
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      const double h = this->DistanceSpacing;
+      vtkInformation* info = outputs->GetInformationObject(1);
+      if (h > 0 && std::isfinite(h) && this->HasOutputBounds() && vtkLacunaRanks().GetRank() == 0)
+      {
+        lacuna::Vec3 origin;
+        for (int c = 0; c < 3; ++c)
+        {
+          origin[c] = this->OutputBounds[2 * c];
+          constexpr double most = 1 << 16; // more is refused when it is made
+          extent[2 * c + 1] = static_cast<int>(
+            std::min(most, (this->OutputBounds[2 * c + 1] - origin[c]) / h + 1e-6));
+        }
+        const lacuna::Vec3 spacing{ h, h, h };
+        info->Set(vtkDataObject::ORIGIN(), origin.data(), 3);
+        info->Set(vtkDataObject::SPACING(), spacing.data(), 3);
+        vtkDataObject::SetPointDataActiveScalarInfo(info, VTK_FLOAT, 1);
+      }
+      info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -205,8 +277,9 @@ int vtkLacunaRBFSurface::RequestData(
             std::string(property.first) + " must be a finite number above 0, in mm");
         }
       }
-      for (const auto& property : { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
-             { "OutputSpacing", this->OutputSpacing } })
+      for (const auto& property :
+        { std::pair<const char*, double>{ "Smoothing", this->Smoothing },
+          { "OutputSpacing", this->OutputSpacing }, { "DistanceSpacing", this->DistanceSpacing } })
       {
         if (!(property.second >= 0) || !std::isfinite(property.second))
         {
@@ -217,6 +290,8 @@ int vtkLacunaRBFSurface::RequestData(
       const auto start = std::chrono::steady_clock::now();
       execution.SetStage(0, 0.05);
       vtkLacunaSurfacePoints collected;
+      collected.ErrorArray = this->ErrorArray;
+      collected.SideArray = this->SideArray;
       std::vector<vtkDataObject*> sources;
       for (int i = 0; i < inputs[0]->GetNumberOfInformationObjects(); ++i)
       {
@@ -225,7 +300,7 @@ int vtkLacunaRBFSurface::RequestData(
         {
           vtkLacunaVolumeDirection::Check(image);
         }
-        collected.Add(execution, data, i + 1, this->ErrorArray);
+        collected.Add(execution, data, i + 1);
         if (data)
         {
           sources.push_back(data);
@@ -236,9 +311,16 @@ int vtkLacunaRBFSurface::RequestData(
       {
         throw std::runtime_error("the input has no points of a surface");
       }
-      collected.CheckOutlines();
+      collected.Check();
+      const std::array<double, 6> own = GetBounds(points.Points, collected.Inside);
+      const double extent = GetExtent(own);
+      this->CheckDistanceGrid(own);
       std::unique_ptr<vtkLacunaSurfacePrior> prior;
-      if (inputs[1]->GetNumberOfInformationObjects() > 0)
+      if (this->PriorFunction)
+      {
+        prior = std::make_unique<vtkLacunaSurfacePrior>(this->PriorFunction, extent);
+      }
+      else if (inputs[1]->GetNumberOfInformationObjects() > 0)
       {
         vtkDataSet* data = vtkDataSet::GetData(inputs[1], 0);
         if (data && data->GetNumberOfPoints() > 0)
@@ -251,8 +333,6 @@ int vtkLacunaRBFSurface::RequestData(
           collected.Warnings.push_back("PriorSurface has no points and does not count");
         }
       }
-      const std::array<double, 6> own = GetBounds(points.Points);
-      const double extent = GetExtent(own);
       const double spacing = lacuna::FindPointSpacing(execution, points.Points);
       this->CheckNormals(execution, points, 0.5 * spacing);
 
@@ -272,7 +352,10 @@ int vtkLacunaRBFSurface::RequestData(
         options.LeastNormalError = std::max(options.LeastNormalError, lacuna::OutlineNormalError);
         lacuna::FindOutlineNormals(execution, points, options);
       }
+      options.Inside = collected.Inside;
+      options.Outside = collected.Outside;
       const lacuna::BlendedSpline fit(execution, points, options, prior.get());
+      this->CheckSides(fit.GetReport());
 
       execution.SetStage(0.7, 0.95);
       lacuna::SurfaceFollowerOptions follow;
@@ -299,7 +382,7 @@ int vtkLacunaRBFSurface::RequestData(
         lacuna::FollowSurface(execution, fit, points.Points, follow);
       this->CheckSurface(followed, collected.Warnings);
 
-      execution.SetStage(0.95, 1);
+      execution.SetStage(0.95, this->DistanceSpacing > 0 ? 0.96 : 1);
       const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
       vtkPolyData* output = vtkPolyData::GetData(outputs);
       SetSurface(output, followed);
@@ -359,8 +442,93 @@ int vtkLacunaRBFSurface::RequestData(
         .Add("ErrorArray", this->ErrorArray)
         .Add("OutputSpacing", this->OutputSpacing)
         .Add("OutputBounds", this->OutputBounds)
-        .Add("CapBoundary", this->CapBoundary);
+        .Add("CapBoundary", this->CapBoundary)
+        .Add("SideArray", this->SideArray)
+        .Add("PriorFunction", this->PriorFunction ? this->PriorFunction->GetClassName() : "None")
+        .Add("DistanceSpacing", this->DistanceSpacing);
       vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
+      if (this->DistanceSpacing > 0)
+      {
+        execution.SetStage(0.96, 1);
+        vtkImageData* distances = vtkImageData::GetData(outputs, 1);
+        distances->GetFieldData()->Initialize(); // VTK passes those of the input
+        this->SetDistances(execution, followed.Surface, distances);
+        vtkLacunaProvenance::Record(distances, this, sources, parameters.Get());
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckDistanceGrid(const std::array<double, 6>& own)
+{
+  if (!(this->DistanceSpacing > 0))
+  {
+    return;
+  }
+  if (!this->HasOutputBounds())
+  {
+    std::ostringstream message;
+    message << "DistanceSpacing needs OutputBounds on all axes; the points and a margin have";
+    const double margin = BoundsMargin * GetExtent(own);
+    for (int c = 0; c < 3; ++c)
+    {
+      message << " " << std::floor(own[2 * c] - margin) << " "
+              << std::ceil(own[2 * c + 1] + margin);
+    }
+    throw std::runtime_error(message.str());
+  }
+  double voxels = 1;
+  for (int c = 0; c < 3; ++c)
+  {
+    voxels *=
+      (this->OutputBounds[2 * c + 1] - this->OutputBounds[2 * c]) / this->DistanceSpacing + 1;
+  }
+  lacuna::RequireMemory(
+    "the signed distance (choose a larger DistanceSpacing)", sizeof(float) * voxels);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::CheckSides(const lacuna::BlendedSplineReport& report)
+{
+  if (report.WrongSides > 0)
+  {
+    const Vec3& x = report.WrongSideAt;
+    vtkWarningMacro(<< "the surface has " << report.WrongSides << " of the points with a "
+                    << this->SideArray << " on the wrong side, one at (" << x[0] << ", " << x[1]
+                    << ", " << x[2]
+                    << ") mm: points of the surface contradict it. Correct one of them, or give a "
+                       "larger Smoothing");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaRBFSurface::SetDistances(
+  lacuna::Execution& execution, const lacuna::TriangleSurface& surface, vtkImageData* distances)
+{
+  int size[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    size[c] = 1 +
+      static_cast<int>(
+        (this->OutputBounds[2 * c + 1] - this->OutputBounds[2 * c]) / this->DistanceSpacing + 1e-6);
+  }
+  distances->SetDimensions(size);
+  distances->SetOrigin(this->OutputBounds[0], this->OutputBounds[2], this->OutputBounds[4]);
+  distances->SetSpacing(this->DistanceSpacing, this->DistanceSpacing, this->DistanceSpacing);
+  vtkNew<vtkFloatArray> values;
+  values->SetName("SignedDistance");
+  vtkLacunaArrays::SetNumberOfTuples(values, distances->GetNumberOfPoints());
+  distances->GetPointData()->SetScalars(values);
+  const lacuna::SurfaceDistance distance(surface);
+  execution.For(values->GetNumberOfValues(), 4096,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        Vec3 x;
+        distances->GetPoint(i, x.data());
+        values->SetValue(i, static_cast<float>(distance.Get(x)));
+      }
     });
 }
 
@@ -438,6 +606,9 @@ void vtkLacunaRBFSurface::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Accuracy: " << this->Accuracy << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "ErrorArray: " << this->ErrorArray << "\n";
+  os << indent << "SideArray: " << this->SideArray << "\n";
+  os << indent << "PriorFunction: " << this->PriorFunction.Get() << "\n";
+  os << indent << "DistanceSpacing: " << this->DistanceSpacing << "\n";
   os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
   os << indent << "OutputBounds:";
   for (const double b : this->OutputBounds)

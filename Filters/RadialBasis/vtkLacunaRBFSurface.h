@@ -12,7 +12,10 @@
  *
  * Second input, optional (PriorSurface): a surface like the one that is sought, in the same place: a
  * closed mesh, or an image of the signed distance (mm, negative inside). What differs from it is fitted
- * if this predicts points better that are held out.
+ * if this predicts points better that are held out. Or PriorFunction, any implicit function.
+ *
+ * Points that SideArray says lie inside or outside are not on the surface; the surface keeps them on their
+ * side.
  *
  * A smooth function, about the signed distance, is fitted to all points and normals at once
  * (lacuna::BlendedSpline); the surface is where it is 0. The error of the points is Smoothing, or it is
@@ -28,9 +31,12 @@
  * | Support  | float      | Distance in units of the points' spacing; far above 1 the        |
  * |          |            | surface is extrapolated                                          |
  * Field data, one tuple each: `SurfaceVolume` (ml), `SurfaceVolumeError` (ml, standard error, with
- * outlines only), `SurfaceArea` (mm^2), `ResidualRMS` and
- * `ResidualMaximum` (mm, of all points), `PriorUsed` (1 or 0, with a prior only), `PointError` (mm, given or estimated), `NormalError`
+ * outlines only), `SurfaceArea` (mm^2), `ResidualRMS` and `ResidualMaximum` (mm, of all points),
+ * `PriorUsed` (1 or 0, with a prior only), `PointError` (mm, given or estimated), `NormalError`
  * (degrees, each of two directions), `CenterCount`, `FitTime` (s; not the same twice).
+ *
+ * Second output: vtkImageData with `SignedDistance` (float, mm, negative inside) from the triangles, if
+ * DistanceSpacing is above 0; else empty.
  *
  * The output is one piece, whole, the same for any number of threads; further pieces are empty.
  *
@@ -46,16 +52,23 @@
 #include "vtkLacunaFiltersRadialBasisModule.h" // for export macro
 #include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h" // for ivars
 
+#include <array>  // for bounds
 #include <string> // for ivars
 #include <vector> // for warnings
 
 namespace lacuna
 {
 class Execution;
+struct BlendedSplineReport;
 struct FollowedSurface;
 struct OrientedPoints;
+struct TriangleSurface;
 }
+
+class vtkImageData;
+class vtkImplicitFunction;
 
 class VTKLACUNAFILTERSRADIALBASIS_EXPORT vtkLacunaRBFSurface : public vtkPolyDataAlgorithm
 {
@@ -107,7 +120,27 @@ public:
   const char* GetErrorArray() const { return this->ErrorArray.c_str(); }
   ///@}
 
+  ///@{
+  /**
+   * Point array with one component: below 0 for points that lie inside the solid, above 0 for points
+   * outside, 0 for points on its surface. Inputs without it lie on the surface. Default "": all do.
+   */
+  void SetSideArray(const char* name);
+  const char* GetSideArray() const { return this->SideArray.c_str(); }
+  ///@}
+
   void RemovePriorSurface(); ///< disconnects the second input
+
+  ///@{
+  /**
+   * Instead of a second input: negative inside, mm as its unit of length. It is divided by the length of its
+   * gradient. Default none.
+   */
+  void SetPriorFunction(vtkImplicitFunction* function);
+  vtkImplicitFunction* GetPriorFunction() const { return this->PriorFunction; }
+  ///@}
+
+  vtkMTimeType GetMTime() override; ///< with that of PriorFunction
 
   ///@{
   /**
@@ -134,10 +167,20 @@ public:
   vtkBooleanMacro(CapBoundary, bool);
   ///@}
 
+  ///@{
+  /**
+   * Voxels of the second output, mm, >= 0. They fill OutputBounds, which must then be given on all axes.
+   * Default 0: none.
+   */
+  vtkSetMacro(DistanceSpacing, double);
+  vtkGetMacro(DistanceSpacing, double);
+  ///@}
+
 protected:
   vtkLacunaRBFSurface();
-  ~vtkLacunaRBFSurface() override = default;
+  ~vtkLacunaRBFSurface() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -151,7 +194,16 @@ private:
   vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;
   void operator=(const vtkLacunaRBFSurface&) = delete;
 
+  bool HasOutputBounds() const;
+  void CheckDistanceGrid(const std::array<double, 6>& own); ///< own: bounds of the points
+  void CheckSides(const lacuna::BlendedSplineReport& report);
+  void SetDistances(
+    lacuna::Execution& execution, const lacuna::TriangleSurface& surface, vtkImageData* distances);
+
+  vtkSmartPointer<vtkImplicitFunction> PriorFunction;
   std::string ErrorArray;
+  std::string SideArray;
+  double DistanceSpacing = 0;
   int Kernel = Triharmonic;
   double Smoothing = 0;
   double Accuracy = 0.01;

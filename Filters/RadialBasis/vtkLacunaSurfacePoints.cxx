@@ -135,8 +135,20 @@ void vtkLacunaSurfacePoints::AddPoint(
   this->Data.Errors.push_back(error);
 }
 
-void vtkLacunaSurfacePoints::Add(
-  lacuna::Execution& execution, vtkDataSet* data, int number, const std::string& errorArray)
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::AddSide(
+  const lacuna::Vec3& place, double side, const std::string& name)
+{
+  if (!std::isfinite(side))
+  {
+    throw std::runtime_error("SideArray of " + name + " is not a finite number at " +
+      Describe(place) + "; it must be below 0 inside, 0 on the surface and above 0 outside");
+  }
+  (side < 0 ? this->Inside : this->Outside).push_back(place);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::Add(lacuna::Execution& execution, vtkDataSet* data, int number)
 {
   const std::string name = "input " + std::to_string(number);
   if (!data || data->GetNumberOfPoints() == 0)
@@ -149,7 +161,7 @@ void vtkLacunaSurfacePoints::Add(
     this->AddMap(image);
     return;
   }
-  vtkDataArray* errors = FindErrors(data, errorArray, name);
+  vtkDataArray* errors = FindErrors(data, this->ErrorArray, name);
   auto* poly = vtkPolyData::SafeDownCast(data);
   if (poly && poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0)
   {
@@ -161,7 +173,7 @@ void vtkLacunaSurfacePoints::Add(
     else
     {
       MakeMeshNormals(poly, mesh);
-      errors = FindErrors(mesh, errorArray, name);
+      errors = FindErrors(mesh, this->ErrorArray, name);
     }
     this->AddPoints(execution, mesh, name, errors);
   }
@@ -207,16 +219,33 @@ void vtkLacunaSurfacePoints::AddPoints(
   lacuna::Execution& execution, vtkDataSet* data, const std::string& name, vtkDataArray* errors)
 {
   vtkDataArray* normals = FindNormals(data);
-  const vtkIdType n = data->GetNumberOfPoints();
-  std::vector<lacuna::Vec3> points(n);
-  for (vtkIdType i = 0; i < n; ++i)
+  vtkDataArray* sides =
+    this->SideArray.empty() ? nullptr : data->GetPointData()->GetArray(this->SideArray.c_str());
+  sides = sides && sides->GetNumberOfComponents() == 1 ? sides : nullptr;
+  this->HasSides = this->HasSides || sides;
+  std::vector<vtkIdType> ids; // of points on the surface
+  std::vector<lacuna::Vec3> points;
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
   {
-    points[i] = GetPoint(data, i);
-    if (!lacuna::IsFinite(points[i]))
+    const lacuna::Vec3 x = GetPoint(data, i);
+    if (!lacuna::IsFinite(x))
     {
       throw std::runtime_error("point " + std::to_string(i) + " of " + name +
         " has a coordinate that is not a finite number; remove it (Threshold, or Clean to Grid)");
     }
+    const double side = sides ? sides->GetComponent(i, 0) : 0;
+    if (side != 0)
+    {
+      this->AddSide(x, side, name);
+      continue;
+    }
+    ids.push_back(i);
+    points.push_back(x);
+  }
+  const auto n = static_cast<vtkIdType>(points.size());
+  if (n == 0)
+  {
+    return;
   }
   lacuna::PointNormals estimated;
   if (!normals)
@@ -262,10 +291,10 @@ void vtkLacunaSurfacePoints::AddPoints(
     lacuna::Vec3 normal;
     if (normals)
     {
-      normals->GetTuple(i, normal.data());
+      normals->GetTuple(ids[i], normal.data());
       if (!lacuna::HasDirection(normal))
       {
-        throw std::runtime_error("the normal of point " + std::to_string(i) + " of " + name +
+        throw std::runtime_error("the normal of point " + std::to_string(ids[i]) + " of " + name +
           " at " + Describe(points[i]) +
           " is zero or not finite; remove the point, or the array of "
           "normals");
@@ -275,7 +304,7 @@ void vtkLacunaSurfacePoints::AddPoints(
     {
       normal = estimated.Normals[i];
     }
-    this->AddPoint(points[i].data(), normal, {}, errors ? errors->GetComponent(i, 0) : 1);
+    this->AddPoint(points[i].data(), normal, {}, errors ? errors->GetComponent(ids[i], 0) : 1);
   }
 }
 
@@ -350,8 +379,13 @@ void vtkLacunaSurfacePoints::AddOutlines(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSurfacePoints::CheckOutlines() const
+void vtkLacunaSurfacePoints::Check() const
 {
+  if (!this->SideArray.empty() && !this->HasSides)
+  {
+    throw std::runtime_error(
+      "SideArray: no input of points has a point array '" + this->SideArray + "' of one component");
+  }
   const bool onlyOutlines = std::all_of(this->Data.Free.begin(), this->Data.Free.end(),
     [](const lacuna::Vec3& across) { return lacuna::HasDirection(across); });
   if (this->HasOutlines && onlyOutlines && LieInPlane(this->Data.Points, this->Data.Free[0]))

@@ -23,20 +23,29 @@ class Execution;
 class vtkLacunaSurfacePoints
 {
 public:
-  /// Adds those of an input. number is that of the input, from 1, for messages. errorArray: point
-  /// array of expected errors, mm; empty: none. Throws std::runtime_error that says what is wrong.
-  void Add(
-    lacuna::Execution& execution, vtkDataSet* data, int number, const std::string& errorArray);
+  /// Names of point arrays with one component; empty: none.
+  std::string ErrorArray; ///< expected errors, above 0
+  std::string SideArray;  ///< below 0: inside; 0: on the surface; above 0: outside
 
-  /// After all inputs: throws std::runtime_error when outlines are all there is, in one plane.
-  void CheckOutlines() const;
+  /// Adds those of an input. number is that of the input, from 1, for messages. Throws
+  /// std::runtime_error that says what is wrong.
+  void Add(lacuna::Execution& execution, vtkDataSet* data, int number);
+
+  /// After all inputs: throws std::runtime_error when outlines are all there is, in one plane, and when no
+  /// input has SideArray.
+  void Check() const;
 
   lacuna::OrientedPoints Data;
+  std::vector<lacuna::Vec3> Inside; ///< places that SideArray says lie there
+  std::vector<lacuna::Vec3> Outside;
   bool HasOutlines = false;
   bool HasEstimatedNormals = false;
   std::vector<std::string> Warnings;
 
 private:
+  bool HasSides = false; // an input has SideArray
+
+  void AddSide(const lacuna::Vec3& place, double side, const std::string& name);
   void AddPoint(
     const double* x, const lacuna::Vec3& normal, const lacuna::Vec3& free, double error);
   void AddMap(vtkImageData* image);

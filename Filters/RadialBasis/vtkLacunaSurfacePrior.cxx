@@ -5,6 +5,7 @@
 #include "vtkDataArray.h"
 #include "vtkFeatureEdges.h"
 #include "vtkImageData.h"
+#include "vtkImplicitFunction.h"
 #include "vtkImplicitPolyDataDistance.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
@@ -14,10 +15,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace
 {
+constexpr double LargestDistance = 1000; // of an implicit function, in steps: the size of the data
+
 bool IsClosed(vtkPolyData* mesh)
 {
   vtkNew<vtkFeatureEdges> edges;
@@ -65,8 +69,16 @@ vtkLacunaSurfacePrior::vtkLacunaSurfacePrior(vtkDataSet* data)
     throw std::runtime_error("PriorSurface is a mesh that is not closed, so that it has no inside; "
                              "fill its holes (Fill Holes, Clean)");
   }
-  this->Mesh = vtkSmartPointer<vtkImplicitPolyDataDistance>::New();
-  this->Mesh->SetInput(triangles->GetOutput());
+  vtkNew<vtkImplicitPolyDataDistance> distance;
+  distance->SetInput(triangles->GetOutput());
+  this->Function = distance;
+}
+
+vtkLacunaSurfacePrior::vtkLacunaSurfacePrior(vtkImplicitFunction* function, double size)
+  : Function(function)
+  , IsDistance(false)
+  , Step(1e-3 * size)
+{
 }
 
 vtkLacunaSurfacePrior::~vtkLacunaSurfacePrior() = default;
@@ -74,9 +86,30 @@ vtkLacunaSurfacePrior::~vtkLacunaSurfacePrior() = default;
 //------------------------------------------------------------------------------
 double vtkLacunaSurfacePrior::GetValue(const lacuna::Vec3& x) const
 {
-  if (this->Mesh)
+  if (this->Function)
   {
-    return this->Mesh->EvaluateFunction(const_cast<double*>(x.data()));
+    lacuna::Vec3 place = x;
+    const double value = this->Function->FunctionValue(place.data());
+    if (this->IsDistance)
+    {
+      return value;
+    }
+    // By differences: gradients of VTK's functions may be missing or too short. Where it is flat, as in the
+    // middle of a sphere, nothing is divided by nearly 0.
+    lacuna::Vec3 gradient;
+    for (int c = 0; c < 3; ++c)
+    {
+      lacuna::Vec3 before = x;
+      lacuna::Vec3 after = x;
+      before[c] -= this->Step;
+      after[c] += this->Step;
+      gradient[c] = (this->Function->FunctionValue(after.data()) -
+                      this->Function->FunctionValue(before.data())) /
+        (2 * this->Step);
+    }
+    const double slope = lacuna::Norm(gradient);
+    const double least = std::abs(value) / (LargestDistance * this->Step);
+    return value / std::max({ slope, least, std::numeric_limits<double>::min() });
   }
   double index[3];
   this->Image->TransformPhysicalPointToContinuousIndex(x.data(), index);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// A closed mesh or a signed distance image as a function of space.
+/// A closed mesh, a signed distance image or an implicit function as a function of space.
 #ifndef vtkLacunaSurfacePrior_h
 #define vtkLacunaSurfacePrior_h
 
@@ -9,7 +9,7 @@
 
 class vtkDataSet;
 class vtkImageData;
-class vtkImplicitPolyDataDistance;
+class vtkImplicitFunction;
 
 /// Signed distance in mm, negative inside. Gradients are differences over a short way.
 class vtkLacunaSurfacePrior : public lacuna::ImplicitFunction
@@ -18,6 +18,9 @@ public:
   /// A mesh, or an image whose active scalars are the distance: trilinear; beyond it the distance from
   /// it is added. Throws std::runtime_error that says what is wrong.
   explicit vtkLacunaSurfacePrior(vtkDataSet* data);
+  /// Any implicit function, negative inside: divided by the length of its gradient, so about the distance
+  /// near its zeros. size: that of the data, mm.
+  vtkLacunaSurfacePrior(vtkImplicitFunction* function, double size);
   ~vtkLacunaSurfacePrior() override;
 
   void Evaluate(lacuna::Execution& execution, const std::vector<lacuna::Vec3>& points,
@@ -26,7 +29,8 @@ public:
 private:
   double GetValue(const lacuna::Vec3& x) const;
 
-  vtkSmartPointer<vtkImplicitPolyDataDistance> Mesh;
+  vtkSmartPointer<vtkImplicitFunction> Function;
+  bool IsDistance = true; // Function
   vtkSmartPointer<vtkImageData> Image;
   double Step = 0; // mm
 };

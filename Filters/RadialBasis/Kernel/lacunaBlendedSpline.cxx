@@ -305,12 +305,13 @@ BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
   execution.SetStage(0, 0.3);
   this->Whole = std::make_unique<SurfaceSpline>(execution, data, options);
   const std::size_t n = data.Points.size();
-  std::vector<double> values(n);
-  std::vector<Vec3> gradients(n);
+  OrientedPoints difference;
   if (prior)
   {
+    std::vector<double> values(n);
+    std::vector<Vec3> gradients(n);
     prior->Evaluate(execution, data.Points, values, &gradients);
-    OrientedPoints difference = data;
+    difference = data;
     for (std::size_t i = 0; i < n; ++i)
     {
       difference.Values.push_back(-values[i]);
@@ -324,13 +325,118 @@ BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
       this->Report.UsesPrior = true;
     }
   }
+  if (!options.Inside.empty() || !options.Outside.empty())
+  {
+    auto kept = this->KeepSides(execution, this->Prior ? difference : data, options);
+    this->Whole = kept ? std::move(kept) : std::move(this->Whole);
+  }
   this->Report.Spline = this->Whole->GetReport();
   this->Report.PointError = this->Report.Spline.PointError;
   this->Report.Centers = 2 * this->Report.Spline.Nodes;
-  if (this->Report.Spline.HeldOutError <= options.Accuracy || !data.Free.empty())
+  if (this->Report.Spline.HeldOutError > options.Accuracy && data.Free.empty())
   {
-    return;
+    this->AddLevels(execution, data, options);
   }
+  for (const double side : { -1, 1 })
+  {
+    const std::vector<Vec3>& places = side < 0 ? options.Inside : options.Outside;
+    std::vector<double> values(places.size());
+    this->Evaluate(execution, places, values, nullptr);
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      if (!(side * values[i] > 0))
+      {
+        this->Report.WrongSideAt = places[i];
+        ++this->Report.WrongSides;
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+// The spline again, with the places as points that the surface would leave on the wrong side or comes too
+// near to, until these are the same ones. Null: there is none.
+std::unique_ptr<SurfaceSpline> BlendedSpline::KeepSides(
+  Execution& execution, const OrientedPoints& fitted, const BlendedSplineOptions& options) const
+{
+  constexpr int rounds = 8;
+  constexpr int last = 4;           // from this round on none is let go
+  constexpr double nearest = 0.002; // of the extent
+  // Expected error of a place's value, of the margin: so small that a stiff spline keeps its side, too.
+  constexpr double firmness = 0.02;
+  std::vector<Vec3> places = options.Inside;
+  places.insert(places.end(), options.Outside.begin(), options.Outside.end());
+  Vec3 low = fitted.Points[0];
+  Vec3 high = low;
+  for (const Vec3& x : fitted.Points)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+  }
+  const double extent = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
+  SurfaceSplineOptions fixed = options;
+  fixed.PointError = this->Whole->GetReport().PointError;
+  const double margin = std::max(2 * fixed.PointError, nearest * extent);
+  std::vector<double> base(places.size(), 0.0);
+  if (this->Prior)
+  {
+    this->Prior->Evaluate(execution, places, base, nullptr);
+  }
+  OrientedPoints start = fitted;
+  const std::size_t n = fitted.Points.size();
+  start.Errors.resize(n, 1.0);
+  start.Values.resize(n, 0.0);
+  start.Slopes = fitted.Slopes.empty() ? fitted.Normals : fitted.Slopes;
+  start.Beside.resize(n, 0);
+  std::vector<char> active(places.size(), 0);
+  std::unique_ptr<SurfaceSpline> kept;
+  for (int round = 0; round < rounds; ++round)
+  {
+    std::vector<double> values(places.size());
+    std::vector<Vec3> gradients(places.size());
+    const SurfaceSpline& spline = kept ? *kept : *this->Whole;
+    spline.Evaluate(execution, places, values, &gradients);
+    std::vector<char> now(places.size(), 0);
+    OrientedPoints with = start;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      const double side = i < options.Inside.size() ? -1 : 1;
+      now[i] = side * (values[i] + base[i]) < margin || (round >= last && active[i]);
+      if (now[i])
+      {
+        with.Points.push_back(places[i]);
+        with.Normals.push_back(
+          HasDirection(gradients[i]) ? Normalized(gradients[i]) : Vec3{ 1, 0, 0 });
+        with.Slopes.push_back({});
+        with.Errors.push_back(firmness * margin / fixed.PointError);
+        with.Values.push_back(side * margin - base[i]);
+        with.Beside.push_back(1);
+        if (!with.Free.empty())
+        {
+          with.Free.push_back({});
+        }
+      }
+    }
+    if (now == active)
+    {
+      break;
+    }
+    active = now;
+    kept = std::make_unique<SurfaceSpline>(execution, with, fixed);
+  }
+  return kept;
+}
+
+//------------------------------------------------------------------------------
+void BlendedSpline::AddLevels(
+  Execution& execution, const OrientedPoints& data, const BlendedSplineOptions& options)
+{
+  const std::size_t n = data.Points.size();
+  std::vector<double> values(n);
+  std::vector<Vec3> gradients(n);
   const SingleBlasThread single(execution.GetNumberOfThreads());
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t(0));

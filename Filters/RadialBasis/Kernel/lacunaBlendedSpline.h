@@ -19,6 +19,10 @@ struct BlendedSplineOptions : SurfaceSplineOptions
 {
   /// Local splines are added where points are missed by more than this (RMS), mm.
   double Accuracy = 0.01;
+  /// Places that are known to lie inside or outside, mm. The surface leaves each on its side, as far as
+  /// the points allow, by at least twice their error and a 500th of their extent.
+  std::vector<Vec3> Inside;
+  std::vector<Vec3> Outside;
 };
 
 struct BlendedSplineReport
@@ -30,6 +34,9 @@ struct BlendedSplineReport
   bool UsesPrior = false;
   std::size_t LocalSplines = 0; ///< that were of use
   std::size_t Centers = 0;      ///< radial functions in all
+  std::size_t WrongSides =
+    0;                ///< of Inside and Outside, on the other side of the surface all the same
+  Vec3 WrongSideAt{}; ///< one of them
 };
 
 /// One SurfaceSpline of all points carries the surface over places without points. Where it misses
@@ -57,6 +64,11 @@ public:
 
 private:
   class Level;
+
+  std::unique_ptr<SurfaceSpline> KeepSides(
+    Execution& execution, const OrientedPoints& fitted, const BlendedSplineOptions& options) const;
+  void AddLevels(
+    Execution& execution, const OrientedPoints& data, const BlendedSplineOptions& options);
 
   const ImplicitFunction* Prior = nullptr;
   std::unique_ptr<SurfaceSpline> Whole;

@@ -4,7 +4,7 @@
 #include "lacunaExecution.h"
 #include "lacunaScramble.h"
 #include "lacunaSingleBlasThread.h"
-#include "lacunaSymmetricFactorization.h"
+#include "lacunaSurfaceBasis.h"
 
 #include <cblas.h>
 
@@ -12,28 +12,22 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-// Fortran interfaces; the last arguments are the lengths of the character arguments.
-extern "C"
-{
-  void dgeqrf_(const int* rows, const int* columns, double* a, const int* lda, double* tau,
-    double* work, const int* workLength, int* info);
-  void dormqr_(const char* side, const char* transposed, const int* rows, const int* columns,
-    const int* reflectors, const double* a, const int* lda, const double* tau, double* c,
-    const int* ldc, double* work, const int* workLength, int* info, std::size_t, std::size_t);
-  void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info, std::size_t);
-}
+// Fortran interface; the last argument is the length of the character argument.
+extern "C" void dpotrf_(
+  const char* uplo, const int* n, double* a, const int* lda, int* info, std::size_t);
 
 namespace lacuna
 {
 namespace
 {
-constexpr int Terms = 4; // of the linear polynomial
+using Matrix = SurfaceBasis::Matrix;
+
+constexpr int Terms = SurfaceBasis::Terms;
 // Of the points held out: a tenth, or where that are few a quarter.
 constexpr std::size_t FewHeldOut = 50;
 constexpr std::size_t MostHeldOut = 1500;
@@ -48,32 +42,6 @@ const char* const Outweighed =
   "the equations of the surface cannot be solved; give a larger expected "
   "error of the points";
 constexpr std::size_t BlockPoints = 256;
-
-// Column after column, aligned so that BLAS always takes the same path.
-class Matrix
-{
-public:
-  Matrix() = default;
-  Matrix(std::size_t rows, std::size_t columns)
-    : Rows(rows)
-    , Columns(columns)
-    , Elements(new (std::align_val_t(64)) double[rows * columns]())
-  {
-  }
-
-  std::size_t GetRows() const { return this->Rows; }
-  std::size_t GetColumns() const { return this->Columns; }
-  double* Column(std::size_t column) { return this->Elements.get() + column * this->Rows; }
-  const double* Column(std::size_t column) const
-  {
-    return this->Elements.get() + column * this->Rows;
-  }
-
-private:
-  std::size_t Rows = 0;
-  std::size_t Columns = 0;
-  std::unique_ptr<double[], FreeAligned> Elements;
-};
 
 double GetRootMeanSquare(const std::vector<double>& values)
 {
@@ -97,6 +65,7 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
     (!data.Errors.empty() && data.Errors.size() != data.Points.size()) ||
     (!data.Free.empty() && data.Free.size() != data.Points.size()) ||
     (!data.Values.empty() && data.Values.size() != data.Points.size()) ||
+    (!data.Beside.empty() && data.Beside.size() != data.Points.size()) ||
     (!data.Slopes.empty() && data.Slopes.size() != data.Points.size()))
   {
     throw std::invalid_argument(
@@ -166,6 +135,7 @@ public:
     , Normals(data.Normals)
     , Slopes(data.Slopes.empty() ? data.Normals : data.Slopes)
     , Free(data.Free)
+    , Beside(data.Beside)
   {
     this->Values.assign(data.Points.size(), 0.0);
     for (std::size_t i = 0; i < data.Values.size(); ++i)
@@ -212,9 +182,13 @@ private:
   // Which points count, and which of them are held out at first.
   void Share()
   {
-    const std::size_t n = this->Points.size();
-    std::vector<std::size_t> order(n);
+    std::vector<std::size_t> order(this->Points.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto beside = std::stable_partition(
+      order.begin(), order.end(), [this](std::size_t i) { return !this->IsBeside(i); });
+    const std::vector<std::size_t> others(beside, order.end());
+    order.erase(beside, order.end());
+    const std::size_t n = order.size();
     // Along outlines errors may be alike from point to point: runs are held out.
     const std::vector<std::size_t> runs = FindRuns(this->Points, this->Free, RunLength);
     std::sort(order.begin(), order.end(),
@@ -227,13 +201,20 @@ private:
     const std::size_t last = std::min(n, held + MaximumPoints);
     this->Known.assign(order.begin() + static_cast<std::ptrdiff_t>(held),
       order.begin() + static_cast<std::ptrdiff_t>(last));
+    this->Known.insert(this->Known.end(), others.begin(), others.end());
     this->WithNormals = std::min(this->Known.size(), MaximumNormals);
     this->Distances.assign(this->Known.size(), std::numeric_limits<double>::infinity());
   }
 
+  bool IsBeside(std::size_t point) const { return !this->Beside.empty() && this->Beside[point]; }
+
   // What is known of a slope at a point.
   Vec3 GetKnown(std::size_t point, const Vec3& slope) const
   {
+    if (this->IsBeside(point))
+    {
+      return {};
+    }
     return this->Free.empty() ? slope : slope - Dot(slope, this->Free[point]) * this->Free[point];
   }
 
@@ -250,6 +231,14 @@ private:
   // Each as far from those there are as possible, up to a number of nodes.
   void AddSpreadNodes(std::size_t count)
   {
+    // What lies beside the surface has to be represented there.
+    for (std::size_t i = this->Known.size(); i > 0 && this->IsBeside(this->Known[i - 1]); --i)
+    {
+      if (2 * this->Nodes.size() < count)
+      {
+        this->AddNode(i - 1);
+      }
+    }
     if (this->Nodes.empty() && count > 0)
     {
       this->AddNode(0);
@@ -265,12 +254,10 @@ private:
     }
   }
 
-  // The centres of the nodes, and their radial functions made orthonormal: each function of them
-  // that the polynomial's side conditions allow then has the energy |y|^2 of its coefficients y.
+  // Two centres for each node on the surface, one beside it, and the equations of points.
   void SetUp()
   {
-    const std::size_t nodes = this->Nodes.size();
-    this->Trial.clear();
+    std::vector<Vec3> centers;
     for (const std::size_t node : this->Nodes)
     {
       double nearest = std::numeric_limits<double>::infinity();
@@ -279,66 +266,19 @@ private:
         const double distance = Norm(this->Points[other] - this->Points[node]);
         nearest = distance > 0 ? std::min(nearest, distance) : nearest;
       }
+      if (this->IsBeside(node))
+      {
+        centers.push_back(this->Points[node]);
+        continue;
+      }
       for (const double side : { -0.5, 0.5 })
       {
-        this->Trial.push_back(this->Points[node] + side * nearest * this->Normals[node]);
+        centers.push_back(this->Points[node] + side * nearest * this->Normals[node]);
       }
     }
-    const std::size_t size = 2 * nodes;
-    const int n = static_cast<int>(size);
-    this->Reflectors = Matrix(size, Terms);
-    for (std::size_t i = 0; i < size; ++i)
-    {
-      this->Reflectors.Column(0)[i] = 1;
-      for (int c = 0; c < 3; ++c)
-      {
-        this->Reflectors.Column(c + 1)[i] = this->Trial[i][c];
-      }
-    }
-    this->ReflectorScales.assign(Terms, 0.0);
-    int info = 0;
-    const int terms = Terms;
-    std::vector<double> work(64 * size);
-    const int length = static_cast<int>(work.size());
-    dgeqrf_(&n, &terms, this->Reflectors.Column(0), &n, this->ReflectorScales.data(), work.data(),
-      &length, &info);
-    for (int c = 0; c < Terms; ++c)
-    {
-      if (std::abs(this->Reflectors.Column(c)[c]) < 1e-9)
-      {
-        throw Unsolvable("all points lie on one line or in one place");
-      }
-    }
-    Matrix energy(size, size);
-    this->Runner.For(static_cast<std::int64_t>(size), 16,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t j = begin; j < end; ++j)
-        {
-          this->FillColumn(this->Trial, 0, size, this->Trial[j], energy.Column(j), nullptr);
-        }
-      });
-    this->Reflect('L', 'T', energy);
-    this->Reflect('R', 'N', energy);
-    const std::size_t rest = size - Terms;
-    this->Root = Matrix(rest, rest);
-    double trace = 0;
-    for (std::size_t j = 0; j < rest; ++j)
-    {
-      std::copy_n(energy.Column(j + Terms) + Terms, rest, this->Root.Column(j));
-      trace += this->Root.Column(j)[j];
-    }
-    for (std::size_t j = 0; j < rest; ++j)
-    {
-      this->Root.Column(j)[j] += 1e-13 * trace / static_cast<double>(rest);
-    }
-    const int m = static_cast<int>(rest);
-    dpotrf_("L", &m, this->Root.Column(0), &m, &info, 1);
-    if (info != 0)
-    {
-      throw Unsolvable(
-        "nodes lie too close together for the equations to be solved; thin the points out");
-    }
+    this->Basis =
+      std::make_unique<SurfaceBasis>(this->Runner, std::move(centers), this->Options.Kernel);
+    const std::size_t size = this->Basis->GetSize();
     this->ValueProducts = Matrix(size, size);
     this->SlopeProducts = Matrix(size, size);
     this->SlopeRight.assign(size, 0.0);
@@ -347,43 +287,7 @@ private:
     this->HeldRows = this->MakeRows(this->HeldOut, 0, this->HeldOut.size(), true);
   }
 
-  // values[i] = phi(|points[first + i] - center|), gradients[c * count + i] its derivatives by
-  // points.
-  void FillColumn(const std::vector<Vec3>& points, std::size_t first, std::size_t count,
-    const Vec3& center, double* values, double* gradients) const
-  {
-    const bool cubic = this->Options.Kernel == RadialKernel::Cubic;
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      const Vec3 d = points[first + i] - center;
-      const double r = Norm(d);
-      values[i] = cubic ? r * r * r : -r;
-      if (gradients)
-      {
-        const double slope = cubic ? 3 * r : (r > 0 ? -1 / r : 0);
-        for (int c = 0; c < 3; ++c)
-        {
-          gradients[c * count + i] = slope * d[c];
-        }
-      }
-    }
-  }
-
-  void Reflect(char side, char transposed, Matrix& matrix) const
-  {
-    const int rows = static_cast<int>(matrix.GetRows());
-    const int columns = static_cast<int>(matrix.GetColumns());
-    const int terms = Terms;
-    const int size = static_cast<int>(this->Reflectors.GetRows());
-    std::vector<double> work(64 * static_cast<std::size_t>(std::max(rows, columns)));
-    const int length = static_cast<int>(work.size());
-    int info = 0;
-    dormqr_(&side, &transposed, &rows, &columns, &terms, this->Reflectors.Column(0), &size,
-      this->ReflectorScales.data(), matrix.Column(0), &rows, work.data(), &length, &info, 1, 1);
-  }
-
-  // Equations of points: one row for the value of each, then (with normals) one for each
-  // derivative. The first columns are those of the polynomial.
+  // Equations of points, as of SurfaceBasis, of what is known of slopes.
   Matrix MakeRows(
     const std::vector<std::size_t>& which, std::size_t begin, std::size_t end, bool normals) const
   {
@@ -393,38 +297,11 @@ private:
     {
       points.push_back(this->Points[which[i]]);
     }
-    Matrix rows(count * (normals ? 4 : 1), this->Trial.size());
-    if (count == 0)
+    Matrix rows = this->Basis->MakeRows(points, normals);
+    const bool all = this->Free.empty() && this->Beside.empty();
+    for (std::size_t i = 0; normals && !all && i < count; ++i)
     {
-      return rows;
-    }
-    for (std::size_t j = 0; j < this->Trial.size(); ++j)
-    {
-      double* column = rows.Column(j);
-      this->FillColumn(
-        points, 0, count, this->Trial[j], column, normals ? column + count : nullptr);
-    }
-    this->Reflect('R', 'N', rows);
-    const int height = static_cast<int>(rows.GetRows());
-    const int rest = static_cast<int>(this->Root.GetRows());
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, height, rest, 1.0,
-      this->Root.Column(0), rest, rows.Column(Terms), height);
-    for (int term = 0; term < Terms; ++term)
-    {
-      double* column = rows.Column(term);
-      std::fill_n(column, rows.GetRows(), 0.0);
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        column[i] = term == 0 ? 1 : points[i][term - 1];
-        if (normals && term > 0)
-        {
-          column[static_cast<std::size_t>(term) * count + i] = 1;
-        }
-      }
-    }
-    for (std::size_t i = 0; normals && !this->Free.empty() && i < count; ++i)
-    {
-      for (std::size_t j = 0; j < this->Trial.size(); ++j)
+      for (std::size_t j = 0; j < this->Basis->GetSize(); ++j)
       {
         double* slope = rows.Column(j) + count + i;
         const Vec3 known =
@@ -443,7 +320,7 @@ private:
   {
     // So many blocks are made side by side; then columns of the products are.
     constexpr std::size_t blocks = 16;
-    const std::size_t size = this->Trial.size();
+    const std::size_t size = this->Basis->GetSize();
     for (std::size_t at = 0; at < which.size(); at += blocks * BlockPoints)
     {
       std::vector<Matrix> rows(blocks);
@@ -493,7 +370,7 @@ private:
   void AddProducts(const Matrix& rows, std::size_t count, std::size_t first, std::size_t width)
   {
     const int height = static_cast<int>(rows.GetRows());
-    const int size = static_cast<int>(this->Trial.size());
+    const int size = static_cast<int>(this->Basis->GetSize());
     const int values = static_cast<int>(count);
     if (values == 0)
     {
@@ -533,7 +410,7 @@ private:
       }
     }
     const int height = static_cast<int>(rows.GetRows());
-    const int size = static_cast<int>(this->Trial.size());
+    const int size = static_cast<int>(this->Basis->GetSize());
     cblas_dgemv(CblasColMajor, CblasTrans, static_cast<int>(count), size, 1.0, rows.Column(0),
       height, values.data(), 1, 1.0, this->ValueRight.data(), 1);
     if (rows.GetRows() > count)
@@ -546,7 +423,7 @@ private:
   // Coefficients of the orthonormal functions; errors in the report, mm.
   std::vector<double> Solve(const SurfaceSplineReport& report, double stiffness) const
   {
-    const std::size_t size = this->Trial.size();
+    const std::size_t size = this->Basis->GetSize();
     const double point = report.PointError / this->Scale;
     const double value = 1 / (point * point);
     const double slope = 1 / (report.NormalError * report.NormalError);
@@ -591,7 +468,7 @@ private:
     const std::size_t count = this->HeldOut.size();
     std::vector<double> result(4 * count);
     cblas_dgemv(CblasColMajor, CblasNoTrans, static_cast<int>(4 * count),
-      static_cast<int>(this->Trial.size()), 1.0, this->HeldRows.Column(0),
+      static_cast<int>(this->Basis->GetSize()), 1.0, this->HeldRows.Column(0),
       static_cast<int>(4 * count), solution.data(), 1, 0.0, result.data(), 1);
     std::vector<double> values;
     std::vector<double> slopes;
@@ -624,7 +501,7 @@ private:
   double GetGain(const SurfaceSplineReport& report, double stiffness) const
   {
     const std::vector<double> without =
-      this->Predict(std::vector<double>(this->Trial.size(), 0.0)).Distances;
+      this->Predict(std::vector<double>(this->Basis->GetSize(), 0.0)).Distances;
     const std::vector<double> solution = this->Solve(report, stiffness);
     if (solution.empty())
     {
@@ -721,15 +598,9 @@ private:
 
   void Keep(const std::vector<double>& solution)
   {
-    this->Centers = this->Trial;
+    this->Centers = this->Basis->GetCenters();
     std::copy_n(solution.begin(), Terms, this->Polynomial.begin());
-    Matrix coefficients(this->Trial.size(), 1);
-    std::copy(solution.begin() + Terms, solution.end(), coefficients.Column(0) + Terms);
-    const int rest = static_cast<int>(this->Root.GetRows());
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, rest, this->Root.Column(0),
-      rest, coefficients.Column(0) + Terms, 1);
-    this->Reflect('L', 'N', coefficients);
-    this->Coefficients.assign(coefficients.Column(0), coefficients.Column(0) + this->Trial.size());
+    this->Coefficients = this->Basis->GetCoefficients(solution);
   }
 
   Execution& Runner;
@@ -739,6 +610,7 @@ private:
   const std::vector<Vec3>& Normals;
   const std::vector<Vec3>& Slopes; // what gradients shall be
   const std::vector<Vec3>& Free;
+  const std::vector<char>& Beside;
   std::vector<double> Values; // what the function shall be
   std::vector<double> Weights;
   std::vector<std::size_t> HeldOut;
@@ -747,12 +619,8 @@ private:
   std::vector<double> Distances; // of Known from the nearest node
   std::vector<std::size_t> Nodes;
 
-  // of the nodes at hand
-  std::vector<Vec3> Trial; // centres
-  Matrix Reflectors;       // of the polynomial at the centres: what is orthogonal to it
-  std::vector<double> ReflectorScales;
-  Matrix Root;          // Cholesky factor of the energy
-  Matrix ValueProducts; // lower triangles
+  std::unique_ptr<SurfaceBasis> Basis; // of the nodes
+  Matrix ValueProducts;                // lower triangles
   Matrix SlopeProducts;
   std::vector<double> ValueRight;
   std::vector<double> SlopeRight;

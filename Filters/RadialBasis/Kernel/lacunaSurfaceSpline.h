@@ -30,6 +30,9 @@ struct OrientedPoints
   /// What a function shall be at the points, mm, and its gradients. Empty: 0 and the normals.
   std::vector<double> Values;
   std::vector<Vec3> Slopes;
+  /// 1 for points beside the surface, of which only the value counts; they are never held out. Their
+  /// normals place radial functions only. Empty: none.
+  std::vector<char> Beside;
 };
 
 struct SurfaceSplineOptions

@@ -167,6 +167,47 @@ TEST(BlendedSpline, IsSmoothAndItsGradientsAreThoseOfItsValues)
   EXPECT_EQ(alone, values);
 }
 
+// Half of the waves are missing. One place there is outside though the surface would pass above it, one
+// inside though it would pass below; others lie where they would anyway.
+TEST(BlendedSpline, KeepsPlacesOnTheirSides)
+{
+  lacuna::OrientedPoints data;
+  const lacuna::OrientedPoints all = MakeWaves(4000, 5);
+  for (std::size_t i = 0; i < all.Points.size(); ++i)
+  {
+    if (all.Points[i][2] < 10)
+    {
+      data.Points.push_back(all.Points[i]);
+      data.Normals.push_back(all.Normals[i]);
+    }
+  }
+  lacuna::ThreadExecution execution(2);
+  const auto evaluate = [&](const lacuna::BlendedSpline& spline, const std::vector<Vec3>& places)
+  {
+    std::vector<double> values(places.size());
+    spline.Evaluate(execution, places, values, nullptr);
+    return values;
+  };
+  lacuna::BlendedSplineOptions options;
+  const lacuna::BlendedSpline free(execution, data, options);
+  const std::vector<Vec3> places{ { 5, 3, 36 }, { -22, 4, 37 } };
+  const std::vector<double> before = evaluate(free, places);
+  EXPECT_LT(before[0], -1);
+  EXPECT_GT(before[1], 1);
+  options.Outside = { { 60, 0, 0 }, { 0, -70, 5 } };
+  options.Inside = { { 0, 0, 0 }, { 3, -20, -15 } };
+  const lacuna::BlendedSpline same(execution, data, options);
+  EXPECT_EQ(evaluate(same, places), before);
+  options.Outside.push_back(places[0]);
+  options.Inside.push_back(places[1]);
+  const lacuna::BlendedSpline kept(execution, data, options);
+  const std::vector<double> after = evaluate(kept, places);
+  EXPECT_GT(after[0], 0.05);
+  EXPECT_LT(after[1], -0.05);
+  EXPECT_EQ(kept.GetReport().WrongSides, 0U);
+  EXPECT_LT(GetError(kept, data), 1.1 * GetError(free, data));
+}
+
 TEST(BlendedSpline, DoesNotDependOnThreads)
 {
   const auto data = TestShape(TestShape::Cup).SampleNoisy(3000, 0.1, false, 5);

@@ -219,7 +219,7 @@ TEST(SurfaceSpline, RefusesBadData)
   EXPECT_THROW(Fit(bad), std::invalid_argument);
   bad = good;
   bad.Points.assign(200, { 1, 2, 3 });
-  EXPECT_THROW(Fit(bad), std::invalid_argument);
+  EXPECT_THROW(Fit(bad), lacuna::SurfaceSpline::Unsolvable);
   EXPECT_THROW(Fit({}), std::invalid_argument);
   lacuna::SurfaceSplineOptions options;
   options.PointError = -1;

@@ -6,20 +6,24 @@
 #include "vtkDoubleArray.h"
 #include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
+#include "vtkImageData.h"
 #include "vtkImplicitPolyDataDistance.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkMassProperties.h"
+#include "vtkMath.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkRegularPolygonSource.h"
 #include "vtkReverseSense.h"
 #include "vtkSampleFunction.h"
+#include "vtkSphere.h"
 #include "vtkSphereSource.h"
 #include "vtkTransform.h"
 #include "vtkTransformPolyDataFilter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -239,8 +243,8 @@ void CheckPrior()
 {
   vtkNew<vtkSphereSource> sphere;
   sphere->SetRadius(1);
-  sphere->SetThetaResolution(90);
-  sphere->SetPhiResolution(60);
+  sphere->SetThetaResolution(45);
+  sphere->SetPhiResolution(30);
   vtkNew<vtkTransform> scale;
   scale->Translate(Center[0] + 0.5, Center[1], Center[2]);
   scale->Scale(Axes);
@@ -250,11 +254,12 @@ void CheckPrior()
   vtkNew<vtkCleanPolyData> prior;
   prior->SetInputConnection(shape->GetOutputPort());
   vtkNew<vtkLacunaRBFSurface> filter;
-  filter->SetOutputSpacing(2); // a distance from a mesh takes long
+  filter->SetOutputSpacing(3); // a distance from a mesh takes long
   filter->SetInputData(MakePoints(60, true));
   filter->SetInputConnection(1, prior->GetOutputPort());
   filter->Update();
   CheckSurface(filter->GetOutput(), 0.006, "with a mesh as prior");
+  filter->SetOutputSpacing(2);
   LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
 
   vtkNew<vtkImplicitPolyDataDistance> distance;
@@ -272,6 +277,20 @@ void CheckPrior()
   CheckSurface(filter->GetOutput(), 0.006, "with an image as prior");
   LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
 
+  // f(x) = |x|^2 - 1 of the scaled space is no distance
+  vtkNew<vtkSphere> implicit;
+  implicit->SetRadius(1);
+  vtkNew<vtkTransform> toUnit;
+  toUnit->DeepCopy(scale);
+  toUnit->Inverse();
+  implicit->SetTransform(toUnit);
+  filter->SetInputConnection(1, nullptr);
+  filter->SetPriorFunction(implicit);
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.006, "with an implicit function as prior");
+  LACUNA_CHECK(GetField(filter->GetOutput(), "PriorUsed") == 1);
+  filter->SetPriorFunction(nullptr);
+
   sphere->SetRadius(0.4);
   filter->SetInputData(MakePoints(600, true));
   filter->SetInputConnection(1, sphere->GetOutputPort());
@@ -281,6 +300,123 @@ void CheckPrior()
   filter->SetInputConnection(1, nullptr);
   filter->Update();
   LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("PriorUsed"));
+}
+
+// Points at the top are missing, and one is known to lie 2 mm below it, outside.
+void CheckSides()
+{
+  vtkSmartPointer<vtkPolyData> all = MakePoints(1500, true);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < 1500; ++i)
+  {
+    double x[3];
+    all->GetPoint(i, x);
+    if (x[2] < Center[2] + 0.75 * Axes[2])
+    {
+      points->InsertNextPoint(x);
+      normals->InsertNextTuple(all->GetPointData()->GetArray("Normals")->GetTuple(i));
+    }
+  }
+  vtkNew<vtkPolyData> open;
+  open->SetPoints(points);
+  open->GetPointData()->SetNormals(normals);
+  const double place[3] = { Center[0] + 2, Center[1] - 1, Center[2] + Axes[2] - 2 };
+  vtkNew<vtkPoints> one;
+  one->InsertNextPoint(place);
+  vtkNew<vtkDoubleArray> side;
+  side->SetName("Side");
+  side->InsertNextValue(1);
+  vtkNew<vtkPolyData> known;
+  known->SetPoints(one);
+  known->GetPointData()->AddArray(side);
+  const auto isInside = [&](vtkPolyData* surface)
+  {
+    vtkNew<vtkImplicitPolyDataDistance> distance;
+    distance->SetInput(surface);
+    double x[3] = { place[0], place[1], place[2] };
+    return distance->EvaluateFunction(x) < 0;
+  };
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->AddInputDataObject(open);
+  filter->Update();
+  LACUNA_CHECK(isInside(filter->GetOutput()));
+  filter->AddInputDataObject(known);
+  filter->SetSideArray("Side");
+  filter->Update();
+  LACUNA_CHECK(!isInside(filter->GetOutput()));
+  double top[6];
+  filter->GetOutput()->GetBounds(top);
+  LACUNA_CHECK(top[5] < Center[2] + Axes[2] - 0.5 && top[5] > Center[2] + 0.8 * Axes[2]);
+  LACUNA_CHECK(GetField(filter->GetOutput(), "ResidualMaximum") < 0.1);
+  side->SetValue(0, std::numeric_limits<double>::quiet_NaN());
+  side->Modified();
+  known->Modified();
+  vtkNew<lacunaCheck::Messages> messages;
+  messages->Watch(filter);
+  messages->Watch(filter->GetExecutive());
+  filter->Update();
+  LACUNA_CHECK(messages->HasError("SideArray of input 2 is not a finite number"));
+}
+
+// Against the nearest of many points of the true shape.
+void CheckDistances()
+{
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputData(MakePoints(1500, true));
+  filter->Update();
+  LACUNA_CHECK(
+    vtkImageData::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfPoints() == 0);
+  const double bounds[6] = { -24, 45, -28, 20, -11, 25 };
+  filter->SetOutputBounds(bounds);
+  filter->SetDistanceSpacing(4);
+  filter->Update();
+  auto* image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(1));
+  const int* size = image->GetDimensions();
+  LACUNA_CHECK(size[0] == 18 && size[1] == 13 && size[2] == 10);
+  vtkDataArray* distances = image->GetPointData()->GetArray("SignedDistance");
+  LACUNA_CHECK(distances != nullptr);
+  vtkSmartPointer<vtkPolyData> dense = MakePoints(30000, true);
+  vtkDataArray* normals = dense->GetPointData()->GetArray("Normals");
+  vtkNew<vtkImplicitPolyDataDistance> vtk; // from the same triangles
+  vtk->SetInput(filter->GetOutput());
+  double unlike = 0;
+  double worst = 0;
+  for (vtkIdType i = 0; distances && i < image->GetNumberOfPoints(); i += 7)
+  {
+    double x[3];
+    image->GetPoint(i, x);
+    if (i % 5 == 0)
+    {
+      unlike = std::max(unlike, std::abs(distances->GetComponent(i, 0) - vtk->EvaluateFunction(x)));
+    }
+    double least = 1e9;
+    double truth = 0;
+    for (vtkIdType k = 0; k < dense->GetNumberOfPoints(); ++k)
+    {
+      double p[3];
+      dense->GetPoint(k, p);
+      const double square = vtkMath::Distance2BetweenPoints(x, p);
+      if (square < least)
+      {
+        least = square;
+        const double* n = normals->GetTuple(k);
+        const double along = n[0] * (x[0] - p[0]) + n[1] * (x[1] - p[1]) + n[2] * (x[2] - p[2]);
+        truth = std::copysign(std::sqrt(square), along);
+      }
+    }
+    // the nearest of the dense points is up to 0.3 mm from the foot
+    worst = std::max(worst,
+      std::abs(distances->GetComponent(i, 0) - truth) * std::min(1.0, std::abs(truth) / 1.0));
+  }
+  std::cout << "distances: off by up to " << worst << " mm\n";
+  LACUNA_CHECK(worst < 0.08);
+  std::cout << "unlike VTK's: by up to " << unlike << " mm\n";
+  LACUNA_CHECK(unlike < 1e-4);
 }
 
 void CheckError(const std::function<void(vtkLacunaRBFSurface*)>& spoil, const std::string& text)
@@ -306,6 +442,8 @@ void CheckErrors()
   CheckError([](Filter* f) { f->SetSmoothing(-1); }, "Smoothing must be");
   CheckError([](Filter* f) { f->SetTolerance(0); }, "Tolerance must be");
   CheckError([](Filter* f) { f->SetErrorArray("Nothing"); }, "no point array 'Nothing'");
+  CheckError([](Filter* f) { f->SetSideArray("Nothing"); }, "has a point array 'Nothing'");
+  CheckError([](Filter* f) { f->SetDistanceSpacing(1); }, "needs OutputBounds on all axes");
   CheckError([](Filter* f) { f->SetInputData(vtkNew<vtkPolyData>()); }, "no points of a surface");
   CheckError([](Filter* f) { f->SetInputData(MakePoints(5, true)); }, "needs 10 or more");
   CheckError([](Filter* f) { f->SetInputData(MakeOutlines(false)); }, "is not closed");
@@ -414,6 +552,8 @@ int TestRBFSurface(int, char*[])
   CheckMeshes();
   CheckOutlines();
   CheckPrior();
+  CheckSides();
+  CheckDistances();
   CheckErrors();
   return lacunaCheck::Result();
 }
