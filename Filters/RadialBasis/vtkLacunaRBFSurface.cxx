@@ -259,6 +259,8 @@ int vtkLacunaRBFSurface::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
+  vtkImageData* distances = vtkImageData::GetData(outputs, 1);
+  distances->GetFieldData()->Initialize(); // VTK passes that of the input, which may be turned
   return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
     [&](vtkLacunaExecution& execution)
     {
@@ -450,8 +452,6 @@ int vtkLacunaRBFSurface::RequestData(
       if (this->DistanceSpacing > 0)
       {
         execution.SetStage(0.96, 1);
-        vtkImageData* distances = vtkImageData::GetData(outputs, 1);
-        distances->GetFieldData()->Initialize(); // VTK passes those of the input
         this->SetDistances(execution, followed.Surface, distances);
         vtkLacunaProvenance::Record(distances, this, sources, parameters.Get());
       }

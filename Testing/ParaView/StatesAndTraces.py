@@ -26,7 +26,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 # what is made along the axes. Every other image is turned in one of the pipelines.
 ALONG_AXES = {*((f"Lacuna{kind}", 0) for kind in ("AssembleTrackedSlices", "GateSlices", "PhantomSweep", "PolhemusVideoSource",
                                                    "ProbeCalibration", "TrackedSliceReader")),
-              ("LacunaPolhemusVideoSource", 1), ("LacunaProbeCalibration", 3),
+              ("LacunaPolhemusVideoSource", 1), ("LacunaProbeCalibration", 3), ("LacunaRBFSurface", 1),
               *((f"Lacuna{kind}", 0) for kind in ("IncompleteShape", "RBFInterpolator", "SkullPhantom"))}
 
 

@@ -155,7 +155,7 @@ def implant():
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
-    RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6)
+    RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6, OutputBounds=[-80, 80, -95, 95, -80, 72], DistanceSpacing=19)
     filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=14, NodeSpacing=3, DefectRegion="Sphere")
     with applied(filled):
         filled.DefectRegion.Center = [37, -15, 60]
