@@ -299,7 +299,7 @@ def main():
     every_proxy.make_files("Ranks", *sys.argv[3:])
     for ranks in [1, *numbers]:
         os.makedirs(folder(ranks))
-        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", str(ranks), sys.argv[2], timeout=1500 if with_modes else 300)
+        printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", str(ranks), sys.argv[2], timeout=1500 if with_modes else 600)
         errors = [line for line in printed.splitlines() if "ERR|" in line and not any(f"vtkLacuna{name} " in line for name in REFUSED)]
         assert with_modes or not errors, errors
     alone = outputs(1)
