@@ -10,6 +10,7 @@ lacuna_install_packages
 lacuna_install_packages packages-ci.txt
 # configured is enough: no header of these sources is made by the build
 lacuna_configure tidy
+ninja -C build/tidy build.ninja >build/tidy.log # again where sources came or went
 all=$(git ls-files 'Filters/*.cxx' 'Readers/*.cxx' 'Sources/*.cxx' | grep -v /Testing/) # ends here without git
 mapfile -t all <<<"$all"
 changed() {
