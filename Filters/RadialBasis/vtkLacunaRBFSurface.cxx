@@ -37,6 +37,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -54,7 +55,11 @@ constexpr double EstimatedNormalError = 0.5;
 // Of the longest extent of the points.
 constexpr double BoundsMargin = 0.25;
 constexpr double FinestEdge = 1.0 / 200;
+constexpr double FinestOfOutlines = 1.0 / 100;
 constexpr double CoarsestEdge = 1.0 / 40;
+constexpr double TooCoarse = 0.1;
+constexpr double LargestTolerance = 0.05; // of the edge
+constexpr double ManyMissed = 0.02;       // RMS residual, of the extent
 // Of all points, with an opposite normal beside them: above, these are not merely thin walls.
 constexpr double MostOpposed = 0.02;
 
@@ -129,6 +134,16 @@ void SetSurface(vtkPolyData* output, const lacuna::FollowedSurface& followed)
   output->SetPoints(points);
   vtkLacunaArrays::SetTriangles(output, corners);
   output->GetPointData()->SetNormals(normals);
+}
+
+// Of places, so that points that repeat others do not count.
+double FindSpacing(lacuna::Execution& execution, std::vector<Vec3> points)
+{
+  std::sort(points.begin(), points.end(),
+    [](const Vec3& a, const Vec3& b)
+    { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return lacuna::FindPointSpacing(execution, points);
 }
 
 // Distances of points from the surface, positive outside, to first order.
@@ -335,7 +350,7 @@ int vtkLacunaRBFSurface::RequestData(
           collected.Warnings.push_back("PriorSurface has no points and does not count");
         }
       }
-      const double spacing = lacuna::FindPointSpacing(execution, points.Points);
+      const double spacing = FindSpacing(execution, points.Points);
       this->CheckNormals(execution, points, 0.5 * spacing);
 
       execution.SetStage(0.05, 0.7);
@@ -361,10 +376,18 @@ int vtkLacunaRBFSurface::RequestData(
 
       execution.SetStage(0.7, 0.95);
       lacuna::SurfaceFollowerOptions follow;
+      // points along outlines are denser than these
+      const double finest = collected.HasOutlines ? FinestOfOutlines : FinestEdge;
       follow.EdgeLength = this->OutputSpacing > 0
         ? this->OutputSpacing
-        : std::clamp(spacing, FinestEdge * extent, CoarsestEdge * extent);
-      follow.Tolerance = this->Tolerance;
+        : std::clamp(spacing, finest * extent, CoarsestEdge * extent);
+      follow.Tolerance = std::min(this->Tolerance, LargestTolerance * follow.EdgeLength);
+      if (follow.EdgeLength > TooCoarse * extent)
+      {
+        collected.Warnings.push_back(
+          "OutputSpacing is more than a tenth of the points' extent: the "
+          "triangles cut off curves, and the volume is theirs");
+      }
       // each point stands for a square of the spacing
       const double squares = static_cast<double>(points.Points.size()) * spacing * spacing /
         (follow.EdgeLength * follow.EdgeLength);
@@ -416,8 +439,18 @@ int vtkLacunaRBFSurface::RequestData(
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
       const lacuna::BlendedSplineReport& report = fit.GetReport();
-      set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
-      if (collected.HasOutlines)
+      const bool isClosed = lacuna::FindTopology(followed.Surface).IsClosed();
+      if (isClosed)
+      {
+        set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
+      }
+      if (std::sqrt(sum) > ManyMissed * extent)
+      {
+        vtkWarningMacro(<< "the surface misses the points by " << std::sqrt(sum)
+                        << " mm (RMS): there are too few, or their normals or the outlines "
+                           "contradict each other. Colour by Residual to see where");
+      }
+      if (collected.HasOutlines && isClosed)
       {
         set("SurfaceVolumeError",
           lacuna::EstimateVolumeError(
@@ -461,9 +494,19 @@ int vtkLacunaRBFSurface::RequestData(
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::CheckDistanceGrid(const std::array<double, 6>& own)
 {
+  if (std::any_of(std::begin(this->OutputBounds), std::end(this->OutputBounds),
+        [](double b) { return !std::isfinite(b); }))
+  {
+    throw std::runtime_error("OutputBounds has a number that is not finite; an axis with minimum "
+                             "above maximum is not given");
+  }
   if (!(this->DistanceSpacing > 0))
   {
     return;
+  }
+  if (!this->CapBoundary)
+  {
+    throw std::runtime_error("DistanceSpacing needs CapBoundary: an open surface has no inside");
   }
   if (!this->HasOutputBounds())
   {
@@ -571,12 +614,28 @@ void vtkLacunaRBFSurface::CheckSurface(
   {
     throw std::runtime_error("the surface could not be closed; choose a smaller OutputSpacing");
   }
-  if (topology.IsClosed() && !followed.ReachesBounds && followed.Surface.GetVolume() < 0)
+  const std::vector<lacuna::SurfacePart> parts =
+    topology.IsClosed() ? lacuna::FindParts(followed.Surface) : std::vector<lacuna::SurfacePart>();
+  if (!parts.empty() && !followed.ReachesBounds && parts[0].IsInsideOut())
   {
     throw std::runtime_error(
       "the normals of the input point into the solid, so that the surface would be "
       "inside out; reverse them (Surface Normals with Flip Normals, or Reverse "
-      "Sense)");
+      "Sense with Reverse Normals on)");
+  }
+  for (const lacuna::SurfacePart& part : parts)
+  {
+    if (part.IsInsideOut() && !followed.ReachesBounds)
+    {
+      vtkWarningMacro(<< "the part of the surface at (" << part.At[0] << ", " << part.At[1] << ", "
+                      << part.At[2] << ") mm, of " << std::abs(part.Volume) / 1000 << " ml, "
+                      << (part.Volume > 0
+                             ? "lies inside of a solid, but its normals leave it as if it "
+                               "were solid, too: the volume counts it twice"
+                             : "has normals that point inwards, but lies in no solid: the "
+                               "volume is too small")
+                      << ". Reverse its normals, or leave its points out");
+    }
   }
   for (const std::string& warning : warnings)
   {

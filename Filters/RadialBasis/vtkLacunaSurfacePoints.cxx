@@ -3,6 +3,7 @@
 
 #include "lacunaPointNormals.h"
 #include "lacunaTriangleSurface.h"
+#include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -18,11 +19,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
+constexpr std::size_t MostOutlinePoints = 400;
+
 std::string Describe(const lacuna::Vec3& p)
 {
   std::ostringstream text;
@@ -60,16 +66,31 @@ vtkDataArray* FindNormals(vtkDataSet* data)
   return normals && normals->GetNumberOfComponents() == 3 ? normals : nullptr;
 }
 
-// A closed mesh whose triangles are seen from inside, or turned against each other, is mended here:
-// which side is out is then certain.
-void MakeMeshNormals(vtkPolyData* mesh, vtkPolyData* result)
+// Triangles, large ones divided so that points cover them.
+void MakeFine(vtkPolyData* mesh, vtkPolyData* result)
 {
   vtkNew<vtkTriangleFilter> triangles;
   triangles->SetInputData(mesh);
   triangles->PassLinesOff();
   triangles->PassVertsOff();
+  vtkNew<vtkAdaptiveSubdivisionFilter> fine;
+  fine->SetInputConnection(triangles->GetOutputPort());
+  constexpr double longest = 0.1; // edge, of the diagonal
+  fine->SetMaximumEdgeLength(longest * mesh->GetLength());
+  fine->SetMaximumTriangleArea(std::numeric_limits<double>::max());
+  fine->SetMaximumNumberOfPasses(8);
+  fine->Update();
+  result->ShallowCopy(fine->GetOutput());
+}
+
+// A closed mesh whose triangles are seen from inside, or turned against each other, is mended here:
+// which side is out is then certain.
+void MakeMeshNormals(vtkPolyData* result)
+{
+  vtkNew<vtkPolyData> mesh;
+  mesh->ShallowCopy(result);
   vtkNew<vtkPolyDataNormals> normals;
-  normals->SetInputConnection(triangles->GetOutputPort());
+  normals->SetInputData(mesh);
   normals->SplittingOff();
   normals->ConsistencyOn();
   normals->NonManifoldTraversalOff();
@@ -105,12 +126,85 @@ bool LieInPlane(const std::vector<lacuna::Vec3>& points, const lacuna::Vec3& acr
 {
   double size = 0;
   double leaves = 0;
+  double farthest = 0; // from the origin: coordinates have 32 bits
   for (const lacuna::Vec3& x : points)
   {
     size = std::max(size, lacuna::Norm(x - points[0]));
     leaves = std::max(leaves, std::abs(lacuna::Dot(x - points[0], across)));
+    farthest = std::max(farthest, lacuna::Norm(x));
   }
-  return leaves <= 1e-6 * size; // as exact as 32-bit coordinates
+  return leaves <= 1e-6 * size + std::numeric_limits<float>::epsilon() * farthest;
+}
+
+struct Outline
+{
+  std::vector<lacuna::Vec3> Points;
+  std::vector<vtkIdType> Ids;
+  lacuna::Vec3 Across; // unit
+};
+
+// Whether an outline lies in the plane of another one and inside of it: by rays in that plane.
+bool IsWithin(const Outline& inner, const Outline& outer)
+{
+  const lacuna::Vec3& x = inner.Points[0];
+  const lacuna::Vec3& n = outer.Across;
+  double size = 0;
+  for (const lacuna::Vec3& p : outer.Points)
+  {
+    size = std::max(size, lacuna::Norm(p - outer.Points[0]));
+  }
+  constexpr double parallel = 0.999;
+  constexpr double same = 1e-3; // of the size
+  if (std::abs(lacuna::Dot(n, inner.Across)) < parallel ||
+    std::abs(lacuna::Dot(x - outer.Points[0], n)) > same * size)
+  {
+    return false;
+  }
+  const lacuna::Vec3 axis =
+    std::abs(n[0]) < 0.7 ? lacuna::Vec3{ 1, 0, 0 } : lacuna::Vec3{ 0, 1, 0 };
+  const lacuna::Vec3 u = lacuna::Normalized(lacuna::Cross(n, axis));
+  const lacuna::Vec3 v = lacuna::Cross(n, u);
+  bool inside = false;
+  for (std::size_t i = 0; i < outer.Points.size(); ++i)
+  {
+    const lacuna::Vec3 a = outer.Points[i] - x;
+    const lacuna::Vec3 b = outer.Points[(i + 1) % outer.Points.size()] - x;
+    const double av = lacuna::Dot(a, v);
+    const double bv = lacuna::Dot(b, v);
+    if ((av > 0) != (bv > 0))
+    {
+      const double t = av / (av - bv);
+      inside = inside != (lacuna::Dot(a, u) + t * lacuna::Dot(b - a, u) > 0);
+    }
+  }
+  return inside;
+}
+
+void LeaveOutRepeated(std::vector<lacuna::Vec3>& points, std::vector<vtkIdType>& ids)
+{
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const auto less = [&](std::size_t a, std::size_t b)
+  {
+    return std::lexicographical_compare(
+      points[a].data(), points[a].data() + 3, points[b].data(), points[b].data() + 3);
+  };
+  std::stable_sort(order.begin(), order.end(), less);
+  order.erase(std::unique(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return points[a] == points[b]; }),
+    order.end());
+  if (order.size() < 2)
+  {
+    return; // all in one place: said elsewhere
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    points[i] = points[order[i]];
+    ids[i] = ids[order[i]];
+  }
+  points.resize(order.size());
+  ids.resize(order.size());
 }
 
 // Normal of the plane through a closed line by its area (Newell), of that length.
@@ -129,6 +223,11 @@ lacuna::Vec3 GetAreaVector(const std::vector<lacuna::Vec3>& loop)
 void vtkLacunaSurfacePoints::AddPoint(
   const double* x, const lacuna::Vec3& normal, const lacuna::Vec3& free, double error)
 {
+  if (!(error > 0) || !std::isfinite(error))
+  {
+    throw std::runtime_error("ErrorArray: '" + this->ErrorArray + "' is " + std::to_string(error) +
+      " at " + Describe({ x[0], x[1], x[2] }) + "; it must be a finite number above 0");
+  }
   this->Data.Points.push_back({ x[0], x[1], x[2] });
   this->Data.Normals.push_back(lacuna::Normalized(normal));
   this->Data.Free.push_back(free);
@@ -156,39 +255,50 @@ void vtkLacunaSurfacePoints::Add(lacuna::Execution& execution, vtkDataSet* data,
     this->Warnings.push_back(name + " has no points and does not count");
     return;
   }
+  vtkDataArray* errors = FindErrors(data, this->ErrorArray, name);
   if (auto* image = vtkImageData::SafeDownCast(data))
   {
-    this->AddMap(image);
+    this->AddMap(image, errors);
     return;
   }
-  vtkDataArray* errors = FindErrors(data, this->ErrorArray, name);
   auto* poly = vtkPolyData::SafeDownCast(data);
   if (poly && poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0)
   {
     vtkNew<vtkPolyData> mesh;
-    if (FindNormals(poly))
+    const bool hasNormals = FindNormals(poly);
+    MakeFine(poly, mesh);
+    if (!hasNormals)
     {
-      mesh->ShallowCopy(poly);
+      MakeMeshNormals(mesh);
     }
-    else
-    {
-      MakeMeshNormals(poly, mesh);
-      errors = FindErrors(mesh, this->ErrorArray, name);
-    }
-    this->AddPoints(execution, mesh, name, errors);
+    this->AddPoints(execution, mesh, name, FindErrors(mesh, this->ErrorArray, name), !hasNormals);
   }
   else if (poly && poly->GetNumberOfLines() > 0)
   {
     this->AddOutlines(poly, name, errors);
+    vtkDataArray* sides =
+      this->SideArray.empty() ? nullptr : poly->GetPointData()->GetArray(this->SideArray.c_str());
+    double range[2] = { 0, 0 };
+    if (sides)
+    {
+      sides->GetRange(range);
+    }
+    if (range[0] != 0 || range[1] != 0)
+    {
+      throw std::runtime_error("SideArray of " + name +
+        " is not 0, but the input is an outline, which lies on the surface; give places inside "
+        "or "
+        "outside as points of their own");
+    }
   }
   else
   {
-    this->AddPoints(execution, data, name, errors);
+    this->AddPoints(execution, data, name, errors, false);
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSurfacePoints::AddMap(vtkImageData* image)
+void vtkLacunaSurfacePoints::AddMap(vtkImageData* image, vtkDataArray* errors)
 {
   const vtkLacunaDepthMap map(image);
   vtkDataArray* normals = image->GetPointData()->GetArray(vtkLacunaDepthMap::NormalsName);
@@ -208,20 +318,25 @@ void vtkLacunaSurfacePoints::AddMap(vtkImageData* image)
       normals->GetTuple(i, normal.data());
       if (std::isfinite(depth) && lacuna::HasDirection(normal))
       {
-        this->AddPoint(map.GetPoint(column, row, depth).data(), normal, {}, 1);
+        this->AddPoint(map.GetPoint(column, row, depth).data(), normal, {},
+          errors ? errors->GetComponent(i, 0) : 1);
       }
     }
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaSurfacePoints::AddPoints(
-  lacuna::Execution& execution, vtkDataSet* data, const std::string& name, vtkDataArray* errors)
+void vtkLacunaSurfacePoints::AddPoints(lacuna::Execution& execution, vtkDataSet* data,
+  const std::string& name, vtkDataArray* errors, bool someWithout)
 {
   vtkDataArray* normals = FindNormals(data);
   vtkDataArray* sides =
     this->SideArray.empty() ? nullptr : data->GetPointData()->GetArray(this->SideArray.c_str());
-  sides = sides && sides->GetNumberOfComponents() == 1 ? sides : nullptr;
+  if (sides && sides->GetNumberOfComponents() != 1)
+  {
+    throw std::runtime_error("SideArray: '" + this->SideArray + "' of " + name + " has " +
+      std::to_string(sides->GetNumberOfComponents()) + " components; it must have one");
+  }
   this->HasSides = this->HasSides || sides;
   std::vector<vtkIdType> ids; // of points on the surface
   std::vector<lacuna::Vec3> points;
@@ -241,6 +356,10 @@ void vtkLacunaSurfacePoints::AddPoints(
     }
     ids.push_back(i);
     points.push_back(x);
+  }
+  if (!normals)
+  {
+    LeaveOutRepeated(points, ids); // which would be all the neighbours there are
   }
   const auto n = static_cast<vtkIdType>(points.size());
   if (n == 0)
@@ -292,6 +411,10 @@ void vtkLacunaSurfacePoints::AddPoints(
     if (normals)
     {
       normals->GetTuple(ids[i], normal.data());
+      if (!lacuna::HasDirection(normal) && someWithout)
+      {
+        continue; // in no triangle that has an area
+      }
       if (!lacuna::HasDirection(normal))
       {
         throw std::runtime_error("the normal of point " + std::to_string(ids[i]) + " of " + name +
@@ -321,6 +444,7 @@ void vtkLacunaSurfacePoints::AddOutlines(
   joined->Update();
   vtkPolyData* loops = joined->GetOutput();
   vtkNew<vtkIdList> cell;
+  std::vector<Outline> closed;
   for (vtkIdType c = 0; c < loops->GetNumberOfLines(); ++c)
   {
     loops->GetCellPoints(c, cell);
@@ -339,6 +463,21 @@ void vtkLacunaSurfacePoints::AddOutlines(
         ids.push_back(cell->GetId(k));
       }
     }
+    if (loop.size() > MostOutlinePoints)
+    {
+      // the hand's errors are alike from point to point
+      const std::size_t step = (loop.size() + MostOutlinePoints - 1) / MostOutlinePoints;
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i + 1 < loop.size(); i += step, ++kept)
+      {
+        loop[kept] = loop[i];
+        ids[kept] = ids[i];
+      }
+      loop[kept] = loop.back();
+      ids[kept] = ids.back();
+      loop.resize(kept + 1);
+      ids.resize(kept + 1);
+    }
     if (loop.size() < 4 || !(loop.front() == loop.back()))
     {
       throw std::runtime_error("an outline of " + name + " that starts at " +
@@ -356,12 +495,26 @@ void vtkLacunaSurfacePoints::AddOutlines(
       leaves = std::max(leaves, std::abs(lacuna::Dot(x - loop[0], across)));
     }
     constexpr double flatness = 0.05;
-    if (!(lacuna::Norm(area) > 1e-6 * size * size) || leaves > flatness * size)
+    if (!(lacuna::Norm(area) > 1e-6 * size * size))
+    {
+      throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
+        " encloses no area: it crosses itself, or goes back on its way; split it where it crosses");
+    }
+    if (leaves > flatness * size)
     {
       throw std::runtime_error("an outline of " + name + " that starts at " + Describe(loop[0]) +
         " does not lie in a plane (it leaves it by " + std::to_string(leaves) +
-        " mm); outlines must be planar");
+        " mm); outlines must be planar, and those of different planes must not share points");
     }
+    closed.push_back({ std::move(loop), std::move(ids), across });
+  }
+  for (const Outline& outline : closed)
+  {
+    const std::vector<lacuna::Vec3>& loop = outline.Points;
+    // within another one of its plane it is the rim of a cavity
+    const auto within = std::count_if(closed.begin(), closed.end(),
+      [&](const Outline& other) { return &other != &outline && IsWithin(outline, other); });
+    const double sign = within % 2 == 0 ? 1 : -1;
     const std::size_t n = loop.size();
     for (std::size_t i = 0; i < n; ++i)
     {
@@ -371,8 +524,9 @@ void vtkLacunaSurfacePoints::AddOutlines(
       const double a = lacuna::Norm(before);
       const double b = lacuna::Norm(after);
       const lacuna::Vec3 tangent = (b / a) * before + (a / b) * after;
-      const lacuna::Vec3 normal = lacuna::Cross(tangent, across);
-      this->AddPoint(loop[i].data(), normal, across, errors ? errors->GetComponent(ids[i], 0) : 1);
+      const lacuna::Vec3 normal = sign * lacuna::Cross(tangent, outline.Across);
+      this->AddPoint(loop[i].data(), normal, outline.Across,
+        errors ? errors->GetComponent(outline.Ids[i], 0) : 1);
     }
   }
   this->HasOutlines = true;

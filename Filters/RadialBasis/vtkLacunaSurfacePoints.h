@@ -48,9 +48,10 @@ private:
   void AddSide(const lacuna::Vec3& place, double side, const std::string& name);
   void AddPoint(
     const double* x, const lacuna::Vec3& normal, const lacuna::Vec3& free, double error);
-  void AddMap(vtkImageData* image);
+  void AddMap(vtkImageData* image, vtkDataArray* errors);
   void AddOutlines(vtkPolyData* lines, const std::string& name, vtkDataArray* errors);
-  void AddPoints(
-    lacuna::Execution& execution, vtkDataSet* data, const std::string& name, vtkDataArray* errors);
+  void AddPoints(lacuna::Execution& execution, vtkDataSet* data, const std::string& name,
+    vtkDataArray* errors,
+    bool someWithout); // points without normals are left out
 };
 #endif

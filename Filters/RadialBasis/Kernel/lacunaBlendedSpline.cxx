@@ -333,7 +333,11 @@ BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
   this->Report.Spline = this->Whole->GetReport();
   this->Report.PointError = this->Report.Spline.PointError;
   this->Report.Centers = 2 * this->Report.Spline.Nodes;
-  if (this->Report.Spline.HeldOutError > options.Accuracy && data.Free.empty())
+  // errors of a hand along an outline are no detail
+  const auto drawn = std::count_if(
+    data.Free.begin(), data.Free.end(), [](const Vec3& across) { return HasDirection(across); });
+  if (this->Report.Spline.HeldOutError > options.Accuracy &&
+    2 * static_cast<std::size_t>(drawn) < n)
   {
     this->AddLevels(execution, data, options);
   }
@@ -466,6 +470,7 @@ void BlendedSpline::AddLevels(
           part.Points = Pick(data.Points, which);
           part.Normals = Pick(data.Normals, which);
           part.Errors = Pick(data.Errors, which);
+          part.Free = Pick(data.Free, which);
           double square = 0;
           for (const std::size_t i : which)
           {

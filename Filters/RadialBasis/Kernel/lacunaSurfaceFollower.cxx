@@ -167,7 +167,8 @@ public:
     }
     if (this->Result.Surface.Triangles.empty())
     {
-      throw std::runtime_error("no seed leads to the surface");
+      throw std::runtime_error("no seed leads to the surface: it lies outside of the bounds, or is "
+                               "smaller than the triangles, or the normals contradict each other");
     }
     this->Cubes.clear();
     this->Index.clear();

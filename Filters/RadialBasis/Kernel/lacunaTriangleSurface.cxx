@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -315,6 +316,85 @@ double TriangleSurface::GetArea() const
     area += 0.5 * Norm(GetNormal(this->Points[t[0]], this->Points[t[1]], this->Points[t[2]]));
   }
   return area;
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+// How often a surface winds around a place: the sum of the solid angles of its triangles (van Oosterom
+// and Strackee 1983).
+double GetWindingNumber(
+  const TriangleSurface& surface, const std::vector<std::int32_t>& triangles, const Vec3& x)
+{
+  double sum = 0;
+  for (const std::int32_t t : triangles)
+  {
+    const Triangle& corners = surface.Triangles[t];
+    const Vec3 a = surface.Points[corners[0]] - x;
+    const Vec3 b = surface.Points[corners[1]] - x;
+    const Vec3 c = surface.Points[corners[2]] - x;
+    const double la = Norm(a);
+    const double lb = Norm(b);
+    const double lc = Norm(c);
+    sum += std::atan2(
+      Dot(a, Cross(b, c)), la * lb * lc + Dot(a, b) * lc + Dot(b, c) * la + Dot(c, a) * lb);
+  }
+  return sum / (2 * std::acos(-1.0));
+}
+}
+
+std::vector<SurfacePart> FindParts(const TriangleSurface& surface)
+{
+  std::vector<std::int32_t> parents(surface.Points.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto root = [&](std::int32_t p)
+  {
+    while (parents[p] != p)
+    {
+      p = parents[p] = parents[parents[p]];
+    }
+    return p;
+  };
+  for (const Triangle& t : surface.Triangles)
+  {
+    parents[root(t[1])] = root(t[0]);
+    parents[root(t[2])] = root(t[0]);
+  }
+  std::map<std::int32_t, std::vector<std::int32_t>> byRoot;
+  for (std::size_t t = 0; t < surface.Triangles.size(); ++t)
+  {
+    byRoot[root(surface.Triangles[t][0])].push_back(static_cast<std::int32_t>(t));
+  }
+  std::vector<std::pair<SurfacePart, const std::vector<std::int32_t>*>> found;
+  for (const auto& group : byRoot)
+  {
+    SurfacePart part;
+    part.At = surface.Points[surface.Triangles[group.second.front()][0]];
+    for (const std::int32_t t : group.second)
+    {
+      const Triangle& corners = surface.Triangles[t];
+      part.Volume +=
+        Dot(surface.Points[corners[0]] - part.At,
+          Cross(surface.Points[corners[1]] - part.At, surface.Points[corners[2]] - part.At)) /
+        6;
+    }
+    found.emplace_back(part, &group.second);
+  }
+  std::stable_sort(found.begin(), found.end(),
+    [](const auto& a, const auto& b)
+    { return std::abs(a.first.Volume) > std::abs(b.first.Volume); });
+  constexpr std::size_t most = 64; // of many small ones the depth is not worth its time
+  std::vector<SurfacePart> parts;
+  for (std::size_t inner = 0; inner < std::min(most, found.size()); ++inner)
+  {
+    parts.push_back(found[inner].first);
+    for (std::size_t outer = 0; outer < inner; ++outer)
+    {
+      parts.back().Depth +=
+        std::abs(GetWindingNumber(surface, *found[outer].second, parts.back().At)) > 0.5;
+    }
+  }
+  return parts;
 }
 
 //------------------------------------------------------------------------------

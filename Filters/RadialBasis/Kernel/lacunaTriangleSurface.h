@@ -38,6 +38,18 @@ struct SurfaceTopology
 };
 SurfaceTopology FindTopology(const TriangleSurface& surface);
 
+/// A part of a closed surface, that edges connect.
+struct SurfacePart
+{
+  double Volume = 0; ///< mm^3; negative when it is seen clockwise from outside, as a cavity is
+  int Depth =
+    0;       ///< so many other parts enclose it: 0 and even ones shall be solid, odd ones cavities
+  Vec3 At{}; ///< one of its points
+  bool IsInsideOut() const { return (this->Volume > 0) != (this->Depth % 2 == 0); }
+};
+/// Parts of a closed manifold whose parts do not cut each other: the 64 largest, the largest first.
+std::vector<SurfacePart> FindParts(const TriangleSurface& surface);
+
 /// Collapses edges shorter than shortest unless this makes one longer than longest, turns a triangle
 /// over or changes the topology. The new point is the middle of the edge. Points of boundary edges
 /// stay. Unused points are removed. Returns the number of collapsed edges.

@@ -296,3 +296,39 @@ TEST(TriangleSurface, TopologyTellsWhatIsWrong)
   EXPECT_EQ(topology.BadPoints, 1);
   EXPECT_EQ(topology.Components, 2);
 }
+
+// Tetrahedra at the origin, each within the one before, and one beside.
+TEST(TriangleSurface, PartsKnowWhatEnclosesThem)
+{
+  lacuna::TriangleSurface surface;
+  const auto add = [&](double size, const Vec3& at, bool inwards)
+  {
+    const auto first = static_cast<std::int32_t>(surface.Points.size());
+    for (const Vec3& p :
+      { Vec3{ 1, 1, 1 }, Vec3{ 1, -1, -1 }, Vec3{ -1, 1, -1 }, Vec3{ -1, -1, 1 } })
+    {
+      surface.Points.push_back(at + size * p);
+    }
+    for (const std::array<int, 3>& t :
+      { std::array<int, 3>{ 0, 1, 2 }, { 0, 3, 1 }, { 0, 2, 3 }, { 1, 3, 2 } })
+    {
+      surface.Triangles.push_back(
+        { first + t[0], first + t[inwards ? 2 : 1], first + t[inwards ? 1 : 2] });
+    }
+  };
+  add(1, { 0.1, 0, 0 }, false); // solid in a cavity
+  add(9, { 0, 0, 0 }, false);
+  add(2, { 40, 0, 0 }, true);     // inside out
+  add(3, { 0, 0.2, 0 }, true);    // the cavity
+  add(0.2, { 0.1, 0, 0 }, false); // solid within a solid
+  const std::vector<lacuna::SurfacePart> parts = lacuna::FindParts(surface);
+  const double sizes[] = { 9, 3, 2, 1, 0.2 };
+  const int depths[] = { 0, 1, 0, 2, 3 };
+  ASSERT_EQ(parts.size(), 5U);
+  for (int i = 0; i < 5; ++i)
+  {
+    EXPECT_NEAR(std::abs(parts[i].Volume), 8.0 / 3 * std::pow(sizes[i], 3), 1e-9);
+    EXPECT_EQ(parts[i].Depth, depths[i]) << i;
+    EXPECT_EQ(parts[i].IsInsideOut(), i == 2 || i == 4) << i;
+  }
+}

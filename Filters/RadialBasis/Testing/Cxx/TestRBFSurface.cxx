@@ -3,6 +3,7 @@
 #include "lacunaCheck.h"
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
+#include "vtkCubeSource.h"
 #include "vtkDoubleArray.h"
 #include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
@@ -419,6 +420,128 @@ void CheckDistances()
   LACUNA_CHECK(unlike < 1e-4);
 }
 
+vtkSmartPointer<vtkPolyData> MakeScaled(vtkPolyData* data, double scale, bool inwards)
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkDoubleArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  vtkDataArray* old = data->GetPointData()->GetArray("Normals");
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    data->GetPoint(i, x);
+    for (int c = 0; c < 3; ++c)
+    {
+      x[c] = Center[c] + scale * (x[c] - Center[c]);
+    }
+    points->InsertNextPoint(x);
+    const double sign = inwards ? -1 : 1;
+    normals->InsertNextTuple3(sign * old->GetComponent(i, 0), sign * old->GetComponent(i, 1),
+      sign * old->GetComponent(i, 2));
+  }
+  auto scaled = vtkSmartPointer<vtkPolyData>::New();
+  scaled->SetPoints(points);
+  scaled->GetPointData()->AddArray(normals);
+  return scaled;
+}
+
+// A cavity has to be told by its normals; without, the volume would count it twice.
+void CheckParts()
+{
+  for (const bool inwards : { true, false })
+  {
+    vtkNew<vtkLacunaRBFSurface> filter;
+    filter->SetOutputSpacing(1.5);
+    filter->AddInputDataObject(MakePoints(1500, true));
+    filter->AddInputDataObject(MakeScaled(MakePoints(800, true), 0.5, inwards));
+    vtkNew<lacunaCheck::Messages> messages;
+    messages->Watch(filter);
+    filter->Update();
+    LACUNA_CHECK(messages->HasWarning("counts it twice") == !inwards);
+    LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SurfaceVolume"),
+      Volume * (inwards ? 0.875 : 1.125), 0.01 * Volume);
+  }
+  // outlines within outlines are rims of a cavity, however they run
+  vtkSmartPointer<vtkPolyData> outer = MakeOutlines(true);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  for (int k = 0; k < 2; ++k)
+  {
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (vtkIdType i = 0; i < outer->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      outer->GetPoint(i, x);
+      for (int c = 0; c < 2; ++c)
+      {
+        x[c] = Center[c] + (k == 0 ? 1 : 0.5) * (x[c] - Center[c]);
+      }
+      points->InsertNextPoint(x);
+    }
+    for (vtkIdType line = 0; line < 6; ++line)
+    {
+      if (k == 1 && (line == 0 || line == 5))
+      {
+        continue;
+      }
+      lines->InsertNextCell(31);
+      for (vtkIdType i = 0; i < 31; ++i)
+      {
+        lines->InsertCellPoint(first + 30 * line + i % 30);
+      }
+    }
+  }
+  vtkNew<vtkPolyData> both;
+  both->SetPoints(points);
+  both->SetLines(lines);
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1.5);
+  filter->SetInputData(both);
+  filter->Update();
+  const double volume = GetField(filter->GetOutput(), "SurfaceVolume");
+  std::cout << "with a cavity in outlines: " << volume << " of " << Volume << " ml\n";
+  LACUNA_CHECK(volume < 0.85 * Volume && volume > 0.7 * Volume);
+}
+
+void CheckSimple()
+{
+  // eight corners are a whole box, with and without normals
+  vtkNew<vtkCubeSource> cube;
+  cube->SetXLength(40);
+  cube->SetYLength(30);
+  cube->SetZLength(20);
+  vtkNew<vtkLacunaRBFSurface> filter;
+  filter->SetOutputSpacing(1);
+  filter->SetInputConnection(cube->GetOutputPort());
+  filter->Update();
+  std::cout << "box: " << GetField(filter->GetOutput(), "SurfaceVolume") << " of 24 ml\n";
+  LACUNA_CHECK_NEAR(GetField(filter->GetOutput(), "SurfaceVolume"), 24, 0.75); // edges are rounded
+  // each point twelve times, without normals
+  vtkSmartPointer<vtkPolyData> once = MakePoints(800, false);
+  vtkNew<vtkPoints> points;
+  for (int k = 0; k < 12; ++k)
+  {
+    for (vtkIdType i = 0; i < 800; ++i)
+    {
+      points->InsertNextPoint(once->GetPoint(i));
+    }
+  }
+  vtkNew<vtkPolyData> repeated;
+  repeated->SetPoints(points);
+  filter->SetInputData(repeated);
+  filter->Update();
+  CheckSurface(filter->GetOutput(), 0.01, "points twelve times");
+  // an open surface encloses nothing
+  filter->SetInputData(MakePoints(800, true));
+  const double bounds[6] = { -20, 30, -30, 20, -10, 40 };
+  filter->SetOutputBounds(bounds);
+  filter->CapBoundaryOff();
+  filter->Update();
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() > 0);
+  LACUNA_CHECK(!filter->GetOutput()->GetFieldData()->GetArray("SurfaceVolume"));
+}
+
 void CheckError(const std::function<void(vtkLacunaRBFSurface*)>& spoil, const std::string& text)
 {
   vtkNew<vtkLacunaRBFSurface> filter;
@@ -444,6 +567,43 @@ void CheckErrors()
   CheckError([](Filter* f) { f->SetErrorArray("Nothing"); }, "no point array 'Nothing'");
   CheckError([](Filter* f) { f->SetSideArray("Nothing"); }, "has a point array 'Nothing'");
   CheckError([](Filter* f) { f->SetDistanceSpacing(1); }, "needs OutputBounds on all axes");
+  CheckError(
+    [](Filter* f)
+    {
+      f->SetDistanceSpacing(1);
+      f->CapBoundaryOff();
+    },
+    "needs CapBoundary");
+  CheckError([](Filter* f) { f->SetOutputBounds(0, std::nan(""), 0, 1, 0, 1); },
+    "OutputBounds has a number that is not finite");
+  CheckError([](Filter* f) { f->SetOutputBounds(500, 600, 0, 1, 0, 1); }, "outside of the bounds");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkSmartPointer<vtkPolyData> data = MakePoints(300, true);
+      vtkNew<vtkDoubleArray> errors;
+      errors->SetName("Error");
+      errors->SetNumberOfValues(300);
+      errors->Fill(1);
+      errors->SetValue(5, 0);
+      data->GetPointData()->AddArray(errors);
+      f->SetInputData(data);
+      f->SetErrorArray("Error");
+    },
+    "ErrorArray: 'Error' is 0");
+  CheckError(
+    [](Filter* f)
+    {
+      vtkSmartPointer<vtkPolyData> data = MakeOutlines(true);
+      vtkNew<vtkDoubleArray> sides;
+      sides->SetName("Side");
+      sides->SetNumberOfValues(data->GetNumberOfPoints());
+      sides->Fill(-1);
+      data->GetPointData()->AddArray(sides);
+      f->SetInputData(data);
+      f->SetSideArray("Side");
+    },
+    "is an outline, which lies on the surface");
   CheckError([](Filter* f) { f->SetInputData(vtkNew<vtkPolyData>()); }, "no points of a surface");
   CheckError([](Filter* f) { f->SetInputData(MakePoints(5, true)); }, "needs 10 or more");
   CheckError([](Filter* f) { f->SetInputData(MakeOutlines(false)); }, "is not closed");
@@ -553,6 +713,8 @@ int TestRBFSurface(int, char*[])
   CheckOutlines();
   CheckPrior();
   CheckSides();
+  CheckParts();
+  CheckSimple();
   CheckDistances();
   CheckErrors();
   return lacunaCheck::Result();
