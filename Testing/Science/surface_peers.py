@@ -46,8 +46,10 @@ SETTINGS = {
     # distance of triangles, mm
     "CGAL Poisson": [(0.1,), (0.02,)],
     "CGAL advancing front": [()],
+    # edges of triangles, mm: EDGE
     "Lacuna": [()],
 }
+FINE = [(0.35,)]  # further edges of Lacuna's triangles for large, where those of EDGE are farther from the surface than the fit is
 FIELDS = ["part", "case", "program", "setting", "rms", "q95", "largest", "closed", "triangles", "clock", "processor", "memory", "version", "problem"]
 
 
@@ -204,7 +206,7 @@ def cgal(task):
 
 
 def lacuna(options, setting, source, out):
-    _, said = run(sys.executable, os.path.abspath(__file__), "--lacuna", source, out + ".ply", EDGE)
+    _, said = run(sys.executable, os.path.abspath(__file__), "--lacuna", source, out + ".ply", *(setting or (EDGE,)))
     return out + ".ply", np.array(json.loads(said.splitlines()[-1]))
 
 
@@ -432,7 +434,8 @@ def main():
         os.replace(table + ".new", table)
     for part, case, source, bare, truth in prepare(options):
         for program in [name for name in options.programs.split(",") if programs[name]]:
-            for setting in SETTINGS[program][:options.settings]:
+            settings = SETTINGS[program] + (FINE if (part, program) == ("large", "Lacuna") else [])
+            for setting in settings[:options.settings]:
                 same = [row for row in rows if (row["part"], row["case"], row["program"], row["setting"]) == (part, case, program, " ".join(str(each) for each in setting))]
                 if same and program not in options.again:
                     continue
