@@ -336,8 +336,7 @@ BlendedSpline::BlendedSpline(Execution& execution, const OrientedPoints& data,
   // errors of a hand along an outline are no detail
   const auto drawn = std::count_if(
     data.Free.begin(), data.Free.end(), [](const Vec3& across) { return HasDirection(across); });
-  if (this->Report.Spline.HeldOutError > options.Accuracy &&
-    2 * static_cast<std::size_t>(drawn) < n)
+  if (2 * static_cast<std::size_t>(drawn) < n)
   {
     this->AddLevels(execution, data, options);
   }
