@@ -132,7 +132,7 @@ def run(server=(), on_server=False, on_client=False):
     process, port = start(server, loading if on_server else plain) if server else (None, 0)
     try:
         done = subprocess.run([sys.argv[1], "--force-offscreen-rendering", os.path.abspath(__file__), str(port)], check=False, text=True,
-                              timeout=300, env=loading if on_client else plain, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                              timeout=900, env=loading if on_client else plain, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         errors = [line for line in done.stdout.partition("result")[0].splitlines() if "ERR|" in line
                   and "vtkStructuredPointsRead" not in line]  # a false alarm of ParaView, see remote-servers.md
         results = [line for line in done.stdout.splitlines() if line.startswith("result")]
