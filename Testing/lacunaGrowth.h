@@ -61,7 +61,7 @@ inline std::string FindGrowth(int cycles, const std::function<void(int)>& run, s
     run(cycles);
     grown = GetBytesInUse() - bytes;
     ++rounds;
-  } while (grown >= 32.0 * cycles && rounds < 4);
+  } while (grown >= 32.0 * cycles && rounds < 10);
   const double residentGrown = GetProcessMemory("VmRSS") - resident;
   story += "  in " + std::to_string(cycles) + " cycles, after " + std::to_string(rounds - 1) +
     " times as many, " + std::to_string(grown) + " bytes in use more; " +
