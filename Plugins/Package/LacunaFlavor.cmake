@@ -5,7 +5,7 @@
 # COMPONENTS: that asks for every third party of every VTK module (Qt5, HDF5, ...).
 set(lacuna_vtk_components
   CommonComputationalGeometry CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
-  CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry
+  CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry FiltersModeling
   FiltersSources ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML ParallelCore)
 if (LACUNA_WITH_PARAVIEW)
   # With COMPONENTS, Debian 12 needs few -dev packages next to paraview-dev; without, about
