@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrayName.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -30,7 +31,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -226,28 +226,18 @@ void Interpolate(vtkLacunaExecution& execution, vtkDataSet* points, vtkDataArray
   vtkLacunaFieldData::Set(output, "ConditionEstimate", { report.ConditionEstimate }, 1);
   vtkLacunaFieldData::Set(output, "Iterations", { static_cast<double>(report.Iterations) }, 1);
 }
-
-void SetName(vtkLacunaRBFInterpolator* filter, std::string& member, const char* name)
-{
-  const std::string value = !name || !std::strcmp(name, "None") ? "" : name;
-  if (member != value)
-  {
-    member = value;
-    filter->Modified();
-  }
-}
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFInterpolator::SetScalarArray(const char* name)
 {
-  SetName(this, this->ScalarArray, name);
+  vtkLacunaSetArrayName(this, this->ScalarArray, name);
 }
 
 //------------------------------------------------------------------------------
 void vtkLacunaRBFInterpolator::SetErrorArray(const char* name)
 {
-  SetName(this, this->ErrorArray, name);
+  vtkLacunaSetArrayName(this, this->ErrorArray, name);
 }
 
 //------------------------------------------------------------------------------

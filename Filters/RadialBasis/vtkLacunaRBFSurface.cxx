@@ -15,6 +15,7 @@
 #include "vtkImplicitFunction.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkLacunaArrayName.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
@@ -36,7 +37,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <memory>
 #include <sstream>
@@ -79,16 +79,6 @@ std::array<double, 6> GetBounds(const std::vector<Vec3>& points, const std::vect
     }
   }
   return bounds;
-}
-
-void SetName(vtkObject* owner, std::string& name, const char* given)
-{
-  const std::string text = given && std::strcmp(given, "None") != 0 ? given : "";
-  if (text != name)
-  {
-    name = text;
-    owner->Modified();
-  }
 }
 
 double GetExtent(const std::array<double, 6>& bounds)
@@ -179,12 +169,12 @@ void vtkLacunaRBFSurface::RemovePriorSurface()
 //------------------------------------------------------------------------------
 void vtkLacunaRBFSurface::SetErrorArray(const char* name)
 {
-  SetName(this, this->ErrorArray, name);
+  vtkLacunaSetArrayName(this, this->ErrorArray, name);
 }
 
 void vtkLacunaRBFSurface::SetSideArray(const char* name)
 {
-  SetName(this, this->SideArray, name);
+  vtkLacunaSetArrayName(this, this->SideArray, name);
 }
 
 //------------------------------------------------------------------------------
@@ -195,6 +185,11 @@ void vtkLacunaRBFSurface::SetPriorFunction(vtkImplicitFunction* function)
     this->PriorFunction = function;
     this->Modified();
   }
+}
+
+vtkImplicitFunction* vtkLacunaRBFSurface::GetPriorFunction() const
+{
+  return this->PriorFunction;
 }
 
 vtkMTimeType vtkLacunaRBFSurface::GetMTime()
@@ -353,7 +348,10 @@ int vtkLacunaRBFSurface::RequestData(
       const double spacing = FindSpacing(execution, points.Points);
       this->CheckNormals(execution, points, 0.5 * spacing);
 
-      execution.SetStage(0.05, 0.7);
+      // the error of a volume takes as many fits again
+      const double fitEnd = collected.HasOutlines ? 0.35 : 0.65;
+      const double followEnd = fitEnd + 0.25;
+      execution.SetStage(0.05, fitEnd);
       lacuna::BlendedSplineOptions options;
       options.Kernel =
         this->Kernel == Triharmonic ? lacuna::RadialKernel::Cubic : lacuna::RadialKernel::Linear;
@@ -374,7 +372,7 @@ int vtkLacunaRBFSurface::RequestData(
       const lacuna::BlendedSpline fit(execution, points, options, prior.get());
       this->CheckSides(fit.GetReport());
 
-      execution.SetStage(0.7, 0.95);
+      execution.SetStage(fitEnd, followEnd);
       lacuna::SurfaceFollowerOptions follow;
       // points along outlines are denser than these
       const double finest = collected.HasOutlines ? FinestOfOutlines : FinestEdge;
@@ -405,9 +403,9 @@ int vtkLacunaRBFSurface::RequestData(
       }
       const lacuna::FollowedSurface followed =
         lacuna::FollowSurface(execution, fit, points.Points, follow);
-      this->CheckSurface(followed, collected.Warnings);
+      const bool isClosed = this->CheckSurface(followed, collected.Warnings);
 
-      execution.SetStage(0.95, this->DistanceSpacing > 0 ? 0.96 : 1);
+      execution.SetStage(followEnd, followEnd + 0.05);
       const std::vector<double> residuals = GetResiduals(execution, fit, points.Points);
       vtkPolyData* output = vtkPolyData::GetData(outputs);
       SetSurface(output, followed);
@@ -439,7 +437,6 @@ int vtkLacunaRBFSurface::RequestData(
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
       const lacuna::BlendedSplineReport& report = fit.GetReport();
-      const bool isClosed = lacuna::FindTopology(followed.Surface).IsClosed();
       if (isClosed)
       {
         set("SurfaceVolume", followed.Surface.GetVolume() / 1000);
@@ -452,6 +449,7 @@ int vtkLacunaRBFSurface::RequestData(
       }
       if (collected.HasOutlines && isClosed)
       {
+        execution.SetStage(followEnd + 0.05, 0.95);
         set("SurfaceVolumeError",
           lacuna::EstimateVolumeError(
             execution, points, options, fit.GetReport().Spline, followed.Surface) /
@@ -484,7 +482,7 @@ int vtkLacunaRBFSurface::RequestData(
       vtkLacunaProvenance::Record(output, this, sources, parameters.Get());
       if (this->DistanceSpacing > 0)
       {
-        execution.SetStage(0.96, 1);
+        execution.SetStage(0.95, 1);
         this->SetDistances(execution, followed.Surface, distances);
         vtkLacunaProvenance::Record(distances, this, sources, parameters.Get());
       }
@@ -606,7 +604,7 @@ void vtkLacunaRBFSurface::CheckNormals(
 }
 
 //------------------------------------------------------------------------------
-void vtkLacunaRBFSurface::CheckSurface(
+bool vtkLacunaRBFSurface::CheckSurface(
   const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings)
 {
   const lacuna::SurfaceTopology topology = lacuna::FindTopology(followed.Surface);
@@ -654,6 +652,7 @@ void vtkLacunaRBFSurface::CheckSurface(
     vtkWarningMacro(<< "points of the surface are up to " << followed.LargestDistance
                     << " mm from it, more than Tolerance; choose a smaller OutputSpacing");
   }
+  return topology.IsClosed();
 }
 
 //------------------------------------------------------------------------------

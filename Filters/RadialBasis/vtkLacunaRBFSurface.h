@@ -137,7 +137,7 @@ public:
    * gradient. Default none.
    */
   void SetPriorFunction(vtkImplicitFunction* function);
-  vtkImplicitFunction* GetPriorFunction() const { return this->PriorFunction; }
+  vtkImplicitFunction* GetPriorFunction() const;
   ///@}
 
   vtkMTimeType GetMTime() override; ///< with that of PriorFunction
@@ -188,7 +188,8 @@ protected:
 private:
   void CheckNormals(
     lacuna::Execution& execution, const lacuna::OrientedPoints& points, double spacing);
-  void CheckSurface(
+  /// Warns, or throws; returns whether it is closed.
+  bool CheckSurface(
     const lacuna::FollowedSurface& followed, const std::vector<std::string>& warnings);
 
   vtkLacunaRBFSurface(const vtkLacunaRBFSurface&) = delete;

@@ -247,6 +247,25 @@ void vtkLacunaSurfacePoints::AddSide(
 }
 
 //------------------------------------------------------------------------------
+void vtkLacunaSurfacePoints::RefuseSides(vtkDataSet* data, const std::string& name) const
+{
+  vtkDataArray* sides =
+    this->SideArray.empty() ? nullptr : data->GetPointData()->GetArray(this->SideArray.c_str());
+  double range[2] = { 0, 0 };
+  if (sides)
+  {
+    sides->GetRange(range);
+  }
+  if (range[0] != 0 || range[1] != 0)
+  {
+    throw std::runtime_error("SideArray of " + name +
+      " is not 0, but the input is a mesh, an outline or a depth map, which lies on the surface; "
+      "give "
+      "places inside or outside as points of their own");
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkLacunaSurfacePoints::Add(lacuna::Execution& execution, vtkDataSet* data, int number)
 {
   const std::string name = "input " + std::to_string(number);
@@ -255,13 +274,18 @@ void vtkLacunaSurfacePoints::Add(lacuna::Execution& execution, vtkDataSet* data,
     this->Warnings.push_back(name + " has no points and does not count");
     return;
   }
+  auto* poly = vtkPolyData::SafeDownCast(data);
+  const bool isMap = vtkImageData::SafeDownCast(data) != nullptr;
+  if (isMap || (poly && poly->GetNumberOfCells() > poly->GetNumberOfVerts()))
+  {
+    this->RefuseSides(data, name);
+  }
   vtkDataArray* errors = FindErrors(data, this->ErrorArray, name);
   if (auto* image = vtkImageData::SafeDownCast(data))
   {
     this->AddMap(image, errors);
     return;
   }
-  auto* poly = vtkPolyData::SafeDownCast(data);
   if (poly && poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0)
   {
     vtkNew<vtkPolyData> mesh;
@@ -276,20 +300,6 @@ void vtkLacunaSurfacePoints::Add(lacuna::Execution& execution, vtkDataSet* data,
   else if (poly && poly->GetNumberOfLines() > 0)
   {
     this->AddOutlines(poly, name, errors);
-    vtkDataArray* sides =
-      this->SideArray.empty() ? nullptr : poly->GetPointData()->GetArray(this->SideArray.c_str());
-    double range[2] = { 0, 0 };
-    if (sides)
-    {
-      sides->GetRange(range);
-    }
-    if (range[0] != 0 || range[1] != 0)
-    {
-      throw std::runtime_error("SideArray of " + name +
-        " is not 0, but the input is an outline, which lies on the surface; give places inside "
-        "or "
-        "outside as points of their own");
-    }
   }
   else
   {

@@ -45,13 +45,14 @@ public:
 private:
   bool HasSides = false; // an input has SideArray
 
+  void RefuseSides(vtkDataSet* data, const std::string& name) const;
   void AddSide(const lacuna::Vec3& place, double side, const std::string& name);
   void AddPoint(
     const double* x, const lacuna::Vec3& normal, const lacuna::Vec3& free, double error);
   void AddMap(vtkImageData* image, vtkDataArray* errors);
   void AddOutlines(vtkPolyData* lines, const std::string& name, vtkDataArray* errors);
+  // someWithout: points whose normal is zero are left out
   void AddPoints(lacuna::Execution& execution, vtkDataSet* data, const std::string& name,
-    vtkDataArray* errors,
-    bool someWithout); // points without normals are left out
+    vtkDataArray* errors, bool someWithout);
 };
 #endif

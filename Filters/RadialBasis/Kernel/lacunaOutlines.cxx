@@ -53,6 +53,23 @@ std::vector<double> GetAreas(const TriangleSurface& surface)
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::size_t> FindRuns(
+  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest)
+{
+  std::vector<std::size_t> runs(points.size(), 0);
+  double length = 0;
+  for (std::size_t i = 1; i < runs.size(); ++i)
+  {
+    length += Norm(points[i] - points[i - 1]);
+    const bool goesOn =
+      !free.empty() && HasDirection(free[i]) && free[i] == free[i - 1] && length <= longest;
+    runs[i] = runs[i - 1] + (goesOn ? 0 : 1);
+    length = goesOn ? length : 0;
+  }
+  return runs;
+}
+
+//------------------------------------------------------------------------------
 void FindOutlineNormals(
   Execution& execution, OrientedPoints& data, const SurfaceSplineOptions& options)
 {

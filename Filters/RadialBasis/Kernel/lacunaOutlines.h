@@ -6,6 +6,10 @@
 
 #include "lacunaSurfaceSpline.h"
 #include "lacunaTriangleSurface.h"
+#include "lacunaVector.h"
+
+#include <cstddef>
+#include <vector>
 
 namespace lacuna
 {
@@ -31,5 +35,10 @@ void FindOutlineNormals(
 double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
   const SurfaceSplineOptions& options, const SurfaceSplineReport& fit,
   const TriangleSurface& surface);
+
+/// Numbers the pieces of outlines (points with Free directions, one after the other), each at most so
+/// long, mm: one number for each point. Other points have one each.
+std::vector<std::size_t> FindRuns(
+  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest);
 }
 #endif

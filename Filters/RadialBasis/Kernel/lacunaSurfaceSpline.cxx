@@ -2,6 +2,7 @@
 #include "lacunaSurfaceSpline.h"
 
 #include "lacunaExecution.h"
+#include "lacunaOutlines.h"
 #include "lacunaScramble.h"
 #include "lacunaSingleBlasThread.h"
 #include "lacunaSurfaceBasis.h"
@@ -61,12 +62,10 @@ std::string DescribePoint(const Vec3& p)
 
 void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
 {
-  if (data.Normals.size() != data.Points.size() ||
-    (!data.Errors.empty() && data.Errors.size() != data.Points.size()) ||
-    (!data.Free.empty() && data.Free.size() != data.Points.size()) ||
-    (!data.Values.empty() && data.Values.size() != data.Points.size()) ||
-    (!data.Beside.empty() && data.Beside.size() != data.Points.size()) ||
-    (!data.Slopes.empty() && data.Slopes.size() != data.Points.size()))
+  const auto fits = [&](const auto& list)
+  { return list.empty() || list.size() == data.Points.size(); };
+  if (data.Normals.size() != data.Points.size() || !fits(data.Errors) || !fits(data.Free) ||
+    !fits(data.Values) || !fits(data.Beside) || !fits(data.Slopes))
   {
     throw std::invalid_argument(
       "there must be as many normals, errors, directions and values as points");
@@ -103,23 +102,6 @@ void Check(const OrientedPoints& data, const SurfaceSplineOptions& options)
     }
   }
 }
-}
-
-//------------------------------------------------------------------------------
-std::vector<std::size_t> FindRuns(
-  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest)
-{
-  std::vector<std::size_t> runs(points.size(), 0);
-  double length = 0;
-  for (std::size_t i = 1; i < runs.size(); ++i)
-  {
-    length += Norm(points[i] - points[i - 1]);
-    const bool goesOn =
-      !free.empty() && HasDirection(free[i]) && free[i] == free[i - 1] && length <= longest;
-    runs[i] = runs[i - 1] + (goesOn ? 0 : 1);
-    length = goesOn ? length : 0;
-  }
-  return runs;
 }
 
 //------------------------------------------------------------------------------
@@ -163,13 +145,16 @@ public:
     double stiffness = this->Options.Stiffness > 0 ? this->Options.Stiffness : 1;
     report.HeldOutError = this->Scale * this->Tune(stiffness, report);
     report.Gain = this->GetGain(report, stiffness);
-    this->AddHeldOut();
+    this->Accumulate(this->HeldOut, this->HeldOut.size()); // now all points count
+    this->HeldRows = Matrix();
     const std::vector<double> solution = this->Solve(report, stiffness);
     if (solution.empty())
     {
       throw Unsolvable(Outweighed);
     }
-    this->Keep(solution);
+    this->Centers = this->Basis->GetCenters();
+    std::copy_n(solution.begin(), Terms, this->Polynomial.begin());
+    this->Coefficients = this->Basis->GetCoefficients(solution);
     report.Stiffness = stiffness;
     report.Nodes = this->Nodes.size();
   }
@@ -588,19 +573,6 @@ private:
           std::max(LargestNormalError, this->Options.LeastNormalError));
     }
     return best.Points;
-  }
-
-  void AddHeldOut()
-  {
-    this->Accumulate(this->HeldOut, this->HeldOut.size());
-    this->HeldRows = Matrix();
-  }
-
-  void Keep(const std::vector<double>& solution)
-  {
-    this->Centers = this->Basis->GetCenters();
-    std::copy_n(solution.begin(), Terms, this->Polynomial.begin());
-    this->Coefficients = this->Basis->GetCoefficients(solution);
   }
 
   Execution& Runner;

@@ -115,10 +115,5 @@ private:
   std::array<double, 4> Polynomial{};
   SurfaceSplineReport Report;
 };
-
-/// Numbers the pieces of outlines (points with Free directions, one after the other), each at most so
-/// long, mm: one number for each point. Other points have one each.
-std::vector<std::size_t> FindRuns(
-  const std::vector<Vec3>& points, const std::vector<Vec3>& free, double longest);
 }
 #endif

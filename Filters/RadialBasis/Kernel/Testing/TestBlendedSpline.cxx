@@ -15,21 +15,6 @@ namespace
 using lacuna::TestShape;
 using lacuna::Vec3;
 
-double GetError(const lacuna::ImplicitFunction& function, const lacuna::OrientedPoints& truth)
-{
-  lacuna::ThreadExecution execution(2);
-  std::vector<double> values(truth.Points.size());
-  std::vector<Vec3> gradients(truth.Points.size());
-  function.Evaluate(execution, truth.Points, values, &gradients);
-  double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    const double d = values[i] / lacuna::Norm(gradients[i]);
-    sum += d * d / static_cast<double>(values.size());
-  }
-  return std::sqrt(sum);
-}
-
 // A sphere of 40 mm with waves of about 12 mm, other ones along each axis.
 class Waves : public lacuna::ImplicitFunction
 {
@@ -97,8 +82,8 @@ TEST(BlendedSpline, FollowsDetailThatOneSplineCannot)
   const auto data = MakeWaves(15000, 1);
   const auto truth = MakeWaves(2000, 2);
   const lacuna::BlendedSpline fit(execution, data, {});
-  EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.05);
-  EXPECT_LT(GetError(fit, truth), 0.005);
+  EXPECT_GT(lacuna::GetSurfaceError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.05);
+  EXPECT_LT(lacuna::GetSurfaceError(fit, truth), 0.005);
   EXPECT_GT(fit.GetReport().LocalSplines, 100u);
   EXPECT_LT(fit.GetReport().PointError, 0.02);
 }
@@ -111,14 +96,14 @@ TEST(BlendedSpline, KeepsAPriorIfThatPredictsBetter)
   const Waves prior;
   const lacuna::BlendedSpline fit(execution, data, {}, &prior);
   EXPECT_TRUE(fit.GetReport().UsesPrior);
-  EXPECT_GT(GetError(lacuna::BlendedSpline(execution, data, {}), truth), 0.05);
-  EXPECT_LT(GetError(fit, truth), 0.002);
+  EXPECT_GT(lacuna::GetSurfaceError(lacuna::BlendedSpline(execution, data, {}), truth), 0.05);
+  EXPECT_LT(lacuna::GetSurfaceError(fit, truth), 0.002);
   // waves say nothing of a torus
   const TestShape torus(TestShape::Torus);
   const auto other = torus.SampleNoisy(2000, 0, false, 1);
   const lacuna::BlendedSpline alone(execution, other, {}, &prior);
   EXPECT_FALSE(alone.GetReport().UsesPrior);
-  EXPECT_LT(GetError(alone, torus.Sample(1000, 99)), 0.02);
+  EXPECT_LT(lacuna::GetSurfaceError(alone, torus.Sample(1000, 99)), 0.02);
 }
 
 TEST(BlendedSpline, FollowsCreases)
@@ -127,8 +112,8 @@ TEST(BlendedSpline, FollowsCreases)
   const TestShape cup(TestShape::Cup);
   const auto data = cup.SampleNoisy(10000, 0, false, 1);
   const auto truth = cup.Sample(2000, 99);
-  EXPECT_GT(GetError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.2);
-  EXPECT_LT(GetError(lacuna::BlendedSpline(execution, data, {}), truth), 0.08);
+  EXPECT_GT(lacuna::GetSurfaceError(lacuna::SurfaceSpline(execution, data, {}), truth), 0.2);
+  EXPECT_LT(lacuna::GetSurfaceError(lacuna::BlendedSpline(execution, data, {}), truth), 0.08);
 }
 
 TEST(BlendedSpline, DoesNotFollowNoise)
@@ -137,7 +122,7 @@ TEST(BlendedSpline, DoesNotFollowNoise)
   const TestShape torus(TestShape::Torus);
   const auto data = torus.SampleNoisy(6000, 0.5, false, 3);
   const lacuna::BlendedSpline fit(execution, data, {});
-  EXPECT_LT(GetError(fit, torus.Sample(2000, 99)), 0.06);
+  EXPECT_LT(lacuna::GetSurfaceError(fit, torus.Sample(2000, 99)), 0.06);
   EXPECT_NEAR(fit.GetReport().PointError, 0.5, 0.05);
 }
 
@@ -205,7 +190,7 @@ TEST(BlendedSpline, KeepsPlacesOnTheirSides)
   EXPECT_GT(after[0], 0.05);
   EXPECT_LT(after[1], -0.05);
   EXPECT_EQ(kept.GetReport().WrongSides, 0U);
-  EXPECT_LT(GetError(kept, data), 1.1 * GetError(free, data));
+  EXPECT_LT(lacuna::GetSurfaceError(kept, data), 1.1 * lacuna::GetSurfaceError(free, data));
 }
 
 TEST(BlendedSpline, DoesNotDependOnThreads)

@@ -26,21 +26,9 @@ lacuna::SurfaceSpline Fit(const lacuna::OrientedPoints& data,
   return { execution, data, options };
 }
 
-// RMS distance of points of the true surface from the fitted one, to first order.
 double GetError(const lacuna::SurfaceSpline& spline, const TestShape& shape)
 {
-  lacuna::ThreadExecution execution(2);
-  const auto truth = shape.Sample(2000, 99);
-  std::vector<double> values(truth.Points.size());
-  std::vector<Vec3> gradients(truth.Points.size());
-  spline.Evaluate(execution, truth.Points, values, &gradients);
-  double sum = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    const double d = values[i] / lacuna::Norm(gradients[i]);
-    sum += d * d / static_cast<double>(values.size());
-  }
-  return std::sqrt(sum);
+  return lacuna::GetSurfaceError(spline, shape.Sample(2000, 99));
 }
 }
 

@@ -4,6 +4,8 @@
 #ifndef lacunaTestShapes_h
 #define lacunaTestShapes_h
 
+#include "lacunaExecution.h"
+#include "lacunaSurfaceFollower.h"
 #include "lacunaSurfaceSpline.h"
 #include "lacunaVector.h"
 
@@ -185,5 +187,21 @@ public:
 private:
   Kind Which;
 };
+
+// RMS distance of points of the true surface from the zeros of a function, to first order.
+inline double GetSurfaceError(const ImplicitFunction& function, const OrientedPoints& truth)
+{
+  ThreadExecution execution(2);
+  std::vector<double> values(truth.Points.size());
+  std::vector<Vec3> gradients(truth.Points.size());
+  function.Evaluate(execution, truth.Points, values, &gradients);
+  double sum = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    const double d = values[i] / Norm(gradients[i]);
+    sum += d * d / static_cast<double>(values.size());
+  }
+  return std::sqrt(sum);
+}
 }
 #endif

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Properties that name an array, which may be left out.
+#ifndef vtkLacunaArrayName_h
+#define vtkLacunaArrayName_h
+
+#include "vtkObject.h"
+
+#include <cstring>
+#include <string>
+
+/// Sets member to name; null and ParaView's "None" are no array.
+inline void vtkLacunaSetArrayName(vtkObject* filter, std::string& member, const char* name)
+{
+  const std::string value = !name || !std::strcmp(name, "None") ? "" : name;
+  if (member != value)
+  {
+    member = value;
+    filter->Modified();
+  }
+}
+#endif
