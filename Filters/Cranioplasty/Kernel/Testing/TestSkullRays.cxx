@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSkullRays.h"
+
+#include "lacunaSkullTest.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+using lacuna::Matrix4;
+using lacuna::SkullRayKind;
+using lacuna::Vec3;
+
+namespace
+{
+struct Hole
+{
+  Vec3 Middle;
+  double Radius; // radians
+};
+
+// The analytic skull without its base, in voxels that are longer along z, with holes.
+struct Scan
+{
+  explicit Scan(const std::vector<Hole>& holes, const Matrix4& turn = {}, double highest = 100)
+  {
+    const double spacing[] = { 2, 2, 2.5 };
+    const Vec3 first{ -104, -110, -60 };
+    this->Size = { 105, 111, static_cast<int>((highest + 60) / 2.5) };
+    this->IndexToOwn =
+      Matrix4::Translation(first) * Matrix4::Scaling({ spacing[0], spacing[1], spacing[2] });
+    this->OwnToWorld = turn;
+    const lacunaSkullTest::Skull skull;
+    for (int k = 0; k < this->Size[2]; ++k)
+    {
+      for (int j = 0; j < this->Size[1]; ++j)
+      {
+        for (int i = 0; i < this->Size[0]; ++i)
+        {
+          const Vec3 x = this->IndexToOwn.Point(
+            { static_cast<double>(i), static_cast<double>(j), static_cast<double>(k) });
+          const double r = Norm(x);
+          const Vec3 d = lacuna::Normalized(x);
+          double depth = -10; // mm within bone
+          if (r > 50 && r < 110)
+          {
+            const double outer = skull.GetOuter(d);
+            depth = std::min(outer - r, r - outer + skull.GetThickness(d));
+          }
+          for (const Hole& hole : holes)
+          {
+            depth = std::min(depth,
+              r *
+                (std::acos(std::clamp(Dot(d, lacuna::Normalized(hole.Middle)), -1.0, 1.0)) -
+                  hole.Radius));
+          }
+          depth = std::min(depth, x[2] + 40);
+          this->Voxels.push_back(static_cast<float>(300 + 200 * std::clamp(depth, -3.0, 3.0)));
+        }
+      }
+    }
+  }
+  lacuna::VoxelVolume Get() const
+  {
+    lacuna::VoxelVolume volume;
+    volume.Voxels = this->Voxels.data();
+    volume.Type = lacuna::ScalarType::Float32;
+    volume.Size = this->Size;
+    volume.IndexToWorld = this->OwnToWorld * this->IndexToOwn;
+    return volume;
+  }
+
+  std::array<int, 3> Size{};
+  Matrix4 IndexToOwn;
+  Matrix4 OwnToWorld;
+  std::vector<float> Voxels;
+};
+}
+
+TEST(SkullRays, FindsBothTablesAndTheDefects)
+{
+  const Scan scan({ { { 0.8, -0.2, 0.55 }, 0.5 }, { { -0.6, 0.5, 0.6 }, 0.25 } });
+  const lacunaSkullTest::Skull skull;
+  lacuna::ThreadExecution execution(2);
+  const lacuna::SkullRays rays = lacuna::TraceSkull(scan.Get(), 300, { 0, 0, 0 }, 3, execution);
+  int sound = 0;
+  double squares[] = { 0, 0 };
+  for (std::size_t i = 0; i < rays.Directions.size(); ++i)
+  {
+    const Vec3& d = rays.Directions[i];
+    if (rays.Kinds[i] == SkullRayKind::Sound)
+    {
+      ++sound;
+      const double outer = rays.Outer[i] - skull.GetOuter(d);
+      const double thickness = rays.Outer[i] - rays.Inner[i] - skull.GetThickness(d);
+      EXPECT_LT(std::abs(outer), 0.5); // of voxels of 2 x 2 x 2.5 mm
+      EXPECT_LT(std::abs(thickness), 0.5);
+      squares[0] += outer * outer;
+      squares[1] += thickness * thickness;
+    }
+    EXPECT_EQ(std::isnan(rays.Outer[i]),
+      rays.Kinds[i] == SkullRayKind::Open || rays.Kinds[i] == SkullRayKind::Unknown);
+  }
+  EXPECT_LT(std::sqrt(squares[0] / sound), 0.05);
+  EXPECT_LT(std::sqrt(squares[1] / sound), 0.08);
+  // 0.71 of the sphere is above -40 mm; the holes, and 4 mm beside every edge, are no sound bone
+  EXPECT_GT(sound, 0.5 * rays.Directions.size());
+  EXPECT_EQ(lacuna::GetSoundBone(rays).Outer.size(), static_cast<std::size_t>(sound));
+
+  const std::vector<std::vector<int>> defects = lacuna::FindDefects(rays);
+  ASSERT_EQ(defects.size(), 2u); // not the missing base
+  const double part[] = { (1 - std::cos(0.5)) / 2, (1 - std::cos(0.25)) / 2 };
+  for (int i = 0; i < 2; ++i)
+  {
+    EXPECT_NEAR(
+      static_cast<double>(defects[i].size()) / rays.Directions.size(), part[i], 0.1 * part[i]);
+  }
+  for (const int i : defects[0])
+  {
+    EXPECT_GT(Dot(rays.Directions[i], lacuna::Normalized({ 0.8, -0.2, 0.55 })), std::cos(0.55));
+  }
+}
+
+TEST(SkullRays, AreTheSameInATurnedVolume)
+{
+  const std::vector<Hole> holes{ { { 0.8, -0.2, 0.55 }, 0.5 } };
+  const Matrix4 turn =
+    Matrix4::Translation({ 30, 500, -70 }) * Matrix4::Rotation({ 1, -1, 0.4 }, 1.3);
+  const Scan straight(holes);
+  const Scan turned(holes, turn);
+  lacuna::ThreadExecution one(1);
+  lacuna::ThreadExecution two(2);
+  const Vec3 center{ 0, 3, 2 };
+  const lacuna::SkullRays a = lacuna::TraceSkull(straight.Get(), 300, center, 4, one);
+  const lacuna::SkullRays b = lacuna::TraceSkull(turned.Get(), 300, turn.Point(center), 4, two);
+  ASSERT_EQ(a.Kinds, b.Kinds);
+  for (std::size_t i = 0; i < a.Outer.size(); ++i)
+  {
+    EXPECT_LT(Norm(turn.Vector(a.Directions[i]) - b.Directions[i]), 1e-9);
+    if (!std::isnan(a.Outer[i]))
+    {
+      EXPECT_NEAR(a.Outer[i], b.Outer[i], 1e-6);
+      EXPECT_NEAR(a.Inner[i], b.Inner[i], 1e-6);
+    }
+  }
+}
+
+TEST(SkullRays, DoNotGuessBeyondTheScan)
+{
+  // a scan that ends below the crown
+  const Scan scan({ { { 0.9, 0, 0.2 }, 0.3 } }, {}, 60);
+  lacuna::ThreadExecution execution(2);
+  const lacuna::SkullRays rays = lacuna::TraceSkull(scan.Get(), 300, { 0, 0, 0 }, 3, execution);
+  for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+  {
+    if (rays.Directions[i][2] > 0.85)
+    {
+      EXPECT_EQ(rays.Kinds[i], SkullRayKind::Unknown);
+    }
+  }
+  const std::vector<std::vector<int>> defects = lacuna::FindDefects(rays);
+  ASSERT_EQ(defects.size(), 1u);
+  EXPECT_GT(Dot(rays.Directions[defects[0][0]], { 1, 0, 0 }), 0.8);
+}
+
+TEST(SkullRays, CenterIsAmidTheVault)
+{
+  const Matrix4 turn =
+    Matrix4::Translation({ 30, 500, -70 }) * Matrix4::Rotation({ 1, -1, 0.4 }, 1.3);
+  const Scan scan({ { { 0.8, -0.2, 0.55 }, 0.5 } }, turn);
+  lacuna::ThreadExecution execution(2);
+  lacuna::MirrorPlane plane;
+  plane.Normal = turn.Vector({ 1, 0, 0 });
+  plane.Offset = Dot(plane.Normal, turn.Column(3));
+  const Vec3 center = lacuna::FindSkullCenter(scan.Get(), 300, plane, execution);
+  EXPECT_LT(std::abs(plane.Distance(center)), 1e-9);
+  EXPECT_LT(Norm(center - turn.Point({ 0, 0, 0 })), 12);
+}
+
+TEST(SkullRays, RefusesWhatIsNoSkull)
+{
+  lacuna::ThreadExecution execution(1);
+  const Scan scan({});
+  const lacuna::VoxelVolume volume = scan.Get();
+  const auto trace = [&](double level, const Vec3& center, double spacing)
+  { lacuna::TraceSkull(volume, level, center, spacing, execution); };
+  EXPECT_THROW(trace(300, { 500, 0, 0 }, 4), std::invalid_argument);
+  EXPECT_THROW(trace(300, { std::nan(""), 0, 0 }, 4), std::invalid_argument);
+  EXPECT_THROW(trace(std::nan(""), { 0, 0, 0 }, 4), std::invalid_argument);
+  EXPECT_THROW(trace(300, { 0, 0, 0 }, 0), std::invalid_argument);
+  EXPECT_THROW(trace(5000, { 0, 0, 0 }, 4), std::invalid_argument);
+  EXPECT_THROW(trace(-5000, { 0, 0, 0 }, 4), std::invalid_argument);
+  EXPECT_THROW(lacuna::FindSkullCenter(volume, 5000, {}, execution), std::invalid_argument);
+  lacuna::VoxelVolume flat = volume;
+  flat.Size[2] = 1;
+  EXPECT_THROW(lacuna::TraceSkull(flat, 300, { 0, 0, 0 }, 4, execution), std::invalid_argument);
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaShapeCovariance.h"
+
+#include <algorithm>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double KnotDistance = 0.05; // mm
+
+// Derivative of the correlation by the distance.
+double MaternSlope(double distance, double length)
+{
+  const double a = std::sqrt(5.0) * distance / length;
+  return -std::sqrt(5.0) / length * a * (1 + a) / 3 * std::exp(-a);
+}
+}
+
+ShapeCovariance::ShapeCovariance(const ShapeVariances& variances, double reach)
+  : KnotsPerMillimetre(1 / KnotDistance)
+{
+  const auto count = static_cast<std::size_t>(std::ceil(reach / KnotDistance)) + 2;
+  this->Direct.resize(count);
+  this->Across.resize(count);
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const double distance = static_cast<double>(k) * KnotDistance;
+    Knot direct{ 0, 0 };
+    Knot across{ 0, 0 };
+    for (std::size_t i = 0; i < ShapeLengths.size(); ++i)
+    {
+      const double value = MaternCorrelation(distance, ShapeLengths[i]);
+      const double slope = KnotDistance * MaternSlope(distance, ShapeLengths[i]);
+      direct.Value += (variances.Common[i] + variances.Own[i]) * value;
+      direct.Slope += (variances.Common[i] + variances.Own[i]) * slope;
+      across.Value += variances.Common[i] * value;
+      across.Slope += variances.Common[i] * slope;
+    }
+    this->Direct[k] = direct;
+    this->Across[k] = across;
+  }
+}
+}

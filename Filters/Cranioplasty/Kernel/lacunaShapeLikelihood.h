@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Which variances, and which plane of symmetry, make what is seen of a skull most likely.
+#ifndef lacunaShapeLikelihood_h
+#define lacunaShapeLikelihood_h
+
+#include "lacunaExecution.h"
+#include "lacunaShapeCovariance.h"
+#include "lacunaSymmetricFactorization.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace lacuna
+{
+/// Lower triangle of a Cholesky factorization in place (dpotrf). False when the matrix is not positive
+/// definite.
+bool FactorCholesky(SquareMatrix& matrix);
+/// Lower triangle of the inverse, in place, of the matrix that FactorCholesky factored (dpotri).
+void InvertCholesky(SquareMatrix& factors);
+/// Solves L X = X in place for columns of the matrix's size, one after the other (dtrtrs). columns is
+/// aligned as matrices are.
+void SolveCholeskyLower(const SquareMatrix& factors, double* columns, int count);
+/// The same for L^T x = x and one column.
+void SolveCholeskyUpper(const SquareMatrix& factors, double* column);
+
+/// Values at places of a skull: a sum of mean terms with unknown factors, of a ShapeCovariance, and of noise.
+/// Restricted likelihood: Patterson and Thompson, Biometrika 58, 1971.
+class ShapeLikelihood
+{
+public:
+  /// places: world mm. terms: place after place, as many for each. Memory: 8 n^2 doubles.
+  ShapeLikelihood(std::vector<Vec3> places, std::vector<double> values, std::vector<double> terms);
+
+  /// Sets the plane of symmetry. To be called first.
+  void SetPlane(const MirrorPlane& plane, Execution& execution);
+
+  /// Minus the logarithm of the restricted likelihood, but for a constant; infinite where the covariance is
+  /// not positive definite.
+  double Evaluate(const ShapeVariances& variances) const;
+
+  /// Raises the likelihood by multiplying variances, which stay positive. Each iteration raises it.
+  /// Zhou et al., MM algorithms for variance components models, J. Comput. Graph. Stat. 28, 2019.
+  /// Throws std::runtime_error when the places do not determine the factors of the mean terms.
+  ShapeVariances Estimate(const ShapeVariances& start, int iterations) const;
+
+  /// |error| / standard error of all places of a hole when none of them is used, for each of some holes:
+  /// lists of places. In the order of the holes.
+  std::vector<double> LeaveOut(
+    const ShapeVariances& variances, const std::vector<std::vector<int>>& holes) const;
+
+private:
+  std::size_t GetNumberOfTerms() const { return this->Terms.size() / this->Values.size(); }
+  // K, its factor in place, and the factor of [H y]^T K^-1 [H y]
+  bool Factor(const ShapeVariances& variances, SquareMatrix& matrix, SquareMatrix& small) const;
+  // P = K^-1 - K^-1 H (H^T K^-1 H)^-1 H^T K^-1 (lower triangle) and P y
+  void Project(
+    const ShapeVariances& variances, SquareMatrix& matrix, std::vector<double>& py) const;
+
+  std::vector<Vec3> Places;
+  std::vector<double> Values;
+  std::vector<double> Terms;
+  std::vector<SquareMatrix> Direct; ///< correlations at each length
+  std::vector<SquareMatrix> Across; ///< the same and those with the mirror image
+};
+}
+#endif

@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSkullRays.h"
+
+#include "lacunaSkullEllipsoid.h"
+#include "lacunaSymmetricFactorization.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double TypicalRadius = 90; // mm
+// The skull is between these, mm from its middle.
+constexpr double LeastRadius = 25;
+constexpr double MostRadius = 160;
+constexpr double MostThickness = 20; // within which crossings belong to one bone
+// A sound table: how far from the median of the rays around, their range, bone's thickness; mm.
+constexpr double MostStep = 2.5;
+constexpr double MostRange = 8;
+constexpr double SoundThickness = 14;
+// Of the fitted ellipsoid's radius: where a skull's bone is.
+constexpr double MostDeviation = 0.17;
+constexpr double LeastDefect = 100; // mm^2
+constexpr double LeastBorder = 0.6; // of a defect's border that is bone
+constexpr std::size_t LeastSound = 100;
+
+// Trilinear voxels along rays.
+template <class T>
+class RaySampler
+{
+public:
+  RaySampler(const VoxelVolume& volume, const T* voxels)
+    : Volume(volume)
+    , Voxels(voxels)
+    , WorldToIndex(volume.IndexToWorld.Inverse())
+  {
+  }
+
+  // NaN outside
+  double operator()(const Vec3& world) const
+  {
+    const Vec3 index = this->WorldToIndex.Point(world);
+    std::int64_t base = 0;
+    std::int64_t stride = 1;
+    std::int64_t next[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      const int last = this->Volume.Size[a] - 1;
+      if (!(index[a] >= 0 && index[a] <= last))
+      {
+        return NotANumber;
+      }
+      const int i = std::min(static_cast<int>(index[a]), last - 1);
+      f[a] = index[a] - i;
+      base += stride * i;
+      next[a] = stride;
+      stride *= this->Volume.Size[a];
+    }
+    const auto along = [&](std::int64_t at)
+    {
+      return (1 - f[0]) * static_cast<double>(this->Voxels[at]) +
+        f[0] * static_cast<double>(this->Voxels[at + next[0]]);
+    };
+    const auto plane = [&](std::int64_t at)
+    { return (1 - f[1]) * along(at) + f[1] * along(at + next[1]); };
+    return (1 - f[2]) * plane(base) + f[2] * plane(base + next[2]);
+  }
+
+private:
+  const VoxelVolume& Volume;
+  const T* Voxels;
+  Matrix4 WorldToIndex;
+};
+
+struct RayTables
+{
+  double Outer = NotANumber;
+  double Inner = NotANumber;
+  double Exit = 0;  ///< where the ray leaves the volume
+  bool Cut = false; ///< there is bone where it leaves
+};
+
+template <class T>
+RayTables FollowRay(
+  const RaySampler<T>& sample, const Vec3& center, const Vec3& direction, double level, double step)
+{
+  RayTables tables;
+  double before = NotANumber; // the value one step farther out
+  const int steps = static_cast<int>(std::ceil((MostRadius - LeastRadius) / step));
+  for (int s = steps; s >= 0; --s)
+  {
+    const double radius = LeastRadius + s * step;
+    if (radius < tables.Outer - MostThickness)
+    {
+      break;
+    }
+    const double value = sample(center + radius * direction);
+    const bool bone = value > level;
+    if (tables.Exit == 0 && !std::isnan(value))
+    {
+      tables.Exit = radius;
+      tables.Cut = bone;
+    }
+    const bool wasBone = before > level;
+    const double crossing = radius + step * (value - level) / (value - before);
+    if (bone && std::isnan(tables.Outer))
+    {
+      tables.Outer = std::isnan(before) ? radius : crossing;
+    }
+    if (!bone && wasBone)
+    {
+      tables.Inner = std::isnan(value) ? radius + step : crossing;
+    }
+    else if (bone)
+    {
+      tables.Inner = radius; // until it ends
+    }
+    before = value;
+  }
+  return tables;
+}
+
+// Evenly spread over the sphere, in the order of one axis: neighbours are found in a band.
+std::vector<Vec3> SpreadDirections(double spacing, const Matrix4& axes)
+{
+  const int count = static_cast<int>(std::ceil(4 * Pi / (spacing * spacing * 0.866)));
+  const double golden = Pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> directions;
+  for (int i = 0; i < count; ++i)
+  {
+    const double z = 1 - 2 * (i + 0.5) / count;
+    const double r = std::sqrt(1 - z * z);
+    directions.push_back((r * std::cos(golden * i)) * Normalized(axes.Column(0)) +
+      (r * std::sin(golden * i)) * Normalized(axes.Column(1)) + z * Normalized(axes.Column(2)));
+  }
+  return directions;
+}
+
+// For each direction those within some spacings, itself not. Directions are in the order of their third
+// coordinate in some frame, which falls evenly from 1 to -1.
+std::vector<std::vector<int>> FindNeighbors(const std::vector<Vec3>& directions, double angle)
+{
+  const auto n = static_cast<int>(directions.size());
+  const double cosine = std::cos(angle);
+  const int band = static_cast<int>(std::ceil(0.5 * n * angle)) + 1;
+  std::vector<std::vector<int>> neighbors(n);
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = std::max(0, i - band); j < std::min(n, i + band + 1); ++j)
+    {
+      if (j != i && Dot(directions[i], directions[j]) > cosine)
+      {
+        neighbors[i].push_back(j);
+      }
+    }
+  }
+  return neighbors;
+}
+
+// Connected rays of which all are chosen, the most first.
+template <class Chosen>
+std::vector<std::vector<int>> FindParts(
+  const std::vector<std::vector<int>>& neighbors, const Chosen& chosen)
+{
+  std::vector<std::vector<int>> parts;
+  std::vector<bool> seen(neighbors.size(), false);
+  for (std::size_t start = 0; start < neighbors.size(); ++start)
+  {
+    if (seen[start] || !chosen(static_cast<int>(start)))
+    {
+      continue;
+    }
+    std::vector<int> part{ static_cast<int>(start) };
+    seen[start] = true;
+    for (std::size_t k = 0; k < part.size(); ++k)
+    {
+      for (const int other : neighbors[part[k]])
+      {
+        if (!seen[other] && chosen(other))
+        {
+          seen[other] = true;
+          part.push_back(other);
+        }
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  std::stable_sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return parts;
+}
+
+// Of the sphere |x|^2 = 2 middle . x + rest through points, by least squares; x from a centre amid them.
+Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points)
+{
+  constexpr std::size_t count = 4;
+  SquareMatrix normal(count);
+  std::fill_n(normal.Column(0), count * count, 0.0);
+  std::vector<double> right(count, 0.0);
+  for (const Vec3& p : points)
+  {
+    const Vec3 x = (1 / TypicalRadius) * (p - center);
+    const double terms[count] = { x[0], x[1], x[2], 1 };
+    for (std::size_t j = 0; j < count; ++j)
+    {
+      right[j] += terms[j] * Dot(x, x);
+      for (std::size_t i = j; i < count; ++i)
+      {
+        normal.Column(j)[i] += terms[i] * terms[j];
+      }
+    }
+  }
+  SymmetricFactorization(std::move(normal)).Solve(right);
+  return center + (0.5 * TypicalRadius) * Vec3{ right[0], right[1], right[2] };
+}
+
+std::vector<Vec3> PointsOf(const SkullRays& rays, const std::vector<int>& chosen)
+{
+  std::vector<Vec3> points;
+  for (const int i : chosen)
+  {
+    points.push_back(rays.Center + rays.Outer[i] * rays.Directions[i]);
+  }
+  return points;
+}
+
+// Whether a ray meets bone that goes on smoothly all around it.
+bool IsSmooth(const SkullRays& rays, int ray, const std::vector<int>& around)
+{
+  const double here = rays.Outer[ray];
+  if (!(here - rays.Inner[ray] < SoundThickness) || around.empty())
+  {
+    return false;
+  }
+  std::vector<double> others{ here };
+  for (const int j : around)
+  {
+    if (std::isnan(rays.Outer[j]))
+    {
+      return false;
+    }
+    others.push_back(rays.Outer[j]);
+  }
+  std::sort(others.begin(), others.end());
+  return others.back() - others.front() < MostRange &&
+    std::abs(here - others[others.size() / 2]) < MostStep;
+}
+
+SkullRays Follow(const VoxelVolume& volume, double level, const Vec3& center, double spacing,
+  std::vector<RayTables>& tables, Execution& execution)
+{
+  CheckVolumeSize(volume.Size);
+  if (!std::isfinite(level) || !(spacing > 0.2 && spacing < 30))
+  {
+    throw std::invalid_argument(
+      "the level is not finite, or rays are not between 0.2 and 30 mm apart");
+  }
+  SkullRays rays;
+  rays.Center = center;
+  rays.Spacing = spacing / TypicalRadius;
+  rays.Directions = SpreadDirections(rays.Spacing, volume.IndexToWorld);
+  const auto n = static_cast<std::int64_t>(rays.Directions.size());
+  tables.resize(n);
+  const double step = std::clamp(0.5 * SmallestEdgeOf(volume.IndexToWorld), 0.1, 1.0);
+  DispatchScalars(volume.Type, volume.Voxels,
+    [&](const auto* voxels)
+    {
+      const RaySampler sample(volume, voxels);
+      if (std::isnan(sample(center)))
+      {
+        throw std::invalid_argument("the centre of the skull is outside the volume");
+      }
+      execution.For(n, 64,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            tables[i] = FollowRay(sample, center, rays.Directions[i], level, step);
+          }
+        });
+    });
+  for (const RayTables& t : tables)
+  {
+    rays.Outer.push_back(t.Cut ? NotANumber : t.Outer);
+    rays.Inner.push_back(t.Cut ? NotANumber : t.Inner);
+  }
+  return rays;
+}
+}
+
+//------------------------------------------------------------------------------
+SkullRays TraceSkull(
+  const VoxelVolume& volume, double level, const Vec3& center, double spacing, Execution& execution)
+{
+  std::vector<RayTables> tables;
+  SkullRays rays = Follow(volume, level, center, spacing, tables, execution);
+  const auto n = static_cast<int>(rays.Directions.size());
+  const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  std::vector<bool> smooth(n);
+  for (int i = 0; i < n; ++i)
+  {
+    smooth[i] = IsSmooth(rays, i, around[i]);
+  }
+  const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
+  if (parts.empty() || parts[0].size() < LeastSound)
+  {
+    throw std::invalid_argument(
+      "rays from the centre of the skull meet no smooth bone: check the level "
+      "and that the centre is inside the skull");
+  }
+  // The vault's ellipsoid, then without what lies beside it.
+  std::vector<int> vault = parts[0];
+  SkullEllipsoid ellipsoid(center, PointsOf(rays, vault));
+  for (const double limit : { MostDeviation, 0.7 * MostDeviation })
+  {
+    std::vector<int> inside;
+    std::copy_if(vault.begin(), vault.end(), std::back_inserter(inside),
+      [&](int i)
+      { return std::abs(rays.Outer[i] / ellipsoid.GetRadius(rays.Directions[i]) - 1) < limit; });
+    if (inside.size() < LeastSound)
+    {
+      break;
+    }
+    ellipsoid = SkullEllipsoid(center, PointsOf(rays, inside));
+  }
+  rays.Kinds.resize(n);
+  for (int i = 0; i < n; ++i)
+  {
+    const double radius = ellipsoid.GetRadius(rays.Directions[i]);
+    const bool there = std::abs(rays.Outer[i] / radius - 1) < MostDeviation;
+    rays.Kinds[i] = there                                  ? SkullRayKind::Rough
+      : tables[i].Cut || !(tables[i].Exit > 1.05 * radius) ? SkullRayKind::Unknown
+                                                           : SkullRayKind::Open;
+    if (!there)
+    {
+      rays.Outer[i] = rays.Inner[i] = NotANumber;
+    }
+  }
+  for (const int i : vault)
+  {
+    if (rays.Kinds[i] == SkullRayKind::Rough)
+    {
+      rays.Kinds[i] = SkullRayKind::Sound;
+    }
+  }
+  return rays;
+}
+
+//------------------------------------------------------------------------------
+Vec3 FindSkullCenter(
+  const VoxelVolume& volume, double level, const MirrorPlane& plane, Execution& execution)
+{
+  CheckVolumeSize(volume.Size);
+  struct Mean
+  {
+    double Count = 0;
+    Vec3 Sum{ 0, 0, 0 };
+    Mean& operator+=(const Mean& other)
+    {
+      this->Count += other.Count;
+      this->Sum = this->Sum + other.Sum;
+      return *this;
+    }
+  };
+  const Mean mean = DispatchScalars(volume.Type, volume.Voxels,
+    [&](const auto* voxels)
+    {
+      return SumOverBlocks<Mean>(execution, volume.Size[2], 1,
+        [&](std::int64_t first, std::int64_t)
+        {
+          Mean sum;
+          const auto* voxel = voxels + first * volume.Size[0] * volume.Size[1];
+          for (int j = 0; j < volume.Size[1]; ++j)
+          {
+            for (int i = 0; i < volume.Size[0]; ++i, ++voxel)
+            {
+              if (static_cast<double>(*voxel) >= level)
+              {
+                sum.Count += 1;
+                sum.Sum = sum.Sum +
+                  Vec3{ static_cast<double>(i), static_cast<double>(j),
+                    static_cast<double>(first) };
+              }
+            }
+          }
+          return sum;
+        });
+    });
+  if (!(mean.Count > 0))
+  {
+    throw std::invalid_argument("no voxel is at or above the level: there is no bone");
+  }
+  const auto project = [&](const Vec3& x) { return x - plane.Distance(x) * plane.Normal; };
+  Vec3 center = project(volume.IndexToWorld.Point((1 / mean.Count) * mean.Sum));
+  for (int pass = 0; pass < 3; ++pass)
+  {
+    const SkullRays rays = TraceSkull(volume, level, center, 8, execution);
+    std::vector<Vec3> points; // both sides: the middle of their sphere is on the plane
+    for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+    {
+      if (rays.Kinds[i] == SkullRayKind::Sound)
+      {
+        points.push_back(center + rays.Outer[i] * rays.Directions[i]);
+        points.push_back(plane.Reflect(points.back()));
+      }
+    }
+    center = project(FindSphereMiddle(center, points));
+  }
+  return center;
+}
+
+//------------------------------------------------------------------------------
+SoundBone GetSoundBone(const SkullRays& rays)
+{
+  SoundBone bone;
+  bone.Center = rays.Center;
+  for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+  {
+    if (rays.Kinds[i] == SkullRayKind::Sound)
+    {
+      bone.Directions.push_back(rays.Directions[i]);
+      bone.Outer.push_back(rays.Outer[i]);
+      bone.Thickness.push_back(rays.Outer[i] - rays.Inner[i]);
+    }
+  }
+  return bone;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
+{
+  const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  std::vector<std::vector<int>> parts =
+    FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; });
+  const double area = 0.866 * rays.Spacing * rays.Spacing * TypicalRadius * TypicalRadius;
+  const auto isNone = [&](const std::vector<int>& part)
+  {
+    if (static_cast<double>(part.size()) * area < LeastDefect)
+    {
+      return true;
+    }
+    std::vector<int> border;
+    for (const int i : part)
+    {
+      std::copy_if(around[i].begin(), around[i].end(), std::back_inserter(border),
+        [&](int j) { return rays.Kinds[j] != SkullRayKind::Open; });
+    }
+    std::sort(border.begin(), border.end());
+    border.erase(std::unique(border.begin(), border.end()), border.end());
+    const auto bone = std::count_if(border.begin(), border.end(),
+      [&](int j)
+      { return rays.Kinds[j] == SkullRayKind::Rough || rays.Kinds[j] == SkullRayKind::Sound; });
+    return static_cast<double>(bone) < LeastBorder * static_cast<double>(border.size());
+  };
+  parts.erase(std::remove_if(parts.begin(), parts.end(), isNone), parts.end());
+  return parts;
+}
+}

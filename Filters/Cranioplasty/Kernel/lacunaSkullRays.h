@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A skull as seen along rays from its middle: tables, sound bone, defects.
+#ifndef lacunaSkullRays_h
+#define lacunaSkullRays_h
+
+#include "lacunaExecution.h"
+#include "lacunaMirrorPlane.h"
+#include "lacunaSkullShape.h"
+#include "lacunaVector.h"
+#include "lacunaVoxelVolume.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lacuna
+{
+enum class SkullRayKind : std::uint8_t
+{
+  Sound,  ///< bone whose outer table is smooth, like that of the rays around
+  Rough,  ///< bone at a step, an edge or in the skull base
+  Open,   ///< no bone where the skull would have it
+  Unknown ///< the scan ends where the skull would be
+};
+
+/// One element a ray in each array.
+struct SkullRays
+{
+  Vec3 Center{ 0, 0, 0 };       ///< world mm
+  std::vector<Vec3> Directions; ///< unit, evenly spread
+  double Spacing = 0;           ///< of neighbours, radians
+  std::vector<double> Outer;    ///< mm from the centre; NaN without bone
+  std::vector<double> Inner;    ///< the same
+  std::vector<SkullRayKind> Kinds;
+};
+
+/// A point within the skull, on the plane: the middle of the sphere through its vault, found by rays from
+/// the mean of all voxels at or above the level. Throws std::invalid_argument when there is no such voxel.
+Vec3 FindSkullCenter(
+  const VoxelVolume& volume, double level, const MirrorPlane& plane, Execution& execution);
+
+/// Follows rays from the centre, spaced so many mm at 90 mm from it. The outer table is the outermost crossing
+/// of the level; the inner one the innermost within 20 mm of it (diploe below the level is bone). What is
+/// not skull (head holder, table) has to be below the level. Rays are the same in the volume's own axes: a
+/// volume that is turned by its direction matrix has the same tables. Throws std::invalid_argument for a
+/// centre outside the volume, for fewer than two voxels along an axis, or for too little bone.
+SkullRays TraceSkull(const VoxelVolume& volume, double level, const Vec3& center, double spacing,
+  Execution& execution);
+
+/// The sound rays.
+SoundBone GetSoundBone(const SkullRays& rays);
+
+/// Connected open rays, of at least 1 cm^2, with bone or unknown around them and bone around most of them: lists
+/// of rays, the largest first.
+std::vector<std::vector<int>> FindDefects(const SkullRays& rays);
+}
+#endif

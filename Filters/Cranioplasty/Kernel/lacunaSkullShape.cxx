@@ -1,0 +1,729 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lacunaSkullShape.h"
+
+#include "lacunaMemory.h"
+#include "lacunaShapeLikelihood.h"
+#include "lacunaSingleBlasThread.h"
+#include "lacunaSkullEllipsoid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lacuna
+{
+namespace
+{
+// Distances of nodes, mm: near the defect or its mirror image, what is added for each mm farther away, the
+// greatest.
+constexpr double NearSpacing = 3;
+constexpr double MirroredSpacing = 4;
+constexpr double NearBand = 10;
+constexpr double SpacingSlope = 0.1;
+constexpr double FarSpacing = 8;
+// Bone farther away tells of other shapes (face, skull base), and would make the vault seem rough.
+constexpr double Reach = 60;
+constexpr std::size_t LeastNodes = 200;
+constexpr std::size_t MostNodes = 5000;
+constexpr int FirstIterations = 20;
+constexpr int MoreIterations = 10;
+constexpr int LastIterations = 15;
+// Steps of the plane's search at 100 mm from the middle of the skull, mm.
+constexpr double PlaneSteps[][2] = { { 4, 2 }, { 1, 0.5 } };
+constexpr double PlaneArm = 100;
+constexpr std::size_t LeastHoles = 8; // virtual ones, of the third that is nearest
+// How far errors may be stretched by virtual holes.
+constexpr double LeastCalibration = 0.4;
+constexpr double MostCalibration = 3;
+constexpr std::int64_t TargetBlock = 64;
+constexpr std::int64_t MeanBlock = 256;
+constexpr double Normal95 = 1.959963984540054;
+
+using AlignedNumbers = std::unique_ptr<double[], FreeAligned>;
+
+AlignedNumbers MakeNumbers(std::size_t count)
+{
+  return AlignedNumbers(new (std::align_val_t{ 64 }) double[count]);
+}
+
+// Mean terms: 1, and of the outer table also the direction.
+std::size_t CountTerms(bool withDirection)
+{
+  return withDirection ? 4 : 1;
+}
+
+void AppendTerms(const Vec3& direction, bool withDirection, std::vector<double>& terms)
+{
+  terms.push_back(1);
+  if (withDirection)
+  {
+    terms.insert(terms.end(), direction.data(), direction.data() + 3);
+  }
+}
+
+// Numbers 0 to count - 1 in an order that is the same everywhere (std::shuffle is not).
+std::vector<int> Shuffled(std::size_t count)
+{
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(1);
+  for (std::size_t i = count; i > 1; --i)
+  {
+    std::swap(order[i - 1], order[random() % i]);
+  }
+  return order;
+}
+
+double SquaredDistance(const Vec3& a, const Vec3& b)
+{
+  const Vec3 d = a - b;
+  return Dot(d, d);
+}
+
+void Check(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane)
+{
+  const std::size_t n = bone.Directions.size();
+  if (bone.Outer.size() != n || bone.Thickness.size() != n)
+  {
+    throw std::invalid_argument("sound bone has " + std::to_string(n) + " directions, " +
+      std::to_string(bone.Outer.size()) + " radii and " + std::to_string(bone.Thickness.size()) +
+      " thicknesses: give one of each for a ray");
+  }
+  const auto isUnit = [](const Vec3& d) { return std::abs(Norm(d) - 1) < 1e-6; };
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    if (!isUnit(bone.Directions[i]) || !(bone.Outer[i] > 0) || !std::isfinite(bone.Outer[i]) ||
+      !(bone.Thickness[i] > 0) || !(bone.Thickness[i] < bone.Outer[i]))
+    {
+      throw std::invalid_argument("ray " + std::to_string(i) +
+        " of the sound bone has no unit direction, or no thickness between 0 and its radius: leave "
+        "out rays without bone");
+    }
+  }
+  if (!IsFinite(bone.Center) || !(std::abs(Norm(plane.Normal) - 1) < 1e-6) ||
+    !std::isfinite(plane.Offset))
+  {
+    throw std::invalid_argument("the centre or the plane of symmetry is not finite");
+  }
+  if (defect.empty() || !std::all_of(defect.begin(), defect.end(), isUnit))
+  {
+    throw std::invalid_argument("the defect has no directions, or one that is no unit vector");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+// Where directions are in space: on the ellipsoid that fits the skull and its mirror image.
+struct SkullShape::Base
+{
+  Base(const SoundBone& bone, const MirrorPlane& plane)
+    : Center(bone.Center)
+    , Ellipsoid(bone.Center, BothSides(bone, plane))
+  {
+    std::vector<double> radii = bone.Outer;
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    this->Typical = *middle;
+  }
+
+  static std::vector<Vec3> BothSides(const SoundBone& bone, const MirrorPlane& plane)
+  {
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < bone.Outer.size(); ++i)
+    {
+      points.push_back(bone.Center + bone.Outer[i] * bone.Directions[i]);
+      points.push_back(plane.Reflect(points.back()));
+    }
+    return points;
+  }
+
+  // Kept near the typical radius: where there is no bone the ellipsoid may be open.
+  double GetRadius(const Vec3& direction) const
+  {
+    const double radius = this->Ellipsoid.GetRadius(direction);
+    return std::isnan(radius) ? 1.5 * this->Typical
+                              : std::clamp(radius, 0.5 * this->Typical, 1.5 * this->Typical);
+  }
+  Vec3 GetPlace(const Vec3& direction) const
+  {
+    return this->Center + this->GetRadius(direction) * direction;
+  }
+  // No two places, nor their mirror images, are farther apart.
+  double GetReach(const MirrorPlane& plane) const
+  {
+    return 3 * this->Typical + 2 * std::abs(plane.Distance(this->Center));
+  }
+
+  Vec3 Center;
+  SkullEllipsoid Ellipsoid;
+  double Typical = 0;
+};
+
+//------------------------------------------------------------------------------
+// One function of the direction.
+struct SkullShape::Field
+{
+  // directions and values of the nodes
+  Field(const std::vector<Vec3>& directions, std::vector<double> values, bool withDirection,
+    const Base& base)
+    : WithDirection(withDirection)
+    , Values(std::move(values))
+  {
+    for (const Vec3& d : directions)
+    {
+      this->Places.push_back(base.GetPlace(d));
+      AppendTerms(d, withDirection, this->Terms);
+    }
+  }
+
+  ShapeLikelihood MakeLikelihood(const std::vector<int>& subset) const
+  {
+    const std::size_t q = CountTerms(this->WithDirection);
+    std::vector<Vec3> places;
+    std::vector<double> values;
+    std::vector<double> terms;
+    for (const int node : subset)
+    {
+      places.push_back(this->Places[node]);
+      values.push_back(this->Values[node]);
+      terms.insert(
+        terms.end(), this->Terms.begin() + node * q, this->Terms.begin() + (node + 1) * q);
+    }
+    return ShapeLikelihood(std::move(places), std::move(values), std::move(terms));
+  }
+
+  // Variances of values that vary by some mm: a start.
+  void Start()
+  {
+    double mean = 0;
+    double square = 0;
+    for (const double v : this->Values)
+    {
+      mean += v / static_cast<double>(this->Values.size());
+      square += v * v / static_cast<double>(this->Values.size());
+    }
+    const double variance = std::max(square - mean * mean, 0.01);
+    this->Variances.Common = { 0.02 * variance, 0.06 * variance, 1.0 * variance, 50 * variance };
+    this->Variances.Own = this->Variances.Common;
+    this->Variances.Noise = 0.005 * variance;
+  }
+
+  // The errors that virtual holes have, beside the predicted ones.
+  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<std::vector<int>>& holes)
+  {
+    std::vector<double> ratios = likelihood.LeaveOut(this->Variances, holes);
+    if (ratios.empty())
+    {
+      return;
+    }
+    const auto place = ratios.begin() + static_cast<std::ptrdiff_t>(0.95 * (ratios.size() - 1));
+    std::nth_element(ratios.begin(), place, ratios.end());
+    this->Calibration = std::clamp(*place / Normal95, LeastCalibration, MostCalibration);
+  }
+
+  void Solve(const MirrorPlane& plane, double reach)
+  {
+    const std::size_t n = this->Places.size();
+    const std::size_t q = CountTerms(this->WithDirection);
+    this->Covariance = std::make_unique<ShapeCovariance>(this->Variances, reach);
+    this->Factors = std::make_unique<SquareMatrix>(n);
+    for (std::size_t j = 0; j < n; ++j)
+    {
+      const Vec3 mirrored = plane.Reflect(this->Places[j]);
+      double* column = this->Factors->Column(j);
+      for (std::size_t i = j; i < n; ++i)
+      {
+        column[i] = (*this->Covariance)(this->Places[i], this->Places[j], mirrored);
+      }
+      column[j] += this->Variances.Noise;
+    }
+    if (!FactorCholesky(*this->Factors))
+    {
+      throw std::runtime_error("the equations of the skull's shape cannot be solved: points of the "
+                               "sound bone coincide");
+    }
+    // [L^-1 H, L^-1 y]
+    this->Means = MakeNumbers(n * (q + 1));
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      for (std::size_t k = 0; k < q; ++k)
+      {
+        this->Means[k * n + i] = this->Terms[i * q + k];
+      }
+      this->Means[q * n + i] = this->Values[i];
+    }
+    SolveCholeskyLower(*this->Factors, this->Means.get(), static_cast<int>(q + 1));
+    SquareMatrix gram(q);
+    std::vector<double> factors(q);
+    const auto dot = [&](std::size_t k, std::size_t m)
+    {
+      return std::inner_product(
+        &this->Means[k * n], &this->Means[k * n] + n, &this->Means[m * n], 0.0);
+    };
+    for (std::size_t k = 0; k < q; ++k)
+    {
+      factors[k] = dot(k, q);
+      for (std::size_t m = k; m < q; ++m)
+      {
+        gram.Column(k)[m] = dot(k, m);
+      }
+    }
+    if (!FactorCholesky(gram))
+    {
+      throw std::runtime_error("the sound bone does not determine the mean shape of the skull");
+    }
+    InvertCholesky(gram);
+    this->MeanCovariance.assign(q * q, 0.0);
+    this->MeanFactors.assign(q, 0.0);
+    for (std::size_t k = 0; k < q; ++k)
+    {
+      for (std::size_t m = 0; m < q; ++m)
+      {
+        this->MeanCovariance[k * q + m] = gram.Column(std::min(k, m))[std::max(k, m)];
+        this->MeanFactors[k] += this->MeanCovariance[k * q + m] * factors[m];
+      }
+    }
+    // weights K^-1 (y - H b)
+    this->Weights = MakeNumbers(n);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      this->Weights[i] = this->Means[q * n + i];
+      for (std::size_t k = 0; k < q; ++k)
+      {
+        this->Weights[i] -= this->MeanFactors[k] * this->Means[k * n + i];
+      }
+    }
+    SolveCholeskyUpper(*this->Factors, this->Weights.get());
+  }
+
+  // Covariances of a place with all nodes.
+  void GetCovariances(const Vec3& place, const MirrorPlane& plane, double* covariances) const
+  {
+    const Vec3 mirrored = plane.Reflect(place);
+    for (std::size_t i = 0; i < this->Places.size(); ++i)
+    {
+      covariances[i] = (*this->Covariance)(this->Places[i], place, mirrored);
+    }
+  }
+
+  double GetMean(const Vec3& direction, const double* covariances) const
+  {
+    std::vector<double> terms;
+    AppendTerms(direction, this->WithDirection, terms);
+    const double mean =
+      std::inner_product(terms.begin(), terms.end(), this->MeanFactors.begin(), 0.0);
+    return std::inner_product(
+      covariances, covariances + this->Places.size(), this->Weights.get(), mean);
+  }
+
+  // solved: L^-1 covariances
+  double GetError(
+    const Vec3& direction, const Vec3& place, const MirrorPlane& plane, const double* solved) const
+  {
+    const std::size_t n = this->Places.size();
+    const std::size_t q = CountTerms(this->WithDirection);
+    std::vector<double> rest;
+    AppendTerms(direction, this->WithDirection, rest);
+    for (std::size_t k = 0; k < q; ++k)
+    {
+      rest[k] -= std::inner_product(solved, solved + n, &this->Means[k * n], 0.0);
+    }
+    double variance = (*this->Covariance)(place, place, plane.Reflect(place)) +
+      this->Variances.Noise - std::inner_product(solved, solved + n, solved, 0.0);
+    for (std::size_t k = 0; k < q; ++k)
+    {
+      for (std::size_t m = 0; m < q; ++m)
+      {
+        variance += rest[k] * this->MeanCovariance[k * q + m] * rest[m];
+      }
+    }
+    return this->Calibration * std::sqrt(std::max(variance, 0.0));
+  }
+
+  bool WithDirection;
+  std::vector<Vec3> Places;
+  std::vector<double> Values;
+  std::vector<double> Terms;
+  ShapeVariances Variances;
+  double Calibration = 1;
+  std::unique_ptr<ShapeCovariance> Covariance;
+  std::unique_ptr<SquareMatrix> Factors;
+  AlignedNumbers Means;
+  AlignedNumbers Weights;
+  std::vector<double> MeanFactors;
+  std::vector<double> MeanCovariance;
+};
+
+namespace
+{
+// Turns the plane about the middle of the places, and shifts it, to the greatest likelihood: along one
+// unknown after the other, to the vertex of the parabola through three values.
+MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& variances,
+  const MirrorPlane& start, const Vec3& middle, const Vec3& ahead, const double (&steps)[2],
+  Execution& execution)
+{
+  // turns that depend on the skull alone and not on the axes of the coordinates
+  const Vec3 first = Normalized(Cross(start.Normal, ahead));
+  const Vec3 second = Cross(start.Normal, first);
+  const double distance = start.Distance(middle);
+  const auto planeOf = [&](const Vec3& way)
+  {
+    MirrorPlane plane;
+    plane.Normal =
+      Normalized(start.Normal + (way[0] / PlaneArm) * first + (way[1] / PlaneArm) * second);
+    plane.Offset = Dot(plane.Normal, middle) - distance + way[2];
+    return plane;
+  };
+  const auto costOf = [&](const Vec3& way)
+  {
+    likelihood.SetPlane(planeOf(way), execution);
+    return likelihood.Evaluate(variances);
+  };
+  Vec3 best{ 0, 0, 0 };
+  double cost = costOf(best);
+  int done = 0;
+  for (const double step : steps)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      Vec3 trial = best;
+      trial[i] = best[i] - step;
+      const double before = costOf(trial);
+      trial[i] = best[i] + step;
+      const double after = costOf(trial);
+      const double curvature = before + after - 2 * cost;
+      trial[i] = best[i] +
+        (curvature > 0       ? std::clamp(0.5 * (before - after) / curvature, -2.0, 2.0)
+            : before < after ? -1.0
+                             : 1.0) *
+          step;
+      const double there = costOf(trial);
+      if (there < cost)
+      {
+        best = trial;
+        cost = there;
+      }
+      execution.Report(++done / 6.0);
+    }
+  }
+  const MirrorPlane plane = planeOf(best);
+  likelihood.SetPlane(plane, execution);
+  return plane;
+}
+
+// Lists of places of sound bone, each of the defect's size: those that are nearest to its middle or to the
+// mirror image of it, since a skull is rougher in some regions than in others.
+std::vector<std::vector<int>> FindVirtualHoles(
+  const std::vector<Vec3>& places, double radius, const Vec3& defect, const MirrorPlane& plane)
+{
+  struct Hole
+  {
+    double Distance;
+    std::vector<int> Places;
+  };
+  std::vector<Hole> holes;
+  std::vector<Vec3> middles;
+  const Vec3 mirrored = plane.Reflect(defect);
+  for (const Vec3& middle : places)
+  {
+    if (std::any_of(middles.begin(), middles.end(),
+          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
+    {
+      continue;
+    }
+    std::vector<int> hole;
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      if (SquaredDistance(places[i], middle) < radius * radius)
+      {
+        hole.push_back(static_cast<int>(i));
+      }
+    }
+    middles.push_back(middle);
+    if (hole.size() >= 3 && 2 * hole.size() < places.size())
+    {
+      holes.push_back(
+        { std::min(SquaredDistance(middle, defect), SquaredDistance(middle, mirrored)),
+          std::move(hole) });
+    }
+  }
+  std::stable_sort(holes.begin(), holes.end(),
+    [](const Hole& a, const Hole& b) { return a.Distance < b.Distance; });
+  std::vector<std::vector<int>> nearest;
+  for (std::size_t i = 0; i < holes.size() && i < std::max(LeastHoles, holes.size() / 3); ++i)
+  {
+    nearest.push_back(std::move(holes[i].Places));
+  }
+  return nearest;
+}
+}
+
+//------------------------------------------------------------------------------
+SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
+  const MirrorPlane& plane, Execution& execution, std::size_t likelihoodNodes)
+  : Plane(plane)
+{
+  likelihoodNodes = std::max(likelihoodNodes, LeastNodes);
+  Check(bone, defect, plane);
+  if (bone.Outer.size() < LeastNodes)
+  {
+    throw std::invalid_argument("only " + std::to_string(bone.Outer.size()) +
+      " rays meet sound bone: at least " + std::to_string(LeastNodes) + " are needed");
+  }
+  const Execution::NestedStages nested(execution);
+  const SingleBlasThread single(std::min(execution.GetNumberOfThreads(), 2));
+  this->Ellipsoid = std::make_unique<Base>(bone, plane);
+  this->ChooseNodes(bone, defect);
+  if (this->Nodes.size() < LeastNodes)
+  {
+    throw std::invalid_argument(
+      "the sound bone is too small: " + std::to_string(this->Nodes.size()) +
+      " places some mm apart, at least " + std::to_string(LeastNodes) + " are needed");
+  }
+  RequireMemory("the shape of the skull from " + std::to_string(this->Nodes.size()) + " points",
+    2.0 * SquareMatrix::GetBytes(this->Nodes.size()) +
+      18.0 * SquareMatrix::GetBytes(likelihoodNodes));
+
+  std::vector<Vec3> directions;
+  std::vector<double> thickness;
+  for (const int node : this->Nodes)
+  {
+    directions.push_back(bone.Directions[node]);
+    thickness.push_back(bone.Thickness[node]);
+  }
+  this->LeastThickness = *std::min_element(thickness.begin(), thickness.end());
+  const auto makeOuter = [&]
+  {
+    std::vector<double> heights;
+    for (const int node : this->Nodes)
+    {
+      heights.push_back(bone.Outer[node] - this->Ellipsoid->GetRadius(bone.Directions[node]));
+    }
+    return std::make_unique<Field>(directions, std::move(heights), true, *this->Ellipsoid);
+  };
+  std::vector<int> subset = Shuffled(this->Nodes.size());
+  subset.resize(std::min(subset.size(), likelihoodNodes));
+
+  // the plane, by the outer table over an ellipsoid that is symmetric about it
+  ShapeVariances variances;
+  for (int round = 0; round < 2; ++round)
+  {
+    execution.SetStage(0.2 * round, 0.2 * (round + 1));
+    this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
+    const std::unique_ptr<Field> field = makeOuter();
+    if (round == 0)
+    {
+      field->Start();
+      variances = field->Variances;
+    }
+    Vec3 middle{ 0, 0, 0 };
+    for (const Vec3& place : field->Places)
+    {
+      middle = middle + (1.0 / static_cast<double>(this->Nodes.size())) * place;
+    }
+    ShapeLikelihood likelihood = field->MakeLikelihood(subset);
+    likelihood.SetPlane(this->Plane, execution);
+    variances = likelihood.Estimate(variances, round == 0 ? FirstIterations : MoreIterations);
+    this->Plane = RefinePlane(likelihood, variances, this->Plane, middle,
+      field->Places.front() - bone.Center, PlaneSteps[round], execution);
+  }
+
+  // both functions, side by side
+  execution.SetStage(0.4, 1);
+  this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
+  this->Outer = makeOuter();
+  this->Outer->Variances = variances;
+  this->Thickness =
+    std::make_unique<Field>(directions, std::move(thickness), false, *this->Ellipsoid);
+  this->Thickness->Start();
+  // a cap of the defect's extent
+  Vec3 axis{ 0, 0, 0 };
+  for (const Vec3& d : defect)
+  {
+    axis = axis + d;
+  }
+  axis = Normalized(axis);
+  double square = 0; // of a uniform disc: half its radius squared
+  for (const Vec3& d : defect)
+  {
+    square += SquaredDistance(d, axis) / static_cast<double>(defect.size());
+  }
+  const double radius = this->Ellipsoid->Typical * std::sqrt(2 * square);
+  std::vector<Vec3> places;
+  for (const int node : subset)
+  {
+    places.push_back(this->Outer->Places[node]);
+  }
+  const std::vector<std::vector<int>> holes =
+    FindVirtualHoles(places, radius, this->Ellipsoid->GetPlace(axis), this->Plane);
+  Field* const fields[] = { this->Outer.get(), this->Thickness.get() };
+  execution.For(2, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      ThreadExecution serial(1);
+      for (std::int64_t i = begin; i < end; ++i)
+      {
+        {
+          ShapeLikelihood likelihood = fields[i]->MakeLikelihood(subset);
+          likelihood.SetPlane(this->Plane, serial);
+          fields[i]->Variances = likelihood.Estimate(
+            fields[i]->Variances, i == 0 ? LastIterations : FirstIterations + LastIterations);
+          fields[i]->Calibrate(likelihood, holes);
+        }
+        fields[i]->Solve(this->Plane, this->Ellipsoid->GetReach(this->Plane));
+      }
+    });
+}
+
+SkullShape::~SkullShape() = default;
+
+const ShapeVariances& SkullShape::GetOuterVariances() const
+{
+  return this->Outer->Variances;
+}
+
+const ShapeVariances& SkullShape::GetThicknessVariances() const
+{
+  return this->Thickness->Variances;
+}
+
+double SkullShape::GetOuterCalibration() const
+{
+  return this->Outer->Calibration;
+}
+
+double SkullShape::GetThicknessCalibration() const
+{
+  return this->Thickness->Calibration;
+}
+
+//------------------------------------------------------------------------------
+void SkullShape::ChooseNodes(const SoundBone& bone, const std::vector<Vec3>& defect)
+{
+  std::vector<Vec3> missing;
+  std::vector<Vec3> mirrored;
+  for (const Vec3& d : defect)
+  {
+    missing.push_back(this->Ellipsoid->GetPlace(d));
+    mirrored.push_back(this->Plane.Reflect(missing.back()));
+  }
+  const auto distanceTo = [](const std::vector<Vec3>& points, const Vec3& x)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : points)
+    {
+      least = std::min(least, SquaredDistance(p, x));
+    }
+    return std::sqrt(least);
+  };
+  std::vector<Vec3> places;
+  std::vector<double> spacing;
+  std::vector<bool> reached;
+  for (const Vec3& d : bone.Directions)
+  {
+    places.push_back(this->Ellipsoid->GetPlace(d));
+    const double away = std::max(0.0, distanceTo(missing, places.back()) - NearBand);
+    const double awayMirrored = std::max(0.0, distanceTo(mirrored, places.back()) - NearBand);
+    reached.push_back(std::min(away, awayMirrored) < Reach);
+    spacing.push_back(std::min({ NearSpacing + SpacingSlope * away,
+      MirroredSpacing + SpacingSlope * awayMirrored, FarSpacing }));
+  }
+  const std::vector<int> order = Shuffled(places.size());
+  for (double factor = 1;; factor *= 1.2)
+  {
+    this->Nodes.clear();
+    for (const int i : order)
+    {
+      const double square = factor * factor * spacing[i] * spacing[i];
+      if (reached[i] &&
+        std::none_of(this->Nodes.begin(), this->Nodes.end(),
+          [&](int node) { return SquaredDistance(places[node], places[i]) < square; }))
+      {
+        this->Nodes.push_back(i);
+      }
+    }
+    if (this->Nodes.size() <= MostNodes)
+    {
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<SkullEstimate> SkullShape::Predict(
+  const std::vector<Vec3>& directions, Execution& execution) const
+{
+  return this->Predict(directions, true, execution);
+}
+
+std::vector<SkullEstimate> SkullShape::PredictSurfaces(
+  const std::vector<Vec3>& directions, Execution& execution) const
+{
+  return this->Predict(directions, false, execution);
+}
+
+std::vector<SkullEstimate> SkullShape::Predict(
+  const std::vector<Vec3>& directions, bool errors, Execution& execution) const
+{
+  for (const Vec3& d : directions)
+  {
+    if (!(std::abs(Norm(d) - 1) < 1e-6))
+    {
+      throw std::invalid_argument("a direction of the skull's shape is no unit vector");
+    }
+  }
+  const SingleBlasThread single(execution.GetNumberOfThreads());
+  std::vector<SkullEstimate> estimates(directions.size());
+  const std::size_t n = this->Nodes.size();
+  const auto count = static_cast<std::int64_t>(directions.size());
+  const std::int64_t block = errors ? TargetBlock : MeanBlock;
+  // blocks that are the same however the range is divided: BLAS sums by their size
+  execution.For((count + block - 1) / block, 1,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      const AlignedNumbers covariances = MakeNumbers(n * (errors ? block : 1));
+      for (std::int64_t b = begin; b < end; ++b)
+      {
+        const std::int64_t first = b * block;
+        const std::int64_t last = std::min(count, first + block);
+        for (const Field* field : { this->Outer.get(), this->Thickness.get() })
+        {
+          const bool outer = field == this->Outer.get();
+          for (std::int64_t t = first; t < last; ++t)
+          {
+            double* column = covariances.get() + (errors ? (t - first) * n : 0);
+            field->GetCovariances(this->Ellipsoid->GetPlace(directions[t]), this->Plane, column);
+            const double mean = field->GetMean(directions[t], column);
+            if (outer)
+            {
+              estimates[t].Outer = this->Ellipsoid->GetRadius(directions[t]) + mean;
+            }
+            else
+            {
+              estimates[t].Thickness = std::max(mean, this->LeastThickness);
+            }
+          }
+          if (!errors)
+          {
+            continue;
+          }
+          SolveCholeskyLower(*field->Factors, covariances.get(), static_cast<int>(last - first));
+          for (std::int64_t t = first; t < last; ++t)
+          {
+            (outer ? estimates[t].OuterError : estimates[t].ThicknessError) =
+              field->GetError(directions[t], this->Ellipsoid->GetPlace(directions[t]), this->Plane,
+                covariances.get() + (t - first) * n);
+          }
+        }
+      }
+    });
+  return estimates;
+}
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Outer and inner surface of the missing part of a skull, from all sound bone, with a standard error.
+#ifndef lacunaSkullShape_h
+#define lacunaSkullShape_h
+
+#include "lacunaExecution.h"
+#include "lacunaMirrorPlane.h"
+#include "lacunaShapeCovariance.h"
+#include "lacunaVector.h"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace lacuna
+{
+/// What is known of a skull, along rays from a centre within it. One element a ray in each array.
+struct SoundBone
+{
+  Vec3 Center{ 0, 0, 0 };        ///< world mm, within 10 mm of the plane of symmetry
+  std::vector<Vec3> Directions;  ///< unit
+  std::vector<double> Outer;     ///< mm from the centre to the outer table
+  std::vector<double> Thickness; ///< mm from there to the inner table
+};
+
+/// The skull along one ray, mm.
+struct SkullEstimate
+{
+  double Outer = 0;      ///< from the centre to the outer table
+  double OuterError = 0; ///< standard error
+  double Thickness = 0;
+  double ThicknessError = 0; ///< standard error
+};
+
+/// A Gaussian process (universal kriging) of two functions of the direction: the radius of the outer table
+/// over an ellipsoid, and the thickness. Each is a mean, a part that both sides of the plane of symmetry
+/// share, and a part of its own (ShapeCovariance); distances are those on the ellipsoid. So the other side
+/// counts as far as this skull is symmetric, and fades out at the midline. The variances, and the
+/// last turn and shift of the plane, are those of the greatest restricted likelihood. The standard errors are
+/// calibrated by virtual holes: sound bone of the defect's size that is left out and predicted.
+///
+/// Results depend neither on the frame of the coordinates (but for rounding) nor on the number of threads.
+/// Cressie, Statistics for Spatial Data, 1993, section 3.4 (universal kriging).
+class SkullShape
+{
+public:
+  /// defect: unit directions that cover what is missing, some mm apart. Nodes are dense near them and near
+  /// their mirror images. plane: of best symmetry, within some 5 degrees and 5 mm. Throws
+  /// std::invalid_argument when arrays differ in length or have elements that are not finite or not positive,
+  /// or when too little bone is given (fewer than 200 nodes remain). likelihoodNodes: so many of the nodes, at
+  /// least 200, decide on variances and plane, in a time of their third power (5 s of one core for 800).
+  SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane,
+    Execution& execution, std::size_t likelihoodNodes = 800);
+  ~SkullShape();
+  SkullShape(const SkullShape&) = delete;
+  SkullShape& operator=(const SkullShape&) = delete;
+
+  /// Along unit directions. Takes some n^2 products for each, with n nodes: with 3000 nodes about a
+  /// millisecond; errors vary slowly, so that a coarse set of directions serves for these. A thickness
+  /// is never less than the least of the sound bone. Throws std::invalid_argument for a direction
+  /// that is no unit vector.
+  std::vector<SkullEstimate> Predict(
+    const std::vector<Vec3>& directions, Execution& execution) const;
+  /// The same without standard errors (0), some hundred times quicker.
+  std::vector<SkullEstimate> PredictSurfaces(
+    const std::vector<Vec3>& directions, Execution& execution) const;
+
+  /// The refined plane of symmetry.
+  const MirrorPlane& GetPlane() const { return this->Plane; }
+  std::size_t GetNumberOfNodes() const { return this->Nodes.size(); }
+  /// mm^2
+  const ShapeVariances& GetOuterVariances() const;
+  const ShapeVariances& GetThicknessVariances() const;
+  /// Factors of the standard errors from virtual holes.
+  double GetOuterCalibration() const;
+  double GetThicknessCalibration() const;
+
+private:
+  struct Base;
+  struct Field;
+  std::vector<SkullEstimate> Predict(
+    const std::vector<Vec3>& directions, bool errors, Execution& execution) const;
+  void ChooseNodes(const SoundBone& bone, const std::vector<Vec3>& defect);
+
+  MirrorPlane Plane;
+  std::unique_ptr<Base> Ellipsoid;
+  std::vector<int> Nodes; ///< rays of the bone
+  double LeastThickness = 0;
+  std::unique_ptr<Field> Outer;
+  std::unique_ptr<Field> Thickness;
+};
+}
+#endif
