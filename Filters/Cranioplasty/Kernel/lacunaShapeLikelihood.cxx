@@ -296,15 +296,16 @@ ShapeVariances ShapeLikelihood::Estimate(const ShapeVariances& start, int iterat
   return v;
 }
 
-std::vector<double> ShapeLikelihood::LeaveOut(
+std::vector<std::vector<double>> ShapeLikelihood::LeaveOut(
   const ShapeVariances& variances, const std::vector<std::vector<int>>& holes) const
 {
   SquareMatrix p(this->Places.size());
   std::vector<double> py;
   this->Project(variances, p, py);
-  std::vector<double> ratios;
-  for (const std::vector<int>& hole : holes)
+  std::vector<std::vector<double>> ratios(holes.size());
+  for (std::size_t h = 0; h < holes.size(); ++h)
   {
+    const std::vector<int>& hole = holes[h];
     // errors P_hh^-1 (P y)_h with the covariance P_hh^-1
     const std::size_t size = hole.size();
     SquareMatrix block(size);
@@ -317,7 +318,7 @@ std::vector<double> ShapeLikelihood::LeaveOut(
     }
     if (!FactorCholesky(block))
     {
-      continue; // without these the others do not determine the mean
+      continue;
     }
     InvertCholesky(block);
     for (std::size_t j = 0; j < size; ++j)
@@ -327,7 +328,7 @@ std::vector<double> ShapeLikelihood::LeaveOut(
       {
         error += block.Column(std::min(i, j))[std::max(i, j)] * py[hole[i]];
       }
-      ratios.push_back(std::abs(error) / std::sqrt(block.Column(j)[j]));
+      ratios[h].push_back(std::abs(error) / std::sqrt(block.Column(j)[j]));
     }
   }
   return ratios;

@@ -44,9 +44,10 @@ public:
   /// Throws std::runtime_error when the places do not determine the factors of the mean terms.
   ShapeVariances Estimate(const ShapeVariances& start, int iterations) const;
 
-  /// |error| / standard error of all places of a hole when none of them is used, for each of some holes:
-  /// lists of places. In the order of the holes.
-  std::vector<double> LeaveOut(
+  /// |error| / standard error at each place of a hole when none of its places is used, for each of some
+  /// holes, which are lists of places. An empty list for a hole without which the others do not determine
+  /// the mean.
+  std::vector<std::vector<double>> LeaveOut(
     const ShapeVariances& variances, const std::vector<std::vector<int>>& holes) const;
 
 private:

@@ -30,7 +30,7 @@ constexpr double SoundThickness = 14;
 // Of the fitted ellipsoid's radius: where a skull's bone is.
 constexpr double MostDeviation = 0.17;
 constexpr double LeastDefect = 100; // mm^2
-constexpr double LeastBorder = 0.6; // of a defect's border that is bone
+constexpr double LeastBorder = 0.4; // of a defect's border that is sound
 constexpr std::size_t LeastSound = 100;
 
 // Trilinear voxels along rays.
@@ -441,6 +441,7 @@ SoundBone GetSoundBone(const SkullRays& rays)
 std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
 {
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  const std::vector<std::vector<int>> wide = FindNeighbors(rays.Directions, 4 * rays.Spacing);
   std::vector<std::vector<int>> parts =
     FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; });
   const double area = 0.866 * rays.Spacing * rays.Spacing * TypicalRadius * TypicalRadius;
@@ -453,15 +454,14 @@ std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
     std::vector<int> border;
     for (const int i : part)
     {
-      std::copy_if(around[i].begin(), around[i].end(), std::back_inserter(border),
+      std::copy_if(wide[i].begin(), wide[i].end(), std::back_inserter(border),
         [&](int j) { return rays.Kinds[j] != SkullRayKind::Open; });
     }
     std::sort(border.begin(), border.end());
     border.erase(std::unique(border.begin(), border.end()), border.end());
-    const auto bone = std::count_if(border.begin(), border.end(),
-      [&](int j)
-      { return rays.Kinds[j] == SkullRayKind::Rough || rays.Kinds[j] == SkullRayKind::Sound; });
-    return static_cast<double>(bone) < LeastBorder * static_cast<double>(border.size());
+    const auto sound = std::count_if(
+      border.begin(), border.end(), [&](int j) { return rays.Kinds[j] == SkullRayKind::Sound; });
+    return static_cast<double>(sound) < LeastBorder * static_cast<double>(border.size());
   };
   parts.erase(std::remove_if(parts.begin(), parts.end(), isNone), parts.end());
   return parts;

@@ -39,6 +39,11 @@ constexpr int LastIterations = 15;
 constexpr double PlaneSteps[][2] = { { 4, 2 }, { 1, 0.5 } };
 constexpr double PlaneArm = 100;
 constexpr std::size_t LeastHoles = 8; // virtual ones, of the third that is nearest
+// Regions of a skull that are rougher than others: size of virtual holes (radius) and of the regions, mm; the
+// weight of what is expected without any.
+constexpr double RegionHole = 35;
+constexpr double RegionSize = 25;
+constexpr double RegionPrior = 0.3;
 // How far errors may be stretched by virtual holes.
 constexpr double LeastCalibration = 0.4;
 constexpr double MostCalibration = 3;
@@ -85,6 +90,52 @@ double SquaredDistance(const Vec3& a, const Vec3& b)
 {
   const Vec3 d = a - b;
   return Dot(d, d);
+}
+
+// Sound bone that is left out and predicted.
+struct VirtualHole
+{
+  Vec3 Middle;
+  std::vector<int> Places;
+};
+
+// Of a radius, half of it apart, all over the places.
+std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double radius)
+{
+  std::vector<VirtualHole> holes;
+  std::vector<Vec3> middles;
+  for (const Vec3& middle : places)
+  {
+    if (std::any_of(middles.begin(), middles.end(),
+          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
+    {
+      continue;
+    }
+    middles.push_back(middle);
+    VirtualHole hole{ middle, {} };
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      if (SquaredDistance(places[i], middle) < radius * radius)
+      {
+        hole.Places.push_back(static_cast<int>(i));
+      }
+    }
+    if (hole.Places.size() >= 3 && 2 * hole.Places.size() < places.size())
+    {
+      holes.push_back(std::move(hole));
+    }
+  }
+  return holes;
+}
+
+std::vector<std::vector<int>> PlacesOf(const std::vector<VirtualHole>& holes)
+{
+  std::vector<std::vector<int>> places;
+  for (const VirtualHole& hole : holes)
+  {
+    places.push_back(hole.Places);
+  }
+  return places;
 }
 
 void Check(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane)
@@ -215,16 +266,65 @@ struct SkullShape::Field
     this->Variances.Noise = 0.005 * variance;
   }
 
-  // The errors that virtual holes have, beside the predicted ones.
-  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<std::vector<int>>& holes)
+  // Sets how rough the skull is in each region: the errors of virtual holes there, beside the predicted ones.
+  void FindRoughness(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
+    const MirrorPlane& plane)
   {
-    std::vector<double> ratios = likelihood.LeaveOut(this->Variances, holes);
-    if (ratios.empty())
+    const std::vector<std::vector<double>> ratios =
+      likelihood.LeaveOut(this->Variances, PlacesOf(holes));
+    std::vector<Region> regions;
+    for (std::size_t h = 0; h < holes.size(); ++h)
+    {
+      double square = 0;
+      for (const double ratio : ratios[h])
+      {
+        square += ratio * ratio / static_cast<double>(ratios[h].size());
+      }
+      if (!ratios[h].empty())
+      {
+        regions.push_back({ holes[h].Middle, plane.Reflect(holes[h].Middle), square });
+      }
+    }
+    this->Regions = std::move(regions);
+  }
+
+  // What multiplies standard errors at a place, about 1.
+  double GetRoughness(const Vec3& place) const
+  {
+    double sum = RegionPrior;
+    double weights = RegionPrior;
+    for (const Region& region : this->Regions)
+    {
+      const double square =
+        std::min(SquaredDistance(place, region.Middle), SquaredDistance(place, region.Mirrored));
+      const double falloff = 1 + square / (RegionSize * RegionSize);
+      const double weight = 1 / (falloff * falloff);
+      sum += weight * region.Square;
+      weights += weight;
+    }
+    return std::sqrt(sum / weights);
+  }
+
+  // The errors that the nearest virtual holes of the defect's size have, beside the predicted ones.
+  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
+    const std::vector<Vec3>& places)
+  {
+    const std::vector<std::vector<double>> ratios =
+      likelihood.LeaveOut(this->Variances, PlacesOf(holes));
+    std::vector<double> all;
+    for (std::size_t h = 0; h < holes.size(); ++h)
+    {
+      for (std::size_t i = 0; i < ratios[h].size(); ++i)
+      {
+        all.push_back(ratios[h][i] / this->GetRoughness(places[holes[h].Places[i]]));
+      }
+    }
+    if (all.empty())
     {
       return;
     }
-    const auto place = ratios.begin() + static_cast<std::ptrdiff_t>(0.95 * (ratios.size() - 1));
-    std::nth_element(ratios.begin(), place, ratios.end());
+    const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.95 * (all.size() - 1));
+    std::nth_element(all.begin(), place, all.end());
     this->Calibration = std::clamp(*place / Normal95, LeastCalibration, MostCalibration);
   }
 
@@ -344,10 +444,18 @@ struct SkullShape::Field
         variance += rest[k] * this->MeanCovariance[k * q + m] * rest[m];
       }
     }
-    return this->Calibration * std::sqrt(std::max(variance, 0.0));
+    return this->Calibration * this->GetRoughness(place) * std::sqrt(std::max(variance, 0.0));
   }
 
+  struct Region
+  {
+    Vec3 Middle;
+    Vec3 Mirrored;
+    double Square; ///< mean squared ratio of errors
+  };
+
   bool WithDirection;
+  std::vector<Region> Regions;
   std::vector<Vec3> Places;
   std::vector<double> Values;
   std::vector<double> Terms;
@@ -418,51 +526,6 @@ MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& varia
   return plane;
 }
 
-// Lists of places of sound bone, each of the defect's size: those that are nearest to its middle or to the
-// mirror image of it, since a skull is rougher in some regions than in others.
-std::vector<std::vector<int>> FindVirtualHoles(
-  const std::vector<Vec3>& places, double radius, const Vec3& defect, const MirrorPlane& plane)
-{
-  struct Hole
-  {
-    double Distance;
-    std::vector<int> Places;
-  };
-  std::vector<Hole> holes;
-  std::vector<Vec3> middles;
-  const Vec3 mirrored = plane.Reflect(defect);
-  for (const Vec3& middle : places)
-  {
-    if (std::any_of(middles.begin(), middles.end(),
-          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
-    {
-      continue;
-    }
-    std::vector<int> hole;
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      if (SquaredDistance(places[i], middle) < radius * radius)
-      {
-        hole.push_back(static_cast<int>(i));
-      }
-    }
-    middles.push_back(middle);
-    if (hole.size() >= 3 && 2 * hole.size() < places.size())
-    {
-      holes.push_back(
-        { std::min(SquaredDistance(middle, defect), SquaredDistance(middle, mirrored)),
-          std::move(hole) });
-    }
-  }
-  std::stable_sort(holes.begin(), holes.end(),
-    [](const Hole& a, const Hole& b) { return a.Distance < b.Distance; });
-  std::vector<std::vector<int>> nearest;
-  for (std::size_t i = 0; i < holes.size() && i < std::max(LeastHoles, holes.size() / 3); ++i)
-  {
-    nearest.push_back(std::move(holes[i].Places));
-  }
-  return nearest;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -561,8 +624,17 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
   {
     places.push_back(this->Outer->Places[node]);
   }
-  const std::vector<std::vector<int>> holes =
-    FindVirtualHoles(places, radius, this->Ellipsoid->GetPlace(axis), this->Plane);
+  const std::vector<VirtualHole> regions = SpreadHoles(places, std::min(radius, RegionHole));
+  // a skull is rougher in some regions than in others: the holes that are most like the defect
+  std::vector<VirtualHole> holes = SpreadHoles(places, radius);
+  const Vec3 middle = this->Ellipsoid->GetPlace(axis);
+  const Vec3 mirrored = this->Plane.Reflect(middle);
+  const auto distanceOf = [&](const VirtualHole& hole) {
+    return std::min(SquaredDistance(hole.Middle, middle), SquaredDistance(hole.Middle, mirrored));
+  };
+  std::stable_sort(holes.begin(), holes.end(),
+    [&](const VirtualHole& a, const VirtualHole& b) { return distanceOf(a) < distanceOf(b); });
+  holes.resize(std::min(holes.size(), std::max(LeastHoles, holes.size() / 3)));
   Field* const fields[] = { this->Outer.get(), this->Thickness.get() };
   execution.For(2, 1,
     [&](std::int64_t begin, std::int64_t end)
@@ -573,9 +645,10 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
         {
           ShapeLikelihood likelihood = fields[i]->MakeLikelihood(subset);
           likelihood.SetPlane(this->Plane, serial);
-          fields[i]->Variances = likelihood.Estimate(
-            fields[i]->Variances, i == 0 ? LastIterations : FirstIterations + LastIterations);
-          fields[i]->Calibrate(likelihood, holes);
+          fields[i]->Variances = likelihood.Estimate(fields[i]->Variances,
+            i == 0 ? LastIterations : FirstIterations + MoreIterations + LastIterations);
+          fields[i]->FindRoughness(likelihood, regions, this->Plane);
+          fields[i]->Calibrate(likelihood, holes, places);
         }
         fields[i]->Solve(this->Plane, this->Ellipsoid->GetReach(this->Plane));
       }
@@ -699,7 +772,8 @@ std::vector<SkullEstimate> SkullShape::Predict(
           for (std::int64_t t = first; t < last; ++t)
           {
             double* column = covariances.get() + (errors ? (t - first) * n : 0);
-            field->GetCovariances(this->Ellipsoid->GetPlace(directions[t]), this->Plane, column);
+            const Vec3 place = this->Ellipsoid->GetPlace(directions[t]);
+            field->GetCovariances(place, this->Plane, column);
             const double mean = field->GetMean(directions[t], column);
             if (outer)
             {

@@ -207,7 +207,8 @@ TEST(ShapeLikelihood, LeavesOutAsIfTheHoleHadNoNodes)
     }
   }
   ASSERT_GT(hole.size(), 5u);
-  const std::vector<double> ratios = small.Make().LeaveOut(small.Variances, { hole });
+  const std::vector<double> ratios =
+    small.Make().LeaveOut(small.Variances, { { 0, 1, 2 }, hole })[1];
   ASSERT_EQ(ratios.size(), hole.size());
   // universal kriging without them: [K H; H^T 0] [w; l] = [k; h]
   std::vector<std::size_t> kept;
