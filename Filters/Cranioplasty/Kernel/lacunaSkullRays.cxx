@@ -30,7 +30,10 @@ constexpr double SoundThickness = 14;
 // Of the fitted ellipsoid's radius: where a skull's bone is.
 constexpr double MostDeviation = 0.17;
 constexpr double LeastDefect = 100; // mm^2
-constexpr double LeastBorder = 0.4; // of a defect's border that is sound
+constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
+// Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
+constexpr double ClearBorder = 0.5;
+constexpr double LeastBorder = 0.4;
 constexpr std::size_t LeastSound = 100;
 
 // Trilinear voxels along rays.
@@ -223,6 +226,57 @@ Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points)
   }
   SymmetricFactorization(std::move(normal)).Solve(right);
   return center + (0.5 * TypicalRadius) * Vec3{ right[0], right[1], right[2] };
+}
+
+// Steps from the start to each ray for which may is true; -1 for all that they do not reach.
+template <class May>
+std::vector<int> CountSteps(
+  const std::vector<std::vector<int>>& neighbors, std::vector<int> start, const May& may)
+{
+  std::vector<int> steps(neighbors.size(), -1);
+  for (const int i : start)
+  {
+    steps[i] = 0;
+  }
+  for (std::size_t k = 0; k < start.size(); ++k)
+  {
+    for (const int other : neighbors[start[k]])
+    {
+      if (steps[other] < 0 && may(other))
+      {
+        steps[other] = steps[start[k]] + 1;
+        start.push_back(other);
+      }
+    }
+  }
+  return steps;
+}
+
+// A part without what is narrower than 2 width steps (an orbit into which a defect opens), in pieces.
+std::vector<std::vector<int>> WithoutNarrowParts(
+  const std::vector<std::vector<int>>& neighbors, const std::vector<int>& part, int width)
+{
+  std::vector<bool> inPart(neighbors.size(), false);
+  for (const int i : part)
+  {
+    inPart[i] = true;
+  }
+  const auto isInside = [&](int i) { return inPart[i]; };
+  std::vector<int> outside;
+  for (std::size_t i = 0; i < neighbors.size(); ++i)
+  {
+    if (!inPart[i])
+    {
+      outside.push_back(static_cast<int>(i));
+    }
+  }
+  const std::vector<int> depth = CountSteps(neighbors, outside, isInside);
+  std::vector<int> cores;
+  std::copy_if(
+    part.begin(), part.end(), std::back_inserter(cores), [&](int i) { return depth[i] > width; });
+  // a step more than the border was moved by, for corners
+  const std::vector<int> steps = CountSteps(neighbors, cores, isInside);
+  return FindParts(neighbors, [&](int i) { return steps[i] >= 0 && steps[i] <= width + 1; });
 }
 
 std::vector<Vec3> PointsOf(const SkullRays& rays, const std::vector<int>& chosen)
@@ -442,14 +496,14 @@ std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
 {
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
   const std::vector<std::vector<int>> wide = FindNeighbors(rays.Directions, 4 * rays.Spacing);
-  std::vector<std::vector<int>> parts =
+  const std::vector<std::vector<int>> parts =
     FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; });
   const double area = 0.866 * rays.Spacing * rays.Spacing * TypicalRadius * TypicalRadius;
-  const auto isNone = [&](const std::vector<int>& part)
+  const auto isDefect = [&](const std::vector<int>& part, double least)
   {
     if (static_cast<double>(part.size()) * area < LeastDefect)
     {
-      return true;
+      return false;
     }
     std::vector<int> border;
     for (const int i : part)
@@ -461,9 +515,28 @@ std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
     border.erase(std::unique(border.begin(), border.end()), border.end());
     const auto sound = std::count_if(
       border.begin(), border.end(), [&](int j) { return rays.Kinds[j] == SkullRayKind::Sound; });
-    return static_cast<double>(sound) < LeastBorder * static_cast<double>(border.size());
+    return static_cast<double>(sound) >= least * static_cast<double>(border.size());
   };
-  parts.erase(std::remove_if(parts.begin(), parts.end(), isNone), parts.end());
-  return parts;
+  const int narrow =
+    std::max(1, static_cast<int>(0.5 * NarrowPart / (rays.Spacing * TypicalRadius)));
+  std::vector<std::vector<int>> defects;
+  for (const std::vector<int>& part : parts)
+  {
+    if (isDefect(part, ClearBorder))
+    {
+      defects.push_back(part);
+      continue;
+    }
+    for (std::vector<int>& piece : WithoutNarrowParts(around, part, narrow))
+    {
+      if (isDefect(piece, LeastBorder))
+      {
+        defects.push_back(std::move(piece));
+      }
+    }
+  }
+  std::stable_sort(defects.begin(), defects.end(),
+    [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return defects;
 }
 }

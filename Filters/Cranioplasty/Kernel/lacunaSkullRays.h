@@ -50,8 +50,9 @@ SkullRays TraceSkull(const VoxelVolume& volume, double level, const Vec3& center
 /// The sound rays.
 SoundBone GetSoundBone(const SkullRays& rays);
 
-/// Connected open rays, of at least 1 cm^2, with sound bone around them (40 % of the rays within four spacings;
-/// the open base of a skull has less): lists of rays, the largest first.
+/// Connected open rays, of at least 1 cm^2, with sound bone around them (half of the rays within four spacings;
+/// the open base of a skull has less): lists of rays, the largest first. A defect that opens into an orbit ends
+/// where the opening is narrower than 20 mm.
 std::vector<std::vector<int>> FindDefects(const SkullRays& rays);
 }
 #endif
