@@ -289,7 +289,7 @@ ShapeVariances ShapeLikelihood::Estimate(const ShapeVariances& start, int iterat
         expected += 2 * trace + k[j] * column[j];
       }
       const double ratio = expected > 0 ? std::max(explained, 0.0) / expected : 1;
-      Component(v, c) *= std::max(std::sqrt(ratio), LeastFactor);
+      Component(v, c) *= std::max(ratio, LeastFactor);
     }
     v.Noise = std::max(v.Noise, LeastNoise);
   }

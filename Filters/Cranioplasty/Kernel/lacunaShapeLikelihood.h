@@ -39,7 +39,8 @@ public:
   /// not positive definite.
   double Evaluate(const ShapeVariances& variances) const;
 
-  /// Raises the likelihood by multiplying variances, which stay positive. Each iteration raises it.
+  /// Raises the likelihood by multiplying variances, which stay positive. The factors are the squares of those
+  /// with which each iteration is known to raise it: where these converge the squares do, in half the time.
   /// Zhou et al., MM algorithms for variance components models, J. Comput. Graph. Stat. 28, 2019.
   /// Throws std::runtime_error when the places do not determine the factors of the mean terms.
   ShapeVariances Estimate(const ShapeVariances& start, int iterations) const;
