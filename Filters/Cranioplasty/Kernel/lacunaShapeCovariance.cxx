@@ -26,16 +26,19 @@ ShapeCovariance::ShapeCovariance(const ShapeVariances& variances, double reach)
   for (std::size_t k = 0; k < count; ++k)
   {
     const double distance = static_cast<double>(k) * KnotDistance;
-    Knot direct{ 0, 0 };
-    Knot across{ 0, 0 };
+    Knot direct{ 0, 0, 0, 0 };
+    Knot across{ 0, 0, 0, 0 };
     for (std::size_t i = 0; i < ShapeLengths.size(); ++i)
     {
-      const double value = MaternCorrelation(distance, ShapeLengths[i]);
-      const double slope = KnotDistance * MaternSlope(distance, ShapeLengths[i]);
-      direct.Value += (variances.Common[i] + variances.Own[i]) * value;
-      direct.Slope += (variances.Common[i] + variances.Own[i]) * slope;
-      across.Value += variances.Common[i] * value;
-      across.Slope += variances.Common[i] * slope;
+      const double correlation = MaternCorrelation(distance, ShapeLengths[i]);
+      const double change = KnotDistance * MaternSlope(distance, ShapeLengths[i]);
+      const auto add = [&](Knot& knot, double variance)
+      {
+        (i < RoughLengths ? knot.RoughValue : knot.Value) += variance * correlation;
+        (i < RoughLengths ? knot.RoughSlope : knot.Slope) += variance * change;
+      };
+      add(direct, variances.Common[i] + variances.Own[i]);
+      add(across, variances.Common[i]);
     }
     this->Direct[k] = direct;
     this->Across[k] = across;

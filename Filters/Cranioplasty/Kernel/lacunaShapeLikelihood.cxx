@@ -28,7 +28,8 @@ namespace
 constexpr std::size_t Lengths = ShapeLengths.size();
 // Of a variance in one iteration: what vanishes needs not vanish at once.
 constexpr double LeastFactor = 0.03;
-constexpr double LeastNoise = 1e-4; // mm^2: keeps the covariance positive definite
+constexpr double LeastIndependence = 1e-10; // of a mean term from those before it
+constexpr double LeastNoise = 1e-4;         // mm^2: keeps the covariance positive definite
 
 int SizeOf(const SquareMatrix& matrix)
 {
@@ -77,11 +78,12 @@ void SolveCholeskyUpper(const SquareMatrix& factors, double* column)
 }
 
 //------------------------------------------------------------------------------
-ShapeLikelihood::ShapeLikelihood(
-  std::vector<Vec3> places, std::vector<double> values, std::vector<double> terms)
+ShapeLikelihood::ShapeLikelihood(std::vector<Vec3> places, std::vector<double> values,
+  std::vector<double> terms, std::vector<double> roughness)
   : Places(std::move(places))
   , Values(std::move(values))
   , Terms(std::move(terms))
+  , Roughness(std::move(roughness))
 {
   const std::size_t n = this->Places.size();
   for (std::size_t l = 0; l < Lengths; ++l)
@@ -92,7 +94,7 @@ ShapeLikelihood::ShapeLikelihood(
     {
       for (std::size_t i = j; i < n; ++i)
       {
-        this->Direct[l].Column(j)[i] =
+        this->Direct[l].Column(j)[i] = this->GetFactor(l, i, j) *
           MaternCorrelation(Norm(this->Places[i] - this->Places[j]), ShapeLengths[l]);
       }
     }
@@ -113,8 +115,8 @@ void ShapeLikelihood::SetPlane(const MirrorPlane& plane, Execution& execution)
           const double distance = Norm(this->Places[i] - mirrored);
           for (std::size_t l = 0; l < Lengths; ++l)
           {
-            this->Across[l].Column(j)[i] =
-              this->Direct[l].Column(j)[i] + MaternCorrelation(distance, ShapeLengths[l]);
+            this->Across[l].Column(j)[i] = this->Direct[l].Column(j)[i] +
+              this->GetFactor(l, i, j) * MaternCorrelation(distance, ShapeLengths[l]);
           }
         }
       }
@@ -138,7 +140,7 @@ bool ShapeLikelihood::Factor(
         column[i] += v.Own[l] * direct[i] + v.Common[l] * across[i];
       }
     }
-    column[j] += std::max(v.Noise, LeastNoise);
+    column[j] += this->Roughness[j] * this->Roughness[j] * std::max(v.Noise, LeastNoise);
   }
   if (!FactorCholesky(matrix))
   {
@@ -168,7 +170,18 @@ bool ShapeLikelihood::Factor(
       small.Column(k)[m] = sum;
     }
   }
-  return FactorCholesky(small);
+  std::vector<double> before;
+  for (std::size_t k = 0; k < q; ++k)
+  {
+    before.push_back(small.Column(k)[k]);
+  }
+  bool independent = FactorCholesky(small);
+  for (std::size_t k = 0; k < q; ++k)
+  {
+    const double left = small.Column(k)[k];
+    independent = independent && left * left > LeastIndependence * before[k];
+  }
+  return independent;
 }
 
 double ShapeLikelihood::Evaluate(const ShapeVariances& variances) const
@@ -273,8 +286,9 @@ ShapeVariances ShapeLikelihood::Estimate(const ShapeVariances& start, int iterat
         const double* column = p.Column(j);
         if (c == 2 * Lengths)
         {
-          explained += py[j] * py[j];
-          expected += column[j];
+          const double square = this->Roughness[j] * this->Roughness[j];
+          explained += square * py[j] * py[j];
+          expected += square * column[j];
           continue;
         }
         const double* k = (c < Lengths ? this->Across[c] : this->Direct[c - Lengths]).Column(j);

@@ -29,8 +29,10 @@ void SolveCholeskyUpper(const SquareMatrix& factors, double* column);
 class ShapeLikelihood
 {
 public:
-  /// places: world mm. terms: place after place, as many for each. Memory: 8 n^2 doubles.
-  ShapeLikelihood(std::vector<Vec3> places, std::vector<double> values, std::vector<double> terms);
+  /// places: world mm. terms: place after place, as many for each. roughness: of each place, what multiplies
+  /// its noise and the standard deviations of RoughLengths. Memory: 8 n^2 doubles.
+  ShapeLikelihood(std::vector<Vec3> places, std::vector<double> values, std::vector<double> terms,
+    std::vector<double> roughness);
 
   /// Sets the plane of symmetry. To be called first.
   void SetPlane(const MirrorPlane& plane, Execution& execution);
@@ -53,6 +55,10 @@ public:
 
 private:
   std::size_t GetNumberOfTerms() const { return this->Terms.size() / this->Values.size(); }
+  double GetFactor(std::size_t length, std::size_t i, std::size_t j) const
+  {
+    return length < RoughLengths ? this->Roughness[i] * this->Roughness[j] : 1;
+  }
   // K, its factor in place, and the factor of [H y]^T K^-1 [H y]
   bool Factor(const ShapeVariances& variances, SquareMatrix& matrix, SquareMatrix& small) const;
   // P = K^-1 - K^-1 H (H^T K^-1 H)^-1 H^T K^-1 (lower triangle) and P y
@@ -62,6 +68,7 @@ private:
   std::vector<Vec3> Places;
   std::vector<double> Values;
   std::vector<double> Terms;
+  std::vector<double> Roughness;
   std::vector<SquareMatrix> Direct; ///< correlations at each length
   std::vector<SquareMatrix> Across; ///< the same and those with the mirror image
 };

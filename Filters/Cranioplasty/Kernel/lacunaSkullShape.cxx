@@ -92,52 +92,6 @@ double SquaredDistance(const Vec3& a, const Vec3& b)
   return Dot(d, d);
 }
 
-// Sound bone that is left out and predicted.
-struct VirtualHole
-{
-  Vec3 Middle;
-  std::vector<int> Places;
-};
-
-// Of a radius, half of it apart, all over the places.
-std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double radius)
-{
-  std::vector<VirtualHole> holes;
-  std::vector<Vec3> middles;
-  for (const Vec3& middle : places)
-  {
-    if (std::any_of(middles.begin(), middles.end(),
-          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
-    {
-      continue;
-    }
-    middles.push_back(middle);
-    VirtualHole hole{ middle, {} };
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      if (SquaredDistance(places[i], middle) < radius * radius)
-      {
-        hole.Places.push_back(static_cast<int>(i));
-      }
-    }
-    if (hole.Places.size() >= 3 && 2 * hole.Places.size() < places.size())
-    {
-      holes.push_back(std::move(hole));
-    }
-  }
-  return holes;
-}
-
-std::vector<std::vector<int>> PlacesOf(const std::vector<VirtualHole>& holes)
-{
-  std::vector<std::vector<int>> places;
-  for (const VirtualHole& hole : holes)
-  {
-    places.push_back(hole.Places);
-  }
-  return places;
-}
-
 void Check(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane)
 {
   const std::size_t n = bone.Directions.size();
@@ -218,9 +172,64 @@ struct SkullShape::Base
 };
 
 //------------------------------------------------------------------------------
+// Sound bone that is left out and predicted.
+struct SkullShape::VirtualHole
+{
+  Vec3 Middle;
+  std::vector<int> Places;
+
+  static std::vector<std::vector<int>> PlacesOf(const std::vector<VirtualHole>& holes)
+  {
+    std::vector<std::vector<int>> places;
+    for (const VirtualHole& hole : holes)
+    {
+      places.push_back(hole.Places);
+    }
+    return places;
+  }
+};
+
+// Of a radius, half of it apart, all over the places.
+std::vector<SkullShape::VirtualHole> SkullShape::SpreadHoles(
+  const std::vector<Vec3>& places, double radius)
+{
+  std::vector<VirtualHole> holes;
+  std::vector<Vec3> middles;
+  for (const Vec3& middle : places)
+  {
+    if (std::any_of(middles.begin(), middles.end(),
+          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
+    {
+      continue;
+    }
+    middles.push_back(middle);
+    VirtualHole hole{ middle, {} };
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      if (SquaredDistance(places[i], middle) < radius * radius)
+      {
+        hole.Places.push_back(static_cast<int>(i));
+      }
+    }
+    if (hole.Places.size() >= 3 && 2 * hole.Places.size() < places.size())
+    {
+      holes.push_back(std::move(hole));
+    }
+  }
+  return holes;
+}
+
+//------------------------------------------------------------------------------
 // One function of the direction.
 struct SkullShape::Field
 {
+  struct Region
+  {
+    Vec3 Middle;
+    Vec3 Mirrored;
+    double Square; ///< mean squared ratio of errors
+  };
+
   // directions and values of the nodes
   Field(const std::vector<Vec3>& directions, std::vector<double> values, bool withDirection,
     const Base& base)
@@ -232,6 +241,7 @@ struct SkullShape::Field
       this->Places.push_back(base.GetPlace(d));
       AppendTerms(d, withDirection, this->Terms);
     }
+    this->Roughness.assign(directions.size(), 1);
   }
 
   ShapeLikelihood MakeLikelihood(const std::vector<int>& subset) const
@@ -240,14 +250,27 @@ struct SkullShape::Field
     std::vector<Vec3> places;
     std::vector<double> values;
     std::vector<double> terms;
+    std::vector<double> roughness;
     for (const int node : subset)
     {
+      roughness.push_back(this->Roughness[node]);
       places.push_back(this->Places[node]);
       values.push_back(this->Values[node]);
       terms.insert(
         terms.end(), this->Terms.begin() + node * q, this->Terms.begin() + (node + 1) * q);
     }
-    return ShapeLikelihood(std::move(places), std::move(values), std::move(terms));
+    return ShapeLikelihood(
+      std::move(places), std::move(values), std::move(terms), std::move(roughness));
+  }
+
+  std::vector<Vec3> GetPlaces(const std::vector<int>& subset) const
+  {
+    std::vector<Vec3> places;
+    for (const int node : subset)
+    {
+      places.push_back(this->Places[node]);
+    }
+    return places;
   }
 
   // Variances of values that vary by some mm: a start.
@@ -266,12 +289,21 @@ struct SkullShape::Field
     this->Variances.Noise = 0.005 * variance;
   }
 
+  void SetRegions(std::vector<Region> regions)
+  {
+    this->Regions = std::move(regions);
+    for (std::size_t i = 0; i < this->Places.size(); ++i)
+    {
+      this->Roughness[i] = this->GetRoughness(this->Places[i]);
+    }
+  }
+
   // Sets how rough the skull is in each region: the errors of virtual holes there, beside the predicted ones.
-  void FindRoughness(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
+  void FindRegions(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
     const MirrorPlane& plane)
   {
     const std::vector<std::vector<double>> ratios =
-      likelihood.LeaveOut(this->Variances, PlacesOf(holes));
+      likelihood.LeaveOut(this->Variances, VirtualHole::PlacesOf(holes));
     std::vector<Region> regions;
     for (std::size_t h = 0; h < holes.size(); ++h)
     {
@@ -285,10 +317,10 @@ struct SkullShape::Field
         regions.push_back({ holes[h].Middle, plane.Reflect(holes[h].Middle), square });
       }
     }
-    this->Regions = std::move(regions);
+    this->SetRegions(std::move(regions));
   }
 
-  // What multiplies standard errors at a place, about 1.
+  // What multiplies the standard deviations of RoughLengths at a place, about 1.
   double GetRoughness(const Vec3& place) const
   {
     double sum = RegionPrior;
@@ -306,18 +338,13 @@ struct SkullShape::Field
   }
 
   // The errors that the nearest virtual holes of the defect's size have, beside the predicted ones.
-  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
-    const std::vector<Vec3>& places)
+  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes)
   {
-    const std::vector<std::vector<double>> ratios =
-      likelihood.LeaveOut(this->Variances, PlacesOf(holes));
     std::vector<double> all;
-    for (std::size_t h = 0; h < holes.size(); ++h)
+    for (const std::vector<double>& ratios :
+      likelihood.LeaveOut(this->Variances, VirtualHole::PlacesOf(holes)))
     {
-      for (std::size_t i = 0; i < ratios[h].size(); ++i)
-      {
-        all.push_back(ratios[h][i] / this->GetRoughness(places[holes[h].Places[i]]));
-      }
+      all.insert(all.end(), ratios.begin(), ratios.end());
     }
     if (all.empty())
     {
@@ -340,9 +367,10 @@ struct SkullShape::Field
       double* column = this->Factors->Column(j);
       for (std::size_t i = j; i < n; ++i)
       {
-        column[i] = (*this->Covariance)(this->Places[i], this->Places[j], mirrored);
+        column[i] = (*this->Covariance)(
+          this->Places[i], this->Places[j], mirrored, this->Roughness[i] * this->Roughness[j]);
       }
-      column[j] += this->Variances.Noise;
+      column[j] += this->Roughness[j] * this->Roughness[j] * this->Variances.Noise;
     }
     if (!FactorCholesky(*this->Factors))
     {
@@ -407,9 +435,11 @@ struct SkullShape::Field
   void GetCovariances(const Vec3& place, const MirrorPlane& plane, double* covariances) const
   {
     const Vec3 mirrored = plane.Reflect(place);
+    const double roughness = this->GetRoughness(place);
     for (std::size_t i = 0; i < this->Places.size(); ++i)
     {
-      covariances[i] = (*this->Covariance)(this->Places[i], place, mirrored);
+      covariances[i] =
+        (*this->Covariance)(this->Places[i], place, mirrored, roughness * this->Roughness[i]);
     }
   }
 
@@ -435,8 +465,9 @@ struct SkullShape::Field
     {
       rest[k] -= std::inner_product(solved, solved + n, &this->Means[k * n], 0.0);
     }
-    double variance = (*this->Covariance)(place, place, plane.Reflect(place)) +
-      this->Variances.Noise - std::inner_product(solved, solved + n, solved, 0.0);
+    const double square = this->GetRoughness(place) * this->GetRoughness(place);
+    double variance = (*this->Covariance)(place, place, plane.Reflect(place), square) +
+      square * this->Variances.Noise - std::inner_product(solved, solved + n, solved, 0.0);
     for (std::size_t k = 0; k < q; ++k)
     {
       for (std::size_t m = 0; m < q; ++m)
@@ -444,18 +475,12 @@ struct SkullShape::Field
         variance += rest[k] * this->MeanCovariance[k * q + m] * rest[m];
       }
     }
-    return this->Calibration * this->GetRoughness(place) * std::sqrt(std::max(variance, 0.0));
+    return this->Calibration * std::sqrt(std::max(variance, 0.0));
   }
-
-  struct Region
-  {
-    Vec3 Middle;
-    Vec3 Mirrored;
-    double Square; ///< mean squared ratio of errors
-  };
 
   bool WithDirection;
   std::vector<Region> Regions;
+  std::vector<double> Roughness; ///< of the nodes
   std::vector<Vec3> Places;
   std::vector<double> Values;
   std::vector<double> Terms;
@@ -554,87 +579,26 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
     2.0 * SquareMatrix::GetBytes(this->Nodes.size()) +
       18.0 * SquareMatrix::GetBytes(likelihoodNodes));
 
-  std::vector<Vec3> directions;
-  std::vector<double> thickness;
+  this->LeastThickness = std::numeric_limits<double>::infinity();
   for (const int node : this->Nodes)
   {
-    directions.push_back(bone.Directions[node]);
-    thickness.push_back(bone.Thickness[node]);
+    this->LeastThickness = std::min(this->LeastThickness, bone.Thickness[node]);
   }
-  this->LeastThickness = *std::min_element(thickness.begin(), thickness.end());
-  const auto makeOuter = [&]
-  {
-    std::vector<double> heights;
-    for (const int node : this->Nodes)
-    {
-      heights.push_back(bone.Outer[node] - this->Ellipsoid->GetRadius(bone.Directions[node]));
-    }
-    return std::make_unique<Field>(directions, std::move(heights), true, *this->Ellipsoid);
-  };
   std::vector<int> subset = Shuffled(this->Nodes.size());
   subset.resize(std::min(subset.size(), likelihoodNodes));
-
-  // the plane, by the outer table over an ellipsoid that is symmetric about it
-  ShapeVariances variances;
-  for (int round = 0; round < 2; ++round)
-  {
-    execution.SetStage(0.2 * round, 0.2 * (round + 1));
-    this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
-    const std::unique_ptr<Field> field = makeOuter();
-    if (round == 0)
-    {
-      field->Start();
-      variances = field->Variances;
-    }
-    Vec3 middle{ 0, 0, 0 };
-    for (const Vec3& place : field->Places)
-    {
-      middle = middle + (1.0 / static_cast<double>(this->Nodes.size())) * place;
-    }
-    ShapeLikelihood likelihood = field->MakeLikelihood(subset);
-    likelihood.SetPlane(this->Plane, execution);
-    variances = likelihood.Estimate(variances, round == 0 ? FirstIterations : MoreIterations);
-    this->Plane = RefinePlane(likelihood, variances, this->Plane, middle,
-      field->Places.front() - bone.Center, PlaneSteps[round], execution);
-  }
-
-  // both functions, side by side
+  execution.SetStage(0, 0.4);
+  this->FindPlane(bone, subset, execution);
   execution.SetStage(0.4, 1);
+  const std::unique_ptr<Field> before = std::move(this->Outer);
   this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
-  this->Outer = makeOuter();
-  this->Outer->Variances = variances;
-  this->Thickness =
-    std::make_unique<Field>(directions, std::move(thickness), false, *this->Ellipsoid);
+  this->Outer = this->MakeOuter(bone);
+  this->Outer->Variances = before->Variances;
+  this->Outer->SetRegions(before->Regions);
+  this->Thickness = this->MakeThickness(bone);
   this->Thickness->Start();
-  // a cap of the defect's extent
-  Vec3 axis{ 0, 0, 0 };
-  for (const Vec3& d : defect)
-  {
-    axis = axis + d;
-  }
-  axis = Normalized(axis);
-  double square = 0; // of a uniform disc: half its radius squared
-  for (const Vec3& d : defect)
-  {
-    square += SquaredDistance(d, axis) / static_cast<double>(defect.size());
-  }
-  const double radius = this->Ellipsoid->Typical * std::sqrt(2 * square);
-  std::vector<Vec3> places;
-  for (const int node : subset)
-  {
-    places.push_back(this->Outer->Places[node]);
-  }
-  const std::vector<VirtualHole> regions = SpreadHoles(places, std::min(radius, RegionHole));
-  // a skull is rougher in some regions than in others: the holes that are most like the defect
-  std::vector<VirtualHole> holes = SpreadHoles(places, radius);
-  const Vec3 middle = this->Ellipsoid->GetPlace(axis);
-  const Vec3 mirrored = this->Plane.Reflect(middle);
-  const auto distanceOf = [&](const VirtualHole& hole) {
-    return std::min(SquaredDistance(hole.Middle, middle), SquaredDistance(hole.Middle, mirrored));
-  };
-  std::stable_sort(holes.begin(), holes.end(),
-    [&](const VirtualHole& a, const VirtualHole& b) { return distanceOf(a) < distanceOf(b); });
-  holes.resize(std::min(holes.size(), std::max(LeastHoles, holes.size() / 3)));
+  const std::vector<Vec3> places = this->Outer->GetPlaces(subset);
+  const std::vector<VirtualHole> regions = SpreadHoles(places, RegionHole);
+  const std::vector<VirtualHole> holes = this->FindHolesLike(defect, places);
   Field* const fields[] = { this->Outer.get(), this->Thickness.get() };
   execution.For(2, 1,
     [&](std::int64_t begin, std::int64_t end)
@@ -642,15 +606,21 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
       ThreadExecution serial(1);
       for (std::int64_t i = begin; i < end; ++i)
       {
+        Field& field = *fields[i];
+        if (i == 1)
         {
-          ShapeLikelihood likelihood = fields[i]->MakeLikelihood(subset);
+          ShapeLikelihood likelihood = field.MakeLikelihood(subset);
           likelihood.SetPlane(this->Plane, serial);
-          fields[i]->Variances = likelihood.Estimate(fields[i]->Variances,
-            i == 0 ? LastIterations : FirstIterations + MoreIterations + LastIterations);
-          fields[i]->FindRoughness(likelihood, regions, this->Plane);
-          fields[i]->Calibrate(likelihood, holes, places);
+          field.Variances = likelihood.Estimate(field.Variances, FirstIterations + MoreIterations);
+          field.FindRegions(likelihood, regions, this->Plane);
         }
-        fields[i]->Solve(this->Plane, this->Ellipsoid->GetReach(this->Plane));
+        {
+          ShapeLikelihood likelihood = field.MakeLikelihood(subset);
+          likelihood.SetPlane(this->Plane, serial);
+          field.Variances = likelihood.Estimate(field.Variances, LastIterations);
+          field.Calibrate(likelihood, holes);
+        }
+        field.Solve(this->Plane, this->Ellipsoid->GetReach(this->Plane));
       }
     });
 }
@@ -675,6 +645,96 @@ double SkullShape::GetOuterCalibration() const
 double SkullShape::GetThicknessCalibration() const
 {
   return this->Thickness->Calibration;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<SkullShape::Field> SkullShape::MakeOuter(const SoundBone& bone) const
+{
+  std::vector<Vec3> directions;
+  std::vector<double> heights;
+  for (const int node : this->Nodes)
+  {
+    directions.push_back(bone.Directions[node]);
+    heights.push_back(bone.Outer[node] - this->Ellipsoid->GetRadius(directions.back()));
+  }
+  return std::make_unique<Field>(directions, std::move(heights), true, *this->Ellipsoid);
+}
+
+std::unique_ptr<SkullShape::Field> SkullShape::MakeThickness(const SoundBone& bone) const
+{
+  std::vector<Vec3> directions;
+  std::vector<double> values;
+  for (const int node : this->Nodes)
+  {
+    directions.push_back(bone.Directions[node]);
+    values.push_back(bone.Thickness[node]);
+  }
+  return std::make_unique<Field>(directions, std::move(values), false, *this->Ellipsoid);
+}
+
+//------------------------------------------------------------------------------
+// By the outer table over an ellipsoid that is symmetric about the plane; leaves its variances and regions.
+void SkullShape::FindPlane(
+  const SoundBone& bone, const std::vector<int>& subset, Execution& execution)
+{
+  const Execution::NestedStages nested(execution);
+  for (int round = 0; round < 2; ++round)
+  {
+    execution.SetStage(0.5 * round, 0.5 * (round + 1));
+    this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
+    std::unique_ptr<Field> field = this->MakeOuter(bone);
+    if (round == 0)
+    {
+      field->Start();
+    }
+    else
+    {
+      field->Variances = this->Outer->Variances;
+      field->SetRegions(this->Outer->Regions);
+    }
+    Vec3 middle{ 0, 0, 0 };
+    for (const Vec3& place : field->Places)
+    {
+      middle = middle + (1.0 / static_cast<double>(this->Nodes.size())) * place;
+    }
+    ShapeLikelihood likelihood = field->MakeLikelihood(subset);
+    likelihood.SetPlane(this->Plane, execution);
+    field->Variances =
+      likelihood.Estimate(field->Variances, round == 0 ? FirstIterations : MoreIterations);
+    this->Plane = RefinePlane(likelihood, field->Variances, this->Plane, middle,
+      field->Places.front() - bone.Center, PlaneSteps[round], execution);
+    field->FindRegions(likelihood, SpreadHoles(field->GetPlaces(subset), RegionHole), this->Plane);
+    this->Outer = std::move(field);
+  }
+}
+
+//------------------------------------------------------------------------------
+// Virtual holes as large as the defect, those that are nearest to it or to its mirror image.
+std::vector<SkullShape::VirtualHole> SkullShape::FindHolesLike(
+  const std::vector<Vec3>& defect, const std::vector<Vec3>& places) const
+{
+  Vec3 axis{ 0, 0, 0 };
+  for (const Vec3& d : defect)
+  {
+    axis = axis + d;
+  }
+  axis = Normalized(axis);
+  double square = 0; // of a uniform disc: half its radius squared
+  for (const Vec3& d : defect)
+  {
+    square += SquaredDistance(d, axis) / static_cast<double>(defect.size());
+  }
+  std::vector<VirtualHole> holes =
+    SpreadHoles(places, this->Ellipsoid->Typical * std::sqrt(2 * square));
+  const Vec3 middle = this->Ellipsoid->GetPlace(axis);
+  const Vec3 mirrored = this->Plane.Reflect(middle);
+  const auto distanceOf = [&](const VirtualHole& hole) {
+    return std::min(SquaredDistance(hole.Middle, middle), SquaredDistance(hole.Middle, mirrored));
+  };
+  std::stable_sort(holes.begin(), holes.end(),
+    [&](const VirtualHole& a, const VirtualHole& b) { return distanceOf(a) < distanceOf(b); });
+  holes.resize(std::min(holes.size(), std::max(LeastHoles, holes.size() / 3)));
+  return holes;
 }
 
 //------------------------------------------------------------------------------

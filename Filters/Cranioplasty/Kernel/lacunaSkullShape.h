@@ -79,9 +79,16 @@ public:
 private:
   struct Base;
   struct Field;
+  struct VirtualHole;
+  static std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double radius);
   std::vector<SkullEstimate> Predict(
     const std::vector<Vec3>& directions, bool errors, Execution& execution) const;
   void ChooseNodes(const SoundBone& bone, const std::vector<Vec3>& defect);
+  void FindPlane(const SoundBone& bone, const std::vector<int>& subset, Execution& execution);
+  std::unique_ptr<Field> MakeOuter(const SoundBone& bone) const;
+  std::unique_ptr<Field> MakeThickness(const SoundBone& bone) const;
+  std::vector<VirtualHole> FindHolesLike(
+    const std::vector<Vec3>& defect, const std::vector<Vec3>& places) const;
 
   MirrorPlane Plane;
   std::unique_ptr<Base> Ellipsoid;

@@ -28,6 +28,7 @@ struct Small
       this->Places.push_back(80.0 * d);
       this->Values.push_back(waves(this->Places.back()) + 3 + 2 * d[1]);
       this->Terms.insert(this->Terms.end(), { 1, d[0], d[1], d[2] });
+      this->Roughness.push_back(1 + 0.4 * d[2]);
     }
     this->Plane.Normal = lacuna::Normalized({ 1, 0.1, 0.05 });
     this->Plane.Offset = 2;
@@ -37,22 +38,25 @@ struct Small
   }
   double Covariance(std::size_t i, std::size_t j) const
   {
-    double sum = i == j ? this->Variances.Noise : 0;
+    const double roughness = this->Roughness[i] * this->Roughness[j];
+    double sum = i == j ? roughness * this->Variances.Noise : 0;
     for (int l = 0; l < 4; ++l)
     {
       const double length = lacuna::ShapeLengths[l];
-      sum += (this->Variances.Common[l] + this->Variances.Own[l]) *
-          lacuna::MaternCorrelation(Norm(this->Places[i] - this->Places[j]), length) +
-        this->Variances.Common[l] *
-          lacuna::MaternCorrelation(
-            Norm(this->Places[i] - this->Plane.Reflect(this->Places[j])), length);
+      const double direct =
+        lacuna::MaternCorrelation(Norm(this->Places[i] - this->Places[j]), length);
+      const double across = lacuna::MaternCorrelation(
+        Norm(this->Places[i] - this->Plane.Reflect(this->Places[j])), length);
+      sum += (l < 3 ? roughness : 1) *
+        ((this->Variances.Common[l] + this->Variances.Own[l]) * direct +
+          this->Variances.Common[l] * across);
     }
     return sum;
   }
   ShapeLikelihood Make() const
   {
     lacuna::ThreadExecution execution(1);
-    ShapeLikelihood likelihood(this->Places, this->Values, this->Terms);
+    ShapeLikelihood likelihood(this->Places, this->Values, this->Terms, this->Roughness);
     likelihood.SetPlane(this->Plane, execution);
     return likelihood;
   }
@@ -60,6 +64,7 @@ struct Small
   std::vector<Vec3> Places;
   std::vector<double> Values;
   std::vector<double> Terms;
+  std::vector<double> Roughness;
   MirrorPlane Plane;
   ShapeVariances Variances;
 };
@@ -111,9 +116,10 @@ TEST(ShapeCovariance, TablesFollowTheFormula)
   {
     for (std::size_t j = 0; j < small.Places.size(); j += 2)
     {
-      const double noise = i == j ? small.Variances.Noise : 0;
-      EXPECT_NEAR(
-        covariance(small.Places[i], small.Places[j], small.Plane.Reflect(small.Places[j])),
+      const double roughness = small.Roughness[i] * small.Roughness[j];
+      const double noise = i == j ? roughness * small.Variances.Noise : 0;
+      EXPECT_NEAR(covariance(small.Places[i], small.Places[j], small.Plane.Reflect(small.Places[j]),
+                    roughness),
         small.Covariance(i, j) - noise, 1e-8);
     }
   }
