@@ -2,6 +2,7 @@
 #include "lacunaSkullShape.h"
 
 #include "lacunaMemory.h"
+#include "lacunaShapeField.h"
 #include "lacunaShapeLikelihood.h"
 #include "lacunaSingleBlasThread.h"
 #include "lacunaSkullEllipsoid.h"
@@ -39,39 +40,10 @@ constexpr int LastIterations = 15;
 constexpr double PlaneSteps[][2] = { { 4, 2 }, { 1, 0.5 } };
 constexpr double PlaneArm = 100;
 constexpr std::size_t LeastHoles = 8; // virtual ones, of the third that is nearest
-// Regions of a skull that are rougher than others: size of virtual holes (radius) and of the regions, mm; the
-// weight of what is expected without any.
+// Radius of virtual holes that show how rough a region is, mm.
 constexpr double RegionHole = 35;
-constexpr double RegionSize = 25;
-constexpr double RegionPrior = 0.3;
-// How far errors may be stretched by virtual holes.
-constexpr double LeastCalibration = 0.4;
-constexpr double MostCalibration = 3;
 constexpr std::int64_t TargetBlock = 64;
 constexpr std::int64_t MeanBlock = 256;
-constexpr double Normal95 = 1.959963984540054;
-
-using AlignedNumbers = std::unique_ptr<double[], FreeAligned>;
-
-AlignedNumbers MakeNumbers(std::size_t count)
-{
-  return AlignedNumbers(new (std::align_val_t{ 64 }) double[count]);
-}
-
-// Mean terms: 1, and of the outer table also the direction.
-std::size_t CountTerms(bool withDirection)
-{
-  return withDirection ? 4 : 1;
-}
-
-void AppendTerms(const Vec3& direction, bool withDirection, std::vector<double>& terms)
-{
-  terms.push_back(1);
-  if (withDirection)
-  {
-    terms.insert(terms.end(), direction.data(), direction.data() + 3);
-  }
-}
 
 // Numbers 0 to count - 1 in an order that is the same everywhere (std::shuffle is not).
 std::vector<int> Shuffled(std::size_t count)
@@ -171,329 +143,6 @@ struct SkullShape::Base
   double Typical = 0;
 };
 
-//------------------------------------------------------------------------------
-// Sound bone that is left out and predicted.
-struct SkullShape::VirtualHole
-{
-  Vec3 Middle;
-  std::vector<int> Places;
-
-  static std::vector<std::vector<int>> PlacesOf(const std::vector<VirtualHole>& holes)
-  {
-    std::vector<std::vector<int>> places;
-    for (const VirtualHole& hole : holes)
-    {
-      places.push_back(hole.Places);
-    }
-    return places;
-  }
-};
-
-// Of a radius, half of it apart, all over the places.
-std::vector<SkullShape::VirtualHole> SkullShape::SpreadHoles(
-  const std::vector<Vec3>& places, double radius)
-{
-  std::vector<VirtualHole> holes;
-  std::vector<Vec3> middles;
-  for (const Vec3& middle : places)
-  {
-    if (std::any_of(middles.begin(), middles.end(),
-          [&](const Vec3& m) { return SquaredDistance(m, middle) < 0.25 * radius * radius; }))
-    {
-      continue;
-    }
-    middles.push_back(middle);
-    VirtualHole hole{ middle, {} };
-    for (std::size_t i = 0; i < places.size(); ++i)
-    {
-      if (SquaredDistance(places[i], middle) < radius * radius)
-      {
-        hole.Places.push_back(static_cast<int>(i));
-      }
-    }
-    if (hole.Places.size() >= 3 && 2 * hole.Places.size() < places.size())
-    {
-      holes.push_back(std::move(hole));
-    }
-  }
-  return holes;
-}
-
-//------------------------------------------------------------------------------
-// One function of the direction.
-struct SkullShape::Field
-{
-  struct Region
-  {
-    Vec3 Middle;
-    Vec3 Mirrored;
-    double Square; ///< mean squared ratio of errors
-  };
-
-  // directions and values of the nodes
-  Field(const std::vector<Vec3>& directions, std::vector<double> values, bool withDirection,
-    const Base& base)
-    : WithDirection(withDirection)
-    , Values(std::move(values))
-  {
-    for (const Vec3& d : directions)
-    {
-      this->Places.push_back(base.GetPlace(d));
-      AppendTerms(d, withDirection, this->Terms);
-    }
-    this->Roughness.assign(directions.size(), 1);
-  }
-
-  ShapeLikelihood MakeLikelihood(const std::vector<int>& subset) const
-  {
-    const std::size_t q = CountTerms(this->WithDirection);
-    std::vector<Vec3> places;
-    std::vector<double> values;
-    std::vector<double> terms;
-    std::vector<double> roughness;
-    for (const int node : subset)
-    {
-      roughness.push_back(this->Roughness[node]);
-      places.push_back(this->Places[node]);
-      values.push_back(this->Values[node]);
-      terms.insert(
-        terms.end(), this->Terms.begin() + node * q, this->Terms.begin() + (node + 1) * q);
-    }
-    return ShapeLikelihood(
-      std::move(places), std::move(values), std::move(terms), std::move(roughness));
-  }
-
-  std::vector<Vec3> GetPlaces(const std::vector<int>& subset) const
-  {
-    std::vector<Vec3> places;
-    for (const int node : subset)
-    {
-      places.push_back(this->Places[node]);
-    }
-    return places;
-  }
-
-  // Variances of values that vary by some mm: a start.
-  void Start()
-  {
-    double mean = 0;
-    double square = 0;
-    for (const double v : this->Values)
-    {
-      mean += v / static_cast<double>(this->Values.size());
-      square += v * v / static_cast<double>(this->Values.size());
-    }
-    const double variance = std::max(square - mean * mean, 0.01);
-    this->Variances.Common = { 0.02 * variance, 0.06 * variance, 1.0 * variance, 50 * variance };
-    this->Variances.Own = this->Variances.Common;
-    this->Variances.Noise = 0.005 * variance;
-  }
-
-  void SetRegions(std::vector<Region> regions)
-  {
-    this->Regions = std::move(regions);
-    for (std::size_t i = 0; i < this->Places.size(); ++i)
-    {
-      this->Roughness[i] = this->GetRoughness(this->Places[i]);
-    }
-  }
-
-  // Sets how rough the skull is in each region: the errors of virtual holes there, beside the predicted ones.
-  void FindRegions(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
-    const MirrorPlane& plane)
-  {
-    const std::vector<std::vector<double>> ratios =
-      likelihood.LeaveOut(this->Variances, VirtualHole::PlacesOf(holes));
-    std::vector<Region> regions;
-    for (std::size_t h = 0; h < holes.size(); ++h)
-    {
-      double square = 0;
-      for (const double ratio : ratios[h])
-      {
-        square += ratio * ratio / static_cast<double>(ratios[h].size());
-      }
-      if (!ratios[h].empty())
-      {
-        regions.push_back({ holes[h].Middle, plane.Reflect(holes[h].Middle), square });
-      }
-    }
-    this->SetRegions(std::move(regions));
-  }
-
-  // What multiplies the standard deviations of RoughLengths at a place, about 1.
-  double GetRoughness(const Vec3& place) const
-  {
-    double sum = RegionPrior;
-    double weights = RegionPrior;
-    for (const Region& region : this->Regions)
-    {
-      const double square =
-        std::min(SquaredDistance(place, region.Middle), SquaredDistance(place, region.Mirrored));
-      const double falloff = 1 + square / (RegionSize * RegionSize);
-      const double weight = 1 / (falloff * falloff);
-      sum += weight * region.Square;
-      weights += weight;
-    }
-    return std::sqrt(sum / weights);
-  }
-
-  // The errors that the nearest virtual holes of the defect's size have, beside the predicted ones.
-  void Calibrate(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes)
-  {
-    std::vector<double> all;
-    for (const std::vector<double>& ratios :
-      likelihood.LeaveOut(this->Variances, VirtualHole::PlacesOf(holes)))
-    {
-      all.insert(all.end(), ratios.begin(), ratios.end());
-    }
-    if (all.empty())
-    {
-      return;
-    }
-    const auto place = all.begin() + static_cast<std::ptrdiff_t>(0.95 * (all.size() - 1));
-    std::nth_element(all.begin(), place, all.end());
-    this->Calibration = std::clamp(*place / Normal95, LeastCalibration, MostCalibration);
-  }
-
-  void Solve(const MirrorPlane& plane, double reach)
-  {
-    const std::size_t n = this->Places.size();
-    const std::size_t q = CountTerms(this->WithDirection);
-    this->Covariance = std::make_unique<ShapeCovariance>(this->Variances, reach);
-    this->Factors = std::make_unique<SquareMatrix>(n);
-    for (std::size_t j = 0; j < n; ++j)
-    {
-      const Vec3 mirrored = plane.Reflect(this->Places[j]);
-      double* column = this->Factors->Column(j);
-      for (std::size_t i = j; i < n; ++i)
-      {
-        column[i] = (*this->Covariance)(
-          this->Places[i], this->Places[j], mirrored, this->Roughness[i] * this->Roughness[j]);
-      }
-      column[j] += this->Roughness[j] * this->Roughness[j] * this->Variances.Noise;
-    }
-    if (!FactorCholesky(*this->Factors))
-    {
-      throw std::runtime_error("the equations of the skull's shape cannot be solved: points of the "
-                               "sound bone coincide");
-    }
-    // [L^-1 H, L^-1 y]
-    this->Means = MakeNumbers(n * (q + 1));
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      for (std::size_t k = 0; k < q; ++k)
-      {
-        this->Means[k * n + i] = this->Terms[i * q + k];
-      }
-      this->Means[q * n + i] = this->Values[i];
-    }
-    SolveCholeskyLower(*this->Factors, this->Means.get(), static_cast<int>(q + 1));
-    SquareMatrix gram(q);
-    std::vector<double> factors(q);
-    const auto dot = [&](std::size_t k, std::size_t m)
-    {
-      return std::inner_product(
-        &this->Means[k * n], &this->Means[k * n] + n, &this->Means[m * n], 0.0);
-    };
-    for (std::size_t k = 0; k < q; ++k)
-    {
-      factors[k] = dot(k, q);
-      for (std::size_t m = k; m < q; ++m)
-      {
-        gram.Column(k)[m] = dot(k, m);
-      }
-    }
-    if (!FactorCholesky(gram))
-    {
-      throw std::runtime_error("the sound bone does not determine the mean shape of the skull");
-    }
-    InvertCholesky(gram);
-    this->MeanCovariance.assign(q * q, 0.0);
-    this->MeanFactors.assign(q, 0.0);
-    for (std::size_t k = 0; k < q; ++k)
-    {
-      for (std::size_t m = 0; m < q; ++m)
-      {
-        this->MeanCovariance[k * q + m] = gram.Column(std::min(k, m))[std::max(k, m)];
-        this->MeanFactors[k] += this->MeanCovariance[k * q + m] * factors[m];
-      }
-    }
-    // weights K^-1 (y - H b)
-    this->Weights = MakeNumbers(n);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      this->Weights[i] = this->Means[q * n + i];
-      for (std::size_t k = 0; k < q; ++k)
-      {
-        this->Weights[i] -= this->MeanFactors[k] * this->Means[k * n + i];
-      }
-    }
-    SolveCholeskyUpper(*this->Factors, this->Weights.get());
-  }
-
-  // Covariances of a place with all nodes.
-  void GetCovariances(const Vec3& place, const MirrorPlane& plane, double* covariances) const
-  {
-    const Vec3 mirrored = plane.Reflect(place);
-    const double roughness = this->GetRoughness(place);
-    for (std::size_t i = 0; i < this->Places.size(); ++i)
-    {
-      covariances[i] =
-        (*this->Covariance)(this->Places[i], place, mirrored, roughness * this->Roughness[i]);
-    }
-  }
-
-  double GetMean(const Vec3& direction, const double* covariances) const
-  {
-    std::vector<double> terms;
-    AppendTerms(direction, this->WithDirection, terms);
-    const double mean =
-      std::inner_product(terms.begin(), terms.end(), this->MeanFactors.begin(), 0.0);
-    return std::inner_product(
-      covariances, covariances + this->Places.size(), this->Weights.get(), mean);
-  }
-
-  // solved: L^-1 covariances
-  double GetError(
-    const Vec3& direction, const Vec3& place, const MirrorPlane& plane, const double* solved) const
-  {
-    const std::size_t n = this->Places.size();
-    const std::size_t q = CountTerms(this->WithDirection);
-    std::vector<double> rest;
-    AppendTerms(direction, this->WithDirection, rest);
-    for (std::size_t k = 0; k < q; ++k)
-    {
-      rest[k] -= std::inner_product(solved, solved + n, &this->Means[k * n], 0.0);
-    }
-    const double square = this->GetRoughness(place) * this->GetRoughness(place);
-    double variance = (*this->Covariance)(place, place, plane.Reflect(place), square) +
-      square * this->Variances.Noise - std::inner_product(solved, solved + n, solved, 0.0);
-    for (std::size_t k = 0; k < q; ++k)
-    {
-      for (std::size_t m = 0; m < q; ++m)
-      {
-        variance += rest[k] * this->MeanCovariance[k * q + m] * rest[m];
-      }
-    }
-    return this->Calibration * std::sqrt(std::max(variance, 0.0));
-  }
-
-  bool WithDirection;
-  std::vector<Region> Regions;
-  std::vector<double> Roughness; ///< of the nodes
-  std::vector<Vec3> Places;
-  std::vector<double> Values;
-  std::vector<double> Terms;
-  ShapeVariances Variances;
-  double Calibration = 1;
-  std::unique_ptr<ShapeCovariance> Covariance;
-  std::unique_ptr<SquareMatrix> Factors;
-  AlignedNumbers Means;
-  AlignedNumbers Weights;
-  std::vector<double> MeanFactors;
-  std::vector<double> MeanCovariance;
-};
-
 namespace
 {
 // Turns the plane about the middle of the places, and shifts it, to the greatest likelihood: along one
@@ -589,35 +238,33 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
   execution.SetStage(0, 0.4);
   this->FindPlane(bone, subset, execution);
   execution.SetStage(0.4, 1);
-  const std::unique_ptr<Field> before = std::move(this->Outer);
+  const std::unique_ptr<ShapeField> before = std::move(this->Outer);
   this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
-  this->Outer = this->MakeOuter(bone);
-  this->Outer->Variances = before->Variances;
-  this->Outer->SetRegions(before->Regions);
-  this->Thickness = this->MakeThickness(bone);
-  this->Thickness->Start();
+  this->Outer = this->MakeField(bone, true);
+  this->Outer->Continue(*before);
+  this->Thickness = this->MakeField(bone, false);
   const std::vector<Vec3> places = this->Outer->GetPlaces(subset);
   const std::vector<VirtualHole> regions = SpreadHoles(places, RegionHole);
   const std::vector<VirtualHole> holes = this->FindHolesLike(defect, places);
-  Field* const fields[] = { this->Outer.get(), this->Thickness.get() };
+  ShapeField* const fields[] = { this->Outer.get(), this->Thickness.get() };
   execution.For(2, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       ThreadExecution serial(1);
       for (std::int64_t i = begin; i < end; ++i)
       {
-        Field& field = *fields[i];
+        ShapeField& field = *fields[i];
         if (i == 1)
         {
           ShapeLikelihood likelihood = field.MakeLikelihood(subset);
           likelihood.SetPlane(this->Plane, serial);
-          field.Variances = likelihood.Estimate(field.Variances, FirstIterations + MoreIterations);
+          field.Estimate(likelihood, FirstIterations + MoreIterations);
           field.FindRegions(likelihood, regions, this->Plane);
         }
         {
           ShapeLikelihood likelihood = field.MakeLikelihood(subset);
           likelihood.SetPlane(this->Plane, serial);
-          field.Variances = likelihood.Estimate(field.Variances, LastIterations);
+          field.Estimate(likelihood, LastIterations);
           field.Calibrate(likelihood, holes);
         }
         field.Solve(this->Plane, this->Ellipsoid->GetReach(this->Plane));
@@ -629,47 +276,39 @@ SkullShape::~SkullShape() = default;
 
 const ShapeVariances& SkullShape::GetOuterVariances() const
 {
-  return this->Outer->Variances;
+  return this->Outer->GetVariances();
 }
 
 const ShapeVariances& SkullShape::GetThicknessVariances() const
 {
-  return this->Thickness->Variances;
+  return this->Thickness->GetVariances();
 }
 
 double SkullShape::GetOuterCalibration() const
 {
-  return this->Outer->Calibration;
+  return this->Outer->GetCalibration();
 }
 
 double SkullShape::GetThicknessCalibration() const
 {
-  return this->Thickness->Calibration;
+  return this->Thickness->GetCalibration();
 }
 
 //------------------------------------------------------------------------------
-std::unique_ptr<SkullShape::Field> SkullShape::MakeOuter(const SoundBone& bone) const
+std::unique_ptr<ShapeField> SkullShape::MakeField(const SoundBone& bone, bool outer) const
 {
   std::vector<Vec3> directions;
-  std::vector<double> heights;
-  for (const int node : this->Nodes)
-  {
-    directions.push_back(bone.Directions[node]);
-    heights.push_back(bone.Outer[node] - this->Ellipsoid->GetRadius(directions.back()));
-  }
-  return std::make_unique<Field>(directions, std::move(heights), true, *this->Ellipsoid);
-}
-
-std::unique_ptr<SkullShape::Field> SkullShape::MakeThickness(const SoundBone& bone) const
-{
-  std::vector<Vec3> directions;
+  std::vector<Vec3> places;
   std::vector<double> values;
   for (const int node : this->Nodes)
   {
-    directions.push_back(bone.Directions[node]);
-    values.push_back(bone.Thickness[node]);
+    const Vec3& d = bone.Directions[node];
+    directions.push_back(d);
+    places.push_back(this->Ellipsoid->GetPlace(d));
+    values.push_back(
+      outer ? bone.Outer[node] - this->Ellipsoid->GetRadius(d) : bone.Thickness[node]);
   }
-  return std::make_unique<Field>(directions, std::move(values), false, *this->Ellipsoid);
+  return std::make_unique<ShapeField>(directions, std::move(places), std::move(values), outer);
 }
 
 //------------------------------------------------------------------------------
@@ -682,27 +321,21 @@ void SkullShape::FindPlane(
   {
     execution.SetStage(0.5 * round, 0.5 * (round + 1));
     this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
-    std::unique_ptr<Field> field = this->MakeOuter(bone);
-    if (round == 0)
+    std::unique_ptr<ShapeField> field = this->MakeField(bone, true);
+    if (round > 0)
     {
-      field->Start();
-    }
-    else
-    {
-      field->Variances = this->Outer->Variances;
-      field->SetRegions(this->Outer->Regions);
+      field->Continue(*this->Outer);
     }
     Vec3 middle{ 0, 0, 0 };
-    for (const Vec3& place : field->Places)
+    for (const Vec3& place : field->GetPlaces())
     {
       middle = middle + (1.0 / static_cast<double>(this->Nodes.size())) * place;
     }
     ShapeLikelihood likelihood = field->MakeLikelihood(subset);
     likelihood.SetPlane(this->Plane, execution);
-    field->Variances =
-      likelihood.Estimate(field->Variances, round == 0 ? FirstIterations : MoreIterations);
-    this->Plane = RefinePlane(likelihood, field->Variances, this->Plane, middle,
-      field->Places.front() - bone.Center, PlaneSteps[round], execution);
+    field->Estimate(likelihood, round == 0 ? FirstIterations : MoreIterations);
+    this->Plane = RefinePlane(likelihood, field->GetVariances(), this->Plane, middle,
+      field->GetPlaces().front() - bone.Center, PlaneSteps[round], execution);
     field->FindRegions(likelihood, SpreadHoles(field->GetPlaces(subset), RegionHole), this->Plane);
     this->Outer = std::move(field);
   }
@@ -710,7 +343,7 @@ void SkullShape::FindPlane(
 
 //------------------------------------------------------------------------------
 // Virtual holes as large as the defect, those that are nearest to it or to its mirror image.
-std::vector<SkullShape::VirtualHole> SkullShape::FindHolesLike(
+std::vector<VirtualHole> SkullShape::FindHolesLike(
   const std::vector<Vec3>& defect, const std::vector<Vec3>& places) const
 {
   Vec3 axis{ 0, 0, 0 };
@@ -821,19 +454,19 @@ std::vector<SkullEstimate> SkullShape::Predict(
   execution.For((count + block - 1) / block, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
-      const AlignedNumbers covariances = MakeNumbers(n * (errors ? block : 1));
+      const AlignedNumbers covariances = MakeAligned(n * (errors ? block : 1));
       for (std::int64_t b = begin; b < end; ++b)
       {
         const std::int64_t first = b * block;
         const std::int64_t last = std::min(count, first + block);
-        for (const Field* field : { this->Outer.get(), this->Thickness.get() })
+        for (const ShapeField* field : { this->Outer.get(), this->Thickness.get() })
         {
           const bool outer = field == this->Outer.get();
           for (std::int64_t t = first; t < last; ++t)
           {
             double* column = covariances.get() + (errors ? (t - first) * n : 0);
             const Vec3 place = this->Ellipsoid->GetPlace(directions[t]);
-            field->GetCovariances(place, this->Plane, column);
+            field->GetCovariances(place, column);
             const double mean = field->GetMean(directions[t], column);
             if (outer)
             {
@@ -848,11 +481,12 @@ std::vector<SkullEstimate> SkullShape::Predict(
           {
             continue;
           }
-          SolveCholeskyLower(*field->Factors, covariances.get(), static_cast<int>(last - first));
+          SolveCholeskyLower(
+            field->GetFactors(), covariances.get(), static_cast<int>(last - first));
           for (std::int64_t t = first; t < last; ++t)
           {
             (outer ? estimates[t].OuterError : estimates[t].ThicknessError) =
-              field->GetError(directions[t], this->Ellipsoid->GetPlace(directions[t]), this->Plane,
+              field->GetError(directions[t], this->Ellipsoid->GetPlace(directions[t]),
                 covariances.get() + (t - first) * n);
           }
         }

@@ -15,6 +15,9 @@
 
 namespace lacuna
 {
+class ShapeField;
+struct VirtualHole;
+
 /// What is known of a skull, along rays from a centre within it. One element a ray in each array.
 struct SoundBone
 {
@@ -78,15 +81,11 @@ public:
 
 private:
   struct Base;
-  struct Field;
-  struct VirtualHole;
-  static std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double radius);
   std::vector<SkullEstimate> Predict(
     const std::vector<Vec3>& directions, bool errors, Execution& execution) const;
   void ChooseNodes(const SoundBone& bone, const std::vector<Vec3>& defect);
   void FindPlane(const SoundBone& bone, const std::vector<int>& subset, Execution& execution);
-  std::unique_ptr<Field> MakeOuter(const SoundBone& bone) const;
-  std::unique_ptr<Field> MakeThickness(const SoundBone& bone) const;
+  std::unique_ptr<ShapeField> MakeField(const SoundBone& bone, bool outer) const;
   std::vector<VirtualHole> FindHolesLike(
     const std::vector<Vec3>& defect, const std::vector<Vec3>& places) const;
 
@@ -94,8 +93,8 @@ private:
   std::unique_ptr<Base> Ellipsoid;
   std::vector<int> Nodes; ///< rays of the bone
   double LeastThickness = 0;
-  std::unique_ptr<Field> Outer;
-  std::unique_ptr<Field> Thickness;
+  std::unique_ptr<ShapeField> Outer;
+  std::unique_ptr<ShapeField> Thickness;
 };
 }
 #endif
