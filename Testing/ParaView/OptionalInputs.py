@@ -59,4 +59,6 @@ assert found == {
     "LacunaProbeCalibration": {"Picks"},
     "LacunaRBFHoleFiller": {"Surface", "Selection", "ControlPoints", "PriorSurface"},
     "LacunaRBFSurface": {"PriorSurface"},
+    "LacunaSkullBone": {"Exclude"},
+    "LacunaSkullImplant": {"DefectOutline"},
 }

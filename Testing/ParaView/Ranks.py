@@ -30,14 +30,14 @@ from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader, vtkXMLTableReader
 # Parts of an image, which overlap in nothing but shared faces
 IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "DepthMapShader", "GateSlices", "IncompleteShape",
           "Mirror", "OccludedAngle", "PhantomSweep", "ProbeCalibration", "RBFHoleFiller", "RBFImageWarp", "RBFInterpolator",
-          "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
+          "SkullBone", "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
 # but of these all ranks have the whole
 WHOLE = {"OccludedAngle", "ProbeCalibration"}
 # Some of the cells of a mesh
 MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
 FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "PressOrientation",
-         "RBFSurface", "ScanRegion", "TemporalCalibration", "TrackerSelfTest"}
+         "RBFSurface", "ScanRegion", "SkullImplant", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so
 REFUSED = {"PolhemusVideoSource"}

@@ -43,6 +43,8 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaRBFInterpolator": ("Smoothing", -1),
     "LacunaRBFSurface": ("Smoothing", -1),
     "LacunaScanRegion": ("TickLength", -1),
+    "LacunaSkullBone": ("Level", 1e6),
+    "LacunaSkullImplant": ("EdgeClearance", -1),
     "LacunaSkullPhantom": ("Spacing", [-1, 1, 1]),
     "LacunaSlicePlanes": ("Stride", 0),
     "LacunaSliceRayCaster": ("ViewUp", [0, 0, 0]),

@@ -9,6 +9,7 @@
 #include "vtkLacunaDepthMapShader.h"
 #include "vtkLacunaDepthMapSurface.h"
 #include "vtkLacunaMirror.h"
+#include "vtkLacunaSkullBone.h"
 #include "vtkLacunaOccludedAngle.h"
 #include "vtkLacunaOcclusionSurface.h"
 #include "vtkLacunaRBFImageWarp.h"
@@ -305,6 +306,16 @@ void AddImageSubjects(std::vector<Subject>& subjects)
     subject.MayBeNaN = { "Asymmetry", "SymmetryScore" };
     subject.KeepsGeometry = true;
     subject.Cost = 10;
+    subjects.push_back(subject);
+  }
+  {
+    using T = vtkLacunaSkullBone;
+    Subject subject{ "SkullBone", NewOf<T>,
+      [](Dice& dice) -> Inputs
+      { return { dice.Chance(0.7) ? RandomVolume(dice) : RandomLump(dice, 4, 8) }; },
+      { Real("Level", &T::SetLevel, -50, 300) } };
+    subject.KeepsGeometry = true;
+    subject.Cost = 3;
     subjects.push_back(subject);
   }
   {

@@ -14,12 +14,16 @@
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkLacunaRBFSurface.h"
+#include "vtkLacunaSkullImplant.h"
 #include "vtkLacunaSplineLoop.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkSphere.h"
 #include "vtkStructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lacunaProperties
 {
@@ -168,6 +172,48 @@ Subject MakeClosedSurface()
   return subject;
 }
 
+// A shell with a hole: few voxels, so that its shape is found in a second.
+vtkSmartPointer<vtkImageData> RandomHead(Dice& dice)
+{
+  const double spacing = dice.Real(4, 6);
+  const double radius = dice.Real(38, 50);
+  const double hole = dice.Real(0.2, 0.5);
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  const int half = static_cast<int>(radius / spacing) + 3;
+  image->SetExtent(-half, half, -half, half, -half, half);
+  image->SetSpacing(spacing, spacing, spacing);
+  image->SetOrigin(dice.Real(-20, 20), 5, dice.Real(-20, 20));
+  image->AllocateScalars(VTK_FLOAT, 1);
+  auto* voxel = static_cast<float*>(image->GetScalarPointer());
+  for (int k = -half; k <= half; ++k)
+  {
+    for (int j = -half; j <= half; ++j)
+    {
+      for (int i = -half; i <= half; ++i, ++voxel)
+      {
+        const double r = spacing * std::sqrt(i * i + 1.1 * j * j + k * k);
+        const double angle = std::acos(0.9 * k * spacing / std::max(r, 1.0));
+        const double depth = std::min(
+          { radius - r, r - radius + 9, radius * (angle - hole), radius * (2.2 - angle) });
+        *voxel = static_cast<float>(300 + 100 * std::max(-4.0, std::min(depth, 4.0)));
+      }
+    }
+  }
+  return image;
+}
+
+Subject MakeSkullImplant()
+{
+  using T = vtkLacunaSkullImplant;
+  Subject subject{ "SkullImplant", NewOf<T>, [](Dice& dice) -> Inputs { return { RandomHead(dice) }; },
+    { Real("Level", &T::SetLevel, 200, 400), Whole("DefectChoice", &T::SetDefectChoice, 0, 1),
+      Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
+      Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5) } };
+  subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(4); };
+  subject.Cost = 100;
+  return subject;
+}
+
 Subject MakePlate()
 {
   using T = vtkLacunaImplantPlate;
@@ -242,6 +288,7 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
   subjects.push_back(MakeInterpolator());
   subjects.push_back(MakeClosedSurface());
   subjects.push_back(MakePlate());
+  subjects.push_back(MakeSkullImplant());
   {
     using T = vtkLacunaDefectModel;
     subjects.push_back({ "DefectModel", NewOf<T>, MakeFilledMap,

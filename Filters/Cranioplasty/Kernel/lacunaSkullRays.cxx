@@ -32,6 +32,7 @@ constexpr double SoundThickness = 14;
 constexpr double MostDeviation = 0.17;
 // The same: where the scan surely ends before the skull, and surely behind it.
 constexpr double NearEnd[] = { 0.95, 1.05 };
+constexpr double RoundedEdge = 2.5; // voxels
 constexpr double LeastDefect = 100; // mm^2
 constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
 // Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
@@ -364,10 +365,19 @@ SkullRays TraceSkull(
   SkullRays rays = Follow(volume, level, center, spacing, tables, execution);
   const auto n = static_cast<int>(rays.Directions.size());
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  // Voxels round edges off, up to some voxels beside a hole.
+  double edge = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    edge = std::max(edge, Norm(volume.IndexToWorld.Column(a)));
+  }
+  const std::vector<std::vector<int>> near =
+    FindNeighbors(rays.Directions, std::max(1.6 * rays.Spacing, RoundedEdge * edge / TypicalRadius));
   std::vector<bool> smooth(n);
   for (int i = 0; i < n; ++i)
   {
-    smooth[i] = IsSmooth(rays, i, around[i]);
+    smooth[i] = IsSmooth(rays, i, around[i]) &&
+      std::none_of(near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
   }
   const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
   if (parts.empty() || parts[0].size() < LeastSound)

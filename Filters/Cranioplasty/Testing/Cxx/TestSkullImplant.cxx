@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A shell with two holes: which one is filled, what the outputs hold, and what is refused.
+#include "lacunaCheck.h"
+#include "vtkCellData.h"
+#include "vtkFeatureEdges.h"
+#include "vtkFieldData.h"
+#include "vtkImageData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaSkullImplant.h"
+#include "vtkMassProperties.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace
+{
+constexpr double Radius = 55;
+constexpr double Thickness = 6;
+constexpr double Middle[3] = { 30, -20, 100 };
+constexpr double Large[3] = { 0.6, 0, 0.8 };  // directions of the holes
+constexpr double Small[3] = { -0.8, 0, 0.6 };
+constexpr double LargeAngle = 0.45;
+constexpr double SmallAngle = 0.3;
+
+double AngleTo(const double axis[3], const double x[3])
+{
+  const double r = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+  const double dot = axis[0] * x[0] + axis[1] * x[1] + axis[2] * x[2];
+  return std::acos(std::clamp(dot / std::max(r, 1e-9), -1.0, 1.0));
+}
+
+// A sphere that is open below as a skull is: rough, so that it is no hole.
+vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true)
+{
+  auto head = vtkSmartPointer<vtkImageData>::New();
+  constexpr int half = 32;
+  head->SetExtent(-half, half, -half, half, -half, half);
+  head->SetSpacing(2, 2, 2);
+  head->SetOrigin(Middle);
+  head->AllocateScalars(VTK_SHORT, 1);
+  auto* voxel = static_cast<short*>(head->GetScalarPointer());
+  for (int k = -half; k <= half; ++k)
+  {
+    for (int j = -half; j <= half; ++j)
+    {
+      for (int i = -half; i <= half; ++i, ++voxel)
+      {
+        const double x[3] = { 2.0 * i, 2.0 * j, 2.0 * k };
+        const double r = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+        double inside = std::min(Radius - r, r - Radius + Thickness);
+        if (hasHoles)
+        {
+          inside = std::min(inside, r * (AngleTo(Large, x) - LargeAngle));
+          inside = std::min(inside, r * (AngleTo(Small, x) - SmallAngle));
+        }
+        if (x[2] < -25 && (i / 3 + j / 3) % 2 != 0)
+        {
+          inside -= 2.5; // no smooth bone
+        }
+        *voxel = static_cast<short>(std::lround(std::clamp(300 + 150 * inside, -200.0, 900.0)));
+      }
+    }
+  }
+  return head;
+}
+
+double GetField(vtkDataObject* data, const char* name, int component = 0)
+{
+  vtkDataArray* array = data->GetFieldData()->GetArray(name);
+  LACUNA_CHECK(array && array->GetNumberOfTuples() >= 1);
+  return array && array->GetNumberOfTuples() ? array->GetComponent(0, component)
+                                             : std::numeric_limits<double>::quiet_NaN();
+}
+
+// The middle of the implant's outer points, as a direction from the middle of the head.
+double AngleOf(vtkPolyData* implant, const double axis[3])
+{
+  double sum[3] = { 0, 0, 0 };
+  for (vtkIdType p = 0; p < implant->GetNumberOfPoints(); ++p)
+  {
+    double x[3];
+    implant->GetPoint(p, x);
+    for (int c = 0; c < 3; ++c)
+    {
+      sum[c] += x[c] - Middle[c];
+    }
+  }
+  return AngleTo(axis, sum);
+}
+
+void CheckSolid(vtkPolyData* implant, double angle)
+{
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(implant);
+  edges->FeatureEdgesOff();
+  edges->NonManifoldEdgesOn();
+  edges->Update();
+  LACUNA_CHECK(implant->GetNumberOfCells() > 100);
+  LACUNA_CHECK(edges->GetOutput()->GetNumberOfCells() == 0);
+  vtkNew<vtkMassProperties> mass;
+  mass->SetInputData(implant);
+  mass->Update();
+  const double volume = GetField(implant, "Volume");
+  LACUNA_CHECK_NEAR(volume, mass->GetVolume(), 1e-4 * volume);
+  const double inner = Radius - Thickness;
+  const double share = 2 * std::acos(-1.0) * (1 - std::cos(angle - 0.5 / inner));
+  // voxels of 2 mm round the edges off
+  LACUNA_CHECK_NEAR(
+    volume, share * (std::pow(Radius, 3) - std::pow(inner, 3)) / 3, 0.04 * volume);
+  LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), share * Radius * Radius, 0.04 * volume);
+  LACUNA_CHECK_NEAR(GetField(implant, "Mass"), 1.3e-3 * volume, 1e-9 * volume);
+  LACUNA_CHECK_NEAR(GetField(implant, "ThicknessMean"), Thickness, 0.1);
+  LACUNA_CHECK(GetField(implant, "ThicknessMinimum") <= GetField(implant, "ThicknessMean"));
+  LACUNA_CHECK(GetField(implant, "ThicknessMean") <= GetField(implant, "ThicknessMaximum"));
+  LACUNA_CHECK(GetField(implant, "DefectArea") > GetField(implant, "OuterArea"));
+  for (const char* name : { "PredictedError", "Thickness", "ThicknessError" })
+  {
+    vtkDataArray* array = implant->GetPointData()->GetArray(name);
+    LACUNA_CHECK(array && array->GetNumberOfTuples() == implant->GetNumberOfPoints());
+    LACUNA_CHECK(array && array->GetRange()[0] > 0);
+  }
+  LACUNA_CHECK_NEAR(GetField(implant, "PredictedErrorMaximum"),
+    implant->GetPointData()->GetArray("PredictedError")->GetRange()[1], 1e-9);
+  vtkDataArray* faces = implant->GetCellData()->GetArray("ImplantFace");
+  LACUNA_CHECK(faces && faces->GetRange()[0] == 0 && faces->GetRange()[1] == 2);
+  double farthest = 0;
+  for (vtkIdType c = 0; faces && c < implant->GetNumberOfCells(); ++c)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* corners = nullptr;
+    implant->GetCellPoints(c, count, corners);
+    double x[3];
+    implant->GetPoint(corners[0], x);
+    const double r = std::hypot(x[0] - Middle[0], x[1] - Middle[1], x[2] - Middle[2]);
+    if (faces->GetComponent(c, 0) < 2)
+    {
+      farthest =
+        std::max(farthest, std::abs(r - (faces->GetComponent(c, 0) == 0 ? Radius : inner)));
+    }
+  }
+  LACUNA_CHECK_NEAR(farthest, 0, 0.15); // of voxels of 2 mm
+}
+
+void TestChoice()
+{
+  vtkNew<vtkLacunaSkullImplant> filter;
+  filter->SetInputData(MakeHead());
+  filter->SetTriangleSize(2);
+  filter->Update();
+  vtkPolyData* implant = filter->GetOutput();
+  LACUNA_CHECK(AngleOf(implant, Large) < 0.02);
+  CheckSolid(implant, LargeAngle);
+  // towards the middle of the head
+  double way[3];
+  for (int c = 0; c < 3; ++c)
+  {
+    way[c] = -GetField(implant, "InsertionDirection", c);
+  }
+  LACUNA_CHECK(AngleTo(Large, way) < 0.1);
+  LACUNA_CHECK(GetField(implant, "LeastTaper") > 20);
+
+  vtkPolyData* defects = filter->GetOutput(1);
+  vtkDataArray* areas = defects->GetFieldData()->GetArray("DefectAreas");
+  LACUNA_CHECK(areas && areas->GetNumberOfTuples() == 2);
+  const double share = 2 * std::acos(-1.0) * Radius * Radius;
+  if (areas && areas->GetNumberOfTuples() == 2)
+  {
+    LACUNA_CHECK_NEAR(areas->GetComponent(0, 0), share * (1 - std::cos(LargeAngle)), 250);
+    LACUNA_CHECK_NEAR(areas->GetComponent(1, 0), share * (1 - std::cos(SmallAngle)), 250);
+  }
+  vtkDataArray* numbers = defects->GetCellData()->GetArray("Defect");
+  LACUNA_CHECK(numbers && numbers->GetRange()[0] == 1 && numbers->GetRange()[1] == 2);
+  LACUNA_CHECK(!vtkLacunaProvenance::Get(implant).empty());
+
+  filter->SetDefectChoice(vtkLacunaSkullImplant::NearestToPoint);
+  filter->SetPoint(
+    Middle[0] + 60 * Small[0], Middle[1] + 60 * Small[1], Middle[2] + 60 * Small[2]);
+  filter->Update();
+  LACUNA_CHECK(AngleOf(filter->GetOutput(), Small) < 0.03);
+  CheckSolid(filter->GetOutput(), SmallAngle);
+}
+
+void CheckError(const std::function<void(vtkLacunaSkullImplant*)>& change, const char* text)
+{
+  vtkNew<vtkLacunaSkullImplant> filter;
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->SetInputData(MakeHead());
+  change(filter);
+  filter->Update();
+  LACUNA_CHECK(messages->HasError(text));
+  LACUNA_CHECK(filter->GetOutput()->GetNumberOfPoints() == 0);
+  if (!messages->HasError(text))
+  {
+    std::cerr << "expected '" << text << "', got '" << messages->Errors << "'\n";
+  }
+}
+
+void TestErrors()
+{
+  CheckError([](auto* f) { f->SetLevel(-1); }, "Level is -1");
+  CheckError([](auto* f) { f->SetDefectChoice(2); }, "DefectChoice is 2");
+  CheckError([](auto* f) { f->SetEdgeClearance(6); }, "EdgeClearance is 6");
+  CheckError([](auto* f) { f->SetTriangleSize(0.1); }, "TriangleSize is 0.1");
+  CheckError([](auto* f) { f->SetDensity(0); }, "Density is 0");
+  CheckError([](auto* f) { f->SetInputData(MakeHead(false)); }, "no hole of 1 cm^2");
+  CheckError(
+    [](auto* f)
+    {
+      f->SetDefectChoice(vtkLacunaSkullImplant::NearestToPoint);
+      f->SetPoint(Middle[0] - 20, Middle[1] + 55, Middle[2]);
+    },
+    "mm away from the nearest hole");
+}
+}
+
+int TestSkullImplant(int, char*[])
+{
+  TestChoice();
+  TestErrors();
+  return lacunaCheck::Result();
+}
