@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSkullRays.h"
 
+#include "lacunaPlanarCurves.h"
 #include "lacunaSkullEllipsoid.h"
 #include "lacunaSymmetricFactorization.h"
 
@@ -475,6 +476,39 @@ Vec3 FindSkullCenter(
 }
 
 //------------------------------------------------------------------------------
+std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& center,
+  const std::vector<RaySegment>& segments, Execution& execution)
+{
+  CheckVolumeSize(volume.Size);
+  std::vector<double> largest(segments.size());
+  const double step = std::clamp(0.5 * SmallestEdgeOf(volume.IndexToWorld), 0.1, 1.0);
+  DispatchScalars(volume.Type, volume.Voxels,
+    [&](const auto* voxels)
+    {
+      const RaySampler sample(volume, voxels);
+      execution.For(static_cast<std::int64_t>(segments.size()), 256,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t i = begin; i < end; ++i)
+          {
+            const RaySegment& segment = segments[i];
+            const int count =
+              std::max(1, static_cast<int>(std::ceil((segment.To - segment.From) / step)));
+            double most = std::numeric_limits<double>::lowest();
+            for (int s = 0; s <= count; ++s)
+            {
+              const double r = segment.From + (segment.To - segment.From) * s / count;
+              const double value = sample(center + r * segment.Direction);
+              most = value > most ? value : most; // NaN is not
+            }
+            largest[i] = most;
+          }
+        });
+    });
+  return largest;
+}
+
+//------------------------------------------------------------------------------
 SoundBone GetSoundBone(const SkullRays& rays)
 {
   SoundBone bone;
@@ -538,5 +572,57 @@ std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
   std::stable_sort(defects.begin(), defects.end(),
     [](const auto& a, const auto& b) { return a.size() > b.size(); });
   return defects;
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& curve)
+{
+  if (curve.size() < 3)
+  {
+    throw std::invalid_argument("the outline of the defect has fewer than three points");
+  }
+  Vec3 axis{ 0, 0, 0 };
+  std::vector<Vec3> directions;
+  for (std::size_t k = 0; k < curve.size(); ++k)
+  {
+    // by length, so that it does not matter where points are dense
+    const double length = Norm(curve[(k + 1) % curve.size()] - curve[k]) +
+      Norm(curve[k] - curve[(k + curve.size() - 1) % curve.size()]);
+    directions.push_back(Normalized(curve[k] - rays.Center));
+    axis = axis + length * directions.back();
+  }
+  axis = Normalized(axis);
+  const Vec3 u = Normalized(std::abs(axis[0]) < 0.8 ? Cross(axis, Vec3{ 1, 0, 0 }) : Cross(axis, Vec3{ 0, 1, 0 }));
+  const Vec3 v = Cross(axis, u);
+  // seen from the pole on the other side (stereographic): closed curves keep their inside
+  const auto toPlane = [&](const Vec3& d)
+  {
+    const double scale = 1 / (1 + Dot(d, axis));
+    return Vec2{ scale * Dot(d, u), scale * Dot(d, v) };
+  };
+  Loop loop;
+  for (const Vec3& d : directions)
+  {
+    if (!(Dot(d, axis) > -0.5))
+    {
+      throw std::invalid_argument("the outline of the defect goes around more than half of the skull");
+    }
+    loop.push_back(toPlane(d));
+  }
+  std::vector<int> within;
+  for (std::size_t i = 0; i < rays.Directions.size(); ++i)
+  {
+    if (Dot(rays.Directions[i], axis) > -0.5)
+    {
+      const Vec2 p = toPlane(rays.Directions[i]);
+      const std::vector<double> crossings = FindCrossings({ loop }, p[1]);
+      const auto passed = std::upper_bound(crossings.begin(), crossings.end(), p[0]);
+      if ((passed - crossings.begin()) % 2 == 1)
+      {
+        within.push_back(static_cast<int>(i));
+      }
+    }
+  }
+  return within;
 }
 }

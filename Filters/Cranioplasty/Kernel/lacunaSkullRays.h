@@ -47,6 +47,19 @@ Vec3 FindSkullCenter(
 SkullRays TraceSkull(const VoxelVolume& volume, double level, const Vec3& center, double spacing,
   Execution& execution);
 
+/// A part of a ray, mm from the centre.
+struct RaySegment
+{
+  Vec3 Direction; ///< unit
+  double From;
+  double To;
+};
+
+/// For each segment the largest value that it meets (trilinear, about twice a voxel), the lowest number where it
+/// is outside of the volume.
+std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& center,
+  const std::vector<RaySegment>& segments, Execution& execution);
+
 /// The sound rays.
 SoundBone GetSoundBone(const SkullRays& rays);
 
@@ -54,5 +67,9 @@ SoundBone GetSoundBone(const SkullRays& rays);
 /// the open base of a skull has less): lists of rays, the largest first. A defect that opens into an orbit ends
 /// where the opening is narrower than 20 mm.
 std::vector<std::vector<int>> FindDefects(const SkullRays& rays);
+
+/// The rays within a closed curve on the skull (world mm), as seen from the centre. Throws std::invalid_argument
+/// for fewer than three points, or a curve around more than about half of the skull.
+std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& curve);
 }
 #endif

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class vtkLacunaSkullImplant
+ * @brief the missing part of a skull as a closed solid, with its predicted error
+ *
+ * Input 0: a head CT (vtkImageData, active point scalars of one component, any type and direction, world mm),
+ * of which bone alone is at or above Level: the output of vtkLacunaSkullBone. Input 1, optional: a closed
+ * curve on the skull (vtkPolyData, its first polyline, else its points in order) around what is to be replaced;
+ * bone within it does not count as sound.
+ *
+ * Without a curve the holes of the vault are found from within, and one is chosen. The outer table and
+ * the thickness of the missing part are predicted from all sound bone and from the other side of
+ * the plane of best symmetry (lacuna::SkullShape), with a standard error that is calibrated on sound bone.
+ *
+ * Output 0: vtkPolyData, a watertight, outward oriented triangle mesh in world mm, double precision, never
+ * mirrored (lacuna::MakeSkullImplant). Point arrays (double, mm along the ray from the middle of the
+ * skull): PredictedError (standard error of the outer surface; active scalars), Thickness, ThicknessError. Cell array
+ * ImplantFace (unsigned char): 0 outer, 1 inner, 2 edge. Field data (double):
+ * | array                      | components | meaning                                                  |
+ * |----------------------------|------------|----------------------------------------------------------|
+ * | Volume                     | 1          | mm^3                                                     |
+ * | Mass                       | 1          | g, Volume times Density                                  |
+ * | OuterArea                  | 1          | mm^2                                                     |
+ * | DefectArea                 | 1          | mm^2, OuterArea without clearance                        |
+ * | ThicknessMinimum, ThicknessMean, ThicknessMaximum | 1 | mm                                         |
+ * | PredictedErrorRMS          | 1          | mm, root of the mean squared PredictedError over the area|
+ * | PredictedErrorMaximum      | 1          | mm                                                       |
+ * | PredictedErrorMaximumPoint | 3          | where that is, world mm                                  |
+ * | InsertionDirection         | 3          | unit, the way in which the implant is put in             |
+ * | LeastTaper                 | 1          | degrees, least angle between it and the walls; bone is in|
+ * |                            |            | the way where it is negative                             |
+ * | SymmetryPlaneOrigin, SymmetryPlaneNormal | 3 | a point of the refined plane, world mm; its normal  |
+ *
+ * Output 1: vtkPolyData, triangles on the ellipsoid that fits the skull for each hole that was found; cell array
+ * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
+ *
+ * Warnings: PredictedError above 1 mm, with the place; bone that divides the hole; a negative taper; data of
+ * which Level is the end of the range.
+ * Errors: no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
+ *
+ * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone
+ */
+#ifndef vtkLacunaSkullImplant_h
+#define vtkLacunaSkullImplant_h
+
+#include "vtkLacunaFiltersCranioplastyModule.h" // for export macro
+#include "vtkLacunaVersionCompat.h"             // for stops
+#include "vtkPolyDataAlgorithm.h"
+
+class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullImplant : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaSkullImplant* New();
+  vtkTypeMacro(vtkLacunaSkullImplant, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkLacunaKeepTimeAtStops();
+
+  enum DefectChoiceType
+  {
+    Largest = 0,
+    NearestToPoint = 1
+  };
+
+  ///@{
+  /** Grey level of bone, in the units of the scalars. Default 300 (Hounsfield units). */
+  vtkSetMacro(Level, double);
+  vtkGetMacro(Level, double);
+  ///@}
+  ///@{
+  /** Which of the holes that were found. Default Largest. */
+  vtkSetMacro(DefectChoice, int);
+  vtkGetMacro(DefectChoice, int);
+  ///@}
+  ///@{
+  /** For NearestToPoint: a point in or near the hole, world mm. Default 0 0 0. */
+  vtkSetVector3Macro(Point, double);
+  vtkGetVector3Macro(Point, double);
+  ///@}
+  ///@{
+  /** mm between the implant and the wall of bone, 0..5. Default 0.5. */
+  vtkSetMacro(EdgeClearance, double);
+  vtkGetMacro(EdgeClearance, double);
+  ///@}
+  ///@{
+  /** mm, edges of triangles, 0.2..5; 0: 1 mm. Default 0. */
+  vtkSetMacro(TriangleSize, double);
+  vtkGetMacro(TriangleSize, double);
+  ///@}
+  ///@{
+  /** g/cm^3, > 0: PEEK 1.3, PMMA 1.18, titanium 4.5. Default 1.3. */
+  vtkSetMacro(Density, double);
+  vtkGetMacro(Density, double);
+  ///@}
+
+  /** Takes the second input away (ParaView needs a method of its own for that). */
+  void RemoveOutline() { this->SetInputConnection(1, nullptr); }
+
+protected:
+  vtkLacunaSkullImplant();
+  ~vtkLacunaSkullImplant() override = default;
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  vtkLacunaSkullImplant(const vtkLacunaSkullImplant&) = delete;
+  void operator=(const vtkLacunaSkullImplant&) = delete;
+
+  double Level = 300;
+  int DefectChoice = Largest;
+  double Point[3] = { 0, 0, 0 };
+  double EdgeClearance = 0.5;
+  double TriangleSize = 0;
+  double Density = 1.3;
+};
+#endif
