@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSkullBone.h"
+
+#include "lacunaMemory.h"
+#include "lacunaParameterText.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProposedLevel.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkLacunaScalarType.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSelectEnclosedPoints.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaSkullBone);
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+enum Kind : std::uint8_t
+{
+  Below,
+  Bone, ///< not looked at yet
+  Kept,
+  Current, ///< of the part that is being looked at
+  Removed,
+  Halo,    ///< below, to be lowered
+  BoneEdge ///< below, near kept bone
+};
+
+// The voxels of a volume, each of one kind.
+struct Kinds
+{
+  int Size[3];
+  std::vector<std::uint8_t> Of;
+
+  // f(index) for all voxels within so many of voxel p, itself included, while it returns true.
+  template <class Function>
+  bool Around(vtkIdType p, const int reach[3], const Function& f) const
+  {
+    const vtkIdType plane = static_cast<vtkIdType>(this->Size[0]) * this->Size[1];
+    const int at[3] = { static_cast<int>(p % this->Size[0]),
+      static_cast<int>(p / this->Size[0] % this->Size[1]), static_cast<int>(p / plane) };
+    int low[3];
+    int high[3];
+    for (int a = 0; a < 3; ++a)
+    {
+      low[a] = std::max(at[a] - reach[a], 0);
+      high[a] = std::min(at[a] + reach[a], this->Size[a] - 1);
+    }
+    for (int k = low[2]; k <= high[2]; ++k)
+    {
+      for (int j = low[1]; j <= high[1]; ++j)
+      {
+        for (int i = low[0]; i <= high[0]; ++i)
+        {
+          if (!f(k * plane + static_cast<vtkIdType>(j) * this->Size[0] + i, i - at[0], j - at[1],
+                k - at[2]))
+          {
+            return false;
+          }
+        }
+      }
+    }
+    return true;
+  }
+
+  // The part of voxel seed, all of one kind, which becomes another.
+  void Fill(vtkIdType seed, std::uint8_t from, std::uint8_t to, std::vector<vtkIdType>& part)
+  {
+    constexpr int next[3] = { 1, 1, 1 };
+    part.assign(1, seed);
+    this->Of[seed] = to;
+    for (std::size_t n = 0; n < part.size(); ++n)
+    {
+      this->Around(part[n], next,
+        [&](vtkIdType q, int, int, int)
+        {
+          if (this->Of[q] == from)
+          {
+            this->Of[q] = to;
+            part.push_back(q);
+          }
+          return true;
+        });
+    }
+  }
+
+  void Set(const std::vector<vtkIdType>& part, std::uint8_t kind)
+  {
+    for (const vtkIdType p : part)
+    {
+      this->Of[p] = kind;
+    }
+  }
+};
+
+// What is bone and what is not; voxels that are Removed beforehand stay so.
+void ChooseBone(Kinds& kinds, const double spacing[3], vtkLacunaExecution& execution)
+{
+  std::vector<vtkIdType> part;
+  std::vector<vtkIdType> largest;
+  std::vector<std::vector<vtkIdType>> small;
+  const double voxel = std::abs(spacing[0] * spacing[1] * spacing[2]);
+  const auto count = static_cast<vtkIdType>(kinds.Of.size());
+  const auto isSmall = [&](const std::vector<vtkIdType>& voxels)
+  { return static_cast<double>(voxels.size()) * voxel < 1000 * vtkLacunaSkullBone::SmallPart; };
+  const auto put = [&](std::vector<vtkIdType>& voxels)
+  {
+    if (!voxels.empty() && isSmall(voxels))
+    {
+      small.emplace_back(voxels.begin(), voxels.end());
+    }
+  };
+  for (vtkIdType p = 0; p < count; ++p)
+  {
+    if (p % (1 << 20) == 0)
+    {
+      execution.Report(static_cast<double>(p) / static_cast<double>(count));
+    }
+    if (kinds.Of[p] == Bone)
+    {
+      kinds.Fill(p, Bone, Removed, part);
+      if (part.size() > largest.size())
+      {
+        part.swap(largest);
+      }
+      put(part);
+    }
+  }
+  kinds.Set(largest, Kept);
+  std::vector<vtkIdType>().swap(largest);
+  // near in mm, of which the directions of a turned volume change nothing
+  int reach[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    reach[a] = static_cast<int>(
+      std::min(vtkLacunaSkullBone::Gap / std::abs(spacing[a]), 1.0 * kinds.Size[a]));
+  }
+  std::vector<const std::vector<vtkIdType>*> thin;
+  for (const auto& voxels : small)
+  {
+    execution.Report(1);
+    const auto isFar = [&](vtkIdType p)
+    {
+      return kinds.Around(p, reach,
+        [&](vtkIdType q, int i, int j, int k)
+        {
+          return kinds.Of[q] != Kept ||
+            std::hypot(i * spacing[0], j * spacing[1], k * spacing[2]) > vtkLacunaSkullBone::Gap;
+        });
+    };
+    if (!std::all_of(voxels.begin(), voxels.end(), isFar))
+    {
+      thin.push_back(&voxels);
+    }
+  }
+  for (const auto* voxels : thin) // all after the last look: the order has no say
+  {
+    kinds.Set(*voxels, Kept);
+  }
+}
+
+// Marks what is below the level and within two voxels of what is removed, but not of kept bone.
+void MarkHalo(Kinds& kinds)
+{
+  constexpr int reach[3] = { 2, 2, 2 };
+  const auto count = static_cast<vtkIdType>(kinds.Of.size());
+  for (vtkIdType p = 0; p < count; ++p)
+  {
+    if (kinds.Of[p] == Removed)
+    {
+      kinds.Around(p, reach,
+        [&](vtkIdType q, int, int, int)
+        {
+          if (kinds.Of[q] == Below)
+          {
+            kinds.Of[q] = kinds.Around(q, reach,
+                            [&](vtkIdType r, int, int, int) { return kinds.Of[r] != Kept; })
+              ? Halo
+              : BoneEdge;
+          }
+          return true;
+        });
+    }
+  }
+}
+
+// Takes away the bone within closed surfaces, in world coordinates.
+void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
+{
+  if (vtkSelectEnclosedPoints::IsSurfaceClosed(surface) == 0)
+  {
+    throw std::runtime_error("Exclude is not a closed surface, so that it has no inside; close it, "
+                             "as with Fill Holes or Clip Closed Surface");
+  }
+  vtkNew<vtkSelectEnclosedPoints> inside;
+  inside->Initialize(surface);
+  double bounds[6];
+  surface->GetBounds(bounds);
+  const int* extent = image->GetExtent();
+  vtkIdType p = 0;
+  for (int k = extent[4]; k <= extent[5]; ++k)
+  {
+    for (int j = extent[2]; j <= extent[3]; ++j)
+    {
+      for (int i = extent[0]; i <= extent[1]; ++i, ++p)
+      {
+        double x[3];
+        if (kinds.Of[p] != Bone)
+        {
+          continue;
+        }
+        image->TransformIndexToPhysicalPoint(i, j, k, x);
+        if (x[0] >= bounds[0] && x[0] <= bounds[1] && x[1] >= bounds[2] && x[1] <= bounds[3] &&
+          x[2] >= bounds[4] && x[2] <= bounds[5] && inside->IsInsideSurface(x))
+        {
+          kinds.Of[p] = Removed;
+        }
+      }
+    }
+  }
+  inside->Complete();
+}
+
+// Lowers what was removed and its halo; returns the number of removed voxels.
+template <class T>
+vtkIdType Lower(T* values, const Kinds& kinds, double level)
+{
+  double sum = 0;
+  vtkIdType kept = 0;
+  vtkIdType removed = 0;
+  const auto count = static_cast<vtkIdType>(kinds.Of.size());
+  T lowest = std::numeric_limits<T>::max();
+  for (vtkIdType p = 0; p < count; ++p)
+  {
+    lowest = std::min(lowest, values[p]); // a NaN is never less
+    const bool isFinite = std::isfinite(static_cast<double>(values[p]));
+    if (kinds.Of[p] == Kept && isFinite)
+    {
+      sum += static_cast<double>(values[p]) - level;
+      ++kept;
+    }
+    removed += kinds.Of[p] == Removed;
+  }
+  if (removed == 0)
+  {
+    return 0;
+  }
+  const double wanted = level - (kept > 0 ? sum / static_cast<double>(kept) : 0);
+  const auto least = static_cast<double>(std::numeric_limits<T>::lowest());
+  T value = static_cast<T>(
+    std::max(std::numeric_limits<T>::is_integer ? std::floor(wanted) : wanted, least));
+  if (!(static_cast<double>(value) < level))
+  {
+    value = lowest; // bone is exactly at the level, as in a mask
+  }
+  if (!(static_cast<double>(value) < level))
+  {
+    throw std::runtime_error(
+      "all voxels are at or above Level, so that nothing can be taken away; raise Level");
+  }
+  for (vtkIdType p = 0; p < count; ++p)
+  {
+    if (kinds.Of[p] == Removed || (kinds.Of[p] == Halo && values[p] > value))
+    {
+      values[p] = value;
+    }
+  }
+  return removed;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSkullBone::vtkLacunaSkullBone()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+double* vtkLacunaSkullBone::GetProposedLevelRange()
+{
+  this->ProposedLevelRange = vtkLacunaProposedLevel::Get(this, {}, 300);
+  // Thin bone in a voxel with tissue is below what a surface through thick bone needs.
+  if (this->ProposedLevelRange[0] == 500)
+  {
+    this->ProposedLevelRange = { 300, 300 };
+  }
+  return this->ProposedLevelRange.data();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullBone::SetExcludeConnection(vtkAlgorithmOutput* output)
+{
+  this->SetInputConnection(1, output);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullBone::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPolyData");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullBone::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  // Each rank makes the extent that VTK turns its piece into.
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&] { outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullBone::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < 2; ++port)
+  {
+    if (vtkInformation* input = inputs[port]->GetInformationObject(0)) // else none is connected
+    {
+      vtkLacunaRequest::Whole(this, input, outputs);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullBone::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkImageData* input = vtkImageData::GetData(inputs[0]);
+      if (!input || input->GetNumberOfPoints() == 0)
+      {
+        return; // empty in, empty out
+      }
+      if (!std::isfinite(this->Level))
+      {
+        throw std::runtime_error("Level must be a finite number");
+      }
+      vtkLacunaVolumeDirection::Check(input);
+      vtkDataArray* scalars = input->GetPointData()->GetScalars();
+      if (!scalars || scalars->GetNumberOfComponents() != 1)
+      {
+        throw std::runtime_error("the image has no active point scalars with one component; "
+                                 "choose an array with one value per voxel");
+      }
+      const vtkIdType count = input->GetNumberOfPoints();
+      lacuna::RequireMemory("the bone",
+        static_cast<double>(count) * (scalars->GetDataTypeSize() + 1 + sizeof(vtkIdType) / 4));
+      const auto bone =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+      vtkLacunaArrays::Copy(scalars, bone);
+      const lacuna::ScalarType type = vtkLacunaScalarType::Get(bone);
+      Kinds kinds;
+      input->GetDimensions(kinds.Size);
+      kinds.Of.assign(static_cast<std::size_t>(count), Below);
+      const bool isAny = lacuna::DispatchScalars(type, bone->GetVoidPointer(0),
+        [&](const auto* values)
+        {
+          bool any = false;
+          for (vtkIdType p = 0; p < count; ++p)
+          {
+            if (static_cast<double>(values[p]) >= this->Level)
+            {
+              kinds.Of[p] = Bone;
+              any = true;
+            }
+          }
+          return any;
+        });
+      if (!isAny)
+      {
+        double range[2];
+        scalars->GetRange(range);
+        throw std::runtime_error("no voxel is at or above Level, " +
+          lacuna::FormatNumber(this->Level) + "; the values are " + lacuna::FormatNumber(range[0]) +
+          " to " + lacuna::FormatNumber(range[1]) + ". Lower Level");
+      }
+      vtkPolyData* exclude = vtkPolyData::GetData(inputs[1]);
+      if (exclude && exclude->GetNumberOfCells() > 0)
+      {
+        TakeAway(kinds, input, exclude);
+        if (std::find(kinds.Of.begin(), kinds.Of.end(), Bone) == kinds.Of.end())
+        {
+          throw std::runtime_error("no bone is left outside of Exclude; make its surfaces smaller");
+        }
+      }
+      execution.SetStage(0, 0.8);
+      ChooseBone(kinds, input->GetSpacing(), execution);
+      execution.SetStage(0.8, 1);
+      MarkHalo(kinds);
+      execution.Report(0.5);
+      const vtkIdType removed = lacuna::DispatchScalarType(type,
+        [&](auto zero)
+        {
+          return Lower(
+            static_cast<decltype(zero)*>(bone->GetVoidPointer(0)), kinds, this->Level);
+        });
+
+      vtkImageData* output = vtkImageData::GetData(outputs);
+      output->ShallowCopy(input);
+      output->GetPointData()->SetScalars(bone);
+      const double* spacing = input->GetSpacing();
+      vtkLacunaFieldData::Set(output, "BoneLevel", { this->Level }, 1);
+      vtkLacunaFieldData::Set(output, "RemovedVolume",
+        { static_cast<double>(removed) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 },
+        1);
+      int asked[6];
+      outputs->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), asked);
+      output->Crop(asked);
+      std::vector<vtkDataObject*> from{ input };
+      if (exclude)
+      {
+        from.push_back(exclude);
+      }
+      vtkLacunaProvenance::Record(
+        output, this, from, lacuna::ParameterText().Add("Level", this->Level).Get());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullBone::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << "\n";
+}
