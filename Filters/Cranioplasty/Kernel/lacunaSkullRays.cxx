@@ -30,6 +30,8 @@ constexpr double MostRange = 8;
 constexpr double SoundThickness = 14;
 // Of the fitted ellipsoid's radius: where a skull's bone is.
 constexpr double MostDeviation = 0.17;
+// The same: where the scan surely ends before the skull, and surely behind it.
+constexpr double NearEnd[] = { 0.9, 1.05 };
 constexpr double LeastDefect = 100; // mm^2
 constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
 // Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
@@ -390,16 +392,33 @@ SkullRays TraceSkull(
     ellipsoid = SkullEllipsoid(center, PointsOf(rays, inside));
   }
   rays.Kinds.resize(n);
+  // Where the scan may end before the skull does: the ellipsoid is not the skull. It does where bone is cut off.
+  std::vector<bool> ends(n, false);
   for (int i = 0; i < n; ++i)
   {
     const double radius = ellipsoid.GetRadius(rays.Directions[i]);
     const bool there = std::abs(rays.Outer[i] / radius - 1) < MostDeviation;
-    rays.Kinds[i] = there                                  ? SkullRayKind::Rough
-      : tables[i].Cut || !(tables[i].Exit > 1.05 * radius) ? SkullRayKind::Unknown
-                                                           : SkullRayKind::Open;
+    const double exit = tables[i].Exit / radius;
+    rays.Kinds[i] = there                        ? SkullRayKind::Rough
+      : tables[i].Cut || !(exit > NearEnd[0]) ? SkullRayKind::Unknown
+                                                 : SkullRayKind::Open;
+    ends[i] = rays.Kinds[i] == SkullRayKind::Open && !(exit > NearEnd[1]);
     if (!there)
     {
       rays.Outer[i] = rays.Inner[i] = NotANumber;
+    }
+  }
+  for (const std::vector<int>& part : FindParts(around, [&](int i) { return ends[i]; }))
+  {
+    const bool isCut = std::any_of(part.begin(), part.end(),
+      [&](int i)
+      {
+        return std::any_of(
+          around[i].begin(), around[i].end(), [&](int j) { return tables[j].Cut; });
+      });
+    for (const int i : part)
+    {
+      rays.Kinds[i] = isCut ? SkullRayKind::Unknown : SkullRayKind::Open;
     }
   }
   for (const int i : vault)
