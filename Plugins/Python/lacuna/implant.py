@@ -136,10 +136,10 @@ def parse_arguments(arguments):
         parser.error(f"--output: there is no folder {folder}")
     if options.hole and not all(map(math.isfinite, options.hole)):
         parser.error("--hole: these are no three numbers in mm")
-    if not math.isfinite(options.level):
-        parser.error(f"--level: {options.level} is no number in Hounsfield units")
-    if not (math.isfinite(options.clearance) and options.clearance >= 0):
-        parser.error(f"--clearance: {options.clearance:g} mm is not 0 or more")
+    if not (math.isfinite(options.level) and options.level > 0):
+        parser.error(f"--level: {options.level:g} is no number of Hounsfield units above 0")
+    if not 0 <= options.clearance <= 5:
+        parser.error(f"--clearance: {options.clearance:g} mm is not from 0 to 5")
     if options.report and os.path.exists(options.report) and not os.path.isdir(options.report):
         parser.error(f"--report: {options.report} is a file, not a folder")
     return options

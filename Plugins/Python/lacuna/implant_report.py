@@ -185,6 +185,7 @@ def _rows(made, numbers):
              ("predicted error of the outer surface, RMS", f"{numbers['PredictedErrorRMS']:.2f} mm"),
              ("predicted error, largest", f"{numbers['PredictedErrorMaximum']:.2f} mm at {place(numbers['PredictedErrorMaximumPoint'])}"),
              ("insertion direction", text),
+             ("least taper of the walls", f"{numbers['LeastTaper']:.1f}° (below 0: bone is in the way)"),
              ("bone level", f"{made.bone.Level:g} HU")]
     return rows
 
