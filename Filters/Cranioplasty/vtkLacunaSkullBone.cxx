@@ -3,6 +3,8 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaVector.h"
+#include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -21,6 +23,7 @@
 #include "vtkPolyData.h"
 #include "vtkSelectEnclosedPoints.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTriangleFilter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -214,33 +217,89 @@ void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
     throw std::runtime_error("Exclude is not a closed surface, so that it has no inside; close it, "
                              "as with Fill Holes or Clip Closed Surface");
   }
-  vtkNew<vtkSelectEnclosedPoints> inside;
-  inside->Initialize(surface);
-  double bounds[6];
-  surface->GetBounds(bounds);
+  vtkNew<vtkTriangleFilter> filter;
+  filter->SetInputData(surface);
+  filter->PassLinesOff();
+  filter->PassVertsOff();
+  filter->Update();
+  vtkPolyData* triangles = filter->GetOutput();
+  // In voxels, a little aside: no row of voxels meets an edge or a corner exactly.
+  constexpr double aside[3] = { 0, 1.37e-6, 2.71e-6 };
   const int* extent = image->GetExtent();
-  vtkIdType p = 0;
-  for (int k = extent[4]; k <= extent[5]; ++k)
+  std::vector<lacuna::Vec3> points(static_cast<std::size_t>(triangles->GetNumberOfPoints()));
+  for (std::size_t n = 0; n < points.size(); ++n)
   {
-    for (int j = extent[2]; j <= extent[3]; ++j)
+    double x[3];
+    double index[3];
+    triangles->GetPoint(static_cast<vtkIdType>(n), x);
+    image->TransformPhysicalPointToContinuousIndex(x, index);
+    for (int a = 0; a < 3; ++a)
     {
-      for (int i = extent[0]; i <= extent[1]; ++i, ++p)
+      points[n][a] = index[a] - extent[2 * a] + aside[a];
+    }
+  }
+  // Of an edge seen along the rows: on which side of it a row is; of both its triangles the same number.
+  const auto side = [&](vtkIdType a, vtkIdType b, double y, double z)
+  {
+    const lacuna::Vec3& p = points[static_cast<std::size_t>(std::min(a, b))];
+    const lacuna::Vec3& q = points[static_cast<std::size_t>(std::max(a, b))];
+    const double area = (q[1] - p[1]) * (z - p[2]) - (q[2] - p[2]) * (y - p[1]);
+    return a < b ? area : -area;
+  };
+  std::vector<std::vector<double>> crossings(
+    static_cast<std::size_t>(kinds.Size[1]) * static_cast<std::size_t>(kinds.Size[2]));
+  vtkCellArray* cells = triangles->GetPolys();
+  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* t = nullptr;
+    cells->GetCellAtId(c, size, t);
+    int low[3];
+    int high[3];
+    for (int a = 1; a < 3; ++a)
+    {
+      const auto [least, most] = std::minmax({ points[t[0]][a], points[t[1]][a], points[t[2]][a] });
+      low[a] = static_cast<int>(std::ceil(std::clamp(least, 0.0, 1.0 * kinds.Size[a])));
+      high[a] = static_cast<int>(std::floor(std::clamp(most, -1.0, kinds.Size[a] - 1.0)));
+    }
+    for (int k = low[2]; k <= high[2]; ++k)
+    {
+      for (int j = low[1]; j <= high[1]; ++j)
       {
-        double x[3];
-        if (kinds.Of[p] != Bone)
+        const double w[3] = { side(t[1], t[2], j, k), side(t[2], t[0], j, k),
+          side(t[0], t[1], j, k) };
+        if ((w[0] > 0) == (w[1] > 0) && (w[1] > 0) == (w[2] > 0))
         {
-          continue;
-        }
-        image->TransformIndexToPhysicalPoint(i, j, k, x);
-        if (x[0] >= bounds[0] && x[0] <= bounds[1] && x[1] >= bounds[2] && x[1] <= bounds[3] &&
-          x[2] >= bounds[4] && x[2] <= bounds[5] && inside->IsInsideSurface(x))
-        {
-          kinds.Of[p] = Removed;
+          const double sum = w[0] + w[1] + w[2];
+          if (sum != 0)
+          {
+            crossings[static_cast<std::size_t>(k) * kinds.Size[1] + j].push_back(
+              (w[0] * points[t[0]][0] + w[1] * points[t[1]][0] + w[2] * points[t[2]][0]) / sum);
+          }
         }
       }
     }
   }
-  inside->Complete();
+  // Between the first and second crossing of a row, the third and fourth, and so on, is the inside.
+  for (std::size_t row = 0; row < crossings.size(); ++row)
+  {
+    std::vector<double>& at = crossings[row];
+    std::sort(at.begin(), at.end());
+    for (std::size_t n = 0; n + 1 < at.size(); n += 2)
+    {
+      const int first = static_cast<int>(std::ceil(std::clamp(at[n], 0.0, 1.0 * kinds.Size[0])));
+      const int last =
+        static_cast<int>(std::floor(std::clamp(at[n + 1], -1.0, kinds.Size[0] - 1.0)));
+      for (int i = first; i <= last; ++i)
+      {
+        std::uint8_t& kind = kinds.Of[row * static_cast<std::size_t>(kinds.Size[0]) + i];
+        if (kind == Bone)
+        {
+          kind = Removed;
+        }
+      }
+    }
+  }
 }
 
 // Lowers what was removed and its halo; returns the number of removed voxels.
@@ -313,6 +372,11 @@ double* vtkLacunaSkullBone::GetProposedLevelRange()
 void vtkLacunaSkullBone::SetExcludeConnection(vtkAlgorithmOutput* output)
 {
   this->SetInputConnection(1, output);
+}
+
+void vtkLacunaSkullBone::RemoveExclude()
+{
+  this->SetInputConnection(1, nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -420,10 +484,8 @@ int vtkLacunaSkullBone::RequestData(
       MarkHalo(kinds);
       execution.Report(0.5);
       const vtkIdType removed = lacuna::DispatchScalarType(type,
-        [&](auto zero)
-        {
-          return Lower(
-            static_cast<decltype(zero)*>(bone->GetVoidPointer(0)), kinds, this->Level);
+        [&](auto zero) {
+          return Lower(static_cast<decltype(zero)*>(bone->GetVoidPointer(0)), kinds, this->Level);
         });
 
       vtkImageData* output = vtkImageData::GetData(outputs);

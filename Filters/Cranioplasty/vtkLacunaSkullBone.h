@@ -50,6 +50,7 @@ public:
 
   /// Closed surfaces whose inside is taken away, such as bone flaps and metal plates. Optional.
   void SetExcludeConnection(vtkAlgorithmOutput* output);
+  void RemoveExclude();
 
 protected:
   vtkLacunaSkullBone();
