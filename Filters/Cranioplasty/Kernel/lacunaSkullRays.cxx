@@ -31,7 +31,7 @@ constexpr double SoundThickness = 14;
 // Of the fitted ellipsoid's radius: where a skull's bone is.
 constexpr double MostDeviation = 0.17;
 // The same: where the scan surely ends before the skull, and surely behind it.
-constexpr double NearEnd[] = { 0.9, 1.05 };
+constexpr double NearEnd[] = { 0.95, 1.05 };
 constexpr double LeastDefect = 100; // mm^2
 constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
 // Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
@@ -392,7 +392,8 @@ SkullRays TraceSkull(
     ellipsoid = SkullEllipsoid(center, PointsOf(rays, inside));
   }
   rays.Kinds.resize(n);
-  // Where the scan may end before the skull does: the ellipsoid is not the skull. It does where bone is cut off.
+  // Where the scan may end before the skull does: the ellipsoid is not the skull. It does beside
+  // where it surely does, such as at bone that is cut off.
   std::vector<bool> ends(n, false);
   for (int i = 0; i < n; ++i)
   {
@@ -413,8 +414,8 @@ SkullRays TraceSkull(
     const bool isCut = std::any_of(part.begin(), part.end(),
       [&](int i)
       {
-        return std::any_of(
-          around[i].begin(), around[i].end(), [&](int j) { return tables[j].Cut; });
+        return std::any_of(around[i].begin(), around[i].end(),
+          [&](int j) { return rays.Kinds[j] == SkullRayKind::Unknown && !ends[j]; });
       });
     for (const int i : part)
     {

@@ -169,6 +169,52 @@ TEST(SkullRays, DoNotGuessBeyondTheScan)
   EXPECT_GT(Dot(rays.Directions[defects[0][0]], { 1, 0, 0 }), 0.8);
 }
 
+TEST(SkullRays, SeeAHoleAtTheCrownThoughTheScanEndsThere)
+{
+  // the scan ends at 82 mm, the crown is at about 80
+  const Scan scan({ { { 0, 0, 1 }, 0.5 } }, {}, 82);
+  lacuna::ThreadExecution execution(2);
+  const lacuna::SkullRays rays = lacuna::TraceSkull(scan.Get(), 300, { 0, 0, 0 }, 3, execution);
+  const std::vector<std::vector<int>> defects = lacuna::FindDefects(rays);
+  ASSERT_EQ(defects.size(), 1u);
+  const double part = (1 - std::cos(0.5)) / 2;
+  EXPECT_NEAR(static_cast<double>(defects[0].size()) / rays.Directions.size(), part, 0.1 * part);
+}
+
+TEST(SkullRays, KnowWhatACurveEncloses)
+{
+  const Scan scan({});
+  lacuna::ThreadExecution execution(2);
+  const lacuna::SkullRays rays = lacuna::TraceSkull(scan.Get(), 300, { 0, 0, 0 }, 3, execution);
+  // a circle of 1.2 radians about a direction, drawn with dense points on one half, at several heights
+  const Vec3 axis = lacuna::Normalized({ 0.7, -0.4, 0.6 });
+  const Vec3 u = lacuna::Normalized(Cross(axis, { 0, 0, 1 }));
+  const Vec3 v = Cross(axis, u);
+  std::vector<Vec3> curve;
+  for (int k = 0; k < 300; ++k)
+  {
+    const double turn = lacunaSkullTest::Pi * (k < 200 ? k / 200.0 : 1 + (k - 200) / 100.0);
+    curve.push_back((60.0 + k % 40) *
+      (std::cos(1.2) * axis + (std::sin(1.2) * std::cos(turn)) * u +
+        (std::sin(1.2) * std::sin(turn)) * v));
+  }
+  const std::vector<int> within = lacuna::FindRaysWithin(rays, curve);
+  std::vector<bool> isWithin(rays.Directions.size(), false);
+  for (const int i : within)
+  {
+    isWithin[i] = true;
+  }
+  for (std::size_t i = 0; i < isWithin.size(); ++i)
+  {
+    const double angle = std::acos(std::clamp(Dot(rays.Directions[i], axis), -1.0, 1.0));
+    if (std::abs(angle - 1.2) > 0.01)
+    {
+      EXPECT_EQ(isWithin[i], angle < 1.2);
+    }
+  }
+  EXPECT_THROW(lacuna::FindRaysWithin(rays, { axis, u }), std::invalid_argument);
+}
+
 TEST(SkullRays, CenterIsAmidTheVault)
 {
   const Matrix4 turn =
