@@ -11,7 +11,7 @@ lacuna.plugin.load()
 import numpy as np
 from lacuna import implant
 from lacuna_test import output
-from paraview.simple import *
+from paraview.simple import Delete, GetSources, ProgrammableFilter, SaveData, SkullPhantom
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkMassProperties
 from vtkmodules.vtkIOGeometry import vtkSTLReader
