@@ -38,7 +38,7 @@ filled.DefectRegion.Radius = 39
 iges = os.path.join(folder, "implant.igs")
 SaveData(iges, proxy=filled)
 assert os.path.getsize(iges) > 10000
-for macro in ("Lacuna_CT_to_IGES.py", "Lacuna_Sweep_to_surface.py"):
+for macro in ("Lacuna_CT_to_IGES.py", "Lacuna_CT_to_implant.py", "Lacuna_Sweep_to_surface.py"):
     path = os.path.join("/usr/share/Lacuna-pv5.11/macros", macro)
     compile(open(path, encoding="utf-8").read(), path, "exec")
 print("installed: pvpython works")

@@ -19,7 +19,7 @@ from lacuna_test import output
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-SWEEP, CT = (os.path.join(sys.argv[1], f"Lacuna_{name}.py") for name in ("Sweep_to_surface", "CT_to_IGES"))
+SWEEP, CT, IMPLANT = (os.path.join(sys.argv[1], f"Lacuna_{name}.py") for name in ("Sweep_to_surface", "CT_to_IGES", "CT_to_implant"))
 home = os.path.abspath(output("Macros"))
 shutil.rmtree(home, ignore_errors=True)
 os.makedirs(home)
@@ -56,12 +56,14 @@ view.ViewSize = [500, 400]
 # Nothing, and what is of another kind
 refused(SWEEP, "nothing is selected in the pipeline browser; open and select a sweep")
 refused(CT, "nothing is selected in the pipeline browser; open and select a CT")
+refused(IMPLANT, "nothing is selected in the pipeline browser; open and select a CT")
 ball = Sphere()
 refused(SWEEP, "holds no tracked slices; select a Tracked Slice Reader")
 refused(CT, "is no volume; select a CT Series Reader")
 wavelet = Wavelet()
 refused(SWEEP, "'Wavelet1' holds no tracked slices")
 refused(CT, "range from 37.35 to 276.8: bone, at 500 Hounsfield units, is not among them")
+refused(IMPLANT, "range from 37.35 to 276.8: bone, at 300 Hounsfield units, is not among them")
 sweep = PhantomSweep(registrationName="My sweep", NumberOfSlices=50, ImageSize=[160, 120], PixelSpacing=0.4, Motion="Arbitrary", SpeckleLevel=0.2)
 refused(CT, "'My sweep' is a sweep, not a CT: use the macro for sweeps")
 uncalibrated = ProgrammableFilter(registrationName="No pose", Input=sweep, Script="""
@@ -71,6 +73,7 @@ output.GetFieldData().RemoveArray("ImageToReference")
 refused(SWEEP, "'No pose' is not calibrated")
 intact = SkullPhantom(registrationName="Intact", DefectRadius=0, Spacing=[2, 2, 3])
 refused(CT, "no hole is seen in 'Intact': turn the 3-D view")
+refused(IMPLANT, "no hole")
 
 # A sweep: its surface is closed and encloses what is there
 Show(sweep, view)
@@ -129,3 +132,15 @@ assert data[0] == data[1], "the same surface is written twice"
 SetActiveSource(FindSource("Depth map of My CT"))
 result, name = macros.ct_to_iges(folder=home)
 assert name == os.path.join(home, "implant-3.igs") and os.path.getsize(name) > 10000
+
+# A CT: its hole gets an implant, whatever the view; bone and implant are shown, coloured by the predicted error
+SetActiveSource(ct)
+assert run(IMPLANT) == ""
+plate = GetActiveSource()
+assert FindSource("Implant of My CT") == plate and FindSource("Bone of My CT") and FindSource("Bone surface of My CT")
+shown = {display.Input for display in view.Representations if display.Visibility and display.GetProperty("Input") and display.Input}
+assert {plate, FindSource("Bone surface of My CT")} <= shown and ct not in shown
+assert GetDisplayProperties(plate, view).ColorArrayName[1] == "PredictedError"
+direction = np.array(ct.DefectDirection) / np.linalg.norm(ct.DefectDirection)
+assert np.dot(fetch(plate).GetFieldData().GetArray("InsertionDirection").GetTuple(0), direction) < -0.9
+assert np.linalg.norm(np.array(fetch(plate).GetCenter()) - direction * truth.IntersectOuterSurface([0, 0, 0], direction)) < 12

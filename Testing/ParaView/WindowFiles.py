@@ -95,7 +95,7 @@ def test(window):
     assert np.allclose(volume.GetPoint(volume.GetNumberOfPoints() - 1), [-right, -front, up], atol=1e-5)  # LPS; of 32-bit numbers
 
     # macros: imported once, then they are in the menu
-    for name in ("Lacuna_Sweep_to_surface", "Lacuna_CT_to_IGES"):
+    for name in ("Lacuna_Sweep_to_surface", "Lacuna_CT_to_IGES", "Lacuna_CT_to_implant"):
         file = os.path.join(os.environ[MACROS], name + ".py")
         window.menu("Macros/Import new macro...", lambda: window.choose_file(file))
         assert window.has_menu("Macros/" + name)

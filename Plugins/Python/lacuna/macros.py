@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The two main jobs in one step, on what is selected in the pipeline browser: what the macros in Plugins/Macros call.
+"""The main jobs in one step, on what is selected in the pipeline browser: what the macros in Plugins/Macros call.
 
     surface = macros.sweep_to_surface()     # tracked slices -> volume -> median -> surface
     filled, name = macros.ct_to_iges()      # CT -> depth map as the view looks -> filled hole -> IGES file
+    made = macros.ct_to_implant()           # CT -> bone alone -> implant, coloured by the error to expect
 """
 import math
 import os
@@ -10,7 +11,7 @@ import os
 import numpy as np
 import paraview.simple as pv
 
-from lacuna import demo_ultrasound, pictures, views
+from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, views
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
 
@@ -122,6 +123,41 @@ def ct_to_iges(source=None, folder=None):
     return filled, file
 
 
+def ct_to_implant(source=None):
+    """A CT (by default the active source) becomes an implant for its largest hole, shown in the skull and coloured by its predicted error.
+
+    Returns the proxies bone, implant and defects (implant.Made). Raises ValueError when the source is no CT, and PipelineError when
+    a filter fails, for example because there is no hole. lacuna.solids.save_solid writes the implant.
+    """
+    source = _data_of(source, "a CT: a CT Series Reader, another reader of a volume, or Skull Phantom")
+    name = _name(source)
+    _check_volume(fetch(source), name, implant.LEVEL)
+    view = _view()
+    with _made() as made, raising():
+        result = implant.make_implant(source)
+        made(result.bone)
+        made(result.implant)
+        pv.RenameSource(f"Bone of {name}", result.bone)
+        pv.RenameSource(f"Implant of {name}", result.implant)
+        numbers = implant.measures(result)
+        surface = implant_report.show_bone(result.bone, result.bone.Level, view, made)
+        pv.RenameSource(f"Bone surface of {name}", surface)
+    pv.Hide(source, view)
+    implant_report.show_error(result.implant, view, numbers)
+    inwards = list(numbers["InsertionDirection"])
+    pictures.look(view, inwards, demo_implant.view_up(inwards))
+    pv.SetActiveSource(result.implant)
+    try:
+        views.show_orientation(view)
+    except ValueError:  # not known to be the patient's, or something else is shown
+        pass
+    pv.Render(view)
+    for line in implant.describe(result):
+        print(f"Lacuna: {line}")
+    print(f"Lacuna: to write '{_name(result.implant)}', call lacuna.solids.save_solid('implant.stl', GetActiveSource()) in View > Python Shell")
+    return result
+
+
 def _data_of(source, what):
     """The source, updated, or the active one. Raises ValueError when there is none."""
     source = source or pv.GetActiveSource()
@@ -139,7 +175,7 @@ def _name(source):
     return names[0] if names else source.GetXMLLabel()
 
 
-def _check_volume(image, name):
+def _check_volume(image, name, level=BONE):
     if not image.IsA("vtkImageData") or min(image.GetDimensions()) < 2:
         raise ValueError(f"'{name}' is no volume; select a CT Series Reader, another reader of a volume, or Skull Phantom in the pipeline browser")
     if image.GetFieldData().HasArray("SliceStatus"):
@@ -148,8 +184,8 @@ def _check_volume(image, name):
     if grey is None or grey.GetNumberOfComponents() != 1:
         raise ValueError(f"'{name}' has no grey levels (one number per voxel)")
     low, high = grey.GetRange()
-    if not low < BONE <= high:
-        raise ValueError(f"the values of '{name}' range from {low:.4g} to {high:.4g}: bone, at {BONE} Hounsfield units, is not among them")
+    if not low < level <= high:
+        raise ValueError(f"the values of '{name}' range from {low:.4g} to {high:.4g}: bone, at {level} Hounsfield units, is not among them")
 
 
 def _fit(volume):

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The missing part of a skull as a solid: CT in, implant out.
+
+    pvpython -- -m lacuna.implant CT --output implant.stl [--hole X Y Z] [--report DIR]
+
+    from lacuna import implant
+    made = implant.make_implant(ct)           # ct: a proxy; made.bone, made.implant, made.defects are proxies
+    numbers = implant.measures(made)
+"""
+import argparse
+import collections
+import contextlib
+import math
+import os
+import sys
+
+import paraview.simple as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+from lacuna import coordinates, views
+from lacuna.data import fetch
+from lacuna.errors import raising
+
+LEVEL = 300  # Hounsfield units
+CLEARANCE = 0.5  # mm
+ENDINGS = (".stl", ".ply", ".obj", ".vtp", ".3mf")
+WORDS = {"L": "left", "R": "right", "P": "back", "A": "front", "H": "top", "F": "bottom"}
+
+Made = collections.namedtuple("Made", "bone implant defects")
+Defect = collections.namedtuple("Defect", "area center")  # mm², mm
+
+
+def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE):
+    """Makes the pipeline from a CT (a proxy) to an implant, and updates it. Opens no file and shows nothing.
+
+    hole: a point in or near the hole, x y z in the CT's patient millimetres; None takes the largest hole. level: of the bone's
+    surface in Hounsfield units. clearance: of the implant's edge from the bone in mm.
+    Returns the proxies bone (Skull Bone), implant (Skull Implant) and defects (its second output). Raises PipelineError when a
+    filter reports an error, for example when there is no hole. Nothing of the pipeline is left then.
+    """
+    made = []
+    try:
+        with raising():
+            made.append(pv.SkullBone(Input=ct, Level=level))
+            made.append(pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance))
+            if hole is not None:
+                made[1].DefectChoice, made[1].Point = "Nearest to Point", list(hole)
+            made[1].UpdatePipeline()
+    except Exception:
+        for proxy in reversed(made):
+            pv.Delete(proxy)
+        raise
+    return Made(*made, pv.OutputPort(made[1], 1))
+
+
+def measures(made):
+    """The numbers of an implant: its field data by name, a number or an array each, as the page of Skull Implant lists them.
+
+    Besides these, Defects is a list of Defect (area in mm², center), the largest first, and Chosen the index of the one
+    that the implant closes.
+    """
+    data = fetch(made.implant)
+    fields = data.GetFieldData()
+    numbers = {}
+    for k in range(fields.GetNumberOfArrays()):
+        array = fields.GetArray(k)  # None for texts
+        if array is not None and array.GetNumberOfValues():
+            values = vtk_to_numpy(array).ravel()
+            numbers[array.GetName()] = float(values[0]) if values.size == 1 else values
+    fields = fetch(made.defects).GetFieldData()
+    areas = vtk_to_numpy(fields.GetArray("DefectAreas")).ravel()
+    centers = vtk_to_numpy(fields.GetArray("DefectCenters")).reshape(-1, 3)
+    numbers["Defects"] = [Defect(float(area), center) for area, center in zip(areas, centers)]
+    low, high = data.GetBounds()[::2], data.GetBounds()[1::2]
+    middle = [(a + b) / 2 for a, b in zip(low, high)]
+    numbers["Chosen"] = min(range(len(areas)), key=lambda k: math.dist(centers[k], middle))
+    return numbers
+
+
+def describe(made):
+    """The result in plain words, a list of lines."""
+    numbers = measures(made)
+    place = places(made)
+    count = len(numbers["Defects"])
+    lines = [f"{count} hole{'s' if count != 1 else ''} found:"]
+    for k, defect in enumerate(numbers["Defects"]):
+        chosen = "  <- the implant closes this one" if k == numbers["Chosen"] else ""
+        lines.append(f"  {k + 1}: {defect.area / 100:.1f} cm², centre at {place(defect.center)}{chosen}")
+    lines.append(f"implant: {numbers['Volume'] / 1000:.2f} ml, {numbers['Mass']:.1f} g; thickness {numbers['ThicknessMinimum']:.1f} to "
+                 f"{numbers['ThicknessMaximum']:.1f} mm, mean {numbers['ThicknessMean']:.1f} mm")
+    lines.append(f"predicted error of the outer surface (standard error): {numbers['PredictedErrorRMS']:.2f} mm RMS; largest "
+                 f"{numbers['PredictedErrorMaximum']:.2f} mm, at {place(numbers['PredictedErrorMaximumPoint'])}")
+    return lines
+
+
+def places(made):
+    """A function that writes a point as text: x y z in mm, and on which side of the head it is if the CT is known to be the patient's."""
+    bounds = made.bone.GetDataInformation().GetBounds()
+    middle = [(low + high) / 2 for low, high in zip(bounds[::2], bounds[1::2])]
+    patient = coordinates.is_patient(made.bone)
+
+    def place(point):
+        text = " ".join(f"{x:.1f}" for x in point) + " mm"
+        return f"{text} ({direction_words([a - b for a, b in zip(point, middle)])})" if patient else text
+
+    return place
+
+
+def direction_words(direction):
+    """Where a direction in patient coordinates (LPS) leads, in words such as "left front"."""
+    return " ".join(WORDS[letter] for letter in views.direction_letters(direction))
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(
+        prog="lacuna.implant", formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Designs an implant for the hole in a skull: a closed surface in the CT's patient millimetres (LPS), with the error to\n"
+        "expect. Research software, not a medical device.",
+        epilog="Exit codes: 0 the implant is written; 1 something failed, one sentence says what; 2 the command is wrong.\n"
+        "Call it as pvpython -- -m lacuna.implant ... The -- keeps ParaView from turning numbers such as -13 into --13.\n"
+        "On a computer without a screen --report needs pvpython --force-offscreen-rendering -- -m lacuna.implant ...")
+    parser.add_argument("ct", metavar="CT", help="a folder with a DICOM series, a file of one, or a volume: .mha .mhd .nrrd .nhdr .nii .nii.gz .vti")
+    parser.add_argument("--output", required=True, metavar="FILE",
+                        help="the implant, in mm: " + " ".join(ENDINGS) + ". FILE.json beside it says where it comes from")
+    parser.add_argument("--hole", type=float, nargs=3, metavar=("X", "Y", "Z"),
+                        help="a point in or near the hole, in patient millimetres: x to the left, y to the back, z to the head. Default: the largest hole")
+    parser.add_argument("--report", metavar="DIR", help="write index.html with pictures, numbers and warnings into this folder")
+    parser.add_argument("--level", type=float, default=LEVEL, metavar="HU", help="of the bone's surface, in Hounsfield units (%(default)s)")
+    parser.add_argument("--clearance", type=float, default=CLEARANCE, metavar="MM", help="gap between the implant's edge and the bone (%(default)s)")
+    options = parser.parse_args(arguments)
+    folder = os.path.dirname(options.output) or "."
+    if not options.output.lower().endswith(ENDINGS):
+        parser.error(f"--output: {options.output} does not end in one of {' '.join(ENDINGS)}")
+    if not os.path.isdir(folder):
+        parser.error(f"--output: there is no folder {folder}")
+    if options.hole and not all(map(math.isfinite, options.hole)):
+        parser.error("--hole: these are no three numbers in mm")
+    if not (math.isfinite(options.level) and options.level > 0):
+        parser.error(f"--level: {options.level:g} is no number of Hounsfield units above 0")
+    if not 0 <= options.clearance <= 5:
+        parser.error(f"--clearance: {options.clearance:g} mm is not from 0 to 5")
+    if options.report and os.path.exists(options.report) and not os.path.isdir(options.report):
+        parser.error(f"--report: {options.report} is a file, not a folder")
+    return options
+
+
+def main(arguments=None):
+    """The command. Returns 0, or 1 after a failure that one sentence on the standard error explains; wrong arguments exit with 2."""
+    options = parse_arguments(arguments)
+    try:
+        _run(options)
+    except (ValueError, RuntimeError, OSError, MemoryError) as error:
+        reason = "there is not enough memory" if isinstance(error, MemoryError) else error
+        print(f"lacuna.implant: {reason}", file=sys.stderr, flush=True)
+        return 1
+    return 0
+
+
+def _run(options):
+    from lacuna.data import open_volume
+    from lacuna.solids import save_solid
+    warnings = []
+    _say("reading the CT")
+    with _told_once(warnings):
+        if options.report:
+            os.makedirs(options.report, exist_ok=True)
+        ct = open_volume(options.ct)
+    _say("designing the implant")
+    with _told_once(warnings):
+        made = make_implant(ct, options.hole, options.level, options.clearance)
+        lines = describe(made)
+        record = save_solid(options.output, made.implant)
+    warnings = list(dict.fromkeys(warnings))
+    for line in lines + [f"warning: {warning}" for warning in warnings]:
+        _say(line)
+    _say(f"written: {options.output} and {options.output}.json")
+    if options.report:
+        from lacuna import implant_report
+        with _told_once():
+            implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings)
+        _say(f"written: {os.path.join(options.report, 'index.html')}")
+    _say("Research software, not a medical device.")
+
+
+def _say(text):
+    print(text, flush=True)
+
+
+@contextlib.contextmanager
+def _told_once(warnings=None):
+    """As raising; VTK's output window does not print the messages too. In pvpython it does not print print's texts either."""
+    window = vtkOutputWindow.GetInstance()
+    mode = window.GetDisplayMode()
+    window.SetDisplayModeToNever()
+    try:
+        with raising(warnings):
+            yield
+    finally:
+        window.SetDisplayMode(mode)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page with pictures, numbers and warnings of an implant of lacuna.implant: index.html and its PNGs in one folder."""
+import html
+import math
+import os
+
+import numpy as np
+import paraview.simple as pv
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonTransforms import vtkTransform
+
+import lacuna
+from lacuna import coordinates, implant, pictures, views
+from lacuna.data import fetch
+from lacuna.demo_implant import view_up
+from lacuna.solids import NOTICE
+
+IMPLANT = (0.25, 0.55, 0.78)
+CHOSEN, OTHER = (0.80, 0.10, 0.10), (0.90, 0.55, 0.10)  # outlines of holes
+STEP = 0.8  # mm between samples of the bone that is shown, at least
+MATERIALS = (("PEEK", 1.3), ("PMMA", 1.18), ("titanium", 4.5))  # g/cm³
+# file name, title if the CT is known to be the patient's, else as the axes say, direction
+SIDES = (("front", "From the front", "Along +y", (0, 1, 0)), ("back", "From behind", "Along −y", (0, -1, 0)),
+         ("left", "From the patient's left", "Along −x", (-1, 0, 0)), ("right", "From the patient's right", "Along +x", (1, 0, 0)),
+         ("top", "From above", "Along −z", (0, 0, -1)), ("bottom", "From below", "Along +z", (0, 0, 1)))
+
+
+def show_bone(bone, level, view, made=lambda proxy: proxy):
+    """Shows the surface of the bone (a proxy of a volume), sampled every STEP mm or more. Returns the proxy that is shown.
+
+    made: is called with each proxy that is made.
+
+    ParaView's Contour does not heed how a volume is turned; a Transform after it does.
+    """
+    image = fetch(bone)
+    rates = [max(1, int(STEP / spacing)) for spacing in image.GetSpacing()]
+    surface = bone
+    if max(rates) > 1:
+        extent = image.GetExtent()
+        surface = made(pv.ExtractSubset(Input=bone, VOI=list(extent), SampleRateI=rates[0], SampleRateJ=rates[1], SampleRateK=rates[2]))
+        image = fetch(surface)
+    grey = image.GetPointData().GetScalars().GetName()
+    surface = made(pv.Contour(Input=surface, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
+    direction = np.array([image.GetDirectionMatrix().GetElement(i, k) for i in range(3) for k in range(3)]).reshape(3, 3)
+    if not np.allclose(direction, np.eye(3), atol=1e-12):
+        origin = np.array(image.GetOrigin())
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = direction, origin - direction @ origin
+        turn = vtkTransform()
+        turn.SetMatrix(matrix.ravel())
+        surface = made(pv.Transform(Input=surface))
+        surface.Transform.Translate, surface.Transform.Rotate = list(turn.GetPosition()), list(turn.GetOrientation())
+    pictures.show_surface(surface, view, pictures.BONE)
+    return surface
+
+
+def show_error(proxy, view, numbers):
+    """Shows an implant coloured by its predicted error, from 0 to 1 mm or more."""
+    display = pictures.show_surface(proxy, view, IMPLANT)
+    _color(display, view, "PredictedError", "predicted error, mm", (0, max(1, _up(numbers["PredictedErrorMaximum"]))), "Viridis (matplotlib)")
+    return display
+
+
+def _color(display, view, array, title, bounds, preset):
+    """pictures.color_by with a bar that is easy to read on bone."""
+    bar = pv.GetScalarBar(pictures.color_by(display, view, array, title, bounds, preset), view)
+    bar.HorizontalTitle, bar.ScalarBarLength = 1, 0.4
+    bar.TitleBold = bar.LabelBold = 1
+    bar.WindowLocation = "Upper Right Corner"
+
+
+def write(folder, made, record, ct_name, warnings):
+    """Writes index.html and its pictures into a folder that exists.
+
+    made: of implant.make_implant; record: of solids.save_solid; ct_name: of the CT's file, without its folder; warnings: texts.
+    """
+    numbers = implant.measures(made)
+    shown = _draw(folder, made, numbers)
+    with open(os.path.join(folder, "index.html"), "w", encoding="utf-8") as file:
+        file.write(_page(made, numbers, record, ct_name, warnings, shown))
+
+
+def _draw(folder, made, numbers):
+    """Saves the pictures; returns (file name, title) of the main ones and of those from six sides."""
+    patient = coordinates.is_patient(made.bone)
+    inwards = list(numbers["InsertionDirection"])
+    files = []
+
+    def save(view, name, title):
+        pictures.save(view, os.path.join(folder, name + ".png"))
+        files.append((name + ".png", title))
+
+    view = _new_view((640, 560))
+    bone = show_bone(made.bone, made.bone.Level, view)
+    pictures.show_surface(made.implant, view, IMPLANT)
+    if patient:  # the bone is too: the Transform of show_bone takes it to where the patient is
+        views.show_orientation(view, force=True)
+    for name, title, axis_title, direction in SIDES:
+        pictures.look(view, direction, view_up(direction), 1.15)
+        save(view, name, title if patient else axis_title)
+    pv.Delete(view)
+    sides, files = files, []
+
+    view = _new_view((900, 720))
+    pictures.show_surface(bone, view, pictures.BONE)
+    pictures.look(view, inwards, view_up(inwards))
+    _frame(view, made.implant)
+    pictures.add_scale_bar(view, 20, aside=patient)
+    if patient:
+        views.show_orientation(view, force=True)
+    outlines = _show_outlines(made.defects, numbers, view)
+    save(view, "defect", "The outline of the hole")
+    for proxy in outlines:
+        pv.Hide(proxy, view)
+    pictures.show_surface(made.implant, view, IMPLANT)
+    save(view, "implant", "The implant in the skull, seen the way it is put in")
+    pv.Hide(made.implant, view)
+    outer = pv.Threshold(Input=made.implant, Scalars=["CELLS", "ImplantFace"], ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5)
+    display = show_error(outer, view, numbers)
+    save(view, "error", "Predicted error of the outer surface")
+    display.SetScalarBarVisibility(view, False)
+    low, high = numbers["ThicknessMinimum"], numbers["ThicknessMaximum"]
+    _color(display, view, "Thickness", "thickness, mm", (low, max(high, low + 0.1)), "Plasma (matplotlib)")
+    save(view, "thickness", "Thickness")
+    pv.Delete(view)
+    return files, sides
+
+
+def _new_view(size):
+    view = pictures.new_view(size)
+    view.OrientationAxesVisibility = 0
+    return view
+
+
+def _show_outlines(defects, numbers, view):
+    """The outline of each hole, of the one that the implant closes in red; returns the proxies."""
+    shown = []
+    for k in range(len(numbers["Defects"])):
+        one = pv.Threshold(Input=defects, Scalars=["CELLS", "Defect"], ThresholdMethod="Between", LowerThreshold=k + 0.5, UpperThreshold=k + 1.5)
+        outline = pv.FeatureEdges(Input=pv.ExtractSurface(Input=one), BoundaryEdges=1, FeatureEdges=0, NonManifoldEdges=0, ManifoldEdges=0)
+        outline.UpdatePipeline()
+        if outline.GetDataInformation().GetNumberOfCells() == 0:
+            outline = one  # points
+        display = pictures.show_surface(outline, view, CHOSEN if k == numbers["Chosen"] else OTHER)
+        display.LineWidth, display.PointSize, display.RenderLinesAsTubes = 5, 4, 0
+        display.Ambient, display.Diffuse = 1, 0
+        shown.append(outline)
+    return shown
+
+
+def _frame(view, proxy):
+    """Brings a proxy close, and keeps the camera's direction and all else in sight."""
+    bounds = np.array(proxy.GetDataInformation().GetBounds()).reshape(3, 2)
+    camera = view.GetActiveCamera()
+    middle = bounds.mean(axis=1)
+    move = middle - np.array(camera.GetFocalPoint())
+    camera.SetPosition(*(np.array(camera.GetPosition()) + move))
+    camera.SetFocalPoint(*middle)
+    camera.SetParallelScale(0.6 * float(np.linalg.norm(bounds[:, 1] - bounds[:, 0])))
+    pv.Render(view)
+
+
+def _up(value):
+    """The next tenth."""
+    return math.ceil(10 * value - 1e-9) / 10
+
+
+def _rows(made, numbers):
+    """(quantity, value) of the table."""
+    place = implant.places(made)
+    inwards = numbers["InsertionDirection"]
+    text = " ".join(f"{x:.3f}" for x in inwards)
+    if coordinates.is_patient(made.bone):
+        text += f" (towards the patient's {implant.direction_words(inwards)})"
+    chosen = numbers["Defects"][numbers["Chosen"]]
+    rows = [("hole: area", f"{chosen.area / 100:.1f} cm²"), ("hole: centre", place(chosen.center))]
+    others = [f"{defect.area / 100:.1f} cm² at {place(defect.center)}" for k, defect in enumerate(numbers["Defects"]) if k != numbers["Chosen"]]
+    rows += [("other holes, not closed", "; ".join(others) or "none"),
+             ("outer area of the implant", f"{numbers['OuterArea'] / 100:.1f} cm²"),
+             ("volume", f"{numbers['Volume'] / 1000:.2f} ml")]
+    rows += [(f"mass in {name} ({density:g} g/cm³)", f"{numbers['Volume'] / 1000 * density:.1f} g") for name, density in MATERIALS]
+    rows += [("thickness, least to largest", f"{numbers['ThicknessMinimum']:.1f} to {numbers['ThicknessMaximum']:.1f} mm"),
+             ("thickness, mean", f"{numbers['ThicknessMean']:.1f} mm"),
+             ("clearance of the edge", f"{made.implant.EdgeClearance:g} mm"),
+             ("predicted error of the outer surface, RMS", f"{numbers['PredictedErrorRMS']:.2f} mm"),
+             ("predicted error, largest", f"{numbers['PredictedErrorMaximum']:.2f} mm at {place(numbers['PredictedErrorMaximumPoint'])}"),
+             ("insertion direction", text),
+             ("least taper of the walls", f"{numbers['LeastTaper']:.1f}° (below 0: bone is in the way)"),
+             ("bone level", f"{made.bone.Level:g} HU")]
+    return rows
+
+
+STYLE = """
+body { font: 16px/1.45 system-ui, sans-serif; color: #222; max-width: 1200px; margin: 0 auto; padding: 1.5em; }
+h1 { font-size: 1.7em; margin: 0 0 0.3em; } h2 { font-size: 1.25em; margin: 1.8em 0 0.6em; }
+.notice { background: #f3f4f6; border-left: 5px solid #7a8594; padding: 0.6em 1em; }
+.warning { background: #fff3e0; border-left: 5px solid #d97706; padding: 0.6em 1em; margin: 0.5em 0; }
+.fine { background: #edf7ee; border-left: 5px solid #3c8c4a; padding: 0.6em 1em; }
+table { border-collapse: collapse; } td, th { border-bottom: 1px solid #d8dce2; padding: 0.35em 1.2em 0.35em 0; text-align: left; vertical-align: top; }
+.two, .three { display: grid; gap: 1em; } .two { grid-template-columns: repeat(2, 1fr); } .three { grid-template-columns: repeat(3, 1fr); }
+figure { margin: 0; } img { width: 100%; border: 1px solid #d8dce2; } figcaption { font-size: 0.9em; color: #444; }
+code { font-size: 0.85em; overflow-wrap: anywhere; } li { margin: 0.25em 0; }
+@media print { body { max-width: none; } figure { break-inside: avoid; } }
+"""
+
+
+def _page(made, numbers, record, ct_name, warnings, shown):
+    text = html.escape
+    main, sides = shown
+
+    def figures(files, columns):
+        inside = "\n".join(f'<figure><img src="{name}" alt="{text(title)}"><figcaption>{text(title)}</figcaption></figure>' for name, title in files)
+        return f'<div class="{columns}">\n{inside}\n</div>'
+
+    rows = "\n".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in _rows(made, numbers))
+    told = "\n".join(f'<p class="warning">{text(warning)}</p>' for warning in warnings) or '<p class="fine">No warnings.</p>'
+    steps = "\n".join(f"<li><code>{text(step)}</code></li>" for step in record["steps"])
+    letters = "L, R, A, P, H, F at the edges of the pictures are the patient's left, right, front, back, head and feet." if \
+        coordinates.is_patient(made.bone) else "The CT does not say how the patient lay: check left and right by other means. The pictures have no letters."
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>Cranial implant</title>
+<style>{STYLE}</style>
+</head>
+<body>
+<h1>Cranial implant</h1>
+<p>CT: {text(ct_name)} · implant: {text(record["file"])}</p>
+<p class="notice"><b>{text(NOTICE)}</b> Who makes an implant answers for it. Check side, size, shape and gap by other means.</p>
+<h2>Warnings</h2>
+{told}
+<h2>The implant</h2>
+{figures(main, "two")}
+<p>{letters} The hole that the implant closes is outlined in red, other holes in orange.</p>
+<h2>Numbers</h2>
+<table>
+{rows}
+</table>
+<p>The predicted error is a standard error. Expect about two thirds of the surface within it, and 95 % within twice as much.
+It assumes that the missing bone was shaped like sound bone. It does not know about a tumour, a fracture that has moved, or artefacts.</p>
+<h2>From six sides</h2>
+{figures(sides, "three")}
+<h2>Before anything is made</h2>
+<ul>
+<li>Open the CT and the implant together in another program. Is it the patient, the side, the hole?</li>
+<li>Measure a known distance in both. The unit is the millimetre; STL, PLY and OBJ files do not say so.</li>
+<li>Cut through bone and implant. The gap should be even, nothing should overlap or stand out.</li>
+<li>Print skull and implant, and fit them by hand.</li>
+</ul>
+<h2>Where this comes from</h2>
+<p>Lacuna {text(lacuna.__version__)}. Coordinates: {text(record["coordinates"])}. SHA-256 of {text(record["file"])}: <code>{record["sha256"]}</code></p>
+<ol>
+{steps}
+</ol>
+</body>
+</html>
+"""

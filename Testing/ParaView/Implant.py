@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command lacuna.implant makes a closed implant of a CT in a file, a report without the patient's name, and clear errors."""
+import glob
+import os
+import re
+import shutil
+
+import lacuna.plugin
+
+lacuna.plugin.load()
+import numpy as np
+from lacuna import implant
+from lacuna_test import output
+from paraview.simple import Delete, GetSources, ProgrammableFilter, SaveData, SkullPhantom
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkMassProperties
+from vtkmodules.vtkIOGeometry import vtkSTLReader
+
+home = os.path.abspath(output("Implant"))
+shutil.rmtree(home, ignore_errors=True)
+os.makedirs(home)
+said = []
+implant._say = lambda text: (said.append(text), print(text, flush=True))
+
+
+def run(*arguments):
+    """The command: its exit code, and what it printed."""
+    said.clear()
+    try:
+        code = implant.main([str(each) for each in arguments])
+    except SystemExit as end:
+        code = end.code
+    return code, "\n".join(said)
+
+
+def printed_number(pattern, text):
+    return float(re.search(pattern, text)[1])
+
+
+phantom = SkullPhantom(Spacing=[2, 2, 2])
+truth = phantom.GetClientSideObject()
+named = ProgrammableFilter(Input=phantom, Script="""
+from vtkmodules.vtkCommonCore import vtkStringArray
+output.ShallowCopy(inputs[0].VTKObject)
+name = vtkStringArray()
+name.SetName("PatientName")
+name.InsertNextValue("Doe^Jane")
+output.GetFieldData().AddArray(name)
+""")
+ct = os.path.join(home, "head.vti")
+SaveData(ct, proxy=named, DataMode="Binary")
+direction = np.array(phantom.DefectDirection) / np.linalg.norm(phantom.DefectDirection)
+middle = np.array(phantom.Center) + direction * truth.IntersectOuterSurface(phantom.Center, direction)
+
+# The largest hole, with a report
+stl, report = os.path.join(home, "implant.stl"), os.path.join(home, "report")
+code, text = run(ct, "--output", stl, "--report", report)
+assert code == 0, text
+reader = vtkSTLReader()
+reader.SetFileName(stl)
+clean = vtkCleanPolyData()
+clean.SetInputConnection(reader.GetOutputPort())
+edges = vtkFeatureEdges()
+edges.SetInputConnection(clean.GetOutputPort())
+edges.FeatureEdgesOff()
+edges.NonManifoldEdgesOn()
+edges.Update()
+assert edges.GetOutput().GetNumberOfCells() == 0, "the STL is not closed"
+mass = vtkMassProperties()
+mass.SetInputConnection(clean.GetOutputPort())
+volume = mass.GetVolume() / 1000
+printed = printed_number(r"implant: ([\d.]+) ml", text)
+print(f"{volume:.3f} ml in the file, {printed:.2f} ml printed")
+assert volume > 5 and abs(volume - printed) < 0.02, (volume, printed)
+center = np.array(clean.GetOutput().GetCenter())
+assert np.linalg.norm(center - middle) < 12, (center, middle)  # the phantom's hole is on the patient's left
+assert "<- the implant closes this one" in text and "mm RMS" in text and "left" in text
+# the outer surface is where the intact skull is
+outer = vtk_to_numpy(clean.GetOutput().GetPoints().GetData()).astype(float) - np.array(phantom.Center)
+radius = np.linalg.norm(outer, axis=1)
+off = np.array([r - truth.IntersectOuterSurface(phantom.Center, list(p / r)) for r, p in zip(radius[::5], outer[::5])])
+print(f"{off.max():.2f} mm outside of the intact skull at most")
+assert -1 < off.max() < 1, off.max()
+assert os.path.exists(stl + ".json")
+# the report
+with open(os.path.join(report, "index.html"), encoding="utf-8") as file:
+    page = file.read()
+pictures = re.findall('src="(.*?)"', page)
+assert len(pictures) == 10 and all(os.path.basename(each) == each for each in pictures), pictures
+assert sorted(os.listdir(report)) == sorted(pictures + ["index.html"])
+assert all(os.path.getsize(os.path.join(report, each)) > 10000 for each in pictures)
+assert f"{printed:.2f} ml" in page and f"{1.18 * volume:.1f} g" in page and "head.vti" in page
+assert "Research software, not a medical device" in page and lacuna.__version__ in page
+for word in ("Doe", "Jane", home):
+    for name in [os.path.join(report, "index.html"), stl + ".json"] + glob.glob(os.path.join(report, "*.png")):
+        with open(name, "rb") as file:
+            assert word.encode() not in file.read(), (word, name)
+for proxy in list(GetSources().values()):
+    Delete(proxy)
+
+# A point near the hole gives the same implant, in another format
+ply = os.path.join(home, "implant.ply")
+code, text = run(ct, "--output", ply, "--hole", *(middle + 5), "--clearance", 0.5)
+assert code == 0 and printed_number(r"implant: ([\d.]+) ml", text) == printed, text
+
+# What fails says so in one sentence and leaves no file
+errors = []
+implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
+far = os.path.join(home, "far.stl")
+assert run(ct, "--output", far, "--hole", 300, 0, -13.5)[0] == 1
+assert len(errors) == 1 and re.search(r"^lacuna.implant: .*\d mm away from the nearest hole", errors[0]), errors
+words = os.path.join(home, "words.txt")
+with open(words, "w", encoding="ascii") as file:
+    file.write("no CT\n")
+for wrong, what in ((words, "volumes are read from"), (os.path.join(home, "none.mha"), "there is no such file")):
+    errors.clear()
+    assert run(wrong, "--output", far)[0] == 1
+    assert len(errors) == 1 and what in errors[0] and "Traceback" not in errors[0], errors
+assert not os.path.exists(far)
+assert run(ct)[0] == 2 and run(ct, "--output", "implant.doc")[0] == 2 and run(ct, "--output", os.path.join(home, "none", "a.stl"))[0] == 2
+assert run(ct, "--output", far, "--clearance", -1)[0] == 2 and run(ct, "--output", far, "--hole", 1, 2)[0] == 2
+assert run(ct, "--output", far, "--report", words)[0] == 2 and run("--help")[0] == 0
