@@ -10,11 +10,14 @@ import lacuna.plugin
 lacuna.plugin.load()
 import numpy as np
 from lacuna import implant
+from lacuna.data import fetch
 from lacuna_test import output
-from paraview.simple import Delete, GetSources, ProgrammableFilter, SaveData, SkullPhantom
+from paraview.simple import Delete, GetSources, SkullPhantom
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkMassProperties
 from vtkmodules.vtkIOGeometry import vtkSTLReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
 home = os.path.abspath(output("Implant"))
 shutil.rmtree(home, ignore_errors=True)
@@ -39,16 +42,17 @@ def printed_number(pattern, text):
 
 phantom = SkullPhantom(Spacing=[2, 2, 2])
 truth = phantom.GetClientSideObject()
-named = ProgrammableFilter(Input=phantom, Script="""
-from vtkmodules.vtkCommonCore import vtkStringArray
-output.ShallowCopy(inputs[0].VTKObject)
+named = fetch(phantom)
 name = vtkStringArray()
 name.SetName("PatientName")
 name.InsertNextValue("Doe^Jane")
-output.GetFieldData().AddArray(name)
-""")
+named.GetFieldData().AddArray(name)
 ct = os.path.join(home, "head.vti")
-SaveData(ct, proxy=named, DataMode="Binary")
+writer = vtkXMLImageDataWriter()
+writer.SetFileName(ct)
+writer.SetDataModeToBinary()
+writer.SetInputData(named)
+writer.Write()
 direction = np.array(phantom.DefectDirection) / np.linalg.norm(phantom.DefectDirection)
 middle = np.array(phantom.Center) + direction * truth.IntersectOuterSurface(phantom.Center, direction)
 

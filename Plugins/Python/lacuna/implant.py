@@ -119,7 +119,7 @@ def parse_arguments(arguments):
         "expect. Research software, not a medical device.",
         epilog="Exit codes: 0 the implant is written; 1 something failed, one sentence says what; 2 the command is wrong.\n"
         "Call it as pvpython -- -m lacuna.implant ... The -- keeps ParaView from turning numbers such as -13 into --13.\n"
-        "On a computer without a screen --report needs pvpython --force-offscreen-rendering -- -m lacuna.implant ...")
+        "On a computer without a screen --report needs xvfb-run -a pvpython -- -m lacuna.implant ...")
     parser.add_argument("ct", metavar="CT", help="a folder with a DICOM series, a file of one, or a volume: .mha .mhd .nrrd .nhdr .nii .nii.gz .vti")
     parser.add_argument("--output", required=True, metavar="FILE",
                         help="the implant, in mm: " + " ".join(ENDINGS) + ". FILE.json beside it says where it comes from")
