@@ -13,10 +13,10 @@
 #include "vtkDataArray.h"
 #include "vtkDelaunay2D.h"
 #include "vtkDoubleArray.h"
+#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIdList.h"
 #include "vtkIntArray.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
@@ -193,8 +193,8 @@ public:
     std::string text;
     for (std::size_t k = 0; k < this->Areas.size(); ++k)
     {
-      text += (k ? "; " : "") + Rounded(this->Areas[k] / 100) + " cm^2 around " +
-        Name(this->Centers[k]);
+      text +=
+        (k ? "; " : "") + Rounded(this->Areas[k] / 100) + " cm^2 around " + Name(this->Centers[k]);
     }
     return text;
   }
@@ -447,8 +447,9 @@ int vtkLacunaSkullImplant::RequestData(
     }
     if (defects.empty())
     {
-      throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull. Look "
-                               "at the bone at this Level, or draw an outline around the defect");
+      throw std::runtime_error(
+        "no hole of 1 cm^2 or more was found in the vault of the skull. Look "
+        "at the bone at this Level, or draw an outline around the defect");
     }
     const Holes holes(rays, defects);
     holes.SetOutput(vtkPolyData::GetData(outputs, 1), isDrawn ? 0 : 1);
@@ -508,8 +509,9 @@ int vtkLacunaSkullImplant::RequestData(
     SetSolid(output, implant);
     const auto set = [&](const char* name, double value)
     { vtkLacunaFieldData::Set(output, name, { value }, 1); };
-    const auto setPoint = [&](const char* name, const Vec3& p)
-    { vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3); };
+    const auto setPoint = [&](const char* name, const Vec3& p) {
+      vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
+    };
     const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
     set("Volume", implant.Volume);
     set("Mass", implant.Volume * this->Density / 1000);

@@ -193,8 +193,8 @@ vtkSmartPointer<vtkImageData> RandomHead(Dice& dice)
       {
         const double r = spacing * std::sqrt(i * i + 1.1 * j * j + k * k);
         const double angle = std::acos(0.9 * k * spacing / std::max(r, 1.0));
-        const double depth = std::min(
-          { radius - r, r - radius + 9, radius * (angle - hole), radius * (2.2 - angle) });
+        const double depth =
+          std::min({ radius - r, r - radius + 9, radius * (angle - hole), radius * (2.2 - angle) });
         *voxel = static_cast<float>(300 + 100 * std::max(-4.0, std::min(depth, 4.0)));
       }
     }
@@ -205,7 +205,8 @@ vtkSmartPointer<vtkImageData> RandomHead(Dice& dice)
 Subject MakeSkullImplant()
 {
   using T = vtkLacunaSkullImplant;
-  Subject subject{ "SkullImplant", NewOf<T>, [](Dice& dice) -> Inputs { return { RandomHead(dice) }; },
+  Subject subject{ "SkullImplant", NewOf<T>,
+    [](Dice& dice) -> Inputs { return { RandomHead(dice) }; },
     { Real("Level", &T::SetLevel, 200, 400), Whole("DefectChoice", &T::SetDefectChoice, 0, 1),
       Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
       Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5) } };

@@ -19,12 +19,12 @@ namespace lacuna
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr double GridSpacing = 0.4;  // mm of the map in which the free space is found
-constexpr double ErrorSpacing = 3;   // mm: standard errors vary slowly
-constexpr double FarFromRim = 3;     // mm: where distances to the rim do not matter any more
-constexpr double MostAngle = 2.4;    // radians from the middle of a defect
-constexpr double ValueScale = 500;   // of grey levels a mm, at the edge of bone; only the sign counts
-constexpr double LeastPart = 100;    // mm^2: of a free space that is told of
+constexpr double GridSpacing = 0.4; // mm of the map in which the free space is found
+constexpr double ErrorSpacing = 3;  // mm: standard errors vary slowly
+constexpr double FarFromRim = 3;    // mm: where distances to the rim do not matter any more
+constexpr double MostAngle = 2.4;   // radians from the middle of a defect
+constexpr double ValueScale = 500; // of grey levels a mm, at the edge of bone; only the sign counts
+constexpr double LeastPart = 100;  // mm^2: of a free space that is told of
 constexpr double LatticeToRim = 0.6; // of TriangleSize: the rim's edges stay Delaunay edges
 constexpr int InsertionSteps = 400;
 
@@ -52,8 +52,8 @@ public:
   {
     const double angle = std::hypot(p[0], p[1]) / this->Scale;
     const double factor = angle < 1e-9 ? 1 / this->Scale : std::sin(angle) / (angle * this->Scale);
-    return Normalized(std::cos(angle) * this->Axis + (factor * p[0]) * this->U +
-      (factor * p[1]) * this->V);
+    return Normalized(
+      std::cos(angle) * this->Axis + (factor * p[0]) * this->U + (factor * p[1]) * this->V);
   }
   double GetScale() const { return this->Scale; }
 
@@ -125,7 +125,8 @@ std::vector<std::vector<std::int64_t>> FindFreeParts(
     seen[start] = true;
     for (std::size_t k = 0; k < part.size(); ++k)
     {
-      for (const std::int64_t step : { std::int64_t{ -1 }, std::int64_t{ 1 }, -grid.Columns, grid.Columns })
+      for (const std::int64_t step :
+        { std::int64_t{ -1 }, std::int64_t{ 1 }, -grid.Columns, grid.Columns })
       {
         const std::int64_t other = part[k] + step; // the border has no positive values
         if (!seen[other] && values[other] > 0)
@@ -298,8 +299,7 @@ private:
       {
         const auto node = static_cast<std::int64_t>(k);
         nodes.push_back(node);
-        points.push_back(
-          this->Grid.GetNode(node % this->Grid.Columns, node / this->Grid.Columns));
+        points.push_back(this->Grid.GetNode(node % this->Grid.Columns, node / this->Grid.Columns));
       }
     }
     const std::vector<Vec3> directions = this->DirectionsOf(points);
@@ -357,8 +357,8 @@ private:
     {
       for (const int n : { 0, 1 })
       {
-        const std::int64_t node =
-          std::min(i + m, this->Grid.Columns - 1) + this->Grid.Columns * std::min(j + n, this->Grid.Rows - 1);
+        const std::int64_t node = std::min(i + m, this->Grid.Columns - 1) +
+          this->Grid.Columns * std::min(j + n, this->Grid.Rows - 1);
         const double weight = (m ? x : 1 - x) * (n ? y : 1 - y);
         sum += this->Inner[node] > 0 ? weight * this->Inner[node] : 0;
         weights += this->Inner[node] > 0 ? weight : 0;
@@ -492,7 +492,8 @@ private:
       const double y = (p[1] - grid.Origin[1]) / ErrorSpacing;
       const auto i = static_cast<std::int64_t>(x);
       const auto j = static_cast<std::int64_t>(y);
-      cells.push_back({ i + grid.Columns * j, x - static_cast<double>(i), y - static_cast<double>(j) });
+      cells.push_back(
+        { i + grid.Columns * j, x - static_cast<double>(i), y - static_cast<double>(j) });
       for (const int m : { 0, 1 })
       {
         for (const int n : { 0, 1 })

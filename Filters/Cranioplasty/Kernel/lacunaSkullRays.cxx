@@ -371,13 +371,14 @@ SkullRays TraceSkull(
   {
     edge = std::max(edge, Norm(volume.IndexToWorld.Column(a)));
   }
-  const std::vector<std::vector<int>> near =
-    FindNeighbors(rays.Directions, std::max(1.6 * rays.Spacing, RoundedEdge * edge / TypicalRadius));
+  const std::vector<std::vector<int>> near = FindNeighbors(
+    rays.Directions, std::max(1.6 * rays.Spacing, RoundedEdge * edge / TypicalRadius));
   std::vector<bool> smooth(n);
   for (int i = 0; i < n; ++i)
   {
     smooth[i] = IsSmooth(rays, i, around[i]) &&
-      std::none_of(near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
+      std::none_of(
+        near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
   }
   const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
   if (parts.empty() || parts[0].size() < LeastSound)
@@ -410,9 +411,9 @@ SkullRays TraceSkull(
     const double radius = ellipsoid.GetRadius(rays.Directions[i]);
     const bool there = std::abs(rays.Outer[i] / radius - 1) < MostDeviation;
     const double exit = tables[i].Exit / radius;
-    rays.Kinds[i] = there                        ? SkullRayKind::Rough
+    rays.Kinds[i] = there                     ? SkullRayKind::Rough
       : tables[i].Cut || !(exit > NearEnd[0]) ? SkullRayKind::Unknown
-                                                 : SkullRayKind::Open;
+                                              : SkullRayKind::Open;
     ends[i] = rays.Kinds[i] == SkullRayKind::Open && !(exit > NearEnd[1]);
     if (!there)
     {
@@ -622,7 +623,8 @@ std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& 
     axis = axis + length * directions.back();
   }
   axis = Normalized(axis);
-  const Vec3 u = Normalized(std::abs(axis[0]) < 0.8 ? Cross(axis, Vec3{ 1, 0, 0 }) : Cross(axis, Vec3{ 0, 1, 0 }));
+  const Vec3 u = Normalized(
+    std::abs(axis[0]) < 0.8 ? Cross(axis, Vec3{ 1, 0, 0 }) : Cross(axis, Vec3{ 0, 1, 0 }));
   const Vec3 v = Cross(axis, u);
   // seen from the pole on the other side (stereographic): closed curves keep their inside
   const auto toPlane = [&](const Vec3& d)
@@ -635,7 +637,8 @@ std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& 
   {
     if (!(Dot(d, axis) > -0.5))
     {
-      throw std::invalid_argument("the outline of the defect goes around more than half of the skull");
+      throw std::invalid_argument(
+        "the outline of the defect goes around more than half of the skull");
     }
     loop.push_back(toPlane(d));
   }

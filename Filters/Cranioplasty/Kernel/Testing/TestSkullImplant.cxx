@@ -27,8 +27,8 @@ using lacuna::VoxelVolume;
 
 namespace
 {
-constexpr double Outer = 60;     // mm, of a spherical shell
-constexpr double Thickness = 6;  // mm
+constexpr double Outer = 60;      // mm, of a spherical shell
+constexpr double Thickness = 6;   // mm
 constexpr double HoleAngle = 0.4; // radians from its axis: 47 mm across
 constexpr std::size_t FewNodes = 200;
 
@@ -127,8 +127,9 @@ bool IsClosed(const SkullImplant& implant)
     }
   }
   return std::all_of(edges.begin(), edges.end(),
-    [&](const auto& e)
-    { return e.second == 1 && edges.count({ e.first.second, e.first.first }) == 1; });
+    [&](const auto& e) {
+      return e.second == 1 && edges.count({ e.first.second, e.first.first }) == 1;
+    });
 }
 }
 
@@ -164,8 +165,8 @@ TEST(SkullImplant, FillsTheHoleOfASphere)
   const double inner = Outer - Thickness;
   const double angle = HoleAngle + std::asin(12 / Outer * std::sin(HoleAngle)) - 0.5 / inner;
   const double share = 2 * lacunaSkullTest::Pi * (1 - std::cos(angle));
-  EXPECT_NEAR(implant.Volume, share * (std::pow(Outer, 3) - std::pow(inner, 3)) / 3,
-    0.015 * implant.Volume);
+  EXPECT_NEAR(
+    implant.Volume, share * (std::pow(Outer, 3) - std::pow(inner, 3)) / 3, 0.015 * implant.Volume);
   EXPECT_NEAR(implant.OuterArea, share * Outer * Outer, 0.015 * implant.OuterArea);
   EXPECT_GT(implant.HoleArea, implant.OuterArea);
   EXPECT_GT(Dot(implant.InsertionDirection, shell.Axis), -1.001);
@@ -178,7 +179,8 @@ TEST(SkullImplant, FillsTheHoleOfASphere)
 
 TEST(SkullImplant, TurnsWithTheVolume)
 {
-  const Matrix4 turn = Matrix4::Translation({ 40, -25, 300 }) * Matrix4::Rotation({ 1, 2, -1 }, 1.1);
+  const Matrix4 turn =
+    Matrix4::Translation({ 40, -25, 300 }) * Matrix4::Rotation({ 1, 2, -1 }, 1.1);
   SkullImplantOptions options;
   options.TriangleSize = 2;
   const SkullImplant here = Make(Shell(), options, 1);

@@ -24,7 +24,7 @@ namespace
 constexpr double Radius = 55;
 constexpr double Thickness = 6;
 constexpr double Middle[3] = { 30, -20, 100 };
-constexpr double Large[3] = { 0.6, 0, 0.8 };  // directions of the holes
+constexpr double Large[3] = { 0.6, 0, 0.8 }; // directions of the holes
 constexpr double Small[3] = { -0.8, 0, 0.6 };
 constexpr double LargeAngle = 0.45;
 constexpr double SmallAngle = 0.3;
@@ -112,8 +112,7 @@ void CheckSolid(vtkPolyData* implant, double angle)
   const double inner = Radius - Thickness;
   const double share = 2 * std::acos(-1.0) * (1 - std::cos(angle - 0.5 / inner));
   // voxels of 2 mm round the edges off
-  LACUNA_CHECK_NEAR(
-    volume, share * (std::pow(Radius, 3) - std::pow(inner, 3)) / 3, 0.04 * volume);
+  LACUNA_CHECK_NEAR(volume, share * (std::pow(Radius, 3) - std::pow(inner, 3)) / 3, 0.04 * volume);
   LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), share * Radius * Radius, 0.04 * volume);
   LACUNA_CHECK_NEAR(GetField(implant, "Mass"), 1.3e-3 * volume, 1e-9 * volume);
   LACUNA_CHECK_NEAR(GetField(implant, "ThicknessMean"), Thickness, 0.1);
@@ -180,8 +179,7 @@ void TestChoice()
   LACUNA_CHECK(!vtkLacunaProvenance::Get(implant).empty());
 
   filter->SetDefectChoice(vtkLacunaSkullImplant::NearestToPoint);
-  filter->SetPoint(
-    Middle[0] + 60 * Small[0], Middle[1] + 60 * Small[1], Middle[2] + 60 * Small[2]);
+  filter->SetPoint(Middle[0] + 60 * Small[0], Middle[1] + 60 * Small[1], Middle[2] + 60 * Small[2]);
   filter->Update();
   LACUNA_CHECK(AngleOf(filter->GetOutput(), Small) < 0.03);
   CheckSolid(filter->GetOutput(), SmallAngle);
