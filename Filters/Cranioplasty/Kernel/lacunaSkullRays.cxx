@@ -365,20 +365,16 @@ SkullRays TraceSkull(
   SkullRays rays = Follow(volume, level, center, spacing, tables, execution);
   const auto n = static_cast<int>(rays.Directions.size());
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
-  // Voxels round edges off, up to some voxels beside a hole.
   double edge = 0;
   for (int a = 0; a < 3; ++a)
   {
     edge = std::max(edge, Norm(volume.IndexToWorld.Column(a)));
   }
-  const std::vector<std::vector<int>> near = FindNeighbors(
-    rays.Directions, std::max(1.6 * rays.Spacing, RoundedEdge * edge / TypicalRadius));
+  rays.RoundedEdge = RoundedEdge * edge / TypicalRadius;
   std::vector<bool> smooth(n);
   for (int i = 0; i < n; ++i)
   {
-    smooth[i] = IsSmooth(rays, i, around[i]) &&
-      std::none_of(
-        near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
+    smooth[i] = IsSmooth(rays, i, around[i]);
   }
   const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
   if (parts.empty() || parts[0].size() < LeastSound)
@@ -544,9 +540,12 @@ SoundBone GetSoundBone(const SkullRays& rays)
 {
   SoundBone bone;
   bone.Center = rays.Center;
+  const std::vector<std::vector<int>> near = FindNeighbors(rays.Directions, rays.RoundedEdge);
   for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
   {
-    if (rays.Kinds[i] == SkullRayKind::Sound)
+    const bool isRounded = std::any_of(
+      near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
+    if (rays.Kinds[i] == SkullRayKind::Sound && !isRounded)
     {
       bone.Directions.push_back(rays.Directions[i]);
       bone.Outer.push_back(rays.Outer[i]);

@@ -29,6 +29,7 @@ struct SkullRays
   Vec3 Center{ 0, 0, 0 };       ///< world mm
   std::vector<Vec3> Directions; ///< unit, evenly spread
   double Spacing = 0;           ///< of neighbours, radians
+  double RoundedEdge = 0;       ///< of bone beside a hole, where voxels round it off, radians
   std::vector<double> Outer;    ///< mm from the centre; NaN without bone
   std::vector<double> Inner;    ///< the same
   std::vector<SkullRayKind> Kinds;
@@ -60,7 +61,7 @@ struct RaySegment
 std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& center,
   const std::vector<RaySegment>& segments, Execution& execution);
 
-/// The sound rays.
+/// The sound rays without those at rounded edges.
 SoundBone GetSoundBone(const SkullRays& rays);
 
 /// Connected open rays, of at least 1 cm^2, with sound bone around them (half of the rays within four spacings;
