@@ -57,7 +57,7 @@ BAD = {  # a property of each proxy, and a value that is an error
 }
 # VTK executes them for each block
 TAKE_BLOCKS = {"LacunaContrastToSpeckle", "LacunaImplantPlate", "LacunaMillingToolPath", "LacunaOcclusionSurface", "LacunaScanRegion",
-               "LacunaSlicePlanes", "LacunaTemporalCalibration", "LacunaTrackerSelfTest"}
+               "LacunaSkullImplant", "LacunaSlicePlanes", "LacunaTemporalCalibration", "LacunaTrackerSelfTest"}
 NOT_SHOWN = "LacunaPolhemusVideoSource", "LacunaIGESWriter", "LacunaTrackedSliceWriter", "LacunaGCodeWriter"
 
 

@@ -114,6 +114,7 @@ def files():
     AssembleTrackedSlices(registrationName="Assembled", Input=stack, Poses=poses, PoseFormat="Matrix", PoseColumns=["m"], PixelSpacing=0.4)
     turned = VolumeReader(registrationName="Turned volume", FileName=path("volume.nrrd"))
     Mirror(registrationName="Mirrored volume", Input=turned, PlaneMethod="Given", Origin=[-11.9, 4.3, 0], Normal=[1, 0.02, 0])
+    SkullBone(registrationName="Turned bone", Input=turned, Level=100)
     OccludedAngle(registrationName="Turned angle", Input=turned, NumberOfDirections=8)
     SpeckleFilter(registrationName="Turned and smooth", Input=turned, Operation="Median", KernelSize=[3, 3, 1])
     RBFInterpolator(registrationName="Of turned", Input=turned, ScalarArray="Intensity", Kernel="Linear", OutputSpacing=[4, 4, 4])
