@@ -234,8 +234,7 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
     this->LeastThickness = std::min(this->LeastThickness, bone.Thickness[node]);
   }
   std::vector<int> subset = Shuffled(this->Nodes.size());
-  // a third of few nodes tells as much
-  subset.resize(std::min(std::max(LeastNodes, subset.size() / 3), likelihoodNodes));
+  subset.resize(std::min(subset.size(), likelihoodNodes));
   execution.SetStage(0, 0.4);
   this->FindPlane(bone, subset, execution);
   execution.SetStage(0.4, 1);

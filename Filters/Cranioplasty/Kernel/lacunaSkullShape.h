@@ -51,7 +51,7 @@ public:
   /// defect: unit directions that cover what is missing, some mm apart. Nodes are dense near them and near
   /// their mirror images. plane: of best symmetry, within some 5 degrees and 5 mm. Throws
   /// std::invalid_argument when arrays differ in length or have elements that are not finite or not positive,
-  /// or when too little bone is given (fewer than 200 nodes remain). likelihoodNodes: so many of the nodes, but no more than a third of them, at
+  /// or when too little bone is given (fewer than 200 nodes remain). likelihoodNodes: so many of the nodes, at
   /// least 200, decide on variances and plane, in a time of their third power (5 s of one core for 800).
   SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane,
     Execution& execution, std::size_t likelihoodNodes = 800);
