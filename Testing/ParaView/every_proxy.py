@@ -153,7 +153,9 @@ def implant():
     DepthMapShader(registrationName="Shaded", Input=opened, Volume=skull, NormalMethod="Gordon", Shading="Phong", DepthCue=0.3)
     Mirror(registrationName="Mirror", Input=depth, PlaneMethod="Given", Origin=[1, 0, 0], Normal=[1, 0.02, 0])
     Mirror(registrationName="Mirrored skull", Input=skull)
-    bone = SkullBone(registrationName="Bone", Input=skull, Level=400)
+    # a phantom of its own: ray casters have all of theirs on every rank
+    head = SkullPhantom(registrationName="Head", Spacing=[3, 3, 4], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8])
+    bone = SkullBone(registrationName="Bone", Input=head, Level=400)
     SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3)
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)

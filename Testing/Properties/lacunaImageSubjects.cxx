@@ -314,6 +314,7 @@ void AddImageSubjects(std::vector<Subject>& subjects)
       [](Dice& dice) -> Inputs
       { return { dice.Chance(0.7) ? RandomVolume(dice) : RandomLump(dice, 4, 8) }; },
       { Real("Level", &T::SetLevel, -50, 300) } };
+    subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetLevel(30); };
     subject.KeepsGeometry = true;
     subject.Cost = 3;
     subjects.push_back(subject);

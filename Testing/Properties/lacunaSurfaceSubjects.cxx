@@ -175,9 +175,9 @@ Subject MakeClosedSurface()
 // A shell with a hole: few voxels, so that its shape is found in a second.
 vtkSmartPointer<vtkImageData> RandomHead(Dice& dice)
 {
-  const double spacing = dice.Real(4, 6);
-  const double radius = dice.Real(38, 50);
-  const double hole = dice.Real(0.2, 0.5);
+  const double spacing = dice.Real(3, 4);
+  const double radius = dice.Real(28, 34);
+  const double hole = dice.Real(0.4, 0.6);
   auto image = vtkSmartPointer<vtkImageData>::New();
   const int half = static_cast<int>(radius / spacing) + 3;
   image->SetExtent(-half, half, -half, half, -half, half);
@@ -211,7 +211,7 @@ Subject MakeSkullImplant()
       Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
       Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5) } };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(4); };
-  subject.Cost = 100;
+  subject.Cost = 200;
   return subject;
 }
 

@@ -32,7 +32,7 @@ constexpr double SoundThickness = 14;
 constexpr double MostDeviation = 0.17;
 // The same: where the scan surely ends before the skull, and surely behind it.
 constexpr double NearEnd[] = { 0.95, 1.05 };
-constexpr double RoundedEdge = 2.5; // voxels
+constexpr double RoundedEdge = 1.5; // voxels
 constexpr double LeastDefect = 100; // mm^2
 constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
 // Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
@@ -153,13 +153,19 @@ std::vector<Vec3> SpreadDirections(double spacing, const Matrix4& axes)
   return directions;
 }
 
-// For each direction those within some spacings, itself not. Directions are in the order of their third
-// coordinate in some frame, which falls evenly from 1 to -1.
+// Directions are in the order of their third coordinate in some frame, which falls evenly from 1 to -1: those
+// within an angle are no more than so many places away.
+int GetBand(int count, double angle)
+{
+  return static_cast<int>(std::ceil(0.5 * count * angle)) + 1;
+}
+
+// For each direction those within an angle, itself not.
 std::vector<std::vector<int>> FindNeighbors(const std::vector<Vec3>& directions, double angle)
 {
   const auto n = static_cast<int>(directions.size());
   const double cosine = std::cos(angle);
-  const int band = static_cast<int>(std::ceil(0.5 * n * angle)) + 1;
+  const int band = GetBand(n, angle);
   std::vector<std::vector<int>> neighbors(n);
   for (int i = 0; i < n; ++i)
   {
@@ -370,7 +376,7 @@ SkullRays TraceSkull(
   {
     edge = std::max(edge, Norm(volume.IndexToWorld.Column(a)));
   }
-  rays.RoundedEdge = RoundedEdge * edge / TypicalRadius;
+  rays.RoundedEdge = RoundedEdge * edge;
   std::vector<bool> smooth(n);
   for (int i = 0; i < n; ++i)
   {
@@ -540,12 +546,22 @@ SoundBone GetSoundBone(const SkullRays& rays)
 {
   SoundBone bone;
   bone.Center = rays.Center;
-  const std::vector<std::vector<int>> near = FindNeighbors(rays.Directions, rays.RoundedEdge);
-  for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+  const auto n = static_cast<int>(rays.Kinds.size());
+  for (int i = 0; i < n; ++i)
   {
-    const bool isRounded = std::any_of(
-      near[i].begin(), near[i].end(), [&](int j) { return std::isnan(rays.Outer[j]); });
-    if (rays.Kinds[i] == SkullRayKind::Sound && !isRounded)
+    if (rays.Kinds[i] != SkullRayKind::Sound)
+    {
+      continue;
+    }
+    const double angle = rays.RoundedEdge / rays.Outer[i];
+    const int band = GetBand(n, angle);
+    bool isRounded = false;
+    for (int j = std::max(0, i - band); j < std::min(n, i + band + 1) && !isRounded; ++j)
+    {
+      isRounded = rays.Kinds[j] == SkullRayKind::Open &&
+        Dot(rays.Directions[i], rays.Directions[j]) > std::cos(angle);
+    }
+    if (!isRounded)
     {
       bone.Directions.push_back(rays.Directions[i]);
       bone.Outer.push_back(rays.Outer[i]);

@@ -29,7 +29,7 @@ struct SkullRays
   Vec3 Center{ 0, 0, 0 };       ///< world mm
   std::vector<Vec3> Directions; ///< unit, evenly spread
   double Spacing = 0;           ///< of neighbours, radians
-  double RoundedEdge = 0;       ///< of bone beside a hole, where voxels round it off, radians
+  double RoundedEdge = 0;       ///< mm beside a hole where voxels round bone off
   std::vector<double> Outer;    ///< mm from the centre; NaN without bone
   std::vector<double> Inner;    ///< the same
   std::vector<SkullRayKind> Kinds;

@@ -37,7 +37,7 @@ constexpr int FirstIterations = 20;
 constexpr int MoreIterations = 10;
 constexpr int LastIterations = 15;
 // Steps of the plane's search at 100 mm from the middle of the skull, mm.
-constexpr double PlaneSteps[][2] = { { 4, 2 }, { 1, 0.5 } };
+const std::vector<double> PlaneSteps[] = { { 4, 2, 1 }, { 1, 0.5 } };
 constexpr double PlaneArm = 100;
 constexpr std::size_t LeastHoles = 8; // virtual ones, of the third that is nearest
 // Radius of virtual holes that show how rough a region is, mm.
@@ -145,10 +145,50 @@ struct SkullShape::Base
 
 namespace
 {
-// Turns the plane about the middle of the places, and shifts it, to the greatest likelihood: along one
-// unknown after the other, to the vertex of the parabola through three values.
+// To the minimum of a parabola of this slope and curvature (lower triangle); no longer than two along any
+// unknown. Levenberg, Quarterly of Applied Mathematics 2, 1944.
+Vec3 FindStep(const Vec3& slope, const double (&curvature)[3][3])
+{
+  double largest = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    largest = std::max({ largest, std::abs(curvature[i][i]), std::abs(slope[i]) });
+  }
+  if (!std::isfinite(largest)) // a value where the covariance is not positive definite
+  {
+    return { 0, 0, 0 };
+  }
+  const AlignedNumbers step = MakeAligned(3);
+  for (double damping = 0;
+       damping<1e3 * largest; damping = damping> 0 ? 2 * damping : 1e-3 * largest)
+  {
+    SquareMatrix matrix(3);
+    for (int j = 0; j < 3; ++j)
+    {
+      step[j] = -slope[j];
+      for (int i = j; i < 3; ++i)
+      {
+        matrix.Column(j)[i] = curvature[i][j] + (i == j ? damping : 0);
+      }
+    }
+    if (!FactorCholesky(matrix))
+    {
+      continue;
+    }
+    SolveCholeskyLower(matrix, step.get(), 1);
+    SolveCholeskyUpper(matrix, step.get());
+    if (std::max({ std::abs(step[0]), std::abs(step[1]), std::abs(step[2]) }) <= 2)
+    {
+      return { step[0], step[1], step[2] };
+    }
+  }
+  return { 0, 0, 0 };
+}
+
+// Turns the plane about the middle of the places, and shifts it, to the greatest likelihood: to the vertex of
+// the parabola through ten values.
 MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& variances,
-  const MirrorPlane& start, const Vec3& middle, const Vec3& ahead, const double (&steps)[2],
+  const MirrorPlane& start, const Vec3& middle, const Vec3& ahead, const std::vector<double>& steps,
   Execution& execution)
 {
   // turns that depend on the skull alone and not on the axes of the coordinates
@@ -163,37 +203,42 @@ MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& varia
     plane.Offset = Dot(plane.Normal, middle) - distance + way[2];
     return plane;
   };
-  const auto costOf = [&](const Vec3& way)
+  Vec3 best{ 0, 0, 0 };
+  double cost = std::numeric_limits<double>::infinity();
+  const auto costOf = [&](const Vec3& way) // keeps the best
   {
     likelihood.SetPlane(planeOf(way), execution);
-    return likelihood.Evaluate(variances);
+    const double there = likelihood.Evaluate(variances);
+    if (there < cost)
+    {
+      best = way;
+      cost = there;
+    }
+    return there;
   };
-  Vec3 best{ 0, 0, 0 };
-  double cost = costOf(best);
-  int done = 0;
+  costOf(best);
+  double done = 0;
   for (const double step : steps)
   {
+    const Vec3 from = best;
+    const double here = cost;
+    const Vec3 ways[] = { { step, 0, 0 }, { 0, step, 0 }, { 0, 0, step } };
+    Vec3 slope;
+    double curvature[3][3];
+    double after[3];
     for (int i = 0; i < 3; ++i)
     {
-      Vec3 trial = best;
-      trial[i] = best[i] - step;
-      const double before = costOf(trial);
-      trial[i] = best[i] + step;
-      const double after = costOf(trial);
-      const double curvature = before + after - 2 * cost;
-      trial[i] = best[i] +
-        (curvature > 0       ? std::clamp(0.5 * (before - after) / curvature, -2.0, 2.0)
-            : before < after ? -1.0
-                             : 1.0) *
-          step;
-      const double there = costOf(trial);
-      if (there < cost)
+      after[i] = costOf(from + ways[i]);
+      const double before = costOf(from - ways[i]);
+      slope[i] = 0.5 * (after[i] - before);
+      curvature[i][i] = after[i] + before - 2 * here;
+      for (int j = 0; j < i; ++j)
       {
-        best = trial;
-        cost = there;
+        curvature[i][j] = costOf(from + ways[i] + ways[j]) - after[i] - after[j] + here;
       }
-      execution.Report(++done / 6.0);
     }
+    costOf(from + step * FindStep(slope, curvature));
+    execution.Report(++done / static_cast<double>(steps.size()));
   }
   const MirrorPlane plane = planeOf(best);
   likelihood.SetPlane(plane, execution);

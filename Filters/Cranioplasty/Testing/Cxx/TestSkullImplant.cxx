@@ -36,7 +36,7 @@ double AngleTo(const double axis[3], const double x[3])
   return std::acos(std::clamp(dot / std::max(r, 1e-9), -1.0, 1.0));
 }
 
-// A sphere that is open below as a skull is: rough, so that it is no hole.
+// A sphere that is a sieve below, like the base of a skull: no hole, and no sound bone.
 vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true)
 {
   auto head = vtkSmartPointer<vtkImageData>::New();
@@ -60,9 +60,9 @@ vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true)
           inside = std::min(inside, r * (AngleTo(Large, x) - LargeAngle));
           inside = std::min(inside, r * (AngleTo(Small, x) - SmallAngle));
         }
-        if (x[2] < -25 && (i / 3 + j / 3) % 2 != 0)
+        if (x[2] < -25 && (i / 2 + j / 2) % 2 != 0)
         {
-          inside -= 2.5; // no smooth bone
+          inside -= 4; // no smooth bone
         }
         *voxel = static_cast<short>(std::lround(std::clamp(300 + 150 * inside, -200.0, 900.0)));
       }
