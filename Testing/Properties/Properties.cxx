@@ -245,18 +245,18 @@ int main(int argc, char* argv[])
     // a case executes 1.2 to 10.2 times as often
     const int cycles = options.Count / std::clamp(subject.Cost / 4, 1, 25);
     using namespace lacunaProperties;
-    failures += options.Test == "cycles"
-      ? TestSubject(options, subject, 1,
-          [&](std::uint64_t seed, Account& account)
-          { return TestCycles(subject, seed, cycles, account); })
-      : TestSubject(options, subject, count,
-          [&](std::uint64_t seed, Account& account)
-          {
-            return options.Test == "abort" || areAtWork
-              ? TestAbort(subject, seed, areAtWork, account)
-              : options.Test == "exhaustion" ? TestExhaustion(subject, seed, account)
-                                             : TestOutcome(subject, seed, account);
-          });
+    failures += options.Test == "cycles" ? TestSubject(options, subject, 1,
+                                             [&](std::uint64_t seed, Account& account)
+                                             { return TestCycles(subject, seed, cycles, account); })
+                                         : TestSubject(options, subject, count,
+                                             [&](std::uint64_t seed, Account& account)
+                                             {
+                                               return options.Test == "abort" || areAtWork
+                                                 ? TestAbort(subject, seed, areAtWork, account)
+                                                 : options.Test == "exhaustion"
+                                                 ? TestExhaustion(subject, seed, account)
+                                                 : TestOutcome(subject, seed, account);
+                                             });
   }
   if (found == 0)
   {
