@@ -56,6 +56,7 @@ constexpr double RaySpacing = 2;          // mm at 90 mm
 constexpr double MostError = 1;           // mm, above which it is told
 constexpr double MostDistance = 30;       // mm of Point from a hole
 constexpr double AutomaticTriangle = 1;   // mm
+constexpr double SmallHole = 400;         // mm^2, below which it may be none
 constexpr std::int16_t LevelOfHalf = 300; // of the copy in which symmetry is sought
 
 std::string Name(const Vec3& p)
@@ -124,7 +125,16 @@ lacuna::SymmetryResult FindSymmetry(
   masked.Volume = volume;
   masked.Volume.Voxels = bone.data();
   masked.Volume.Type = lacuna::ScalarType::Int16;
-  return lacuna::FindSymmetryPlane(masked, execution);
+  try
+  {
+    return lacuna::FindSymmetryPlane(masked, execution);
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw std::runtime_error("the two sides of the skull are not found in this scan (" +
+      std::string(error.what()) +
+      "): it has to show the whole vault, and Level has to be that of bone");
+  }
 }
 
 std::vector<Vec3> GetCurve(vtkPolyData* data)
@@ -178,6 +188,7 @@ public:
     }
   }
 
+  double GetArea(std::size_t defect) const { return this->Areas[defect]; } ///< mm^2
   double GetDistance(std::size_t defect, const Vec3& point) const
   {
     double least = std::numeric_limits<double>::infinity();
@@ -493,6 +504,12 @@ int vtkLacunaSkullImplant::RequestData(
     {
       vtkWarningMacro(<< warning);
     }
+    if (!isDrawn && holes.GetArea(chosen) < SmallHole)
+    {
+      vtkWarningMacro(
+        << "the hole has only " << Rounded(holes.GetArea(chosen) / 100)
+        << " cm^2: it may be thin bone that this Level does not show. Look at it in the CT");
+    }
     if (implant.LargestError > MostError)
     {
       vtkWarningMacro(<< "the predicted error is more than " << MostError << " mm: up to "
@@ -513,6 +530,7 @@ int vtkLacunaSkullImplant::RequestData(
       vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
     };
     const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
+    set("ChosenDefect", static_cast<double>(chosen + 1));
     set("Volume", implant.Volume);
     set("Mass", implant.Volume * this->Density / 1000);
     set("OuterArea", implant.OuterArea);

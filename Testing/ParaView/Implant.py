@@ -12,7 +12,7 @@ import numpy as np
 from lacuna import implant
 from lacuna.data import fetch
 from lacuna_test import output
-from paraview.simple import Delete, GetSources, SkullPhantom
+from paraview.simple import Delete, GetSources, SkullPhantom, XMLPolyDataReader
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkMassProperties
@@ -103,9 +103,12 @@ for proxy in list(GetSources().values()):
     Delete(proxy)
 
 # A point near the hole gives the same implant, in another format
-ply = os.path.join(home, "implant.ply")
-code, text = run(ct, "--output", ply, "--hole", *(middle + 5), "--clearance", 0.5)
+vtp = os.path.join(home, "implant.vtp")
+code, text = run(ct, "--output", vtp, "--hole", *(middle + 5), "--clearance", 0.5)
 assert code == 0 and printed_number(r"implant: ([\d.]+) ml", text) == printed, text
+back = fetch(XMLPolyDataReader(FileName=[vtp]))
+assert np.allclose(back.GetBounds(), clean.GetOutput().GetBounds(), atol=1e-3), back.GetBounds()
+assert back.GetPointData().GetArray("PredictedError").GetRange()[0] > 0 and back.GetCellData().HasArray("ImplantFace")
 
 # What fails says so in one sentence and leaves no file
 errors = []

@@ -22,9 +22,15 @@ constexpr double Pi = 3.14159265358979323846;
 constexpr double GridSpacing = 0.4; // mm of the map in which the free space is found
 constexpr double ErrorSpacing = 3;  // mm: standard errors vary slowly
 constexpr double FarFromRim = 3;    // mm: where distances to the rim do not matter any more
-constexpr double MostAngle = 2.4;   // radians from the middle of a defect
+// mm: of a ball that fits into all of the implant's outline, seen from outside. What is narrower than twice as
+// much is a gap in thin bone, a suture or a drill hole.
+constexpr double LeastRadius = 2;
+constexpr double Slack = 0.4;      // mm: of that, for what is not exact
+constexpr double MostAngle = 2.4;  // radians from the middle of a defect
 constexpr double ValueScale = 500; // of grey levels a mm, at the edge of bone; only the sign counts
 constexpr double LeastPart = 100;  // mm^2: of a free space that is told of
+constexpr double ScanEnd = 20;     // mm^2: of a hole beyond the scan
+constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double LatticeToRim = 0.6; // of TriangleSize: the rim's edges stay Delaunay edges
 constexpr int InsertionSteps = 400;
 
@@ -198,6 +204,16 @@ std::vector<Loop> KeepLargest(std::vector<Loop> loops)
   return kept;
 }
 
+double GetArea(const std::vector<Loop>& loops)
+{
+  double area = 0;
+  for (const Loop& loop : loops)
+  {
+    area += SignedArea(loop);
+  }
+  return area;
+}
+
 class Builder
 {
 public:
@@ -217,6 +233,10 @@ public:
         this->Defect.push_back(this->Plane.ToPlane(rays.Directions[ray]));
       }
     }
+    if (this->Defect.empty())
+    {
+      throw std::runtime_error("the hole goes around the whole skull");
+    }
   }
 
   SkullImplant Make()
@@ -230,10 +250,7 @@ public:
     {
       loop = Resample(loop, 0.5 * this->Options.TriangleSize);
     }
-    for (const Loop& loop : outline)
-    {
-      this->OutlineArea += SignedArea(loop);
-    }
+    this->OutlineArea = GetArea(outline);
     this->AddMesh(outline);
     this->Run.SetStage(0.5, 1);
     this->AddErrors();
@@ -318,7 +335,7 @@ private:
     for (std::size_t k = 0; k < nodes.size(); ++k)
     {
       this->Free[nodes[k]] =
-        std::min((this->Options.Level - largest[k]) / ValueScale, near - away[nodes[k]]);
+        std::clamp((this->Options.Level - largest[k]) / ValueScale, -near, near - away[nodes[k]]);
       this->Inner[nodes[k]] = shape[k].Outer - shape[k].Thickness;
     }
     const std::vector<std::vector<std::int64_t>> parts = FindFreeParts(this->Grid, this->Free);
@@ -328,6 +345,12 @@ private:
                                "free. Check the level, and that the hole is a hole");
     }
     const double nodeArea = GridSpacing * GridSpacing;
+    const auto beyond = static_cast<double>(std::count(largest.begin(), largest.end(), Infinity));
+    if (beyond * nodeArea > ScanEnd)
+    {
+      this->Implant.Warnings.push_back(
+        "the scan ends within the hole: the implant ends there, too, and does not meet bone");
+    }
     for (std::size_t p = 1; p < parts.size(); ++p)
     {
       for (const std::int64_t node : parts[p])
@@ -373,16 +396,7 @@ private:
     {
       throw std::runtime_error("no space in the hole is free of bone");
     }
-    std::vector<std::vector<Vec3>> curves;
-    for (const Loop& loop : hole)
-    {
-      curves.emplace_back();
-      for (const Vec2& p : loop)
-      {
-        curves.back().push_back(this->PointAt(this->Plane.ToDirection(p), this->InnerAt(p)));
-      }
-    }
-    const CurveIndex rim(curves, 2);
+    const CurveIndex rim(this->OnInner(hole), 2);
     std::vector<double> distances(this->Free.size(), -FarFromRim);
     const double limit = FarFromRim + this->Options.EdgeClearance;
     this->Run.For(this->Grid.Rows, 8,
@@ -403,14 +417,66 @@ private:
           }
         }
       });
-    std::vector<Loop> outline =
-      KeepLargest(FindContours(this->Grid, distances, this->Options.EdgeClearance));
-    if (outline.empty())
+    return this->WithoutTongues(std::move(distances));
+  }
+
+  // The outline at the clearance from the rim, without what is narrow (an opening).
+  std::vector<Loop> WithoutTongues(std::vector<double> distances)
+  {
+    const double clearance = this->Options.EdgeClearance;
+    const std::vector<Loop> core =
+      KeepLargest(FindContours(this->Grid, distances, clearance + LeastRadius));
+    if (core.empty())
     {
-      throw std::runtime_error("the hole is narrower than twice EdgeClearance (" +
-        FormatNumber(this->Options.EdgeClearance) + " mm): nothing is left of the implant");
+      throw std::runtime_error("the hole is nowhere wider than " +
+        FormatNumber(2 * (clearance + LeastRadius)) +
+        " mm: it may be a gap in thin bone, which this level does not show");
+    }
+    const double before = GetArea(KeepLargest(FindContours(this->Grid, distances, clearance)));
+    const CurveIndex edge(this->OnInner(core), 2);
+    const double limit = LeastRadius + Slack;
+    this->Run.For(this->Grid.Rows, 8,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t j = begin; j < end; ++j)
+        {
+          for (std::int64_t i = 0; i < this->Grid.Columns; ++i)
+          {
+            double& distance = distances[i + this->Grid.Columns * j];
+            const Vec2 node = this->Grid.GetNode(i, j);
+            if (distance > clearance && !IsInside(core, node))
+            {
+              const Vec3 point = this->PointAt(
+                this->Plane.ToDirection(node), this->Inner[i + this->Grid.Columns * j]);
+              distance =
+                std::min(distance, clearance + limit - edge.Find(point, 2 * limit).Distance);
+            }
+          }
+        }
+      });
+    std::vector<Loop> outline = KeepLargest(FindContours(this->Grid, distances, clearance));
+    const double without = before - GetArea(outline);
+    if (without > LeastPart)
+    {
+      this->Implant.Warnings.push_back("the hole has parts that are narrower than " +
+        FormatNumber(2 * (clearance + LeastRadius)) + " mm, or that are behind such: " +
+        FormatNumber(std::round(without / 10) / 10) + " cm^2 are left out");
     }
     return outline;
+  }
+
+  std::vector<std::vector<Vec3>> OnInner(const std::vector<Loop>& loops) const
+  {
+    std::vector<std::vector<Vec3>> curves;
+    for (const Loop& loop : loops)
+    {
+      curves.emplace_back();
+      for (const Vec2& p : loop)
+      {
+        curves.back().push_back(this->PointAt(this->Plane.ToDirection(p), this->InnerAt(p)));
+      }
+    }
+    return curves;
   }
 
   //----------------------------------------------------------------------------

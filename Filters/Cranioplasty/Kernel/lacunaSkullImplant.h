@@ -60,7 +60,8 @@ struct SkullImplant
 /// The outer and inner surface are those of the shape. The edge runs along rays from the centre, so that the
 /// implant grows wider outwards. Its outline is the one of the free space: no bone is met between the
 /// surfaces, nor within the clearance of them, in the volume (trilinear). It is moved inwards by the
-/// clearance, measured on the inner surface. Of several free spaces the largest is taken.
+/// clearance, measured on the inner surface. Parts into which no ball of 2 mm fits then are left out, and so is all
+/// but the largest of several free spaces.
 /// defect: rays, as of FindDefects. Throws std::invalid_argument when an option is out of range or the defect is
 /// empty, and std::runtime_error when no free space is left.
 SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,

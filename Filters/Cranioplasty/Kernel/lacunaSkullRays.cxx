@@ -386,8 +386,8 @@ SkullRays TraceSkull(
   if (parts.empty() || parts[0].size() < LeastSound)
   {
     throw std::invalid_argument(
-      "rays from the centre of the skull meet no smooth bone: check the level "
-      "and that the centre is inside the skull");
+      "around the middle of what is bone there is too little of a smooth vault: the scan has to "
+      "show the whole vault of the skull, and the level has to be that of bone");
   }
   // The vault's ellipsoid, then without what lies beside it.
   std::vector<int> vault = parts[0];
@@ -527,7 +527,9 @@ std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& cent
             const RaySegment& segment = segments[i];
             const int count =
               std::max(1, static_cast<int>(std::ceil((segment.To - segment.From) / step)));
-            double most = std::numeric_limits<double>::lowest();
+            double most = std::isnan(sample(center + segment.From * segment.Direction))
+              ? std::numeric_limits<double>::infinity()
+              : std::numeric_limits<double>::lowest();
             for (int s = 0; s <= count; ++s)
             {
               const double r = segment.From + (segment.To - segment.From) * s / count;

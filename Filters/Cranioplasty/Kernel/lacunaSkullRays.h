@@ -56,8 +56,8 @@ struct RaySegment
   double To;
 };
 
-/// For each segment the largest value that it meets (trilinear, about twice a voxel), the lowest number where it
-/// is outside of the volume.
+/// For each segment the largest value that it meets (trilinear, about twice a voxel). What is outside of the
+/// volume does not count; infinity when From is outside.
 std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& center,
   const std::vector<RaySegment>& segments, Execution& execution);
 

@@ -154,7 +154,8 @@ Vec3 FindStep(const Vec3& slope, const double (&curvature)[3][3])
   {
     largest = std::max({ largest, std::abs(curvature[i][i]), std::abs(slope[i]) });
   }
-  if (!std::isfinite(largest)) // a value where the covariance is not positive definite
+  if (!(largest > 1e-100 &&
+        std::isfinite(largest))) // else a value where the covariance is not positive definite
   {
     return { 0, 0, 0 };
   }
@@ -402,8 +403,14 @@ std::vector<VirtualHole> SkullShape::FindHolesLike(
   {
     square += SquaredDistance(d, axis) / static_cast<double>(defect.size());
   }
-  std::vector<VirtualHole> holes =
-    SpreadHoles(places, this->Ellipsoid->Typical * std::sqrt(2 * square));
+  // what is left out has to leave more than half of the bone: a larger defect is like smaller holes
+  double radius = this->Ellipsoid->Typical * std::sqrt(2 * square);
+  std::vector<VirtualHole> holes = SpreadHoles(places, radius);
+  while (holes.size() < LeastHoles && radius > RegionHole)
+  {
+    radius *= 0.85;
+    holes = SpreadHoles(places, radius);
+  }
   const Vec3 middle = this->Ellipsoid->GetPlace(axis);
   const Vec3 mirrored = this->Plane.Reflect(middle);
   const auto distanceOf = [&](const VirtualHole& hole) {

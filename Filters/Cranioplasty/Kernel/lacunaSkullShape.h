@@ -43,7 +43,8 @@ struct SkullEstimate
 /// last turn and shift of the plane, are those of the greatest restricted likelihood. The standard errors are
 /// calibrated by virtual holes: sound bone of the defect's size that is left out and predicted.
 ///
-/// Results depend neither on the frame of the coordinates (but for rounding) nor on the number of threads.
+/// Results depend neither on the frame of the coordinates (but for rounding) nor on the number of threads. They
+/// depend on the order of the rays, by which nodes are chosen.
 /// Cressie, Statistics for Spatial Data, 1993, section 3.4 (universal kriging).
 class SkullShape
 {

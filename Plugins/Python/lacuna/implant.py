@@ -13,6 +13,7 @@ import contextlib
 import math
 import os
 import sys
+import tempfile
 
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -23,6 +24,8 @@ from lacuna.data import fetch
 from lacuna.errors import raising
 
 LEVEL = 300  # Hounsfield units
+AIR = -300  # the same: below it there is air around the head
+BONE = (100, 1000)  # the same: levels of bone
 CLEARANCE = 0.5  # mm
 ENDINGS = (".stl", ".ply", ".obj", ".vtp", ".3mf")
 WORDS = {"L": "left", "R": "right", "P": "back", "A": "front", "H": "top", "F": "bottom"}
@@ -72,9 +75,7 @@ def measures(made):
     areas = vtk_to_numpy(fields.GetArray("DefectAreas")).ravel()
     centers = vtk_to_numpy(fields.GetArray("DefectCenters")).reshape(-1, 3)
     numbers["Defects"] = [Defect(float(area), center) for area, center in zip(areas, centers)]
-    low, high = data.GetBounds()[::2], data.GetBounds()[1::2]
-    middle = [(a + b) / 2 for a, b in zip(low, high)]
-    numbers["Chosen"] = min(range(len(areas)), key=lambda k: math.dist(centers[k], middle))
+    numbers["Chosen"] = int(numbers["ChosenDefect"]) - 1
     return numbers
 
 
@@ -126,7 +127,7 @@ def parse_arguments(arguments):
     parser.add_argument("--hole", type=float, nargs=3, metavar=("X", "Y", "Z"),
                         help="a point in or near the hole, in patient millimetres: x to the left, y to the back, z to the head. Default: the largest hole")
     parser.add_argument("--report", metavar="DIR", help="write index.html with pictures, numbers and warnings into this folder")
-    parser.add_argument("--level", type=float, default=LEVEL, metavar="HU", help="of the bone's surface, in Hounsfield units (%(default)s)")
+    parser.add_argument("--level", type=float, metavar="HU", help=f"of the bone's surface ({LEVEL} in Hounsfield units; needed for other values)")
     parser.add_argument("--clearance", type=float, default=CLEARANCE, metavar="MM", help="gap between the implant's edge and the bone (%(default)s)")
     options = parser.parse_args(arguments)
     folder = os.path.dirname(options.output) or "."
@@ -136,8 +137,8 @@ def parse_arguments(arguments):
         parser.error(f"--output: there is no folder {folder}")
     if options.hole and not all(map(math.isfinite, options.hole)):
         parser.error("--hole: these are no three numbers in mm")
-    if not (math.isfinite(options.level) and options.level > 0):
-        parser.error(f"--level: {options.level:g} is no number of Hounsfield units above 0")
+    if options.level is not None and not (math.isfinite(options.level) and options.level > 0):
+        parser.error(f"--level: {options.level:g} is no number above 0")
     if not 0 <= options.clearance <= 5:
         parser.error(f"--clearance: {options.clearance:g} mm is not from 0 to 5")
     if options.report and os.path.exists(options.report) and not os.path.isdir(options.report):
@@ -162,13 +163,16 @@ def _run(options):
     from lacuna.solids import save_solid
     warnings = []
     _say("reading the CT")
+    with tempfile.TemporaryFile(dir=os.path.dirname(options.output) or "."):
+        pass  # else OSError names the folder: before the work, not after it
     with _told_once(warnings):
+        ct = open_volume(options.ct)
+        level = _choose_level(ct, options, warnings)
         if options.report:
             os.makedirs(options.report, exist_ok=True)
-        ct = open_volume(options.ct)
     _say("designing the implant")
     with _told_once(warnings):
-        made = make_implant(ct, options.hole, options.level, options.clearance)
+        made = make_implant(ct, options.hole, level, options.clearance)
         lines = describe(made)
         record = save_solid(options.output, made.implant)
     warnings = list(dict.fromkeys(warnings))
@@ -181,6 +185,18 @@ def _run(options):
             implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings)
         _say(f"written: {os.path.join(options.report, 'index.html')}")
     _say("Research software, not a medical device.")
+
+
+def _choose_level(ct, options, warnings):
+    """The level that was given, or LEVEL if the values can be Hounsfield units: those of air are in every CT."""
+    low, high = ct.PointData[0].GetRange(0)
+    is_hounsfield = low < AIR
+    if options.level is None and not is_hounsfield:
+        raise ValueError(f"{options.ct} has values from {low:g} to {high:g}: these are no Hounsfield units, in which air is -1000. Give --level, the "
+                         "value at the surface of bone")
+    if is_hounsfield and options.level is not None and not BONE[0] <= options.level <= BONE[1]:
+        warnings.append(f"the level {options.level:g} HU is not one of bone, {BONE[0]} to {BONE[1]}")
+    return LEVEL if options.level is None else options.level
 
 
 def _say(text):

@@ -50,6 +50,7 @@ def show_bone(bone, level, view, made=lambda proxy: proxy):
         turn.SetMatrix(matrix.ravel())
         surface = made(pv.Transform(Input=surface))
         surface.Transform.Translate, surface.Transform.Rotate = list(turn.GetPosition()), list(turn.GetOrientation())
+        surface.Transform.Scale = list(turn.GetScale())  # negative where the directions are left-handed
     pictures.show_surface(surface, view, pictures.BONE)
     return surface
 

@@ -204,6 +204,8 @@ def _write_by_paraview(name, path, proxy, options):
     from lacuna.errors import PipelineError, raising
     from paraview.simple import SaveData
 
+    if name.endswith(".vtp"):  # Debian 12's libexpat breaks ParaView 5.11's reading of its default, appended
+        options = {"DataMode": "Binary"} | options
     with raising():
         SaveData(name, proxy, **options)
     made = os.listdir(os.path.dirname(name))

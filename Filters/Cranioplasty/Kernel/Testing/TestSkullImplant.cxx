@@ -36,7 +36,8 @@ constexpr std::size_t FewNodes = 200;
 // from a point below the centre. Values fall by 200 a mm across the surfaces.
 struct Shell
 {
-  explicit Shell(const Matrix4& ownToWorld = {}, double strut = 0)
+  // strut: half the width of a bridge; slot: half the width of a gap from the hole to 1 radian from its axis
+  explicit Shell(const Matrix4& ownToWorld = {}, double strut = 0, double slot = -10)
     : Axis(lacuna::Normalized({ 0.5, -0.3, 0.8 }))
   {
     this->Volume.Size = { 133, 137, 129 };
@@ -65,6 +66,11 @@ struct Shell
           const Vec3 beside = lacuna::Normalized(Cross(this->Axis, { 1, 0, 0 }));
           const double bridge = strut - std::abs(Dot(x, beside));
           inside = std::min(inside, std::max(away, bridge));
+          const double along = std::acos(Dot(lacuna::Normalized(x), this->Axis));
+          const Vec3 ahead = Cross(beside, this->Axis);
+          const double gap =
+            std::max({ std::abs(Dot(x, beside)) - slot, r * (along - 1), -Dot(x, ahead) });
+          inside = std::min(inside, gap);
           this->Voxels.push_back(
             static_cast<std::int16_t>(std::clamp(300 + 200 * inside, 0.0, 900.0)));
         }
@@ -223,6 +229,29 @@ TEST(SkullImplant, LeavesBoneInTheHoleFree)
   {
     EXPECT_GT(side * Dot(x, beside), 4 + 0.3);
   }
+}
+
+TEST(SkullImplant, LeavesNarrowGapsOut)
+{
+  SkullImplantOptions options;
+  options.TriangleSize = 2;
+  const SkullImplant whole = Make(Shell(), options);
+  // 3 mm wide, and 35 mm long
+  const SkullImplant implant = Make(Shell({}, 0, 1.5), options);
+  EXPECT_TRUE(IsClosed(implant));
+  EXPECT_NEAR(implant.Volume, whole.Volume, 0.01 * whole.Volume);
+  const Vec3 axis = Shell().Axis;
+  const auto farthest = [&](const SkullImplant& each)
+  {
+    double angle = 0;
+    for (const Vec3& x : each.Points)
+    {
+      angle = std::max(angle, std::acos(Dot(lacuna::Normalized(x), axis)));
+    }
+    return angle;
+  };
+  EXPECT_LT(farthest(implant), farthest(whole) + 2.5 / Outer);
+  EXPECT_GT(implant.LeastTaper, 0.5 * whole.LeastTaper);
 }
 
 TEST(SkullImplant, RefusesWhatCannotBe)
