@@ -206,6 +206,8 @@ CASES = {
     "Depth Map Surface": lambda n: DepthMapSurface(Input=depth(n)),
     "Mirror": lambda n: Mirror(Input=skull(n), PlaneMethod="Given", Normal=[1, 0, 0]),
     "Mirror, best symmetry": lambda n: Mirror(Input=skull(n)),
+    "Skull Bone": lambda n: SkullBone(Input=skull(n)),
+    "Skull Implant": lambda n: SkullImplant(Input=skull(n)),
     "RBF Hole Filler": filled,
     "RBF Interpolator": interpolate,
     "RBF Image Warp": warp,

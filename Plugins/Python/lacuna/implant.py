@@ -17,7 +17,7 @@ import tempfile
 
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow
 
 from lacuna import coordinates, views
 from lacuna.data import fetch
@@ -163,8 +163,12 @@ def _run(options):
     from lacuna.solids import save_solid
     warnings = []
     _say("reading the CT")
-    with tempfile.TemporaryFile(dir=os.path.dirname(options.output) or "."):
-        pass  # else OSError names the folder: before the work, not after it
+    folder = os.path.dirname(options.output) or "."
+    try:  # before the work, not after it
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ValueError(f"nothing can be written into {folder}: {error.strerror}") from error
     with _told_once(warnings):
         ct = open_volume(options.ct)
         level = _choose_level(ct, options, warnings)
@@ -205,7 +209,9 @@ def _say(text):
 
 @contextlib.contextmanager
 def _told_once(warnings=None):
-    """As raising; VTK's output window does not print the messages too. In pvpython it does not print print's texts either."""
+    """As raising; VTK's output window and log do not print the messages too. In pvpython the window does not print print's texts either."""
+    cutoff = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     window = vtkOutputWindow.GetInstance()
     mode = window.GetDisplayMode()
     window.SetDisplayModeToNever()
@@ -214,6 +220,7 @@ def _told_once(warnings=None):
             yield
     finally:
         window.SetDisplayMode(mode)
+        vtkLogger.SetStderrVerbosity(cutoff)
 
 
 if __name__ == "__main__":

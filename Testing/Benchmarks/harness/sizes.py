@@ -28,6 +28,8 @@ SIZES = {
     "Depth Map Surface": (0.2, 0.1),
     "Mirror": (1, 0.5),
     "Mirror, best symmetry": (1, 0.5),
+    "Skull Bone": (1, 0.5),
+    "Skull Implant": (1, 0.5),
     "RBF Hole Filler": (0.25, 0.15),
     "RBF Interpolator": (0.5, 0.3),
     "RBF Image Warp": (160, 256),
