@@ -177,13 +177,6 @@ Loop Resample(const Loop& loop, double spacing)
   return points;
 }
 
-bool IsInside(const std::vector<Loop>& loops, const Vec2& p)
-{
-  const std::vector<double> crossings = FindCrossings(loops, p[1]);
-  const auto passed = std::upper_bound(crossings.begin(), crossings.end(), p[0]);
-  return (passed - crossings.begin()) % 2 == 1;
-}
-
 // The loop of the largest area and the loops within it.
 std::vector<Loop> KeepLargest(std::vector<Loop> loops)
 {
@@ -196,7 +189,7 @@ std::vector<Loop> KeepLargest(std::vector<Loop> loops)
   std::vector<Loop> kept{ *largest };
   for (const Loop& loop : loops)
   {
-    if (SignedArea(loop) < 0 && IsInside({ kept[0] }, loop[0]))
+    if (SignedArea(loop) < 0 && IsInside(std::vector<Loop>{ kept[0] }, loop[0]))
     {
       kept.push_back(loop);
     }
@@ -631,12 +624,7 @@ private:
   // By the ratio of areas in the chart: the surface goes on evenly over the clearance.
   void SetHoleArea(const std::vector<Loop>& hole)
   {
-    double area = 0;
-    for (const Loop& loop : hole)
-    {
-      area += SignedArea(loop);
-    }
-    this->Implant.HoleArea = this->Implant.OuterArea * area / this->OutlineArea;
+    this->Implant.HoleArea = this->Implant.OuterArea * GetArea(hole) / this->OutlineArea;
   }
 
   // The direction that is farthest from all walls: each wall that is nearest turns it a little.

@@ -659,15 +659,13 @@ std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& 
     }
     loop.push_back(toPlane(d));
   }
+  const std::vector<Loop> curves{ loop };
   std::vector<int> within;
   for (std::size_t i = 0; i < rays.Directions.size(); ++i)
   {
     if (Dot(rays.Directions[i], axis) > -0.5)
     {
-      const Vec2 p = toPlane(rays.Directions[i]);
-      const std::vector<double> crossings = FindCrossings({ loop }, p[1]);
-      const auto passed = std::upper_bound(crossings.begin(), crossings.end(), p[0]);
-      if ((passed - crossings.begin()) % 2 == 1)
+      if (IsInside(curves, toPlane(rays.Directions[i])))
       {
         within.push_back(static_cast<int>(i));
       }

@@ -243,8 +243,7 @@ private:
       for (std::int64_t i = 0; i < size.Columns; ++i)
       {
         const Vec2 p = this->GetNode(i, j);
-        const auto passed = std::upper_bound(crossings.begin(), crossings.end(), p[0]);
-        const bool inside = (passed - crossings.begin()) % 2 != 0;
+        const bool inside = IsInside(crossings, p[0]);
         const std::int64_t k = i + size.Columns * j;
         if (inside)
         {

@@ -84,9 +84,7 @@ private:
   {
     const double d =
       this->Rim->Find(this->Surface.GetPoint(p), std::numeric_limits<double>::infinity()).Distance;
-    const std::vector<double> crossings = FindCrossings({ this->Plate.Outline.Points }, p[1]);
-    const auto passed = std::upper_bound(crossings.begin(), crossings.end(), p[0]);
-    return (passed - crossings.begin()) % 2 ? d : -d;
+    return IsInside({ this->Plate.Outline.Points }, p) ? d : -d;
   }
 
   void AddScrewHoles()
@@ -167,8 +165,7 @@ private:
         FindCrossings({ this->Plate.Outline.Defect }, p[1] + dy);
       for (const double x : { p[0] - dx, p[0] + dx })
       {
-        const auto passed = std::upper_bound(crossings.begin(), crossings.end(), x);
-        if ((passed - crossings.begin()) % 2 == 0)
+        if (!IsInside(crossings, x))
         {
           return false;
         }

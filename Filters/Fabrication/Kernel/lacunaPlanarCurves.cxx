@@ -125,6 +125,17 @@ std::vector<double> FindCrossings(const std::vector<Loop>& loops, double y)
   return crossings;
 }
 
+bool IsInside(const std::vector<double>& crossings, double x)
+{
+  const auto passed = std::upper_bound(crossings.begin(), crossings.end(), x);
+  return (passed - crossings.begin()) % 2 != 0;
+}
+
+bool IsInside(const std::vector<Loop>& loops, const Vec2& p)
+{
+  return IsInside(FindCrossings(loops, p[1]), p[0]);
+}
+
 //------------------------------------------------------------------------------
 CurveIndex::CurveIndex(const std::vector<std::vector<Vec3>>& curves, double cell)
   : Cell(cell)

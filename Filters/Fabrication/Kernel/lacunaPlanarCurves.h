@@ -40,6 +40,10 @@ std::vector<Loop> FindContours(
 /// The x where the horizontal line at y crosses the loops, ascending: inside are the first to the
 /// second, the third to the fourth, ...
 std::vector<double> FindCrossings(const std::vector<Loop>& loops, double y);
+/// Whether x is inside, of the crossings of one line.
+bool IsInside(const std::vector<double>& crossings, double x);
+/// Whether a point is inside of the loops. For many points of one line FindCrossings once is quicker.
+bool IsInside(const std::vector<Loop>& loops, const Vec2& p);
 
 /// The nearest points of closed polygons in space, sorted by their x and y.
 class CurveIndex
