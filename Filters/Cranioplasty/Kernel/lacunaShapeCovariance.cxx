@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaShapeCovariance.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace lacuna
 {
@@ -18,30 +18,19 @@ double MaternSlope(double distance, double length)
 }
 
 ShapeCovariance::ShapeCovariance(const ShapeVariances& variances, double reach)
-  : KnotsPerMillimetre(1 / KnotDistance)
+  : Variances(variances)
+  , KnotsPerMillimetre(1 / KnotDistance)
 {
   const auto count = static_cast<std::size_t>(std::ceil(reach / KnotDistance)) + 2;
-  this->Direct.resize(count);
-  this->Across.resize(count);
+  this->Knots.resize(count);
   for (std::size_t k = 0; k < count; ++k)
   {
     const double distance = static_cast<double>(k) * KnotDistance;
-    Knot direct{ 0, 0, 0, 0 };
-    Knot across{ 0, 0, 0, 0 };
-    for (std::size_t i = 0; i < ShapeLengths.size(); ++i)
+    for (std::size_t l = 0; l < ShapeLengths.size(); ++l)
     {
-      const double correlation = MaternCorrelation(distance, ShapeLengths[i]);
-      const double change = KnotDistance * MaternSlope(distance, ShapeLengths[i]);
-      const auto add = [&](Knot& knot, double variance)
-      {
-        (i < RoughLengths ? knot.RoughValue : knot.Value) += variance * correlation;
-        (i < RoughLengths ? knot.RoughSlope : knot.Slope) += variance * change;
-      };
-      add(direct, variances.Common[i] + variances.Own[i]);
-      add(across, variances.Common[i]);
+      this->Knots[k].Value[l] = MaternCorrelation(distance, ShapeLengths[l]);
+      this->Knots[k].Slope[l] = KnotDistance * MaternSlope(distance, ShapeLengths[l]);
     }
-    this->Direct[k] = direct;
-    this->Across[k] = across;
   }
 }
 }

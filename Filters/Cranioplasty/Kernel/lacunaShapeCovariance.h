@@ -37,48 +37,80 @@ inline double MaternCorrelation(double distance, double length)
 /// is the shape of the whole.
 constexpr std::size_t RoughLengths = 3;
 
-/// Covariance of two places without their noise: the sum of the own and the common parts at their
-/// distance, and the common part at the distance to the mirror image. Both are functions of a distance,
-/// which are looked up in tables (cubic, better than 1e-8 of the variance).
+/// A place of a skull as covariances need it.
+struct ShapePlace
+{
+  ShapePlace(const Vec3& point, const MirrorPlane& plane, double roughness)
+    : Point(point)
+    , Mirrored(plane.Reflect(point))
+    , Roughness(roughness)
+  {
+    for (std::size_t l = 0; l < ShapeLengths.size(); ++l)
+    {
+      this->Share[l] =
+        1 / std::sqrt(1 + MaternCorrelation(Norm(point - this->Mirrored), ShapeLengths[l]));
+    }
+  }
+
+  Vec3 Point{ 0, 0, 0 };    ///< world mm
+  Vec3 Mirrored{ 0, 0, 0 }; ///< its image
+  double Roughness = 1;     ///< multiplies the standard deviations of RoughLengths
+  /// Multiplies the common part of each length, which is a sum over the place and its image: so its variance is the
+  /// same everywhere, and not twice as large at the midline, where both are one.
+  std::array<double, 4> Share{};
+};
+
+/// Covariance of two places without their noise: the own part at their distance, and the common part at their
+/// distance and at that to the mirror image. Correlations are looked up in tables (cubic, better than 1e-8).
 class ShapeCovariance
 {
 public:
   /// reach: no two places, nor their mirror images, are farther apart, mm.
   ShapeCovariance(const ShapeVariances& variances, double reach);
 
-  /// For two places and the mirror image of the second. roughness: the product of what multiplies the
-  /// standard deviations of RoughLengths at both.
-  double operator()(const Vec3& a, const Vec3& b, const Vec3& mirrored, double roughness = 1) const
+  double operator()(const ShapePlace& a, const ShapePlace& b) const
   {
-    return LookUp(this->Direct, Norm(a - b), roughness) +
-      LookUp(this->Across, Norm(a - mirrored), roughness);
+    const std::array<double, 4> direct = this->LookUp(Norm(a.Point - b.Point));
+    const std::array<double, 4> across = this->LookUp(Norm(a.Point - b.Mirrored));
+    double rough = 0;
+    double rest = 0;
+    for (std::size_t l = 0; l < ShapeLengths.size(); ++l)
+    {
+      (l < RoughLengths ? rough : rest) += this->Variances.Own[l] * direct[l] +
+        this->Variances.Common[l] * a.Share[l] * b.Share[l] * (direct[l] + across[l]);
+    }
+    return rest + a.Roughness * b.Roughness * rough;
   }
 
 private:
   struct Knot
   {
-    double Value;
-    double Slope; ///< times the distance of knots
-    double RoughValue;
-    double RoughSlope;
+    std::array<double, 4> Value;
+    std::array<double, 4> Slope; ///< times the distance of knots
   };
-  double LookUp(const std::vector<Knot>& table, double distance, double roughness) const
+  std::array<double, 4> LookUp(double distance) const
   {
     const double position = distance * this->KnotsPerMillimetre;
-    const auto knot = std::min(static_cast<std::size_t>(position), table.size() - 2);
+    const auto knot = std::min(static_cast<std::size_t>(position), this->Knots.size() - 2);
     const double t = position - static_cast<double>(knot);
-    const Knot& a = table[knot];
-    const Knot& b = table[knot + 1];
-    const double begin = a.Value + roughness * a.RoughValue;
-    const double rise = b.Value + roughness * b.RoughValue - begin;
-    const double first = a.Slope + roughness * a.RoughSlope;
-    const double last = b.Slope + roughness * b.RoughSlope;
-    return begin + t * (first + t * (3 * rise - 2 * first - last + t * (first + last - 2 * rise)));
+    const Knot& a = this->Knots[knot];
+    const Knot& b = this->Knots[knot + 1];
+    std::array<double, 4> values;
+    for (std::size_t l = 0; l < ShapeLengths.size(); ++l)
+    {
+      const double rise = b.Value[l] - a.Value[l];
+      values[l] = a.Value[l] +
+        t *
+          (a.Slope[l] +
+            t *
+              (3 * rise - 2 * a.Slope[l] - b.Slope[l] + t * (a.Slope[l] + b.Slope[l] - 2 * rise)));
+    }
+    return values;
   }
 
+  ShapeVariances Variances;
   double KnotsPerMillimetre = 1;
-  std::vector<Knot> Direct;
-  std::vector<Knot> Across;
+  std::vector<Knot> Knots;
 };
 }
 #endif

@@ -218,14 +218,17 @@ void ShapeField::Solve(const MirrorPlane& plane, double reach)
   const std::size_t q = CountTerms(this->WithDirection);
   this->Covariance = std::make_unique<ShapeCovariance>(this->Variances, reach);
   this->Factors = std::make_unique<SquareMatrix>(n);
+  this->Nodes.clear();
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    this->Nodes.emplace_back(this->Places[i], plane, this->Roughness[i]);
+  }
   for (std::size_t j = 0; j < n; ++j)
   {
-    const Vec3 mirrored = plane.Reflect(this->Places[j]);
     double* column = this->Factors->Column(j);
     for (std::size_t i = j; i < n; ++i)
     {
-      column[i] = (*this->Covariance)(
-        this->Places[i], this->Places[j], mirrored, this->Roughness[i] * this->Roughness[j]);
+      column[i] = (*this->Covariance)(this->Nodes[i], this->Nodes[j]);
     }
     column[j] += this->Roughness[j] * this->Roughness[j] * this->Variances.Noise;
   }
@@ -290,12 +293,10 @@ void ShapeField::Solve(const MirrorPlane& plane, double reach)
 
 void ShapeField::GetCovariances(const Vec3& place, double* covariances) const
 {
-  const Vec3 mirrored = this->Plane.Reflect(place);
-  const double roughness = this->GetRoughness(place);
-  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  const ShapePlace there(place, this->Plane, this->GetRoughness(place));
+  for (std::size_t i = 0; i < this->Nodes.size(); ++i)
   {
-    covariances[i] =
-      (*this->Covariance)(this->Places[i], place, mirrored, roughness * this->Roughness[i]);
+    covariances[i] = (*this->Covariance)(this->Nodes[i], there);
   }
 }
 
@@ -319,9 +320,10 @@ double ShapeField::GetError(const Vec3& direction, const Vec3& place, const doub
   {
     rest[k] -= std::inner_product(solved, solved + n, &this->Means[k * n], 0.0);
   }
-  const double square = this->GetRoughness(place) * this->GetRoughness(place);
-  double variance = (*this->Covariance)(place, place, this->Plane.Reflect(place), square) +
-    square * this->Variances.Noise - std::inner_product(solved, solved + n, solved, 0.0);
+  const ShapePlace there(place, this->Plane, this->GetRoughness(place));
+  double variance = (*this->Covariance)(there, there) +
+    there.Roughness * there.Roughness * this->Variances.Noise -
+    std::inner_product(solved, solved + n, solved, 0.0);
   for (std::size_t k = 0; k < q; ++k)
   {
     for (std::size_t m = 0; m < q; ++m)

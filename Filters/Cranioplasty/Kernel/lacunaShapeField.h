@@ -94,6 +94,7 @@ private:
   double Calibration = 1;
 
   MirrorPlane Plane;
+  std::vector<ShapePlace> Nodes;
   std::unique_ptr<ShapeCovariance> Covariance;
   std::unique_ptr<SquareMatrix> Factors;
   AlignedNumbers Means;   ///< L^-1 of the mean terms, one after the other, and of the values

@@ -104,19 +104,24 @@ ShapeLikelihood::ShapeLikelihood(std::vector<Vec3> places, std::vector<double> v
 void ShapeLikelihood::SetPlane(const MirrorPlane& plane, Execution& execution)
 {
   const std::size_t n = this->Places.size();
+  std::vector<ShapePlace> places;
+  for (const Vec3& place : this->Places)
+  {
+    places.emplace_back(place, plane, 1);
+  }
   execution.For(static_cast<std::int64_t>(n), 16,
     [&](std::int64_t begin, std::int64_t end)
     {
       for (std::int64_t j = begin; j < end; ++j)
       {
-        const Vec3 mirrored = plane.Reflect(this->Places[j]);
         for (std::size_t i = j; i < n; ++i)
         {
-          const double distance = Norm(this->Places[i] - mirrored);
+          const double distance = Norm(places[i].Point - places[j].Mirrored);
           for (std::size_t l = 0; l < Lengths; ++l)
           {
-            this->Across[l].Column(j)[i] = this->Direct[l].Column(j)[i] +
-              this->GetFactor(l, i, j) * MaternCorrelation(distance, ShapeLengths[l]);
+            this->Across[l].Column(j)[i] = places[i].Share[l] * places[j].Share[l] *
+              (this->Direct[l].Column(j)[i] +
+                this->GetFactor(l, i, j) * MaternCorrelation(distance, ShapeLengths[l]));
           }
         }
       }

@@ -70,7 +70,7 @@ private:
   std::vector<double> Terms;
   std::vector<double> Roughness;
   std::vector<SquareMatrix> Direct; ///< correlations at each length
-  std::vector<SquareMatrix> Across; ///< the same and those with the mirror image
+  std::vector<SquareMatrix> Across; ///< of the common parts
 };
 }
 #endif

@@ -47,9 +47,14 @@ struct Small
         lacuna::MaternCorrelation(Norm(this->Places[i] - this->Places[j]), length);
       const double across = lacuna::MaternCorrelation(
         Norm(this->Places[i] - this->Plane.Reflect(this->Places[j])), length);
+      const auto share = [&](std::size_t k)
+      {
+        const double apart = Norm(this->Places[k] - this->Plane.Reflect(this->Places[k]));
+        return 1 + lacuna::MaternCorrelation(apart, length);
+      };
       sum += (l < 3 ? roughness : 1) *
-        ((this->Variances.Common[l] + this->Variances.Own[l]) * direct +
-          this->Variances.Common[l] * across);
+        (this->Variances.Own[l] * direct +
+          this->Variances.Common[l] * (direct + across) / std::sqrt(share(i) * share(j)));
     }
     return sum;
   }
@@ -118,8 +123,8 @@ TEST(ShapeCovariance, TablesFollowTheFormula)
     {
       const double roughness = small.Roughness[i] * small.Roughness[j];
       const double noise = i == j ? roughness * small.Variances.Noise : 0;
-      EXPECT_NEAR(covariance(small.Places[i], small.Places[j], small.Plane.Reflect(small.Places[j]),
-                    roughness),
+      EXPECT_NEAR(covariance(lacuna::ShapePlace(small.Places[i], small.Plane, small.Roughness[i]),
+                    lacuna::ShapePlace(small.Places[j], small.Plane, small.Roughness[j])),
         small.Covariance(i, j) - noise, 1e-8);
     }
   }
@@ -184,7 +189,8 @@ TEST(ShapeLikelihood, EachIterationRaisesTheLikelihood)
 
 TEST(ShapeLikelihood, FindsOutWhatBothSidesShare)
 {
-  // waves of 40 to 120 mm and their mirror image: common; then waves alone: own
+  // waves of 40 to 120 mm and their mirror image, with the same variance everywhere: common; then waves
+  // alone: own
   for (const bool common : { true, false })
   {
     Small small(14);
@@ -192,7 +198,10 @@ TEST(ShapeLikelihood, FindsOutWhatBothSidesShare)
     for (std::size_t i = 0; i < small.Places.size(); ++i)
     {
       const Vec3& x = small.Places[i];
-      small.Values[i] = waves(x) + (common ? waves(small.Plane.Reflect(x)) : 0);
+      const Vec3 mirrored = small.Plane.Reflect(x);
+      small.Values[i] = common
+        ? (waves(x) + waves(mirrored)) / std::sqrt(1 + waves.GetCorrelation(x - mirrored))
+        : waves(x);
     }
     const ShapeVariances v = small.Make().Estimate(small.Variances, 40);
     const double shared = v.Common[0] + v.Common[1] + v.Common[2];

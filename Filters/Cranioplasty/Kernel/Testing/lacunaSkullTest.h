@@ -47,6 +47,16 @@ public:
     }
     return sum * std::sqrt(2.0 / static_cast<double>(this->Vectors.size()));
   }
+  /// Of the values at two places, over all phases.
+  double GetCorrelation(const Vec3& difference) const
+  {
+    double sum = 0;
+    for (const Vec3& vector : this->Vectors)
+    {
+      sum += std::cos(Dot(vector, difference)) / static_cast<double>(this->Vectors.size());
+    }
+    return sum;
+  }
 
 private:
   std::vector<Vec3> Vectors;
