@@ -53,7 +53,7 @@ namespace
 using lacuna::Vec3;
 
 constexpr double RaySpacing = 2;          // mm at 90 mm
-constexpr double MostError = 1;           // mm, above which it is told
+constexpr double Seen = 10;               // mm of a place to bone that tells of it
 constexpr double MostDistance = 30;       // mm of Point from a hole
 constexpr double AutomaticTriangle = 1;   // mm
 constexpr double SmallHole = 400;         // mm^2, below which it may be none
@@ -320,6 +320,36 @@ private:
   std::vector<double> Areas;
 };
 
+// Where the outer surface may be more than 1 mm off, and why.
+std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRays& rays,
+  const lacuna::MirrorPlane& plane)
+{
+  const auto distanceOf = [&](const Vec3& place)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+    {
+      if (rays.Kinds[i] == lacuna::SkullRayKind::Sound)
+      {
+        const Vec3 bone = rays.Center + rays.Outer[i] * rays.Directions[i];
+        least = std::min(least, lacuna::Norm(bone - place));
+      }
+    }
+    return least;
+  };
+  const Vec3& worst = implant.LargestErrorPoint;
+  std::string text = "the outer surface may be more than 1 mm off on " +
+    Rounded(implant.DoubtfulArea / 100) + " of " + Rounded(implant.OuterArea / 100) +
+    " cm^2. The band in which 95 % of errors are expected is widest at " + Name(worst) + ": +-" +
+    Rounded(implant.LargestError / lacuna::TrustedError) + " mm, " + Rounded(distanceOf(worst), 1) +
+    " mm away from sound bone";
+  if (distanceOf(plane.Reflect(worst)) > Seen)
+  {
+    text += "; the bone of the other side is missing there, too";
+  }
+  return text + ". Look at PredictedError";
+}
+
 void AddArray(vtkPolyData* output, const char* name, const std::vector<double>& values)
 {
   vtkNew<vtkDoubleArray> array;
@@ -510,12 +540,9 @@ int vtkLacunaSkullImplant::RequestData(
         << "the hole has only " << Rounded(holes.GetArea(chosen) / 100)
         << " cm^2: it may be thin bone that this Level does not show. Look at it in the CT");
     }
-    if (implant.LargestError > MostError)
+    if (implant.DoubtfulArea > 0)
     {
-      vtkWarningMacro(<< "the predicted error is more than " << MostError << " mm: up to "
-                      << Rounded(implant.LargestError) << " mm at "
-                      << Name(implant.LargestErrorPoint)
-                      << ", where little sound bone tells of the shape. Look at PredictedError");
+      vtkWarningMacro(<< GetDoubts(implant, rays, shape.GetPlane()));
     }
     if (implant.LeastTaper < 0)
     {

@@ -614,6 +614,7 @@ private:
         implant.OuterArea += area;
         for (const std::int32_t corner : triangle)
         {
+          implant.DoubtfulArea += implant.Errors[corner] > TrustedError ? area / 3 : 0;
           square += area / 3 * implant.Errors[corner] * implant.Errors[corner];
         }
       }

@@ -32,6 +32,9 @@ enum class SkullImplantFace : unsigned char
   Edge
 };
 
+/// Standard error, mm, above which 95 % of errors are not within 1 mm.
+constexpr double TrustedError = 1 / 1.959963984540054;
+
 /// A closed, oriented triangle mesh and what was measured on it.
 struct SkullImplant
 {
@@ -50,6 +53,7 @@ struct SkullImplant
   double ErrorRMS = 0;
   double LargestError = 0;
   Vec3 LargestErrorPoint{ 0, 0, 0 };
+  double DoubtfulArea = 0; ///< mm^2 of the outer surface where TrustedError is exceeded
   /// Unit, the way in which it is put in, and the least angle between it and the walls, degrees: where it is
   /// negative bone stands in the way.
   Vec3 InsertionDirection{ 0, 0, 0 };
