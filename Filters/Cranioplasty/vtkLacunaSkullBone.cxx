@@ -3,6 +3,7 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaSkullBridge.h"
 #include "lacunaVector.h"
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -17,6 +18,7 @@
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
 #include "vtkLacunaVolumeDirection.h"
+#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -302,31 +304,40 @@ void TakeAway(Kinds& kinds, vtkImageData* image, vtkPolyData* surface)
   }
 }
 
-// Lowers what was removed and its halo; returns the number of removed voxels.
+// How far the kept bone is above the level on average.
 template <class T>
-vtkIdType Lower(T* values, const Kinds& kinds, double level)
+double GetContrast(const T* values, const Kinds& kinds, double level)
 {
   double sum = 0;
   vtkIdType kept = 0;
+  for (std::size_t p = 0; p < kinds.Of.size(); ++p)
+  {
+    if (kinds.Of[p] == Kept && std::isfinite(static_cast<double>(values[p])))
+    {
+      sum += static_cast<double>(values[p]) - level;
+      ++kept;
+    }
+  }
+  return kept > 0 ? sum / static_cast<double>(kept) : 0;
+}
+
+// Lowers what was removed and its halo; returns the number of removed voxels.
+template <class T>
+vtkIdType Lower(T* values, const Kinds& kinds, double level, double contrast)
+{
   vtkIdType removed = 0;
   const auto count = static_cast<vtkIdType>(kinds.Of.size());
   T lowest = std::numeric_limits<T>::max();
   for (vtkIdType p = 0; p < count; ++p)
   {
     lowest = std::min(lowest, values[p]); // a NaN is never less
-    const bool isFinite = std::isfinite(static_cast<double>(values[p]));
-    if (kinds.Of[p] == Kept && isFinite)
-    {
-      sum += static_cast<double>(values[p]) - level;
-      ++kept;
-    }
     removed += kinds.Of[p] == Removed;
   }
   if (removed == 0)
   {
     return 0;
   }
-  const double wanted = level - (kept > 0 ? sum / static_cast<double>(kept) : 0);
+  const double wanted = level - contrast;
   const auto least = static_cast<double>(std::numeric_limits<T>::lowest());
   T value = static_cast<T>(
     std::max(std::numeric_limits<T>::is_integer ? std::floor(wanted) : wanted, least));
@@ -347,6 +358,48 @@ vtkIdType Lower(T* values, const Kinds& kinds, double level)
     }
   }
   return removed;
+}
+
+// Voxels on an image's grid.
+lacuna::VoxelVolume GetVolume(vtkImageData* image, const void* voxels, lacuna::ScalarType type)
+{
+  lacuna::VoxelVolume volume;
+  volume.Voxels = voxels;
+  volume.Type = type;
+  image->GetDimensions(volume.Size.data());
+  const int* extent = image->GetExtent();
+  volume.IndexToWorld = lacuna::Matrix4(image->GetIndexToPhysicalMatrix()->GetData()) *
+    lacuna::Matrix4::Translation({ 1.0 * extent[0], 1.0 * extent[2], 1.0 * extent[4] });
+  return volume;
+}
+
+// Makes small holes bone; returns the number of voxels that became bone.
+template <class T>
+vtkIdType Bridge(T* values, const lacuna::VoxelVolume& volume, double level, double diameter,
+  double contrast, lacuna::Execution& execution)
+{
+  // Linear over the depth, so that the surface at the level is where the depth is 0.
+  double ramp = 0; // mm
+  for (int a = 0; a < 3; ++a)
+  {
+    ramp = std::hypot(ramp, Norm(volume.IndexToWorld.Column(a)));
+  }
+  vtkIdType made = 0;
+  for (const lacuna::BridgedVoxel& voxel : lacuna::BridgeHoles(volume, level, diameter, execution))
+  {
+    const double wanted = level + contrast * std::clamp(voxel.Depth / ramp, -1.0, 1.0);
+    const double most = static_cast<double>(std::numeric_limits<T>::max());
+    const T value = static_cast<T>(
+      std::numeric_limits<T>::is_integer ? std::min(std::floor(wanted), most) : wanted);
+    T& old = values[voxel.Index];
+    // Without contrast, as in a mask of bone, nothing beside the bone gets the level.
+    if (value > old && (voxel.Depth >= 0 || static_cast<double>(value) < level))
+    {
+      made += !(static_cast<double>(old) >= level) && static_cast<double>(value) >= level;
+      old = value;
+    }
+  }
+  return made;
 }
 }
 
@@ -430,6 +483,11 @@ int vtkLacunaSkullBone::RequestData(
       {
         throw std::runtime_error("Level must be a finite number");
       }
+      if (!(this->BridgeDiameter >= 0 && this->BridgeDiameter <= MostBridge))
+      {
+        throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
+          " mm; it must be between 0 and 20");
+      }
       vtkLacunaVolumeDirection::Check(input);
       vtkDataArray* scalars = input->GetPointData()->GetScalars();
       if (!scalars || scalars->GetNumberOfComponents() != 1)
@@ -478,14 +536,26 @@ int vtkLacunaSkullBone::RequestData(
           throw std::runtime_error("no bone is left outside of Exclude; make its surfaces smaller");
         }
       }
-      execution.SetStage(0, 0.8);
+      const double end = this->BridgeDiameter > 0 ? 0.5 : 1; // of all without bridges
+      execution.SetStage(0, 0.8 * end);
       ChooseBone(kinds, input->GetSpacing(), execution);
-      execution.SetStage(0.8, 1);
+      execution.SetStage(0.8 * end, end);
       MarkHalo(kinds);
       execution.Report(0.5);
-      const vtkIdType removed = lacuna::DispatchScalarType(type,
-        [&](auto zero) {
-          return Lower(static_cast<decltype(zero)*>(bone->GetVoidPointer(0)), kinds, this->Level);
+      vtkIdType removed = 0;
+      vtkIdType made = 0;
+      lacuna::DispatchScalarType(type,
+        [&](auto zero)
+        {
+          auto* values = static_cast<decltype(zero)*>(bone->GetVoidPointer(0));
+          const double contrast = GetContrast(values, kinds, this->Level);
+          removed = Lower(values, kinds, this->Level, contrast);
+          if (this->BridgeDiameter > 0)
+          {
+            execution.SetStage(end, 1);
+            made = Bridge(values, GetVolume(input, values, type), this->Level, this->BridgeDiameter,
+              contrast, execution);
+          }
         });
 
       vtkImageData* output = vtkImageData::GetData(outputs);
@@ -496,6 +566,8 @@ int vtkLacunaSkullBone::RequestData(
       vtkLacunaFieldData::Set(output, "RemovedVolume",
         { static_cast<double>(removed) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 },
         1);
+      vtkLacunaFieldData::Set(output, "BridgedVolume",
+        { static_cast<double>(made) * std::abs(spacing[0] * spacing[1] * spacing[2]) / 1000 }, 1);
       int asked[6];
       outputs->GetInformationObject(0)->Get(SDDP::UPDATE_EXTENT(), asked);
       output->Crop(asked);
@@ -504,8 +576,11 @@ int vtkLacunaSkullBone::RequestData(
       {
         from.push_back(exclude);
       }
-      vtkLacunaProvenance::Record(
-        output, this, from, lacuna::ParameterText().Add("Level", this->Level).Get());
+      vtkLacunaProvenance::Record(output, this, from,
+        lacuna::ParameterText()
+          .Add("Level", this->Level)
+          .Add("BridgeDiameter", this->BridgeDiameter)
+          .Get());
     });
 }
 
@@ -514,4 +589,5 @@ void vtkLacunaSkullBone::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Level: " << this->Level << "\n";
+  os << indent << "BridgeDiameter: " << this->BridgeDiameter << "\n";
 }

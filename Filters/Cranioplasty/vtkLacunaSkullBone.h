@@ -13,11 +13,16 @@
  * Output: the input's grid and arrays. Voxels taken away become at most as far below Level as kept bone is
  * above it on average. So do those within two voxels of them, so that interpolation finds no edge there.
  * No other voxel changes, nor does any within two voxels of kept bone that was not taken away itself.
+ *
+ * With BridgeDiameter, bone then closes the holes of the vault into which no circle of this diameter fits, between
+ * the tables of the bone around them (lacunaSkullBridge.h). Voxels get brighter there, never darker: by depth, to at
+ * most as far above Level as kept bone is on average.
  * Field data: that of the input, and
  * | array         | components | meaning                                                    |
  * |---------------|------------|------------------------------------------------------------|
  * | BoneLevel     | 1          | Level                                                      |
  * | RemovedVolume | 1          | of the voxels at or above Level that were taken away, ml   |
+ * | BridgedVolume | 1          | of the voxels below Level that were made bone, ml          |
  */
 #ifndef vtkLacunaSkullBone_h
 #define vtkLacunaSkullBone_h
@@ -36,13 +41,20 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkLacunaKeepTimeAtStops();
 
-  static constexpr double Gap = 3;       ///< mm between the middles of voxels
-  static constexpr double SmallPart = 1; ///< ml
+  static constexpr double Gap = 3;         ///< mm between the middles of voxels
+  static constexpr double SmallPart = 1;   ///< ml
+  static constexpr double MostBridge = 20; ///< mm
 
   ///@{
   /// Bone is at or above it, in the input's grey levels. Default 300 (Hounsfield units).
   vtkSetMacro(Level, double);
   vtkGetMacro(Level, double);
+  ///@}
+
+  ///@{
+  /// Holes of the vault that are narrower are closed, mm: 0 (none, the default) to 20.
+  vtkSetMacro(BridgeDiameter, double);
+  vtkGetMacro(BridgeDiameter, double);
   ///@}
 
   /// Twice the level that a panel proposes for the input as it is now: 300 in Hounsfield units.
@@ -65,6 +77,7 @@ private:
   void operator=(const vtkLacunaSkullBone&) = delete;
 
   double Level = 300;
+  double BridgeDiameter = 0;
   std::array<double, 2> ProposedLevelRange{ 300, 300 };
 };
 #endif

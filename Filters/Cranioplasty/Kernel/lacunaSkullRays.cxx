@@ -160,60 +160,6 @@ int GetBand(int count, double angle)
   return static_cast<int>(std::ceil(0.5 * count * angle)) + 1;
 }
 
-// For each direction those within an angle, itself not.
-std::vector<std::vector<int>> FindNeighbors(const std::vector<Vec3>& directions, double angle)
-{
-  const auto n = static_cast<int>(directions.size());
-  const double cosine = std::cos(angle);
-  const int band = GetBand(n, angle);
-  std::vector<std::vector<int>> neighbors(n);
-  for (int i = 0; i < n; ++i)
-  {
-    for (int j = std::max(0, i - band); j < std::min(n, i + band + 1); ++j)
-    {
-      if (j != i && Dot(directions[i], directions[j]) > cosine)
-      {
-        neighbors[i].push_back(j);
-      }
-    }
-  }
-  return neighbors;
-}
-
-// Connected rays of which all are chosen, the most first.
-template <class Chosen>
-std::vector<std::vector<int>> FindParts(
-  const std::vector<std::vector<int>>& neighbors, const Chosen& chosen)
-{
-  std::vector<std::vector<int>> parts;
-  std::vector<bool> seen(neighbors.size(), false);
-  for (std::size_t start = 0; start < neighbors.size(); ++start)
-  {
-    if (seen[start] || !chosen(static_cast<int>(start)))
-    {
-      continue;
-    }
-    std::vector<int> part{ static_cast<int>(start) };
-    seen[start] = true;
-    for (std::size_t k = 0; k < part.size(); ++k)
-    {
-      for (const int other : neighbors[part[k]])
-      {
-        if (!seen[other] && chosen(other))
-        {
-          seen[other] = true;
-          part.push_back(other);
-        }
-      }
-    }
-    std::sort(part.begin(), part.end());
-    parts.push_back(std::move(part));
-  }
-  std::stable_sort(
-    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  return parts;
-}
-
 // Of the sphere |x|^2 = 2 middle . x + rest through points, by least squares; x from a centre amid them.
 Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points)
 {
@@ -361,6 +307,60 @@ SkullRays Follow(const VoxelVolume& volume, double level, const Vec3& center, do
   }
   return rays;
 }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::vector<int>> FindNeighbors(const std::vector<Vec3>& directions, double angle)
+{
+  const auto n = static_cast<int>(directions.size());
+  const double cosine = std::cos(angle);
+  const int band = GetBand(n, angle);
+  std::vector<std::vector<int>> neighbors(n);
+  for (int i = 0; i < n; ++i)
+  {
+    for (int j = i + 1; j < std::min(n, i + band + 1); ++j)
+    {
+      if (Dot(directions[i], directions[j]) > cosine)
+      {
+        neighbors[i].push_back(j);
+        neighbors[j].push_back(i); // all lists are in order
+      }
+    }
+  }
+  return neighbors;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::vector<int>> FindParts(
+  const std::vector<std::vector<int>>& neighbors, const std::function<bool(int)>& chosen)
+{
+  std::vector<std::vector<int>> parts;
+  std::vector<bool> seen(neighbors.size(), false);
+  for (std::size_t start = 0; start < neighbors.size(); ++start)
+  {
+    if (seen[start] || !chosen(static_cast<int>(start)))
+    {
+      continue;
+    }
+    std::vector<int> part{ static_cast<int>(start) };
+    seen[start] = true;
+    for (std::size_t k = 0; k < part.size(); ++k)
+    {
+      for (const int other : neighbors[part[k]])
+      {
+        if (!seen[other] && chosen(other))
+        {
+          seen[other] = true;
+          part.push_back(other);
+        }
+      }
+    }
+    std::sort(part.begin(), part.end());
+    parts.push_back(std::move(part));
+  }
+  std::stable_sort(
+    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return parts;
 }
 
 //------------------------------------------------------------------------------

@@ -11,6 +11,7 @@
 #include "lacunaVoxelVolume.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace lacuna
@@ -60,6 +61,13 @@ struct RaySegment
 /// volume does not count; infinity when From is outside.
 std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& center,
   const std::vector<RaySegment>& segments, Execution& execution);
+
+/// For each direction of SkullRays those within an angle (radians), itself not.
+std::vector<std::vector<int>> FindNeighbors(const std::vector<Vec3>& directions, double angle);
+
+/// Connected rays that are all chosen: parts, the most rays first. neighbors: of FindNeighbors.
+std::vector<std::vector<int>> FindParts(
+  const std::vector<std::vector<int>>& neighbors, const std::function<bool(int)>& chosen);
 
 /// The sound rays without those at rounded edges.
 SoundBone GetSoundBone(const SkullRays& rays);

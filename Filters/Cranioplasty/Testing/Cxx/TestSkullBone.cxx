@@ -4,6 +4,7 @@
 #include "lacunaCheck.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
+#include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSkullBone.h"
@@ -11,6 +12,7 @@
 #include "vtkNew.h"
 #include "vtkPlaneSource.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkSphereSource.h"
 
@@ -18,6 +20,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -257,6 +260,155 @@ void TestExclude()
   LACUNA_CHECK(capped > 20);
 }
 
+// A skull of two ellipsoids in a turned, anisotropic grid, not symmetric: a burr hole, a crack, a pinhole, a large
+// hole, and no base.
+struct Vault
+{
+  static constexpr double Edges[3] = { 1.1, 1.4, 1.8 };
+  static constexpr int Count[3] = { 148, 140, 84 };
+  static constexpr double Middle[3] = { 80, 97, 58 };
+  static constexpr double Burr[3] = { 0.5, -0.4, 0.768 };
+  static constexpr double Large[3] = { -0.6, 0.6, 0.529 };
+
+  // Of the direction from the middle.
+  static double Outer(const double d[3])
+  {
+    return 1 / std::hypot(d[0] / 71, d[1] / 88, d[2] / 78) + 2 * d[0] * d[2];
+  }
+  static double Inner(const double d[3]) { return Outer(d) - 5 - d[1]; }
+  // mm along the sphere of the radius
+  static double Distance(const double d[3], const double hole[3], double radius)
+  {
+    const double norm = std::hypot(hole[0], hole[1], hole[2]);
+    return radius *
+      std::acos(std::min((d[0] * hole[0] + d[1] * hole[1] + d[2] * hole[2]) / norm, 1.0));
+  }
+  // How deep a voxel is within the whole skull, and how far from the nearest small hole and from the large one, mm.
+  struct Place
+  {
+    double Depth;
+    double Small;
+    double Large;
+  };
+  static Place At(double i, double j, double k)
+  {
+    const double x[3] = { i * Edges[0] - Middle[0], j * Edges[1] - Middle[1],
+      k * Edges[2] - Middle[2] };
+    const double r = std::hypot(x[0], x[1], x[2]);
+    if (r < 1)
+    {
+      return { -50, 50, 50 };
+    }
+    const double d[3] = { x[0] / r, x[1] / r, x[2] / r };
+    constexpr double pin[3] = { 0, 0.9, 0.44 };
+    const double crack =
+      std::max(std::abs(r * (d[1] + 0.2)) - 1.2, Distance(d, Large, r) * -1 + 70);
+    const double cracked = std::max(crack, Distance(d, Burr, r) - 60);
+    return { std::min({ Outer(d) - r, r - Inner(d), x[2] + 30 }),
+      std::min({ Distance(d, Burr, r) - 6, Distance(d, pin, r) - 1.1, cracked }),
+      Distance(d, Large, r) - 30 };
+  }
+  static vtkSmartPointer<vtkImageData> Make()
+  {
+    auto head = vtkSmartPointer<vtkImageData>::New();
+    head->SetExtent(4, Count[0] + 3, -7, Count[1] - 8, 0, Count[2] - 1);
+    head->SetSpacing(Edges);
+    head->SetOrigin(30, -20, 11);
+    head->SetDirectionMatrix(0, -0.8, 0.6, 1, 0, 0, 0, 0.6, 0.8);
+    head->AllocateScalars(VTK_SHORT, 1);
+    vtkIdType p = 0;
+    for (int k = 0; k < Count[2]; ++k)
+    {
+      for (int j = 0; j < Count[1]; ++j)
+      {
+        for (int i = 0; i < Count[0]; ++i, ++p)
+        {
+          const Place at = At(i, j, k);
+          const double depth = std::min({ at.Depth, at.Small, at.Large });
+          head->GetPointData()->GetScalars()->SetComponent(
+            p, 0, std::round(std::clamp(Level + 300 * depth, 40.0, 1100.0)));
+        }
+      }
+    }
+    return head;
+  }
+};
+
+// The isosurface near the small holes is that of a skull without them.
+void TestBridge()
+{
+  const auto head = Vault::Make();
+  vtkNew<vtkLacunaSkullBone> bone;
+  bone->SetInputData(head);
+  bone->Update();
+  const auto before = GetValues(bone->GetOutput());
+  LACUNA_CHECK(before == GetValues(head));
+  LACUNA_CHECK(GetField(bone->GetOutput(), "BridgedVolume") == 0);
+  bone->SetBridgeDiameter(13);
+  bone->Update();
+  const auto after = GetValues(bone->GetOutput());
+  const double edge = *std::max_element(Vault::Edges, Vault::Edges + 3);
+  int made = 0;
+  int open = 0;    // where there must be bone
+  int thick = 0;   // where there must be none
+  int changed = 0; // far from the small holes
+  int darker = 0;
+  std::size_t p = 0;
+  for (int k = 0; k < Vault::Count[2]; ++k)
+  {
+    for (int j = 0; j < Vault::Count[1]; ++j)
+    {
+      for (int i = 0; i < Vault::Count[0]; ++i, ++p)
+      {
+        const Vault::Place at = Vault::At(i, j, k);
+        made += before[p] < Level && after[p] >= Level;
+        darker += after[p] < before[p];
+        changed += after[p] != before[p] && at.Small > 4 * edge;
+        thick += after[p] >= Level && before[p] < Level && at.Depth < -0.5 * edge;
+        open += at.Small < 2 && at.Depth > 0.5 * edge && after[p] < Level;
+      }
+    }
+  }
+  LACUNA_CHECK(made > 500);
+  LACUNA_CHECK(open == 0);
+  LACUNA_CHECK(thick == 0);
+  LACUNA_CHECK(changed == 0);
+  LACUNA_CHECK(darker == 0);
+  LACUNA_CHECK_NEAR(GetField(bone->GetOutput(), "BridgedVolume"),
+    made * Vault::Edges[0] * Vault::Edges[1] * Vault::Edges[2] / 1000, 1e-9);
+  // The surface near the middle of the burr hole, smooth to a fraction of a voxel.
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(bone->GetOutput());
+  contour->SetValue(0, Level);
+  contour->ComputeScalarsOff();
+  contour->ComputeNormalsOff();
+  contour->Update();
+  int surface = 0;
+  double farthest = 0;
+  for (vtkIdType n = 0; n < contour->GetOutput()->GetNumberOfPoints(); ++n)
+  {
+    double x[3];
+    double index[3];
+    contour->GetOutput()->GetPoint(n, x);
+    head->TransformPhysicalPointToContinuousIndex(x, index);
+    const Vault::Place at = Vault::At(index[0] - 4, index[1] + 7, index[2]);
+    if (at.Small < 2 && at.Large > 10 && at.Depth > -10 && at.Depth < 10)
+    {
+      ++surface;
+      farthest = std::max(farthest, std::abs(at.Depth));
+    }
+  }
+  LACUNA_CHECK(surface > 200);
+  LACUNA_CHECK(farthest < 0.5);
+  std::cout << made << " voxels made, " << surface << " points, " << farthest << " mm" << std::endl;
+  // a burr hole of 12 mm is too wide for 10, a crack is not
+  bone->SetBridgeDiameter(10);
+  bone->Update();
+  const double less = GetField(bone->GetOutput(), "BridgedVolume");
+  LACUNA_CHECK(
+    less > 0.1 && less < made * Vault::Edges[0] * Vault::Edges[1] * Vault::Edges[2] / 1000 - 0.5);
+}
+
 void CheckError(const std::function<void(vtkLacunaSkullBone*)>& set, const std::string& text)
 {
   vtkNew<vtkLacunaSkullBone> bone;
@@ -277,6 +429,10 @@ void TestErrors()
 {
   CheckError([](auto* f) { f->SetLevel(1500); }, "no voxel is at or above Level, 1500");
   CheckError([](auto* f) { f->SetLevel(std::nan("")); }, "finite");
+  CheckError([](auto* f) { f->SetBridgeDiameter(20.5); }, "BridgeDiameter is 20.5 mm");
+  CheckError([](auto* f) { f->SetBridgeDiameter(-1); }, "between 0 and 20");
+  CheckError([](auto* f) { f->SetBridgeDiameter(std::nan("")); }, "between 0 and 20");
+  CheckError([](auto* f) { f->SetBridgeDiameter(5); }, "smooth vault"); // a head of 48 mm
   CheckError(
     [](auto* f)
     {
@@ -311,6 +467,7 @@ int TestSkullBone(int, char*[])
   TestParts(VTK_SHORT, false);
   TestParts(VTK_FLOAT, true);
   TestExclude();
+  TestBridge();
   TestErrors();
   return lacunaCheck::Result();
 }
