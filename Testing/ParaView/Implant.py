@@ -9,13 +9,15 @@ import lacuna.plugin
 
 lacuna.plugin.load()
 import numpy as np
-from lacuna import implant
+from lacuna import implant, implant_report
 from lacuna.data import fetch
 from lacuna_test import output
 from paraview.simple import Delete, GetSources, SkullPhantom, XMLPolyDataReader
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkMassProperties
+from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkIOGeometry import vtkSTLReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
@@ -99,8 +101,61 @@ for word in ("Doe", "Jane", home):
     for name in [os.path.join(report, "index.html"), stl + ".json"] + glob.glob(os.path.join(report, "*.png")):
         with open(name, "rb") as file:
             assert word.encode() not in file.read(), (word, name)
+# the phantom's sides are alike within 0.6 mm, and the level adds some tenths on both sides
+assert abs(printed_number(r"deviation from the mirrored other side, mean</td><td>([-+.\d]+) mm", page)) < 0.7, page
+assert printed_number(r"the same, RMS</td><td>([.\d]+) mm", page) < 0.9, page
 for proxy in list(GetSources().values()):
     Delete(proxy)
+
+# How far an implant is from the mirrored other side: a head in a turned, anisotropic grid, whose right side is a sphere of 80 mm and whose left
+# one is wider. The implant on the left has a radius of 80.7 mm below, of 81.5 mm above, and its uppermost part has no bone on the other side.
+turn = np.array([[0.0, 0.8, -0.6], [1, 0, 0], [0, 0.6, 0.8]])  # its columns are the grid's axes
+origin, plane = np.array([5.0, -7, 11]), np.array([0.6, 0.8, 0])
+spacing, size = np.array([1.5, 1.9, 2.3]), np.array([130, 104, 84])
+corner = origin - turn @ (spacing * (size - 1) / 2)
+k, j, i = np.meshgrid(*(np.arange(n) for n in size[::-1]), indexing="ij")
+x = np.stack([i, j, k], axis=-1) * spacing @ turn.T + corner - origin
+left, up = x @ plane, x[..., 2]
+r = np.linalg.norm(x, axis=-1)
+depth = np.minimum(np.where(left > 0, 84, 80) - r, r - 74)
+depth[(left < 0) & (up > 40)] = -3
+head = vtkImageData()
+head.SetDimensions(*map(int, size))
+head.SetSpacing(*spacing)
+head.SetOrigin(*corner)
+head.SetDirectionMatrix(*turn.ravel())
+grey = numpy_to_vtk((300 + 100 * depth).ravel(), deep=True)
+grey.SetName("CT")
+head.GetPointData().SetScalars(grey)
+ball = vtkSphereSource()
+ball.SetThetaResolution(180)
+ball.SetPhiResolution(180)
+ball.Update()
+solid = ball.GetOutput()
+unit = vtk_to_numpy(solid.GetPoints().GetData()).astype(float)
+unit /= np.linalg.norm(unit, axis=1)[:, None]
+points = vtkPoints()
+points.SetDataTypeToDouble()
+points.SetData(numpy_to_vtk(origin + unit * np.where(unit[:, 2] > 0, 81.5, 80.7)[:, None], deep=True))
+solid.SetPoints(points)
+middles = unit[vtk_to_numpy(solid.GetPolys().GetConnectivityArray()).reshape(-1, 3)].mean(axis=1)
+part = middles @ plane > 0.4
+height = middles[:, 2]
+far = (np.abs(height) > 0.03) & (np.abs(height - 0.5) > 0.08)  # from the implant's step, and from the bone's edge
+face = numpy_to_vtk(np.where(part & (height > -0.3) & (height < 0.7) & far, 0, 2), deep=True)
+face.SetName("ImplantFace")
+solid.GetCellData().AddArray(face)
+off = implant_report.mirror_deviation(head, 300, solid, origin + [0.8, -0.6, 3], 3 * plane)
+corners = unit[vtk_to_numpy(solid.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) * (vtk_to_numpy(face) == 0)
+upper, lower, bare = (areas[which].sum() for which in ((height > 0) & (height < 0.5), height < 0, height > 0.5))
+mean, rms = (((0.7**power * lower + 1.5**power * upper) / (upper + lower)) ** (1 / power) for power in (1, 2))
+print(off, mean, rms)
+assert abs(off.mean - mean) < 0.05 and abs(off.rms - rms) < 0.05 and abs(off.largest - 1.5) < 0.15, (off, mean, rms)
+assert off.place[2] > origin[2] and (off.place - origin) @ plane > 0  # where the implant is, not mirrored
+assert abs(off.covered - (upper + lower) / (upper + lower + bare)) < 0.02, off.covered
+low = implant_report.mirror_deviation(head, 300, solid, origin + plane, plane)  # the plane 1 mm to the left: the other side seems 2 mm farther out
+assert off.mean - 2 < low.mean < off.mean - 1, low.mean
 
 # A point near the hole gives the same implant, in another format
 vtp = os.path.join(home, "implant.vtp")

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A page with pictures, numbers and warnings of an implant of lacuna.implant: index.html and its PNGs in one folder."""
+import collections
 import html
 import math
 import os
 
 import numpy as np
 import paraview.simple as pv
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersCore import vtkProbeFilter
 
 import lacuna
 from lacuna import coordinates, implant, pictures, views
@@ -18,6 +22,8 @@ from lacuna.solids import NOTICE
 IMPLANT = (0.25, 0.55, 0.78)
 CHOSEN, OTHER = (0.80, 0.10, 0.10), (0.90, 0.55, 0.10)  # outlines of holes
 STEP = 0.8  # mm between samples of the bone that is shown, at least
+REACH, STEPS = 10.0, 41  # mm to either side in which the other side of the head is looked for, and samples there
+LEAST_MIRRORED = 0.5  # of the outer surface, for which a deviation from the mirrored side means something
 MATERIALS = (("PEEK", 1.3), ("PMMA", 1.18), ("titanium", 4.5))  # g/cm³
 # file name, title if the CT is known to be the patient's, else as the axes say, direction
 SIDES = (("front", "From the front", "Along +y", (0, 1, 0)), ("back", "From behind", "Along −y", (0, -1, 0)),
@@ -68,6 +74,55 @@ def _color(display, view, array, title, bounds, preset):
     bar.HorizontalTitle, bar.ScalarBarLength = 1, 0.4
     bar.TitleBold = bar.LabelBold = 1
     bar.WindowLocation = "Upper Right Corner"
+
+
+Deviation = collections.namedtuple("Deviation", "mean rms largest place covered")  # mm, mm, mm, x y z in mm, part of the area
+
+
+def mirror_deviation(bone, level, implant, origin, normal):
+    """How far an implant's outer surface is from the bone of the head's other side, mirrored: a Deviation.
+
+    bone: vtkImageData in which only bone is at or above level. implant: vtkPolyData of Skull Implant. origin, normal: of the plane of
+    symmetry, mm. Distances are along the implant's normal, positive where the implant is farther out, by the area of its triangles; no
+    bone within REACH counts as none. mean, rms, largest and place are None where covered is 0.
+    """
+    points = vtk_to_numpy(implant.GetPoints().GetData()).astype(float)
+    corners = vtk_to_numpy(implant.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    corners = corners[vtk_to_numpy(implant.GetCellData().GetArray("ImplantFace")) == 0]
+    a, b, c = (points[corners[:, k]] for k in range(3))
+    middles, normals = (a + b + c) / 3, np.cross(b - a, c - a)
+    areas = np.linalg.norm(normals, axis=1) / 2
+    middles, normals, areas = middles[areas > 0], normals[areas > 0], areas[areas > 0]
+    normals /= 2 * areas[:, None]
+    origin, normal = np.asarray(origin, float), np.asarray(normal, float) / np.linalg.norm(normal)
+    feet = middles - 2 * np.outer((middles - origin) @ normal, normal)
+    ways = normals - 2 * np.outer(normals @ normal, normal)
+    heights = np.linspace(REACH, -REACH, STEPS)  # from outside
+    samples = (feet[:, None, :] + heights[None, :, None] * ways[:, None, :]).reshape(-1, 3)
+    places = vtkPoints()
+    places.SetData(numpy_to_vtk(samples, deep=True))
+    where = vtkPolyData()
+    where.SetPoints(places)
+    probe = vtkProbeFilter()
+    probe.SetInputData(where)
+    probe.SetSourceData(bone)
+    probe.Update()
+    found = probe.GetOutput().GetPointData()
+    values = vtk_to_numpy(found.GetArray(bone.GetPointData().GetScalars().GetName())).astype(float)
+    values[vtk_to_numpy(found.GetArray(probe.GetValidPointMaskArrayName())) == 0] = -np.inf  # outside of the volume
+    values = values.reshape(-1, STEPS)
+    inside = values >= level
+    first = inside.argmax(axis=1)  # 0: none, or bone that goes on outside of REACH
+    rows = np.flatnonzero((first > 0) & np.isfinite(values[np.arange(len(first)), first - 1]))
+    at = first[rows]
+    above, below = values[rows, at], values[rows, at - 1]
+    off = -(heights[at] + (heights[0] - heights[1]) * (above - level) / (above - below))
+    weights = areas[rows] / areas[rows].sum()
+    if len(rows) == 0:
+        return Deviation(None, None, None, None, 0.0)
+    worst = np.abs(off).argmax()
+    return Deviation(float(weights @ off), float(np.sqrt(weights @ off**2)), float(off[worst]), middles[rows[worst]],
+                     float(areas[rows].sum() / areas.sum()))
 
 
 def write(folder, made, record, ct_name, warnings):
@@ -185,10 +240,27 @@ def _rows(made, numbers):
              ("clearance of the edge", f"{made.implant.EdgeClearance:g} mm"),
              ("predicted error of the outer surface, RMS", f"{numbers['PredictedErrorRMS']:.2f} mm"),
              ("predicted error, largest", f"{numbers['PredictedErrorMaximum']:.2f} mm at {place(numbers['PredictedErrorMaximumPoint'])}"),
+             *_mirror_rows(made, place),
              ("insertion direction", text),
              ("least taper of the walls", f"{numbers['LeastTaper']:.1f}° (below 0: bone is in the way)"),
              ("bone level", f"{made.bone.Level:g} HU")]
     return rows
+
+
+def _mirror_rows(made, place):
+    """Of the plane in which the whole bone is most alike: that of the implant's model fits less well where its sides hardly differ."""
+    mirror = pv.Mirror(Input=made.bone)
+    mirror.UpdatePipeline()
+    fields = fetch(mirror).GetFieldData()
+    origin, normal = (vtk_to_numpy(fields.GetArray("MirrorPlane" + name)).ravel() for name in ("Origin", "Normal"))
+    pv.Delete(mirror)
+    off = mirror_deviation(fetch(made.bone), made.bone.Level, fetch(made.implant), origin, normal)
+    if off.covered < LEAST_MIRRORED:
+        return [("deviation from the mirrored other side", f"not given: the other side has bone for only {100 * off.covered:.0f} % of the implant, "
+                                                           "as at the midline")]
+    return [("deviation from the mirrored other side, mean", f"{off.mean:+.1f} mm"), ("the same, RMS", f"{off.rms:.1f} mm"),
+            ("the same, largest", f"{off.largest:+.1f} mm at {place(off.place)}"),
+            ("part of the implant for which the other side has bone", f"{100 * off.covered:.0f} %")]
 
 
 STYLE = """
@@ -241,6 +313,8 @@ def _page(made, numbers, record, ct_name, warnings, shown):
 </table>
 <p>The predicted error is a standard error. Expect about two thirds of the surface within it, and 95 % within twice as much.
 It assumes that the missing bone was shaped like sound bone. It does not know about a tumour, a fracture that has moved, or artefacts.</p>
+<p>The deviation from the mirrored other side is positive where the implant is farther out. The sides of most heads differ by 1 to 2 mm, so it is
+no error by itself. Look for the reason where it is larger.</p>
 <h2>From six sides</h2>
 {figures(sides, "three")}
 <h2>Before anything is made</h2>
