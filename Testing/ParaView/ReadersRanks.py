@@ -6,11 +6,11 @@ Run without arguments it is the test; it runs itself in pvbatch on all ranks at 
 import os
 import resource
 import shutil
-import struct
 import sys
 
 import lacuna_test
 import numpy as np
+from ct_series_files import write_series
 
 RANKS = 1, 2, 4
 # ParaView divides images along their longest axis: here across the slices, also twice
@@ -35,37 +35,6 @@ def write_sequence(folder, separate, name="slices", rows=ROWS, columns=COLUMNS):
     for ending, content in (("mhd", header), ("raw", pixels)) if separate else (("mha", header + pixels),):
         with open(os.path.join(folder, f"{name}.{ending}"), "wb") as file:
             file.write(content)
-
-
-def element(group, number, kind, value):
-    if isinstance(value, str):
-        value = value.encode("ascii")
-        value += (b"\0" if kind == "UI" else b" ") * (len(value) % 2)
-    if kind in ("OB", "OW"):
-        return struct.pack("<HH2sHI", group, number, kind.encode("ascii"), 0, len(value)) + value
-    return struct.pack("<HH2sH", group, number, kind.encode("ascii"), len(value)) + value
-
-
-def write_series(folder):
-    """A CT series, uncompressed, 1 mm from slice to slice; slice n is n everywhere."""
-    def number(value):
-        return struct.pack("<H", value)
-    for n in range(CT_SLICES):
-        own = f"1.2.3.4.{n + 1}"
-        meta = b"".join([element(2, 1, "OB", b"\0\1"), element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2"), element(2, 3, "UI", own),
-                         element(2, 0x10, "UI", "1.2.840.10008.1.2.1"), element(2, 0x12, "UI", "1.2.3")])
-        data = b"".join([
-            element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2"), element(8, 0x18, "UI", own), element(8, 0x60, "CS", "CT"),
-            element(0x18, 0x50, "DS", "1"), element(0x18, 0x5100, "CS", "HFS"), element(0x20, 0xD, "UI", "1.2.3.5"),
-            element(0x20, 0xE, "UI", "1.2.3.6"), element(0x20, 0x13, "IS", str(n + 1)), element(0x20, 0x32, "DS", f"0\\0\\{n}"),
-            element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"), element(0x20, 0x52, "UI", "1.2.3.7"), element(0x28, 2, "US", number(1)),
-            element(0x28, 4, "CS", "MONOCHROME2"), element(0x28, 0x10, "US", number(CT_ROWS)), element(0x28, 0x11, "US", number(CT_COLUMNS)),
-            element(0x28, 0x30, "DS", "1\\1"), element(0x28, 0x100, "US", number(16)), element(0x28, 0x101, "US", number(16)),
-            element(0x28, 0x102, "US", number(15)), element(0x28, 0x103, "US", number(1)), element(0x28, 0x1052, "DS", "0"),
-            element(0x28, 0x1053, "DS", "1"), element(0x28, 0x1054, "LO", "HU"),
-            element(0x7FE0, 0x10, "OW", np.full(CT_ROWS * CT_COLUMNS, n, np.int16).tobytes())])
-        with open(os.path.join(folder, f"{n:03}.dcm"), "wb") as file:
-            file.write(bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data)
 
 
 # --- in pvbatch, on every rank for itself ---
@@ -160,7 +129,7 @@ def main():
     write_sequence(folder, True)
     write_sequence(folder, False, "tiny", 1, 2)
     write_sequence(folder, False, "large", 2000, 2400)
-    write_series(os.path.join(folder, "series"))
+    write_series(os.path.join(folder, "series"), [np.full((CT_ROWS, CT_COLUMNS), n) for n in range(CT_SLICES)])
     for ranks in RANKS:
         printed = lacuna_test.run_ranks(ranks, __file__, "in pvbatch", folder, str(ranks), options=["--symmetric"])
         assert printed.count("rank done") == ranks and "ERR|" not in printed, printed
