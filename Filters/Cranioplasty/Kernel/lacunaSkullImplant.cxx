@@ -338,8 +338,9 @@ private:
                                "free. Check the level, and that the hole is a hole");
     }
     const double nodeArea = GridSpacing * GridSpacing;
+    // where the scan ends: within an outline that was drawn, or beside the rays that surely miss bone
     const auto beyond = static_cast<double>(std::count(largest.begin(), largest.end(), Infinity));
-    if (beyond * nodeArea > ScanEnd)
+    if (beyond * nodeArea > ScanEnd || this->FindUnknownArea() > ScanEnd)
     {
       this->Implant.Warnings.push_back(
         "the scan ends within the hole: the implant ends there, too, and does not meet bone");
@@ -358,6 +359,25 @@ private:
       }
     }
     return KeepLargest(FindContours(this->Grid, this->Free, 0));
+  }
+
+  // Of the rays next to the defect that leave the scan before they come to the skull, mm^2.
+  double FindUnknownArea() const
+  {
+    const double edge = this->Rays.Spacing * this->Plane.GetScale();
+    double area = 0;
+    for (std::size_t i = 0; i < this->Rays.Kinds.size(); ++i)
+    {
+      if (this->Rays.Kinds[i] == SkullRayKind::Unknown)
+      {
+        const Vec2 p = this->Plane.ToPlane(this->Rays.Directions[i]);
+        area += std::any_of(this->Defect.begin(), this->Defect.end(),
+                  [&](const Vec2& q) { return std::hypot(p[0] - q[0], p[1] - q[1]) < 1.6 * edge; })
+          ? 0.866 * edge * edge
+          : 0;
+      }
+    }
+    return area;
   }
 
   // Linear between nodes.

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -252,6 +253,29 @@ TEST(SkullImplant, LeavesNarrowGapsOut)
   };
   EXPECT_LT(farthest(implant), farthest(whole) + 2.5 / Outer);
   EXPECT_GT(implant.LeastTaper, 0.5 * whole.LeastTaper);
+}
+
+TEST(SkullImplant, EndsWhereTheScanDoesAndSaysSo)
+{
+  SkullImplantOptions options;
+  options.TriangleSize = 2;
+  Shell shell;
+  for (const int slices : { 112, 122 }) // the hole reaches up to 59 mm
+  {
+    shell.Volume.Size[2] = slices;
+    const double highest = slices - 65;
+    const SkullImplant implant = Make(shell, options);
+    EXPECT_TRUE(IsClosed(implant));
+    ASSERT_EQ(implant.Warnings.size(), 1u);
+    EXPECT_NE(implant.Warnings[0].find("the scan ends within the hole"), std::string::npos);
+    double top = 0;
+    for (const Vec3& x : implant.Points)
+    {
+      top = std::max(top, x[2]);
+    }
+    EXPECT_LT(top, highest + 1);
+    EXPECT_GT(top, highest - 3);
+  }
 }
 
 TEST(SkullImplant, RefusesWhatCannotBe)
