@@ -120,12 +120,14 @@ void CheckSolid(vtkPolyData* implant, double angle)
   const double share = 2 * std::acos(-1.0) * (1 - std::cos(angle - 0.5 / inner));
   // voxels of 2 mm round the edges off
   LACUNA_CHECK_NEAR(volume, share * (std::pow(Radius, 3) - std::pow(inner, 3)) / 3, 0.04 * volume);
-  LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), share * Radius * Radius, 0.04 * volume);
+  const double area = share * Radius * Radius;
+  LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), area, 0.04 * area);
   LACUNA_CHECK_NEAR(GetField(implant, "Mass"), 1.3e-3 * volume, 1e-9 * volume);
   LACUNA_CHECK_NEAR(GetField(implant, "ThicknessMean"), Thickness, 0.1);
   LACUNA_CHECK(GetField(implant, "ThicknessMinimum") <= GetField(implant, "ThicknessMean"));
   LACUNA_CHECK(GetField(implant, "ThicknessMean") <= GetField(implant, "ThicknessMaximum"));
   LACUNA_CHECK(GetField(implant, "DefectArea") > GetField(implant, "OuterArea"));
+  LACUNA_CHECK(GetField(implant, "DefectArea") < 1.1 * area);
   for (const char* name : { "PredictedError", "Thickness", "ThicknessError" })
   {
     vtkDataArray* array = implant->GetPointData()->GetArray(name);
@@ -165,6 +167,7 @@ void TestChoice()
   vtkPolyData* implant = filter->GetOutput();
   LACUNA_CHECK(AngleOf(implant, Large) < 0.02);
   CheckSolid(implant, LargeAngle);
+  LACUNA_CHECK(GetField(implant, "ChosenDefect") == 1);
   // towards the middle of the head
   double way[3];
   for (int c = 0; c < 3; ++c)
@@ -192,6 +195,7 @@ void TestChoice()
   filter->Update();
   LACUNA_CHECK(AngleOf(filter->GetOutput(), Small) < 0.03);
   CheckSolid(filter->GetOutput(), SmallAngle);
+  LACUNA_CHECK(GetField(filter->GetOutput(), "ChosenDefect") == 2);
 }
 
 double AreaOf(vtkPolyData* data, vtkIdType cell)
