@@ -163,17 +163,12 @@ def _run(options):
     from lacuna.solids import save_solid
     warnings = []
     _say("reading the CT")
-    folder = os.path.dirname(options.output) or "."
-    try:  # before the work, not after it
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise ValueError(f"nothing can be written into {folder}: {error.strerror}") from error
+    _check_folder(os.path.dirname(options.output) or ".")
     with _told_once(warnings):
         ct = open_volume(options.ct)
         level = _choose_level(ct, options, warnings)
-        if options.report:
-            os.makedirs(options.report, exist_ok=True)
+    if options.report:
+        _check_folder(options.report)
     _say("designing the implant")
     with _told_once(warnings):
         made = make_implant(ct, options.hole, level, options.clearance)
@@ -189,6 +184,16 @@ def _run(options):
             implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings)
         _say(f"written: {os.path.join(options.report, 'index.html')}")
     _say("Research software, not a medical device.")
+
+
+def _check_folder(folder):
+    """Makes the folder if there is none. Raises ValueError if nothing can be written into it: before the work, not after it."""
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ValueError(f"nothing can be written into {folder}: {error.strerror}") from error
 
 
 def _choose_level(ct, options, warnings):
