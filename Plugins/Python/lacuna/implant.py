@@ -34,21 +34,25 @@ Made = collections.namedtuple("Made", "bone implant defects")
 Defect = collections.namedtuple("Defect", "area center")  # mm², mm
 
 
-def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE):
+def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None):
     """Makes the pipeline from a CT (a proxy) to an implant, and updates it. Opens no file and shows nothing.
 
     hole: a point in or near the hole, x y z in the CT's patient millimetres; None takes the largest hole. level: of the bone's
-    surface in Hounsfield units. clearance: of the implant's edge from the bone in mm.
+    surface in Hounsfield units. clearance: of the implant's edge from the bone in mm. progress: is called with the part of the design
+    that is done, 0 to 1.
     Returns the proxies bone (Skull Bone), implant (Skull Implant) and defects (its second output). Raises PipelineError when a
     filter reports an error, for example when there is no hole. Nothing of the pipeline is left then.
     """
     made = []
     try:
         with raising():
-            made.append(pv.SkullBone(Input=ct, Level=level))
+            made.append(pv.SkullBone(Input=ct))
+            made[0].Level = level  # not above: ParaView takes a value that is the default for none, and sets what the data propose
             made.append(pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance))
             if hole is not None:
                 made[1].DefectChoice, made[1].Point = "Nearest to Point", list(hole)
+            if progress:
+                made[1].GetClientSideObject().AddObserver("ProgressEvent", lambda design, _: progress(design.GetProgress()))
             made[1].UpdatePipeline()
     except Exception:
         for proxy in reversed(made):
@@ -87,7 +91,7 @@ def describe(made):
     lines = [f"{count} hole{'s' if count != 1 else ''} found:"]
     for k, defect in enumerate(numbers["Defects"]):
         chosen = "  <- the implant closes this one" if k == numbers["Chosen"] else ""
-        lines.append(f"  {k + 1}: {defect.area / 100:.1f} cm², centre at {place(defect.center)}{chosen}")
+        lines.append(f"  {k + 1}: about {defect.area / 100:.1f} cm², centre at {place(defect.center)}{chosen}")
     lines.append(f"implant: {numbers['Volume'] / 1000:.2f} ml, {numbers['Mass']:.1f} g; thickness {numbers['ThicknessMinimum']:.1f} to "
                  f"{numbers['ThicknessMaximum']:.1f} mm, mean {numbers['ThicknessMean']:.1f} mm")
     lines.append(f"predicted error of the outer surface (standard error): {numbers['PredictedErrorRMS']:.2f} mm RMS; largest "
@@ -120,7 +124,8 @@ def parse_arguments(arguments):
         "expect. Research software, not a medical device.",
         epilog="Exit codes: 0 the implant is written; 1 something failed, one sentence says what; 2 the command is wrong.\n"
         "Call it as pvpython -- -m lacuna.implant ... The -- keeps ParaView from turning numbers such as -13 into --13.\n"
-        "On a computer without a screen --report needs xvfb-run -a pvpython -- -m lacuna.implant ...")
+        "On a computer without a screen --report needs a virtual one:\n"
+        "xvfb-run -a -s \"-screen 0 1280x1024x24 -noreset\" pvpython -- -m lacuna.implant ...")
     parser.add_argument("ct", metavar="CT", help="a folder with a DICOM series, a file of one, or a volume: .mha .mhd .nrrd .nhdr .nii .nii.gz .vti")
     parser.add_argument("--output", required=True, metavar="FILE",
                         help="the implant, in mm: " + " ".join(ENDINGS) + ". FILE.json beside it says where it comes from")
@@ -169,9 +174,11 @@ def _run(options):
         level = _choose_level(ct, options, warnings)
     if options.report:
         _check_folder(options.report)
+    if not coordinates.is_patient(ct):
+        warnings.append("the CT does not say how the patient lay: left and right, front and back are not known. Check the side by other means")
     _say("designing the implant")
     with _told_once(warnings):
-        made = make_implant(ct, options.hole, level, options.clearance)
+        made = make_implant(ct, options.hole, level, options.clearance, _Steps())
         lines = describe(made)
         record = save_solid(options.output, made.implant)
     warnings = list(dict.fromkeys(warnings))
@@ -184,6 +191,18 @@ def _run(options):
             implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings)
         _say(f"written: {os.path.join(options.report, 'index.html')}")
     _say("Research software, not a medical device.")
+
+
+class _Steps:
+    """Says each tenth of a work that is done."""
+
+    def __init__(self):
+        self.said = 0
+
+    def __call__(self, done):
+        if int(10 * done) > self.said:
+            self.said = int(10 * done)
+            os.write(1, f"  {10 * self.said} %\n".encode())  # print's texts are silent meanwhile, see _told_once
 
 
 def _check_folder(folder):

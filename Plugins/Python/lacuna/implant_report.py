@@ -232,6 +232,7 @@ def _rows(made, numbers):
     rows = [("hole: area", f"{chosen.area / 100:.1f} cm²"), ("hole: centre", place(chosen.center))]
     others = [f"{defect.area / 100:.1f} cm² at {place(defect.center)}" for k, defect in enumerate(numbers["Defects"]) if k != numbers["Chosen"]]
     rows += [("other holes, not closed", "; ".join(others) or "none"),
+             ("area of the hole in the outer surface", f"{numbers['DefectArea'] / 100:.1f} cm²"),
              ("outer area of the implant", f"{numbers['OuterArea'] / 100:.1f} cm²"),
              ("volume", f"{numbers['Volume'] / 1000:.2f} ml")]
     rows += [(f"mass in {name} ({density:g} g/cm³)", f"{numbers['Volume'] / 1000 * density:.1f} g") for name, density in MATERIALS]
