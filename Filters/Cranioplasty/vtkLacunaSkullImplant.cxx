@@ -53,7 +53,7 @@ namespace
 using lacuna::Vec3;
 
 constexpr double RaySpacing = 2;          // mm at 90 mm
-constexpr double Seen = 10;               // mm of a place to bone that tells of it
+constexpr double Seen = 10;               // mm, the farthest bone that shows what a place is like
 constexpr double MostDistance = 30;       // mm of Point from a hole
 constexpr double AutomaticTriangle = 1;   // mm
 constexpr double SmallHole = 400;         // mm^2, below which it may be none
@@ -107,6 +107,8 @@ lacuna::SymmetryResult FindSymmetry(
   lacuna::RequireMemory("a copy of the volume in which its symmetry is sought",
     2.0 * static_cast<double>(volume.NumberOfVoxels()));
   std::vector<std::int16_t> bone(static_cast<std::size_t>(volume.NumberOfVoxels()));
+  const lacuna::Execution::NestedStages nested(execution);
+  execution.SetStage(0, 0.05);
   lacuna::DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels)
     {
@@ -121,6 +123,7 @@ lacuna::SymmetryResult FindSymmetry(
           }
         });
     });
+  execution.SetStage(0.05, 1);
   lacuna::MaskedVolume masked;
   masked.Volume = volume;
   masked.Volume.Voxels = bone.data();
@@ -129,7 +132,11 @@ lacuna::SymmetryResult FindSymmetry(
   {
     return lacuna::FindSymmetryPlane(masked, execution);
   }
-  catch (const std::invalid_argument& error)
+  catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const std::exception& error)
   {
     throw std::runtime_error("the two sides of the skull are not found in this scan (" +
       std::string(error.what()) +
@@ -320,7 +327,7 @@ private:
   std::vector<double> Areas;
 };
 
-// Where the outer surface may be more than 1 mm off, and why.
+// How much of the outer surface is probably more than 1 mm off, where it is worst, and what is known there.
 std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRays& rays,
   const lacuna::MirrorPlane& plane)
 {
@@ -338,16 +345,17 @@ std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRa
     return least;
   };
   const Vec3& worst = implant.LargestErrorPoint;
-  std::string text = "the outer surface may be more than 1 mm off on " +
+  std::string text = "parts of the outer surface may be more than 1 mm off, about " +
     Rounded(implant.DoubtfulArea / 100) + " of " + Rounded(implant.OuterArea / 100) +
-    " cm^2. The band in which 95 % of errors are expected is widest at " + Name(worst) + ": +-" +
-    Rounded(implant.LargestError / lacuna::TrustedError) + " mm, " + Rounded(distanceOf(worst), 1) +
+    " cm^2. The least certain place is " + Name(worst) + " mm, " + Rounded(distanceOf(worst), 1) +
     " mm away from sound bone";
   if (distanceOf(plane.Reflect(worst)) > Seen)
   {
-    text += "; the bone of the other side is missing there, too";
+    text += ", where the bone of the other side is missing, too";
   }
-  return text + ". Look at PredictedError";
+  return text + ": 95 % of errors there are within " +
+    Rounded(implant.LargestError / lacuna::TrustedError) +
+    " mm. Compare the implant with the other side where PredictedError is large";
 }
 
 void AddArray(vtkPolyData* output, const char* name, const std::vector<double>& values)
@@ -465,8 +473,9 @@ int vtkLacunaSkullImplant::RequestData(
 
     execution.SetStage(0, 0.3);
     const lacuna::SymmetryResult symmetry = FindSymmetry(volume, this->Level, execution);
-    execution.SetStage(0.3, 0.35);
+    execution.SetStage(0.3, 0.32);
     const Vec3 center = FindSkullCenter(volume, this->Level, symmetry.Plane, execution);
+    execution.SetStage(0.32, 0.35);
     lacuna::SkullRays rays = TraceSkull(volume, this->Level, center, RaySpacing, execution);
     std::vector<std::vector<int>> defects;
     const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
@@ -540,7 +549,7 @@ int vtkLacunaSkullImplant::RequestData(
         << "the hole has only " << Rounded(holes.GetArea(chosen) / 100)
         << " cm^2: it may be thin bone that this Level does not show. Look at it in the CT");
     }
-    if (implant.DoubtfulArea > 0)
+    if (implant.LargestError > lacuna::TrustedError)
     {
       vtkWarningMacro(<< GetDoubts(implant, rays, shape.GetPlane()));
     }

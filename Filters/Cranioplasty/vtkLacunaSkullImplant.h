@@ -34,8 +34,8 @@
  * Output 1: vtkPolyData, triangles on the ellipsoid that fits the skull for each hole that was found; cell array
  * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
  *
- * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole; a negative taper; data of
- * which Level is the end of the range.
+ * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole; a
+ * negative taper; data of which Level is the end of the range.
  * Errors: no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
  *
  * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone

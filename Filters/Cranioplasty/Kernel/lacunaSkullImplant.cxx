@@ -234,16 +234,16 @@ public:
 
   SkullImplant Make()
   {
-    const Execution::NestedStages nested(this->Run);
-    this->Run.SetStage(0, 0.3);
+    this->Run.SetStage(0.05, 0.2);
     std::vector<Loop> hole = this->FindHole();
-    this->Run.SetStage(0.3, 0.5);
+    this->Run.SetStage(0.35, 0.4);
     std::vector<Loop> outline = this->MoveInwards(hole);
     for (Loop& loop : outline)
     {
       loop = Resample(loop, 0.5 * this->Options.TriangleSize);
     }
     this->OutlineArea = GetArea(outline);
+    this->Run.SetStage(0.4, 0.5);
     this->AddMesh(outline);
     this->Run.SetStage(0.5, 1);
     this->AddErrors();
@@ -314,6 +314,7 @@ private:
     }
     const std::vector<Vec3> directions = this->DirectionsOf(points);
     const std::vector<SkullEstimate> shape = this->Shape.PredictSurfaces(directions, this->Run);
+    this->Run.SetStage(0.2, 0.3);
     std::vector<RaySegment> segments;
     for (std::size_t k = 0; k < nodes.size(); ++k)
     {
@@ -323,6 +324,7 @@ private:
     }
     const std::vector<double> largest =
       FindLargestAlong(this->Volume, this->Rays.Center, segments, this->Run);
+    this->Run.SetStage(0.3, 0.35);
     this->Free.assign(away.size(), -1);
     this->Inner.assign(away.size(), 0);
     for (std::size_t k = 0; k < nodes.size(); ++k)
@@ -634,7 +636,8 @@ private:
         implant.OuterArea += area;
         for (const std::int32_t corner : triangle)
         {
-          implant.DoubtfulArea += implant.Errors[corner] > TrustedError ? area / 3 : 0;
+          implant.DoubtfulArea +=
+            area / 3 * std::erfc(1 / (std::sqrt(2.0) * implant.Errors[corner]));
           square += area / 3 * implant.Errors[corner] * implant.Errors[corner];
         }
       }
@@ -719,6 +722,8 @@ SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
     throw std::invalid_argument("TriangleSize is " + FormatNumber(options.TriangleSize) +
       " mm; it must be between 0.2 and 5");
   }
+  const Execution::NestedStages nested(execution);
+  execution.SetStage(0, 0.05);
   return Builder(volume, rays, defect, shape, options, execution).Make();
 }
 }

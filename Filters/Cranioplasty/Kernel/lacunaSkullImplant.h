@@ -53,7 +53,7 @@ struct SkullImplant
   double ErrorRMS = 0;
   double LargestError = 0;
   Vec3 LargestErrorPoint{ 0, 0, 0 };
-  double DoubtfulArea = 0; ///< mm^2 of the outer surface where TrustedError is exceeded
+  double DoubtfulArea = 0; ///< mm^2 of the outer surface that are expected to be more than 1 mm off
   /// Unit, the way in which it is put in, and the least angle between it and the walls, degrees: where it is
   /// negative bone stands in the way.
   Vec3 InsertionDirection{ 0, 0, 0 };

@@ -217,6 +217,13 @@ MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& varia
     }
     return there;
   };
+  const Execution::NestedStages nested(execution);
+  const auto setDone = [&](double done) // evaluations report nothing of their own
+  {
+    execution.SetStage(
+      done / static_cast<double>(steps.size()), done / static_cast<double>(steps.size()));
+  };
+  setDone(0);
   costOf(best);
   double done = 0;
   for (const double step : steps)
@@ -239,7 +246,8 @@ MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& varia
       }
     }
     costOf(from + step * FindStep(slope, curvature));
-    execution.Report(++done / static_cast<double>(steps.size()));
+    setDone(++done);
+    execution.Report(1);
   }
   const MirrorPlane plane = planeOf(best);
   likelihood.SetPlane(plane, execution);
@@ -365,7 +373,7 @@ void SkullShape::FindPlane(
   const Execution::NestedStages nested(execution);
   for (int round = 0; round < 2; ++round)
   {
-    execution.SetStage(0.5 * round, 0.5 * (round + 1));
+    execution.SetStage(0.5 * round, 0.5 * round + 0.1);
     this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
     std::unique_ptr<ShapeField> field = this->MakeField(bone, true);
     if (round > 0)
@@ -380,6 +388,7 @@ void SkullShape::FindPlane(
     ShapeLikelihood likelihood = field->MakeLikelihood(subset);
     likelihood.SetPlane(this->Plane, execution);
     field->Estimate(likelihood, round == 0 ? FirstIterations : MoreIterations);
+    execution.SetStage(0.5 * round + 0.1, 0.5 * (round + 1));
     this->Plane = RefinePlane(likelihood, field->GetVariances(), this->Plane, middle,
       field->GetPlaces().front() - bone.Center, PlaneSteps[round], execution);
     field->FindRegions(likelihood, SpreadHoles(field->GetPlaces(subset), RegionHole), this->Plane);
