@@ -9,7 +9,7 @@ For each skull and case (a name of the tool's list, or random:SEED): the tool cu
 file, with nothing marked but a point in the hole, and the tool scores it. FOLDER keeps the implants and results.csv; a later call makes only
 what is missing. FOLDER/results.md is the table. The picture shows the true error of each implant beside the predicted one.
 
-The true error is along the ray from the middle of the head, times the cosine between ray and surface, as the tool has it. band: the part
+Errors are along the ray from the middle of the head, times the cosine between ray and surface, as the tool has it. band: the part
 of the outer surface whose true error is at most 1.96 times the predicted one. ratio: RMS of the predicted error by RMS of the true one.
 Random cases that the tool calls unfair (without bone nearly everywhere) are left out. Needs SciPy.
 
@@ -72,14 +72,23 @@ def outer_surface(path):
     return surface.GetOutput()
 
 
-def true_errors(case, surface):
-    """At each point, mm, positive outwards; NaN where there was no bone."""
+def both_errors(case, surface):
+    """At each point, mm along the normal: the true one, positive outwards and NaN where there was no bone, and the predicted one."""
     points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float) - case.c
     radii = np.linalg.norm(points, axis=1)
     rays = points / radii[:, None]
     outer, _ = case.tables(rays)
     cosine = np.abs((vtk_to_numpy(surface.GetPointData().GetNormals()) * rays).sum(axis=1))
-    return (radii - outer) * cosine
+    return (radii - outer) * cosine, vtk_to_numpy(surface.GetPointData().GetArray("PredictedError")) * cosine
+
+
+def point_areas(surface):
+    """Of each point, a third of the triangles around it, mm²."""
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    a, b, c = (points[corners[:, k]] for k in range(3))
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6
+    return np.bincount(corners.ravel(), np.repeat(areas, 3), len(points))
 
 
 def measure(tool, options, skull, ct, name):
@@ -100,14 +109,14 @@ def measure(tool, options, skull, ct, name):
     score = subprocess.run([options.pvpython, options.tool, "score", ct, name, f"{start}.vtp"], capture_output=True, text=True, check=True)
     score = json.loads(score.stdout[score.stdout.index("{"):].splitlines()[0])
     surface = outer_surface(f"{start}.vtp")
-    errors = true_errors(case, surface)
-    predicted = vtk_to_numpy(surface.GetPointData().GetArray("PredictedError"))
+    errors, predicted = both_errors(case, surface)
     known = np.isfinite(errors)
-    rms = [np.sqrt(np.mean(np.square(values[known]))) for values in (predicted, errors)]
+    areas = point_areas(surface)[known]
+    rms = [np.sqrt(np.average(np.square(values[known]), weights=areas)) for values in (predicted, errors)]
     return row | {"diameter": score["diameter_mm"], "rms": score["outer"]["rms"], "largest": score["outer"]["max"], "p99": score["outer"]["p99"],
                   "thickness": score.get("thickness_rms", ""), "dice": score.get("dice", ""), "covered": score["covered"],
                   "intrudes": score.get("intrudes_mm3", ""), "predicted": f"{rms[0]:.3f}", "ratio": f"{rms[0] / rms[1]:.2f}",
-                  "band": f"{np.mean(np.abs(errors[known]) <= 1.96 * predicted[known]):.3f}",
+                  "band": f"{np.average(np.abs(errors[known]) <= 1.96 * predicted[known], weights=areas):.3f}",
                   "warned": int("may be more than 1 mm off" in made.stdout + made.stderr)}
 
 
@@ -236,12 +245,11 @@ def draw(tool, options, skulls, rows):
         case = tool.Case(skulls[row["skull"]], row["case"])
         surface = outer_surface(os.path.join(options.out, f"{row['skull']}-{row['case']}.vtp"))
         bone = skull_surface(case)
-        errors = np.abs(true_errors(case, surface))
-        predicted = vtk_to_numpy(surface.GetPointData().GetArray("PredictedError"))
+        errors, predicted = both_errors(case, surface)
         left, bottom = (k % columns) * (LEFT + 2 * CELL[0]) + LEFT, BOTTOM + (lines - 1 - k // columns) * CELL[1]
         base.AddActor2D(words(f"{row['skull']}\n{row['case']}\n{float(row['diameter']):.0f} mm\nRMS {float(row['rms']):.2f}", left - LEFT + 8,
                               bottom + CELL[1] / 2, left=True))
-        for i, values in enumerate((errors, predicted)):
+        for i, values in enumerate((np.abs(errors), predicted)):
             shown = vtkPolyDataNormals()
             shown.SetInputData(surface)
             shown.SplittingOff()
@@ -311,6 +319,8 @@ def main():
         first, last = map(int, options.random.split("-"))
         names += [f"random:{seed}" for seed in range(first, last + 1)]
     path = os.path.join(options.out, "results.csv")
+    if options.check and os.path.exists(path):
+        os.remove(path)  # of another version
     rows = list(csv.DictReader(open(path, encoding="utf-8"))) if os.path.exists(path) else []
     for skull, ct in skulls.items():
         for name in names:
