@@ -111,7 +111,7 @@ write_meta(path("straight.mha"), values, straight)
 code, text = run(path("straight.mha"), "--output", path("straight.vtp"), "--hole", *middles["small"])
 assert code == 0 and "2 holes found" in text and chosen(text).endswith("mm"), text  # MetaImage does not say whose coordinates it has
 area = 2 * np.pi * (1 - np.cos(SMALL_ANGLE)) * phantom.GetClientSideObject().IntersectOuterSurface(phantom.Center, SMALL / np.linalg.norm(SMALL)) ** 2
-assert abs(float(chosen(text).split()[1]) - area / 100) < 0.8, (area, text)  # cm²
+assert abs(float(chosen(text).split()[2]) - area / 100) < 0.8, (area, text)  # cm²
 os.makedirs(path("series"))
 write_series(path("series"), values, straight)
 code, text = run(path("series"), "--output", path("series.vtp"), "--hole", *middles["small"])
