@@ -149,6 +149,13 @@ def assembled(slices):
     return AssembleTrackedSlices(Input=images, Poses=table, PoseFormat="Matrix", PoseColumns=["m"], PixelSpacing=0.1)
 
 
+def outlined(n):
+    """Ellipses in the slices around the middle of n, as OutlinePoints."""
+    slices = [n // 2 + k * max(1, n // 20) for k in (-4, -2, 0, 2, 4)]
+    return [value for number in slices for angle in np.linspace(0, 2 * np.pi, 16, endpoint=False)
+            for value in (1, number, number, 300 + 150 * np.cos(angle), 200 + 100 * np.sin(angle))]
+
+
 def landmarks():
     return Sphere(Radius=50, ThetaResolution=12, PhiResolution=8)
 
@@ -193,6 +200,8 @@ CASES = {
     "Temporal Calibration": lambda n: TemporalCalibration(Input=floor(n, 0)),
     "Tracker Self Test": lambda n: TrackerSelfTest(Input=receivers(n)),
     "Slice Planes": lambda n: SlicePlanes(Input=sweep(n)),
+    "Slice Outliner": lambda n: SliceOutliner(Input=sweep(n), OutlinePoints=outlined(n)),
+    "Outlined Structures": lambda n: OutlinedStructures(Input=SliceOutliner(Input=sweep(20), OutlinePoints=outlined(20)), OutputSpacing=30 / n),
     "Swept Volume": lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3),
     "Swept Volume, footprints across slices": lambda n: SweptVolume(Input=sweep(n), OutputSpacing=[0.2] * 3, FootprintAcrossSlices=1),
     "Slice Ray Caster": lambda n: SliceRayCaster(Input=sweep(n), IsoValue=120, PixelSpacing=0.05),

@@ -11,6 +11,7 @@
 #include "vtkLacunaGateSlices.h"
 #include "vtkLacunaProbeCalibration.h"
 #include "vtkLacunaScanRegion.h"
+#include "vtkLacunaSliceOutliner.h"
 #include "vtkLacunaSlicePlanes.h"
 #include "vtkLacunaSliceRayCaster.h"
 #include "vtkLacunaSweptVolume.h"
@@ -95,6 +96,27 @@ Subject MakeSliceRayCaster()
       Real("PixelSpacing", &T::SetPixelSpacing, 0.2, 3),
       Wholes<2>("ImageSize", &T::SetImageSize, 0, 40) });
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetIsoValue(50); };
+  return subject;
+}
+
+Subject MakeSliceOutliner()
+{
+  using T = vtkLacunaSliceOutliner;
+  Subject subject{ "SliceOutliner", NewOf<T>, MakeSlices,
+    { Whole("Slice", &T::SetSlice, 0, 3), Switch("Smooth", &T::SetSmooth),
+      Other<T>("OutlinePoints",
+        [](T* filter, Dice& dice, bool isHostile)
+        {
+          filter->RemoveAllOutlinePoints();
+          const int count = isHostile ? dice.Whole(1, 4) : dice.Whole(3, 9);
+          for (int i = 0; i < count; ++i)
+          {
+            const bool isBad = isHostile && dice.Chance(0.3);
+            filter->AddOutlinePoint(1, isBad ? HostileReal(dice) : 0, isBad ? HostileReal(dice) : 1,
+              dice.Real(0, 9), isBad ? HostileReal(dice) : dice.Real(0, 9));
+          }
+          return std::to_string(count);
+        }) } };
   return subject;
 }
 
@@ -341,6 +363,7 @@ void AddFreehandSubjects(std::vector<Subject>& subjects)
         Whole("MaximumNumberOfPoints", &T::SetMaximumNumberOfPoints, 4, 1000) } });
     subjects.back().MayBeNaN = { "Speed", "Intensity", "RegistrationError" };
   }
+  subjects.push_back(MakeSliceOutliner());
   subjects.push_back(MakeSweptVolume());
   subjects.push_back(MakeSliceRayCaster());
   subjects.push_back(MakeProbeCalibration());

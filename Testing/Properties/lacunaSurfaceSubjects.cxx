@@ -2,20 +2,25 @@
 // Radial basis functions and fabrication.
 #include "lacunaRandomData.h"
 #include "lacunaSubject.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
+#include "vtkIntArray.h"
 #include "vtkLacunaDefectModel.h"
 #include "vtkLacunaDepthMapSurface.h"
 #include "vtkLacunaGCodeWriter.h"
 #include "vtkLacunaIGESWriter.h"
 #include "vtkLacunaImplantPlate.h"
 #include "vtkLacunaMillingToolPath.h"
+#include "vtkLacunaOutlinedStructures.h"
 #include "vtkLacunaPressOrientation.h"
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkLacunaSkullImplant.h"
 #include "vtkLacunaSplineLoop.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
@@ -172,6 +177,52 @@ Subject MakeClosedSurface()
   return subject;
 }
 
+// Ellipses in planes that turn a little, of one or two structures.
+vtkSmartPointer<vtkPolyData> RandomOutlines(Dice& dice)
+{
+  auto lines = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIntArray> structures;
+  structures->SetName("Structure");
+  const int count = dice.Whole(1, 5);
+  for (int slice = 0; slice < count; ++slice)
+  {
+    const double tilt = dice.Real(-0.2, 0.2);
+    const int corners = dice.Whole(6, 14);
+    const double radius = dice.Real(5, 9);
+    cells->InsertNextCell(corners + 1);
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (int i = 0; i < corners; ++i)
+    {
+      const double angle = 2 * 3.14159265 * i / corners;
+      const double x = radius * std::cos(angle);
+      cells->InsertCellPoint(points->InsertNextPoint(
+        x * std::cos(tilt), 0.8 * radius * std::sin(angle), 4 * slice + x * std::sin(tilt)));
+    }
+    cells->InsertCellPoint(first);
+    structures->InsertNextValue(dice.Chance(0.8) ? 1 : 2);
+  }
+  lines->SetPoints(points);
+  lines->SetLines(cells);
+  lines->GetCellData()->AddArray(structures);
+  return lines;
+}
+
+Subject MakeOutlinedStructures()
+{
+  using T = vtkLacunaOutlinedStructures;
+  Subject subject{
+    "OutlinedStructures", NewOf<T>, [](Dice& dice) -> Inputs { return { RandomOutlines(dice) }; },
+    { Real("RegistrationError", &T::SetRegistrationError, 0, 3),
+      Real("Smoothing", &T::SetSmoothing, 0, 2), Real("OutputSpacing", &T::SetOutputSpacing, 1, 5) }
+  };
+  subject.MayBeNaN = { "Volume (ml)", "Standard error (ml)", "Area (cm2)", "Largest diameter (mm)",
+    "Centroid X (mm)", "Centroid Y (mm)", "Centroid Z (mm)" };
+  subject.Cost = 20;
+  return subject;
+}
+
 // A shell with a hole: few voxels, so that its shape is found in a second.
 vtkSmartPointer<vtkImageData> RandomHead(Dice& dice)
 {
@@ -288,6 +339,7 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
   subjects.push_back(MakeHoleFiller());
   subjects.push_back(MakeInterpolator());
   subjects.push_back(MakeClosedSurface());
+  subjects.push_back(MakeOutlinedStructures());
   subjects.push_back(MakePlate());
   subjects.push_back(MakeSkullImplant());
   {

@@ -84,7 +84,6 @@ double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
 {
   constexpr std::size_t trials = 16;
   constexpr double pieces = 3; // of the longest extent
-  constexpr int rounds = 3;
   SurfaceSplineOptions coarse = options;
   coarse.PointError = fit.PointError;
   coarse.Stiffness = fit.Stiffness;
@@ -142,7 +141,6 @@ double EstimateVolumeError(Execution& execution, const OrientedPoints& data,
           other.Values[i] = misses[i] + (turned ? factor : -factor) * misses[i];
         }
         ThreadExecution alone(1);
-        Refine(alone, other, coarse, rounds - 1);
         volumes[t] = getVolume(alone, SurfaceSpline(alone, other, coarse)) - reference;
       }
     });

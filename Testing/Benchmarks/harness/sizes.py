@@ -15,6 +15,8 @@ SIZES = {
     "Temporal Calibration": (400, 1600),
     "Tracker Self Test": (50000, 200000),
     "Slice Planes": (10, 40),
+    "Slice Outliner": (100, 400),
+    "Outlined Structures": (40, 80),
     "Swept Volume": (100, 400),
     "Swept Volume, footprints across slices": (100, 400),
     "Slice Ray Caster": (50, 200),

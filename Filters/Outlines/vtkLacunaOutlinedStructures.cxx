@@ -1,0 +1,621 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaOutlinedStructures.h"
+
+#include "lacunaParameterText.h"
+#include "lacunaVector.h"
+#include "vtkAppendPolyData.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFailure.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRBFSurface.h"
+#include "vtkLacunaRequest.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+vtkStandardNewMacro(vtkLacunaOutlinedStructures);
+
+namespace
+{
+using lacuna::Vec3;
+// Of an outline that a surface is made of.
+constexpr std::size_t FewestPoints = 20;
+constexpr std::size_t MostPoints = 48;
+
+using Lines = std::vector<std::vector<Vec3>>;
+
+// The outlines of a structure, as the input gives them.
+struct Structure
+{
+  std::string Name;
+  std::array<unsigned char, 3> Color{ 230, 159, 0 };
+  Lines Outlines; // without the first point at the end
+};
+
+// Of a structure's surface; lengths in mm.
+struct Measures
+{
+  double Volume = vtkMath::Nan(); // mm^3
+  double OutlineError = vtkMath::Nan();
+  double RegistrationError = vtkMath::Nan(); // for 1 mm
+  double Area = vtkMath::Nan();
+  double Diameter = vtkMath::Nan();
+  Vec3 Centroid{ vtkMath::Nan(), vtkMath::Nan(), vtkMath::Nan() };
+};
+
+// Newell's; its length is twice the area.
+Vec3 GetNormal(const std::vector<Vec3>& line)
+{
+  Vec3 sum{};
+  for (std::size_t i = 0; i < line.size(); ++i)
+  {
+    sum = sum + lacuna::Cross(line[i] - line[0], line[(i + 1) % line.size()] - line[0]);
+  }
+  return sum;
+}
+
+// Why the outlines make no surface; empty: they do.
+std::string FindLack(const Lines& outlines)
+{
+  constexpr std::size_t enough = 3;
+  constexpr double parallel = 0.996; // 5 degrees
+  constexpr double apart = 0.01;     // of the size
+  // planes that are not the same
+  std::vector<std::pair<Vec3, Vec3>> planes; // normal, point
+  bool cross = false;
+  for (const auto& line : outlines)
+  {
+    const Vec3 sum = GetNormal(line);
+    if (!(lacuna::Norm(sum) > 0))
+    {
+      continue;
+    }
+    const Vec3 normal = lacuna::Normalized(sum);
+    const double size = std::sqrt(lacuna::Norm(sum));
+    bool isNew = true;
+    for (const auto& plane : planes)
+    {
+      const bool isParallel = std::abs(lacuna::Dot(plane.first, normal)) > parallel;
+      cross = cross || !isParallel;
+      isNew = isNew &&
+        !(isParallel && std::abs(lacuna::Dot(plane.first, line[0] - plane.second)) < apart * size);
+    }
+    if (isNew)
+    {
+      planes.emplace_back(normal, line[0]);
+    }
+  }
+  if (planes.size() >= enough || cross)
+  {
+    return {};
+  }
+  return std::to_string(planes.size()) + " of 3 slices outlined";
+}
+
+// Of a closed line, count points that are evenly spread over its length, or itself when it has fewer. More
+// would cost time and add nothing: the surface is smoother than the line.
+std::vector<Vec3> GetEven(const std::vector<Vec3>& line, std::size_t count)
+{
+  const std::size_t n = line.size();
+  if (n <= count)
+  {
+    return line;
+  }
+  std::vector<double> along(n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    along[i + 1] = along[i] + lacuna::Norm(line[(i + 1) % n] - line[i]);
+  }
+  std::vector<Vec3> even;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    const double at = along[n] * static_cast<double>(k) / static_cast<double>(count);
+    while (along[i + 1] < at)
+    {
+      ++i;
+    }
+    const double length = along[i + 1] - along[i];
+    const double part = length > 0 ? (at - along[i]) / length : 0;
+    even.push_back(line[i] + part * (line[(i + 1) % n] - line[i]));
+  }
+  return even;
+}
+
+// The greatest distance between two points. Those far from the middle come first, until no pair can be longer.
+double GetDiameter(const std::vector<Vec3>& points)
+{
+  Vec3 middle{};
+  for (const Vec3& x : points)
+  {
+    middle = middle + (1.0 / static_cast<double>(points.size())) * x;
+  }
+  std::vector<std::pair<double, std::size_t>> away;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    away.emplace_back(lacuna::Norm(points[i] - middle), i);
+  }
+  std::sort(away.rbegin(), away.rend());
+  double best = 0;
+  for (std::size_t i = 0; i < away.size() && 2 * away[i].first > best; ++i)
+  {
+    for (std::size_t j = i + 1; j < away.size() && away[i].first + away[j].first > best; ++j)
+    {
+      best = std::max(best, lacuna::Norm(points[away[i].second] - points[away[j].second]));
+    }
+  }
+  return best;
+}
+
+Measures Measure(vtkPolyData* surface, const Lines& outlines)
+{
+  Measures found;
+  std::vector<Vec3> points(static_cast<std::size_t>(surface->GetNumberOfPoints()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    surface->GetPoint(static_cast<vtkIdType>(i), points[i].data());
+  }
+  // the outline nearest to each point of the surface
+  std::vector<std::size_t> nearest(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    double best = -1;
+    for (std::size_t o = 0; o < outlines.size(); ++o)
+    {
+      for (const Vec3& x : outlines[o])
+      {
+        const Vec3 d = points[i] - x;
+        const double away = lacuna::Dot(d, d);
+        if (best < 0 || away < best)
+        {
+          best = away;
+          nearest[i] = o;
+        }
+      }
+    }
+  }
+  std::vector<Vec3> areas(outlines.size(), Vec3{});
+  const Vec3 origin = points.empty() ? Vec3{} : points[0];
+  double volume = 0;
+  double area = 0;
+  Vec3 moment{};
+  vtkCellArray* cells = surface->GetPolys();
+  for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    cells->GetCellAtId(c, count, ids);
+    const Vec3 a = points[ids[0]] - origin;
+    const Vec3 b = points[ids[1]] - origin;
+    const Vec3 d = points[ids[2]] - origin;
+    const Vec3 across = 0.5 * lacuna::Cross(b - a, d - a);
+    const double part = lacuna::Dot(a, lacuna::Cross(b, d)) / 6;
+    volume += part;
+    area += lacuna::Norm(across);
+    moment = moment + (part / 4) * (a + b + d);
+    for (int k = 0; k < 3; ++k)
+    {
+      Vec3& sum = areas[nearest[ids[k]]];
+      sum = sum + (1.0 / 3) * across;
+    }
+  }
+  double squares = 0;
+  for (const Vec3& x : areas)
+  {
+    squares += lacuna::Dot(x, x) / 3; // one axis of three
+  }
+  found.Volume = volume;
+  found.RegistrationError = std::sqrt(squares);
+  found.Area = area;
+  found.Diameter = GetDiameter(points);
+  found.Centroid = origin + (1 / volume) * moment;
+  return found;
+}
+
+// The lines of each structure.
+std::map<int, Structure> GetStructures(vtkPolyData* input)
+{
+  // lines are numbered behind the vertices
+  const vtkIdType firstLine = input->GetNumberOfVerts();
+  if (input->GetNumberOfLines() == 0)
+  {
+    throw std::runtime_error(
+      "the input has no lines; give closed outlines, as Slice Outliner makes them");
+  }
+  const auto find = [&](const char* name, int components)
+  {
+    vtkDataArray* array = input->GetCellData()->GetArray(name);
+    if (array && array->GetNumberOfComponents() != components)
+    {
+      throw std::runtime_error(std::string("cell array '") + name + "' has " +
+        std::to_string(array->GetNumberOfComponents()) + " components; it must have " +
+        std::to_string(components));
+    }
+    return array;
+  };
+  vtkDataArray* numbers = find("Structure", 1);
+  vtkDataArray* colors = find("StructureColor", 3);
+  auto* names =
+    vtkStringArray::SafeDownCast(input->GetCellData()->GetAbstractArray("StructureName"));
+  std::map<int, Structure> structures;
+  vtkCellArray* lines = input->GetLines();
+  for (vtkIdType l = 0; l < lines->GetNumberOfCells(); ++l)
+  {
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCellAtId(l, count, ids);
+    std::vector<Vec3> points;
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      Vec3 x;
+      input->GetPoint(ids[i], x.data());
+      if (!lacuna::IsFinite(x))
+      {
+        throw std::runtime_error(
+          "line " + std::to_string(l) + " has a point that is not finite; remove it");
+      }
+      points.push_back(x);
+    }
+    if (points.size() < 4 || !(points.front() == points.back()))
+    {
+      throw std::runtime_error("line " + std::to_string(l) +
+        " is not closed; the last point of an outline is its first, and it has three or more "
+        "others");
+    }
+    points.pop_back();
+    const double number = numbers ? numbers->GetComponent(firstLine + l, 0) : 1;
+    constexpr double most = 1 << 30;
+    if (!(std::abs(number) <= most))
+    {
+      throw std::runtime_error("cell array 'Structure' of line " + std::to_string(l) + " is " +
+        lacuna::FormatNumber(number) + "; it must be a whole number");
+    }
+    const auto [at, isNew] = structures.try_emplace(static_cast<int>(number));
+    if (isNew)
+    {
+      at->second.Name =
+        names ? names->GetValue(firstLine + l) : "Structure " + std::to_string(at->first);
+      for (int c = 0; colors && c < 3; ++c)
+      {
+        at->second.Color[c] = static_cast<unsigned char>(
+          std::clamp(colors->GetComponent(firstLine + l, c), 0.0, 255.0));
+      }
+    }
+    at->second.Outlines.push_back(std::move(points));
+  }
+  return structures;
+}
+
+// What is told by an algorithm within, and where its progress and stops go.
+struct Listener
+{
+  std::string Error;
+  std::vector<std::string> Warnings;
+  vtkLacunaExecution* Execution = nullptr;
+  bool IsStopped = false;
+
+  static void Hear(vtkObject* caller, unsigned long event, void* self, void* data)
+  {
+    auto* listener = static_cast<Listener*>(self);
+    if (event == vtkCommand::ErrorEvent)
+    {
+      listener->Error = static_cast<const char*>(data);
+    }
+    else if (event == vtkCommand::WarningEvent)
+    {
+      listener->Warnings.emplace_back(static_cast<const char*>(data));
+    }
+    else
+    {
+      try
+      {
+        listener->Execution->Report(*static_cast<const double*>(data));
+      }
+      catch (const lacuna::Aborted&)
+      {
+        listener->IsStopped = true;
+        vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1);
+      }
+    }
+  }
+};
+
+// "Warning: In file, line n\nvtkClass (0x...): words\n\n" without what only helps programmers.
+std::string GetWords(const std::string& text)
+{
+  const std::size_t at = text.find("): ");
+  std::string words = at == std::string::npos ? text : text.substr(at + 3);
+  while (!words.empty() && (words.back() == '\n' || words.back() == ' '))
+  {
+    words.pop_back();
+  }
+  return words;
+}
+}
+
+struct vtkLacunaOutlinedStructures::Kept
+{
+  Lines Outlines;
+  double Smoothing, Spacing;
+  vtkSmartPointer<vtkPolyData> Surface; ///< null: none
+  std::string Lack;                     ///< why
+  std::vector<std::string> Warnings;
+  Measures Size;
+};
+
+//------------------------------------------------------------------------------
+vtkLacunaOutlinedStructures::vtkLacunaOutlinedStructures()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkLacunaOutlinedStructures::~vtkLacunaOutlinedStructures() = default;
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlinedStructures::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlinedStructures::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStructures::Make(
+  const std::vector<std::vector<Vec3>>& outlines, vtkLacunaExecution& execution) const
+{
+  for (const auto& kept : this->Made)
+  {
+    if (kept->Outlines == outlines && kept->Smoothing == this->Smoothing &&
+      kept->Spacing == this->OutputSpacing)
+    {
+      return kept;
+    }
+  }
+  auto result = std::make_shared<Kept>();
+  result->Outlines = outlines;
+  result->Smoothing = this->Smoothing;
+  result->Spacing = this->OutputSpacing;
+  result->Lack = FindLack(outlines);
+  if (!result->Lack.empty())
+  {
+    return result;
+  }
+  vtkNew<vtkPolyData> lines;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  double low[3];
+  double high[3];
+  std::copy_n(outlines[0][0].data(), 3, low);
+  std::copy_n(outlines[0][0].data(), 3, high);
+  constexpr std::size_t all = 240; // points of a structure, which the time of a fit depends on
+  const std::size_t each = std::clamp<std::size_t>(all / outlines.size(), FewestPoints, MostPoints);
+  for (const auto& outline : outlines)
+  {
+    const std::vector<Vec3> line = GetEven(outline, each);
+    cells->InsertNextCell(static_cast<int>(line.size() + 1));
+    const vtkIdType first = points->GetNumberOfPoints();
+    for (const Vec3& x : line)
+    {
+      cells->InsertCellPoint(points->InsertNextPoint(x.data()));
+      for (int c = 0; c < 3; ++c)
+      {
+        low[c] = std::min(low[c], x[c]);
+        high[c] = std::max(high[c], x[c]);
+      }
+    }
+    cells->InsertCellPoint(first);
+  }
+  lines->SetPoints(points);
+  lines->SetLines(cells);
+  constexpr double edge = 1.0 / 40; // of the extent
+  const double extent = std::max({ high[0] - low[0], high[1] - low[1], high[2] - low[2] });
+
+  vtkNew<vtkLacunaRBFSurface> filter;
+  // without ParaView's executive it is alone on this rank
+  filter->SetExecutive(vtkNew<vtkStreamingDemandDrivenPipeline>());
+  filter->SetInputDataObject(lines);
+  filter->SetSmoothing(this->Smoothing);
+  filter->SetOutputSpacing(this->OutputSpacing > 0 ? this->OutputSpacing : edge * extent);
+  Listener listener;
+  listener.Execution = &execution;
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetCallback(&Listener::Hear);
+  callback->SetClientData(&listener);
+  for (const auto event :
+    { vtkCommand::ErrorEvent, vtkCommand::WarningEvent, vtkCommand::ProgressEvent })
+  {
+    filter->AddObserver(event, callback);
+  }
+  filter->Update();
+  if (listener.IsStopped)
+  {
+    throw lacuna::Aborted();
+  }
+  for (const std::string& warning : listener.Warnings)
+  {
+    // too few outlines as yet: told where the volume stands
+    if (warning.find("reaches OutputBounds") != std::string::npos)
+    {
+      result->Lack = "open at an end: outline slices nearer to the ends";
+    }
+    else
+    {
+      result->Warnings.push_back(GetWords(warning));
+    }
+  }
+  vtkPolyData* surface = filter->GetOutput();
+  vtkDataArray* volume = surface->GetFieldData()->GetArray("SurfaceVolume");
+  if (!listener.Error.empty() || surface->GetNumberOfCells() == 0 || !volume)
+  {
+    result->Lack = listener.Error.empty() ? "the surface is not closed" : GetWords(listener.Error);
+    result->Warnings.push_back("no surface: " + result->Lack);
+    return result;
+  }
+  result->Surface = surface;
+  result->Size = Measure(surface, outlines);
+  if (vtkDataArray* error = surface->GetFieldData()->GetArray("SurfaceVolumeError"))
+  {
+    result->Size.OutlineError = 1000 * error->GetComponent(0, 0);
+  }
+  if (!result->Lack.empty())
+  {
+    result->Size = Measures(); // of a surface that planes cut off
+  }
+  return result;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlinedStructures::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool isWanted = vtkLacunaRequest::IsFirst(outputs);
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkPolyData* input = vtkPolyData::GetData(inputs[0]);
+      for (const auto& property :
+        { std::pair<const char*, double>{ "RegistrationError", this->RegistrationError },
+          { "Smoothing", this->Smoothing }, { "OutputSpacing", this->OutputSpacing } })
+      {
+        if (!(property.second >= 0) || !std::isfinite(property.second))
+        {
+          throw std::runtime_error(std::string(property.first) + " is " +
+            lacuna::FormatNumber(property.second) + "; it must be a finite number >= 0, in mm");
+        }
+      }
+      if (!input || input->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      const std::map<int, Structure> structures = GetStructures(input);
+
+      std::vector<std::shared_ptr<const Kept>> made;
+      vtkNew<vtkAppendPolyData> append;
+      vtkNew<vtkIntArray> numbers;
+      numbers->SetName("Structure");
+      vtkNew<vtkStringArray> names;
+      names->SetName("Name");
+      vtkNew<vtkIntArray> counts;
+      counts->SetName("Outlines");
+      vtkNew<vtkStringArray> states;
+      states->SetName("Status");
+      constexpr int columns = 7;
+      const std::array<const char*, columns> titles{ "Volume (ml)", "Standard error (ml)",
+        "Area (cm2)", "Largest diameter (mm)", "Centroid X (mm)", "Centroid Y (mm)",
+        "Centroid Z (mm)" };
+      std::array<vtkNew<vtkDoubleArray>, columns> values;
+      std::size_t n = 0;
+      for (const auto& [number, structure] : structures)
+      {
+        execution.SetStage(static_cast<double>(n) / static_cast<double>(structures.size()),
+          static_cast<double>(n + 1) / static_cast<double>(structures.size()));
+        ++n;
+        std::shared_ptr<const Kept> result = this->Make(structure.Outlines, execution);
+        made.push_back(result);
+        for (const std::string& warning : result->Warnings)
+        {
+          vtkWarningMacro(<< structure.Name << ": " << warning);
+        }
+        numbers->InsertNextValue(number);
+        names->InsertNextValue(structure.Name);
+        counts->InsertNextValue(static_cast<int>(structure.Outlines.size()));
+        states->InsertNextValue(result->Lack);
+        const Measures& size = result->Size;
+        const double row[columns] = { size.Volume / 1000,
+          std::hypot(size.OutlineError, this->RegistrationError * size.RegistrationError) / 1000,
+          size.Area / 100, size.Diameter, size.Centroid[0], size.Centroid[1], size.Centroid[2] };
+        for (int c = 0; c < columns; ++c)
+        {
+          values[c]->InsertNextValue(row[c]);
+        }
+        if (result->Surface)
+        {
+          vtkNew<vtkPolyData> part;
+          part->ShallowCopy(result->Surface);
+          vtkNew<vtkIntArray> of;
+          of->SetName("Structure");
+          of->SetNumberOfTuples(part->GetNumberOfCells());
+          of->FillValue(number);
+          vtkNew<vtkUnsignedCharArray> color;
+          color->SetName("StructureColor");
+          color->SetNumberOfComponents(3);
+          color->SetNumberOfTuples(part->GetNumberOfCells());
+          for (int c = 0; c < 3; ++c)
+          {
+            color->FillComponent(c, structure.Color[c]);
+          }
+          part->GetCellData()->SetScalars(of);
+          part->GetCellData()->AddArray(color);
+          append->AddInputData(part);
+        }
+      }
+      this->Made = std::move(made);
+      vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
+      if (append->GetNumberOfInputConnections(0) > 0)
+      {
+        append->Update();
+        output->ShallowCopy(append->GetOutput());
+        output->GetFieldData()->Initialize();
+      }
+      vtkTable* table = vtkTable::GetData(outputs, 1);
+      table->GetFieldData()->Initialize();
+      table->AddColumn(numbers);
+      table->AddColumn(names);
+      table->AddColumn(counts);
+      for (int c = 0; c < columns; ++c)
+      {
+        values[c]->SetName(titles[c]);
+        table->AddColumn(values[c]);
+      }
+      table->AddColumn(states);
+      const std::string parameters = lacuna::ParameterText()
+                                       .Add("RegistrationError", this->RegistrationError)
+                                       .Add("Smoothing", this->Smoothing)
+                                       .Add("OutputSpacing", this->OutputSpacing)
+                                       .Get();
+      vtkLacunaProvenance::Record(output, this, { input }, parameters);
+      vtkLacunaProvenance::Record(table, this, { input }, parameters);
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlinedStructures::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "RegistrationError: " << this->RegistrationError << "\n";
+  os << indent << "Smoothing: " << this->Smoothing << "\n";
+  os << indent << "OutputSpacing: " << this->OutputSpacing << "\n";
+}

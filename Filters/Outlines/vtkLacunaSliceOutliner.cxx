@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSliceOutliner.h"
+
+#include "lacunaMatrix4.h"
+#include "lacunaMemory.h"
+#include "lacunaParameterText.h"
+#include "lacunaVector.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
+#include "vtkLacunaCoordinates.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaOutlineTools.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRanks.h"
+#include "vtkLacunaRequest.h"
+#include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkMatrix4x4.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+vtkStandardNewMacro(vtkLacunaSliceOutliner);
+
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+// Told apart also by those who cannot tell red from green (Okabe and Ito 2008, without black).
+constexpr std::array<std::array<unsigned char, 3>, 7> Palette{ { { 230, 159, 0 }, { 86, 180, 233 },
+  { 0, 158, 115 }, { 240, 228, 66 }, { 213, 94, 0 }, { 204, 121, 167 }, { 0, 114, 178 } } };
+
+// Where the slices of an image lie.
+class Slices
+{
+public:
+  explicit Slices(vtkImageData* image)
+    : Image(image)
+  {
+    const auto has = [image](const char* name)
+    { return image->GetFieldData()->GetAbstractArray(name) != nullptr; };
+    if (has(vtkLacunaTrackedSlices::ImageToReferenceName))
+    {
+      this->Tracked.emplace(image);
+    }
+    else if (has(vtkLacunaTrackedSlices::SliceStatusName) ||
+      has(vtkLacunaTrackedSlices::FrameNumberName))
+    {
+      throw std::runtime_error(
+        "the slices have no field data array 'ImageToReference': the probe is not "
+        "calibrated, so that outlines have no place in mm. Give the reader a "
+        "CalibrationFileName");
+    }
+    else
+    {
+      vtkLacunaVolumeDirection::Check(image);
+    }
+    const int* extent = image->GetExtent();
+    for (int k = extent[4]; k <= extent[5]; ++k)
+    {
+      this->Numbers.push_back(
+        this->Tracked ? static_cast<int>(this->Tracked->GetSliceNumber(k)) : k);
+    }
+  }
+
+  int GetFirst() const { return this->Numbers.front(); }
+  int GetLast() const { return this->Numbers.back(); }
+
+  // Extent index of the slice that has this number.
+  std::optional<int> FindIndex(int number) const
+  {
+    const auto found = std::find(this->Numbers.begin(), this->Numbers.end(), number);
+    if (found == this->Numbers.end())
+    {
+      return {};
+    }
+    return this->Image->GetExtent()[4] + static_cast<int>(found - this->Numbers.begin());
+  }
+
+  bool HasPlace(int number) const
+  {
+    return !this->Tracked ||
+      this->Tracked->IsUsable(
+        number, static_cast<unsigned char>(~vtkLacunaTrackedSlices::PoseInvalid));
+  }
+
+  // (column, row, 0, 1) of a slice to mm.
+  lacuna::Matrix4 GetPixelToSpace(int number) const
+  {
+    if (this->Tracked)
+    {
+      return this->Tracked->GetImageToReference(number);
+    }
+    return lacuna::Matrix4(this->Image->GetIndexToPhysicalMatrix()->GetData()) *
+      lacuna::Matrix4::Translation({ 0, 0, static_cast<double>(number) });
+  }
+
+  // Column and row of an extent index.
+  std::array<double, 2> GetPixel(int i, int j) const
+  {
+    if (!this->Tracked)
+    {
+      return { static_cast<double>(i), static_cast<double>(j) };
+    }
+    const double* origin = this->Image->GetOrigin();
+    const double* spacing = this->Image->GetSpacing();
+    return { origin[0] + i * spacing[0], origin[1] + j * spacing[1] };
+  }
+
+private:
+  vtkImageData* Image;
+  std::optional<vtkLacunaTrackedSlices> Tracked;
+  std::vector<int> Numbers; // of the slices, from the extent's first on
+};
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSliceOutliner::vtkLacunaSliceOutliner()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::AddOutlinePoint(
+  double structure, double outline, double slice, double column, double row)
+{
+  // what is wrong with numbers is said when data are asked for
+  const auto whole = [](double value)
+  {
+    constexpr double most = 1 << 30;
+    return std::abs(value) <= most && value == std::floor(value) ? static_cast<int>(value) : -1;
+  };
+  this->Points.push_back({ whole(structure), whole(outline), whole(slice), column, row });
+  this->Modified();
+}
+
+void vtkLacunaSliceOutliner::RemoveAllOutlinePoints()
+{
+  if (!this->Points.empty())
+  {
+    this->Points.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::AddStructureName(const char* name)
+{
+  this->Names.emplace_back(name ? name : "");
+  this->Modified();
+}
+
+void vtkLacunaSliceOutliner::RemoveAllStructureNames()
+{
+  if (!this->Names.empty())
+  {
+    this->Names.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::AddStructureColor(double red, double green, double blue)
+{
+  this->Colors.push_back({ red, green, blue });
+  this->Modified();
+}
+
+void vtkLacunaSliceOutliner::RemoveAllStructureColors()
+{
+  if (!this->Colors.empty())
+  {
+    this->Colors.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkLacunaSliceOutliner::GetName(int structure) const
+{
+  const auto n = static_cast<std::size_t>(structure) - 1;
+  return n < this->Names.size() && !this->Names[n].empty()
+    ? this->Names[n]
+    : "Structure " + std::to_string(structure);
+}
+
+std::array<unsigned char, 3> vtkLacunaSliceOutliner::GetColor(int structure) const
+{
+  const auto n = static_cast<std::size_t>(structure) - 1;
+  if (n >= this->Colors.size())
+  {
+    return Palette[n % Palette.size()];
+  }
+  std::array<unsigned char, 3> color;
+  for (int c = 0; c < 3; ++c)
+  {
+    color[c] =
+      static_cast<unsigned char>(std::lround(255 * std::clamp(this->Colors[n][c], 0.0, 1.0)));
+  }
+  return color;
+}
+
+//------------------------------------------------------------------------------
+int* vtkLacunaSliceOutliner::GetSliceRange()
+{
+  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
+  this->SliceRange[0] = this->SliceRange[1] = 0;
+  if (image && image->GetNumberOfPoints() > 0)
+  {
+    try
+    {
+      const Slices slices(image);
+      this->SliceRange[0] = slices.GetFirst();
+      this->SliceRange[1] = slices.GetLast();
+    }
+    catch (const std::exception&) // which is told when data are asked for
+    {
+    }
+  }
+  return this->SliceRange;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceOutliner::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  return 1;
+}
+
+int vtkLacunaSliceOutliner::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkStructuredGrid");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceOutliner::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&]
+    {
+      int extent[6] = { 0, -1, 0, -1, 0, -1 };
+      if (vtkLacunaRanks().GetRank() == 0)
+      {
+        inputs[0]->GetInformationObject(0)->Get(SDDP::WHOLE_EXTENT(), extent);
+        extent[4] = extent[5] = 0;
+      }
+      outputs->GetInformationObject(1)->Set(SDDP::WHOLE_EXTENT(), extent, 6);
+    });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceOutliner::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSliceOutliner::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
+  vtkStructuredGrid* picture = vtkStructuredGrid::GetData(outputs, 1);
+  output->GetFieldData()->Initialize(); // VTK passes the slices' own
+  picture->GetFieldData()->Initialize();
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
+    [&](vtkLacunaExecution& execution)
+    {
+      vtkImageData* input = vtkImageData::GetData(inputs[0]);
+      if (!input || input->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      vtkDataArray* scalars = input->GetPointData()->GetScalars();
+      if (!scalars || scalars->GetNumberOfComponents() != 1)
+      {
+        throw std::runtime_error("the slices have no active point scalars with one component; "
+                                 "choose an array with one value per pixel");
+      }
+      const Slices slices(input);
+      const std::string range = "the slices are " + std::to_string(slices.GetFirst()) + " to " +
+        std::to_string(slices.GetLast());
+
+      // the slice
+      const std::optional<int> k = slices.FindIndex(this->Slice);
+      if (!k)
+      {
+        throw std::runtime_error(
+          "Slice " + std::to_string(this->Slice) + " is not there; " + range);
+      }
+      if (!slices.HasPlace(this->Slice))
+      {
+        throw std::runtime_error("Slice " + std::to_string(this->Slice) +
+          " has no usable pose, so that it has no place in mm; choose another one");
+      }
+      const int* extent = input->GetExtent();
+      const int columns = extent[1] - extent[0] + 1;
+      const int rows = extent[3] - extent[2] + 1;
+      const lacuna::Matrix4 toSpace = slices.GetPixelToSpace(this->Slice);
+      picture->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
+      vtkNew<vtkPoints> places;
+      places->SetDataTypeToDouble();
+      const vtkIdType pixels = static_cast<vtkIdType>(columns) * rows;
+      vtkLacunaArrays::SetNumberOfPoints(places, pixels);
+      const auto levels =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+      levels->SetName(scalars->GetName() ? scalars->GetName() : "Intensity");
+      vtkLacunaArrays::SetNumberOfTuples(levels, pixels);
+      levels->InsertTuples(0, pixels, pixels * (*k - extent[4]), scalars);
+      execution.For(rows, 16,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t j = begin; j < end; ++j)
+          {
+            for (int i = 0; i < columns; ++i)
+            {
+              const auto [column, row] =
+                slices.GetPixel(extent[0] + i, extent[2] + static_cast<int>(j));
+              const lacuna::Vec3 x = toSpace.Point({ column, row, 0 });
+              places->SetPoint(j * columns + i, x.data());
+            }
+          }
+        });
+      picture->SetPoints(places);
+      picture->GetPointData()->SetScalars(levels);
+      vtkLacunaFieldData::Set(picture, "PixelSize",
+        { lacuna::Norm(toSpace.Column(0)), lacuna::Norm(toSpace.Column(1)) }, 2);
+
+      // the outlines
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToDouble();
+      vtkNew<vtkCellArray> lines;
+      vtkNew<vtkFloatArray> pixel;
+      pixel->SetName("Pixel");
+      pixel->SetNumberOfComponents(3);
+      vtkNew<vtkUnsignedCharArray> isHandle;
+      isHandle->SetName("Handle");
+      vtkNew<vtkIntArray> structures;
+      structures->SetName("Structure");
+      vtkNew<vtkStringArray> names;
+      names->SetName("StructureName");
+      vtkNew<vtkIntArray> numbers;
+      numbers->SetName("Outline");
+      vtkNew<vtkIntArray> sliceNumbers;
+      sliceNumbers->SetName("SliceNumber");
+      vtkNew<vtkUnsignedCharArray> colors;
+      colors->SetName("StructureColor");
+      colors->SetNumberOfComponents(3);
+      std::set<std::pair<int, int>> done;
+      std::ostringstream leftOut;
+      for (std::size_t first = 0, next = 0; first < this->Points.size(); first = next)
+      {
+        const Point& one = this->Points[first];
+        if (one.Structure < 1 || one.Outline < 0)
+        {
+          throw std::runtime_error("OutlinePoints: point " + std::to_string(first) +
+            " has the structure " + std::to_string(one.Structure) + " and the outline " +
+            std::to_string(one.Outline) + "; they must be whole numbers from 1 and from 0 on");
+        }
+        const std::string what = "outline " + std::to_string(one.Outline) + " of " +
+          this->GetName(one.Structure) + " in slice " + std::to_string(one.Slice);
+        if (!done.insert({ one.Structure, one.Outline }).second)
+        {
+          throw std::runtime_error(
+            what + " has points in two places of OutlinePoints; put them together");
+        }
+        vtkNew<vtkPoints> handles;
+        handles->SetDataTypeToDouble();
+        for (; next < this->Points.size() && this->Points[next].Structure == one.Structure &&
+             this->Points[next].Outline == one.Outline;
+             ++next)
+        {
+          const Point& p = this->Points[next];
+          if (p.Slice != one.Slice)
+          {
+            throw std::runtime_error(what + " has a point in slice " + std::to_string(p.Slice) +
+              "; an outline lies in one slice");
+          }
+          if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
+          {
+            throw std::runtime_error(what + " has a point that is not finite; remove it");
+          }
+          handles->InsertNextPoint(p.Column, p.Row, 0);
+        }
+        if (handles->GetNumberOfPoints() < 3)
+        {
+          throw std::runtime_error(what + " has " + std::to_string(handles->GetNumberOfPoints()) +
+            (handles->GetNumberOfPoints() == 1 ? " point" : " points") + "; it needs at least 3");
+        }
+        if (!slices.FindIndex(one.Slice))
+        {
+          throw std::runtime_error(what + " is in a slice that is not there; " + range);
+        }
+        if (!slices.HasPlace(one.Slice))
+        {
+          leftOut << (leftOut.str().empty() ? "" : "; ") << what;
+          continue;
+        }
+        const lacuna::Matrix4 place = slices.GetPixelToSpace(one.Slice);
+        vtkNew<vtkPoints> curve;
+        const int steps = vtkLacunaOutlineTools::MakeCurve(handles, this->Smooth, curve);
+        double crossing[3];
+        if (vtkLacunaOutlineTools::FindCrossing(curve, crossing))
+        {
+          vtkWarningMacro(<< what << " crosses itself at column " << crossing[0] << ", row "
+                          << crossing[1] << ": the surface will be wrong there. Move its points");
+        }
+        const vtkIdType begin = points->GetNumberOfPoints();
+        lines->InsertNextCell(static_cast<int>(curve->GetNumberOfPoints() + 1));
+        for (vtkIdType i = 0; i < curve->GetNumberOfPoints(); ++i)
+        {
+          double x[3];
+          curve->GetPoint(i, x);
+          const float at[3] = { static_cast<float>(x[0]), static_cast<float>(x[1]),
+            static_cast<float>(one.Slice) };
+          pixel->InsertNextTypedTuple(at);
+          isHandle->InsertNextValue(i % steps == 0 ? 1 : 0);
+          lines->InsertCellPoint(points->InsertNextPoint(place.Point({ x[0], x[1], 0 }).data()));
+        }
+        lines->InsertCellPoint(begin);
+        structures->InsertNextValue(one.Structure);
+        names->InsertNextValue(this->GetName(one.Structure));
+        numbers->InsertNextValue(one.Outline);
+        sliceNumbers->InsertNextValue(one.Slice);
+        colors->InsertNextTypedTuple(this->GetColor(one.Structure).data());
+      }
+      if (!leftOut.str().empty())
+      {
+        vtkWarningMacro(<< "left out, since their slices have no usable pose: " << leftOut.str());
+      }
+      output->SetPoints(points);
+      output->SetLines(lines);
+      output->GetPointData()->AddArray(pixel);
+      output->GetPointData()->AddArray(isHandle);
+      output->GetCellData()->SetScalars(structures);
+      for (vtkAbstractArray* array : { static_cast<vtkAbstractArray*>(names.Get()),
+             static_cast<vtkAbstractArray*>(numbers.Get()),
+             static_cast<vtkAbstractArray*>(sliceNumbers.Get()),
+             static_cast<vtkAbstractArray*>(colors.Get()) })
+      {
+        output->GetCellData()->AddArray(array);
+      }
+      const std::string parameters = lacuna::ParameterText()
+                                       .Add("Outlines", static_cast<int>(done.size()))
+                                       .Add("OutlinePoints", static_cast<int>(this->Points.size()))
+                                       .Add("Smooth", this->Smooth)
+                                       .Get();
+      vtkLacunaProvenance::Record(output, this, { input }, parameters);
+      vtkLacunaProvenance::Record(
+        picture, this, { input }, lacuna::ParameterText().Add("Slice", this->Slice).Get());
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "OutlinePoints: " << this->Points.size() << "\n";
+  os << indent << "StructureNames: " << this->Names.size() << "\n";
+  os << indent << "StructureColors: " << this->Colors.size() << "\n";
+  os << indent << "Smooth: " << this->Smooth << "\n";
+  os << indent << "Slice: " << this->Slice << "\n";
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkLacunaSliceOutliner
+ * @brief   Outlines of structures, drawn in slices, in space
+ *
+ * Input: tracked slices (vtkLacunaTrackedSlices.h), or a volume, whose slices are its x-y planes. Outlines
+ * are kept in pixels of the slice: columns, rows and slices of tracked slices are those of the contract;
+ * those of a volume are voxel indices. They stay in their slices when these are placed anew.
+ *
+ * Output 0: vtkPolyData, mm, a closed line for each outline (its first point again at its end). Cell data:
+ * | array          | type              | meaning                                    |
+ * |----------------|-------------------|--------------------------------------------|
+ * | Structure      | int               | number, 1 or more; the active scalars      |
+ * | StructureName  | string            |                                            |
+ * | Outline        | int               | number, as given                           |
+ * | SliceNumber    | int               |                                            |
+ * | StructureColor | unsigned char x 3 | red, green, blue                           |
+ * Point data: Pixel (float x 3: column, row, slice), and Handle (unsigned char: 1 where a point was given,
+ * 0 where the curve goes between them).
+ *
+ * Output 1: vtkStructuredGrid, mm, the slice of number Slice, one point a pixel, with its grey levels. Field
+ * data: PixelSize (double x 2, mm from column to column and from row to row).
+ *
+ * A slice without a usable pose has no place: its outlines are left out with a warning, and as Slice it is an
+ * error. Errors: slices that are not calibrated, an outline of fewer than three points, in two slices, or in
+ * a slice that is not there, points that are not finite.
+ *
+ * Both outputs are whole, on the first rank.
+ */
+#ifndef vtkLacunaSliceOutliner_h
+#define vtkLacunaSliceOutliner_h
+
+#include "vtkLacunaFiltersOutlinesModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+#include <array>  // for colours
+#include <string> // for names
+#include <vector> // for points
+
+class vtkImageData;
+class vtkStructuredGrid;
+
+class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaSliceOutliner : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkLacunaSliceOutliner* New();
+  vtkTypeMacro(vtkLacunaSliceOutliner, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /// Points of outlines, those of one outline in order and together. Each has the number of its structure
+  /// (1 or more) and of its outline (one for each outline of the structure), the slice's number, column and
+  /// row. Pixel (0, 0) has its middle at column 0, row 0. Default: none.
+  void AddOutlinePoint(double structure, double outline, double slice, double column, double row);
+  void RemoveAllOutlinePoints();
+  ///@}
+
+  ///@{
+  /// Names of the structures 1, 2, ...; without one, "Structure" and the number.
+  void AddStructureName(const char* name);
+  void RemoveAllStructureNames();
+  ///@}
+
+  ///@{
+  /// Colours of the structures 1, 2, ..., red, green, blue from 0 to 1; without one, one of eight of their own.
+  void AddStructureColor(double red, double green, double blue);
+  void RemoveAllStructureColors();
+  ///@}
+
+  ///@{
+  /// Whether a smooth closed curve joins the points (vtkLacunaOutlineTools::MakeCurve), or straight lines.
+  /// Default: on.
+  vtkSetMacro(Smooth, bool);
+  vtkGetMacro(Smooth, bool);
+  vtkBooleanMacro(Smooth, bool);
+  ///@}
+
+  ///@{
+  /// Number of the slice of output 1: that of a sweep, or a voxel index. Default: 0.
+  vtkSetMacro(Slice, int);
+  vtkGetMacro(Slice, int);
+  ///@}
+
+  /// Numbers of the first and the last slice of the input, as it is now; 0 and 0 without one.
+  int* GetSliceRange() VTK_SIZEHINT(2);
+
+protected:
+  vtkLacunaSliceOutliner();
+  ~vtkLacunaSliceOutliner() override = default;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestUpdateExtent(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkLacunaSliceOutliner(const vtkLacunaSliceOutliner&) = delete;
+  void operator=(const vtkLacunaSliceOutliner&) = delete;
+
+  std::string GetName(int structure) const;
+  std::array<unsigned char, 3> GetColor(int structure) const;
+
+  struct Point
+  {
+    int Structure, Outline, Slice;
+    double Column, Row;
+  };
+  std::vector<Point> Points;
+  std::vector<std::string> Names;
+  std::vector<std::array<double, 3>> Colors;
+  bool Smooth = true;
+  int Slice = 0;
+  int SliceRange[2] = { 0, 0 };
+};
+#endif

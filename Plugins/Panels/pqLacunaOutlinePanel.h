@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The panel in which outlines of a Slice Outliner are drawn.
+#ifndef pqLacunaOutlinePanel_h
+#define pqLacunaOutlinePanel_h
+
+#include "pqLacunaOutlineCanvas.h"
+
+#include <QDockWidget>
+#include <QPointer>
+#include <QPolygonF>
+#include <QTimer>
+#include <QVector>
+
+#include "vtkSmartPointer.h"
+
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QSlider;
+class QSpinBox;
+class QTableWidget;
+class QToolButton;
+class pqPipelineSource;
+class pqView;
+class vtkImageData;
+class vtkPoints;
+
+/// Opens itself when a Slice Outliner is applied or selected. What is drawn becomes the filter's properties at
+/// once, and a filter Outlined Structures behind it makes surfaces and the table.
+class pqLacunaOutlinePanel : public QDockWidget
+{
+  Q_OBJECT
+  typedef QDockWidget Superclass;
+
+public:
+  explicit pqLacunaOutlinePanel(QWidget* parent);
+  ~pqLacunaOutlinePanel() override;
+
+private Q_SLOTS:
+  void FindSource();
+  void SourceUpdated();
+  void ShowSlice(int slice);
+  void Step(int slices);
+  void AddOutline(const QPolygonF& points, bool isFreehand);
+  void MoveOutline(int shown, const QPolygonF& handles);
+  void TraceOutline(const QPointF& place, const QRectF& region);
+  void CopyOutline();
+  void DeleteOutline();
+  void AddStructure();
+  void ChooseColor();
+  void Rename();
+  void Undo();
+  void Redo();
+  void Save();
+  void Load();
+
+private:
+  static constexpr int LevelSteps = 1000; ///< of the slider, over the window
+
+  struct Outline
+  {
+    int Structure; ///< from 1 on
+    int Number;
+    int Slice;
+    QPolygonF Handles;
+    bool operator==(const Outline& other) const
+    {
+      return this->Structure == other.Structure && this->Number == other.Number &&
+        this->Slice == other.Slice && this->Handles == other.Handles;
+    }
+  };
+  struct Drawing ///< what Undo brings back
+  {
+    QVector<Outline> Outlines;
+    QStringList Names;
+    QVector<QColor> Colors;
+  };
+
+  void Build();
+  QWidget* BuildTools();
+  QWidget* BuildResults();
+  void Read();                       ///< the properties
+  void Push(const Drawing& drawing); ///< makes it the properties, and remembers what was
+  void Write(const Drawing& drawing);
+  void ReadPicture();
+  void ProposeLevel();
+  void ShowPicture();
+  void ShowOutlines();
+  void ShowStructures();
+  void ShowTable();
+  void Attach(); ///< a filter of surfaces, and how both are shown
+  void LookAtSlice(pqView* view);
+  int GetStructure() const;
+  static QColor GetOwnColor(int n);
+  int NextNumber(int structure) const;
+  void Tell(const QString& message);
+  QPolygonF Snapped(const QPolygonF& handles) const;
+  QPointF GetFirstPixel() const; ///< of the picture, column and row
+  static void ToPoints(const QPolygonF& places, vtkPoints* points);
+  static QPolygonF ToPlaces(vtkPoints* points);
+
+  QPointer<pqPipelineSource> Source;
+  QPointer<pqPipelineSource> Surfaces;
+  bool IsReady = false;  ///< Source was applied
+  bool IsPlaced = false; ///< the camera sees the slice
+  Drawing Now;
+  QVector<Drawing> Before;
+  QVector<Drawing> After;
+  QVector<int> Shown; ///< indices of the outlines in the picture
+  int Slice = 0;
+  vtkSmartPointer<vtkImageData> Picture; ///< in columns and rows
+  double Window[2] = { 0, 0 };           ///< darkest and brightest
+  bool HasWindow = false;
+  bool IsWriting = false;
+  QTimer SliceTimer;
+
+  pqLacunaOutlineCanvas* Canvas = nullptr;
+  QComboBox* Structures = nullptr;
+  QToolButton* ColorButton = nullptr;
+  QCheckBox* Snap = nullptr;
+  QWidget* LevelRow = nullptr;
+  QSlider* Level = nullptr;
+  QSlider* SliceSlider = nullptr;
+  QSpinBox* SliceNumber = nullptr;
+  QLabel* Summary = nullptr;
+  QTableWidget* Table = nullptr;
+  QDoubleSpinBox* RegistrationError = nullptr;
+  QToolButton* UndoButton = nullptr;
+  QToolButton* RedoButton = nullptr;
+};
+#endif
