@@ -6,7 +6,7 @@
 set(lacuna_vtk_components
   CommonComputationalGeometry CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
   CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry FiltersModeling
-  FiltersSources ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML ParallelCore)
+  FiltersSources ImagingCore ImagingGeneral IOCore IOGeometry IOImage IOXML jsoncpp ParallelCore)
 if (LACUNA_WITH_PARAVIEW)
   # With COMPONENTS, Debian 12 needs few -dev packages next to paraview-dev; without, about
   # 15 more. RemotingViews brings the X11 and GLEW targets of the C++ rendering tests.

@@ -28,7 +28,8 @@ PIPELINES = [
      "PressOrientation", "MillingToolPath"],
     ["ScanRegion", "ProbeCalibration", "TemporalCalibration", "SweptVolume"],
     ["OccludedAngle", "OcclusionSurface"]]
-SMALL = {"SkullBone": 2, "ScanRegion": 2, "TemporalCalibration": 1, "TrackedSliceWriter": 1, "SplineLoop": 1, "VolumeReader": 1}
+SMALL = {"SkullBone": 2, "ScanRegion": 2, "TemporalCalibration": 1, "TrackedSliceWriter": 1, "SplineLoop": 1, "VolumeReader": 1,
+         "OutlineReader": 0}
 
 
 def load():

@@ -38,6 +38,8 @@ MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
 FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlinedStructures", "PressOrientation",
          "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
+FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "PressOrientation",
+         "RBFSurface", "ScanRegion", "SkullImplant", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so
 REFUSED = {"PolhemusVideoSource"}

@@ -36,6 +36,7 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaOccludedAngle": ("NumberOfDirections", 0),
     "LacunaOcclusionSurface": ("Smoothing", -1),
     "LacunaOutlinedStructures": ("Smoothing", -1),
+    "LacunaOutlineReader": ("FileName", "none"),
     "LacunaPhantomSweep": ("NumberOfSlices", 0),
     "LacunaPressOrientation": ("FlangeWidth", -1),
     "LacunaProbeCalibration": ("PixelSpacing", -1),

@@ -78,6 +78,11 @@ def make_files(test, *series):
         file.write(b"NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 12 10 8\nencoding: raw\n"
                    b"space directions: (0.6,0.8,0) (0.8,-0.6,0) (0,0,-2)\nspace origin: (5,-6,7)\n\n"
                    + random.integers(0, 255, 960).astype(np.uint8).tobytes())
+    with open(path("outlines.csv"), "w", encoding="ascii") as file:  # of a ball
+        file.write("structure,outline,x,y,z\n")
+        for n, (z, angles) in enumerate((z, np.arange(0, 2 * np.pi, 0.5)) for z in (-8, -4, 0, 4, 8)):
+            radius = np.sqrt(100 - z ** 2)
+            file.writelines(f"Ball,{n},{radius * np.cos(a)},{radius * np.sin(a)},{z}\n" for a in angles)
     for program in series:
         subprocess.run([program, path("series")], check=True, stdout=subprocess.DEVNULL)
     remove_all()
@@ -125,6 +130,7 @@ def files():
     RBFInterpolator(registrationName="Of turned", Input=turned, ScalarArray="Intensity", Kernel="Linear", OutputSpacing=[4, 4, 4])
     corners = Sphere(registrationName="Corners", Radius=9, ThetaResolution=4, PhiResolution=4)
     RBFImageWarp(registrationName="Turned and warped", Input=turned, Landmarks=corners, Targets=corners)
+    OutlineReader(registrationName="Outlines", FileName=path("outlines.csv"))
     if os.path.isdir(path("series/oblique")):
         CTSeriesReader(registrationName="CT", FileName=path("series/oblique"), MissingSlices="Interpolate")
 

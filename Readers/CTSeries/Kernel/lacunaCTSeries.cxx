@@ -267,6 +267,10 @@ std::string CTSeriesList::Describe() const
 std::string WhyNotInVolume(const CTFrame& frame)
 {
   const CTFileHeader& header = *frame.Header;
+  if (header.Modality == "RTSTRUCT")
+  {
+    return "is an RT structure set, not CT (0008,0060); open it with Outline Reader";
+  }
   if (header.Modality != "CT")
   {
     return header.Modality.empty() ? "has no Modality (0008,0060)"

@@ -17,7 +17,6 @@ namespace
 {
 constexpr std::int64_t PreambleSize = 132;
 constexpr std::uint32_t Undefined = 0xFFFFFFFF;
-constexpr std::int64_t LongestValue = 16384; // kept in memory
 constexpr int DeepestSequence = 16;
 constexpr DicomTag GroupLengthTag = 0x00020000;
 constexpr DicomTag TransferSyntaxTag = 0x00020010;
@@ -36,22 +35,15 @@ std::string Name(DicomTag tag)
   std::snprintf(text, sizeof(text), "(%04X,%04X)", tag >> 16, tag & 0xFFFFU);
   return text;
 }
-
-// Sequences that matter, for files that do not say what is one.
-bool IsKnownSequence(DicomTag tag)
-{
-  static const std::vector<DicomTag> known = { 0x00189329, 0x00209111, 0x00209113, 0x00209116,
-    0x00289110, 0x00289145, 0x52009229, 0x52009230 };
-  return std::find(known.begin(), known.end(), tag) != known.end();
-}
 }
 
 /// Reads elements one after the other; no length is believed that goes beyond what holds it.
 class DicomParser
 {
 public:
-  explicit DicomParser(const std::string& path)
+  DicomParser(const std::string& path, const DicomSelection& selection)
     : Path(path)
+    , Selection(selection)
     , Bytes(path)
   {
   }
@@ -91,6 +83,11 @@ private:
     }
     return number;
   }
+  bool IsKnownSequence(DicomTag tag) const
+  {
+    const std::vector<DicomTag>& known = this->Selection.Sequences;
+    return std::find(known.begin(), known.end(), tag) != known.end();
+  }
   Element ReadElement(std::int64_t offset, bool implicit, DicomTag before);
   std::int64_t ReadValue(
     const Element& element, DicomDataSet& data, std::int64_t end, bool implicit, int depth);
@@ -103,6 +100,7 @@ private:
   void ReadFragments(DicomFile& file);
 
   std::string Path;
+  const DicomSelection& Selection;
   FileBytes Bytes;
   bool BigEndian = false;
 };
@@ -143,8 +141,8 @@ std::int64_t DicomParser::ReadValue(
 {
   const bool undefined = element.Length == Undefined;
   const bool sequence = element.Vr == "SQ" || (undefined && (implicit || element.Vr == "UN")) ||
-    (element.Vr.empty() && IsKnownSequence(element.Tag));
-  if (sequence && !undefined && !IsKnownSequence(element.Tag) &&
+    (element.Vr.empty() && this->IsKnownSequence(element.Tag));
+  if (sequence && !undefined && !this->IsKnownSequence(element.Tag) &&
     element.Length <= end - element.Value)
   {
     return element.Value + element.Length;
@@ -155,7 +153,7 @@ std::int64_t DicomParser::ReadValue(
     // a sequence of unknown type is implicit (CP 246)
     const std::int64_t next =
       this->ReadSequence(element, end, items, implicit || element.Vr == "UN", depth + 1);
-    if (IsKnownSequence(element.Tag) &&
+    if (this->IsKnownSequence(element.Tag) &&
       !data.Sequences.emplace(element.Tag, std::move(items)).second)
     {
       this->Fail("has sequence " + Name(element.Tag) + " twice");
@@ -172,7 +170,7 @@ std::int64_t DicomParser::ReadValue(
       std::to_string(element.Length) + " bytes, " +
       std::to_string(std::max<std::int64_t>(0, end - element.Value)) + " are there");
   }
-  if (element.Length <= LongestValue && (element.Tag >> 16) % 2 == 0)
+  if (element.Length <= this->Selection.LongestValue && (element.Tag >> 16) % 2 == 0)
   {
     const unsigned char* bytes = this->Get(element.Value, element.Length, element.Tag);
     const std::string value(
@@ -468,8 +466,8 @@ bool IsDicomFile(const std::string& path)
 }
 
 //------------------------------------------------------------------------------
-DicomFile ReadDicomFile(const std::string& path)
+DicomFile ReadDicomFile(const std::string& path, const DicomSelection& selection)
 {
-  return DicomParser(path).Parse();
+  return DicomParser(path, selection).Parse();
 }
 }

@@ -23,7 +23,16 @@ struct InflatedBytes;
 /// Group and element as one number: 0x00280010.
 using DicomTag = std::uint32_t;
 
-/// Elements by tag. Values of more than a few KiB are not kept, private ones neither.
+/// What is kept of a file. The default is what images need.
+struct DicomSelection
+{
+  /// Sequences whose items are kept. Files that do not say what is a sequence have one where these are.
+  std::vector<DicomTag> Sequences = { 0x00189329, 0x00209111, 0x00209113, 0x00209116, 0x00289110,
+    0x00289145, 0x52009229, 0x52009230 };
+  std::int64_t LongestValue = 16384; ///< bytes; longer values are left out
+};
+
+/// Elements by tag, without private ones and what a DicomSelection leaves out.
 class DicomDataSet
 {
 public:
@@ -80,6 +89,6 @@ bool IsDicomFile(const std::string& path);
 
 /// Throws NotDicomError naming the file, or std::runtime_error naming it and the element when it is
 /// cut off before its pixels or malformed.
-DicomFile ReadDicomFile(const std::string& path);
+DicomFile ReadDicomFile(const std::string& path, const DicomSelection& selection = {});
 }
 #endif

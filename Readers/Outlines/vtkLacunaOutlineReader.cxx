@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaOutlineReader.h"
+
+#include "lacunaMarkups.h"
+#include "lacunaOutlineFile.h"
+#include "lacunaOutlineTable.h"
+#include "lacunaParameterText.h"
+#include "lacunaStructureSet.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkLacunaCoordinates.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaReading.h"
+#include "vtkLacunaRequest.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+namespace
+{
+lacuna::OutlineSet ReadOutlines(const std::string& path)
+{
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+  {
+    throw std::runtime_error(path + ": there is no such file");
+  }
+  switch (lacuna::GetOutlineFileKind(path))
+  {
+    case lacuna::OutlineFileKind::Dicom:
+      return lacuna::ReadStructureSet(path);
+    case lacuna::OutlineFileKind::Markups:
+      return lacuna::ReadMarkups(path);
+    default:
+      return lacuna::ReadOutlineTable(path);
+  }
+}
+}
+
+vtkStandardNewMacro(vtkLacunaOutlineReader);
+
+//------------------------------------------------------------------------------
+vtkLacunaOutlineReader::vtkLacunaOutlineReader()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaOutlineReader::~vtkLacunaOutlineReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlineReader::CanReadFile(const char* fileName)
+{
+  return fileName && lacuna::IsOutlineFile(fileName) ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlineReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->Outlines.reset();
+  this->Warned = false;
+  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
+    "outlines in a file (.mrk.json, .dcm, .csv)",
+    [&]
+    {
+      this->Outlines = std::make_unique<lacuna::OutlineSet>(ReadOutlines(this->FileName));
+      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    }));
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlineReader::FillOutput(vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> lines;
+  vtkNew<vtkIntArray> structures;
+  structures->SetName("Structure");
+  vtkNew<vtkStringArray> names;
+  names->SetName("StructureName");
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Outline");
+  vtkNew<vtkIntArray> slices;
+  slices->SetName("SliceNumber");
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetName("StructureColor");
+  colors->SetNumberOfComponents(3);
+  for (const lacuna::StructureOutline& outline : this->Outlines->GetOutlines())
+  {
+    const vtkIdType first = points->GetNumberOfPoints();
+    const auto count = static_cast<vtkIdType>(outline.Points.size());
+    lines->InsertNextCell(static_cast<int>(count + 1));
+    for (const lacuna::Vec3& point : outline.Points)
+    {
+      lines->InsertCellPoint(points->InsertNextPoint(point.data()));
+    }
+    lines->InsertCellPoint(first);
+    const lacuna::OutlinedStructure& structure = this->Outlines->GetStructures()[outline.Structure];
+    structures->InsertNextValue(static_cast<int>(outline.Structure) + 1);
+    names->InsertNextValue(structure.Name);
+    numbers->InsertNextValue(outline.Number);
+    slices->InsertNextValue(outline.Slice);
+    colors->InsertNextTypedTuple(structure.Color.data());
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+  vtkCellData* data = output->GetCellData();
+  data->AddArray(structures);
+  data->AddArray(names);
+  data->AddArray(numbers);
+  data->AddArray(slices);
+  data->SetScalars(colors);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlineReader::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  const bool isFirst = vtkLacunaRequest::IsFirst(outputs); // which has all
+  return vtkLacunaExecution::RunAgreed(this, outputs, true,
+    [&](vtkLacunaExecution&)
+    {
+      vtkPolyData* output = vtkPolyData::GetData(outputs);
+      if (isFirst)
+      {
+        this->FillOutput(output);
+      }
+      if (this->Outlines->IsPatient)
+      {
+        vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+      }
+      std::error_code ignored;
+      vtkLacunaProvenance::Record(output, this, {},
+        lacuna::ParameterText()
+          // tells which file it was to one who has it, and no name of a patient
+          .Add("FileName",
+            "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
+          .Add("FileSize", std::filesystem::file_size(this->FileName, ignored))
+          .Get());
+      for (const std::string& warning : this->Outlines->Warnings)
+      {
+        if (isFirst && !this->Warned)
+        {
+          vtkWarningMacro(<< this->FileName << ": " << warning);
+        }
+      }
+      this->Warned = true;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlineReader::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName ? this->FileName : "") << "\n";
+}
