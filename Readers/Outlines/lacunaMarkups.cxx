@@ -28,7 +28,7 @@ constexpr std::size_t LongestShown = 40;
 std::string Show(const std::string& text)
 {
   return "'" + DicomTextToUtf8(text.substr(0, LongestShown), "ISO_IR 192") +
-    (text.size() > LongestShown ? "…'" : "'");
+    (text.size() > LongestShown ? "...'" : "'");
 }
 
 // "Liver" of "folder/Liver.mrk.json"

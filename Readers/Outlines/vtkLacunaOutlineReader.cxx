@@ -12,6 +12,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaCoordinates.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaProvenance.h"
@@ -28,6 +29,8 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace
 {
@@ -89,45 +92,55 @@ int vtkLacunaOutlineReader::RequestInformation(
 //------------------------------------------------------------------------------
 void vtkLacunaOutlineReader::FillOutput(vtkPolyData* output)
 {
+  const std::vector<lacuna::StructureOutline>& outlines = this->Outlines->GetOutlines();
+  const auto count = static_cast<vtkIdType>(outlines.size());
+  vtkIdType pointCount = 0;
+  for (const lacuna::StructureOutline& outline : outlines)
+  {
+    pointCount += static_cast<vtkIdType>(outline.Points.size());
+  }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
+  vtkLacunaArrays::SetNumberOfPoints(points, pointCount);
   vtkNew<vtkCellArray> lines;
+  vtkLacunaArrays::Reserve(lines, count, pointCount + count);
   vtkNew<vtkIntArray> structures;
-  structures->SetName("Structure");
   vtkNew<vtkStringArray> names;
-  names->SetName("StructureName");
   vtkNew<vtkIntArray> numbers;
-  numbers->SetName("Outline");
   vtkNew<vtkIntArray> slices;
-  slices->SetName("SliceNumber");
   vtkNew<vtkUnsignedCharArray> colors;
-  colors->SetName("StructureColor");
   colors->SetNumberOfComponents(3);
-  for (const lacuna::StructureOutline& outline : this->Outlines->GetOutlines())
+  const std::pair<vtkAbstractArray*, const char*> arrays[] = { { structures, "Structure" },
+    { names, "StructureName" }, { numbers, "Outline" }, { slices, "SliceNumber" },
+    { colors, "StructureColor" } };
+  for (const auto& [array, name] : arrays)
   {
-    const vtkIdType first = points->GetNumberOfPoints();
-    const auto count = static_cast<vtkIdType>(outline.Points.size());
-    lines->InsertNextCell(static_cast<int>(count + 1));
+    array->SetName(name);
+    vtkLacunaArrays::SetNumberOfTuples(array, count);
+    output->GetCellData()->AddArray(array);
+  }
+  vtkIdType next = 0;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    const lacuna::StructureOutline& outline = outlines[static_cast<std::size_t>(cell)];
+    const lacuna::OutlinedStructure& structure = this->Outlines->GetStructures()[outline.Structure];
+    const vtkIdType first = next;
+    lines->InsertNextCell(static_cast<int>(outline.Points.size() + 1));
     for (const lacuna::Vec3& point : outline.Points)
     {
-      lines->InsertCellPoint(points->InsertNextPoint(point.data()));
+      points->SetPoint(next, point.data());
+      lines->InsertCellPoint(next++);
     }
     lines->InsertCellPoint(first);
-    const lacuna::OutlinedStructure& structure = this->Outlines->GetStructures()[outline.Structure];
-    structures->InsertNextValue(static_cast<int>(outline.Structure) + 1);
-    names->InsertNextValue(structure.Name);
-    numbers->InsertNextValue(outline.Number);
-    slices->InsertNextValue(outline.Slice);
-    colors->InsertNextTypedTuple(structure.Color.data());
+    structures->SetValue(cell, static_cast<int>(outline.Structure) + 1);
+    names->SetValue(cell, structure.Name);
+    numbers->SetValue(cell, outline.Number);
+    slices->SetValue(cell, outline.Slice);
+    colors->SetTypedTuple(cell, structure.Color.data());
   }
   output->SetPoints(points);
   output->SetLines(lines);
-  vtkCellData* data = output->GetCellData();
-  data->AddArray(structures);
-  data->AddArray(names);
-  data->AddArray(numbers);
-  data->AddArray(slices);
-  data->SetScalars(colors);
+  output->GetCellData()->SetActiveScalars("StructureColor");
 }
 
 //------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 // targets of their own (Testing/Fuzz).
 #include "lacunaSubject.h"
 #include "lacunaTrial.h"
+#include "vtkLacunaOutlineReader.h"
 #include "vtkLacunaPhantomSweep.h"
 #include "vtkLacunaTrackedSliceReader.h"
 #include "vtkLacunaTrackedSliceWriter.h"
@@ -185,6 +186,35 @@ Subject MakeVolumeReader()
   return subject;
 }
 
+/// Two outlines in each of two formats.
+const std::vector<std::string>& GetOutlines()
+{
+  static const std::vector<std::string> files = []
+  {
+    const std::vector<std::string> made = { InFolder("outlines.csv"), InFolder("Liver.mrk.json") };
+    Store(made[0],
+      "structure,outline,slice,x,y,z\nLiver,1,4,0,0,5\nLiver,1,4,9,0,5\nLiver,1,4,0,7,5\n"
+      "Cyst,2,,1,1,6\nCyst,2,,2,1,6\nCyst,2,,2,2,6\nCyst,2,,1,2,6\n");
+    const std::string curve = "{\"type\": \"ClosedCurve\", \"coordinateSystem\": \"RAS\", "
+                              "\"coordinateUnits\": \"mm\", \"controlPoints\": ["
+                              "{\"position\": [0.5, 1, 2]}, {\"position\": [5, 1, 2]}, "
+                              "{\"position\": [5, 8, 2]}]}";
+    Store(made[1], "{\"markups\": [" + curve + ", " + curve + "]}\n");
+    return made;
+  }();
+  return files;
+}
+
+Subject MakeOutlineReader()
+{
+  using T = vtkLacunaOutlineReader;
+  Subject subject{ "OutlineReader", NewOf<T>, [](Dice&) -> Inputs { return {}; },
+    { FileName<T>(GetOutlines, MakeDamaged) } };
+  subject.Prepare = [](vtkAlgorithm* algorithm)
+  { Cast<T>(algorithm)->SetFileName(GetOutlines()[0].c_str()); };
+  return subject;
+}
+
 #ifdef LACUNA_WITH_CT_SERIES
 const std::vector<std::string>& GetSeries()
 {
@@ -277,6 +307,7 @@ void AddReaderSubjects(std::vector<Subject>& subjects)
   { Cast<T>(algorithm)->SetFileName(GetSequences()[0].c_str()); };
   subjects.push_back(subject);
   subjects.push_back(MakeVolumeReader());
+  subjects.push_back(MakeOutlineReader());
 #ifdef LACUNA_WITH_CT_SERIES
   subjects.push_back(MakeCTSeriesReader());
 #endif

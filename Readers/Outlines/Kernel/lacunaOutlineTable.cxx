@@ -37,7 +37,7 @@ constexpr std::size_t LongestShown = 40;   // bytes of a value in a message
 std::string Show(std::string_view value)
 {
   const std::string shown(value.substr(0, LongestShown));
-  return "'" + DicomTextToUtf8(shown, "ISO_IR 192") + (value.size() > LongestShown ? "…'" : "'");
+  return "'" + DicomTextToUtf8(shown, "ISO_IR 192") + (value.size() > LongestShown ? "...'" : "'");
 }
 
 // Walks through records; a quoted value may have commas, line breaks and doubled quotes.
