@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace lacuna
@@ -35,7 +36,7 @@ std::string Show(const std::string& text)
 std::string GetStem(const std::string& path)
 {
   std::string name = std::filesystem::path(path).filename().string();
-  for (const std::string ending : { ".json", ".mrk" })
+  for (const std::string_view ending : { ".json", ".mrk" })
   {
     if (name.size() > ending.size() &&
       name.compare(name.size() - ending.size(), ending.size(), ending) == 0)

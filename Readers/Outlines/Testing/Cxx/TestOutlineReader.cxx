@@ -85,7 +85,7 @@ void TestErrors()
   test.Update();
   LACUNA_CHECK_CONTAINS(test.Errors, "FileName is not set; it must be outlines in a file");
   const std::string folder = std::filesystem::path(test.File.GetPath()).parent_path().string();
-  for (const std::string path : { folder, std::string("/dev/zero") })
+  for (const std::string& path : { folder, std::string("/dev/zero") })
   {
     test.Reader->SetFileName(path.c_str());
     test.Update();
