@@ -109,6 +109,17 @@ def volume(slices):
     return VolumeReader(FileName=path("volume.nii"))
 
 
+def outlines(count):
+    """A table of so many outlines of 1000 points each."""
+    angles = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
+    points = [f"{50 * x},{40 * y}" for x, y in zip(np.cos(angles), np.sin(angles))]
+    with open(path("outlines.csv"), "w", encoding="ascii") as file:
+        file.write("structure,outline,x,y,z\n")
+        for n in range(count):
+            file.writelines(f"Liver,{n},{point},{n / 10}\n" for point in points)
+    return OutlineReader(FileName=path("outlines.csv"))
+
+
 def floor(slices, degrees):
     """Hundreds of scans of the floor of a bath, to and fro and tilted to all sides by so many degrees."""
     random = np.random.default_rng(1)
@@ -193,6 +204,7 @@ CASES = {
     "Tracked Slice Reader": reader,
     "CT Series Reader": series,
     "Volume Reader": volume,
+    "Outline Reader": outlines,
     "Assemble Tracked Slices": assembled,
     "Gate Slices": lambda n: GateSlices(Input=sweep(n), SpeedLimit=1e6),
     "Scan Region": lambda n: ScanRegion(Input=floor(n, 25)),

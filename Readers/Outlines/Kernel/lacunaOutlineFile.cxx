@@ -18,15 +18,15 @@ namespace
 constexpr std::int64_t Beginning = 65536; // bytes that are looked at
 constexpr std::string_view ByteOrderMark = "\xEF\xBB\xBF";
 
+// Empty when the file cannot be read.
 std::string ReadText(FileBytes& bytes, std::int64_t most)
 {
-  const std::int64_t count = std::min(bytes.GetSize(), most);
-  const unsigned char* data = bytes.Get(0, count);
-  if (!data)
+  std::string text(static_cast<std::size_t>(std::min(bytes.GetSize(), most)), '\0');
+  const auto count = static_cast<std::int64_t>(text.size());
+  if (!bytes.Read(0, count, reinterpret_cast<unsigned char*>(text.data())))
   {
     return {};
   }
-  std::string text(reinterpret_cast<const char*>(data), static_cast<std::size_t>(count));
   if (text.compare(0, ByteOrderMark.size(), ByteOrderMark) == 0)
   {
     text.erase(0, ByteOrderMark.size());
@@ -81,8 +81,7 @@ bool IsOutlineFile(const std::string& path)
 std::string ReadOutlineText(const std::string& path)
 {
   FileBytes bytes(path);
-  // twice: as it is read, and as it is kept
-  RequireMemory(path + ": its text", 2 * static_cast<double>(bytes.GetSize()));
+  RequireMemory(path + ": its text", static_cast<double>(bytes.GetSize()));
   std::string text = ReadText(bytes, bytes.GetSize());
   if (text.empty())
   {

@@ -8,6 +8,7 @@ SIZES = {
     "Tracked Slice Reader": (100, 400),
     "CT Series Reader": (60, 240),
     "Volume Reader": (60, 240),
+    "Outline Reader": (500, 2000),
     "Assemble Tracked Slices": (50, 200),
     "Gate Slices": (100, 400),
     "Scan Region": (400, 1600),
