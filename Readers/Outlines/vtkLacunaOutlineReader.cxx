@@ -36,11 +36,6 @@ namespace
 {
 lacuna::OutlineSet ReadOutlines(const std::string& path)
 {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-  {
-    throw std::runtime_error(path + ": there is no such file");
-  }
   switch (lacuna::GetOutlineFileKind(path))
   {
     case lacuna::OutlineFileKind::Dicom:
@@ -51,48 +46,10 @@ lacuna::OutlineSet ReadOutlines(const std::string& path)
       return lacuna::ReadOutlineTable(path);
   }
 }
-}
 
-vtkStandardNewMacro(vtkLacunaOutlineReader);
-
-//------------------------------------------------------------------------------
-vtkLacunaOutlineReader::vtkLacunaOutlineReader()
+void FillOutput(const lacuna::OutlineSet& set, vtkPolyData* output)
 {
-  this->SetNumberOfInputPorts(0);
-}
-
-//------------------------------------------------------------------------------
-vtkLacunaOutlineReader::~vtkLacunaOutlineReader()
-{
-  this->SetFileName(nullptr);
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaOutlineReader::CanReadFile(const char* fileName)
-{
-  return fileName && lacuna::IsOutlineFile(fileName) ? 1 : 0;
-}
-
-//------------------------------------------------------------------------------
-int vtkLacunaOutlineReader::RequestInformation(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
-{
-  this->Outlines.reset();
-  this->Warned = false;
-  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
-    "outlines in a file (.mrk.json, .dcm, .csv)",
-    [&]
-    {
-      this->Outlines = std::make_unique<lacuna::OutlineSet>(ReadOutlines(this->FileName));
-      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
-    }));
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaOutlineReader::FillOutput(vtkPolyData* output)
-{
-  const std::vector<lacuna::StructureOutline>& outlines = this->Outlines->GetOutlines();
+  const std::vector<lacuna::StructureOutline>& outlines = set.GetOutlines();
   const auto count = static_cast<vtkIdType>(outlines.size());
   vtkIdType pointCount = 0;
   for (const lacuna::StructureOutline& outline : outlines)
@@ -123,7 +80,7 @@ void vtkLacunaOutlineReader::FillOutput(vtkPolyData* output)
   for (vtkIdType cell = 0; cell < count; ++cell)
   {
     const lacuna::StructureOutline& outline = outlines[static_cast<std::size_t>(cell)];
-    const lacuna::OutlinedStructure& structure = this->Outlines->GetStructures()[outline.Structure];
+    const lacuna::OutlinedStructure& structure = set.GetStructures()[outline.Structure];
     const vtkIdType first = next;
     lines->InsertNextCell(static_cast<int>(outline.Points.size() + 1));
     for (const lacuna::Vec3& point : outline.Points)
@@ -142,41 +99,87 @@ void vtkLacunaOutlineReader::FillOutput(vtkPolyData* output)
   output->SetLines(lines);
   output->GetCellData()->SetActiveScalars("StructureColor");
 }
+}
+
+vtkStandardNewMacro(vtkLacunaOutlineReader);
+
+//------------------------------------------------------------------------------
+vtkLacunaOutlineReader::vtkLacunaOutlineReader()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaOutlineReader::~vtkLacunaOutlineReader()
+{
+  this->SetFileName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlineReader::CanReadFile(const char* fileName)
+{
+  return fileName && lacuna::IsOutlineFile(fileName) ? 1 : 0;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaOutlineReader::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  this->SetErrorCode(vtkLacunaReading::RunInformation(this, outputs, this->FileName,
+    "outlines in a file (.mrk.json, .dcm, .csv)",
+    [&]
+    {
+      std::error_code ignored;
+      if (!std::filesystem::exists(this->FileName, ignored))
+      {
+        throw std::runtime_error(std::string(this->FileName) + ": there is no such file");
+      }
+      outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    }));
+  return 1;
+}
 
 //------------------------------------------------------------------------------
 int vtkLacunaOutlineReader::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  const bool isFirst = vtkLacunaRequest::IsFirst(outputs); // which has all
-  return vtkLacunaExecution::RunAgreed(this, outputs, true,
+  return vtkLacunaExecution::RunAgreed(this, outputs, vtkLacunaRequest::IsFirst(outputs),
     [&](vtkLacunaExecution&)
     {
-      vtkPolyData* output = vtkPolyData::GetData(outputs);
-      if (isFirst)
+      try
       {
-        this->FillOutput(output);
+        this->ReadInto(vtkPolyData::GetData(outputs));
+        this->SetErrorCode(vtkErrorCode::NoError);
       }
-      if (this->Outlines->IsPatient)
+      catch (const std::exception&)
       {
-        vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+        this->SetErrorCode(vtkErrorCode::FileFormatError);
+        throw;
       }
-      std::error_code ignored;
-      vtkLacunaProvenance::Record(output, this, {},
-        lacuna::ParameterText()
-          // tells which file it was to one who has it, and no name of a patient
-          .Add("FileName",
-            "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
-          .Add("FileSize", std::filesystem::file_size(this->FileName, ignored))
-          .Get());
-      for (const std::string& warning : this->Outlines->Warnings)
-      {
-        if (isFirst && !this->Warned)
-        {
-          vtkWarningMacro(<< this->FileName << ": " << warning);
-        }
-      }
-      this->Warned = true;
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaOutlineReader::ReadInto(vtkPolyData* output)
+{
+  const lacuna::OutlineSet outlines = ReadOutlines(this->FileName);
+  FillOutput(outlines, output);
+  if (outlines.IsPatient)
+  {
+    vtkLacunaCoordinates::Mark(output, vtkLacunaCoordinates::Patient);
+  }
+  std::error_code ignored;
+  vtkLacunaProvenance::Record(output, this, {},
+    lacuna::ParameterText()
+      // tells which file it was to one who has it, and no name of a patient
+      .Add("FileName",
+        "fnv1a:" + lacuna::HashText(std::filesystem::path(this->FileName).filename().string()))
+      .Add("FileSize", std::filesystem::file_size(this->FileName, ignored))
+      .Get());
+  for (const std::string& warning : outlines.Warnings)
+  {
+    vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
 }
 
 //------------------------------------------------------------------------------

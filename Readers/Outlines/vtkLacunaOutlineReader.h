@@ -32,13 +32,6 @@
 #include "vtkLacunaVersionCompat.h"         // for stops
 #include "vtkPolyDataAlgorithm.h"
 
-#include <memory> // for std::unique_ptr
-
-namespace lacuna
-{
-class OutlineSet;
-}
-
 class VTKLACUNAREADERSOUTLINES_EXPORT vtkLacunaOutlineReader : public vtkPolyDataAlgorithm
 {
 public:
@@ -69,10 +62,8 @@ private:
   vtkLacunaOutlineReader(const vtkLacunaOutlineReader&) = delete;
   void operator=(const vtkLacunaOutlineReader&) = delete;
 
-  void FillOutput(vtkPolyData* output);
+  void ReadInto(vtkPolyData* output);
 
   char* FileName = nullptr;
-  std::unique_ptr<lacuna::OutlineSet> Outlines; // as RequestInformation found them
-  bool Warned = false;
 };
 #endif
