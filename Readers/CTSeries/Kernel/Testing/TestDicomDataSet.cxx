@@ -142,6 +142,25 @@ TEST(DicomDataSet, DamagedAtRandom)
   }
 }
 
+TEST(DicomDataSet, KeepsWhatIsSelected)
+{
+  const Temporary folder;
+  const std::string text(20000, '1');
+  const std::string file =
+    folder.Write(Head("1.2.840.10008.1.2.1") + Short(0x00280030, "DS", text) +
+      Long(0x30060039, "SQ", Implicit(0xFFFEE000, Short(0x30060084, "IS", "7"))));
+  const DicomDataSet images = ReadDicomFile(file).Data;
+  EXPECT_TRUE(images.GetBytes(0x00280030).empty());
+  EXPECT_TRUE(images.GetItems(0x30060039).empty());
+  DicomSelection selection;
+  selection.Sequences = { 0x30060039 };
+  selection.LongestValue = 20000;
+  const DicomDataSet all = ReadDicomFile(file, selection).Data;
+  EXPECT_EQ(all.GetBytes(0x00280030), text);
+  ASSERT_EQ(all.GetItems(0x30060039).size(), 1U);
+  EXPECT_EQ(all.GetItems(0x30060039)[0].GetInteger(0x30060084), 7);
+}
+
 TEST(DicomDataSet, RefusesDepth)
 {
   const Temporary folder;

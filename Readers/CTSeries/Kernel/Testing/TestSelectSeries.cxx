@@ -91,6 +91,12 @@ TEST(SelectSeries, SaysWhichThereAre)
   const std::string empty = ErrorOf([&] { SelectSeries(none, "", "/scan", ""); });
   EXPECT_TRUE(Has(empty, "/scan: there is no CT image\n  IM4: left out, it is of modality MR"))
     << empty;
+  const CTSeriesList contours =
+    ListSeries({ MakeFrame(5, [](CTFileHeader& h) { h.Modality = "RTSTRUCT"; }) });
+  const std::string hint = ErrorOf([&] { SelectSeries(contours, "", "/scan", ""); });
+  EXPECT_TRUE(
+    Has(hint, "it is an RT structure set, not CT (0008,0060); open it with Outline Reader"))
+    << hint;
 }
 
 TEST(SelectAcquisition, ByNumber)
