@@ -14,6 +14,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -186,20 +187,31 @@ Subject MakeVolumeReader()
   return subject;
 }
 
-/// Two outlines in each of two formats.
+/// Two outlines of 300 points in each of two formats.
 const std::vector<std::string>& GetOutlines()
 {
   static const std::vector<std::string> files = []
   {
     const std::vector<std::string> made = { InFolder("outlines.csv"), InFolder("Liver.mrk.json") };
-    Store(made[0],
-      "structure,outline,slice,x,y,z\nLiver,1,4,0,0,5\nLiver,1,4,9,0,5\nLiver,1,4,0,7,5\n"
-      "Cyst,2,,1,1,6\nCyst,2,,2,1,6\nCyst,2,,2,2,6\nCyst,2,,1,2,6\n");
-    const std::string curve = "{\"type\": \"ClosedCurve\", \"coordinateSystem\": \"RAS\", "
-                              "\"coordinateUnits\": \"mm\", \"controlPoints\": ["
-                              "{\"position\": [0.5, 1, 2]}, {\"position\": [5, 1, 2]}, "
-                              "{\"position\": [5, 8, 2]}]}";
-    Store(made[1], "{\"markups\": [" + curve + ", " + curve + "]}\n");
+    std::string table = "structure,outline,slice,x,y,z\n";
+    std::string curves;
+    for (const char* const name : { "Liver", "Cyst" })
+    {
+      curves += std::string(curves.empty() ? "" : ", ") +
+        "{\"type\": \"ClosedCurve\", \"coordinateSystem\": \"RAS\", \"name\": \"" + name +
+        "\", \"controlPoints\": [";
+      for (int i = 0; i < 300; ++i)
+      {
+        const std::string x = std::to_string(50 * std::cos(i * 0.02));
+        const std::string y = std::to_string(40 * std::sin(i * 0.02));
+        table.append(name).append(",1,4,").append(x).append(",").append(y).append(",5\n");
+        curves.append(i == 0 ? "{" : ", {").append("\"position\": [");
+        curves.append(x).append(", ").append(y).append(", 5]}");
+      }
+      curves += "]}";
+    }
+    Store(made[0], table);
+    Store(made[1], "{\"markups\": [" + curves + "]}\n");
     return made;
   }();
   return files;
