@@ -107,6 +107,13 @@ def test(window):
     assert surface.SMProxy.GetXMLName() == "Contour" and surface.GetDataInformation().GetNumberOfPoints() > 100
     window.compare("FilesMacro")
 
+    # outlines: those of 3D Slicer without a question, tables by choice
+    for name, choice in (("Liver.mrk.json", None), ("liver.csv", "Outline Reader")):
+        window.open_file(path(name), choice)
+        assert GetActiveSource().SMProxy.GetXMLName() == "LacunaOutlineReader", name
+        window.apply()
+        assert fetch(GetActiveSource()).GetNumberOfLines() == 1, name
+
 
 if lacuna_window.IS_INSIDE:
     lacuna_window.inside(test)
@@ -114,6 +121,11 @@ else:
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
     write_nifti(path("turned.nii"))
+    with open(path("Liver.mrk.json"), "w", encoding="ascii") as markups:
+        markups.write('{"markups": [{"type": "ClosedCurve", "controlPoints": [{"position": [0, 0, 0]}, {"position": [9, 0, 0]}, '
+                      '{"position": [9, 7, 0]}]}]}')
+    with open(path("liver.csv"), "w", encoding="ascii") as table:
+        table.write("structure,outline,x,y,z\nLiver,1,0,0,0\nLiver,1,9,0,0\nLiver,1,9,7,0\n")
     if len(sys.argv) > 2:
         subprocess.run([sys.argv[2], path("ct")], check=True)
     said = lacuna_window.run(__file__, **{MACROS: sys.argv[1]})
