@@ -20,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 
-PACKAGES = "libvtk9-dev", "libtbb-dev"  # whose headers VTK's include
+PACKAGES = "libvtk9-dev", "libtbb-dev", "libjsoncpp-dev"  # whose headers VTK's include
 GUARDS = "vtkLacunaVersionCompat.h"
 
 
@@ -53,7 +53,7 @@ def headers(folder, suite):
                 subprocess.run(["dpkg-deb", "-x", package, unpacked], check=True)
             os.rename(unpacked, folder)
     own = os.path.join(folder, "usr", "include")
-    return [*glob.glob(os.path.join(own, "vtk-*")), own]
+    return [*glob.glob(os.path.join(own, "vtk-*")), own, os.path.join(own, "jsoncpp")]
 
 
 def stand_in(folder):
