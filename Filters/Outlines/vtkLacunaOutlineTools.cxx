@@ -8,6 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkImageGaussianSmooth.h"
 #include "vtkImageMedian3D.h"
+#include "vtkLacunaArrays.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -345,7 +346,7 @@ bool vtkLacunaOutlineTools::Trace(vtkImageData* picture, double level, const dou
   }
   vtkNew<vtkImageData> real;
   real->CopyStructure(image);
-  real->AllocateScalars(VTK_DOUBLE, 1);
+  vtkLacunaArrays::AddScalars(real, VTK_DOUBLE, "Intensity");
   double range[2];
   scalars->GetFiniteRange(range);
   // so far that the border is crossed at half a pixel where the picture is just at the level
@@ -431,7 +432,7 @@ int vtkLacunaOutlineTools::Snap(vtkImageData* picture, vtkPoints* points, double
   smooth->SetStandardDeviations(1, 1);
   vtkNew<vtkImageData> real;
   real->CopyStructure(picture);
-  real->AllocateScalars(VTK_FLOAT, 1);
+  vtkLacunaArrays::AddScalars(real, VTK_FLOAT, "Intensity");
   for (vtkIdType n = 0; n < picture->GetNumberOfPoints(); ++n)
   {
     real->GetPointData()->GetScalars()->SetComponent(

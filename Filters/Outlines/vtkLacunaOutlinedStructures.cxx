@@ -13,6 +13,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
+#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFailure.h"
 #include "vtkLacunaProvenance.h"
@@ -567,12 +568,12 @@ int vtkLacunaOutlinedStructures::RequestData(
           part->ShallowCopy(result->Surface);
           vtkNew<vtkIntArray> of;
           of->SetName("Structure");
-          of->SetNumberOfTuples(part->GetNumberOfCells());
+          vtkLacunaArrays::SetNumberOfTuples(of, part->GetNumberOfCells());
           of->FillValue(number);
           vtkNew<vtkUnsignedCharArray> color;
           color->SetName("StructureColor");
           color->SetNumberOfComponents(3);
-          color->SetNumberOfTuples(part->GetNumberOfCells());
+          vtkLacunaArrays::SetNumberOfTuples(color, part->GetNumberOfCells());
           for (int c = 0; c < 3; ++c)
           {
             color->FillComponent(c, structure.Color[c]);

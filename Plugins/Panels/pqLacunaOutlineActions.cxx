@@ -259,7 +259,7 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   this->Table = new QTableWidget(0, 5, box);
   this->Table->setObjectName("StructureTable");
   this->Table->setHorizontalHeaderLabels(
-    { tr("Structure"), tr("Outlines"), tr("Volume"), tr("Area (cm²)"), tr("Diameter (mm)") });
+    { tr("Structure"), tr("Outlines"), tr("Volume"), tr("Area (cm\u00b2)"), tr("Diameter (mm)") });
   this->Table->horizontalHeader()->setStretchLastSection(true);
   this->Table->verticalHeader()->hide();
   this->Table->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -273,11 +273,11 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   this->RegistrationError->setSingleStep(0.1);
   this->RegistrationError->setSuffix(tr(" mm"));
   this->RegistrationError->setToolTip(tr("How far a slice may lie from its true place: Slice "
-                                         "Planes shows it for a tracker. It counts for ±"));
+                                         "Planes shows it for a tracker. It counts for \u00b1"));
   auto* save =
-    MakeButton(tr("Save…"), "SaveOutlines", tr("All outlines into a CSV file, pixels and mm"));
+    MakeButton(tr("Save\u2026"), "SaveOutlines", tr("All outlines into a CSV file, pixels and mm"));
   auto* load = MakeButton(
-    tr("Load…"), "LoadOutlines", tr("Outlines of a CSV file, beside those that are there"));
+    tr("Load\u2026"), "LoadOutlines", tr("Outlines of a CSV file, beside those that are there"));
   row->addWidget(new QLabel(tr("Error of a slice's place"), box));
   row->addWidget(this->RegistrationError);
   row->addStretch(1);

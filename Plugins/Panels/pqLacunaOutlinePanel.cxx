@@ -583,7 +583,7 @@ void pqLacunaOutlinePanel::ShowTable()
     const int digits =
       error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 1, 3) : 2;
     const QString volumeText = status.isEmpty()
-      ? tr("%1 ml ± %2").arg(volume, 0, 'f', digits).arg(error, 0, 'f', digits)
+      ? tr("%1 ml \u00b1 %2").arg(volume, 0, 'f', digits).arg(error, 0, 'f', digits)
       : status;
     const QString texts[] = { name, QString::number(number("Outlines")), volumeText,
       status.isEmpty() ? QString::number(number("Area (cm2)"), 'f', 1) : QString(),
@@ -592,7 +592,7 @@ void pqLacunaOutlinePanel::ShowTable()
     {
       auto* item = new QTableWidgetItem(texts[column]);
       item->setToolTip(column == 2 && status.isEmpty()
-          ? tr("± is the standard error: of drawing, and of where the slices lie")
+          ? tr("\u00b1 is the standard error: of drawing, and of where the slices lie")
           : texts[column]);
       this->Table->setItem(row, column, item);
     }

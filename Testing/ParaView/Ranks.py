@@ -36,10 +36,8 @@ WHOLE = {"OccludedAngle", "ProbeCalibration"}
 # Some of the cells of a mesh
 MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
-FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlinedStructures", "PressOrientation",
-         "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
-FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "PressOrientation",
-         "RBFSurface", "ScanRegion", "SkullImplant", "TemporalCalibration", "TrackerSelfTest"}
+FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "OutlinedStructures",
+         "PressOrientation", "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so
 REFUSED = {"PolhemusVideoSource"}
