@@ -7,10 +7,13 @@
 #include "lacunaSkullImplant.h"
 #include "lacunaSkullRays.h"
 #include "lacunaSkullShape.h"
+#include "lacunaSkullShells.h"
+#include "lacunaSkullTemplate.h"
 #include "lacunaVolumeSymmetry.h"
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDelaunay2D.h"
 #include "vtkDoubleArray.h"
 #include "vtkIdList.h"
@@ -23,9 +26,6 @@
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
-#include "vtkLacunaScalarType.h"
-#include "vtkLacunaVolumeDirection.h"
-#include "vtkMatrix4x4.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -40,6 +40,8 @@
 #include <cstdint>
 #include <limits>
 #include <locale>
+#include <memory>
+#include <new>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -52,11 +54,15 @@ namespace
 {
 using lacuna::Vec3;
 
-constexpr double RaySpacing = 2;          // mm at 90 mm
-constexpr double Seen = 10;               // mm, the farthest bone that shows what a place is like
-constexpr double MostDistance = 30;       // mm of Point from a hole
-constexpr double AutomaticTriangle = 1;   // mm
-constexpr double SmallHole = 400;         // mm^2, below which it may be none
+constexpr double RaySpacing = 2;        // mm at 90 mm
+constexpr double Seen = 10;             // mm, the farthest bone that shows what a place is like
+constexpr double MostDistance = 30;     // mm of Point from a hole
+constexpr double AutomaticTriangle = 1; // mm
+constexpr double SmallHole = 400;       // mm^2, below which it may be none
+// A template that fits: part of the sound bone that it has to have, scale or its inverse, RMS in mm.
+constexpr double LeastCovered = 0.6;
+constexpr double MostScale = 1.5;
+constexpr double MostTemplateError = 6;
 constexpr std::int16_t LevelOfHalf = 300; // of the copy in which symmetry is sought
 
 std::string Name(const Vec3& p)
@@ -71,33 +77,6 @@ std::string Name(const Vec3& p)
 std::string Rounded(double value, double steps = 10)
 {
   return lacuna::FormatNumber(std::round(steps * value) / steps);
-}
-
-// keep gets the voxels where they must be copied.
-lacuna::VoxelVolume GetVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
-{
-  vtkLacunaVolumeDirection::Check(image);
-  vtkDataArray* scalars = image->GetPointData()->GetScalars();
-  if (!scalars || scalars->GetNumberOfComponents() != 1)
-  {
-    throw std::runtime_error(
-      "the image has no active point scalars with one component: give it a CT");
-  }
-  keep = scalars;
-  if (!scalars->HasStandardMemoryLayout())
-  {
-    keep.TakeReference(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-    vtkLacunaArrays::Copy(scalars, keep);
-  }
-  lacuna::VoxelVolume volume;
-  volume.Type = vtkLacunaScalarType::Get(scalars);
-  volume.Voxels = keep->GetVoidPointer(0);
-  image->GetDimensions(volume.Size.data());
-  const int* extent = image->GetExtent();
-  volume.IndexToWorld = lacuna::Matrix4(image->GetIndexToPhysicalMatrix()->GetData()) *
-    lacuna::Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
-      static_cast<double>(extent[4]) });
-  return volume;
 }
 
 // Bone and what is like it have the same value: teeth and metal do not decide.
@@ -327,6 +306,59 @@ private:
   std::vector<double> Areas;
 };
 
+struct PlacedTemplate
+{
+  lacuna::TemplateFit Fit;
+  lacuna::SkullRays Rays;
+};
+
+// Throws std::runtime_error for a template that does not fit.
+PlacedTemplate FindTemplate(vtkDataObject* data, double level, const lacuna::SkullRays& rays,
+  const lacuna::SoundBone& bone, lacuna::Execution& execution)
+{
+  PlacedTemplate example;
+  std::string reason;
+  try
+  {
+    const auto shell = lacuna::MakeSkullShell(data, level);
+    example.Fit = FitTemplate(*shell, bone, execution);
+    example.Rays = PlaceTemplate(*shell, example.Fit, rays, execution);
+  }
+  catch (const lacuna::Aborted&)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc&)
+  {
+    throw;
+  }
+  catch (const std::exception& error)
+  {
+    reason = error.what();
+  }
+  const lacuna::TemplateFit& fit = example.Fit;
+  if (reason.empty() && !(fit.Covered >= LeastCovered))
+  {
+    reason =
+      "it has bone for only " + Rounded(100 * fit.Covered, 1) + " % of the skull's sound bone";
+  }
+  if (reason.empty() && !(fit.Scale >= 1 / MostScale && fit.Scale <= MostScale))
+  {
+    reason = "it would have to be " + Rounded(fit.Scale, 100) + " times as large";
+  }
+  if (reason.empty() && !(fit.RMS <= MostTemplateError))
+  {
+    reason = "turned, shifted and scaled its outer surface is still " + Rounded(fit.RMS) +
+      " mm (RMS) away from sound bone";
+  }
+  if (!reason.empty())
+  {
+    throw std::runtime_error("the template does not fit: " + reason +
+      ". Give a skull with a whole vault, in mm, at the grey level TemplateLevel; or no template");
+  }
+  return example;
+}
+
 // How much of the outer surface is probably more than 1 mm off, where it is worst, and what is known there.
 std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRays& rays,
   const lacuna::MirrorPlane& plane)
@@ -400,16 +432,20 @@ void SetSolid(vtkPolyData* output, const lacuna::SkullImplant& implant)
 //------------------------------------------------------------------------------
 vtkLacunaSkullImplant::vtkLacunaSkullImplant()
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
   this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
 int vtkLacunaSkullImplant::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPolyData");
-  if (port == 1)
+  if (port != 1)
   {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+  if (port != 0)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
@@ -419,7 +455,7 @@ int vtkLacunaSkullImplant::FillInputPortInformation(int port, vtkInformation* in
 int vtkLacunaSkullImplant::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  for (int port = 0; port < 2; ++port)
+  for (int port = 0; port < 3; ++port)
   {
     if (vtkInformation* info = inputs[port]->GetInformationObject(0))
     {
@@ -438,6 +474,8 @@ int vtkLacunaSkullImplant::RequestData(
   {
     vtkImageData* image = vtkImageData::GetData(inputs[0]);
     vtkPolyData* outline = vtkPolyData::GetData(inputs[1]);
+    vtkDataSet* other = vtkDataSet::GetData(inputs[2]);
+    const bool hasTemplate = other && other->GetNumberOfPoints() > 0;
     if (!image || image->GetNumberOfPoints() == 0)
     {
       return; // empty in, empty out
@@ -468,8 +506,13 @@ int vtkLacunaSkullImplant::RequestData(
       throw std::runtime_error("TriangleSize is " + lacuna::FormatNumber(this->TriangleSize) +
         " mm; it must be 0 (automatic) or between 0.2 and 5");
     }
+    if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
+    {
+      throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
+        "; it must be a number above 0, the grey level of the template's bone, or 0 for Level");
+    }
     vtkSmartPointer<vtkDataArray> keep;
-    const lacuna::VoxelVolume volume = GetVolume(image, keep);
+    const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
 
     execution.SetStage(0, 0.3);
     const lacuna::SymmetryResult symmetry = FindSymmetry(volume, this->Level, execution);
@@ -524,13 +567,22 @@ int vtkLacunaSkullImplant::RequestData(
       }
     }
 
-    execution.SetStage(0.35, 0.8);
+    execution.SetStage(0.35, 0.4);
+    const lacuna::SoundBone bone = GetSoundBone(rays);
+    PlacedTemplate example;
+    if (hasTemplate)
+    {
+      example = FindTemplate(
+        other, this->TemplateLevel > 0 ? this->TemplateLevel : this->Level, rays, bone, execution);
+    }
+    execution.SetStage(0.4, 0.8);
     std::vector<Vec3> missing;
     for (const int ray : defects[chosen])
     {
       missing.push_back(rays.Directions[ray]);
     }
-    const lacuna::SkullShape shape(GetSoundBone(rays), missing, symmetry.Plane, execution);
+    const lacuna::SkullShape shape(
+      bone, missing, symmetry.Plane, execution, hasTemplate ? &example.Rays : nullptr);
     execution.SetStage(0.8, 1);
     lacuna::SkullImplantOptions options;
     options.Level = this->Level;
@@ -548,6 +600,12 @@ int vtkLacunaSkullImplant::RequestData(
       vtkWarningMacro(
         << "the hole has only " << Rounded(holes.GetArea(chosen) / 100)
         << " cm^2: it may be thin bone that this Level does not show. Look at it in the CT");
+    }
+    if (hasTemplate && shape.GetOuterFactor() == 0 && shape.GetThicknessFactor() == 0)
+    {
+      vtkWarningMacro(
+        << "the template is not used: the sound bone of this skull has nothing of its "
+           "shape. Compare both in the picture, or give another skull");
     }
     if (implant.LargestError > lacuna::TrustedError)
     {
@@ -585,17 +643,30 @@ int vtkLacunaSkullImplant::RequestData(
     setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
     setPoint("SymmetryPlaneNormal", plane.Normal);
 
+    if (hasTemplate)
+    {
+      set("TemplateFitRMS", example.Fit.RMS);
+      set("TemplateScale", example.Fit.Scale);
+      set("TemplateFactor", shape.GetOuterFactor());
+      set("TemplateThicknessFactor", shape.GetThicknessFactor());
+    }
+
     lacuna::ParameterText parameters;
     parameters.Add("Level", this->Level)
       .Add("DefectChoice", this->DefectChoice)
       .Add("Point", std::vector<double>(this->Point, this->Point + 3))
       .Add("EdgeClearance", this->EdgeClearance)
       .Add("TriangleSize", this->TriangleSize)
-      .Add("Density", this->Density);
+      .Add("Density", this->Density)
+      .Add("TemplateLevel", this->TemplateLevel);
     std::vector<vtkDataObject*> given{ image };
     if (isDrawn)
     {
       given.push_back(outline);
+    }
+    if (hasTemplate)
+    {
+      given.push_back(other);
     }
     vtkLacunaProvenance::Record(output, this, given, parameters.Get());
     vtkLacunaProvenance::Record(vtkPolyData::GetData(outputs, 1), this, given, parameters.Get());
@@ -614,4 +685,5 @@ void vtkLacunaSkullImplant::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "EdgeClearance: " << this->EdgeClearance << "\n";
   os << indent << "TriangleSize: " << this->TriangleSize << "\n";
   os << indent << "Density: " << this->Density << "\n";
+  os << indent << "TemplateLevel: " << this->TemplateLevel << "\n";
 }

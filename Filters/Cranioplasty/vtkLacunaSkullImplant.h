@@ -6,11 +6,14 @@
  * Input 0: a head CT (vtkImageData, active point scalars of one component, any type and direction, world mm),
  * of which bone alone is at or above Level: the output of vtkLacunaSkullBone. Input 1, optional: a closed
  * curve on the skull (vtkPolyData, its first polyline, else its points in order) around what is to be replaced;
- * bone within it does not count as sound.
+ * bone within it does not count as sound. Input 2, optional: a template, which is another skull in mm: a volume
+ * in which only bone is at or above TemplateLevel, or a mesh of its surface, with or without inner table. It may lie and be
+ * turned anyhow, and is scaled, but never mirrored.
  *
  * Without a curve the holes of the vault are found from within, and one is chosen. The outer table and
  * the thickness of the missing part are predicted from all sound bone and from the other side of
- * the plane of best symmetry (lacuna::SkullShape), with a standard error that is calibrated on sound bone.
+ * the plane of best symmetry (lacuna::SkullShape), with a standard error that is calibrated on sound bone. A
+ * template counts as far as the sound bone is like it.
  *
  * Output 0: vtkPolyData, a watertight, outward oriented triangle mesh in world mm, double precision, never
  * mirrored (lacuna::MakeSkullImplant). Point arrays (double, mm along the ray from the middle of the
@@ -30,13 +33,16 @@
  * | LeastTaper                 | 1          | degrees, least angle between it and the walls; bone is in|
  * |                            |            | the way where it is negative                             |
  * | SymmetryPlaneOrigin, SymmetryPlaneNormal | 3 | a point of the refined plane, world mm; its normal  |
+ * | TemplateFitRMS             | 1          | with a template: mm, distance of its outer table from sound bone |
+ * | TemplateScale              | 1          | mm of the skull for one of the template                  |
+ * | TemplateFactor, TemplateThicknessFactor | 1 | how far its shape and thickness count: 0 not at all, about 1 wholly |
  *
  * Output 1: vtkPolyData, triangles on the ellipsoid that fits the skull for each hole that was found; cell array
  * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
  *
  * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole; a
  * negative taper; data of which Level is the end of the range.
- * Errors: no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
+ * Errors: a template that does not fit; no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
  *
  * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone
  */
@@ -92,6 +98,14 @@ public:
   vtkGetMacro(Density, double);
   ///@}
 
+  ///@{
+  /** Grey level of the template's bone, if it is a volume; 0: Level. Default 0. */
+  vtkSetMacro(TemplateLevel, double);
+  vtkGetMacro(TemplateLevel, double);
+  ///@}
+
+  /** Takes the third input away. */
+  void RemoveTemplate() { this->SetInputConnection(2, nullptr); }
   /** Takes the second input away (ParaView needs a method of its own for that). */
   void RemoveOutline() { this->SetInputConnection(1, nullptr); }
 
@@ -112,5 +126,6 @@ private:
   double EdgeClearance = 0.5;
   double TriangleSize = 0;
   double Density = 1.3;
+  double TemplateLevel = 0;
 };
 #endif

@@ -60,5 +60,5 @@ assert found == {
     "LacunaRBFHoleFiller": {"Surface", "Selection", "ControlPoints", "PriorSurface"},
     "LacunaRBFSurface": {"PriorSurface"},
     "LacunaSkullBone": {"Exclude"},
-    "LacunaSkullImplant": {"DefectOutline"},
+    "LacunaSkullImplant": {"DefectOutline", "Template"},
 }

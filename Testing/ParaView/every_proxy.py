@@ -167,9 +167,9 @@ def implant():
     # a phantom of its own: ray casters have all of theirs on every rank
     head = SkullPhantom(registrationName="Head", Spacing=[3, 3, 4], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8])
     bone = SkullBone(registrationName="Bone", Input=head, Level=400)
-    SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3)
-    PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
+    SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=whole, TemplateLevel=410)
+    PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
     RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6, OutputBounds=[-80, 80, -95, 95, -80, 72], DistanceSpacing=19)
     filled = RBFHoleFiller(registrationName="Filled", Input=depth, SupportMargin=14, NodeSpacing=3, DefectRegion="Sphere")

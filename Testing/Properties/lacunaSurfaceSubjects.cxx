@@ -257,10 +257,11 @@ Subject MakeSkullImplant()
 {
   using T = vtkLacunaSkullImplant;
   Subject subject{ "SkullImplant", NewOf<T>,
-    [](Dice& dice) -> Inputs { return { RandomHead(dice) }; },
+    [](Dice& dice) -> Inputs { return { RandomHead(dice), nullptr, RandomHead(dice) }; },
     { Real("Level", &T::SetLevel, 200, 400), Whole("DefectChoice", &T::SetDefectChoice, 0, 1),
       Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
-      Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5) } };
+      Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5),
+      Real("TemplateLevel", &T::SetTemplateLevel, 0, 400) } };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(4); };
   subject.Cost = 200;
   return subject;

@@ -19,22 +19,10 @@ constexpr double RegionPrior = 0.3;
 // How far errors may be stretched by virtual holes.
 constexpr double LeastCalibration = 0.4;
 constexpr double MostCalibration = 3;
+// Of an example's factor: standard errors above 0, and the most that is believed.
+constexpr double LeastCertainty = 2;
+constexpr double MostFactor = 2;
 constexpr double Normal95 = 1.959963984540054;
-
-// Mean terms: 1, and of the outer table also the direction.
-std::size_t CountTerms(bool withDirection)
-{
-  return withDirection ? 4 : 1;
-}
-
-void AppendTerms(const Vec3& direction, bool withDirection, std::vector<double>& terms)
-{
-  terms.push_back(1);
-  if (withDirection)
-  {
-    terms.insert(terms.end(), direction.data(), direction.data() + 3);
-  }
-}
 
 double SquaredDistance(const Vec3& a, const Vec3& b)
 {
@@ -88,15 +76,16 @@ std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double rad
 
 //------------------------------------------------------------------------------
 ShapeField::ShapeField(const std::vector<Vec3>& directions, std::vector<Vec3> places,
-  std::vector<double> values, bool withDirection)
+  std::vector<double> values, bool withDirection, ShapeExample example)
   : WithDirection(withDirection)
+  , Example(std::move(example))
   , Places(std::move(places))
   , Values(std::move(values))
   , Roughness(Places.size(), 1)
 {
   for (const Vec3& d : directions)
   {
-    AppendTerms(d, withDirection, this->Terms);
+    this->AppendTerms(d, this->Terms);
   }
   // the likelihood finds variances from any start
   double mean = 0;
@@ -112,9 +101,23 @@ ShapeField::ShapeField(const std::vector<Vec3>& directions, std::vector<Vec3> pl
   this->Variances.Noise = 0.005 * variance;
 }
 
+// 1, by choice the direction, and the example.
+void ShapeField::AppendTerms(const Vec3& direction, std::vector<double>& terms) const
+{
+  terms.push_back(1);
+  if (this->WithDirection)
+  {
+    terms.insert(terms.end(), direction.data(), direction.data() + 3);
+  }
+  if (this->Example)
+  {
+    terms.push_back(this->Example(direction));
+  }
+}
+
 ShapeLikelihood ShapeField::MakeLikelihood(const std::vector<int>& subset) const
 {
-  const std::size_t q = CountTerms(this->WithDirection);
+  const std::size_t q = this->GetNumberOfTerms();
   std::vector<Vec3> places;
   std::vector<double> values;
   std::vector<double> terms;
@@ -153,6 +156,13 @@ void ShapeField::SetRegions(std::vector<Region> regions)
   {
     this->Roughness[i] = this->GetRoughness(this->Places[i]);
   }
+}
+
+bool ShapeField::IsLikeExample(const ShapeLikelihood& likelihood) const
+{
+  const auto [factor, error] = likelihood.GetLastFactor(this->Variances);
+
+  return factor > LeastCertainty * error && factor < MostFactor;
 }
 
 void ShapeField::FindRegions(const ShapeLikelihood& likelihood,
@@ -215,7 +225,7 @@ void ShapeField::Solve(const MirrorPlane& plane, double reach)
 {
   this->Plane = plane;
   const std::size_t n = this->Places.size();
-  const std::size_t q = CountTerms(this->WithDirection);
+  const std::size_t q = this->GetNumberOfTerms();
   this->Covariance = std::make_unique<ShapeCovariance>(this->Variances, reach);
   this->Factors = std::make_unique<SquareMatrix>(n);
   this->Nodes.clear();
@@ -303,7 +313,7 @@ void ShapeField::GetCovariances(const Vec3& place, double* covariances) const
 double ShapeField::GetMean(const Vec3& direction, const double* covariances) const
 {
   std::vector<double> terms;
-  AppendTerms(direction, this->WithDirection, terms);
+  this->AppendTerms(direction, terms);
   const double mean =
     std::inner_product(terms.begin(), terms.end(), this->MeanFactors.begin(), 0.0);
   return std::inner_product(
@@ -313,9 +323,9 @@ double ShapeField::GetMean(const Vec3& direction, const double* covariances) con
 double ShapeField::GetError(const Vec3& direction, const Vec3& place, const double* solved) const
 {
   const std::size_t n = this->Places.size();
-  const std::size_t q = CountTerms(this->WithDirection);
+  const std::size_t q = this->GetNumberOfTerms();
   std::vector<double> rest;
-  AppendTerms(direction, this->WithDirection, rest);
+  this->AppendTerms(direction, rest);
   for (std::size_t k = 0; k < q; ++k)
   {
     rest[k] -= std::inner_product(solved, solved + n, &this->Means[k * n], 0.0);

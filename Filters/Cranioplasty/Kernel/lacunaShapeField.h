@@ -11,11 +11,15 @@
 #include "lacunaVector.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace lacuna
 {
+/// A function of the direction that a shape may follow in part: a mean term with a factor of its own.
+using ShapeExample = std::function<double(const Vec3& direction)>;
+
 using AlignedNumbers = std::unique_ptr<double[], FreeAligned>;
 /// Not initialised, aligned as matrices are.
 AlignedNumbers MakeAligned(std::size_t count);
@@ -37,9 +41,9 @@ std::vector<VirtualHole> SpreadHoles(const std::vector<Vec3>& places, double rad
 class ShapeField
 {
 public:
-  /// directions (unit), places (world mm) and values (mm) of the nodes.
+  /// directions (unit), places (world mm) and values (mm) of the nodes. example, if any: a further mean term.
   ShapeField(const std::vector<Vec3>& directions, std::vector<Vec3> places,
-    std::vector<double> values, bool withDirection);
+    std::vector<double> values, bool withDirection, ShapeExample example = {});
 
   /// Of some nodes.
   ShapeLikelihood MakeLikelihood(const std::vector<int>& subset) const;
@@ -52,6 +56,8 @@ public:
   {
     this->Variances = likelihood.Estimate(this->Variances, iterations);
   }
+  /// Whether the values follow the example: its factor is positive beyond doubt, and not that of mere noise.
+  bool IsLikeExample(const ShapeLikelihood& likelihood) const;
   /// Finds how rough the skull is in each region: how far errors of virtual holes there exceed the predicted
   /// ones. holes: lists of places of the likelihood.
   void FindRegions(const ShapeLikelihood& likelihood, const std::vector<VirtualHole>& holes,
@@ -72,6 +78,8 @@ public:
 
   const ShapeVariances& GetVariances() const { return this->Variances; }
   double GetCalibration() const { return this->Calibration; }
+  /// Of the example; 0 without one.
+  double GetExampleFactor() const { return this->Example ? this->MeanFactors.back() : 0; }
 
 private:
   struct Region
@@ -84,7 +92,14 @@ private:
   /// What multiplies the standard deviations of RoughLengths at a place, about 1.
   double GetRoughness(const Vec3& place) const;
 
+  std::size_t GetNumberOfTerms() const
+  {
+    return (this->WithDirection ? 4 : 1) + (this->Example ? 1 : 0);
+  }
+  void AppendTerms(const Vec3& direction, std::vector<double>& terms) const;
+
   bool WithDirection;
+  ShapeExample Example;
   std::vector<Vec3> Places;
   std::vector<double> Values;
   std::vector<double> Roughness;

@@ -211,6 +211,19 @@ double ShapeLikelihood::Evaluate(const ShapeVariances& variances) const
   return sum;
 }
 
+std::pair<double, double> ShapeLikelihood::GetLastFactor(const ShapeVariances& variances) const
+{
+  const std::size_t q = this->GetNumberOfTerms();
+  SquareMatrix matrix(this->Places.size());
+  SquareMatrix small(q + 1);
+  if (!this->Factor(variances, matrix, small))
+  {
+    return { 0, std::numeric_limits<double>::infinity() };
+  }
+  const double* last = small.Column(q - 1);
+  return { last[q] / last[q - 1], 1 / last[q - 1] };
+}
+
 void ShapeLikelihood::Project(
   const ShapeVariances& variances, SquareMatrix& matrix, std::vector<double>& py) const
 {

@@ -9,6 +9,7 @@
 #include "lacunaSymmetricFactorization.h"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace lacuna
@@ -52,6 +53,10 @@ public:
   /// the mean.
   std::vector<std::vector<double>> LeaveOut(
     const ShapeVariances& variances, const std::vector<std::vector<int>>& holes) const;
+
+  /// The factor of the last mean term by generalised least squares, and its standard error. {0, infinity} when the
+  /// places do not determine it.
+  std::pair<double, double> GetLastFactor(const ShapeVariances& variances) const;
 
 private:
   std::size_t GetNumberOfTerms() const { return this->Terms.size() / this->Values.size(); }

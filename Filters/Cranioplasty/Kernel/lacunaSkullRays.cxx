@@ -20,10 +20,6 @@ namespace
 constexpr double Pi = 3.14159265358979323846;
 constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double TypicalRadius = 90; // mm
-// The skull is between these, mm from its middle.
-constexpr double LeastRadius = 25;
-constexpr double MostRadius = 160;
-constexpr double MostThickness = 20; // within which crossings belong to one bone
 // A sound table: how far from the median of the rays around, their range, bone's thickness; mm.
 constexpr double MostStep = 2.5;
 constexpr double MostRange = 8;
@@ -103,11 +99,11 @@ RayTables FollowRay(
 {
   RayTables tables;
   double before = NotANumber; // the value one step farther out
-  const int steps = static_cast<int>(std::ceil((MostRadius - LeastRadius) / step));
+  const int steps = static_cast<int>(std::ceil((MostSkullRadius - LeastSkullRadius) / step));
   for (int s = steps; s >= 0; --s)
   {
-    const double radius = LeastRadius + s * step;
-    if (radius < tables.Outer - MostThickness)
+    const double radius = LeastSkullRadius + s * step;
+    if (radius < tables.Outer - MostBoneThickness)
     {
       break;
     }
@@ -137,51 +133,11 @@ RayTables FollowRay(
   return tables;
 }
 
-// Evenly spread over the sphere, in the order of one axis: neighbours are found in a band.
-std::vector<Vec3> SpreadDirections(double spacing, const Matrix4& axes)
-{
-  const int count = static_cast<int>(std::ceil(4 * Pi / (spacing * spacing * 0.866)));
-  const double golden = Pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3> directions;
-  for (int i = 0; i < count; ++i)
-  {
-    const double z = 1 - 2 * (i + 0.5) / count;
-    const double r = std::sqrt(1 - z * z);
-    directions.push_back((r * std::cos(golden * i)) * Normalized(axes.Column(0)) +
-      (r * std::sin(golden * i)) * Normalized(axes.Column(1)) + z * Normalized(axes.Column(2)));
-  }
-  return directions;
-}
-
 // Directions are in the order of their third coordinate in some frame, which falls evenly from 1 to -1: those
 // within an angle are no more than so many places away.
 int GetBand(int count, double angle)
 {
   return static_cast<int>(std::ceil(0.5 * count * angle)) + 1;
-}
-
-// Of the sphere |x|^2 = 2 middle . x + rest through points, by least squares; x from a centre amid them.
-Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points)
-{
-  constexpr std::size_t count = 4;
-  SquareMatrix normal(count);
-  std::fill_n(normal.Column(0), count * count, 0.0);
-  std::vector<double> right(count, 0.0);
-  for (const Vec3& p : points)
-  {
-    const Vec3 x = (1 / TypicalRadius) * (p - center);
-    const double terms[count] = { x[0], x[1], x[2], 1 };
-    for (std::size_t j = 0; j < count; ++j)
-    {
-      right[j] += terms[j] * Dot(x, x);
-      for (std::size_t i = j; i < count; ++i)
-      {
-        normal.Column(j)[i] += terms[i] * terms[j];
-      }
-    }
-  }
-  SymmetricFactorization(std::move(normal)).Solve(right);
-  return center + (0.5 * TypicalRadius) * Vec3{ right[0], right[1], right[2] };
 }
 
 // Steps from the start to each ray for which may is true; -1 for all that they do not reach.
@@ -249,7 +205,7 @@ std::vector<Vec3> PointsOf(const SkullRays& rays, const std::vector<int>& chosen
 bool IsSmooth(const SkullRays& rays, int ray, const std::vector<int>& around)
 {
   const double here = rays.Outer[ray];
-  if (!(here - rays.Inner[ray] < SoundThickness) || around.empty())
+  if (std::isnan(here) || here - rays.Inner[ray] >= SoundThickness || around.empty())
   {
     return false;
   }
@@ -267,21 +223,16 @@ bool IsSmooth(const SkullRays& rays, int ray, const std::vector<int>& around)
     std::abs(here - others[others.size() / 2]) < MostStep;
 }
 
-SkullRays Follow(const VoxelVolume& volume, double level, const Vec3& center, double spacing,
-  std::vector<RayTables>& tables, Execution& execution)
+std::vector<RayTables> Follow(const VoxelVolume& volume, double level, const Vec3& center,
+  const std::vector<Vec3>& directions, Execution& execution)
 {
   CheckVolumeSize(volume.Size);
-  if (!std::isfinite(level) || !(spacing > 0.2 && spacing < 30))
+  if (!std::isfinite(level))
   {
-    throw std::invalid_argument(
-      "the level is not finite, or rays are not between 0.2 and 30 mm apart");
+    throw std::invalid_argument("the level of bone is not finite");
   }
-  SkullRays rays;
-  rays.Center = center;
-  rays.Spacing = spacing / TypicalRadius;
-  rays.Directions = SpreadDirections(rays.Spacing, volume.IndexToWorld);
-  const auto n = static_cast<std::int64_t>(rays.Directions.size());
-  tables.resize(n);
+  const auto n = static_cast<std::int64_t>(directions.size());
+  std::vector<RayTables> tables(n);
   const double step = std::clamp(0.5 * SmallestEdgeOf(volume.IndexToWorld), 0.1, 1.0);
   DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels)
@@ -296,17 +247,125 @@ SkullRays Follow(const VoxelVolume& volume, double level, const Vec3& center, do
         {
           for (std::int64_t i = begin; i < end; ++i)
           {
-            tables[i] = FollowRay(sample, center, rays.Directions[i], level, step);
+            tables[i] = FollowRay(sample, center, directions[i], level, step);
           }
         });
     });
-  for (const RayTables& t : tables)
-  {
-    rays.Outer.push_back(t.Cut ? NotANumber : t.Outer);
-    rays.Inner.push_back(t.Cut ? NotANumber : t.Inner);
-  }
-  return rays;
+  return tables;
 }
+
+// Sets the kinds of rays that have all else.
+void Classify(SkullRays& rays, const std::vector<RayTables>& tables)
+{
+  const auto n = static_cast<int>(rays.Directions.size());
+  const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  std::vector<bool> smooth(n);
+  for (int i = 0; i < n; ++i)
+  {
+    smooth[i] = IsSmooth(rays, i, around[i]);
+  }
+  const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
+  if (parts.empty() || parts[0].size() < LeastSound)
+  {
+    throw std::invalid_argument(
+      "around the middle of what is bone there is too little of a smooth vault: the scan has to "
+      "show the whole vault of the skull, and the level has to be that of bone");
+  }
+  // The vault's ellipsoid, then without what lies beside it.
+  std::vector<int> vault = parts[0];
+  SkullEllipsoid ellipsoid(rays.Center, PointsOf(rays, vault));
+  for (const double limit : { MostDeviation, 0.7 * MostDeviation })
+  {
+    std::vector<int> inside;
+    std::copy_if(vault.begin(), vault.end(), std::back_inserter(inside),
+      [&](int i)
+      { return std::abs(rays.Outer[i] / ellipsoid.GetRadius(rays.Directions[i]) - 1) < limit; });
+    if (inside.size() < LeastSound)
+    {
+      break;
+    }
+    ellipsoid = SkullEllipsoid(rays.Center, PointsOf(rays, inside));
+  }
+  rays.Kinds.resize(n);
+  // Where the scan may end before the skull does: the ellipsoid is not the skull. It does beside
+  // where it surely does, such as at bone that is cut off.
+  std::vector<bool> ends(n, false);
+  for (int i = 0; i < n; ++i)
+  {
+    const double radius = ellipsoid.GetRadius(rays.Directions[i]);
+    const bool there = std::abs(rays.Outer[i] / radius - 1) < MostDeviation;
+    const double exit = tables[i].Exit / radius;
+    rays.Kinds[i] = there                     ? SkullRayKind::Rough
+      : tables[i].Cut || !(exit > NearEnd[0]) ? SkullRayKind::Unknown
+                                              : SkullRayKind::Open;
+    ends[i] = rays.Kinds[i] == SkullRayKind::Open && !(exit > NearEnd[1]);
+    if (!there)
+    {
+      rays.Outer[i] = rays.Inner[i] = NotANumber;
+    }
+  }
+  for (const std::vector<int>& part : FindParts(around, [&](int i) { return ends[i]; }))
+  {
+    const bool isCut = std::any_of(part.begin(), part.end(),
+      [&](int i)
+      {
+        return std::any_of(around[i].begin(), around[i].end(),
+          [&](int j) { return rays.Kinds[j] == SkullRayKind::Unknown && !ends[j]; });
+      });
+    for (const int i : part)
+    {
+      rays.Kinds[i] = isCut ? SkullRayKind::Unknown : SkullRayKind::Open;
+    }
+  }
+  for (const int i : vault)
+  {
+    if (rays.Kinds[i] == SkullRayKind::Rough)
+    {
+      rays.Kinds[i] = SkullRayKind::Sound;
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<Vec3> SpreadDirections(double spacing, const Matrix4& axes)
+{
+  const int count = static_cast<int>(std::ceil(4 * Pi / (spacing * spacing * 0.866)));
+  const double golden = Pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> directions;
+  for (int i = 0; i < count; ++i)
+  {
+    const double z = 1 - 2 * (i + 0.5) / count;
+    const double r = std::sqrt(1 - z * z);
+    directions.push_back((r * std::cos(golden * i)) * Normalized(axes.Column(0)) +
+      (r * std::sin(golden * i)) * Normalized(axes.Column(1)) + z * Normalized(axes.Column(2)));
+  }
+  return directions;
+}
+
+//------------------------------------------------------------------------------
+// |x|^2 = 2 middle . x + rest, with x from the centre.
+Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points)
+{
+  constexpr std::size_t count = 4;
+  SquareMatrix normal(count);
+  std::fill_n(normal.Column(0), count * count, 0.0);
+  std::vector<double> right(count, 0.0);
+  for (const Vec3& p : points)
+  {
+    const Vec3 x = (1 / TypicalRadius) * (p - center);
+    const double terms[count] = { x[0], x[1], x[2], 1 };
+    for (std::size_t j = 0; j < count; ++j)
+    {
+      right[j] += terms[j] * Dot(x, x);
+      for (std::size_t i = j; i < count; ++i)
+      {
+        normal.Column(j)[i] += terms[i] * terms[j];
+      }
+    }
+  }
+  SymmetricFactorization(std::move(normal)).Solve(right);
+  return center + (0.5 * TypicalRadius) * Vec3{ right[0], right[1], right[2] };
 }
 
 //------------------------------------------------------------------------------
@@ -367,87 +426,61 @@ std::vector<std::vector<int>> FindParts(
 SkullRays TraceSkull(
   const VoxelVolume& volume, double level, const Vec3& center, double spacing, Execution& execution)
 {
-  std::vector<RayTables> tables;
-  SkullRays rays = Follow(volume, level, center, spacing, tables, execution);
-  const auto n = static_cast<int>(rays.Directions.size());
-  const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
+  if (!(spacing > 0.2 && spacing < 30))
+  {
+    throw std::invalid_argument("rays are not between 0.2 and 30 mm apart");
+  }
+  SkullRays rays;
+  rays.Center = center;
+  rays.Spacing = spacing / TypicalRadius;
+  rays.Directions = SpreadDirections(rays.Spacing, volume.IndexToWorld);
+  const std::vector<RayTables> tables = Follow(volume, level, center, rays.Directions, execution);
+  for (const RayTables& t : tables)
+  {
+    rays.Outer.push_back(t.Cut ? NotANumber : t.Outer);
+    rays.Inner.push_back(t.Cut ? NotANumber : t.Inner);
+  }
   double edge = 0;
   for (int a = 0; a < 3; ++a)
   {
     edge = std::max(edge, Norm(volume.IndexToWorld.Column(a)));
   }
   rays.RoundedEdge = RoundedEdge * edge;
-  std::vector<bool> smooth(n);
-  for (int i = 0; i < n; ++i)
-  {
-    smooth[i] = IsSmooth(rays, i, around[i]);
-  }
-  const std::vector<std::vector<int>> parts = FindParts(around, [&](int i) { return smooth[i]; });
-  if (parts.empty() || parts[0].size() < LeastSound)
-  {
-    throw std::invalid_argument(
-      "around the middle of what is bone there is too little of a smooth vault: the scan has to "
-      "show the whole vault of the skull, and the level has to be that of bone");
-  }
-  // The vault's ellipsoid, then without what lies beside it.
-  std::vector<int> vault = parts[0];
-  SkullEllipsoid ellipsoid(center, PointsOf(rays, vault));
-  for (const double limit : { MostDeviation, 0.7 * MostDeviation })
-  {
-    std::vector<int> inside;
-    std::copy_if(vault.begin(), vault.end(), std::back_inserter(inside),
-      [&](int i)
-      { return std::abs(rays.Outer[i] / ellipsoid.GetRadius(rays.Directions[i]) - 1) < limit; });
-    if (inside.size() < LeastSound)
-    {
-      break;
-    }
-    ellipsoid = SkullEllipsoid(center, PointsOf(rays, inside));
-  }
-  rays.Kinds.resize(n);
-  // Where the scan may end before the skull does: the ellipsoid is not the skull. It does beside
-  // where it surely does, such as at bone that is cut off.
-  std::vector<bool> ends(n, false);
-  for (int i = 0; i < n; ++i)
-  {
-    const double radius = ellipsoid.GetRadius(rays.Directions[i]);
-    const bool there = std::abs(rays.Outer[i] / radius - 1) < MostDeviation;
-    const double exit = tables[i].Exit / radius;
-    rays.Kinds[i] = there                     ? SkullRayKind::Rough
-      : tables[i].Cut || !(exit > NearEnd[0]) ? SkullRayKind::Unknown
-                                              : SkullRayKind::Open;
-    ends[i] = rays.Kinds[i] == SkullRayKind::Open && !(exit > NearEnd[1]);
-    if (!there)
-    {
-      rays.Outer[i] = rays.Inner[i] = NotANumber;
-    }
-  }
-  for (const std::vector<int>& part : FindParts(around, [&](int i) { return ends[i]; }))
-  {
-    const bool isCut = std::any_of(part.begin(), part.end(),
-      [&](int i)
-      {
-        return std::any_of(around[i].begin(), around[i].end(),
-          [&](int j) { return rays.Kinds[j] == SkullRayKind::Unknown && !ends[j]; });
-      });
-    for (const int i : part)
-    {
-      rays.Kinds[i] = isCut ? SkullRayKind::Unknown : SkullRayKind::Open;
-    }
-  }
-  for (const int i : vault)
-  {
-    if (rays.Kinds[i] == SkullRayKind::Rough)
-    {
-      rays.Kinds[i] = SkullRayKind::Sound;
-    }
-  }
+  Classify(rays, tables);
   return rays;
 }
 
 //------------------------------------------------------------------------------
-Vec3 FindSkullCenter(
-  const VoxelVolume& volume, double level, const MirrorPlane& plane, Execution& execution)
+RayRadii TraceRays(const VoxelVolume& volume, double level, const Vec3& center,
+  const std::vector<Vec3>& directions, Execution& execution)
+{
+  RayRadii radii;
+  for (const RayTables& t : Follow(volume, level, center, directions, execution))
+  {
+    radii.Outer.push_back(t.Cut ? NotANumber : t.Outer);
+    radii.Inner.push_back(t.Cut ? NotANumber : t.Inner);
+  }
+  return radii;
+}
+
+//------------------------------------------------------------------------------
+SkullRays ClassifySkull(
+  const Vec3& center, const std::vector<Vec3>& directions, double spacing, RayRadii radii)
+{
+  SkullRays rays;
+  rays.Center = center;
+  rays.Directions = directions;
+  rays.Spacing = spacing;
+  rays.Outer = std::move(radii.Outer);
+  rays.Inner = std::move(radii.Inner);
+  RayTables open;
+  open.Exit = std::numeric_limits<double>::infinity();
+  Classify(rays, std::vector<RayTables>(directions.size(), open));
+  return rays;
+}
+
+//------------------------------------------------------------------------------
+Vec3 FindMeanOfBone(const VoxelVolume& volume, double level, Execution& execution)
 {
   CheckVolumeSize(volume.Size);
   struct Mean
@@ -489,8 +522,15 @@ Vec3 FindSkullCenter(
   {
     throw std::invalid_argument("no voxel is at or above the level: there is no bone");
   }
+  return volume.IndexToWorld.Point((1 / mean.Count) * mean.Sum);
+}
+
+//------------------------------------------------------------------------------
+Vec3 FindSkullCenter(
+  const VoxelVolume& volume, double level, const MirrorPlane& plane, Execution& execution)
+{
   const auto project = [&](const Vec3& x) { return x - plane.Distance(x) * plane.Normal; };
-  Vec3 center = project(volume.IndexToWorld.Point((1 / mean.Count) * mean.Sum));
+  Vec3 center = project(FindMeanOfBone(volume, level, execution));
   for (int pass = 0; pass < 3; ++pass)
   {
     const SkullRays rays = TraceSkull(volume, level, center, 8, execution);

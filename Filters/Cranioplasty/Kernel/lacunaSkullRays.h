@@ -16,6 +16,11 @@
 
 namespace lacuna
 {
+/// The skull is between these, mm from its middle.
+constexpr double LeastSkullRadius = 25;
+constexpr double MostSkullRadius = 160;
+constexpr double MostBoneThickness = 20; ///< mm: within which crossings belong to one bone
+
 enum class SkullRayKind : std::uint8_t
 {
   Sound,  ///< bone whose outer table is smooth, like that of the rays around
@@ -41,6 +46,16 @@ struct SkullRays
 Vec3 FindSkullCenter(
   const VoxelVolume& volume, double level, const MirrorPlane& plane, Execution& execution);
 
+/// The mean of all voxels at or above the level. Throws as FindSkullCenter does.
+Vec3 FindMeanOfBone(const VoxelVolume& volume, double level, Execution& execution);
+
+/// Of the sphere that is closest to points around a centre, by least squares.
+Vec3 FindSphereMiddle(const Vec3& center, const std::vector<Vec3>& points);
+
+/// Unit, evenly spread over the sphere, radians apart, in the order of one of the axes (columns; the fourth does not
+/// count): neighbours are found in a band.
+std::vector<Vec3> SpreadDirections(double spacing, const Matrix4& axes);
+
 /// Follows rays from the centre, spaced so many mm at 90 mm from it. The outer table is the outermost crossing
 /// of the level; the inner one the innermost within 20 mm of it (diploe below the level is bone). What is
 /// not skull (head holder, table) has to be below the level. Rays are the same in the volume's own axes: a
@@ -48,6 +63,22 @@ Vec3 FindSkullCenter(
 /// centre outside the volume, for fewer than two voxels along an axis, or for too little bone.
 SkullRays TraceSkull(const VoxelVolume& volume, double level, const Vec3& center, double spacing,
   Execution& execution);
+
+/// mm from a point along rays; NaN without bone.
+struct RayRadii
+{
+  std::vector<double> Outer;
+  std::vector<double> Inner;
+};
+
+/// The same tables along any unit directions. NaN also where bone goes on at the end of the volume.
+RayRadii TraceRays(const VoxelVolume& volume, double level, const Vec3& center,
+  const std::vector<Vec3>& directions, Execution& execution);
+
+/// TraceSkull's kinds of rays for radii that came from elsewhere. directions, spacing: of SkullRays. Without a table
+/// the ray is open. Inner radii may be NaN.
+SkullRays ClassifySkull(
+  const Vec3& center, const std::vector<Vec3>& directions, double spacing, RayRadii radii);
 
 /// A part of a ray, mm from the centre.
 struct RaySegment

@@ -6,6 +6,7 @@
 #include "lacunaShapeLikelihood.h"
 #include "lacunaSingleBlasThread.h"
 #include "lacunaSkullEllipsoid.h"
+#include "lacunaSkullTemplate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -258,11 +259,17 @@ MirrorPlane RefinePlane(ShapeLikelihood& likelihood, const ShapeVariances& varia
 
 //------------------------------------------------------------------------------
 SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
-  const MirrorPlane& plane, Execution& execution, std::size_t likelihoodNodes)
+  const MirrorPlane& plane, Execution& execution, const SkullRays* other,
+  std::size_t likelihoodNodes)
   : Plane(plane)
+  , Examples(std::make_unique<SkullExamples>())
 {
   likelihoodNodes = std::max(likelihoodNodes, LeastNodes);
   Check(bone, defect, plane);
+  if (other)
+  {
+    *this->Examples = SkullExamples(*other, plane);
+  }
   if (bone.Outer.size() < LeastNodes)
   {
     throw std::invalid_argument("only " + std::to_string(bone.Outer.size()) +
@@ -296,25 +303,20 @@ SkullShape::SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect,
   this->Ellipsoid = std::make_unique<Base>(bone, this->Plane);
   this->Outer = this->MakeField(bone, true);
   this->Outer->Continue(*before);
-  this->Thickness = this->MakeField(bone, false);
   const std::vector<Vec3> places = this->Outer->GetPlaces(subset);
   const std::vector<VirtualHole> regions = SpreadHoles(places, RegionHole);
   const std::vector<VirtualHole> holes = this->FindHolesLike(defect, places);
-  ShapeField* const fields[] = { this->Outer.get(), this->Thickness.get() };
   execution.For(2, 1,
     [&](std::int64_t begin, std::int64_t end)
     {
       ThreadExecution serial(1);
       for (std::int64_t i = begin; i < end; ++i)
       {
-        ShapeField& field = *fields[i];
         if (i == 1)
         {
-          ShapeLikelihood likelihood = field.MakeLikelihood(subset);
-          likelihood.SetPlane(this->Plane, serial);
-          field.Estimate(likelihood, FirstIterations + MoreIterations);
-          field.FindRegions(likelihood, regions, this->Plane);
+          this->FindThickness(bone, subset, regions, serial);
         }
+        ShapeField& field = i == 0 ? *this->Outer : *this->Thickness;
         {
           ShapeLikelihood likelihood = field.MakeLikelihood(subset);
           likelihood.SetPlane(this->Plane, serial);
@@ -336,6 +338,16 @@ const ShapeVariances& SkullShape::GetOuterVariances() const
 const ShapeVariances& SkullShape::GetThicknessVariances() const
 {
   return this->Thickness->GetVariances();
+}
+
+double SkullShape::GetOuterFactor() const
+{
+  return this->Outer->GetExampleFactor();
+}
+
+double SkullShape::GetThicknessFactor() const
+{
+  return this->Thickness->GetExampleFactor();
 }
 
 double SkullShape::GetOuterCalibration() const
@@ -362,7 +374,8 @@ std::unique_ptr<ShapeField> SkullShape::MakeField(const SoundBone& bone, bool ou
     values.push_back(
       outer ? bone.Outer[node] - this->Ellipsoid->GetRadius(d) : bone.Thickness[node]);
   }
-  return std::make_unique<ShapeField>(directions, std::move(places), std::move(values), outer);
+  return std::make_unique<ShapeField>(directions, std::move(places), std::move(values), outer,
+    outer ? this->Examples->Outer : this->Examples->Thickness);
 }
 
 //------------------------------------------------------------------------------
@@ -388,11 +401,40 @@ void SkullShape::FindPlane(
     ShapeLikelihood likelihood = field->MakeLikelihood(subset);
     likelihood.SetPlane(this->Plane, execution);
     field->Estimate(likelihood, round == 0 ? FirstIterations : MoreIterations);
+    if (round == 1 && this->Examples->Outer && !field->IsLikeExample(likelihood))
+    {
+      this->Examples->Outer = {};
+      field = this->MakeField(bone, true);
+      likelihood = field->MakeLikelihood(subset);
+      likelihood.SetPlane(this->Plane, execution);
+      field->Estimate(likelihood, FirstIterations + MoreIterations);
+    }
     execution.SetStage(0.5 * round + 0.1, 0.5 * (round + 1));
     this->Plane = RefinePlane(likelihood, field->GetVariances(), this->Plane, middle,
       field->GetPlaces().front() - bone.Center, PlaneSteps[round], execution);
     field->FindRegions(likelihood, SpreadHoles(field->GetPlaces(subset), RegionHole), this->Plane);
     this->Outer = std::move(field);
+  }
+}
+
+//------------------------------------------------------------------------------
+// With its first variances and regions.
+void SkullShape::FindThickness(const SoundBone& bone, const std::vector<int>& subset,
+  const std::vector<VirtualHole>& regions, Execution& execution)
+{
+  for (;;)
+  {
+    this->Thickness = this->MakeField(bone, false);
+    ShapeLikelihood likelihood = this->Thickness->MakeLikelihood(subset);
+    likelihood.SetPlane(this->Plane, execution);
+    this->Thickness->Estimate(likelihood, FirstIterations + MoreIterations);
+    if (this->Examples->Thickness && !this->Thickness->IsLikeExample(likelihood))
+    {
+      this->Examples->Thickness = {};
+      continue;
+    }
+    this->Thickness->FindRegions(likelihood, regions, this->Plane);
+    return;
   }
 }
 

@@ -16,6 +16,8 @@
 namespace lacuna
 {
 class ShapeField;
+struct SkullExamples;
+struct SkullRays;
 struct VirtualHole;
 
 /// What is known of a skull, along rays from a centre within it. One element a ray in each array.
@@ -52,10 +54,11 @@ public:
   /// defect: unit directions that cover what is missing, some mm apart. Nodes are dense near them and near
   /// their mirror images. plane: of best symmetry, within some 5 degrees and 5 mm. Throws
   /// std::invalid_argument when arrays differ in length or have elements that are not finite or not positive,
-  /// or when too little bone is given (fewer than 200 nodes remain). likelihoodNodes: so many of the nodes, at
+  /// or when too little bone is given (fewer than 200 nodes remain). other: a template (PlaceTemplate), which counts as
+  /// far as the sound bone is like it. likelihoodNodes: so many of the nodes, at
   /// least 200, decide on variances and plane, in a time of their third power (5 s of one core for 800).
   SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane,
-    Execution& execution, std::size_t likelihoodNodes = 800);
+    Execution& execution, const SkullRays* other = nullptr, std::size_t likelihoodNodes = 800);
   ~SkullShape();
   SkullShape(const SkullShape&) = delete;
   SkullShape& operator=(const SkullShape&) = delete;
@@ -80,17 +83,24 @@ public:
   double GetOuterCalibration() const;
   double GetThicknessCalibration() const;
 
+  /// How far the shape of the template counts: 0 not at all, about 1 wholly.
+  double GetOuterFactor() const;
+  double GetThicknessFactor() const;
+
 private:
   struct Base;
   std::vector<SkullEstimate> Predict(
     const std::vector<Vec3>& directions, bool errors, Execution& execution) const;
   void ChooseNodes(const SoundBone& bone, const std::vector<Vec3>& defect);
   void FindPlane(const SoundBone& bone, const std::vector<int>& subset, Execution& execution);
+  void FindThickness(const SoundBone& bone, const std::vector<int>& subset,
+    const std::vector<VirtualHole>& regions, Execution& execution);
   std::unique_ptr<ShapeField> MakeField(const SoundBone& bone, bool outer) const;
   std::vector<VirtualHole> FindHolesLike(
     const std::vector<Vec3>& defect, const std::vector<Vec3>& places) const;
 
   MirrorPlane Plane;
+  std::unique_ptr<SkullExamples> Examples; ///< those that count
   std::unique_ptr<Base> Ellipsoid;
   std::vector<int> Nodes; ///< rays of the bone
   double LeastThickness = 0;

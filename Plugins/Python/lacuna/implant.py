@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The missing part of a skull as a solid: CT in, implant out.
 
-    pvpython -- -m lacuna.implant CT --output implant.stl [--hole X Y Z] [--report DIR]
+    pvpython -- -m lacuna.implant CT --output implant.stl [--hole X Y Z] [--template FILE] [--report DIR]
 
     from lacuna import implant
     made = implant.make_implant(ct)           # ct: a proxy; made.bone, made.implant, made.defects are proxies
@@ -28,18 +28,19 @@ AIR = -300  # the same: below it there is air around the head
 BONE = (100, 1000)  # the same: levels of bone
 CLEARANCE = 0.5  # mm
 ENDINGS = (".stl", ".ply", ".obj", ".vtp", ".3mf")
+MESHES = (".stl", ".ply", ".obj", ".vtp")  # of a template
 WORDS = {"L": "left", "R": "right", "P": "back", "A": "front", "H": "top", "F": "bottom"}
 
 Made = collections.namedtuple("Made", "bone implant defects")
 Defect = collections.namedtuple("Defect", "area center")  # mm², mm
 
 
-def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None):
+def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None, template=None):
     """Makes the pipeline from a CT (a proxy) to an implant, and updates it. Opens no file and shows nothing.
 
     hole: a point in or near the hole, x y z in the CT's patient millimetres; None takes the largest hole. level: of the bone's
     surface in Hounsfield units. clearance: of the implant's edge from the bone in mm. progress: is called with the part of the design
-    that is done, 0 to 1.
+    that is done, 0 to 1. template: another skull (a proxy of a CT or of a mesh in mm), or None.
     Returns the proxies bone (Skull Bone), implant (Skull Implant) and defects (its second output). Raises PipelineError when a
     filter reports an error, for example when there is no hole. Nothing of the pipeline is left then.
     """
@@ -48,17 +49,29 @@ def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None)
         with raising():
             made.append(pv.SkullBone(Input=ct))
             made[0].Level = level  # not above: ParaView takes a value that is the default for none, and sets what the data propose
-            made.append(pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance))
+            if template is not None and _is_volume(template):
+                template = pv.SkullBone(Input=template)
+                made.append(template)
+                template.Level = level
+            design = pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance)
+            made.append(design)
+            if template is not None:
+                design.Template = template
             if hole is not None:
-                made[1].DefectChoice, made[1].Point = "Nearest to Point", list(hole)
+                design.DefectChoice, design.Point = "Nearest to Point", list(hole)
             if progress:
-                made[1].GetClientSideObject().AddObserver("ProgressEvent", lambda design, _: progress(design.GetProgress()))
-            made[1].UpdatePipeline()
+                design.GetClientSideObject().AddObserver("ProgressEvent", lambda object, _: progress(object.GetProgress()))
+            design.UpdatePipeline()
     except Exception:
         for proxy in reversed(made):
             pv.Delete(proxy)
         raise
-    return Made(*made, pv.OutputPort(made[1], 1))
+    return Made(made[0], design, pv.OutputPort(design, 1))
+
+
+def _is_volume(proxy):
+    proxy.UpdatePipeline()
+    return proxy.GetDataInformation().GetDataSetTypeAsString() == "vtkImageData"
 
 
 def measures(made):
@@ -96,7 +109,15 @@ def describe(made):
                  f"{numbers['ThicknessMaximum']:.1f} mm, mean {numbers['ThicknessMean']:.1f} mm")
     lines.append(f"predicted error of the outer surface (standard error): {numbers['PredictedErrorRMS']:.2f} mm RMS; largest "
                  f"{numbers['PredictedErrorMaximum']:.2f} mm, at {place(numbers['PredictedErrorMaximumPoint'])}")
+    if "TemplateFitRMS" in numbers:
+        lines.append(f"template: {template_text(numbers)}")
     return lines
+
+
+def template_text(numbers):
+    """How well the template of an implant fits, and how far it counts. numbers: of measures."""
+    return (f"{numbers['TemplateFitRMS']:.1f} mm RMS from the sound bone, scaled by {numbers['TemplateScale']:.3f}; its shape counts by "
+            f"{numbers['TemplateFactor']:.2f}, its thickness by {numbers['TemplateThicknessFactor']:.2f} (0 not at all, 1 wholly)")
 
 
 def places(made):
@@ -131,6 +152,9 @@ def parse_arguments(arguments):
                         help="the implant, in mm: " + " ".join(ENDINGS) + ". FILE.json beside it says where it comes from")
     parser.add_argument("--hole", type=float, nargs=3, metavar=("X", "Y", "Z"),
                         help="a point in or near the hole, in patient millimetres: x to the left, y to the back, z to the head. Default: the largest hole")
+    parser.add_argument("--template", metavar="FILE",
+                        help="another skull without this hole: a CT as above, or a mesh in mm (" + " ".join(MESHES) + "). It counts as far as the "
+                        "sound bone is like it")
     parser.add_argument("--report", metavar="DIR", help="write index.html with pictures, numbers and warnings into this folder")
     parser.add_argument("--level", type=float, metavar="HU", help=f"of the bone's surface ({LEVEL} in Hounsfield units; needed for other values)")
     parser.add_argument("--clearance", type=float, default=CLEARANCE, metavar="MM", help="gap between the implant's edge and the bone (%(default)s)")
@@ -178,7 +202,8 @@ def _run(options):
         warnings.append("the CT does not say how the patient lay: left and right, front and back are not known. Check the side by other means")
     _say("designing the implant")
     with _told_once(warnings):
-        made = make_implant(ct, options.hole, level, options.clearance, _Steps())
+        template = options.template and _open_template(options.template)
+        made = make_implant(ct, options.hole, level, options.clearance, _Steps(), template)
         lines = describe(made)
         record = save_solid(options.output, made.implant)
     warnings = list(dict.fromkeys(warnings))
@@ -188,9 +213,20 @@ def _run(options):
     if options.report:
         from lacuna import implant_report
         with _told_once():
-            implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings)
+            implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings,
+                                 options.template and os.path.basename(os.path.abspath(options.template)))
         _say(f"written: {os.path.join(options.report, 'index.html')}")
     _say("Research software, not a medical device.")
+
+
+def _open_template(path):
+    """A proxy. Raises ValueError when there is no such file."""
+    from lacuna.data import open_volume
+    if not path.lower().endswith(MESHES):
+        return open_volume(path)
+    if not os.path.isfile(path):
+        raise ValueError(f"--template: there is no file {path}")
+    return pv.OpenDataFile(path)
 
 
 class _Steps:

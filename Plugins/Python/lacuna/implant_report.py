@@ -125,15 +125,16 @@ def mirror_deviation(bone, level, implant, origin, normal):
                      float(areas[rows].sum() / areas.sum()))
 
 
-def write(folder, made, record, ct_name, warnings):
+def write(folder, made, record, ct_name, warnings, template_name=None):
     """Writes index.html and its pictures into a folder that exists.
 
-    made: of implant.make_implant; record: of solids.save_solid; ct_name: of the CT's file, without its folder; warnings: texts.
+    made: of implant.make_implant; record: of solids.save_solid; ct_name: of the CT's file, without its folder; warnings: texts; template_name:
+    as ct_name, of the template.
     """
     numbers = implant.measures(made)
     shown = _draw(folder, made, numbers)
     with open(os.path.join(folder, "index.html"), "w", encoding="utf-8") as file:
-        file.write(_page(made, numbers, record, ct_name, warnings, shown))
+        file.write(_page(made, numbers, record, ct_name, warnings, shown, template_name))
 
 
 def _draw(folder, made, numbers):
@@ -278,7 +279,7 @@ code { font-size: 0.85em; overflow-wrap: anywhere; } li { margin: 0.25em 0; }
 """
 
 
-def _page(made, numbers, record, ct_name, warnings, shown):
+def _page(made, numbers, record, ct_name, warnings, shown, template_name):
     text = html.escape
     main, sides = shown
 
@@ -286,7 +287,10 @@ def _page(made, numbers, record, ct_name, warnings, shown):
         inside = "\n".join(f'<figure><img src="{name}" alt="{text(title)}"><figcaption>{text(title)}</figcaption></figure>' for name, title in files)
         return f'<div class="{columns}">\n{inside}\n</div>'
 
-    rows = "\n".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in _rows(made, numbers))
+    rows = _rows(made, numbers)
+    if template_name:
+        rows.append(("template", f"{template_name}: {implant.template_text(numbers)}"))
+    rows = "\n".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in rows)
     told = "\n".join(f'<p class="warning">{text(warning)}</p>' for warning in warnings) or '<p class="fine">No warnings.</p>'
     steps = "\n".join(f"<li><code>{text(step)}</code></li>" for step in record["steps"])
     letters = "L, R, A, P, H, F at the edges of the pictures are the patient's left, right, front, back, head and feet." if \

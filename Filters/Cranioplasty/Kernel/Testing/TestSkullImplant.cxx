@@ -118,7 +118,7 @@ SkullImplant Make(
   {
     missing.push_back(rays.Directions[ray]);
   }
-  const SkullShape shape(GetSoundBone(rays), missing, shell.Plane, execution, FewNodes);
+  const SkullShape shape(GetSoundBone(rays), missing, shell.Plane, execution, nullptr, FewNodes);
   return MakeSkullImplant(shell.Volume, rays, defect, shape, options, execution);
 }
 

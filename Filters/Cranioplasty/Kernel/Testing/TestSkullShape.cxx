@@ -25,7 +25,7 @@ constexpr std::size_t FewNodes = 300; // of the likelihood
 std::vector<SkullEstimate> Fill(const Patient& patient, const MirrorPlane& plane, int threads = 2)
 {
   lacuna::ThreadExecution execution(threads);
-  const SkullShape shape(patient.Bone, patient.Defect, plane, execution, FewNodes);
+  const SkullShape shape(patient.Bone, patient.Defect, plane, execution, nullptr, FewNodes);
   return shape.Predict(patient.Defect, execution);
 }
 
@@ -100,7 +100,7 @@ TEST(SkullShape, MendsThePlane)
   const Patient patient({ -0.9, -0.2, 0.45 }, 0.5, Matrix4::Translation({ 20, -30, 400 }));
   lacuna::ThreadExecution execution(2);
   const MirrorPlane start = Disturbed(patient.Plane, patient.Bone.Center, 0.05, 3);
-  const SkullShape shape(patient.Bone, patient.Defect, start, execution, FewNodes);
+  const SkullShape shape(patient.Bone, patient.Defect, start, execution, nullptr, FewNodes);
   EXPECT_GT(Dot(shape.GetPlane().Normal, patient.Plane.Normal), std::cos(0.015));
   EXPECT_LT(std::abs(shape.GetPlane().Distance(patient.Bone.Center)), 0.7);
   const Score score = RateOuter(patient, shape.Predict(patient.Defect, execution));
@@ -138,7 +138,7 @@ TEST(SkullShape, IsTheBoneWhereThereIsBone)
 {
   const Patient patient({ 0.7, 0.5, 0.5 }, 0.4);
   lacuna::ThreadExecution execution(2);
-  const SkullShape shape(patient.Bone, patient.Defect, patient.Plane, execution, FewNodes);
+  const SkullShape shape(patient.Bone, patient.Defect, patient.Plane, execution, nullptr, FewNodes);
   std::vector<Vec3> rim;
   std::vector<double> radii;
   for (std::size_t i = 0; i < patient.Bone.Outer.size(); ++i)
@@ -167,7 +167,7 @@ TEST(SkullShape, RefusesWhatIsNoSkull)
   lacuna::ThreadExecution execution(1);
   const Patient patient({ 0.7, 0.5, 0.5 }, 0.4, {}, 6);
   const auto make = [&](const Patient& p)
-  { SkullShape(p.Bone, p.Defect, p.Plane, execution, FewNodes); };
+  { SkullShape(p.Bone, p.Defect, p.Plane, execution, nullptr, FewNodes); };
   Patient none = patient;
   none.Bone = {};
   EXPECT_THROW(make(none), std::invalid_argument);
@@ -197,7 +197,7 @@ TEST(SkullShape, RefusesWhatIsNoSkull)
   Patient same = patient;
   std::fill(same.Bone.Directions.begin(), same.Bone.Directions.end(), same.Bone.Directions[0]);
   EXPECT_THROW(make(same), std::invalid_argument);
-  const SkullShape shape(patient.Bone, patient.Defect, patient.Plane, execution, FewNodes);
+  const SkullShape shape(patient.Bone, patient.Defect, patient.Plane, execution, nullptr, FewNodes);
   EXPECT_THROW(shape.Predict({ { 1, 1, 0 } }, execution), std::invalid_argument);
   EXPECT_THROW(shape.Predict({ { 0, std::nan(""), 1 } }, execution), std::invalid_argument);
   EXPECT_TRUE(shape.Predict({}, execution).empty());

@@ -5,6 +5,7 @@
 #include "vtkCellData.h"
 #include "vtkFeatureEdges.h"
 #include "vtkFieldData.h"
+#include "vtkFlyingEdges3D.h"
 #include "vtkImageData.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaSkullImplant.h"
@@ -245,6 +246,54 @@ void TestDoubts()
   }
 }
 
+// The outer and inner surface of a head, scaled and moved.
+vtkSmartPointer<vtkPolyData> MakeMesh(vtkImageData* head, double scale)
+{
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(head);
+  contour->SetValue(0, 300);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  contour->Update();
+  vtkSmartPointer<vtkPolyData> mesh = contour->GetOutput();
+  for (vtkIdType p = 0; p < mesh->GetNumberOfPoints(); ++p)
+  {
+    double x[3];
+    mesh->GetPoint(p, x);
+    // a quarter of a turn about z
+    mesh->GetPoints()->SetPoint(p, 700 - scale * x[1], scale * x[0], scale * x[2]);
+  }
+  return mesh;
+}
+
+// The same head without holes, elsewhere and of another size, as a volume and as a mesh.
+void TestTemplate()
+{
+  constexpr double waves = 1.5;
+  vtkNew<vtkLacunaSkullImplant> filter;
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->SetTriangleSize(2);
+  filter->SetInputData(MakeHead(true, waves));
+  const vtkSmartPointer<vtkImageData> whole = MakeHead(false, waves);
+  const vtkSmartPointer<vtkPolyData> mesh = MakeMesh(whole, 0.9);
+  whole->SetOrigin(-400, 30, 20);
+  whole->SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0);
+  whole->SetSpacing(1.9, 1.9, 1.9);
+  filter->SetInputData(2, whole);
+  filter->Update();
+  vtkPolyData* implant = filter->GetOutput();
+  LACUNA_CHECK(messages->Errors.empty());
+  LACUNA_CHECK_NEAR(GetField(implant, "TemplateFitRMS"), 0, 0.1); // of voxels of 2 mm
+  LACUNA_CHECK_NEAR(GetField(implant, "TemplateScale"), 2 / 1.9, 2e-3);
+  filter->SetInputData(2, mesh);
+  filter->Update();
+  LACUNA_CHECK_NEAR(GetField(implant, "TemplateFitRMS"), 0, 0.1);
+  LACUNA_CHECK_NEAR(GetField(implant, "TemplateScale"), 1 / 0.9, 2e-3);
+  filter->RemoveTemplate();
+  filter->Update();
+  LACUNA_CHECK(!implant->GetFieldData()->GetArray("TemplateScale"));
+}
+
 void CheckError(const std::function<void(vtkLacunaSkullImplant*)>& change, const char* text)
 {
   vtkNew<vtkLacunaSkullImplant> filter;
@@ -267,6 +316,19 @@ void TestErrors()
   CheckError([](auto* f) { f->SetEdgeClearance(6); }, "EdgeClearance is 6");
   CheckError([](auto* f) { f->SetTriangleSize(0.1); }, "TriangleSize is 0.1");
   CheckError([](auto* f) { f->SetDensity(0); }, "Density is 0");
+  CheckError([](auto* f) { f->SetTemplateLevel(-1); }, "TemplateLevel is -1");
+  CheckError(
+    [](auto* f)
+    {
+      vtkNew<vtkPolyData> points;
+      points->SetPoints(MakeMesh(MakeHead(false), 1)->GetPoints());
+      f->SetInputData(2, points);
+    },
+    "the template does not fit: it has no triangles");
+  CheckError([](auto* f) { f->SetInputData(2, MakeMesh(MakeHead(false), 0.001)); },
+    "the template does not fit: ");
+  CheckError([](auto* f) { f->SetInputData(2, MakeMesh(MakeHead(false), 2.5)); },
+    "the template does not fit: it would have to be 0.4 times as large");
   CheckError([](auto* f) { f->SetInputData(MakeHead(false)); }, "no hole of 1 cm^2");
   CheckError(
     [](auto* f)
@@ -282,6 +344,7 @@ int TestSkullImplant(int, char*[])
 {
   TestChoice();
   TestDoubts();
+  TestTemplate();
   TestErrors();
   return lacunaCheck::Result();
 }
