@@ -29,7 +29,6 @@ constexpr double MostDeviation = 0.17;
 // The same: where the scan surely ends before the skull, and surely behind it.
 constexpr double NearEnd[] = { 0.95, 1.05 };
 constexpr double RoundedEdge = 1.5; // voxels
-constexpr double LeastDefect = 100; // mm^2
 constexpr double NarrowPart = 20;   // mm: what opens into a defect and is none
 // Of a defect's border, what is sound: without doubt, and after narrow parts are taken off.
 constexpr double ClearBorder = 0.5;
@@ -240,7 +239,9 @@ std::vector<RayTables> Follow(const VoxelVolume& volume, double level, const Vec
       const RaySampler sample(volume, voxels);
       if (std::isnan(sample(center)))
       {
-        throw std::invalid_argument("the centre of the skull is outside the volume");
+        throw std::invalid_argument(
+          "the middle of the skull is outside the volume: the scan shows too little of the vault. "
+          "Take a scan of the whole vault, and check that the level is that of bone");
       }
       execution.For(n, 64,
         [&](std::int64_t begin, std::int64_t end)
@@ -614,19 +615,14 @@ SoundBone GetSoundBone(const SkullRays& rays)
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
+std::vector<std::vector<int>> FindDefects(const SkullRays& rays, double leastArea)
 {
   const std::vector<std::vector<int>> around = FindNeighbors(rays.Directions, 1.6 * rays.Spacing);
   const std::vector<std::vector<int>> wide = FindNeighbors(rays.Directions, 4 * rays.Spacing);
   const std::vector<std::vector<int>> parts =
     FindParts(around, [&](int i) { return rays.Kinds[i] == SkullRayKind::Open; });
-  const double area = 0.866 * rays.Spacing * rays.Spacing * TypicalRadius * TypicalRadius;
   const auto isDefect = [&](const std::vector<int>& part, double least)
   {
-    if (static_cast<double>(part.size()) * area < LeastDefect)
-    {
-      return false;
-    }
     std::vector<int> border;
     for (const int i : part)
     {
@@ -635,9 +631,16 @@ std::vector<std::vector<int>> FindDefects(const SkullRays& rays)
     }
     std::sort(border.begin(), border.end());
     border.erase(std::unique(border.begin(), border.end()), border.end());
-    const auto sound = std::count_if(
-      border.begin(), border.end(), [&](int j) { return rays.Kinds[j] == SkullRayKind::Sound; });
-    return static_cast<double>(sound) >= least * static_cast<double>(border.size());
+    double sound = 0;
+    double radii = 0;
+    for (const int j : border)
+    {
+      sound += rays.Kinds[j] == SkullRayKind::Sound ? 1 : 0;
+      radii += rays.Kinds[j] == SkullRayKind::Sound ? rays.Outer[j] : 0;
+    }
+    const double edge = sound > 0 ? rays.Spacing * radii / sound : 0;
+    return 0.866 * edge * edge * static_cast<double>(part.size()) >= leastArea &&
+      sound >= least * static_cast<double>(border.size());
   };
   const int narrow =
     std::max(1, static_cast<int>(0.5 * NarrowPart / (rays.Spacing * TypicalRadius)));

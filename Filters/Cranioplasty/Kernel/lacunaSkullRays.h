@@ -103,10 +103,10 @@ std::vector<std::vector<int>> FindParts(
 /// The sound rays without those at rounded edges.
 SoundBone GetSoundBone(const SkullRays& rays);
 
-/// Connected open rays, of at least 1 cm^2, with sound bone around them (half of the rays within four spacings;
+/// Connected open rays, of at least leastArea (mm^2), with sound bone around them (half of the rays within four spacings;
 /// the open base of a skull has less): lists of rays, the largest first. A defect that opens into an orbit ends
 /// where the opening is narrower than 20 mm.
-std::vector<std::vector<int>> FindDefects(const SkullRays& rays);
+std::vector<std::vector<int>> FindDefects(const SkullRays& rays, double leastArea = 100);
 
 /// The rays within a closed curve on the skull (world mm), as seen from the centre. Throws std::invalid_argument
 /// for fewer than three points, or a curve around more than about half of the skull.
