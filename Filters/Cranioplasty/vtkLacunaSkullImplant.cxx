@@ -46,6 +46,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkLacunaSkullImplant);
@@ -59,6 +60,7 @@ constexpr double Seen = 10;             // mm, the farthest bone that shows what
 constexpr double MostDistance = 30;     // mm of Point from a hole
 constexpr double AutomaticTriangle = 1; // mm
 constexpr double SmallHole = 400;       // mm^2, below which it may be none
+constexpr double LeastGap = 10;         // mm^2, of those that are told of
 // A template that fits: part of the sound bone that it has to have, scale or its inverse, RMS in mm.
 constexpr double LeastCovered = 0.6;
 constexpr double MostScale = 1.5;
@@ -70,7 +72,7 @@ std::string Name(const Vec3& p)
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(1);
-  text << std::fixed << "(" << p[0] << ", " << p[1] << ", " << p[2] << ")";
+  text << std::fixed << "(" << p[0] << ", " << p[1] << ", " << p[2] << ") mm";
   return text.str();
 }
 
@@ -153,12 +155,12 @@ std::vector<Vec3> GetCurve(vtkPolyData* data)
 class Holes
 {
 public:
-  Holes(const lacuna::SkullRays& rays, const std::vector<std::vector<int>>& defects)
+  Holes(const lacuna::SkullRays& rays, std::vector<std::vector<int>> defects)
     : Rays(rays)
-    , Defects(defects)
+    , Defects(std::move(defects))
     , Ellipsoid(rays.Center, GetPoints(rays))
   {
-    for (const std::vector<int>& defect : defects)
+    for (const std::vector<int>& defect : this->Defects)
     {
       Vec3 middle{ 0, 0, 0 };
       double area = 0;
@@ -185,13 +187,17 @@ public:
     return least;
   }
 
+  std::string GetText(std::size_t defect) const
+  {
+    return Rounded(this->Areas[defect] / 100) + " cm^2 around " + Name(this->Centers[defect]);
+  }
+
   std::string GetText() const
   {
     std::string text;
     for (std::size_t k = 0; k < this->Areas.size(); ++k)
     {
-      text +=
-        (k ? "; " : "") + Rounded(this->Areas[k] / 100) + " cm^2 around " + Name(this->Centers[k]);
+      text += (k ? "; " : "") + this->GetText(k);
     }
     return text;
   }
@@ -300,11 +306,18 @@ private:
   }
 
   const lacuna::SkullRays& Rays;
-  const std::vector<std::vector<int>>& Defects;
+  std::vector<std::vector<int>> Defects;
   lacuna::SkullEllipsoid Ellipsoid;
   std::vector<Vec3> Centers;
   std::vector<double> Areas;
 };
+
+// The largest of the holes that are too small.
+std::string GetSmallHole(const lacuna::SkullRays& rays)
+{
+  const std::vector<std::vector<int>> small = FindDefects(rays, LeastGap);
+  return small.empty() ? "" : ". The largest gap has " + Holes(rays, { small[0] }).GetText();
+}
 
 struct PlacedTemplate
 {
@@ -379,7 +392,7 @@ std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRa
   const Vec3& worst = implant.LargestErrorPoint;
   std::string text = "parts of the outer surface may be more than 1 mm off, about " +
     Rounded(implant.DoubtfulArea / 100) + " of " + Rounded(implant.OuterArea / 100) +
-    " cm^2. The least certain place is " + Name(worst) + " mm, " + Rounded(distanceOf(worst), 1) +
+    " cm^2. The least certain place is " + Name(worst) + ", " + Rounded(distanceOf(worst), 1) +
     " mm away from sound bone";
   if (distanceOf(plane.Reflect(worst)) > Seen)
   {
@@ -540,9 +553,9 @@ int vtkLacunaSkullImplant::RequestData(
     }
     if (defects.empty())
     {
-      throw std::runtime_error(
-        "no hole of 1 cm^2 or more was found in the vault of the skull. Look "
-        "at the bone at this Level, or draw an outline around the defect");
+      throw std::runtime_error("no hole of 1 cm^2 or more was found in the vault of the skull" +
+        GetSmallHole(rays) +
+        ". Look at the bone at this Level, or draw an outline around the defect");
     }
     const Holes holes(rays, defects);
     holes.SetOutput(vtkPolyData::GetData(outputs, 1), isDrawn ? 0 : 1);
@@ -598,8 +611,8 @@ int vtkLacunaSkullImplant::RequestData(
     if (!isDrawn && holes.GetArea(chosen) < SmallHole)
     {
       vtkWarningMacro(
-        << "the hole has only " << Rounded(holes.GetArea(chosen) / 100)
-        << " cm^2: it may be thin bone that this Level does not show. Look at it in the CT");
+        << "the hole has only " << holes.GetText(chosen)
+        << ": it may be thin bone that this Level does not show. Look at it in the CT");
     }
     if (hasTemplate && shape.GetOuterFactor() == 0 && shape.GetThicknessFactor() == 0)
     {
