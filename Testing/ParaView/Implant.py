@@ -170,7 +170,7 @@ errors = []
 implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
 far = os.path.join(home, "far.stl")
 assert run(ct, "--output", far, "--hole", 300, 0, -13.5)[0] == 1
-assert len(errors) == 1 and re.search(r"^lacuna.implant: .*\d mm away from the nearest hole", errors[0]), errors
+assert len(errors) == 1 and re.search(r"^lacuna.implant: .*--hole \(300.0, 0.0, -13.5\) mm is \d.* mm away from the nearest hole", errors[0]), errors
 words = os.path.join(home, "words.txt")
 with open(words, "w", encoding="ascii") as file:
     file.write("no CT\n")

@@ -181,10 +181,18 @@ def main(arguments=None):
     try:
         _run(options)
     except (ValueError, RuntimeError, OSError, MemoryError) as error:
-        reason = "there is not enough memory" if isinstance(error, MemoryError) else error
+        reason = "there is not enough memory" if isinstance(error, MemoryError) else _in_options(str(error))
         print(f"lacuna.implant: {reason}", file=sys.stderr, flush=True)
         return 1
     return 0
+
+
+def _in_options(message):
+    """A message of the filters with the names of this command's options."""
+    for name, option in (("Point (", "--hole ("), ("TemplateLevel", "--level"), ("at this Level, or draw an outline around the defect", "in the CT, or give "
+                         "another --level")):
+        message = message.replace(name, option)
+    return message
 
 
 def _run(options):
