@@ -60,6 +60,7 @@ constexpr double Seen = 10;             // mm, the farthest bone that shows what
 constexpr double MostDistance = 30;     // mm of Point from a hole
 constexpr double AutomaticTriangle = 1; // mm
 constexpr double SmallHole = 400;       // mm^2, below which it may be none
+constexpr double ThinPlace = 1.5;       // mm, of an implant
 constexpr double LeastGap = 10;         // mm^2, of those that are told of
 // A template that fits: part of the sound bone that it has to have, scale or its inverse, RMS in mm.
 constexpr double LeastCovered = 0.6;
@@ -403,6 +404,37 @@ std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRa
     " mm. Compare the implant with the other side where PredictedError is large";
 }
 
+// Where the implant is thinner than ThinPlace; empty for nowhere.
+std::string GetThinPlaces(const lacuna::SkullImplant& implant)
+{
+  double area = 0;
+  std::size_t thinnest = 0;
+  for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
+  {
+    if (implant.Faces[t] != lacuna::SkullImplantFace::Outer)
+    {
+      continue;
+    }
+    const lacuna::Triangle& corners = implant.Triangles[t];
+    const Vec3& a = implant.Points[corners[0]];
+    const double third =
+      lacuna::Norm(lacuna::Cross(implant.Points[corners[1]] - a, implant.Points[corners[2]] - a)) /
+      6;
+    for (const std::int32_t corner : corners)
+    {
+      area += implant.Thickness[corner] < ThinPlace ? third : 0;
+      thinnest = implant.Thickness[corner] < implant.Thickness[thinnest] ? corner : thinnest;
+    }
+  }
+  if (!(area > 0))
+  {
+    return {};
+  }
+  return "the implant is thinner than " + lacuna::FormatNumber(ThinPlace) + " mm on about " +
+    Rounded(area / 100) + " cm^2. The thinnest place has " + Rounded(implant.Thickness[thinnest]) +
+    " mm, at " + Name(implant.Points[thinnest]) + ". Look whether the material allows that";
+}
+
 void AddArray(vtkPolyData* output, const char* name, const std::vector<double>& values)
 {
   vtkNew<vtkDoubleArray> array;
@@ -623,6 +655,10 @@ int vtkLacunaSkullImplant::RequestData(
     if (implant.LargestError > lacuna::TrustedError)
     {
       vtkWarningMacro(<< GetDoubts(implant, rays, shape.GetPlane()));
+    }
+    if (const std::string thin = GetThinPlaces(implant); !thin.empty())
+    {
+      vtkWarningMacro(<< thin);
     }
     if (implant.LeastTaper < 0)
     {

@@ -41,7 +41,7 @@
  * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
  *
  * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole; a
- * negative taper; data of which Level is the end of the range.
+ * negative taper; places thinner than 1.5 mm; a template that is not used; data of which Level is the end of the range.
  * Errors: a template that does not fit; no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
  *
  * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone

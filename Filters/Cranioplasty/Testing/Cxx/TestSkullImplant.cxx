@@ -42,12 +42,12 @@ double AngleTo(const double axis[3], const double x[3])
 }
 
 // A sphere that is a sieve below, like the base of a skull: no hole, and no sound bone. waves: mm in or out.
-vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true, double waves = 0)
+vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true, double waves = 0, double spacing = 2)
 {
   auto head = vtkSmartPointer<vtkImageData>::New();
-  constexpr int half = 32;
+  const int half = static_cast<int>(64 / spacing);
   head->SetExtent(-half, half, -half, half, -half, half);
-  head->SetSpacing(2, 2, 2);
+  head->SetSpacing(spacing, spacing, spacing);
   head->SetOrigin(Middle);
   head->AllocateScalars(VTK_SHORT, 1);
   auto* voxel = static_cast<short*>(head->GetScalarPointer());
@@ -57,7 +57,7 @@ vtkSmartPointer<vtkImageData> MakeHead(bool hasHoles = true, double waves = 0)
     {
       for (int i = -half; i <= half; ++i, ++voxel)
       {
-        const double x[3] = { 2.0 * i, 2.0 * j, 2.0 * k };
+        const double x[3] = { spacing * i, spacing * j, spacing * k };
         const double r = std::sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
         const double outer = Radius +
           waves *
@@ -246,6 +246,19 @@ void TestDoubts()
   }
 }
 
+// At this level the bone is 1.2 mm thick.
+void TestThinPlaces()
+{
+  vtkNew<vtkLacunaSkullImplant> filter;
+  const auto messages = lacunaCheck::Watch(filter);
+  filter->SetTriangleSize(2);
+  filter->SetLevel(300 + 150 * (0.5 * Thickness - 0.6));
+  filter->SetInputData(MakeHead(true, 0, 1));
+  filter->Update();
+  LACUNA_CHECK(messages->HasWarning("the implant is thinner than 1.5 mm on about "));
+  LACUNA_CHECK(messages->HasWarning("The thinnest place has 1."));
+}
+
 // The outer and inner surface of a head, scaled and moved.
 vtkSmartPointer<vtkPolyData> MakeMesh(vtkImageData* head, double scale)
 {
@@ -344,6 +357,7 @@ int TestSkullImplant(int, char*[])
 {
   TestChoice();
   TestDoubts();
+  TestThinPlaces();
   TestTemplate();
   TestErrors();
   return lacunaCheck::Result();
