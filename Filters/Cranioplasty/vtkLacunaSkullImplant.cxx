@@ -673,7 +673,7 @@ int vtkLacunaSkullImplant::RequestData(
       vtkLacunaFieldData::Set(output, name, { p[0], p[1], p[2] }, 3);
     };
     const auto range = std::minmax_element(implant.Thickness.begin(), implant.Thickness.end());
-    set("ChosenDefect", static_cast<double>(chosen + 1));
+    set("ChosenDefect", isDrawn ? 0 : static_cast<double>(chosen + 1));
     set("Volume", implant.Volume);
     set("Mass", implant.Volume * this->Density / 1000);
     set("OuterArea", implant.OuterArea);

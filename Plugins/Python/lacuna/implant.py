@@ -92,7 +92,7 @@ def measures(made):
     areas = vtk_to_numpy(fields.GetArray("DefectAreas")).ravel()
     centers = vtk_to_numpy(fields.GetArray("DefectCenters")).reshape(-1, 3)
     numbers["Defects"] = [Defect(float(area), center) for area, center in zip(areas, centers)]
-    numbers["Chosen"] = int(numbers["ChosenDefect"]) - 1
+    numbers["Chosen"] = max(int(numbers["ChosenDefect"]) - 1, 0)  # 0: the only one, of an outline that was drawn
     return numbers
 
 

@@ -192,8 +192,10 @@ def _new_view(size):
 def _show_outlines(defects, numbers, view):
     """The outline of each hole, of the one that the implant closes in red; returns the proxies."""
     shown = []
+    first = 1 if numbers["ChosenDefect"] else 0  # 0: an outline was drawn
     for k in range(len(numbers["Defects"])):
-        one = pv.Threshold(Input=defects, Scalars=["CELLS", "Defect"], ThresholdMethod="Between", LowerThreshold=k + 0.5, UpperThreshold=k + 1.5)
+        one = pv.Threshold(Input=defects, Scalars=["CELLS", "Defect"], ThresholdMethod="Between", LowerThreshold=first + k - 0.5,
+                           UpperThreshold=first + k + 0.5)
         outline = pv.FeatureEdges(Input=pv.ExtractSurface(Input=one), BoundaryEdges=1, FeatureEdges=0, NonManifoldEdges=0, ManifoldEdges=0)
         outline.UpdatePipeline()
         if outline.GetDataInformation().GetNumberOfCells() == 0:

@@ -12,6 +12,7 @@
 #include "vtkMassProperties.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTriangle.h"
@@ -199,6 +200,32 @@ void TestChoice()
   LACUNA_CHECK(GetField(filter->GetOutput(), "ChosenDefect") == 2);
 }
 
+// A curve around the large hole: the hole has no number among those that are found.
+void TestOutline()
+{
+  vtkNew<vtkPolyData> curve;
+  vtkNew<vtkPoints> points;
+  for (int k = 0; k < 40; ++k)
+  {
+    const double turn = 2 * std::acos(-1.0) * k / 40;
+    const double out = Radius * std::cos(LargeAngle + 0.1);
+    const double aside = Radius * std::sin(LargeAngle + 0.1);
+    points->InsertNextPoint(Middle[0] + out * Large[0] + aside * std::cos(turn) * Large[2],
+      Middle[1] + aside * std::sin(turn),
+      Middle[2] + out * Large[2] - aside * std::cos(turn) * Large[0]);
+  }
+  curve->SetPoints(points);
+  vtkNew<vtkLacunaSkullImplant> filter;
+  filter->SetTriangleSize(2);
+  filter->SetInputData(MakeHead());
+  filter->SetInputData(1, curve);
+  filter->Update();
+  CheckSolid(filter->GetOutput(), LargeAngle);
+  LACUNA_CHECK(GetField(filter->GetOutput(), "ChosenDefect") == 0);
+  vtkDataArray* numbers = filter->GetOutput(1)->GetCellData()->GetArray("Defect");
+  LACUNA_CHECK(numbers && numbers->GetRange()[0] == 0 && numbers->GetRange()[1] == 0);
+}
+
 double AreaOf(vtkPolyData* data, vtkIdType cell)
 {
   double x[3][3];
@@ -356,6 +383,7 @@ void TestErrors()
 int TestSkullImplant(int, char*[])
 {
   TestChoice();
+  TestOutline();
   TestDoubts();
   TestThinPlaces();
   TestTemplate();
