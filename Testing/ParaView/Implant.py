@@ -157,6 +157,19 @@ assert abs(off.covered - (upper + lower) / (upper + lower + bare)) < 0.02, off.c
 low = implant_report.mirror_deviation(head, 300, solid, origin + plane, plane)  # the plane 1 mm to the left: the other side seems 2 mm farther out
 assert off.mean - 2 < low.mean < off.mean - 1, low.mean
 
+# Without a screen the implant is kept, and one sentence says what to do
+errors = []
+implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
+screen = os.environ.get("DISPLAY")
+os.environ["DISPLAY"] = ":9973"
+alone = os.path.join(home, "alone.stl")
+code, text = run(ct, "--output", alone, "--report", os.path.join(home, "none"))
+assert code == 1 and os.path.getsize(alone) == os.path.getsize(stl) and "implant: " in text, text
+assert len(errors) == 1 and "the implant is written, the report is not" in errors[0] and "xvfb-run" in errors[0], errors
+del implant.print
+if screen is not None:
+    os.environ["DISPLAY"] = screen
+
 # A point near the hole gives the same implant, in another format
 vtp = os.path.join(home, "implant.vtp")
 code, text = run(ct, "--output", vtp, "--hole", *(middle + 5), "--clearance", 0.5)

@@ -10,6 +10,7 @@
 import argparse
 import collections
 import contextlib
+import ctypes
 import math
 import os
 import sys
@@ -18,6 +19,7 @@ import tempfile
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
 
 from lacuna import coordinates, views
 from lacuna.data import fetch
@@ -29,6 +31,7 @@ BONE = (100, 1000)  # the same: levels of bone
 CLEARANCE = 0.5  # mm
 ENDINGS = (".stl", ".ply", ".obj", ".vtp", ".3mf")
 MESHES = (".stl", ".ply", ".obj", ".vtp")  # of a template
+SCREEN = 'xvfb-run -a -s "-screen 0 1280x1024x24 -noreset"'
 WORDS = {"L": "left", "R": "right", "P": "back", "A": "front", "H": "top", "F": "bottom"}
 
 Made = collections.namedtuple("Made", "bone implant defects")
@@ -145,8 +148,7 @@ def parse_arguments(arguments):
         "expect. Research software, not a medical device.",
         epilog="Exit codes: 0 the implant is written; 1 something failed, one sentence says what; 2 the command is wrong.\n"
         "Call it as pvpython -- -m lacuna.implant ... The -- keeps ParaView from turning numbers such as -13 into --13.\n"
-        "On a computer without a screen --report needs a virtual one:\n"
-        "xvfb-run -a -s \"-screen 0 1280x1024x24 -noreset\" pvpython -- -m lacuna.implant ...")
+        f"On a computer without a screen --report needs a virtual one:\n{SCREEN} pvpython -- -m lacuna.implant ...")
     parser.add_argument("ct", metavar="CT", help="a folder with a DICOM series, a file of one, or a volume: .mha .mhd .nrrd .nhdr .nii .nii.gz .vti")
     parser.add_argument("--output", required=True, metavar="FILE",
                         help="the implant, in mm: " + " ".join(ENDINGS) + ". FILE.json beside it says where it comes from")
@@ -220,6 +222,7 @@ def _run(options):
     _say(f"written: {options.output} and {options.output}.json")
     if options.report:
         from lacuna import implant_report
+        _check_screen()
         with _told_once():
             implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings,
                                  options.template and os.path.basename(os.path.abspath(options.template)))
@@ -247,6 +250,22 @@ class _Steps:
         if int(10 * done) > self.said:
             self.said = int(10 * done)
             os.write(1, f"  {10 * self.said} %\n".encode())  # print's texts are silent meanwhile, see _told_once
+
+
+def _check_screen():
+    """Raises RuntimeError if pictures need an X server and there is none: VTK would end the program without a word."""
+    if not vtkRenderWindow().GetClassName().startswith("vtkX"):
+        return
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return  # VTK has it in another way
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    display = x11.XOpenDisplay(None)
+    if not display:
+        raise RuntimeError("the implant is written, the report is not: its pictures need a screen, and there is none. Call the command "
+                           f"with a virtual one: {SCREEN} pvpython -- -m lacuna.implant ...")
+    x11.XCloseDisplay(ctypes.c_void_p(display))
 
 
 def _check_folder(folder):
