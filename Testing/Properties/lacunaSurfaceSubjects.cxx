@@ -257,7 +257,9 @@ Subject MakeSkullImplant()
 {
   using T = vtkLacunaSkullImplant;
   Subject subject{ "SkullImplant", NewOf<T>,
-    [](Dice& dice) -> Inputs { return { RandomHead(dice), nullptr, RandomHead(dice) }; },
+    [](Dice& dice) -> Inputs {
+      return { RandomHead(dice), nullptr, RandomHead(dice) };
+    },
     { Real("Level", &T::SetLevel, 200, 400), Whole("DefectChoice", &T::SetDefectChoice, 0, 1),
       Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
       Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5),

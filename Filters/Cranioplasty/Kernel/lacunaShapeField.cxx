@@ -20,7 +20,7 @@ constexpr double RegionPrior = 0.3;
 constexpr double LeastCalibration = 0.4;
 constexpr double MostCalibration = 3;
 // Of an example's factor: standard errors above 0, and the most that is believed.
-constexpr double LeastCertainty = 2;
+constexpr double LeastCertainty = 3;
 constexpr double MostFactor = 2;
 constexpr double Normal95 = 1.959963984540054;
 

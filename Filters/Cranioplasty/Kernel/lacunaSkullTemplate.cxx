@@ -46,7 +46,7 @@ struct Bridge
   double Width;
   std::size_t Step;
 };
-constexpr Bridge Bridges[] = { { 8, 1 }, { 24, 9 }, { 72, 81 } };
+constexpr Bridge Bridges[] = { { 5, 1 }, { 20, 9 }, { 72, 81 } };
 constexpr double HalfWeight = 0.05;
 constexpr double BetweenRays = 2.5;
 constexpr double LeastVariation = 0.02; // mm, RMS: of a sphere's

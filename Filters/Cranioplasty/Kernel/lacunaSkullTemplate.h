@@ -67,7 +67,7 @@ SkullRays PlaceTemplate(
   const SkullShell& shell, const TemplateFit& fit, const SkullRays& skull, Execution& execution);
 
 /// What rays show of another skull, as smooth functions of the direction: the outer table over the skull's own
-/// ellipsoid, and the thickness over its mean, mm, for variations longer than some 20 mm. They are the same on both sides
+/// ellipsoid, and the thickness over its mean, mm, for variations longer than some 15 mm. They are the same on both sides
 /// of the plane, as means of both: what one side of a template has of its own tells nothing of another skull. Gaps are
 /// bridged from around them. Empty where that is nothing, as of a sphere, or of a shell without inner table. Throws
 /// std::invalid_argument as SkullEllipsoid does.
