@@ -3,7 +3,7 @@
 
     . build/release/lacuna-env.sh
     xvfb-run -a pvpython Testing/Science/skull_implants.py --tool PATH/implant_cases.py --out FOLDER [--cases NAME,...] [--random FIRST-LAST]
-                         [--picture FILE.png] [--check] [NAME=CT.mha ...]
+                         [--picture FILE.png] [--check] [--templates] [NAME=CT.mha ...]
 
 For each skull and case (a name of the tool's list, or random:SEED): the tool cuts the hole, lacuna.implant makes the implant from the whole
 file, with nothing marked but a point in the hole, and the tool scores it. FOLDER keeps the implants and results.csv; a later call makes only
@@ -11,6 +11,7 @@ what is missing. FOLDER/results.md is the table. The picture shows the true erro
 
 Errors are along the ray from the middle of the head, times the cosine between ray and surface, as the tool has it. band: the part
 of the outer surface whose true error is at most 1.96 times the predicted one. ratio: RMS of the predicted error by RMS of the true one.
+--templates gives each skull the next one of the list as its template, the last one the first; use another FOLDER for it.
 Random cases that the tool calls unfair (without bone nearly everywhere) are left out. Needs SciPy.
 
 Without NAME=CT.mha: head.mha of LACUNA_TEST_DATA, and Cranium.inv3 of Debian's package invesalius-examples. --check ends with 1 when an
@@ -92,7 +93,7 @@ def point_areas(surface):
     return np.bincount(corners.ravel(), np.repeat(areas, 3), len(points))
 
 
-def measure(tool, options, skull, ct, name):
+def measure(tool, options, skull, ct, name, template=None):
     start = os.path.join(options.out, f"{skull}-{name.replace(':', '')}")
     case = tool.Case(ct, name)
     row = dict.fromkeys(FIELDS, "") | {"skull": skull, "case": name}
@@ -101,8 +102,8 @@ def measure(tool, options, skull, ct, name):
     subprocess.run([options.pvpython, options.tool, "cut", ct, name, f"{start}.mha"], check=True, stdout=subprocess.DEVNULL)
     hole = [f"{x:.3f}" for x in case.c + 85 * case.w]
     begin = time.monotonic()
-    made = subprocess.run([options.pvpython, "--", "-m", "lacuna.implant", f"{start}.mha", "--output", f"{start}.vtp", "--hole", *hole],
-                          capture_output=True, text=True, check=False)
+    made = subprocess.run([options.pvpython, "--", "-m", "lacuna.implant", f"{start}.mha", "--output", f"{start}.vtp", "--hole", *hole,
+                           *(["--template", template] if template else [])], capture_output=True, text=True, check=False)
     row["seconds"] = f"{time.monotonic() - begin:.0f}"
     os.remove(f"{start}.mha")
     if made.returncode:
@@ -299,6 +300,7 @@ def main():
     parser.add_argument("skulls", nargs="*", metavar="NAME=CT.mha")
     parser.add_argument("--tool", default=os.path.join(os.environ.get("LACUNA_TEST_DATA", ""), "..", "tools", "implant_cases.py"))
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--templates", action="store_true")
     parser.add_argument("--out", required=True)
     parser.add_argument("--cases", default="")
     parser.add_argument("--random", default="")
@@ -326,7 +328,9 @@ def main():
         for name in names:
             if any((row["skull"], row["case"]) == (skull, name) for row in rows):
                 continue
-            rows.append(measure(tool, options, skull, ct, name))
+            others = list(skulls.values())
+            template = others[(others.index(ct) + 1) % len(others)] if options.templates and len(others) > 1 else None
+            rows.append(measure(tool, options, skull, ct, name, template))
             print(", ".join(f"{key} {value}" for key, value in rows[-1].items() if value != ""), flush=True)
             with open(path, "w", encoding="utf-8", newline="") as file:
                 writer = csv.DictWriter(file, FIELDS)
