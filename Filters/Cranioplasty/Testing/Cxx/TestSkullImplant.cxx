@@ -367,8 +367,8 @@ void TestErrors()
     "the template does not fit: it has no triangles");
   CheckError([](auto* f) { f->SetInputData(2, MakeMesh(MakeHead(false), 0.001)); },
     "the template does not fit: ");
-  CheckError([](auto* f) { f->SetInputData(2, MakeMesh(MakeHead(false), 2.5)); },
-    "the template does not fit: it would have to be 0.4 times as large");
+  CheckError([](auto* f) { f->SetInputData(2, MakeMesh(MakeHead(false), 1.7)); },
+    "the template does not fit: it would have to be 0.59 times as large");
   CheckError([](auto* f) { f->SetInputData(MakeHead(false)); }, "no hole of 1 cm^2");
   CheckError(
     [](auto* f)
