@@ -162,6 +162,12 @@ private:
         this->Path + ": contour " + std::to_string(count) + " of '" + name + "'";
       StructureOutline outline;
       outline.Points = this->ReadPoints(contour, where);
+      constexpr std::size_t fewest = 3;
+      if (outline.Points.size() < fewest) // as drawing by threshold leaves them
+      {
+        ++this->OtherTypes[type + " with fewer than 3 points"];
+        continue;
+      }
       outline.Structure = this->Outlines.AddStructure(name, color);
       outline.Number = static_cast<int>(this->Outlines.GetOutlines().size()) + 1;
       this->Outlines.AddOutline(std::move(outline), where);
@@ -212,8 +218,8 @@ private:
   void Warn()
   {
     std::vector<std::string>& warnings = this->Outlines.Warnings;
-    const std::string others = this->DescribeOthers(
-      "contours are left out because they are not CLOSED_PLANAR (3006,0042): ", "");
+    const std::string others =
+      this->DescribeOthers("contours (3006,0042) are left out because they enclose nothing: ", "");
     if (!others.empty())
     {
       warnings.push_back(others);

@@ -123,7 +123,7 @@ TEST(StructureSet, ReadsClosedContoursWhereTheyAre)
     EXPECT_TRUE(set.IsPatient);
     ASSERT_EQ(set.Warnings.size(), 2U);
     EXPECT_EQ(set.Warnings[0],
-      "contours are left out because they are not CLOSED_PLANAR (3006,0042): 1 of type POINT");
+      "contours (3006,0042) are left out because they enclose nothing: 1 of type POINT");
     EXPECT_EQ(set.Warnings[1], "structures without closed contours are left out: Marker, Body");
   }
 }
@@ -173,9 +173,13 @@ TEST(StructureSet, SaysWhatIsWrongAndWhere)
     ExpectContains(spoil({ "CLOSED_PLANAR", "3", "0\\0\\5\\1\\" + bad + "\\5\\0\\1\\5" }),
       "contour 2 of 'Liver': point 2 has the coordinate '" + bad + "'");
   }
-  ExpectContains(spoil({ "CLOSED_PLANAR", "2", "0\\0\\5\\1\\0\\5" }),
+  ExpectContains(spoil({ "CLOSED_PLANAR", "3", "0\\0\\5\\1\\0\\5\\0\\0\\5" }),
     "contour 2 of 'Liver' has 2 different points, but an outline needs 3");
   Writer writer;
+  writer.Structures[0].Contours[1] = { "CLOSED_PLANAR", "2", "0\\0\\5\\1\\0\\5" };
+  const OutlineSet few = Read(writer.Write());
+  EXPECT_EQ(few.GetOutlines().size(), 2U);
+  ExpectContains(few.Warnings[0], "1 of type CLOSED_PLANAR with fewer than 3 points");
   writer.Structures[0].Referenced = "9";
   ExpectContains(Error(writer), "contours belong to the ROI Number (3006,0084) '9'");
   writer = {};
