@@ -170,6 +170,17 @@ del implant.print
 if screen is not None:
     os.environ["DISPLAY"] = screen
 
+# Another skull as a template: the phantom without its hole
+whole = SkullPhantom(Spacing=[2.5, 2.5, 2.5], DefectRadius=0)
+other = os.path.join(home, "other.vti")
+writer.SetFileName(other)
+writer.SetInputData(fetch(whole))
+writer.Write()
+code, text = run(ct, "--output", os.path.join(home, "templated.stl"), "--template", other)
+assert code == 0, text
+assert printed_number(r"template: ([.\d]+) mm RMS from the sound bone", text) < 0.5, text
+assert abs(printed_number(r"scaled by ([.\d]+);", text) - 1) < 0.01, text
+
 # A point near the hole gives the same implant, in another format
 vtp = os.path.join(home, "implant.vtp")
 code, text = run(ct, "--output", vtp, "--hole", *(middle + 5), "--clearance", 0.5)
@@ -184,6 +195,9 @@ implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
 far = os.path.join(home, "far.stl")
 assert run(ct, "--output", far, "--hole", 300, 0, -13.5)[0] == 1
 assert len(errors) == 1 and re.search(r"^lacuna.implant: .*--hole \(300.0, 0.0, -13.5\) mm is \d.* mm away from the nearest hole", errors[0]), errors
+errors.clear()
+assert run(ct, "--output", far, "--template", os.path.join(home, "none.stl"))[0] == 1 and "--template: there is no file" in errors[0], errors
+errors.clear()
 words = os.path.join(home, "words.txt")
 with open(words, "w", encoding="ascii") as file:
     file.write("no CT\n")
