@@ -551,7 +551,8 @@ void pqLacunaOutlinePanel::Save()
       this, tr("Save outlines"), tr("%1 cannot be written: %2").arg(name, file.errorString()));
     return;
   }
-  QTextStream text(&file);
+  QString rows;
+  QTextStream text(&rows); // written as UTF-8, with whatever version of Qt
   text.setRealNumberPrecision(12);
   text << "structure,outline,slice,column,row,x,y,z,handle\n";
   vtkDataArray* pixel = lines->GetPointData()->GetArray("Pixel");
@@ -579,6 +580,7 @@ void pqLacunaOutlinePanel::Save()
     }
   }
   text.flush();
+  file.write(rows.toUtf8());
   if (!file.commit())
   {
     QMessageBox::critical(
@@ -603,7 +605,8 @@ void pqLacunaOutlinePanel::Load()
     fail(file.errorString());
     return;
   }
-  QTextStream text(&file);
+  QString rows = QString::fromUtf8(file.readAll());
+  QTextStream text(&rows);
   const QStringList titles = text.readLine().split(',');
   int at[6];
   const char* const wanted[6] = { "structure", "outline", "slice", "column", "row", "handle" };
