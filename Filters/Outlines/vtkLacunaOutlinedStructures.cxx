@@ -45,7 +45,7 @@ namespace
 {
 using lacuna::Vec3;
 // Of an outline that a surface is made of.
-constexpr std::size_t FewestPoints = 20;
+constexpr std::size_t FewestPoints = 16;
 constexpr std::size_t MostPoints = 48;
 
 using Lines = std::vector<std::vector<Vec3>>;
@@ -421,7 +421,7 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
   double high[3];
   std::copy_n(outlines[0][0].data(), 3, low);
   std::copy_n(outlines[0][0].data(), 3, high);
-  constexpr std::size_t all = 240; // points of a structure, which the time of a fit depends on
+  constexpr std::size_t all = 160; // points of a structure, which the time of a fit depends on
   const std::size_t each = std::clamp<std::size_t>(all / outlines.size(), FewestPoints, MostPoints);
   for (const auto& outline : outlines)
   {
