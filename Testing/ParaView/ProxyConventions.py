@@ -19,7 +19,7 @@ WITHOUT_UNIT = {
     "InsideBounds", "OutsideBounds", "PixelAspect", "SpeckleLevel", "PresentFraction", "TissueFraction",
     "OutlierFraction", "ObjectOpacity", "Accuracy", "IsoValue", "IsoValues", "OutsideValue", "OutlierLimit",
     "Smoothing", "TimestepValues", "FootprintScale", "PaddingValue", "NoiseLevel", "TrueIsoValue", "Envelope",
-    "OutputSpacing", "KernelSize", "Dilation"}
+    "OutputSpacing", "KernelSize", "Dilation", "StructureColors"}
 # follow each other in the menu, as in the pipelines
 PIPELINES = [
     ["AssembleTrackedSlices", "GateSlices", "SpeckleFilter", "SlicePlanes", "SliceRayCaster", "SweptVolume",
@@ -28,7 +28,7 @@ PIPELINES = [
      "PressOrientation", "MillingToolPath"],
     ["ScanRegion", "ProbeCalibration", "TemporalCalibration", "SweptVolume"],
     ["OccludedAngle", "OcclusionSurface"]]
-SMALL = {"SkullBone": 2, "ScanRegion": 2, "TemporalCalibration": 1, "TrackedSliceWriter": 1, "SplineLoop": 1, "VolumeReader": 1,
+SMALL = {"OutlinedStructures": 2, "SliceOutliner": 2, "SkullBone": 2, "ScanRegion": 2, "TemporalCalibration": 1, "TrackedSliceWriter": 1, "SplineLoop": 1, "VolumeReader": 1,
          "OutlineReader": 0}
 
 
