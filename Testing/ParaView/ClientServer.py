@@ -81,7 +81,7 @@ def client(port):
     macro = box, implant.GetDataInformation().GetExtent(), os.path.getsize(written)
     os.remove(written)
     print("result", hashlib.sha256(repr(fetched()).encode()).hexdigest(), macro, volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
-          filled.PointData["Deviation"].GetRange(), coordinates.find(filled), os.path.getsize(iges))
+          filled.PointData["Deviation"].GetRange(), coordinates.find(filled), os.path.getsize(iges), flush=True)  # before errors that follow
     os.remove(iges)
     Show(filled, view)
     for what in range(2):  # what fails there is said here, each time, the view has nothing of it, and then it works

@@ -6,7 +6,11 @@
 
 With ", as the file says" behind it when the data were read from a file other than DICOM, and ", mirrored".
 """
+import functools
 import math
+
+from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from lacuna.data import fetch
 
@@ -19,14 +23,17 @@ KEEPING = frozenset((
     "Append Attributes", "Append Datasets", "Append Geometry", "Cell Data to Point Data", "Clean", "Clean to Grid",
     "Clip", "Connectivity", "Contour", "Decimate", "Extract Block", "Extract Cells By Region", "Extract Selection",
     "Extract Subset", "Extract Surface", "Feature Edges", "Generate Surface Normals", "Group Datasets",
-    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Tetrahedralize", "Threshold",
-    "Triangulate"))
+    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Surface Normals", "Tetrahedralize",
+    "Threshold", "Triangulate"))
 
 # ParaView's filters that cut the cells of an image as though its direction were the identity: their points are where
 # nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
 STRAIGHTENING = frozenset(("Clip", "Contour", "Iso Volume", "Slice"))
 
-# ParaView's filters that set the direction of an image back to the identity.
+# Those that move points and may give an image all the same, whose directions are then the identity.
+MOVING = frozenset(("Axis-Aligned Reflect", "Axis-Aligned Transform"))
+
+# ParaView's filters that set the direction of an image back to the identity, in 5.11; later ones may keep it.
 RESETTING = frozenset(("Color By Array", "Crop", "Gradient Legacy", "Gradient Magnitude", "Image Shrink", "Median"))
 IDENTITY = (1, 0, 0, 0, 1, 0, 0, 0, 1)
 TOLERANCE = 1e-5  # of elements of a direction matrix, as in the filters
@@ -87,7 +94,9 @@ def _is_behind_reflection(proxy):
     one is a pattern only.
     """
     label = proxy.GetXMLLabel()
-    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0 or label == "Reflect":
+    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0 or label in ("Reflect", "Axis-Aligned Reflect"):
+        return True
+    if label == "Axis-Aligned Transform" and math.prod(proxy.Scale) < 0:
         return True
     if label == "Transform" and proxy.Transform.GetXMLLabel() == "Transform" and math.prod(proxy.Transform.Scale) < 0:
         return True
@@ -138,9 +147,29 @@ def _is_no_transform(proxy):
         [*proxy.Transform.Translate, *proxy.Transform.Rotate, *proxy.Transform.Scale] == [0, 0, 0, 0, 0, 0, 1, 1, 1]
 
 
+@functools.lru_cache(maxsize=None)
+def _iso_volume_is_right():
+    """Whether Iso Volume heeds the direction of an image, unlike that of ParaView 5.11: tried on values that rise along y."""
+    from paraview.modules.vtkPVVTKExtensionsFiltersGeneral import vtkIsoVolume
+    image, values, cut = vtkImageData(), vtkFloatArray(), vtkIsoVolume()
+    image.SetDimensions(2, 2, 2)
+    image.SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0)
+    values.SetName("Rising")
+    for k in range(8):
+        values.InsertNextValue(k % 2)
+    image.GetPointData().SetScalars(values)
+    cut.SetInputDataObject(image)
+    cut.SetInputArrayToProcess(0, 0, 0, 0, "Rising")
+    cut.ThresholdBetween(0.5, 2)
+    cut.Update()
+    return cut.GetOutput().GetBounds()[2] == 0.5
+
+
 def _is_straightening(proxy):
     """Whether a proxy cuts cells of images without heeding their direction."""
     label = proxy.GetXMLLabel()
+    if label == "Iso Volume":
+        return not _iso_volume_is_right()
     right = label == "Slice" and proxy.SliceType.GetXMLLabel() == "Plane" or label == "Clip" and proxy.Crinkleclip
     return label in STRAIGHTENING and not right
 
@@ -171,12 +200,11 @@ def keeps_points(proxy):
     inputs = _inputs(proxy)
     if inputs and not proxy.GetXMLName().startswith("Lacuna"):
         label = proxy.GetXMLLabel()
-        if label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):
+        if label in MOVING or label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):
             return False
         if _is_straightening(proxy) and any(_is_turned(each) for each in inputs):
             return False
-        record = _record(proxy) if label in RESETTING else None
-        if record is not None and not _is_same(record, IDENTITY):
+        if label in RESETTING and _is_reset(fetch(proxy)):
             return False
         if len(inputs) > 1 and len({(_place(each), is_mirrored(each)) for each in inputs}) > 1:
             return False
