@@ -73,7 +73,7 @@ def record(options):
     folder = os.path.join(TOP, "build", "compatibility")
     os.makedirs(folder, exist_ok=True)
     if options.tests is not None:
-        result["tests"] = tests(os.path.join(folder, "tests.xml"))
+        result["tests"] = dict(tests(os.path.join(folder, "tests.xml")), **{key: result[key] for key in ("commit", "date", "command")})
     with open(os.path.join(folder, f"{options.suite}.json"), "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)
 
@@ -87,15 +87,15 @@ def counts(each):
         return "not run"
     found = each["tests"]
     failed, skipped = len(found["failed"]), len(found["skipped"])
-    return f"{found['passed']} passed, {failed} failed, {skipped} skipped"
+    return f"{found['passed']} passed, {failed} failed, {skipped} skipped ({found['commit']}, {found['date']}, `./test.sh{found['command'].partition(each['suite'])[2]}`)"
 
 
 def full(records):
-    yield "| system | ParaView, its VTK | Qt | compiler, CMake, Python | demo | tests | commit, date | command |"
-    yield "|---|---|---|---|---|---|---|---|"
+    yield "| system | ParaView, its VTK | Qt | compiler, CMake, Python | demo (commit, date) | tests |"
+    yield "|---|---|---|---|---|---|"
     for each in records:
         yield (f"| {each['system']}, {each['architecture']} | {each['paraview']}, {each['vtk']} | {each['qt']} | {each['compiler']}, {each['cmake']}, "
-               f"{each['python']} | {'passes' if each['demo'] else 'not run'} | {counts(each)} | {each['commit']}, {each['date']} | `{each['command']}` |")
+               f"{each['python']} | {'passes' if each['demo'] else 'not run'} ({each['commit']}, {each['date']}) | {counts(each)} |")
     for each in records:
         found = each.get("tests", {"failed": []})
         if found["failed"]:
@@ -121,6 +121,9 @@ def keep(options):
     kept = {each["suite"]: each for each in json.loads(read(KEPT))} if os.path.exists(KEPT) else {}
     for path in options.files:
         each = json.loads(read(path))
+        before = kept.get(each["suite"], {})
+        if "tests" not in each and "tests" in before and before["paraview"] == each["paraview"]:
+            each["tests"] = before["tests"]
         kept[each["suite"]] = each
     with open(KEPT, "w", encoding="utf-8") as file:
         json.dump(order(kept.values()), file, indent=1)
