@@ -57,9 +57,10 @@ def run_ranks(ranks, script, *arguments, options=(), timeout=300):
     done = subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering", *options,
                            os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=timeout, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    print(done.stdout, flush=True)
+    printed = done.stdout.replace("\0", "")  # MPI writes some, which pvpython cannot
+    print(printed, flush=True)
     done.check_returncode()
-    return done.stdout
+    return printed
 
 
 def on_two_ranks(script, run):
