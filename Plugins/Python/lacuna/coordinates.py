@@ -26,8 +26,8 @@ KEEPING = frozenset((
     "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Surface Normals", "Tetrahedralize",
     "Threshold", "Triangulate"))
 
-# ParaView's filters that cut the cells of an image as though its direction were the identity: their points are where
-# nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
+# ParaView's filters that cut the cells of an image as though its direction were the identity, all of them in 5.11: their points
+# are where nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
 STRAIGHTENING = frozenset(("Clip", "Contour", "Iso Volume", "Slice"))
 
 # Those that move points and may give an image all the same, whose directions are then the identity.
@@ -148,19 +148,28 @@ def _is_no_transform(proxy):
 
 
 @functools.lru_cache(maxsize=None)
-def _iso_volume_is_right():
-    """Whether Iso Volume heeds the direction of an image, unlike that of ParaView 5.11: tried on values that rise along y."""
-    from paraview.modules.vtkPVVTKExtensionsFiltersGeneral import vtkIsoVolume
-    image, values, cut = vtkImageData(), vtkFloatArray(), vtkIsoVolume()
+def _is_right(label):
+    """Whether a filter that cuts by values heeds the direction of an image: tried on values that rise along y. In ParaView 5.11
+    none does, in 5.13 Clip and Iso Volume do.
+    """
+    from paraview.modules.vtkPVVTKExtensionsFiltersGeneral import vtkIsoVolume, vtkPVClipDataSet
+    from vtkmodules.vtkFiltersCore import vtkContourFilter
+    image, values = vtkImageData(), vtkFloatArray()
     image.SetDimensions(2, 2, 2)
     image.SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0)
     values.SetName("Rising")
     for k in range(8):
         values.InsertNextValue(k % 2)
     image.GetPointData().SetScalars(values)
+    cut = {"Clip": vtkPVClipDataSet, "Contour": vtkContourFilter, "Iso Volume": vtkIsoVolume}[label]()
+    if label == "Iso Volume":
+        cut.ThresholdBetween(0.5, 2)
+    elif label == "Clip":
+        cut.SetValue(0.5)
+    else:
+        cut.SetValue(0, 0.5)
     cut.SetInputDataObject(image)
     cut.SetInputArrayToProcess(0, 0, 0, 0, "Rising")
-    cut.ThresholdBetween(0.5, 2)
     cut.Update()
     return cut.GetOutput().GetBounds()[2] == 0.5
 
@@ -168,10 +177,11 @@ def _iso_volume_is_right():
 def _is_straightening(proxy):
     """Whether a proxy cuts cells of images without heeding their direction."""
     label = proxy.GetXMLLabel()
-    if label == "Iso Volume":
-        return not _iso_volume_is_right()
-    right = label == "Slice" and proxy.SliceType.GetXMLLabel() == "Plane" or label == "Clip" and proxy.Crinkleclip
-    return label in STRAIGHTENING and not right
+    if label not in STRAIGHTENING:
+        return False
+    if label == "Slice":
+        return proxy.SliceType.GetXMLLabel() != "Plane"
+    return not (label == "Clip" and proxy.Crinkleclip or _is_right(label))
 
 
 def _is_turned(source):
