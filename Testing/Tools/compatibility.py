@@ -41,10 +41,9 @@ def installed(package):
     return re.sub(r"^\d+:|[-+~].*$", "", output("dpkg-query", "-W", "-f=${Version}", package))
 
 
-def vtk_version(paraview_dir):
-    """Of the VTK in a ParaView, by its header."""
-    text = read(os.path.join(paraview_dir.split("/lib/")[0], "include", os.path.basename(paraview_dir), "vtkVersionMacros.h"))
-    return re.search(r'#define VTK_VERSION "([^"]+)"', text)[1]
+def vtk_version():
+    """Of the VTK that ParaView has."""
+    return output(sys.executable, "-c", "from vtkmodules.vtkCommonCore import vtkVersion; print(vtkVersion.GetVTKVersion())")
 
 
 def tests(path):
@@ -65,7 +64,7 @@ def record(options):
     compiler = output(cache["CMAKE_CXX_COMPILER"], "-dumpfullversion")
     result = {
         "suite": options.suite, "system": NAMES.get(options.suite, options.suite), "architecture": output("dpkg", "--print-architecture"),
-        "paraview": installed("paraview"), "vtk": vtk_version(cache["ParaView_DIR"]),
+        "paraview": installed("paraview"), "vtk": vtk_version(),
         "qt": installed("qtbase5-dev" if cache.get("Qt5_DIR") else "qt6-base-dev"), "compiler": f"GCC {compiler}",
         "cmake": installed("cmake"), "python": output(sys.executable, "-c", "import platform; print(platform.python_version())"),
         "build": True, "demo": options.demo, "commit": output("git", "rev-parse", "--short=8", "HEAD"), "date": str(datetime.date.today()),
