@@ -3,7 +3,7 @@
 # Installs, uses and purges the Debian packages beside this script (Testing/Tools/chroot.sh FOLDER
 # package runs it in a clean Debian, as root).
 #   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/, kernels/, and, to be
-#                         tried as well, lacuna*.tar.xz and README.md, of which the script is run
+#                         tried as well, the unpacked archive in archive/, and README.md, of which the script is run
 set -euo pipefail
 cd "$(dirname "$0")"
 version=$1
@@ -42,9 +42,9 @@ chown -R nobody "$work"
 apt-get -qq update
 
 archive=
-if compgen -G 'lacuna*.tar.xz' >/dev/null; then
+if [ -d archive ]; then
   echo "== the archive, without ParaView and with another"
-  tar -C "$work" -xJf lacuna*.tar.xz
+  cp -r archive/lacuna-* "$work"
   archive=$(cd "$work" && echo lacuna-*/)
   refused() { # what it says begins with the ParaView that it fits
     if as_user bash -c "$2 . ./${archive}lacuna-env.sh" 2>"$work/refused"; then exit 1; fi

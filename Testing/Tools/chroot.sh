@@ -139,7 +139,11 @@ case $what in
     rm -rf "$folder/packages"
     cp -r "$source/Testing/Package" "$folder/packages"
     cp -r "$source/Documentation/Examples/18-embedding" "$source/Testing/Embedding/kernels" \
-      "$packages"/lacuna*.{deb,tar.xz} "$source/README.md" "$folder/packages"
+      "$packages"/lacuna*.deb "$source/README.md" "$folder/packages"
+    for archive in "$packages"/lacuna*.tar.xz; do
+      mkdir "$folder/packages/archive"
+      tar -C "$folder/packages/archive" -xJf "$archive"
+    done
     inside "/packages/check.sh $version"
     ;;
 esac
