@@ -39,18 +39,17 @@ def reduce(pixels):
     return pixels[:rows * size, :columns * size].reshape(rows, size, columns, size, 3).mean(axis=(1, 3))
 
 
-def fit(pixels, shape):
-    """A picture of this shape, where that is up to 3 % larger or smaller: windows of another Qt leave the view more or less."""
-    if any(abs(own / other - 1) > 0.03 for own, other in zip(pixels.shape, shape)):
-        return pixels
-    rows, columns = (np.arange(other) * own // other for own, other in zip(pixels.shape[:2], shape[:2]))
-    return pixels[rows][:, columns]
+def missing(path, baseline):
+    """(columns, rows): so many pixels the picture lacks to have the size of its baseline; 0, 0 where there is none."""
+    pixels = read(path)
+    found, expected = reduce(pixels).shape, read(baseline).shape if os.path.exists(baseline) else reduce(pixels).shape
+    size = max(1, round(pixels.shape[1] / WIDTH))
+    return [0 if found[k] == expected[k] else expected[k] * size + size // 2 - pixels.shape[k] for k in (1, 0)]
 
 
 def compare(path, baseline, difference, likeness, renew):
     """difference: of grey levels, on average at most; likeness: correlation of the brightness, at least."""
-    pixels = read(path)
-    found = reduce(pixels)
+    found = reduce(read(path))
     if renew:
         os.makedirs(os.path.dirname(baseline), exist_ok=True)
         write(baseline, found)
@@ -58,9 +57,6 @@ def compare(path, baseline, difference, likeness, renew):
         return
     assert os.path.exists(baseline), f"no baseline {baseline}; look at {path} and renew it"
     expected = read(baseline)
-    if found.shape != expected.shape:
-        size = max(1, round(pixels.shape[1] / WIDTH))
-        found = reduce(fit(pixels, (expected.shape[0] * size, expected.shape[1] * size, 3)))
     assert found.shape == expected.shape, f"{path} is {found.shape}, its baseline {expected.shape}"
     mean = np.abs(found - expected).mean()
     correlation = np.corrcoef(found.mean(axis=2).ravel(), expected.mean(axis=2).ravel())[0, 1]
