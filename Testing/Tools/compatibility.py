@@ -4,7 +4,7 @@
 
 compatibility.py record --suite SUITE [--demo] [--tests OPTION...]
     writes build/compatibility/SUITE.json about build/release. --demo: the demo and README's script ran.
-    --tests: what ./test.sh was given; its results are in build/compatibility/tests.xml (JUnit, of ctest).
+    --tests: what ./test.sh was given; its results are in build/compatibility/tests*.xml (JUnit, of ctest).
 compatibility.py keep FILE...
     takes records over into Documentation/DeveloperGuide/compatibility.json, one for each suite, and writes the tables
 compatibility.py check
@@ -14,6 +14,7 @@ Testing/Tools/chroot.sh FOLDER paraview SUITE makes a record.
 """
 import argparse
 import datetime
+import glob
 import json
 import os
 import re
@@ -46,17 +47,11 @@ def vtk_version():
     return output(sys.executable, "-c", "from vtkmodules.vtkCommonCore import vtkVersion; print(vtkVersion.GetVTKVersion())")
 
 
-def tests(path):
-    """How many tests passed, which failed and which were skipped."""
-    cases = xml.etree.ElementTree.parse(path).getroot().iter("testcase")
-    result = {"passed": 0, "failed": [], "skipped": []}
-    for case in cases:
-        status = case.get("status")
-        if status == "run":
-            result["passed"] += 1
-        else:
-            result["failed" if status == "fail" else "skipped"].append(case.get("name"))
-    return result
+def tests(paths):
+    """How many tests passed, which failed and which were skipped, by their last result."""
+    last = {case.get("name"): case.get("status") for path in sorted(paths) for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase")}
+    return {"passed": sum(status == "run" for status in last.values()), "failed": sorted(name for name, status in last.items() if status == "fail"),
+            "skipped": sorted(name for name, status in last.items() if status not in ("run", "fail"))}
 
 
 def record(options):
@@ -72,7 +67,7 @@ def record(options):
     folder = os.path.join(TOP, "build", "compatibility")
     os.makedirs(folder, exist_ok=True)
     if options.tests is not None:
-        result["tests"] = dict(tests(os.path.join(folder, "tests.xml")), **{key: result[key] for key in ("commit", "date", "command")})
+        result["tests"] = dict(tests(glob.glob(os.path.join(folder, "tests*.xml"))), **{key: result[key] for key in ("commit", "date", "command")})
     with open(os.path.join(folder, f"{options.suite}.json"), "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)
 
