@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Records of what was built and tested on which system, and the tables of pages made of them.
 
-compatibility.py record --suite SUITE [--demo] [--tests OPTION...]
+compatibility.py record --suite SUITE [--demo] [--command TEXT] [--tests OPTION...]
     writes build/compatibility/SUITE.json about build/release. --demo: the demo and README's script ran.
     --tests: what ./test.sh was given; its results are in build/compatibility/tests*.xml (JUnit, of ctest).
 compatibility.py keep FILE...
@@ -63,7 +63,7 @@ def record(options):
         "qt": installed("qtbase5-dev" if cache.get("Qt5_DIR") else "qt6-base-dev"), "compiler": f"GCC {compiler}",
         "cmake": installed("cmake"), "python": output(sys.executable, "-c", "import platform; print(platform.python_version())"),
         "build": True, "demo": options.demo, "commit": output("git", "rev-parse", "--short=8", "HEAD"), "date": str(datetime.date.today()),
-        "command": " ".join(["Testing/Tools/chroot.sh", "FOLDER", "paraview", options.suite, *(options.tests or [])])}
+        "command": options.command or " ".join(["Testing/Tools/chroot.sh", "FOLDER", "paraview", options.suite, *(options.tests or [])])}
     folder = os.path.join(TOP, "build", "compatibility")
     os.makedirs(folder, exist_ok=True)
     if options.tests is not None:
@@ -81,15 +81,15 @@ def counts(each):
         return "not run"
     found = each["tests"]
     failed, skipped = len(found["failed"]), len(found["skipped"])
-    return f"{found['passed']} passed, {failed} failed, {skipped} skipped ({found['commit']}, {found['date']}, `./test.sh{found['command'].partition(each['suite'])[2]}`)"
+    return f"{found['passed']} passed, {failed} failed, {skipped} skipped ({found['commit']}, {found['date']}, `{found['command']}`)"
 
 
 def full(records):
-    yield "| system | ParaView, its VTK | Qt | compiler, CMake, Python | demo (commit, date) | tests |"
+    yield "| system | ParaView, its VTK | Qt | compiler, CMake, Python | demo (commit, date, command) | tests |"
     yield "|---|---|---|---|---|---|"
     for each in records:
         yield (f"| {each['system']}, {each['architecture']} | {each['paraview']}, {each['vtk']} | {each['qt']} | {each['compiler']}, {each['cmake']}, "
-               f"{each['python']} | {'passes' if each['demo'] else 'not run'} ({each['commit']}, {each['date']}) | {counts(each)} |")
+               f"{each['python']} | {'passes' if each['demo'] else 'not run'} ({each['commit']}, {each['date']}, `{each['command']}`) | {counts(each)} |")
     for each in records:
         found = each.get("tests", {"failed": []})
         if found["failed"]:
@@ -142,6 +142,7 @@ def main():
     one = commands.add_parser("record")
     one.add_argument("--suite", required=True)
     one.add_argument("--demo", action="store_true")
+    one.add_argument("--command", help="that ran; default: chroot.sh's")
     one.add_argument("--tests", nargs=argparse.REMAINDER)
     one.set_defaults(do=record)
     two = commands.add_parser("keep")
