@@ -154,10 +154,25 @@ configure_file("${debian}/README.Debian.in" "${made}/README.Debian" @ONLY)
 install(FILES "${made}/README.Debian"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna" COMPONENT runtime)
 
-# ParaView's programs read which plugins there are from a file beside them.
-file(WRITE "${made}/paraview.conf"
-  "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/lacuna.plugins.xml\n")
-install(FILES "${made}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+# ParaView's programs read which plugins there are from a file paraview.conf. That of Debian's later than 5.11 names a folder
+# for plugins of others, which gets links; where Debian has none, this package brings one beside the programs.
+set(plugin_folder)
+file(GLOB own_list "${CMAKE_INSTALL_FULL_LIBDIR}/paraview-${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}/paraview.conf")
+if (own_list)
+  file(STRINGS "${own_list}" plugin_folder REGEX "^/.*/plugins$")
+endif ()
+if (plugin_folder)
+  foreach (plugin IN LISTS lacuna_plugins)
+    file(RELATIVE_PATH library "${plugin_folder}"
+      "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/${plugin}/${plugin}.so")
+    file(CREATE_LINK "${library}" "${made}/${plugin}.so" SYMBOLIC)
+    install(FILES "${made}/${plugin}.so" DESTINATION "${plugin_folder}" COMPONENT runtime)
+  endforeach ()
+else ()
+  file(WRITE "${made}/paraview.conf"
+    "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/lacuna.plugins.xml\n")
+  install(FILES "${made}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+endif ()
 
 set(page "${made}/lacuna-fastrak-emulator.1.gz")
 add_custom_command(OUTPUT "${page}"
