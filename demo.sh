@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Sets up everything on a Debian 12 machine, builds, and makes both surfaces: one from freehand
+# Sets up everything on a Debian machine, builds, and makes both surfaces: one from freehand
 # ultrasound slices, one that fills the hole in a skull; --live acquires from emulated devices.
 # ./demo.sh --help says all.
 set -euo pipefail

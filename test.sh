@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Sets up a Debian 12 machine, builds, and runs the default tests. These leave out the labels system (several
+# Sets up a Debian machine, builds, and runs the default tests. These leave out the labels system (several
 # processes and ParaView's windows), example (demo.sh and the examples of the documentation) and soak (long).
 #   ./test.sh [--preset NAME] [--target NAME] [--all] [ctest options]
 #   ./test.sh --all                   everything but soak

@@ -208,7 +208,8 @@ function (lacuna_find_opencascade)
   set(libraries)
   foreach (library IN ITEMS TKIGES TKXSBase TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d
       TKG2d TKMath TKernel)
-    find_library(LACUNA_OPENCASCADE_${library} ${library})
+    string(REGEX REPLACE "^TK" "TKDE" later "${library}") # TKIGES is TKDEIGES since OpenCASCADE 7.8
+    find_library(LACUNA_OPENCASCADE_${library} NAMES ${library} ${later})
     list(APPEND libraries "${LACUNA_OPENCASCADE_${library}}")
   endforeach ()
   if (LACUNA_OPENCASCADE_INCLUDE_DIR AND NOT libraries MATCHES "NOTFOUND")

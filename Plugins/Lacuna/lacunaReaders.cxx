@@ -5,16 +5,23 @@
 #include "vtkMetaReader.h"
 #include "vtkSMSettings.h"
 
+#include <string>
+
 namespace
 {
 // Files whose names say that they are tracked sequences are opened by Tracked Slice Reader without a
 // question, while the plugin is loaded; otherwise ParaView asks each time whether to take its own
 // reader, which drops the poses. What a user has set as default readers is of higher priority and wins.
-const bool Added = vtkSMSettings::GetInstance()->AddCollectionFromString(
-  R"json({ "settings": { "RepresentedArrayListSettings": { "ReaderDetails": [
+// ParaView 5.11 reads the first group of settings, later versions the second.
+bool Add(const std::string& group)
+{
+  return vtkSMSettings::GetInstance()->AddCollectionFromString(
+    R"json({ "settings": { ")json" + group + R"json(": { "ReaderDetails": [
   "*.igs.mha *.igs.mhd *.igs.nrrd *.igs.nhdr *.seq.mha *.seq.mhd *.seq.nrrd *.seq.nhdr",
   "Tracked ultrasound sequence", "LacunaTrackedSliceReader"] } } })json",
-  0.5);
+    0.5);
+}
+const bool Added = Add("RepresentedArrayListSettings") && Add("IOSettings");
 
 vtkAlgorithm* GetInnerReader(vtkAlgorithm* algorithm)
 {

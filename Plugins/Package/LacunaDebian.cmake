@@ -23,7 +23,15 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_PRE_BUILD_SCRIPTS "${debian}/before-packing.cmake")
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+# 1~debian12, 1~debian13, 1 (unstable): a system that is upgraded gets the packages of its new version.
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+file(STRINGS /etc/os-release system_id REGEX "^ID=")
+file(STRINGS /etc/os-release system_version REGEX "^VERSION_ID=")
+if (system_version)
+  string(REGEX REPLACE "^ID=|\"" "" system_id "${system_id}")
+  string(REGEX REPLACE "^VERSION_ID=|\"" "" system_version "${system_version}")
+  string(APPEND CPACK_DEBIAN_PACKAGE_RELEASE "~${system_id}${system_version}")
+endif ()
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
@@ -46,7 +54,12 @@ string(JOIN ", " CPACK_DEBIAN_LACUNA_PACKAGE_DEPENDS
   "python3 (>= 3.${Python3_VERSION_MINOR}~)" "python3 (<< 3.${next_python}~)"
   python3-paraview python3-numpy)
 set(CPACK_DEBIAN_LACUNA_PACKAGE_SUGGESTS "lacuna-doc, lacuna-dev")
-set(recommended libqt5svg5) # shows icons
+set(recommended) # Qt's SVG, which shows icons
+if (LACUNA_WITH_QT AND lacuna_qt STREQUAL "Qt5")
+  list(APPEND recommended libqt5svg5)
+elseif (LACUNA_WITH_QT)
+  list(APPEND recommended qt6-svg-plugins)
+endif ()
 if (LACUNA_HAS_FFMPEG) # loaded when a camera or a screen is opened
   file(REAL_PATH "${LACUNA_FFMPEG_avdevice}" avdevice)
   string(REGEX MATCH "\\.so\\.([0-9]+)" avdevice "${avdevice}")
@@ -87,7 +100,7 @@ string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
   "lacuna (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})"
   "paraview-dev (>= ${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR})"
   "paraview-dev (<< ${ParaView_VERSION_MAJOR}.${next_paraview}~)"
-  libopenmpi-dev libdouble-conversion-dev libpugixml-dev zlib1g-dev
+  libopenmpi-dev libdouble-conversion-dev libpugixml-dev libpython3-dev zlib1g-dev
   ${kernel_libraries})
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS "cmake, lacuna-doc")
 set(CPACK_DEBIAN_DEV_DESCRIPTION
@@ -136,13 +149,30 @@ foreach (package IN ITEMS lacuna lacuna-dev lacuna-doc)
       DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides" COMPONENT ${component})
   endif ()
 endforeach ()
-install(FILES "${debian}/README.Debian"
+set(macros "${CMAKE_INSTALL_FULL_DATADIR}/Lacuna-${lacuna_flavor}/macros")
+configure_file("${debian}/README.Debian.in" "${made}/README.Debian" @ONLY)
+install(FILES "${made}/README.Debian"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna" COMPONENT runtime)
 
-# ParaView's programs read which plugins there are from a file beside them.
-file(WRITE "${made}/paraview.conf"
-  "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/lacuna.plugins.xml\n")
-install(FILES "${made}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+# ParaView's programs read which plugins there are from a file paraview.conf. That of Debian's later than 5.11 names a folder
+# for plugins of others, which gets links; where Debian has none, this package brings one beside the programs.
+set(plugin_folder)
+file(GLOB own_list "${CMAKE_INSTALL_FULL_LIBDIR}/paraview-${ParaView_VERSION_MAJOR}.${ParaView_VERSION_MINOR}/paraview.conf")
+if (own_list)
+  file(STRINGS "${own_list}" plugin_folder REGEX "^/.*/plugins$")
+endif ()
+if (plugin_folder)
+  foreach (plugin IN LISTS lacuna_plugins)
+    file(RELATIVE_PATH library "${plugin_folder}"
+      "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/${plugin}/${plugin}.so")
+    file(CREATE_LINK "${library}" "${made}/${plugin}.so" SYMBOLIC)
+    install(FILES "${made}/${plugin}.so" DESTINATION "${plugin_folder}" COMPONENT runtime)
+  endforeach ()
+else ()
+  file(WRITE "${made}/paraview.conf"
+    "${CMAKE_INSTALL_FULL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/lacuna.plugins.xml\n")
+  install(FILES "${made}/paraview.conf" DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+endif ()
 
 set(page "${made}/lacuna-fastrak-emulator.1.gz")
 add_custom_command(OUTPUT "${page}"

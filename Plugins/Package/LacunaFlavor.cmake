@@ -2,7 +2,7 @@
 # Finds the VTK to build against: ParaView's own, or a plain one. Sets lacuna_flavor.
 
 # One list, used here and again by LacunaConfig.cmake. Never find_package(VTK) without
-# COMPONENTS: that asks for every third party of every VTK module (Qt5, HDF5, ...).
+# COMPONENTS: that asks for every third party of every VTK module (Qt, HDF5, ...).
 set(lacuna_vtk_components
   CommonComputationalGeometry CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc CommonSystem
   CommonTransforms FiltersCore FiltersExtraction FiltersGeneral FiltersGeometry FiltersModeling
@@ -10,13 +10,23 @@ set(lacuna_vtk_components
 if (LACUNA_WITH_PARAVIEW)
   # With COMPONENTS, Debian 12 needs few -dev packages next to paraview-dev; without, about
   # 15 more. RemotingViews brings the X11 and GLEW targets of the C++ rendering tests.
+  include(Plugins/Package/LacunaParaViewPython.cmake)
   find_package(ParaView 5.11 REQUIRED
     COMPONENTS RemotingCore RemotingServerManager RemotingViews)
   if (LACUNA_WITH_QT)
+    # The Qt of ParaView. ParaView 5.11 has Qt 5 and does not say so. lacuna_qt is Qt5 or Qt6.
+    set(lacuna_qt Qt5)
+    set(lacuna_qt_components Widgets OpenGL)
+    set(lacuna_qt_packages "qtbase5-dev libqt5opengl5-dev")
+    if (PARAVIEW_QT_MAJOR_VERSION GREATER_EQUAL 6)
+      set(lacuna_qt "Qt${PARAVIEW_QT_MAJOR_VERSION}")
+      set(lacuna_qt_components Widgets OpenGL OpenGLWidgets)
+      set(lacuna_qt_packages "qt6-base-dev")
+    endif ()
     # what ParaView's component libraries link; asking for them as COMPONENTS would ask for Qt's help
-    find_package(Qt5 5.15 QUIET COMPONENTS Widgets OpenGL)
-    if (NOT Qt5_FOUND)
-      message(FATAL_ERROR "LACUNA_WITH_QT needs Qt 5 (Debian: qtbase5-dev libqt5opengl5-dev); "
+    find_package(${lacuna_qt} QUIET COMPONENTS ${lacuna_qt_components})
+    if (NOT ${lacuna_qt}_FOUND)
+      message(FATAL_ERROR "LACUNA_WITH_QT needs ${lacuna_qt} (Debian: ${lacuna_qt_packages}); "
         "turn it off to do without the buttons in ParaView's properties panel")
     endif ()
   endif ()

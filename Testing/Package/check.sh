@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs, uses and purges the Debian packages beside this script (Testing/Tools/chroot.sh FOLDER
 # package runs it in a clean Debian, as root).
-#   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/, kernels/
+#   check.sh VERSION      beside it: lacuna*.deb, installed.py, in_window.py, 18-embedding/, kernels/, and, to be
+#                         tried as well, the unpacked archive in archive/, and README.md, of which the script is run
 set -euo pipefail
 cd "$(dirname "$0")"
 version=$1
@@ -40,10 +41,36 @@ cp -r 18-embedding kernels installed.py in_window.py "$work"
 chown -R nobody "$work"
 apt-get -qq update
 
+archive=
+if [ -d archive ]; then
+  echo "== the archive, without ParaView and with another"
+  cp -r archive/lacuna-* "$work"
+  archive=$(cd "$work" && echo lacuna-*/)
+  refused() { # what it says begins with the ParaView that it fits
+    if as_user bash -c "$2 . ./${archive}lacuna-env.sh" 2>"$work/refused"; then exit 1; fi
+    cat "$work/refused"
+    grep -q "^This Lacuna $version fits ParaView .*$1" "$work/refused"
+  }
+  refused "There is no pvpython here" ""
+  mkdir "$work/other"
+  printf '#!/bin/sh\necho paraview version 9.9.9\n' >"$work/other/pvpython"
+  chmod +x "$work/other/pvpython"
+  refused "Here is ParaView 9.9.9: get the archive for this version" "export PATH=\$PWD/other:\$PATH;"
+fi
+
 echo "== what lacuna depends on, without it"
 mapfile -t needed < <(apt-get -s install --no-install-recommends ./lacuna*_"$version"-*.deb | sed -n 's/^Inst \([^ ]*\).*/\1/p' | grep -v '^lacuna')
 [ ${#needed[@]} = 0 ] || install "${needed[@]}"
 files >"$work/alone"
+if [ -n "$archive" ]; then
+  echo "== the archive, with the packages that its README names"
+  install $(sed -n 's/.*`apt install \(.*\)`.*/\1/p' "$work/$archive/README.md")
+  awk '/^```python/ { inside = 1; next } /^```/ && inside { exit } inside' README.md >"$work/readme.py"
+  as_user bash -c ". ./${archive}lacuna-env.sh && pvpython --force-offscreen-rendering readme.py && python3 -c 'import lacuna; lacuna.vtkLacunaSkullPhantom().Update()'"
+  test "$(stat -c %s "$work/implant.igs")" -gt 10000
+  rm "$work/implant.igs"
+  files | diff "$work/alone" -
+fi
 
 echo "== lacuna alone, with what it depends on"
 install ./lacuna_"$version"-*.deb

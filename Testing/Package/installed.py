@@ -3,6 +3,7 @@
 
 pvpython --force-offscreen-rendering installed.py <version> <folder for the results>
 """
+import glob
 import os
 import sys
 
@@ -39,6 +40,6 @@ iges = os.path.join(folder, "implant.igs")
 SaveData(iges, proxy=filled)
 assert os.path.getsize(iges) > 10000
 for macro in ("Lacuna_CT_to_IGES.py", "Lacuna_CT_to_implant.py", "Lacuna_Sweep_to_surface.py"):
-    path = os.path.join("/usr/share/Lacuna-pv5.11/macros", macro)
+    path, = glob.glob(f"/usr/share/Lacuna-pv*/macros/{macro}")
     compile(open(path, encoding="utf-8").read(), path, "exec")
 print("installed: pvpython works")

@@ -80,8 +80,10 @@ def client(port):
     implant, written = macros.ct_to_iges(skull, folder=os.path.dirname(output("x")))
     macro = box, implant.GetDataInformation().GetExtent(), os.path.getsize(written)
     os.remove(written)
-    print("result", hashlib.sha256(repr(fetched()).encode()).hexdigest(), macro, volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
+    result = ("result", hashlib.sha256(repr(fetched()).encode()).hexdigest(), macro, volume.GetDataInformation().GetBounds(), volume.PointData["Intensity"].GetRange(),
           filled.PointData["Deviation"].GetRange(), coordinates.find(filled), os.path.getsize(iges))
+    # at once, before the errors below: since ParaView 5.13 what is printed waits for the end
+    os.write(1, (" ".join(map(str, result)) + "\n").encode())
     os.remove(iges)
     Show(filled, view)
     for what in range(2):  # what fails there is said here, each time, the view has nothing of it, and then it works

@@ -116,6 +116,21 @@ class Views:
         self.drawing.OrientationAxesVisibility = 0
         self.displays = {}
         self.empty = self.draw()
+        self.comes_back_after_blocks = self.try_blocks()
+
+    def try_blocks(self):
+        """Whether ParaView draws a filter of its own again when its input had blocks in between; 5.13 and 6.1 draw nothing."""
+        ball = pv.Sphere()
+        shrunk = pv.Shrink(Input=ball)
+        pv.Show(shrunk, self.drawing)
+        pv.ResetCamera(self.drawing)
+        before = self.draw()
+        shrunk.Input = pv.GroupDatasets(Input=[ball])
+        self.draw()
+        shrunk.Input = ball
+        after = self.draw()
+        pv.Hide(shrunk, self.drawing)
+        return np.array_equal(after, before)
 
     def show(self, proxies):
         """All outputs of these and of no others."""
@@ -175,7 +190,8 @@ def check(proxy, among, views):
         with raising():
             after = views.draw()
         assert [elements(each) for each in shown] == sizes, f"{kind(proxy)}: {sizes} became {[elements(each) for each in shown]}"
-        assert np.array_equal(after, before), f"{kind(proxy)}: after an error the view does not show the good result"
+        is_same = np.array_equal(after, before) or name == "Input" and not views.comes_back_after_blocks
+        assert is_same, f"{kind(proxy)}: after an error the view does not show the good result"
         print(f"{kind(proxy)}: {name} = {bad}: {told[:90]}", flush=True)
 
 

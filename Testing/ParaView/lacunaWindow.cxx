@@ -9,6 +9,7 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QDialog>
+#include <QDockWidget>
 #include <QEventLoop>
 #include <QItemSelectionModel>
 #include <QLabel>
@@ -204,14 +205,22 @@ extern "C"
     }
   }
 
-  /// What the window Output Messages holds, until the next call.
+  /// What the window Output Messages holds, until the next call. Closes it: since ParaView 5.13 it floats over the view.
   const char* lacuna_messages()
   {
     static QByteArray text;
     const QMainWindow* window = GetMainWindow();
-    const auto* console = window ? window->findChild<QWidget*>("consoleWidget") : nullptr;
+    auto* console = window ? window->findChild<QWidget*>("consoleWidget") : nullptr;
     const auto* edit = console ? console->findChild<QTextEdit*>() : nullptr;
     text = edit ? edit->toPlainText().trimmed().toUtf8() : "there is no window Output Messages";
+    for (QWidget* part = console; part; part = part->parentWidget())
+    {
+      if (auto* dock = qobject_cast<QDockWidget*>(part))
+      {
+        dock->close();
+        break;
+      }
+    }
     return text.constData();
   }
 

@@ -48,7 +48,8 @@ def mpi_environment():
     environment = {key: value for key, value in os.environ.items()
                    if not key.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PRTE_"))}
     environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1")
+                       OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
+                       PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe")  # the same for Open MPI 5
     return environment
 
 
@@ -57,9 +58,10 @@ def run_ranks(ranks, script, *arguments, options=(), timeout=300):
     done = subprocess.run([program("mpirun"), "-n", str(ranks), program("pvbatch"), "--force-offscreen-rendering", *options,
                            os.path.abspath(script), *arguments], env=mpi_environment(), check=False, timeout=timeout, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    print(done.stdout, flush=True)
+    printed = done.stdout.replace("\0", "")  # MPI writes some, which pvpython cannot
+    print(printed, flush=True)
     done.check_returncode()
-    return done.stdout
+    return printed
 
 
 def on_two_ranks(script, run):

@@ -78,6 +78,8 @@ def inside(test):
     status = 1
     sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__  # not to ParaView's messages
     try:
+        from paraview.simple import GetSettingsProxy
+        GetSettingsProxy("ColorPalette").Background = [0.32, 0.34, 0.43]  # that of the baselines; ParaView 6 has another
         window = Window()
         test(window)
         window.check_messages()
@@ -197,6 +199,7 @@ class Window:
         self.press("OK")
 
     def resize(self, width, height):
+        self.size = width, height
         self.library.lacuna_resize(width, height)
         self.wait(500)
 
@@ -206,11 +209,15 @@ class Window:
 
     def compare(self, baseline, name=VIEW, difference=4, likeness=0.95):
         """Compares a picture of a widget with Baselines/<baseline>.png, or writes that (environment LACUNA_RENEW_BASELINES)."""
-        from window_pictures import compare
+        from window_pictures import compare, missing
         self.wait(300)
-        path = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], baseline + ".png")
+        path, expected = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], baseline + ".png"), os.path.join(BASELINES, baseline + ".png")
         self.save(path, name)
-        compare(path, os.path.join(BASELINES, baseline + ".png"), difference, likeness, RENEW in os.environ)
+        columns, rows = missing(path, expected)
+        if 0 < abs(columns) + abs(rows) < 100:  # another version leaves the view more or less of its window
+            self.resize(self.size[0] + columns, self.size[1] + rows)
+            self.save(path, name)
+        compare(path, expected, difference, likeness, RENEW in os.environ)
 
     def wait_for(self, what, condition, seconds=60):
         end = time.monotonic() + seconds

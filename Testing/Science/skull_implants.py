@@ -275,7 +275,7 @@ def draw(tool, options, skulls, rows):
     bar.SetLookupTable(table)
     bar.SetOrientationToHorizontal()
     bar.SetNumberOfLabels(6)
-    bar.SetLabelFormat("%.1f")
+    bar.SetLabelFormat("{:.1f}" if "{" in bar.GetLabelFormat() else "%.1f")  # VTK 9.6 and later, or before
     bar.SetTitle("mm")
     for style in (bar.GetLabelTextProperty(), bar.GetTitleTextProperty()):
         style.SetColor(0.1, 0.1, 0.1)

@@ -37,6 +37,7 @@ grep -qx "version: $version" CITATION.cff || complain "CITATION.cff is not of ve
 grep -m 1 '^## ' CHANGELOG.md | grep -qE "^## ${version//./\\.} \\(" ||
   complain "the top of CHANGELOG.md is not of version $version"
 python3 Testing/Tools/check-docs.py || complain "links or pictures of the documentation, see above"
+python3 Testing/Tools/compatibility.py check || complain "a table is not that of its records, see above"
 python3 Testing/Tools/check-benchmarks.py || complain "commands behind figures of the pages, see above"
 python3 Testing/Tools/check-parameters.py || complain "pages and the plugin's XML disagree, see above"
 

@@ -3,6 +3,8 @@
 """Whether the modules compile with the headers of Debian's own VTK, which cannot be installed beside ParaView.
 
 check-vtk-headers.py [--guarded] [--suite SUITE] BUILD     a build of the preset vtk
+check-vtk-headers.py --paraview --suite SUITE BUILD        a build of the preset release: the plugins' sources, with the headers of
+                                                           that Debian's ParaView and Qt 6
 
 Takes the package's headers from apt and nothing else of it, and has the compiler read each source of the modules with them in the place of
 ParaView's, without making anything of it. --guarded: only those that know how versions differ (vtkLacunaVersionCompat.h). --suite: those
@@ -20,7 +22,8 @@ import subprocess
 import sys
 import tempfile
 
-PACKAGES = "libvtk9-dev", "libtbb-dev", "libjsoncpp-dev"  # whose headers VTK's include
+VTK = "libvtk9-dev", "libtbb-dev", "libjsoncpp-dev"  # whose headers VTK's include
+PARAVIEW = *VTK, "paraview-dev", "qt6-base-dev", "libvtk9-qt-dev"  # from 6.1 on it has no VTK of its own
 GUARDS = "vtkLacunaVersionCompat.h"
 
 
@@ -38,22 +41,22 @@ def apt(folder, suite):
     return ["apt-get", "-qq", *(f"-o{name}={value}" for name, value in own.items())]
 
 
-def headers(folder, suite):
+def headers(folder, suite, packages):
     """Folders of headers of the packages, unpacked."""
     if not os.path.isdir(folder):
         with tempfile.TemporaryDirectory(dir=os.path.dirname(folder)) as work:  # folder is there when all is in it
             command = apt(work, suite)
-            download = [*command, "download", *PACKAGES]
+            download = [*command, "download", *packages]
             if subprocess.run(download, cwd=work, check=False, stderr=subprocess.DEVNULL).returncode != 0:  # without lists of packages?
                 subprocess.run([*command, "update"], check=False)
                 if subprocess.run(download, cwd=work, check=False).returncode != 0:
-                    sys.exit(f"{' and '.join(PACKAGES)} of {suite or 'this Debian'} cannot be had; apt says why above")
+                    sys.exit(f"{' and '.join(packages)} of {suite or 'this Debian'} cannot be had; apt says why above")
             unpacked = os.path.join(work, "unpacked")
             for package in glob.glob(os.path.join(work, "*.deb")):
                 subprocess.run(["dpkg-deb", "-x", package, unpacked], check=True)
             os.rename(unpacked, folder)
     own = os.path.join(folder, "usr", "include")
-    return [*glob.glob(os.path.join(own, "vtk-*")), own, os.path.join(own, "jsoncpp")]
+    return [*glob.glob(os.path.join(own, "paraview-*")), *glob.glob(os.path.join(own, "vtk-*")), *glob.glob(os.path.join(own, "jsoncpp")), own]
 
 
 def stand_in(folder):
@@ -69,13 +72,16 @@ def read(path):
         return file.read()
 
 
-def commands(build, folders):
-    """(source, command, folder) of what uses VTK, is no test and was not generated for ParaView's VTK."""
+def commands(build, folders, plugins):
+    """(source, command, folder) of what uses VTK, is no test and was not generated for ParaView's VTK; of the plugins or of all else."""
     instead = " ".join(f"-isystem {shlex.quote(folder)}" for folder in folders)
     for entry in json.loads(read(os.path.join(build, "compile_commands.json"))):
         source = entry["file"]
         command, replaced = re.subn(r"-isystem \S*/paraview-[\d.]+(?=\s)", lambda _: instead, entry["command"])
-        if replaced and "/Testing/" not in source and not source.startswith(build + os.sep):
+        if plugins:  # folders within ParaView's and Qt's
+            command = re.sub(r"-isystem \S*/paraview-[\d.]+/", lambda _: f"-isystem {folders[0]}/", command)
+            command = re.sub(r"-isystem \S*/include/([^/\s]+)/qt5(?=[/\s])", lambda found: f"-isystem {folders[-1]}/{found[1]}/qt6", command)
+        if replaced and "/Testing/" not in source and not source.startswith(build + os.sep) and ("/Plugins/" in source) == plugins:
             words = shlex.split(command)
             at = words.index("-o")
             yield source, [*words[:at], "-fsyntax-only", *words[at + 2:]], entry["directory"]
@@ -100,13 +106,15 @@ def complaint(job):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--guarded", action="store_true", help=f"only what includes {GUARDS}")
+    parser.add_argument("--paraview", action="store_true", help="the plugins, with ParaView's headers")
     parser.add_argument("--suite", default="", help="of Debian")
     parser.add_argument("build", help="of the preset vtk")
     options = parser.parse_args()
     build = os.path.abspath(options.build)
     unpacked = os.path.join(build, "-".join(filter(None, ("headers", options.suite))))
-    folders = headers(unpacked, options.suite)
-    jobs = list(commands(build, [*folders, stand_in(os.path.join(unpacked, "stand-in"))]))
+    folders = headers(unpacked, options.suite, PARAVIEW if options.paraview else VTK)
+    stand_ins = [] if options.paraview else [stand_in(os.path.join(unpacked, "stand-in"))]
+    jobs = list(commands(build, [*folders, *stand_ins], options.paraview))
     jobs = guarded(jobs) if options.guarded else jobs
     if not jobs:
         sys.exit(f"{build} has no such sources that use VTK")

@@ -36,14 +36,20 @@ lacuna_show_installing() {
   lacuna_said_all
 }
 
+# lacuna_packages <suite> <list>...: the packages of lists that are for this version of Debian.
+lacuna_packages() {
+  local suite=$1
+  shift
+  sed -e '/^#/d' -e "s/ \[$suite\]\$//" -e "/ \[!$suite\]\$/d" -e 's/ \[!.*\]$//' -e '/ \[.*\]$/d' "$@"
+}
+
 # lacuna_install_packages [list...]: Debian packages of lists beside this file that are not there yet.
 # Without a list: what users and tests need.
 lacuna_install_packages() {
-  local list wanted="" missing="" package as_root="" log="build/packages.log"
+  local wanted missing="" package as_root="" log="build/packages.log" suite
   if [ $# = 0 ]; then set -- packages-debian.txt packages-tests.txt; fi
-  for list in "$@"; do
-    wanted+=" $(grep -v '^#' "Testing/Tools/$list")"
-  done
+  suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+  wanted=$(lacuna_packages "$suite" "${@/#/Testing/Tools/}")
   for package in $wanted; do
     dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed ||
       missing="$missing $package"

@@ -74,11 +74,11 @@ wires = pictures.new_view((760, 640))
 picked = Glyph(registrationName="Picks in the bath", Input=OutputPort(calibration, 2), GlyphType="Sphere", ScaleArray=["POINTS", "No scale array"],
                ScaleFactor=3, GlyphMode="All Points")
 pictures.show_surface(OutputPort(calibration, 2), wires, (0.4, 0.4, 0.45)).LineWidth = 2
-pictures.color_by(pictures.show_surface(picked, wires, pictures.METAL), wires, "Error", "Distance from its wire (mm)", (0, 1.5), "Viridis (matplotlib)")
+pictures.color_by(pictures.show_surface(picked, wires, pictures.METAL), wires, "Error", "Distance from its wire (mm)", (0, 1.5), "Viridis")
 pictures.add_title(wires, "Picks and wires")
 pictures.look(wires, (-0.7, 1, -0.5), (0, 0, 1), 1.5)
 expected = pictures.new_view((760, 640))
-pictures.show_image(OutputPort(calibration, 3), expected, "ExpectedError", "Expected error (mm)", (0, 1), "Viridis (matplotlib)")
+pictures.show_image(OutputPort(calibration, 3), expected, "ExpectedError", "Expected error (mm)", (0, 1), "Viridis")
 pictures.add_title(expected, "Error to expect, over the image")
 pictures.look(expected, (0, 0, 1), (0, -1, 0), 1)
 views = [wires, expected]

@@ -72,9 +72,9 @@ def main(folder):
     view.OrientationAxesVisibility = 0
     balls = Glyph(Input=test, GlyphType="Sphere", ScaleFactor=17, GlyphMode="All Points", ScaleArray=["POINTS", "No scale array"])
     display = pictures.show_surface(balls, view, (1, 1, 1))
-    pictures.color_by(display, view, "PositionError", "off by (mm)", (0, 8), "Viridis (matplotlib)")
+    pictures.color_by(display, view, "PositionError", "off by (mm)", (0, 8), "Viridis")
     bar = GetScalarBar(display.LookupTable, view)
-    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
+    bar.LabelFormat = bar.RangeLabelFormat = pictures.number_format("{:.0f}", bar.LabelFormat)
     bar.WindowLocation = "Lower Left Corner"  # right is the trolley
     pictures.show_surface(Box(XLength=53, YLength=53, ZLength=58), view, (0.25, 0.3, 0.38))
     trolley = Box(Center=list(TROLLEY + [60, 20, -70]), XLength=90, YLength=160, ZLength=120)

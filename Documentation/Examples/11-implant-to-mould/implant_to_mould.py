@@ -396,7 +396,7 @@ def make_pictures(folder, ct, hole, view, depth, filled, plate, model, mould, pa
 
     def show_left_over(v):
         display = pictures.show_surface(left_over, v, pictures.METAL)
-        pictures.color_by(display, v, "LeftOver", "left over, mm", (0, 0.08), "Viridis (matplotlib)")
+        pictures.color_by(display, v, "LeftOver", "left over, mm", (0, 0.08), "Viridis")
     picture(name("7-left-over.png"), show_left_over, [0, 0, -1], [0, 1, 0], False)
 
 

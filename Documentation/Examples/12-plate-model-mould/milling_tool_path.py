@@ -56,7 +56,7 @@ def main():
     left_over = Transform(Input=OutputPort(path, 1))
     left_over.Transform.Translate = [ASIDE, 0, 0]
     display = pictures.show_surface(left_over, view, pictures.METAL)
-    pictures.color_by(display, view, "LeftOver", "left over, mm", (0, 0.2), "Viridis (matplotlib)")
+    pictures.color_by(display, view, "LeftOver", "left over, mm", (0, 0.2), "Viridis")
     display.Ambient, display.Diffuse, display.Specular = 0.5, 0.6, 0
     pictures.look(view, [0, 0.7, -0.72], [0, 1, 0], 2.35)
     pictures.add_scale_bar(view, 20)

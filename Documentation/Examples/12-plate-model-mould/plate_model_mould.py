@@ -107,6 +107,7 @@ def show_model(name, filled):
 
 def show_moulds(name, filled):
     """Female on the left, male on the right."""
+    normals_of = SurfaceNormals if "SurfaceNormals" in globals() else GenerateSurfaceNormals  # its name in ParaView 5.11
     view = pictures.new_view((1200, 540))
     plate = ImplantPlate(Input=filled, EdgeClearance=0, EdgeShape="Square", CornerRadius=0)  # its rim is the outline
     face = Threshold(Input=plate, Scalars=["CELLS", "PlateFace"], LowerThreshold=0, UpperThreshold=0)
@@ -121,7 +122,7 @@ def show_moulds(name, filled):
         surface = Transform(Input=ExtractSurface(Input=press))
         surface.Transform.Translate = aside
         shown.append(surface)
-        display = show(GenerateSurfaceNormals(Input=surface), view, pictures.BONE)
+        display = show(normals_of(Input=surface), view, pictures.BONE)
         ColorBy(display, ("POINTS", "PressRegion"))
         table = GetColorTransferFunction("PressRegion")
         table.RGBPoints = [0, *pictures.METAL, 1, *FLANGE, 2, *pictures.BONE]

@@ -113,7 +113,7 @@ void PointNeighbors::Find(const Vec3& x, std::size_t count, std::vector<std::siz
   std::vector<double> squares(count);
   nanoflann::KNNResultSet<double, std::size_t> found(count);
   found.init(indices.data(), squares.data());
-  this->Search->Search.findNeighbors(found, x.data(), nanoflann::SearchParams());
+  this->Search->Search.findNeighbors(found, x.data(), {});
   if (distances)
   {
     distances->resize(count);
@@ -130,7 +130,7 @@ double PointNeighbors::GetDistance(const Vec3& x) const
   double square = 0;
   nanoflann::KNNResultSet<double, std::size_t> found(1);
   found.init(&index, &square);
-  this->Search->Search.findNeighbors(found, x.data(), nanoflann::SearchParams());
+  this->Search->Search.findNeighbors(found, x.data(), {});
   return std::sqrt(square);
 }
 

@@ -6,7 +6,11 @@
 
 With ", as the file says" behind it when the data were read from a file other than DICOM, and ", mirrored".
 """
+import functools
 import math
+
+from vtkmodules.vtkCommonCore import vtkFloatArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 from lacuna.data import fetch
 
@@ -19,14 +23,17 @@ KEEPING = frozenset((
     "Append Attributes", "Append Datasets", "Append Geometry", "Cell Data to Point Data", "Clean", "Clean to Grid",
     "Clip", "Connectivity", "Contour", "Decimate", "Extract Block", "Extract Cells By Region", "Extract Selection",
     "Extract Subset", "Extract Surface", "Feature Edges", "Generate Surface Normals", "Group Datasets",
-    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Tetrahedralize", "Threshold",
-    "Triangulate"))
+    "Iso Volume", "Merge Blocks", "Pass Arrays", "Point Data to Cell Data", "Slice", "Surface Normals", "Tetrahedralize",
+    "Threshold", "Triangulate"))
 
-# ParaView's filters that cut the cells of an image as though its direction were the identity: their points are where
-# nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
+# ParaView's filters that cut the cells of an image as though its direction were the identity, all of them in 5.11: their points
+# are where nothing of the patient is. Slices by planes and crinkle clips, which cut no cell, are right.
 STRAIGHTENING = frozenset(("Clip", "Contour", "Iso Volume", "Slice"))
 
-# ParaView's filters that set the direction of an image back to the identity.
+# Those that move points and may give an image all the same, whose directions are then the identity.
+MOVING = frozenset(("Axis-Aligned Reflect", "Axis-Aligned Transform"))
+
+# ParaView's filters that set the direction of an image back to the identity, in 5.11; later ones may keep it.
 RESETTING = frozenset(("Color By Array", "Crop", "Gradient Legacy", "Gradient Magnitude", "Image Shrink", "Median"))
 IDENTITY = (1, 0, 0, 0, 1, 0, 0, 0, 1)
 TOLERANCE = 1e-5  # of elements of a direction matrix, as in the filters
@@ -87,7 +94,9 @@ def _is_behind_reflection(proxy):
     one is a pattern only.
     """
     label = proxy.GetXMLLabel()
-    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0 or label == "Reflect":
+    if proxy.GetXMLName() == "LacunaMirror" and proxy.Port == 0 or label in ("Reflect", "Axis-Aligned Reflect"):
+        return True
+    if label == "Axis-Aligned Transform" and math.prod(proxy.Scale) < 0:
         return True
     if label == "Transform" and proxy.Transform.GetXMLLabel() == "Transform" and math.prod(proxy.Transform.Scale) < 0:
         return True
@@ -138,11 +147,41 @@ def _is_no_transform(proxy):
         [*proxy.Transform.Translate, *proxy.Transform.Rotate, *proxy.Transform.Scale] == [0, 0, 0, 0, 0, 0, 1, 1, 1]
 
 
+@functools.lru_cache(maxsize=None)
+def _is_right(label):
+    """Whether a filter that cuts by values heeds the direction of an image: tried on values that rise along y. In ParaView 5.11
+    none does, in 5.13 Clip and Iso Volume do.
+    """
+    from paraview.modules.vtkPVVTKExtensionsFiltersGeneral import vtkIsoVolume, vtkPVClipDataSet
+    from vtkmodules.vtkFiltersCore import vtkContourFilter
+    image, values = vtkImageData(), vtkFloatArray()
+    image.SetDimensions(2, 2, 2)
+    image.SetDirectionMatrix(0, 0, 1, 1, 0, 0, 0, 1, 0)
+    values.SetName("Rising")
+    for k in range(8):
+        values.InsertNextValue(k % 2)
+    image.GetPointData().SetScalars(values)
+    cut = {"Clip": vtkPVClipDataSet, "Contour": vtkContourFilter, "Iso Volume": vtkIsoVolume}[label]()
+    if label == "Iso Volume":
+        cut.ThresholdBetween(0.5, 2)
+    elif label == "Clip":
+        cut.SetValue(0.5)
+    else:
+        cut.SetValue(0, 0.5)
+    cut.SetInputDataObject(image)
+    cut.SetInputArrayToProcess(0, 0, 0, 0, "Rising")
+    cut.Update()
+    return cut.GetOutput().GetBounds()[2] == 0.5
+
+
 def _is_straightening(proxy):
     """Whether a proxy cuts cells of images without heeding their direction."""
     label = proxy.GetXMLLabel()
-    right = label == "Slice" and proxy.SliceType.GetXMLLabel() == "Plane" or label == "Clip" and proxy.Crinkleclip
-    return label in STRAIGHTENING and not right
+    if label not in STRAIGHTENING:
+        return False
+    if label == "Slice":
+        return proxy.SliceType.GetXMLLabel() != "Plane"
+    return not (label == "Clip" and proxy.Crinkleclip or _is_right(label))
 
 
 def _is_turned(source):
@@ -171,12 +210,11 @@ def keeps_points(proxy):
     inputs = _inputs(proxy)
     if inputs and not proxy.GetXMLName().startswith("Lacuna"):
         label = proxy.GetXMLLabel()
-        if label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):
+        if label in MOVING or label not in KEEPING and not _is_no_transform(proxy) and not _is_image(proxy):
             return False
         if _is_straightening(proxy) and any(_is_turned(each) for each in inputs):
             return False
-        record = _record(proxy) if label in RESETTING else None
-        if record is not None and not _is_same(record, IDENTITY):
+        if label in RESETTING and _is_reset(fetch(proxy)):
             return False
         if len(inputs) > 1 and len({(_place(each), is_mirrored(each)) for each in inputs}) > 1:
             return False

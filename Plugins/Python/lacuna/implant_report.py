@@ -64,7 +64,7 @@ def show_bone(bone, level, view, made=lambda proxy: proxy):
 def show_error(proxy, view, numbers):
     """Shows an implant coloured by its predicted error, from 0 to 1 mm or more."""
     display = pictures.show_surface(proxy, view, IMPLANT)
-    _color(display, view, "PredictedError", "predicted error, mm", (0, max(1, _up(numbers["PredictedErrorMaximum"]))), "Viridis (matplotlib)")
+    _color(display, view, "PredictedError", "predicted error, mm", (0, max(1, _up(numbers["PredictedErrorMaximum"]))), "Viridis")
     return display
 
 

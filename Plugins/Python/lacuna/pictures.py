@@ -2,6 +2,7 @@
 """Pictures in one style: white background, matt surfaces, scalar bars with units."""
 import numpy as np
 import paraview.simple as pv
+from paraview.servermanager import vtkSMTransferFunctionPresets
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkChartsCore import vtkAxis, vtkChart, vtkChartLegend, vtkChartXY
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
@@ -64,11 +65,28 @@ def marked_points(image, array, all_name, name):
     return pv.Threshold(registrationName=name, Input=points, Scalars=["POINTS", array], ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
 
 
+def apply_preset(table, name):
+    """Gives a color transfer function the colours of a preset: ParaView 5 calls Viridis "Viridis (matplotlib)", 6 does not."""
+    presets = vtkSMTransferFunctionPresets.GetInstance()
+    table.ApplyPreset(name if presets.HasPreset(name) else f"{name} (matplotlib)", True)
+
+
+def number_format(pattern, like):
+    """A format of numbers, given as "{:.2f}", in the style of another one: printf's, %.2f, in ParaView 5, this one in 6."""
+    return pattern if "{" in like else pattern.replace("{:", "%").replace("}", "")
+
+
+def _set_digits(bar, digits):
+    """How many decimals a scalar bar shows."""
+    bar.AutomaticLabelFormat = 0
+    bar.LabelFormat = bar.RangeLabelFormat = number_format(f"{{:.{digits}f}}", bar.LabelFormat)
+
+
 def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     """Colours by a point array over fixed bounds, with a scalar bar that says what it is."""
     pv.ColorBy(display, ("POINTS", array))
     table = pv.GetColorTransferFunction(array, display, separate=True)
-    table.ApplyPreset(preset, True)
+    apply_preset(table, preset)
     table.RescaleTransferFunction(*bounds)
     table.NanOpacity = 0
     display.LookupTable = table
@@ -76,8 +94,7 @@ def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     bar = pv.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = title, ""
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    bar.AutomaticLabelFormat = 0
-    bar.LabelFormat = bar.RangeLabelFormat = "%.2f"
+    _set_digits(bar, 2)
     bar.WindowLocation = "Lower Right Corner"
     return table
 
@@ -109,7 +126,7 @@ def show_slices(planes, view):
     low, high = (planes.CellData if name == "Speed" else planes.PointData)[name].GetRange()
     pv.ColorBy(display, (place, name))
     table = pv.GetColorTransferFunction(name, display, separate=True)
-    table.ApplyPreset({"Intensity": "Grayscale", "Speed": "Cool to Warm"}.get(name, "Viridis (matplotlib)"), True)
+    apply_preset(table, {"Intensity": "Grayscale", "Speed": "Cool to Warm"}.get(name, "Viridis"))
     if name == "Speed" and planes.SpeedLimit > 0:
         low, high = 0, 2 * planes.SpeedLimit
     table.RescaleTransferFunction(low, high if high > low else low + 1)
@@ -120,8 +137,7 @@ def show_slices(planes, view):
     bar.Title = {"Intensity": "Grey level", "Speed": "Speed (mm/s)"}.get(name, "Expected error (mm)")
     bar.ComponentTitle = ""
     bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
-    bar.AutomaticLabelFormat = 0
-    bar.LabelFormat = bar.RangeLabelFormat = "%.2f" if name == "RegistrationError" else "%.0f"
+    _set_digits(bar, 2 if name == "RegistrationError" else 0)
     bar.WindowLocation = "Lower Right Corner"
     return display
 
@@ -364,7 +380,7 @@ def chart_pixels(curves, titles, size=(760, 460), bounds=None, legend=True):
         axis = chart.GetAxis(place)
         axis.SetTitle(title)
         axis.SetNotation(vtkAxis.PRINTF_NOTATION)
-        axis.SetLabelFormat(" %g ")  # else the last column of a label stands before it too
+        axis.SetLabelFormat(number_format(" {:g} ", axis.GetLabelFormat()))  # else the last column of a label stands before it too
         axis.GetGridPen().SetColor(225, 229, 233, 255)
         for text in (axis.GetTitleProperties(), axis.GetLabelProperties()):
             text.SetFontSize(15)
