@@ -398,7 +398,8 @@ void TestGaps()
     }
   }
   LACUNA_CHECK_NEAR(worst, 0, 1.0);
-  LACUNA_CHECK_CONTAINS(test.GetNotes(), "3 planes are interpolated");
+  LACUNA_CHECK_CONTAINS(
+    test.GetNotes(), "3 of 13 planes, every 2 mm, are interpolated; 10 of 10 measured slices");
 }
 
 void TestUnequal()
@@ -417,13 +418,11 @@ void TestUnequal()
   LACUNA_CHECK_NEAR(test.Reader->GetOutput()->GetScalarComponentAsDouble(2, 1, 4, 0),
     CTTruth({ -18.2, -22.7, -8 }), 1);
 
-  // thin slices at the base, thick ones above
-  series.Places = { 0, 1, 2, 3, 4, 6.5, 9, 11.5 };
-  ReaderOf thick(series);
-  thick.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
-  thick.ExpectGood();
-  LACUNA_CHECK_NEAR(thick.Reader->GetOutput()->GetSpacing()[2], 2, 1e-9);
-  LACUNA_CHECK(thick.Reader->GetOutput()->GetDimensions()[2] == 12);
+  LACUNA_CHECK_CONTAINS(
+    test.GetNotes(), "1 of 9 planes, every 2 mm, are interpolated; 8 of 9 measured slices");
+  LACUNA_CHECK_CONTAINS(test.Warnings,
+    "1 of 9 measured slices are in the volume only as parts of interpolated planes: " +
+      BaseName(test.Files[4]) + " at -7.4 mm");
 
   // positions rounded to a tenth of a millimetre are equal spacing
   CTTestSeries rounded;
@@ -435,6 +434,35 @@ void TestUnequal()
   LACUNA_CHECK_CONTAINS(fine.GetNotes(), "mm from equal spacing");
   fine.Reader->SetPositionTolerance(0.001);
   fine.ExpectError("not equally spaced");
+}
+
+// Thin slices at the base, thick ones above; one wide gap: every measured slice is in the volume.
+void TestUnequalKeepsAll()
+{
+  for (const std::vector<double>& places : { std::vector<double>{ 0, 1, 2, 3, 4, 6.5, 9, 11.5 },
+         std::vector<double>{ 0, 3, 6, 9, 12, 17, 20, 23 } })
+  {
+    CTTestSeries series;
+    series.Places = places;
+    series.Stored = [](int i, int j, int k) { return k == 7 ? 3000 + i : 100 * k + j; };
+    ReaderOf test(series);
+    test.ExpectError("the slices are not equally spaced");
+    test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+    test.ExpectGood();
+    LACUNA_CHECK_THAT(test.Warnings.empty(), test.Warnings);
+    LACUNA_CHECK_CONTAINS(test.GetNotes(), "8 of 8 measured slices are planes of their own");
+    vtkImageData* image = test.Reader->GetOutput();
+    const double spacing = image->GetSpacing()[2];
+    LACUNA_CHECK_NEAR(spacing, places[1] == 1 ? 1 : 2, 1e-9);
+    for (int k = 0; k < 8; ++k)
+    {
+      const int plane = static_cast<int>(std::lround(2 * places[k] / spacing));
+      LACUNA_CHECK(plane <= image->GetExtent()[5]);
+      LACUNA_CHECK(
+        image->GetScalarComponentAsDouble(5, 7, plane, 0) == (k == 7 ? 3005 : 100 * k + 7));
+    }
+    LACUNA_CHECK(image->GetExtent()[5] == std::lround(2 * places[7] / spacing));
+  }
 }
 
 void TestDuplicates()
@@ -544,6 +572,7 @@ int TestCTSeriesReaderErrors(int, char*[])
   TestTruncated();
   TestGaps();
   TestUnequal();
+  TestUnequalKeepsAll();
   TestDuplicates();
   TestStatedTilt();
   TestCompressedGarbage();
