@@ -18,6 +18,7 @@ namespace lacuna
 namespace
 {
 constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and what begins so
+constexpr std::size_t MostDirections = 16; // of images in a series with scouts
 
 [[noreturn]] void Fail(const CTFrame& frame, const std::string& what)
 {
@@ -44,6 +45,13 @@ bool IsLocalizer(const CTFrame& frame)
 {
   return std::any_of(frame.ImageType.begin(), frame.ImageType.end(),
     [](const std::string& value) { return value == "LOCALIZER" || value == "SCOUT"; });
+}
+
+// Of the image; zero where it does not say how it lies.
+Vec3 GetNormal(const CTFrame& frame)
+{
+  const std::array<double, 6> a = frame.Axes.value_or(std::array<double, 6>{});
+  return Normalized(Cross(Vec3{ a[0], a[1], a[2] }, Vec3{ a[3], a[4], a[5] }));
 }
 
 bool IsPositive(double x)
@@ -406,6 +414,64 @@ std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition)
       " (0020,0012); there are:" + (numbers.empty() ? " none" : numbers));
   }
   return frames;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames)
+{
+  std::vector<std::pair<Vec3, std::size_t>> directions; // normals, and how many images have them
+  const auto find = [&](const Vec3& normal)
+  {
+    return std::find_if(directions.begin(), directions.end(),
+      [&](const auto& known) { return std::abs(Dot(known.first, normal)) > 1 - 1e-6; });
+  };
+  for (const CTFrame& frame : frames)
+  {
+    const Vec3 normal = GetNormal(frame);
+    const auto known = find(normal);
+    if (known != directions.end())
+    {
+      ++known->second;
+    }
+    else if (Norm(normal) > 0)
+    {
+      directions.emplace_back(normal, 1);
+    }
+    if (directions.size() > MostDirections)
+    {
+      return {}; // whatever this is, it is no stack with scouts
+    }
+  }
+  const auto main = std::max_element(directions.begin(), directions.end(),
+    [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (main == directions.end() || main->second < 3)
+  {
+    return {};
+  }
+  const auto isScout = [&](const CTFrame& frame)
+  {
+    const Vec3 normal = GetNormal(frame);
+    const auto known = find(normal);
+    return known != directions.end() && known->second <= 2 &&
+      std::abs(Dot(normal, main->first)) < 0.5;
+  };
+  const auto scouts =
+    static_cast<std::size_t>(std::count_if(frames.begin(), frames.end(), isScout));
+  if (2 * scouts > main->second)
+  {
+    return {};
+  }
+  std::vector<std::string> notes;
+  const auto end = std::stable_partition(
+    frames.begin(), frames.end(), [&](const CTFrame& frame) { return !isScout(frame); });
+  for (auto scout = end; scout != frames.end(); ++scout)
+  {
+    notes.push_back(scout->GetName() +
+      ": left out, it is a scout by its Image Orientation (Patient) (0020,0037): it lies across " +
+      std::to_string(main->second) + " parallel images");
+  }
+  frames.erase(end, frames.end());
+  return notes;
 }
 
 //------------------------------------------------------------------------------

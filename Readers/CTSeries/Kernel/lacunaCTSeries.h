@@ -51,6 +51,11 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
 /// there are when there is none.
 std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition);
 
+/// Takes away scouts that do not say so: images that lie across (more than 60 degrees) at least three
+/// parallel ones, no more than two of one direction, and together at most half as many as those.
+/// Returns a note on each.
+std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames);
+
 /// Throws std::runtime_error naming file and tag unless all images have pixels, one size, pixel
 /// spacing, position, orientation, patient and frame of reference, as one volume has, and Patient
 /// Orientation, where it is there, agrees with Image Orientation (Patient).

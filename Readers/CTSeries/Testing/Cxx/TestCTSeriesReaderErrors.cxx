@@ -283,6 +283,21 @@ void TestLeftOut()
   LACUNA_CHECK_CONTAINS(notes, "1 files are no DICOM files");
 }
 
+// A sideways scout of the series that does not say that it is one, with pixels of its own size.
+void TestScout()
+{
+  ReaderOf test(Edited({ { 0x0020, 0x0037, "DS", "0\\1\\0\\0\\0\\-1", { 0 } },
+    { 0x0028, 0x0030, "DS", "0.5\\0.5", { 0 } } }));
+  test.ExpectGood();
+  LACUNA_CHECK_THAT(test.Warnings.empty(), test.Warnings);
+  vtkImageData* image = test.Reader->GetOutput();
+  LACUNA_CHECK(image->GetDimensions()[2] == 5);
+  LACUNA_CHECK_NEAR(image->GetOrigin()[2], -14, 1e-12);
+  LACUNA_CHECK_NEAR(
+    image->GetScalarComponentAsDouble(2, 1, 3, 0), CTTruth({ -18.2, -22.7, -8 }), 1);
+  LACUNA_CHECK_CONTAINS(test.GetNotes(), BaseName(test.Files[0]) + ": left out, it is a scout by");
+}
+
 void TestSeries()
 {
   ReaderOf test{ CTTestSeries() };
@@ -567,6 +582,7 @@ int TestCTSeriesReaderErrors(int, char*[])
   TestGapOfLeftOut();
   TestInformation();
   TestLeftOut();
+  TestScout();
   TestSeries();
   TestFiles();
   TestTruncated();
