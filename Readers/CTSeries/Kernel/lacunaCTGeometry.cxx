@@ -123,16 +123,18 @@ void DropDuplicates(CTGeometry& geometry, const CTGeometryOptions& options)
       continue;
     }
     const CTSlice& other = kept.back();
-    const Vec3 apart = *slice.Frame.Position - *other.Frame.Position;
-    if (Norm(apart) <= options.PositionTolerance && options.SameImage &&
+    const Vec3 between = *slice.Frame.Position - *other.Frame.Position;
+    if (Norm(between) <= options.PositionTolerance && options.SameImage &&
       options.SameImage(other.Frame, slice.Frame))
     {
       dropped.push_back(Place(slice));
       continue;
     }
-    several = several || Acquisition(slice) != Acquisition(other);
-    different.push_back(Place(slice) + " and " + other.Frame.GetName() + " (acquisitions " +
-      Acquisition(slice) + ", " + Acquisition(other) + ")");
+    const bool apart = Acquisition(slice) != Acquisition(other);
+    several = several || apart;
+    different.push_back(Place(slice) + " and " + other.Frame.GetName() +
+      (apart ? " (acquisitions " + Acquisition(slice) + ", " + Acquisition(other) + ")"
+             : std::string()));
   }
   if (!different.empty())
   {

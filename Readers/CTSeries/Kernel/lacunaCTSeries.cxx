@@ -20,6 +20,11 @@ namespace
 constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and what begins so
 constexpr std::size_t MostDirections = 16; // of images in a series with scouts
 
+std::string GetBaseName(const std::string& path)
+{
+  return path.substr(path.find_last_of('/') + 1);
+}
+
 [[noreturn]] void Fail(const CTFrame& frame, const std::string& what)
 {
   throw std::runtime_error(frame.GetName() + ": " + what);
@@ -160,6 +165,37 @@ void CheckImage(const CTFrame& frame)
   CheckPatientOrientation(frame);
 }
 
+// Cone-beam scanners write files whose frames have one position in common.
+void CheckFramePositions(const std::vector<CTFrame>& frames)
+{
+  struct File
+  {
+    const CTFrame* First;
+    int Count;
+    bool Differ;
+  };
+  std::map<const CTFileHeader*, File> files;
+  for (const CTFrame& frame : frames)
+  {
+    const auto entry = files.insert({ frame.Header.get(), { &frame, 0, false } });
+    File& file = entry.first->second;
+    ++file.Count;
+    const auto& position = file.First->Position;
+    file.Differ = file.Differ || !frame.Position || !position || !(*frame.Position == *position);
+  }
+  for (const auto& [header, file] : files)
+  {
+    if (file.Count > 1 && !file.Differ)
+    {
+      throw std::runtime_error(GetBaseName(header->File) + ": has " +
+        std::to_string(header->Frames) +
+        " frames (0028,0008), but one Image Position (Patient) (0020,0032) for all of them, so "
+        "where they lie is unknown. Spacing Between Slices (0018,0088) does not say to which side. "
+        "Export the scan as enhanced CT, or one file for each image");
+    }
+  }
+}
+
 void CheckSame(const CTFrame& frame, const CTFrame& first)
 {
   const CTFileHeader& a = *frame.Header;
@@ -204,8 +240,7 @@ void CheckSame(const CTFrame& frame, const CTFrame& first)
 //------------------------------------------------------------------------------
 std::string CTFrame::GetName() const
 {
-  const std::string& path = this->Header->File;
-  std::string name = path.substr(path.find_last_of('/') + 1);
+  std::string name = GetBaseName(this->Header->File);
   if (this->Header->Frames > 1)
   {
     name += " frame " + std::to_string(this->Number + 1);
@@ -477,6 +512,7 @@ std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames)
 //------------------------------------------------------------------------------
 void CheckSameVolume(const std::vector<CTFrame>& frames)
 {
+  CheckFramePositions(frames);
   for (const CTFrame& frame : frames)
   {
     CheckImage(frame);

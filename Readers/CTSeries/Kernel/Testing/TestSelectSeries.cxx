@@ -144,6 +144,27 @@ TEST(CheckSameVolume, SaysWhatAnImageLacks)
   }
 }
 
+// Frames of one file need positions of their own.
+TEST(CheckSameVolume, FramesAtOnePosition)
+{
+  std::vector<CTFrame> frames = MakeFrames({ { 0, 0, 5 }, { 0, 0, 5 }, { 0, 0, 5 } });
+  auto header = std::make_shared<CTFileHeader>(*frames[0].Header);
+  header->Frames = 3;
+  for (int k = 0; k < 3; ++k)
+  {
+    frames[k].Header = header;
+    frames[k].Number = k;
+  }
+  const std::string error = ErrorOf([&] { CheckSameVolume(frames); });
+  EXPECT_TRUE(Has(error,
+    "IM0: has 3 frames (0028,0008), but one Image Position (Patient) (0020,0032) for all of them"))
+    << error;
+  (*frames[2].Position)[2] = 6; // two at one position may be two acquisitions
+  EXPECT_EQ(ErrorOf([&] { CheckSameVolume(frames); }), "");
+  frames.erase(frames.begin() + 1);
+  EXPECT_EQ(ErrorOf([&] { CheckSameVolume(frames); }), "");
+}
+
 // Who the patient is does not get into the sentences.
 TEST(FindDoubtsOfPatient, NamesFilesAndTagsOnly)
 {

@@ -509,6 +509,17 @@ void TestDuplicates()
   LACUNA_CHECK_CONTAINS(shifted.Errors, BaseName(shifted.Files[3]) + " at -10 mm");
 }
 
+// A multi-frame file whose frames have one position in common.
+void TestOnePosition()
+{
+  CTTestSeries series = Edited({});
+  series.MultiFrame = true;
+  series.Step = { 0, 0, 0 };
+  ReaderOf test(series);
+  test.ExpectError(
+    "IM0001: has 6 frames (0028,0008), but one Image Position (Patient) (0020,0032)");
+}
+
 void TestStatedTilt()
 {
   ReaderOf test(Edited({ { 0x0018, 0x1120, "DS", "15", {} } }));
@@ -590,6 +601,7 @@ int TestCTSeriesReaderErrors(int, char*[])
   TestUnequal();
   TestUnequalKeepsAll();
   TestDuplicates();
+  TestOnePosition();
   TestStatedTilt();
   TestCompressedGarbage();
   TestBare();
