@@ -59,6 +59,55 @@ Vec3 GetNormal(const CTFrame& frame)
   return Normalized(Cross(Vec3{ a[0], a[1], a[2] }, Vec3{ a[3], a[4], a[5] }));
 }
 
+std::string NameWithKernel(const CTSeries& series)
+{
+  const std::string& kernel = series.Frames.front().Header->ConvolutionKernel;
+  return series.Uid + " kernel " + (kernel.empty() ? "none" : kernel);
+}
+
+// One for each kernel where two kernels have an image at one place: no volume holds both.
+std::vector<CTSeries> SplitByKernel(CTSeries series)
+{
+  std::map<std::string, CTSeries> parts;
+  std::map<std::array<std::int64_t, 3>, const std::string*> places; // in 10 um
+  bool isSplit = false;
+  for (const CTFrame& frame : series.Frames)
+  {
+    const std::string& kernel = frame.Header->ConvolutionKernel;
+    CTSeries& part = parts[kernel];
+    part.Uid = series.Uid;
+    part.Frames.push_back(frame);
+    part.IsOneOfKernels = true;
+    constexpr double Most = 1e6; // mm: a number beyond is no place
+    if (frame.Position && Norm(*frame.Position) < Most)
+    {
+      std::array<std::int64_t, 3> place{};
+      for (int i = 0; i < 3; ++i)
+      {
+        place[i] = std::llround(100 * (*frame.Position)[i]);
+      }
+      isSplit = isSplit || *places.emplace(place, &kernel).first->second != kernel;
+    }
+  }
+  std::vector<CTSeries> all;
+  if (!isSplit)
+  {
+    all.push_back(std::move(series));
+    return all;
+  }
+  for (auto& part : parts)
+  {
+    all.push_back(std::move(part.second));
+  }
+  return all;
+}
+
+// Whether text is name, or begins with it as a line of Describe does.
+bool IsNamed(const std::string& text, const std::string& name)
+{
+  return text == name || text.rfind(name + "  ", 0) == 0;
+}
+
 bool IsPositive(double x)
 {
   return std::isfinite(x) && x > 0;
@@ -258,11 +307,17 @@ std::string CTFrame::GetNameBeside(const CTFrame& other) const
 }
 
 //------------------------------------------------------------------------------
+std::string CTSeries::GetName() const
+{
+  return this->IsOneOfKernels ? NameWithKernel(*this) : this->Uid;
+}
+
+//------------------------------------------------------------------------------
 std::string CTSeries::Describe() const
 {
   std::ostringstream text;
   const CTFileHeader& header = *this->Frames.front().Header;
-  text << this->Uid << "  ";
+  text << this->GetName() << "  ";
   if (!header.SeriesNumber.empty())
   {
     text << "series " << header.SeriesNumber << ", ";
@@ -366,7 +421,10 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
   CTSeriesList list;
   for (auto& entry : found)
   {
-    list.Series.push_back(std::move(entry.second));
+    for (CTSeries& part : SplitByKernel(std::move(entry.second)))
+    {
+      list.Series.push_back(std::move(part));
+    }
   }
   const auto number = [](const CTSeries& series)
   { return std::strtol(series.Frames.front().Header->SeriesNumber.c_str(), nullptr, 10); };
@@ -375,7 +433,7 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
   if (list.Series.size() > 1)
   {
     list.Notes.push_back("there are " + std::to_string(list.Series.size()) +
-      " CT series (0020,000E); SeriesList names them, one is read");
+      " CT series (0020,000E) or kernels (0018,1210); SeriesList names them, one is read");
   }
   for (const auto& [why, omission] : omitted)
   {
@@ -414,15 +472,33 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
       " CT series" + DescribePatients(list.Series) +
       "; set SeriesUID to one of these (0020,000E):" + list.Describe());
   }
+  const bool hasKernel = requested.rfind(uid + " kernel ", 0) == 0;
+  const auto holdsFile = [&](const CTSeries& series)
+  {
+    return std::any_of(series.Frames.begin(), series.Frames.end(),
+      [&](const CTFrame& frame) { return GetBaseName(frame.Header->File) == GetBaseName(file); });
+  };
+  std::vector<const CTSeries*> found;
   for (const CTSeries& series : list.Series)
   {
-    if (series.Uid == wanted)
+    if (series.Uid == wanted && (!hasKernel || IsNamed(requested, NameWithKernel(series))) &&
+      (!uid.empty() || !series.IsOneOfKernels || holdsFile(series)))
     {
-      return series;
+      found.push_back(&series);
     }
   }
-  const std::string what = uid.empty() ? ": the series of this file has no image for a CT volume"
-                                       : ": there is no CT series " + wanted;
+  if (found.size() == 1)
+  {
+    return *found.front();
+  }
+  if (!found.empty())
+  {
+    throw std::runtime_error(file + ": series " + wanted + " has " + std::to_string(found.size()) +
+      " convolution kernels (0018,1210); set SeriesUID to one of these:" + list.Describe());
+  }
+  const std::string what = uid.empty()
+    ? ": the series of this file has no image for a CT volume"
+    : ": there is no CT series " + (hasKernel ? requested : wanted);
   throw std::runtime_error(file + what + "; there are:" + list.Describe() + notes);
 }
 

@@ -520,6 +520,41 @@ void TestOnePosition()
     "IM0001: has 6 frames (0028,0008), but one Image Position (Patient) (0020,0032)");
 }
 
+// The same slices, reconstructed with two kernels into one series.
+void TestKernels()
+{
+  ReaderOf test(Edited({}));
+  CTTestSeries sharp = Edited({ { 0x0018, 0x1210, "SH", "B70 s", {} } });
+  sharp.Stored = [](int, int, int) { return 77; };
+  const std::vector<std::string> files = sharp.Write(test.Folder + "/sharp");
+  test.ExpectError("there are 2 CT series; set SeriesUID to one of these");
+  const std::string name = "1.2.826.0.1.3680043.2.1125.1 kernel B70 s";
+  LACUNA_CHECK_CONTAINS(
+    test.GetSeriesList(), name + "  series 4, \"Letter F\", 6 images of 44 x 36");
+  const auto getVoxel = [&]
+  {
+    test.ExpectGood();
+    LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 6);
+    return test.Reader->GetOutput()->GetScalarComponentAsDouble(2, 1, 4, 0);
+  };
+  test.Reader->SetSeriesUID(name.c_str());
+  LACUNA_CHECK(getVoxel() == 77);
+  test.Reader->SetSeriesUID("1.2.826.0.1.3680043.2.1125.1 kernel H30s");
+  LACUNA_CHECK_NEAR(getVoxel(), CTTruth({ -18.2, -22.7, -8 }), 1);
+  test.Reader->SetSeriesUID("1.2.826.0.1.3680043.2.1125.1");
+  test.ExpectError("has 2 convolution kernels (0018,1210)");
+  // a file stands for its own kernel
+  test.Reader->SetSeriesUID(nullptr);
+  for (int k = 0; k < 6; ++k)
+  {
+    std::filesystem::rename(files[k], test.Folder + "/sharp" + std::to_string(k));
+  }
+  test.Reader->SetFileName((test.Folder + "/sharp2").c_str());
+  LACUNA_CHECK(getVoxel() == 77);
+  test.Reader->SetFileName(test.Files[2].c_str());
+  LACUNA_CHECK_NEAR(getVoxel(), CTTruth({ -18.2, -22.7, -8 }), 1);
+}
+
 void TestStatedTilt()
 {
   ReaderOf test(Edited({ { 0x0018, 0x1120, "DS", "15", {} } }));
@@ -601,6 +636,7 @@ int TestCTSeriesReaderErrors(int, char*[])
   TestUnequal();
   TestUnequalKeepsAll();
   TestDuplicates();
+  TestKernels();
   TestOnePosition();
   TestStatedTilt();
   TestCompressedGarbage();
