@@ -31,7 +31,8 @@
  * left out. While only they change, the equations stay solved: each point that moved costs O(n^2), or
  * a fast solution; results do not depend on what was kept. With a prior surface the fit is of
  * the difference to it, as it is seen in this map (its own grid and view may be others): its shape
- * stays, its height and inclination do not count.
+ * stays, its height and inclination do not count. Holes and steps of the prior are bridged, with a
+ * warning; with smoothing the prior is smoothed, too.
  *
  * Output: a filled map (see vtkLacunaDepthMap.h for its arrays and field data), as large as the map
  * or, with an OutputMargin, larger. The rectangle of Fitted bounds defect, support and control

@@ -220,7 +220,11 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
   const std::string file = this->FileName;
   const std::string opened = found.Folder.GetOpenedSeries();
   const lacuna::CTSeries& series = lacuna::SelectSeries(list, requested, file, opened);
-  const std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
+  std::vector<lacuna::CTFrame> frames = lacuna::SelectAcquisition(series, this->Acquisition);
+  for (const std::string& note : lacuna::TakeOutScouts(frames))
+  {
+    found.Notes->InsertNextValue(note);
+  }
   lacuna::CheckSameVolume(frames);
   const std::vector<std::string> doubts = lacuna::FindDoubtsOfPatient(frames);
   found.Warnings.insert(found.Warnings.end(), doubts.begin(), doubts.end());

@@ -1,46 +1,122 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaBaseSurface.h"
 
+#include "lacunaDepthDiscontinuity.h"
 #include "lacunaDepthPlane.h"
-#include "lacunaSupportSelection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <sstream>
+#include <stdexcept>
 
 namespace lacuna
 {
 namespace
 {
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+
 Vec2 GetPosition(const MapGrid& grid, std::size_t pixel)
 {
   return { static_cast<double>(grid.GetColumn(pixel)) * grid.Spacing[0],
     static_cast<double>(grid.GetRow(pixel)) * grid.Spacing[1] };
 }
 
-std::vector<double> GetDepths(const EllipsoidTrend& trend, const MapGrid& grid)
+double SteepSlope()
 {
-  std::vector<double> depths(grid.GetSize());
-  for (std::size_t pixel = 0; pixel < depths.size(); ++pixel)
+  constexpr double Pi = 3.14159265358979323846;
+  return std::tan(DiscontinuityLimits().MaximumAngle * (Pi / 180));
+}
+
+MapMask GetFinite(const std::vector<double>& depth)
+{
+  MapMask mask(depth.size());
+  std::transform(depth.begin(), depth.end(), mask.begin(),
+    [](double z) { return static_cast<unsigned char>(std::isfinite(z)); });
+  return mask;
+}
+
+// The pixels that are reached from start over edges without a step.
+MapMask Follow(const MapGrid& grid, const std::vector<double>& depth, const MapMask& start)
+{
+  const double slope = SteepSlope();
+  const auto width = static_cast<std::size_t>(grid.Width);
+  MapMask reached = start;
+  std::vector<std::size_t> open;
+  for (std::size_t pixel = 0; pixel < start.size(); ++pixel)
   {
-    const Vec2 p = GetPosition(grid, pixel);
-    depths[pixel] = trend.GetDepth(p[0], p[1]);
+    if (start[pixel])
+    {
+      open.push_back(pixel);
+    }
   }
-  return depths;
+  while (!open.empty())
+  {
+    const std::size_t pixel = open.back();
+    open.pop_back();
+    const auto visit = [&](bool inside, std::size_t next, double distance)
+    {
+      if (inside && !reached[next] && std::abs(depth[next] - depth[pixel]) <= slope * distance)
+      {
+        reached[next] = 1;
+        open.push_back(next);
+      }
+    };
+    visit(pixel % width > 0, pixel - 1, grid.Spacing[0]);
+    visit((pixel + 1) % width > 0, pixel + 1, grid.Spacing[0]);
+    visit(pixel >= width, pixel - width, grid.Spacing[1]);
+    visit(pixel + width < depth.size(), pixel + width, grid.Spacing[1]);
+  }
+  return reached;
 }
 }
 
-BaseSurface::BaseSurface(Execution& execution, const SurfaceSheet& prior, const MapGrid& grid)
+BaseSurface::BaseSurface(Execution& execution, const SurfaceSheet& prior, const MarkedMap& map,
+  const SupportMargins& margins)
   : Prior(prior)
-  , Grid(grid)
+  , Map(map)
+  , Grid(map.Grid)
 {
-  if (!prior.Points.empty())
+  if (prior.Points.empty())
   {
-    this->OnMap = ProjectSheet(execution, prior, MaximumSupportSlope, grid);
+    return;
+  }
+  this->OnMap = ProjectSheet(execution, prior, MaximumSupportSlope, this->Grid);
+  // where it lies along the surface: their difference has no step there
+  MapMask along = GetFinite(this->OnMap);
+  std::vector<double> difference(along.size(), 0.0);
+  for (std::size_t pixel = 0; pixel < along.size(); ++pixel)
+  {
+    along[pixel] = along[pixel] && map.Valid[pixel] && !map.Defect[pixel] &&
+      (map.Painted.empty() || map.Painted[pixel]);
+    difference[pixel] = along[pixel] ? map.Depth[pixel] - this->OnMap[pixel] : 0;
+  }
+  if (map.Painted.empty())
+  {
+    along = SelectWithin(execution, this->Grid, map.Defect, margins.Defect, along);
+  }
+  RemoveBeyondSteps(this->Grid, difference, { SteepSlope(), SteepSlope() }, along);
+  this->Sound = Follow(this->Grid, this->OnMap, along);
+  if (margins.Step > 0)
+  {
+    MapMask gaps(this->Sound.size());
+    std::transform(this->Sound.begin(), this->Sound.end(), gaps.begin(),
+      [](unsigned char sound) { return sound ? 0 : 1; });
+    const MapMask near = SelectWithin(execution, this->Grid, gaps, margins.Step, this->Sound);
+    for (std::size_t pixel = 0; pixel < near.size(); ++pixel)
+    {
+      this->Sound[pixel] = this->Sound[pixel] && !near[pixel];
+    }
+  }
+  for (std::size_t pixel = 0; pixel < this->Sound.size(); ++pixel)
+  {
+    this->OnMap[pixel] = this->Sound[pixel] ? this->OnMap[pixel] : NotANumber;
   }
 }
 
-void BaseSurface::SetTrend(const std::vector<double>& depth, const MapMask& support)
+//------------------------------------------------------------------------------
+void BaseSurface::SetTrend(const MapMask& support)
 {
   std::vector<Vec3> points;
   for (std::size_t pixel = 0; pixel < support.size(); ++pixel)
@@ -48,23 +124,232 @@ void BaseSurface::SetTrend(const std::vector<double>& depth, const MapMask& supp
     if (support[pixel])
     {
       const Vec2 p = GetPosition(this->Grid, pixel);
-      points.push_back({ p[0], p[1], depth[pixel] });
+      points.push_back({ p[0], p[1], this->Map.Depth[pixel] });
     }
   }
   this->Trend = std::make_unique<EllipsoidTrend>(points);
-  this->OnMap = GetDepths(*this->Trend, this->Grid);
-}
-
-std::vector<double> BaseSurface::Evaluate(Execution& execution, const MapGrid& grid) const
-{
-  if (this->Trend)
+  this->OnMap.assign(this->Grid.GetSize(), NotANumber);
+  std::size_t missing = 0;
+  std::size_t first = 0;
+  for (std::size_t pixel = 0; pixel < this->OnMap.size(); ++pixel)
   {
-    return GetDepths(*this->Trend, grid);
+    const Vec2 p = GetPosition(this->Grid, pixel);
+    if (this->Trend->Covers(p[0], p[1]))
+    {
+      this->OnMap[pixel] = this->Trend->GetDepth(p[0], p[1]);
+    }
+    else if (this->Map.Defect[pixel])
+    {
+      first = missing++ == 0 ? pixel : first;
+    }
   }
-  return this->Exists() ? ProjectSheet(execution, this->Prior, MaximumSupportSlope, grid)
-                        : std::vector<double>();
+  if (missing > 0)
+  {
+    std::ostringstream message;
+    message << "the ellipsoid of Trend ends before the defect does, at " << missing
+            << " of its pixels, first at column " << this->Grid.GetColumn(first) << ", row "
+            << this->Grid.GetRow(first)
+            << "; mark a smaller defect, choose a view that faces it, or set Trend to None";
+    throw std::invalid_argument(message.str());
+  }
 }
 
+//------------------------------------------------------------------------------
+void BaseSurface::WarnOfGaps(std::vector<std::string>& warnings) const
+{
+  std::size_t missing = 0;
+  std::size_t first = 0;
+  std::size_t all = 0;
+  for (std::size_t pixel = 0; pixel < this->OnMap.size(); ++pixel)
+  {
+    all += this->Map.Defect[pixel];
+    if (this->Map.Defect[pixel] && !this->Sound[pixel])
+    {
+      first = missing++ == 0 ? pixel : first;
+    }
+  }
+  if (missing > 0)
+  {
+    std::ostringstream message;
+    message
+      << "at " << missing << " of " << all << " pixels of the defect, first at column "
+      << this->Grid.GetColumn(first) << ", row " << this->Grid.GetRow(first)
+      << ", the prior surface is missing or lies beyond a depth step, as in a hole of its own: "
+      << "a thin plate bridges them. Where they are many, take a prior that is whole there";
+    warnings.push_back(message.str());
+  }
+}
+
+//------------------------------------------------------------------------------
+void BaseSurface::Complete(Execution& execution, const MapMask& carried,
+  const std::array<int, 4>& rectangle, const HoleFillOptions& options,
+  std::vector<std::string>& warnings)
+{
+  if (this->Sound.empty())
+  {
+    return; // there is no prior
+  }
+  this->WarnOfGaps(warnings);
+  const auto width = static_cast<std::size_t>(this->Grid.Width);
+  const auto isInside = [&](std::size_t pixel)
+  {
+    const auto i = static_cast<int>(pixel % width);
+    const auto j = static_cast<int>(pixel / width);
+    return i >= rectangle[0] && i <= rectangle[1] && j >= rectangle[2] && j <= rectangle[3];
+  };
+  MapMask known(this->Sound.size(), 0);
+  MapMask gaps(this->Sound.size(), 0);
+  for (std::size_t pixel = 0; pixel < known.size(); ++pixel)
+  {
+    known[pixel] = isInside(pixel) && this->Sound[pixel];
+    gaps[pixel] = isInside(pixel) && !this->Sound[pixel];
+  }
+  this->IsSmooth = options.Smoothing > 0 || options.CutoffWavelength > 0;
+  const bool hasGaps = std::find(gaps.begin(), gaps.end(), 1) != gaps.end();
+  // Other pixels may need more of the prior than those of the map.
+  const bool isSame = options.OutputMargin == 0 && options.OutputSpacing == Vec2{ 0, 0 };
+  if (!this->IsSmooth && !hasGaps && isSame)
+  {
+    return;
+  }
+
+  // Height and inclination of the bone above the prior, with which the bone goes on for it.
+  const auto forEach = [&](const auto& body)
+  {
+    for (std::size_t pixel = 0; pixel < carried.size(); ++pixel)
+    {
+      if (carried[pixel] && this->Sound[pixel])
+      {
+        const Vec2 p = GetPosition(this->Grid, pixel);
+        body(Vec3{ p[0], p[1], this->Map.Depth[pixel] - this->OnMap[pixel] });
+      }
+    }
+  };
+  const std::array<double, 3> above = FitDepthPlane(forEach).Coefficients;
+  std::vector<double> depth = this->OnMap;
+  MapMask nodes(known.size(), 0);
+  for (std::size_t pixel = 0; pixel < carried.size(); ++pixel)
+  {
+    // a smooth fit must not see the eye socket that the prior may be beside them
+    nodes[pixel] = known[pixel] && (!this->IsSmooth || this->Map.Defect[pixel] || carried[pixel]);
+    if (carried[pixel] && !this->Sound[pixel])
+    {
+      const Vec2 p = GetPosition(this->Grid, pixel);
+      depth[pixel] = this->Map.Depth[pixel] - (above[0] + above[1] * p[0] + above[2] * p[1]);
+      nodes[pixel] = 1;
+    }
+  }
+  const std::vector<std::size_t> thin = ThinNodes(this->Grid, nodes, options.NodeSpacing);
+  MapMask taken(nodes.size(), 0);
+  for (const std::size_t pixel : thin)
+  {
+    taken[pixel] = 1;
+  }
+  if (!this->IsSmooth && hasGaps) // the bridge begins where the prior ends
+  {
+    constexpr double Seam = 2.5; // pixels
+    const double reach = Seam * std::max(this->Grid.Spacing[0], this->Grid.Spacing[1]);
+    const MapMask seam = SelectWithin(execution, this->Grid, gaps, reach, known);
+    std::transform(taken.begin(), taken.end(), seam.begin(), taken.begin(),
+      [](unsigned char a, unsigned char b) { return a | b; });
+  }
+  std::vector<std::array<double, 2>> places;
+  std::vector<double> values;
+  for (std::size_t pixel = 0; pixel < taken.size(); ++pixel)
+  {
+    if (taken[pixel])
+    {
+      const Vec2 p = GetPosition(this->Grid, pixel);
+      places.push_back({ p[0], p[1] });
+      values.push_back(depth[pixel]);
+    }
+  }
+  const double area = static_cast<double>(std::count(nodes.begin(), nodes.end(), 1)) *
+    this->Grid.Spacing[0] * this->Grid.Spacing[1];
+  RadialBasisOptions fit =
+    GetFitOptions(options, area / std::max(1.0, static_cast<double>(places.size())), false);
+  fit.Kernel = this->IsSmooth ? options.Kernel : RadialKernel::ThinPlate;
+  // Its shape in the hole is what it is for; half the wavelength is still above the voxels' ripple.
+  fit.Smoothing *= this->IsSmooth ? std::pow(0.5, GetRadialPower(fit.Kernel) + 2) : 1;
+  this->Fit = std::make_unique<RadialBasis<2>>(execution, places, values, fit);
+  this->Accuracy = options.Accuracy;
+
+  std::vector<std::size_t> pixels;
+  std::vector<std::array<double, 2>> points;
+  for (std::size_t pixel = 0; pixel < this->OnMap.size(); ++pixel)
+  {
+    if (isInside(pixel) && (this->IsSmooth || !this->Sound[pixel]))
+    {
+      const Vec2 p = GetPosition(this->Grid, pixel);
+      pixels.push_back(pixel);
+      points.push_back({ p[0], p[1] });
+    }
+  }
+  this->EvaluateFit(execution, points, values);
+  for (std::size_t k = 0; k < pixels.size(); ++k)
+  {
+    this->OnMap[pixels[k]] = values[k];
+  }
+}
+
+//------------------------------------------------------------------------------
+void BaseSurface::EvaluateFit(Execution& execution,
+  const std::vector<std::array<double, 2>>& points, std::vector<double>& values) const
+{
+  const RadialBasis<2>& fit = *this->Fit;
+  constexpr double Least = 1e-9; // of the range: what a sum in doubles can give
+  fit.EvaluateWithin(execution, std::max(this->Accuracy, Least) * fit.GetRange(), points, values);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> BaseSurface::Evaluate(Execution& execution, const MapGrid& grid,
+  const std::vector<std::int64_t>& nearest, const std::array<int, 4>& rectangle) const
+{
+  if (!this->Exists())
+  {
+    return {};
+  }
+  std::vector<double> depth(grid.GetSize(), NotANumber);
+  if (!this->Trend && !this->IsSmooth)
+  {
+    depth = ProjectSheet(execution, this->Prior, MaximumSupportSlope, grid);
+  }
+  std::vector<std::size_t> pixels;
+  std::vector<std::array<double, 2>> points;
+  for (std::size_t pixel = 0; pixel < depth.size(); ++pixel)
+  {
+    const auto i = static_cast<int>(pixel % static_cast<std::size_t>(grid.Width));
+    const auto j = static_cast<int>(pixel / static_cast<std::size_t>(grid.Width));
+    const Vec2 p = GetPosition(grid, pixel);
+    if (i < rectangle[0] || i > rectangle[1] || j < rectangle[2] || j > rectangle[3])
+    {
+      depth[pixel] = NotANumber;
+    }
+    else if (this->Trend)
+    {
+      depth[pixel] = this->Trend->GetDepth(p[0], p[1]);
+    }
+    else if (this->Fit &&
+      !(std::isfinite(depth[pixel]) && nearest[pixel] >= 0 &&
+        this->Sound[static_cast<std::size_t>(nearest[pixel])]))
+    {
+      pixels.push_back(pixel);
+      points.push_back({ p[0], p[1] });
+    }
+  }
+  if (!points.empty())
+  {
+    std::vector<double> values;
+    this->EvaluateFit(execution, points, values);
+    for (std::size_t k = 0; k < pixels.size(); ++k)
+    {
+      depth[pixels[k]] = values[k];
+    }
+  }
+  return depth;
+}
+
+//------------------------------------------------------------------------------
 double BaseSurface::Evaluate(double x, double y) const
 {
   if (!this->Exists() || this->Trend)

@@ -5,10 +5,14 @@
 #define lacunaBaseSurface_h
 
 #include "lacunaEllipsoidTrend.h"
+#include "lacunaHoleFillOptions.h"
 #include "lacunaMapResampling.h"
+#include "lacunaRadialBasis.h"
+#include "lacunaSupportSelection.h"
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace lacuna
@@ -18,25 +22,46 @@ class Execution;
 class BaseSurface
 {
 public:
-  /// The prior, seen on grid; no points: none. prior must outlive this.
-  BaseSurface(Execution& execution, const SurfaceSheet& prior, const MapGrid& grid);
-  /// Makes it the trend of a surface: of the pixels of support.
-  void SetTrend(const std::vector<double>& depth, const MapMask& support);
+  /// The prior, seen on the map's grid; no points: none. Both must outlive this. Of the prior only
+  /// that counts which goes on without a step (65 degrees) from where it lies along the surface within
+  /// margins.Defect of the defect, and not within margins.Step of its steps and holes.
+  BaseSurface(Execution& execution, const SurfaceSheet& prior, const MarkedMap& map,
+    const SupportMargins& margins);
+  /// Makes it the trend of a surface: of the pixels of support. Throws std::invalid_argument when it
+  /// ends in the defect.
+  void SetTrend(const MapMask& support);
+  /// Completes the prior in the rectangle (columns, rows of the map): by a thin plate through what is
+  /// sound of it and, where it is not, through the bone of carried. With smoothing the prior is
+  /// replaced by a fit like the surface's, of half its cut-off wavelength. Warns of what is missing in the defect.
+  void Complete(Execution& execution, const MapMask& carried, const std::array<int, 4>& rectangle,
+    const HoleFillOptions& options, std::vector<std::string>& warnings);
 
   bool Exists() const { return this->Trend || !this->OnMap.empty(); }
-  /// Depths at the pixels of grid, NaN where there is none; empty when it does not exist.
+  /// Depths at the pixels of the map, NaN where there is none; empty when it does not exist.
   const std::vector<double>& GetOnMap() const { return this->OnMap; }
-  std::vector<double> Evaluate(Execution& execution, const MapGrid& grid) const;
+  /// Depths at the pixels of grid that lie in rectangle; NaN elsewhere, empty when it does not exist.
+  /// nearest: the pixel of the map, -1 beside it.
+  std::vector<double> Evaluate(Execution& execution, const MapGrid& grid,
+    const std::vector<std::int64_t>& nearest, const std::array<int, 4>& rectangle) const;
   /// Depth at (x, y) between the pixels of the map; 0 when it does not exist.
   double Evaluate(double x, double y) const;
   /// c0 + c1 x + c2 y that fits it best at the pixels of mask; 0 when it does not exist.
   std::array<double, 3> FitPlane(const MapMask& mask) const;
 
 private:
+  void WarnOfGaps(std::vector<std::string>& warnings) const;
+  void EvaluateFit(Execution& execution, const std::vector<std::array<double, 2>>& points,
+    std::vector<double>& values) const;
+
   const SurfaceSheet& Prior;
-  MapGrid Grid;
+  const MarkedMap& Map;
+  const MapGrid& Grid;
   std::vector<double> OnMap;
+  MapMask Sound; ///< where the prior is as it was given
   std::unique_ptr<EllipsoidTrend> Trend;
+  std::unique_ptr<RadialBasis<2>> Fit; ///< of the prior; none: it is complete
+  double Accuracy = 0;                 ///< of Fit, of its range
+  bool IsSmooth = false;               ///< Fit replaces the prior everywhere
 };
 }
 #endif

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -16,6 +15,8 @@ namespace
 constexpr std::size_t Count = 6;
 // Of the normal equations, whose terms are all about 1.
 constexpr double ConditionLimit = 1e13;
+// Of the greatest root: 1 / (1 + tan^2) of a sphere's slope of 65 degrees.
+constexpr double SteepShare = 0.18;
 constexpr const char* Undetermined =
   "the surface around the defect does not determine an ellipsoid (it is flat, or curved like a "
   "saddle); set Trend to None";
@@ -88,18 +89,39 @@ EllipsoidTrend::EllipsoidTrend(const std::vector<Vec3>& points)
     above += this->Scale * (p[2] - this->Center[2]) > -0.5 * this->Terms[4];
   }
   this->Side = 2 * above > points.size() ? 1 : -1;
+  // the middle, where the root is greatest
+  const double a = 1 + this->Terms[0];
+  const double b = 0.5 * this->Terms[1];
+  const double c = 1 - this->Terms[0];
+  const double u = -0.5 * (c * this->Terms[2] - b * this->Terms[3]) / (a * c - b * b);
+  const double v = -0.5 * (a * this->Terms[3] - b * this->Terms[2]) / (a * c - b * b);
+  const double greatest =
+    this->GetRoot(this->Center[0] + u / this->Scale, this->Center[1] + v / this->Scale);
+  if (!(greatest > 0))
+  {
+    throw std::invalid_argument(Undetermined);
+  }
+  this->LeastRoot = SteepShare * greatest;
 }
 
-double EllipsoidTrend::GetDepth(double x, double y) const
+//------------------------------------------------------------------------------
+double EllipsoidTrend::GetRoot(double x, double y) const
 {
   // z^2 + linear z + rest = 0
   const double u = this->Scale * (x - this->Center[0]);
   const double v = this->Scale * (y - this->Center[1]);
-  const double linear = this->Terms[4];
   const double rest = u * u + v * v + this->Terms[0] * (u * u - v * v) + this->Terms[1] * u * v +
     this->Terms[2] * u + this->Terms[3] * v + this->Terms[5];
-  const double root = 0.25 * linear * linear - rest;
-  return root >= 0 ? this->Center[2] + (-0.5 * linear + this->Side * std::sqrt(root)) / this->Scale
-                   : std::numeric_limits<double>::quiet_NaN();
+  return 0.25 * this->Terms[4] * this->Terms[4] - rest;
+}
+
+//------------------------------------------------------------------------------
+double EllipsoidTrend::GetDepth(double x, double y) const
+{
+  const double root = this->GetRoot(x, y);
+  const double least = this->LeastRoot;
+  const double half =
+    root >= least ? std::sqrt(root) : std::sqrt(least) + (root - least) / (2 * std::sqrt(least));
+  return this->Center[2] + (-0.5 * this->Terms[4] + this->Side * half) / this->Scale;
 }
 }

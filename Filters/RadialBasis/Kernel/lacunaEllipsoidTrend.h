@@ -22,14 +22,21 @@ public:
   /// plane, or curved like a saddle.
   explicit EllipsoidTrend(const std::vector<Vec3>& points);
 
-  /// z at (x, y); NaN beside the ellipsoid.
+  /// z at (x, y). Near its outline and beside the ellipsoid, where it would be steeper than about
+  /// 65 degrees, it goes on without a kink.
   double GetDepth(double x, double y) const;
+  /// Whether (x, y) lies within the ellipsoid's outline.
+  bool Covers(double x, double y) const { return this->GetRoot(x, y) >= 0; }
 
 private:
+  /// The square of half the chord along z, scaled; negative beside the ellipsoid.
+  double GetRoot(double x, double y) const;
+
   Vec3 Center{}; // of the points, and their extent: where the coordinates are about 1
   double Scale = 1;
   std::array<double, 6> Terms{}; // of x^2 - y^2, x y, x, y, z, 1
   double Side = 1;
+  double LeastRoot = 0; ///< below it the depth goes on
 };
 }
 #endif

@@ -123,25 +123,6 @@ void AddBase(const std::vector<double>& base, HoleFillResult& result)
   {
     return;
   }
-  std::size_t missing = 0;
-  std::size_t first = 0;
-  for (const std::size_t pixel : result.Filled)
-  {
-    if (std::isnan(base[pixel]))
-    {
-      first = missing++ == 0 ? pixel : first;
-    }
-  }
-  if (missing > 0)
-  {
-    std::ostringstream message;
-    message << "the prior surface or the trend is missing at " << missing
-            << " pixels of the defect, first at column " << result.Grid.GetColumn(first) << ", row "
-            << result.Grid.GetRow(first)
-            << "; fill the holes of the prior first (with RBF Hole Filler), mark a smaller defect, "
-            << "or do without";
-    throw std::runtime_error(message.str());
-  }
   const auto width = static_cast<std::size_t>(result.Grid.Width);
   for (std::size_t k = 0; k < result.Filled.size(); ++k)
   {
@@ -236,7 +217,8 @@ void FinishDepth(Execution& execution, const HoleFillInput& input, const RadialB
 {
   for (std::size_t pixel = 0; pixel < result.Depth.size(); ++pixel)
   {
-    if (result.Use[pixel] == SupportUse::Used || result.Use[pixel] == SupportUse::Steep)
+    if (result.Use[pixel] == SupportUse::Used || result.Use[pixel] == SupportUse::Steep ||
+      result.Use[pixel] == SupportUse::NoPrior)
     {
       result.Deviation[pixel] = result.Fitted[pixel] - result.Depth[pixel];
     }
@@ -311,17 +293,20 @@ HoleFillResult HoleFiller::Fill(
       "a prior surface and Trend exclude each other; set Trend to None or take the prior away");
   }
   execution.SetStage(0.1, 0.15);
-  BaseSurface base(execution, input.Prior, input.Grid);
+  const SupportMargins margins{ options.SupportMargin, options.SupportStepMargin };
+  BaseSurface base(execution, input.Prior, input, margins);
   execution.SetStage(0.15, 0.2);
-  const SupportSelection selection = SelectSupport(
-    execution, input, { options.SupportMargin, options.SupportStepMargin }, base.GetOnMap());
+  const SupportSelection selection = SelectSupport(execution, input, margins, base.GetOnMap());
   if (options.Trend == HoleTrend::Ellipsoid)
   {
-    base.SetTrend(input.Depth, selection.Support);
+    base.SetTrend(selection.Support);
   }
   HoleFillResult result = TransferInput(input, grid, selection.Use);
   result.Warnings = selection.Warnings;
   result.Rectangle = FindRectangle(input, selection.Support, options.OutputMargin, grid);
+  base.Complete(execution, selection.Support,
+    FindRectangle(input, selection.Support, options.OutputMargin, input.Grid), options,
+    result.Warnings);
 
   Problem problem;
   for (const std::size_t pixel : ThinNodes(input.Grid, selection.Support, options.NodeSpacing))
@@ -365,7 +350,7 @@ HoleFillResult HoleFiller::Fill(
   std::vector<double> values;
   this->Function->Evaluate(execution, points, values, result.Gradients);
   execution.SetStage(0.95, 1);
-  AddBase(base.Evaluate(execution, grid), result);
+  AddBase(base.Evaluate(execution, grid, result.Nearest, result.Rectangle), result);
   FinishDepth(execution, input, *this->Function, base.GetOnMap(), result);
 
   MapMask region = input.Defect;

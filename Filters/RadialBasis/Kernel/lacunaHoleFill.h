@@ -23,7 +23,7 @@ class Execution;
 /// The map and what else shapes the surface that fills its hole.
 struct HoleFillInput : MarkedMap
 {
-  SurfaceSheet Prior; ///< the fit is of the difference to it; no points: none
+  SurfaceSheet Prior; ///< the fit is of the difference to it (BaseSurface); no points: none
   /// x, y, depth in the map's axes, mm: the surface passes through them.
   std::vector<Vec3> ControlPoints;
 };

@@ -63,7 +63,7 @@ MapMask FindCandidates(Execution& execution, const MarkedMap& map, double margin
   return support;
 }
 
-void LeaveOutWithoutPrior(
+void MarkWithoutPrior(
   const MarkedMap& map, const std::vector<double>& prior, SupportSelection& selection)
 {
   std::size_t count = 0;
@@ -72,19 +72,22 @@ void LeaveOutWithoutPrior(
   {
     if (selection.Support[pixel] && std::isnan(prior[pixel]))
     {
-      selection.Support[pixel] = 0;
       selection.Use[pixel] = SupportUse::NoPrior;
       first = count++ == 0 ? pixel : first;
     }
   }
-  if (count > 0)
+  const auto support =
+    static_cast<std::size_t>(std::count(selection.Support.begin(), selection.Support.end(), 1));
+  if (count > 0 && count < support)
   {
     std::ostringstream message;
-    message << "at " << count << " pixels around the defect, " << Locate(map.Grid, first)
-            << ", the prior surface is missing; they are not used for the fit";
+    message
+      << "at " << count << " pixels around the defect, " << Locate(map.Grid, first)
+      << ", the prior surface is missing or lies beyond a depth step; the bone takes its place "
+      << "there";
     selection.Warnings.push_back(message.str());
   }
-  if (std::find(selection.Support.begin(), selection.Support.end(), 1) == selection.Support.end())
+  if (count == support)
   {
     throw std::invalid_argument(
       "the prior surface is nowhere around the defect; it must lie in the "
@@ -274,7 +277,6 @@ SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
   SupportSelection selection;
   selection.Support = FindCandidates(execution, map, margins.Defect);
   selection.Use.assign(selection.Support.size(), SupportUse::None);
-  LeaveOutWithoutPrior(map, prior, selection);
   const MapMask near = FindNearSteps(execution, map, margins.Step, selection.Support);
   // Over a gap nothing shows that a steep surface goes on.
   const double overGap = SteepSlope();
@@ -291,6 +293,7 @@ SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,
   FindSteep(map, selection);
   // Half of the rim: where a hole is the defect, the rim begins at the step margin.
   WarnOfOpenEdges(execution, map, 0.5 * (margins.Step + margins.Defect), selection);
+  MarkWithoutPrior(map, prior, selection);
   return selection;
 }
 }

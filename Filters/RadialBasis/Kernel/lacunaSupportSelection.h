@@ -26,7 +26,7 @@ enum class SupportUse : unsigned char
   Used = 1,       ///< carries the fit
   BeyondStep = 2, ///< left out, since a depth step parts it from the larger part
   Steep = 3,      ///< carries the fit, but is steeper than 65 degrees against the map
-  NoPrior = 4,    ///< left out, since the prior surface is not there
+  NoPrior = 4,    ///< carries the fit, and takes the place of the prior surface, which is not there
   NearStep = 5    ///< left out, since a depth step or a pixel without a depth is near
 };
 
@@ -53,15 +53,14 @@ struct SupportMargins
 struct SupportSelection
 {
   std::vector<SupportUse> Use;       ///< of each pixel
-  MapMask Support;                   ///< where Use is Used or Steep
+  MapMask Support;                   ///< where Use is Used, Steep or NoPrior
   std::vector<std::string> Warnings; ///< sentences for the user
 };
 
 /// The painted pixels, or those within margins.Defect of the defect, that are valid, outside of the
-/// defect, on the prior (NaN where there is none; empty: no prior), not beyond a depth step
-/// (RemoveBeyondSteps), and of what is left farther than margins.Step from steps and holes. Steps and holes count in the
-/// defect, too: its rim is rounded by the partial volume effect wherever it was marked. Warns of what
-/// was left out unless margins.Step asked for it, of steep pixels, of a defect at the border of
+/// defect, not beyond a depth step (RemoveBeyondSteps), and of what is left farther than margins.Step from steps and holes. Steps and holes count in the
+/// defect, too: its rim is rounded by the partial volume effect wherever it was marked. Those where
+/// the prior is NaN (empty: no prior) are marked, with a warning. Warns of what was left out unless margins.Step asked for it, of steep pixels, of a defect at the border of
 /// the map and of one that has no support along a quarter of its edge or more. Throws
 /// std::invalid_argument when nothing is left.
 SupportSelection SelectSupport(Execution& execution, const MarkedMap& map,

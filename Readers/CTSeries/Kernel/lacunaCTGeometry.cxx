@@ -123,16 +123,18 @@ void DropDuplicates(CTGeometry& geometry, const CTGeometryOptions& options)
       continue;
     }
     const CTSlice& other = kept.back();
-    const Vec3 apart = *slice.Frame.Position - *other.Frame.Position;
-    if (Norm(apart) <= options.PositionTolerance && options.SameImage &&
+    const Vec3 between = *slice.Frame.Position - *other.Frame.Position;
+    if (Norm(between) <= options.PositionTolerance && options.SameImage &&
       options.SameImage(other.Frame, slice.Frame))
     {
       dropped.push_back(Place(slice));
       continue;
     }
-    several = several || Acquisition(slice) != Acquisition(other);
-    different.push_back(Place(slice) + " and " + other.Frame.GetName() + " (acquisitions " +
-      Acquisition(slice) + ", " + Acquisition(other) + ")");
+    const bool apart = Acquisition(slice) != Acquisition(other);
+    several = several || apart;
+    different.push_back(Place(slice) + " and " + other.Frame.GetName() +
+      (apart ? " (acquisitions " + Acquisition(slice) + ", " + Acquisition(other) + ")"
+             : std::string()));
   }
   if (!different.empty())
   {
@@ -179,7 +181,7 @@ std::string DescribeGaps(const CTGeometry& geometry, const SliceSpacing& spacing
           << Place(geometry.Slices[gap]) << " and " << Place(geometry.Slices[gap + 1]);
     places.push_back(place.str());
   }
-  text << "the slices are not equally spaced: mostly " << spacing.Spacing << " mm, but "
+  text << "the slices are not equally spaced: mostly " << spacing.Usual << " mm, but "
        << (places.empty() ? "with deviations that add up" : Join(places));
   return text.str();
 }
@@ -207,6 +209,37 @@ void MakePlanes(CTGeometry& geometry, const SliceSpacing& spacing)
       std::min(1.0, (position - before.Position) / (after.Position - before.Position)) });
     geometry.Interpolated.push_back(static_cast<int>(k));
   }
+}
+
+// Tells what became of the slices where planes had to be interpolated.
+void NoteInterpolation(CTGeometry& geometry, const SliceSpacing& spacing, const std::string& reason)
+{
+  std::vector<bool> kept(geometry.Slices.size(), false);
+  for (const CTPlane& plane : geometry.Planes)
+  {
+    kept[plane.First] = kept[plane.First] || plane.Weight == 0;
+  }
+  const auto count = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
+  std::ostringstream note;
+  note << reason << "; " << geometry.Interpolated.size() << " of " << geometry.Planes.size()
+       << " planes, every " << spacing.Spacing << " mm, are interpolated; " << count << " of "
+       << kept.size() << " measured slices are planes of their own";
+  geometry.Notes.push_back(note.str());
+  if (count == kept.size())
+  {
+    return;
+  }
+  std::vector<std::string> blended;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+  {
+    if (!kept[i])
+    {
+      blended.push_back(Place(geometry.Slices[i]));
+    }
+  }
+  geometry.Warnings.push_back(std::to_string(blended.size()) + " of " +
+    std::to_string(kept.size()) +
+    " measured slices are in the volume only as parts of interpolated planes: " + Join(blended));
 }
 
 void FindPlanes(CTGeometry& geometry, const CTGeometryOptions& options)
@@ -244,8 +277,7 @@ void FindPlanes(CTGeometry& geometry, const CTGeometryOptions& options)
       throw std::runtime_error(
         what + "; find the missing images, or set MissingSlices to Interpolate");
     }
-    geometry.Notes.push_back(
-      what + "; " + std::to_string(geometry.Interpolated.size()) + " planes are interpolated");
+    NoteInterpolation(geometry, spacing, what);
   }
   if (spacing.Deviation > 1e-3)
   {

@@ -18,6 +18,12 @@ namespace lacuna
 namespace
 {
 constexpr const char* SecondaryCapture = "1.2.840.10008.5.1.4.1.1.7"; // and what begins so
+constexpr std::size_t MostDirections = 16; // of images in a series with scouts
+
+std::string GetBaseName(const std::string& path)
+{
+  return path.substr(path.find_last_of('/') + 1);
+}
 
 [[noreturn]] void Fail(const CTFrame& frame, const std::string& what)
 {
@@ -44,6 +50,62 @@ bool IsLocalizer(const CTFrame& frame)
 {
   return std::any_of(frame.ImageType.begin(), frame.ImageType.end(),
     [](const std::string& value) { return value == "LOCALIZER" || value == "SCOUT"; });
+}
+
+// Of the image; zero where it does not say how it lies.
+Vec3 GetNormal(const CTFrame& frame)
+{
+  const std::array<double, 6> a = frame.Axes.value_or(std::array<double, 6>{});
+  return Normalized(Cross(Vec3{ a[0], a[1], a[2] }, Vec3{ a[3], a[4], a[5] }));
+}
+
+std::string NameWithKernel(const CTSeries& series)
+{
+  const std::string& kernel = series.Frames.front().Header->ConvolutionKernel;
+  return series.Uid + " kernel " + (kernel.empty() ? "none" : kernel);
+}
+
+// One for each kernel where two kernels have an image at one place: no volume holds both.
+std::vector<CTSeries> SplitByKernel(CTSeries series)
+{
+  std::map<std::string, CTSeries> parts;
+  std::map<std::array<std::int64_t, 3>, const std::string*> places; // in 10 um
+  bool isSplit = false;
+  for (const CTFrame& frame : series.Frames)
+  {
+    const std::string& kernel = frame.Header->ConvolutionKernel;
+    CTSeries& part = parts[kernel];
+    part.Uid = series.Uid;
+    part.Frames.push_back(frame);
+    part.IsOneOfKernels = true;
+    constexpr double Most = 1e6; // mm: a number beyond is no place
+    if (frame.Position && Norm(*frame.Position) < Most)
+    {
+      std::array<std::int64_t, 3> place{};
+      for (int i = 0; i < 3; ++i)
+      {
+        place[i] = std::llround(100 * (*frame.Position)[i]);
+      }
+      isSplit = isSplit || *places.emplace(place, &kernel).first->second != kernel;
+    }
+  }
+  std::vector<CTSeries> all;
+  if (!isSplit)
+  {
+    all.push_back(std::move(series));
+    return all;
+  }
+  for (auto& part : parts)
+  {
+    all.push_back(std::move(part.second));
+  }
+  return all;
+}
+
+// Whether text is name, or begins with it as a line of Describe does.
+bool IsNamed(const std::string& text, const std::string& name)
+{
+  return text == name || text.rfind(name + "  ", 0) == 0;
 }
 
 bool IsPositive(double x)
@@ -152,6 +214,37 @@ void CheckImage(const CTFrame& frame)
   CheckPatientOrientation(frame);
 }
 
+// Cone-beam scanners write files whose frames have one position in common.
+void CheckFramePositions(const std::vector<CTFrame>& frames)
+{
+  struct File
+  {
+    const CTFrame* First;
+    int Count;
+    bool Differ;
+  };
+  std::map<const CTFileHeader*, File> files;
+  for (const CTFrame& frame : frames)
+  {
+    const auto entry = files.insert({ frame.Header.get(), { &frame, 0, false } });
+    File& file = entry.first->second;
+    ++file.Count;
+    const auto& position = file.First->Position;
+    file.Differ = file.Differ || !frame.Position || !position || !(*frame.Position == *position);
+  }
+  for (const auto& [header, file] : files)
+  {
+    if (file.Count > 1 && !file.Differ)
+    {
+      throw std::runtime_error(GetBaseName(header->File) + ": has " +
+        std::to_string(header->Frames) +
+        " frames (0028,0008), but one Image Position (Patient) (0020,0032) for all of them, so "
+        "where they lie is unknown. Spacing Between Slices (0018,0088) does not say to which side. "
+        "Export the scan as enhanced CT, or one file for each image");
+    }
+  }
+}
+
 void CheckSame(const CTFrame& frame, const CTFrame& first)
 {
   const CTFileHeader& a = *frame.Header;
@@ -196,8 +289,7 @@ void CheckSame(const CTFrame& frame, const CTFrame& first)
 //------------------------------------------------------------------------------
 std::string CTFrame::GetName() const
 {
-  const std::string& path = this->Header->File;
-  std::string name = path.substr(path.find_last_of('/') + 1);
+  std::string name = GetBaseName(this->Header->File);
   if (this->Header->Frames > 1)
   {
     name += " frame " + std::to_string(this->Number + 1);
@@ -215,11 +307,17 @@ std::string CTFrame::GetNameBeside(const CTFrame& other) const
 }
 
 //------------------------------------------------------------------------------
+std::string CTSeries::GetName() const
+{
+  return this->IsOneOfKernels ? NameWithKernel(*this) : this->Uid;
+}
+
+//------------------------------------------------------------------------------
 std::string CTSeries::Describe() const
 {
   std::ostringstream text;
   const CTFileHeader& header = *this->Frames.front().Header;
-  text << this->Uid << "  ";
+  text << this->GetName() << "  ";
   if (!header.SeriesNumber.empty())
   {
     text << "series " << header.SeriesNumber << ", ";
@@ -323,7 +421,10 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
   CTSeriesList list;
   for (auto& entry : found)
   {
-    list.Series.push_back(std::move(entry.second));
+    for (CTSeries& part : SplitByKernel(std::move(entry.second)))
+    {
+      list.Series.push_back(std::move(part));
+    }
   }
   const auto number = [](const CTSeries& series)
   { return std::strtol(series.Frames.front().Header->SeriesNumber.c_str(), nullptr, 10); };
@@ -332,7 +433,7 @@ CTSeriesList ListSeries(const std::vector<CTFrame>& frames)
   if (list.Series.size() > 1)
   {
     list.Notes.push_back("there are " + std::to_string(list.Series.size()) +
-      " CT series (0020,000E); SeriesList names them, one is read");
+      " CT series (0020,000E) or kernels (0018,1210); SeriesList names them, one is read");
   }
   for (const auto& [why, omission] : omitted)
   {
@@ -371,15 +472,33 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
       " CT series" + DescribePatients(list.Series) +
       "; set SeriesUID to one of these (0020,000E):" + list.Describe());
   }
+  const bool hasKernel = requested.rfind(uid + " kernel ", 0) == 0;
+  const auto holdsFile = [&](const CTSeries& series)
+  {
+    return std::any_of(series.Frames.begin(), series.Frames.end(),
+      [&](const CTFrame& frame) { return GetBaseName(frame.Header->File) == GetBaseName(file); });
+  };
+  std::vector<const CTSeries*> found;
   for (const CTSeries& series : list.Series)
   {
-    if (series.Uid == wanted)
+    if (series.Uid == wanted && (!hasKernel || IsNamed(requested, NameWithKernel(series))) &&
+      (!uid.empty() || !series.IsOneOfKernels || holdsFile(series)))
     {
-      return series;
+      found.push_back(&series);
     }
   }
-  const std::string what = uid.empty() ? ": the series of this file has no image for a CT volume"
-                                       : ": there is no CT series " + wanted;
+  if (found.size() == 1)
+  {
+    return *found.front();
+  }
+  if (!found.empty())
+  {
+    throw std::runtime_error(file + ": series " + wanted + " has " + std::to_string(found.size()) +
+      " convolution kernels (0018,1210); set SeriesUID to one of these:" + list.Describe());
+  }
+  const std::string what = uid.empty()
+    ? ": the series of this file has no image for a CT volume"
+    : ": there is no CT series " + (hasKernel ? requested : wanted);
   throw std::runtime_error(file + what + "; there are:" + list.Describe() + notes);
 }
 
@@ -409,8 +528,67 @@ std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition)
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames)
+{
+  std::vector<std::pair<Vec3, std::size_t>> directions; // normals, and how many images have them
+  const auto find = [&](const Vec3& normal)
+  {
+    return std::find_if(directions.begin(), directions.end(),
+      [&](const auto& known) { return std::abs(Dot(known.first, normal)) > 1 - 1e-6; });
+  };
+  for (const CTFrame& frame : frames)
+  {
+    const Vec3 normal = GetNormal(frame);
+    const auto known = find(normal);
+    if (known != directions.end())
+    {
+      ++known->second;
+    }
+    else if (Norm(normal) > 0)
+    {
+      directions.emplace_back(normal, 1);
+    }
+    if (directions.size() > MostDirections)
+    {
+      return {}; // whatever this is, it is no stack with scouts
+    }
+  }
+  const auto main = std::max_element(directions.begin(), directions.end(),
+    [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (main == directions.end() || main->second < 3)
+  {
+    return {};
+  }
+  const auto isScout = [&](const CTFrame& frame)
+  {
+    const Vec3 normal = GetNormal(frame);
+    const auto known = find(normal);
+    return known != directions.end() && known->second <= 2 &&
+      std::abs(Dot(normal, main->first)) < 0.5;
+  };
+  const auto scouts =
+    static_cast<std::size_t>(std::count_if(frames.begin(), frames.end(), isScout));
+  if (2 * scouts > main->second)
+  {
+    return {};
+  }
+  std::vector<std::string> notes;
+  const auto end = std::stable_partition(
+    frames.begin(), frames.end(), [&](const CTFrame& frame) { return !isScout(frame); });
+  for (auto scout = end; scout != frames.end(); ++scout)
+  {
+    notes.push_back(scout->GetName() +
+      ": left out, it is a scout by its Image Orientation (Patient) (0020,0037): it lies across " +
+      std::to_string(main->second) + " parallel images");
+  }
+  frames.erase(end, frames.end());
+  return notes;
+}
+
+//------------------------------------------------------------------------------
 void CheckSameVolume(const std::vector<CTFrame>& frames)
 {
+  CheckFramePositions(frames);
   for (const CTFrame& frame : frames)
   {
     CheckImage(frame);

@@ -16,8 +16,11 @@ struct CTSeries
 {
   std::string Uid;
   std::vector<CTFrame> Frames;
+  bool IsOneOfKernels = false; ///< of several with this UID, which have images at the same places
 
-  /// One line that begins with the UID: number, description, amount and size of images. Without
+  /// The UID, followed by " kernel " and (0018,1210) for one of several kernels.
+  std::string GetName() const;
+  /// One line that begins with the name and two blanks: number, description, amount and size of images. Without
   /// anything about the patient.
   std::string Describe() const;
   /// The different acquisition numbers, ascending.
@@ -37,11 +40,12 @@ struct CTSeriesList
 /// Why an image cannot be part of a CT volume ("is a localizer"); empty when it can.
 std::string WhyNotInVolume(const CTFrame& frame);
 
-/// Sorts frames into series. Images of other modalities, localizers, secondary captures and colour
+/// Sorts frames into series; one that has images of several convolution kernels at one place becomes
+/// one for each kernel. Images of other modalities, localizers, secondary captures and colour
 /// images are left out with a note.
 CTSeriesList ListSeries(const std::vector<CTFrame>& frames);
 
-/// The series asked for. requested: a UID, or a text that begins with one and a blank (as Describe
+/// The series asked for. requested: a name, or a text that begins with a UID and a blank (as Describe
 /// gives it); empty: that of the file which the user opened (file, with openedUid), else the only
 /// one. Throws std::runtime_error with the list of series when that does not tell which.
 const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& requested,
@@ -50,6 +54,11 @@ const CTSeries& SelectSeries(const CTSeriesList& list, const std::string& reques
 /// The images with an acquisition number; all for -1. Throws std::runtime_error with the numbers
 /// there are when there is none.
 std::vector<CTFrame> SelectAcquisition(const CTSeries& series, int acquisition);
+
+/// Takes away scouts that do not say so: images that lie across (more than 60 degrees) at least three
+/// parallel ones, no more than two of one direction, and together at most half as many as those.
+/// Returns a note on each.
+std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames);
 
 /// Throws std::runtime_error naming file and tag unless all images have pixels, one size, pixel
 /// spacing, position, orientation, patient and frame of reference, as one volume has, and Patient

@@ -11,6 +11,7 @@ namespace lacuna
 namespace
 {
 constexpr double MostPlanes = 1e6;
+constexpr int MostParts = 5; // a grid that is finer still would be mostly interpolated
 
 std::vector<double> GetGaps(const std::vector<double>& positions)
 {
@@ -100,7 +101,7 @@ SliceSpacing FindSliceSpacing(const std::vector<double>& positions, double toler
   SliceSpacing planes;
   const std::vector<double> gaps = GetGaps(positions);
   planes.First = positions[0];
-  planes.Spacing = GetUsualGap(gaps, tolerance);
+  planes.Spacing = planes.Usual = GetUsualGap(gaps, tolerance);
   planes.Tolerance = std::min(tolerance, 0.25 * planes.Spacing);
   const double length = (positions.back() - positions[0]) / planes.Spacing;
   if (!(length < MostPlanes))
@@ -114,16 +115,29 @@ SliceSpacing FindSliceSpacing(const std::vector<double>& positions, double toler
   {
     return planes;
   }
-  planes.Planes =
-    static_cast<std::int64_t>(std::floor(length + planes.Tolerance / planes.Spacing)) + 1;
   for (std::size_t i = 0; i < gaps.size(); ++i)
   {
-    const double steps = std::max(1.0, std::round(gaps[i] / planes.Spacing));
-    if (std::abs(gaps[i] - steps * planes.Spacing) > planes.Tolerance)
+    const double steps = std::max(1.0, std::round(gaps[i] / planes.Usual));
+    if (std::abs(gaps[i] - steps * planes.Usual) > planes.Tolerance)
     {
       planes.UnequalGaps.push_back(i);
     }
   }
+  for (int parts = 2; parts <= MostParts && parts * length < MostPlanes; ++parts)
+  {
+    SliceSpacing finer = planes;
+    finer.Spacing = planes.Usual / parts;
+    finer.Tolerance = std::min(tolerance, 0.25 * finer.Spacing);
+    if (FitPlanes(positions, finer))
+    {
+      finer.Missing.clear(); // planes that no scanner meant to measure
+      return finer;
+    }
+  }
+  const double steps = std::max(1.0, std::round(length));
+  planes.Planes = static_cast<std::int64_t>(steps) + 1;
+  planes.Spacing = (positions.back() - positions[0]) / steps;
+  planes.Tolerance = std::min(tolerance, 0.25 * planes.Spacing);
   return planes;
 }
 }

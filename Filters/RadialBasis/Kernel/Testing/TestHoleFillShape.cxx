@@ -146,15 +146,20 @@ TEST(HoleFill, KeepsTheShapeOfAPrior)
   input.Prior = own;
   EXPECT_LT(GetWorst(Fill(input)), 1e-9);
 
-  // what is missing of it is named
+  // what is missing of it is bridged and named
   input.Prior.Points[27 * Width + 30][2] = std::nan("");
-  ExpectContains(ErrorOf(input), "missing at 1 pixels of the defect, first at column 30, row 27");
+  const HoleFillResult bridged = Fill(input);
+  ASSERT_EQ(bridged.Warnings.size(), 1u);
+  ExpectContains(
+    bridged.Warnings[0], "pixels of the defect, first at column 30, row 27, the prior");
+  EXPECT_LT(GetWorst(bridged), 0.05);
   input.Prior = own;
   input.Prior.Points[27 * Width + 44][2] = std::nan("");
   const HoleFillResult lacking = Fill(input);
   ASSERT_EQ(lacking.Warnings.size(), 1u);
   ExpectContains(lacking.Warnings[0], "first at column 44, row 27, the prior surface is missing");
   EXPECT_EQ(lacking.Use[27 * Width + 44], lacuna::SupportUse::NoPrior);
+  EXPECT_LT(GetWorst(lacking), 1e-5);
   for (lacuna::Vec3& p : input.Prior.Points)
   {
     p[0] += 1000;
@@ -162,6 +167,141 @@ TEST(HoleFill, KeepsTheShapeOfAPrior)
   ExpectContains(ErrorOf(input), "nowhere around the defect");
   options.Trend = lacuna::HoleTrend::Ellipsoid;
   ExpectContains(ErrorOf(input, options), "exclude each other");
+}
+
+// A prior of the true shape with a hole of its own, through which the far side is seen: wherever the
+// hole lies, its rim is no surface to follow, and the place is told.
+TEST(HoleFill, BridgesHolesOfThePrior)
+{
+  const HoleFillInput input = MakeMap(Sphere); // the defect: 15 mm around (45, 27)
+  HoleFillOptions options;
+  options.SupportStepMargin = 2;
+  struct Case
+  {
+    double X, Y, Radius; // of the prior's hole, mm
+    double Error;        // mm
+    bool Rim;            // whether it comes into the rim
+  };
+  for (const Case& c : { Case{ 45, 27, 1.6, 0.03, false }, Case{ 38, 30, 5, 0.05, false },
+         Case{ 60, 27, 12, 0.2, true }, Case{ 30, 36, 12, 0.2, true } })
+  {
+    for (const double depth : { 80.0, std::nan("") })
+    {
+      HoleFillInput own = input;
+      own.Prior.Width = Width;
+      own.Prior.Height = Height;
+      for (std::size_t i = 0; i < Width * Height; ++i)
+      {
+        const double x = GetX(i);
+        const double y = GetY(i);
+        const bool hole = std::hypot(x - c.X, y - c.Y) <= c.Radius;
+        own.Prior.Points.push_back(
+          { x, y, hole ? 150 + 0.2 * depth : Sphere(x, y) - 3 + 0.05 * x });
+      }
+      const HoleFillResult result = Fill(own, options);
+      EXPECT_LT(GetWorst(result), c.Error) << c.Radius << " at " << c.X << ", " << c.Y;
+      std::string all;
+      for (const std::string& warning : result.Warnings)
+      {
+        all += warning + "\n";
+      }
+      ExpectContains(all, "pixels of the defect, first at column ");
+      ExpectContains(all, "the prior surface is missing or lies beyond a depth step");
+      EXPECT_EQ(all.find("pixels around the defect") != std::string::npos, c.Rim) << all;
+      std::size_t rim = 0;
+      for (std::size_t i = 0; i < result.Use.size(); ++i)
+      {
+        if (result.Use[i] == lacuna::SupportUse::NoPrior)
+        {
+          ++rim;
+          EXPECT_LT(std::abs(result.Deviation[i]), 0.1);
+        }
+      }
+      EXPECT_EQ(rim > 0, c.Rim);
+    }
+  }
+}
+
+// What Fitted is needed for beyond the trend or the prior is there, and goes on without a kink.
+TEST(HoleFill, FittedIsCompleteBeyondTrendAndPrior)
+{
+  const auto expectWhole = [](const HoleFillResult& result, double bend)
+  {
+    const auto width = static_cast<std::size_t>(result.Grid.Width);
+    std::size_t count = 0;
+    double worst = 0; // of slopes from pixel to pixel
+    for (int j = result.Rectangle[2]; j <= result.Rectangle[3]; ++j)
+    {
+      for (int i = result.Rectangle[0]; i <= result.Rectangle[1]; ++i)
+      {
+        const std::size_t pixel = j * width + i;
+        count += std::isfinite(result.Fitted[pixel]) ? 0 : 1;
+        if (i > result.Rectangle[0] && i < result.Rectangle[1])
+        {
+          worst = std::max(worst,
+            std::abs(
+              result.Fitted[pixel + 1] + result.Fitted[pixel - 1] - 2 * result.Fitted[pixel]) /
+              result.Grid.Spacing[0]);
+        }
+      }
+    }
+    EXPECT_EQ(count, 0u);
+    EXPECT_LT(worst, bend);
+    EXPECT_LT(GetWorst(result), 0.05);
+  };
+  HoleFillOptions options;
+  options.Trend = lacuna::HoleTrend::Ellipsoid;
+  options.OutputMargin = 70; // the sphere ends 90 mm from its middle
+  expectWhole(Fill(MakeMap(Sphere), options), 0.5);
+
+  options.Trend = lacuna::HoleTrend::None;
+  HoleFillInput input = MakeMap(Sphere);
+  input.Prior.Width = Width;
+  input.Prior.Height = Height;
+  for (std::size_t i = 0; i < Width * Height; ++i)
+  {
+    const double x = GetX(i);
+    const double y = GetY(i);
+    const bool none = x + y > 92 || x - y > 32; // corners of the rim's rectangle
+    input.Prior.Points.push_back({ x, y, none ? std::nan("") : Sphere(x, y) });
+  }
+  for (const double margin : { 0.0, 20.0 })
+  {
+    options.OutputMargin = margin;
+    options.OutputSpacing = { margin > 0 ? 0.75 : 0.0, 0 };
+    expectWhole(Fill(input, options), 0.1);
+  }
+}
+
+// With smoothing the ripple of the prior's voxels is not in the filling either.
+TEST(HoleFill, SmoothsThePrior)
+{
+  HoleFillInput input = MakeMap(BumpedSphere);
+  input.Prior.Width = Width;
+  input.Prior.Height = Height;
+  for (std::size_t i = 0; i < Width * Height; ++i)
+  {
+    const double ripple = i % Width % 2 == 0 ? 0.1 : -0.1;
+    input.Prior.Points.push_back({ GetX(i), GetY(i), BumpedSphere(GetX(i), GetY(i)) + ripple });
+  }
+  const auto getRipple = [](const HoleFillResult& result)
+  {
+    double sum = 0;
+    for (const std::size_t i : result.Filled)
+    {
+      sum += std::abs(result.Deviation[i + 1] + result.Deviation[i - 1] - 2 * result.Deviation[i]);
+    }
+    return 0.25 * sum / static_cast<double>(result.Filled.size());
+  };
+  HoleFillOptions options;
+  EXPECT_GT(getRipple(Fill(input, options)), 0.08);
+  options.CutoffWavelength = 10;
+  const HoleFillResult smooth = Fill(input, options);
+  EXPECT_LT(getRipple(smooth), 0.03); // 3 mm long; half of 5 mm would be left
+  EXPECT_LT(GetWorst(smooth), 0.3);   // the bump's own bending
+  options.CutoffWavelength = 0;
+  options.Smoothing = 50;
+  EXPECT_LT(getRipple(Fill(input, options)), 0.02);
 }
 
 TEST(HoleFill, EllipsoidTrend)

@@ -106,3 +106,48 @@ TEST(CTSeries, NamesOfTwoFolders)
       "of a volume are parallel");
   }
 }
+
+// Scouts are known by how they lie; whatever else does not lie as the others stays, to be refused.
+TEST(CTSeries, Scouts)
+{
+  const Axes sagittal = { 0, 1, 0, 0, 0, -1 };
+  const Axes coronal = { 1, 0, 0, 0, 0, -1 };
+  const auto makeStack = [](const std::vector<Axes>& others)
+  {
+    std::vector<CTFrame> frames = MakeFrames(std::vector<Vec3>(others.size() + 6));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+    {
+      frames[i].Axes = i < others.size() ? others[i] : Axial;
+    }
+    return frames;
+  };
+  const auto count = [&](const std::vector<Axes>& others)
+  {
+    std::vector<CTFrame> frames = makeStack(others);
+    const std::size_t notes = TakeOutScouts(frames).size();
+    EXPECT_EQ(frames.size() + notes, others.size() + 6);
+    return notes;
+  };
+  std::vector<CTFrame> frames = makeStack({ sagittal });
+  EXPECT_EQ(TakeOutScouts(frames),
+    std::vector<std::string>{ "IM0: left out, it is a scout by its Image Orientation (Patient) "
+                              "(0020,0037): it lies across 6 parallel images" });
+  ASSERT_EQ(frames.size(), 6U);
+  EXPECT_EQ(frames[0].GetName(), "IM1");
+  CheckSameVolume(frames);
+
+  EXPECT_EQ(count({}), 0U);
+  EXPECT_EQ(count({ sagittal, coronal }), 2U);
+  EXPECT_EQ(count({ sagittal, { 0, -1, 0, 0, 0, 1 } }), 2U); // from both sides
+  EXPECT_EQ(count({ sagittal, sagittal, sagittal }), 0U);    // a stack of its own
+  EXPECT_EQ(count({ sagittal, sagittal, coronal, coronal }), 0U);
+  EXPECT_EQ(count({ { 1, 0, 0, 0, 0.8, 0.6 } }), 0U); // oblique
+  EXPECT_EQ(count({ { 0, 1, 0, -1, 0, 0 } }), 0U);    // turned in its plane
+  EXPECT_EQ(count({ { 0, 0, 0, 0, 0, 0 } }), 0U);
+  frames = makeStack({ sagittal });
+  frames.resize(3); // too few to tell
+  EXPECT_TRUE(TakeOutScouts(frames).empty());
+  frames = makeStack({ sagittal });
+  frames[3].Axes.reset();
+  EXPECT_EQ(TakeOutScouts(frames).size(), 1U);
+}

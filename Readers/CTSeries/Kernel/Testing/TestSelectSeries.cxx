@@ -99,6 +99,40 @@ TEST(SelectSeries, SaysWhichThereAre)
     << hint;
 }
 
+// Two kernels at the same places are two volumes; at places of their own they are one.
+TEST(SelectSeries, ByKernel)
+{
+  const auto kernel = [](const char* text)
+  { return [text](CTFileHeader& header) { header.ConvolutionKernel = text; }; };
+  std::vector<CTFrame> frames = { MakeFrame(0, kernel("BONE PLUS")), MakeFrame(1, kernel("")),
+    MakeFrame(2, kernel("BONE PLUS")), MakeFrame(3, kernel("")) };
+  EXPECT_EQ(ListSeries(frames).Series.size(), 1u);
+  EXPECT_EQ(SelectSeries(ListSeries(frames), "1.2.1", "/scan", "").Frames.size(), 4u);
+  frames[1].Position = frames[0].Position;
+  frames[3].Position = frames[2].Position;
+  const CTSeriesList list = ListSeries(frames);
+  ASSERT_EQ(list.Series.size(), 2u);
+  EXPECT_EQ(list.Series[0].GetName(), "1.2.1 kernel none");
+  EXPECT_EQ(list.Series[1].Describe(), "1.2.1 kernel BONE PLUS  2 images of 7 x 5");
+  const auto first =
+    [&](const std::string& requested, const std::string& file, const std::string& opened)
+  { return SelectSeries(list, requested, file, opened).Frames[0].GetName(); };
+  EXPECT_EQ(first("1.2.1 kernel BONE PLUS", "/scan", ""), "IM0");
+  EXPECT_EQ(first(list.Series[0].Describe(), "/scan", ""), "IM1");
+  EXPECT_EQ(first("", "/scan/IM2", "1.2.1"), "IM0"); // by the file that was opened
+  EXPECT_EQ(first("", "/scan/IM3", "1.2.1"), "IM1");
+  const std::string several = ErrorOf([&] { SelectSeries(list, "1.2.1", "/scan", ""); });
+  EXPECT_TRUE(Has(several, "series 1.2.1 has 2 convolution kernels (0018,1210)")) << several;
+  EXPECT_TRUE(Has(several, "\n  1.2.1 kernel BONE PLUS  2 images")) << several;
+  const std::string open = ErrorOf([&] { SelectSeries(list, "", "/scan", ""); });
+  EXPECT_TRUE(Has(open, "there are 2 CT series; set SeriesUID")) << open;
+  for (const char* wrong : { "1.2.1 kernel BONE", "1.2.1 kernel B30" })
+  {
+    const std::string unknown = ErrorOf([&] { SelectSeries(list, wrong, "/scan", ""); });
+    EXPECT_TRUE(Has(unknown, std::string("there is no CT series ") + wrong)) << unknown;
+  }
+}
+
 TEST(SelectAcquisition, ByNumber)
 {
   CTSeries series{ "1.2.1", MakeFrames({ { 0, 0, 0 }, { 0, 0, 1 }, { 0, 0, 2 } }) };
@@ -142,6 +176,27 @@ TEST(CheckSameVolume, SaysWhatAnImageLacks)
     const std::string error = check(change);
     EXPECT_TRUE(Has(error, expected) && Has(error, "IM1")) << error;
   }
+}
+
+// Frames of one file need positions of their own.
+TEST(CheckSameVolume, FramesAtOnePosition)
+{
+  std::vector<CTFrame> frames = MakeFrames({ { 0, 0, 5 }, { 0, 0, 5 }, { 0, 0, 5 } });
+  auto header = std::make_shared<CTFileHeader>(*frames[0].Header);
+  header->Frames = 3;
+  for (int k = 0; k < 3; ++k)
+  {
+    frames[k].Header = header;
+    frames[k].Number = k;
+  }
+  const std::string error = ErrorOf([&] { CheckSameVolume(frames); });
+  EXPECT_TRUE(Has(error,
+    "IM0: has 3 frames (0028,0008), but one Image Position (Patient) (0020,0032) for all of them"))
+    << error;
+  (*frames[2].Position)[2] = 6; // two at one position may be two acquisitions
+  EXPECT_EQ(ErrorOf([&] { CheckSameVolume(frames); }), "");
+  frames.erase(frames.begin() + 1);
+  EXPECT_EQ(ErrorOf([&] { CheckSameVolume(frames); }), "");
 }
 
 // Who the patient is does not get into the sentences.

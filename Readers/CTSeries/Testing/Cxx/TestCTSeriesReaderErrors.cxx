@@ -283,6 +283,21 @@ void TestLeftOut()
   LACUNA_CHECK_CONTAINS(notes, "1 files are no DICOM files");
 }
 
+// A sideways scout of the series that does not say that it is one, with pixels of its own size.
+void TestScout()
+{
+  ReaderOf test(Edited({ { 0x0020, 0x0037, "DS", "0\\1\\0\\0\\0\\-1", { 0 } },
+    { 0x0028, 0x0030, "DS", "0.5\\0.5", { 0 } } }));
+  test.ExpectGood();
+  LACUNA_CHECK_THAT(test.Warnings.empty(), test.Warnings);
+  vtkImageData* image = test.Reader->GetOutput();
+  LACUNA_CHECK(image->GetDimensions()[2] == 5);
+  LACUNA_CHECK_NEAR(image->GetOrigin()[2], -14, 1e-12);
+  LACUNA_CHECK_NEAR(
+    image->GetScalarComponentAsDouble(2, 1, 3, 0), CTTruth({ -18.2, -22.7, -8 }), 1);
+  LACUNA_CHECK_CONTAINS(test.GetNotes(), BaseName(test.Files[0]) + ": left out, it is a scout by");
+}
+
 void TestSeries()
 {
   ReaderOf test{ CTTestSeries() };
@@ -398,7 +413,8 @@ void TestGaps()
     }
   }
   LACUNA_CHECK_NEAR(worst, 0, 1.0);
-  LACUNA_CHECK_CONTAINS(test.GetNotes(), "3 planes are interpolated");
+  LACUNA_CHECK_CONTAINS(
+    test.GetNotes(), "3 of 13 planes, every 2 mm, are interpolated; 10 of 10 measured slices");
 }
 
 void TestUnequal()
@@ -417,13 +433,11 @@ void TestUnequal()
   LACUNA_CHECK_NEAR(test.Reader->GetOutput()->GetScalarComponentAsDouble(2, 1, 4, 0),
     CTTruth({ -18.2, -22.7, -8 }), 1);
 
-  // thin slices at the base, thick ones above
-  series.Places = { 0, 1, 2, 3, 4, 6.5, 9, 11.5 };
-  ReaderOf thick(series);
-  thick.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
-  thick.ExpectGood();
-  LACUNA_CHECK_NEAR(thick.Reader->GetOutput()->GetSpacing()[2], 2, 1e-9);
-  LACUNA_CHECK(thick.Reader->GetOutput()->GetDimensions()[2] == 12);
+  LACUNA_CHECK_CONTAINS(
+    test.GetNotes(), "1 of 9 planes, every 2 mm, are interpolated; 8 of 9 measured slices");
+  LACUNA_CHECK_CONTAINS(test.Warnings,
+    "1 of 9 measured slices are in the volume only as parts of interpolated planes: " +
+      BaseName(test.Files[4]) + " at -7.4 mm");
 
   // positions rounded to a tenth of a millimetre are equal spacing
   CTTestSeries rounded;
@@ -435,6 +449,35 @@ void TestUnequal()
   LACUNA_CHECK_CONTAINS(fine.GetNotes(), "mm from equal spacing");
   fine.Reader->SetPositionTolerance(0.001);
   fine.ExpectError("not equally spaced");
+}
+
+// Thin slices at the base, thick ones above; one wide gap: every measured slice is in the volume.
+void TestUnequalKeepsAll()
+{
+  for (const std::vector<double>& places : { std::vector<double>{ 0, 1, 2, 3, 4, 6.5, 9, 11.5 },
+         std::vector<double>{ 0, 3, 6, 9, 12, 17, 20, 23 } })
+  {
+    CTTestSeries series;
+    series.Places = places;
+    series.Stored = [](int i, int j, int k) { return k == 7 ? 3000 + i : 100 * k + j; };
+    ReaderOf test(series);
+    test.ExpectError("the slices are not equally spaced");
+    test.Reader->SetMissingSlices(vtkLacunaCTSeriesReader::MISSING_SLICES_INTERPOLATE);
+    test.ExpectGood();
+    LACUNA_CHECK_THAT(test.Warnings.empty(), test.Warnings);
+    LACUNA_CHECK_CONTAINS(test.GetNotes(), "8 of 8 measured slices are planes of their own");
+    vtkImageData* image = test.Reader->GetOutput();
+    const double spacing = image->GetSpacing()[2];
+    LACUNA_CHECK_NEAR(spacing, places[1] == 1 ? 1 : 2, 1e-9);
+    for (int k = 0; k < 8; ++k)
+    {
+      const int plane = static_cast<int>(std::lround(2 * places[k] / spacing));
+      LACUNA_CHECK(plane <= image->GetExtent()[5]);
+      LACUNA_CHECK(
+        image->GetScalarComponentAsDouble(5, 7, plane, 0) == (k == 7 ? 3005 : 100 * k + 7));
+    }
+    LACUNA_CHECK(image->GetExtent()[5] == std::lround(2 * places[7] / spacing));
+  }
 }
 
 void TestDuplicates()
@@ -464,6 +507,52 @@ void TestDuplicates()
   ReaderOf shifted(sideways);
   shifted.ExpectError("displaced sideways");
   LACUNA_CHECK_CONTAINS(shifted.Errors, BaseName(shifted.Files[3]) + " at -10 mm");
+}
+
+// A multi-frame file whose frames have one position in common.
+void TestOnePosition()
+{
+  CTTestSeries series = Edited({});
+  series.MultiFrame = true;
+  series.Step = { 0, 0, 0 };
+  ReaderOf test(series);
+  test.ExpectError(
+    "IM0001: has 6 frames (0028,0008), but one Image Position (Patient) (0020,0032)");
+}
+
+// The same slices, reconstructed with two kernels into one series.
+void TestKernels()
+{
+  ReaderOf test(Edited({}));
+  CTTestSeries sharp = Edited({ { 0x0018, 0x1210, "SH", "B70 s", {} } });
+  sharp.Stored = [](int, int, int) { return 77; };
+  const std::vector<std::string> files = sharp.Write(test.Folder + "/sharp");
+  test.ExpectError("there are 2 CT series; set SeriesUID to one of these");
+  const std::string name = "1.2.826.0.1.3680043.2.1125.1 kernel B70 s";
+  LACUNA_CHECK_CONTAINS(
+    test.GetSeriesList(), name + "  series 4, \"Letter F\", 6 images of 44 x 36");
+  const auto getVoxel = [&]
+  {
+    test.ExpectGood();
+    LACUNA_CHECK(test.Reader->GetOutput()->GetDimensions()[2] == 6);
+    return test.Reader->GetOutput()->GetScalarComponentAsDouble(2, 1, 4, 0);
+  };
+  test.Reader->SetSeriesUID(name.c_str());
+  LACUNA_CHECK(getVoxel() == 77);
+  test.Reader->SetSeriesUID("1.2.826.0.1.3680043.2.1125.1 kernel H30s");
+  LACUNA_CHECK_NEAR(getVoxel(), CTTruth({ -18.2, -22.7, -8 }), 1);
+  test.Reader->SetSeriesUID("1.2.826.0.1.3680043.2.1125.1");
+  test.ExpectError("has 2 convolution kernels (0018,1210)");
+  // a file stands for its own kernel
+  test.Reader->SetSeriesUID(nullptr);
+  for (int k = 0; k < 6; ++k)
+  {
+    std::filesystem::rename(files[k], test.Folder + "/sharp" + std::to_string(k));
+  }
+  test.Reader->SetFileName((test.Folder + "/sharp2").c_str());
+  LACUNA_CHECK(getVoxel() == 77);
+  test.Reader->SetFileName(test.Files[2].c_str());
+  LACUNA_CHECK_NEAR(getVoxel(), CTTruth({ -18.2, -22.7, -8 }), 1);
 }
 
 void TestStatedTilt()
@@ -539,12 +628,16 @@ int TestCTSeriesReaderErrors(int, char*[])
   TestGapOfLeftOut();
   TestInformation();
   TestLeftOut();
+  TestScout();
   TestSeries();
   TestFiles();
   TestTruncated();
   TestGaps();
   TestUnequal();
+  TestUnequalKeepsAll();
   TestDuplicates();
+  TestKernels();
+  TestOnePosition();
   TestStatedTilt();
   TestCompressedGarbage();
   TestBare();
