@@ -139,12 +139,16 @@ vtkSmartPointer<vtkImageData> GetFiltered(vtkImageData* picture, const int regio
 {
   int extent[6];
   picture->GetExtent(extent);
+  const double* origin = picture->GetOrigin();
+  const double* spacing = picture->GetSpacing();
   for (int c = 0; c < 2; ++c)
   {
     if (region[0] <= region[1] && region[2] <= region[3])
     {
-      extent[2 * c] = std::max(extent[2 * c], region[2 * c]);
-      extent[2 * c + 1] = std::min(extent[2 * c + 1], region[2 * c + 1]);
+      const auto first = static_cast<int>(std::ceil((region[2 * c] - origin[c]) / spacing[c]));
+      const auto last = static_cast<int>(std::floor((region[2 * c + 1] - origin[c]) / spacing[c]));
+      extent[2 * c] = std::max(extent[2 * c], first);
+      extent[2 * c + 1] = std::min(extent[2 * c + 1], last);
     }
   }
   vtkNew<vtkImageData> image;

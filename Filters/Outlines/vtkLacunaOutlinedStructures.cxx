@@ -41,6 +41,15 @@
 
 vtkStandardNewMacro(vtkLacunaOutlinedStructures);
 
+// As the input gives them.
+struct vtkLacunaOutlinedStructures::Input
+{
+  std::string Name;
+  std::array<unsigned char, 3> Color{ 230, 159, 0 };
+  std::vector<std::vector<lacuna::Vec3>> Outlines; // without the first point at the end
+  std::vector<int> Slices; // of the outlines; those without a number have one of their own below 0
+};
+
 namespace
 {
 using lacuna::Vec3;
@@ -49,14 +58,7 @@ constexpr std::size_t FewestPoints = 16;
 constexpr std::size_t MostPoints = 48;
 
 using Lines = std::vector<std::vector<Vec3>>;
-
-// The outlines of a structure, as the input gives them.
-struct Structure
-{
-  std::string Name;
-  std::array<unsigned char, 3> Color{ 230, 159, 0 };
-  Lines Outlines; // without the first point at the end
-};
+using Structure = vtkLacunaOutlinedStructures::Input;
 
 // Of a structure's surface; lengths in mm.
 struct Measures
@@ -80,42 +82,80 @@ Vec3 GetNormal(const std::vector<Vec3>& line)
   return sum;
 }
 
+struct Plane
+{
+  Vec3 Normal, Point;
+  double Size; // of the first outline in it, mm
+};
+
+bool IsSame(const Plane& a, const Plane& b)
+{
+  constexpr double parallel = 0.999;
+  constexpr double apart = 0.01; // of the size
+  return std::abs(lacuna::Dot(a.Normal, b.Normal)) > parallel &&
+    std::abs(lacuna::Dot(a.Normal, b.Point - a.Point)) < apart * a.Size;
+}
+
+// Whether two lines in one plane cross, or are the same.
+bool DoCross(const std::vector<Vec3>& one, const std::vector<Vec3>& other, const Vec3& normal)
+{
+  if (one == other)
+  {
+    return true;
+  }
+  const auto side = [&](const Vec3& a, const Vec3& b, const Vec3& x)
+  { return lacuna::Dot(normal, lacuna::Cross(b - a, x - a)); };
+  for (std::size_t i = 0; i < one.size(); ++i)
+  {
+    const Vec3& a = one[i];
+    const Vec3& b = one[(i + 1) % one.size()];
+    for (std::size_t j = 0; j < other.size(); ++j)
+    {
+      const Vec3& c = other[j];
+      const Vec3& d = other[(j + 1) % other.size()];
+      if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Why the outlines make no surface; empty: they do.
-std::string FindLack(const Lines& outlines)
+std::string FindLack(const Structure& structure)
 {
   constexpr std::size_t enough = 3;
-  constexpr double parallel = 0.996; // 5 degrees
-  constexpr double apart = 0.01;     // of the size
-  // planes that are not the same
-  std::vector<std::pair<Vec3, Vec3>> planes; // normal, point
-  bool cross = false;
-  for (const auto& line : outlines)
+  std::vector<Plane> planes;  // that are not the same
+  std::vector<Plane> ofLines; // of each outline
+  for (const auto& line : structure.Outlines)
   {
     const Vec3 sum = GetNormal(line);
-    if (!(lacuna::Norm(sum) > 0))
+    ofLines.push_back({ lacuna::Norm(sum) > 0 ? lacuna::Normalized(sum) : Vec3{ 0, 0, 1 }, line[0],
+      std::sqrt(lacuna::Norm(sum)) });
+    const Plane& plane = ofLines.back();
+    if (plane.Size > 0 &&
+      std::none_of(planes.begin(), planes.end(), [&](const Plane& p) { return IsSame(p, plane); }))
     {
-      continue;
-    }
-    const Vec3 normal = lacuna::Normalized(sum);
-    const double size = std::sqrt(lacuna::Norm(sum));
-    bool isNew = true;
-    for (const auto& plane : planes)
-    {
-      const bool isParallel = std::abs(lacuna::Dot(plane.first, normal)) > parallel;
-      cross = cross || !isParallel;
-      isNew = isNew &&
-        !(isParallel && std::abs(lacuna::Dot(plane.first, line[0] - plane.second)) < apart * size);
-    }
-    if (isNew)
-    {
-      planes.emplace_back(normal, line[0]);
+      planes.push_back(plane);
     }
   }
-  if (planes.size() >= enough || cross)
+  for (std::size_t i = 0; i < ofLines.size(); ++i)
   {
-    return {};
+    for (std::size_t j = 0; j < i; ++j)
+    {
+      if (IsSame(ofLines[j], ofLines[i]) &&
+        DoCross(structure.Outlines[j], structure.Outlines[i], ofLines[j].Normal))
+      {
+        const int slice = structure.Slices[i];
+        return "two outlines" +
+          (slice >= 0 ? " in slice " + std::to_string(slice) : std::string()) +
+          " cross or are the same: delete one";
+      }
+    }
   }
-  return std::to_string(planes.size()) + " of 3 slices outlined";
+  return planes.size() >= enough ? std::string()
+                                 : std::to_string(planes.size()) + " of 3 slices outlined";
 }
 
 // Of a closed line, count points that are evenly spread over its length, or itself when it has fewer. More
@@ -173,9 +213,10 @@ double GetDiameter(const std::vector<Vec3>& points)
   return best;
 }
 
-Measures Measure(vtkPolyData* surface, const Lines& outlines)
+Measures Measure(vtkPolyData* surface, const Structure& structure)
 {
   Measures found;
+  const Lines& outlines = structure.Outlines;
   std::vector<Vec3> points(static_cast<std::size_t>(surface->GetNumberOfPoints()));
   for (std::size_t i = 0; i < points.size(); ++i)
   {
@@ -200,7 +241,7 @@ Measures Measure(vtkPolyData* surface, const Lines& outlines)
       }
     }
   }
-  std::vector<Vec3> areas(outlines.size(), Vec3{});
+  std::map<int, Vec3> areas; // of the slices: their outlines move together
   const Vec3 origin = points.empty() ? Vec3{} : points[0];
   double volume = 0;
   double area = 0;
@@ -221,12 +262,12 @@ Measures Measure(vtkPolyData* surface, const Lines& outlines)
     moment = moment + (part / 4) * (a + b + d);
     for (int k = 0; k < 3; ++k)
     {
-      Vec3& sum = areas[nearest[ids[k]]];
+      Vec3& sum = areas[structure.Slices[nearest[ids[k]]]];
       sum = sum + (1.0 / 3) * across;
     }
   }
   double squares = 0;
-  for (const Vec3& x : areas)
+  for (const auto& [slice, x] : areas)
   {
     squares += lacuna::Dot(x, x) / 3; // one axis of three
   }
@@ -239,7 +280,8 @@ Measures Measure(vtkPolyData* surface, const Lines& outlines)
 }
 
 // The lines of each structure.
-std::map<int, Structure> GetStructures(vtkPolyData* input)
+// By number and name: outlines of several files may use a number twice.
+std::map<std::pair<int, std::string>, Structure> GetStructures(vtkPolyData* input)
 {
   // lines are numbered behind the vertices
   const vtkIdType firstLine = input->GetNumberOfVerts();
@@ -261,9 +303,10 @@ std::map<int, Structure> GetStructures(vtkPolyData* input)
   };
   vtkDataArray* numbers = find("Structure", 1);
   vtkDataArray* colors = find("StructureColor", 3);
+  vtkDataArray* slices = find("SliceNumber", 1);
   auto* names =
     vtkStringArray::SafeDownCast(input->GetCellData()->GetAbstractArray("StructureName"));
-  std::map<int, Structure> structures;
+  std::map<std::pair<int, std::string>, Structure> structures;
   vtkCellArray* lines = input->GetLines();
   for (vtkIdType l = 0; l < lines->GetNumberOfCells(); ++l)
   {
@@ -291,16 +334,18 @@ std::map<int, Structure> GetStructures(vtkPolyData* input)
     points.pop_back();
     const double number = numbers ? numbers->GetComponent(firstLine + l, 0) : 1;
     constexpr double most = 1 << 30;
-    if (!(std::abs(number) <= most))
+    if (!(std::abs(number) <= most) || number != std::floor(number))
     {
       throw std::runtime_error("cell array 'Structure' of line " + std::to_string(l) + " is " +
         lacuna::FormatNumber(number) + "; it must be a whole number");
     }
-    const auto [at, isNew] = structures.try_emplace(static_cast<int>(number));
+    const int whole = static_cast<int>(number);
+    const std::string name =
+      names ? names->GetValue(firstLine + l) : "Structure " + std::to_string(whole);
+    const auto [at, isNew] = structures.try_emplace({ whole, name });
     if (isNew)
     {
-      at->second.Name =
-        names ? names->GetValue(firstLine + l) : "Structure " + std::to_string(at->first);
+      at->second.Name = name;
       for (int c = 0; colors && c < 3; ++c)
       {
         at->second.Color[c] = static_cast<unsigned char>(
@@ -308,6 +353,9 @@ std::map<int, Structure> GetStructures(vtkPolyData* input)
       }
     }
     at->second.Outlines.push_back(std::move(points));
+    const double slice = slices ? slices->GetComponent(firstLine + l, 0) : -1;
+    const int own = -1 - static_cast<int>(at->second.Slices.size());
+    at->second.Slices.push_back(slice >= 0 && slice <= most ? static_cast<int>(slice) : own);
   }
   return structures;
 }
@@ -362,6 +410,7 @@ std::string GetWords(const std::string& text)
 struct vtkLacunaOutlinedStructures::Kept
 {
   Lines Outlines;
+  std::vector<int> Slices;
   double Smoothing, Spacing;
   vtkSmartPointer<vtkPolyData> Surface; ///< null: none
   std::string Lack;                     ///< why
@@ -394,21 +443,23 @@ int vtkLacunaOutlinedStructures::RequestUpdateExtent(
 
 //------------------------------------------------------------------------------
 std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStructures::Make(
-  const std::vector<std::vector<Vec3>>& outlines, vtkLacunaExecution& execution) const
+  const Structure& structure, vtkLacunaExecution& execution) const
 {
+  const Lines& outlines = structure.Outlines;
   for (const auto& kept : this->Made)
   {
-    if (kept->Outlines == outlines && kept->Smoothing == this->Smoothing &&
-      kept->Spacing == this->OutputSpacing)
+    if (kept->Outlines == outlines && kept->Slices == structure.Slices &&
+      kept->Smoothing == this->Smoothing && kept->Spacing == this->OutputSpacing)
     {
       return kept;
     }
   }
   auto result = std::make_shared<Kept>();
   result->Outlines = outlines;
+  result->Slices = structure.Slices;
   result->Smoothing = this->Smoothing;
   result->Spacing = this->OutputSpacing;
-  result->Lack = FindLack(outlines);
+  result->Lack = FindLack(structure);
   if (!result->Lack.empty())
   {
     return result;
@@ -486,7 +537,7 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
     return result;
   }
   result->Surface = surface;
-  result->Size = Measure(surface, outlines);
+  result->Size = Measure(surface, structure);
   if (vtkDataArray* error = surface->GetFieldData()->GetArray("SurfaceVolumeError"))
   {
     result->Size.OutlineError = 1000 * error->GetComponent(0, 0);
@@ -521,7 +572,7 @@ int vtkLacunaOutlinedStructures::RequestData(
       {
         return;
       }
-      const std::map<int, Structure> structures = GetStructures(input);
+      const std::map<std::pair<int, std::string>, Structure> structures = GetStructures(input);
 
       std::vector<std::shared_ptr<const Kept>> made;
       vtkNew<vtkAppendPolyData> append;
@@ -539,12 +590,13 @@ int vtkLacunaOutlinedStructures::RequestData(
         "Centroid Z (mm)" };
       std::array<vtkNew<vtkDoubleArray>, columns> values;
       std::size_t n = 0;
-      for (const auto& [number, structure] : structures)
+      for (const auto& [key, structure] : structures)
       {
+        const int number = key.first;
         execution.SetStage(static_cast<double>(n) / static_cast<double>(structures.size()),
           static_cast<double>(n + 1) / static_cast<double>(structures.size()));
         ++n;
-        std::shared_ptr<const Kept> result = this->Make(structure.Outlines, execution);
+        std::shared_ptr<const Kept> result = this->Make(structure, execution);
         made.push_back(result);
         for (const std::string& warning : result->Warnings)
         {

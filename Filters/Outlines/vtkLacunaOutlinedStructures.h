@@ -21,12 +21,12 @@
  * | Largest diameter (mm) | between any two points of the surface                                |
  * | Centroid X, Y, Z (mm) | of the solid                                                         |
  * | Status                | empty, or why there is no closed surface; numbers are then NaN       |
- * A structure needs three outlines, or two that are not parallel. One that cannot be made is told of by a warning,
- * and the others are made.
+ * A structure needs outlines in three planes. One that cannot be made is told of by a warning, and the others are
+ * made. Lines that lie within each other in one plane enclose what is between them; lines that cross make no surface.
  *
- * The error of registration: each outline is displaced on its own by RegistrationError. To first order the
- * volume then changes by the displacement times the vector area of that part of the surface that is nearest to
- * the outline. Errors that all slices share move the structure and do not change its volume.
+ * The error of registration: each slice (SliceNumber; without one, each outline) is displaced on its own by
+ * RegistrationError. To first order the volume then changes by the displacement times the vector area of that
+ * part of the surface that is nearest to its outlines. Errors that all slices share move the structure and do not change its volume.
  *
  * Both outputs are whole, on the first rank.
  */
@@ -39,11 +39,6 @@
 #include <memory> // for what is kept
 #include <vector> // for what is kept
 
-namespace lacuna
-{
-struct Vec3;
-}
-
 class vtkLacunaExecution;
 
 class VTKLACUNAFILTERSOUTLINES_EXPORT vtkLacunaOutlinedStructures : public vtkPolyDataAlgorithm
@@ -53,8 +48,10 @@ public:
   vtkTypeMacro(vtkLacunaOutlinedStructures, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  struct Input; ///< outlines of a structure
+
   ///@{
-  /// Error of an outline's place, mm RMS of the three axes together, independent from slice to slice, 0 or more.
+  /// Error of a slice's place, mm RMS of the three axes together, independent from slice to slice, 0 or more.
   /// A tracker's: Slice Planes' RegistrationError. Default: 0.
   vtkSetMacro(RegistrationError, double);
   vtkGetMacro(RegistrationError, double);
@@ -88,8 +85,7 @@ private:
 
   struct Kept;
   /// What an earlier execution made of the same outlines, or made now.
-  std::shared_ptr<const Kept> Make(
-    const std::vector<std::vector<lacuna::Vec3>>& outlines, vtkLacunaExecution& execution) const;
+  std::shared_ptr<const Kept> Make(const Input& structure, vtkLacunaExecution& execution) const;
 
   std::vector<std::shared_ptr<const Kept>> Made; ///< of the last execution
   double RegistrationError = 0;

@@ -101,6 +101,15 @@ public:
     return this->Image->GetExtent()[4] + static_cast<int>(found - this->Numbers.begin());
   }
 
+  // The number that is nearest to this one; of two the lower.
+  int FindNearest(int number) const
+  {
+    return *std::min_element(this->Numbers.begin(), this->Numbers.end(),
+      [number](int a, int b) { return std::abs(a - number) < std::abs(b - number); });
+  }
+
+  bool IsVolume() const { return !this->Tracked; }
+
   bool HasPlace(int number) const
   {
     return !this->Tracked ||
@@ -117,6 +126,14 @@ public:
     }
     return lacuna::Matrix4(this->Image->GetIndexToPhysicalMatrix()->GetData()) *
       lacuna::Matrix4::Translation({ 0, 0, static_cast<double>(number) });
+  }
+
+  // Column and row of index 0, and their steps.
+  std::array<double, 4> GetPixelGrid() const
+  {
+    const auto first = this->GetPixel(0, 0);
+    const auto next = this->GetPixel(1, 1);
+    return { first[0], first[1], next[0] - first[0], next[1] - first[1] };
   }
 
   // Column and row of an extent index.
@@ -136,6 +153,67 @@ private:
   std::optional<vtkLacunaTrackedSlices> Tracked;
   std::vector<int> Numbers; // of the slices, from the extent's first on
 };
+
+// A slice where it lies in space.
+void SetPicture(vtkLacunaExecution& execution, vtkImageData* input, vtkDataArray* scalars,
+  const Slices& slices, int number, vtkStructuredGrid* picture)
+{
+  vtkLacunaFieldData::Set(picture, "SliceNumber", { static_cast<double>(number) }, 1);
+  if (!slices.HasPlace(number))
+  {
+    return;
+  }
+  const int k = slices.FindIndex(number).value();
+  const int* extent = input->GetExtent();
+  const int columns = extent[1] - extent[0] + 1;
+  const int rows = extent[3] - extent[2] + 1;
+  const lacuna::Matrix4 toSpace = slices.GetPixelToSpace(number);
+  picture->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
+  const vtkIdType pixels = static_cast<vtkIdType>(columns) * rows;
+  vtkLacunaArrays::SetNumberOfPoints(places, pixels);
+  const auto levels =
+    vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
+  levels->SetName(scalars->GetName() ? scalars->GetName() : "Intensity");
+  vtkLacunaArrays::SetNumberOfTuples(levels, pixels);
+  levels->InsertTuples(0, pixels, pixels * (k - extent[4]), scalars);
+  execution.For(rows, 16,
+    [&](std::int64_t begin, std::int64_t end)
+    {
+      for (std::int64_t j = begin; j < end; ++j)
+      {
+        for (int i = 0; i < columns; ++i)
+        {
+          const auto [column, row] =
+            slices.GetPixel(extent[0] + i, extent[2] + static_cast<int>(j));
+          const lacuna::Vec3 x = toSpace.Point({ column, row, 0 });
+          places->SetPoint(j * columns + i, x.data());
+        }
+      }
+    });
+  picture->SetPoints(places);
+  picture->GetPointData()->SetScalars(levels);
+  const std::array<double, 4> grid = slices.GetPixelGrid();
+  vtkLacunaFieldData::Set(picture, "PixelOrigin", { grid[0], grid[1] }, 2);
+  vtkLacunaFieldData::Set(picture, "PixelStep", { grid[2], grid[3] }, 2);
+  vtkLacunaFieldData::Set(picture, "PixelSize",
+    { grid[2] * lacuna::Norm(toSpace.Column(0)), grid[3] * lacuna::Norm(toSpace.Column(1)) }, 2);
+}
+
+void CheckNumbers(double structure, double outline, double slice)
+{
+  constexpr double most = 1 << 30;
+  const auto isWhole = [](double value, double least)
+  { return value >= least && value <= most && value == std::floor(value); };
+  if (!isWhole(structure, 1) || !isWhole(outline, 0) || !isWhole(slice, -most))
+  {
+    throw std::runtime_error("OutlinePoints: a point has the structure " +
+      lacuna::FormatNumber(structure) + ", the outline " + lacuna::FormatNumber(outline) +
+      " and the slice " + lacuna::FormatNumber(slice) +
+      "; they must be whole numbers, from 1 and from 0 on");
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -148,13 +226,7 @@ vtkLacunaSliceOutliner::vtkLacunaSliceOutliner()
 void vtkLacunaSliceOutliner::AddOutlinePoint(
   double structure, double outline, double slice, double column, double row)
 {
-  // what is wrong with numbers is said when data are asked for
-  const auto whole = [](double value)
-  {
-    constexpr double most = 1 << 30;
-    return std::abs(value) <= most && value == std::floor(value) ? static_cast<int>(value) : -1;
-  };
-  this->Points.push_back({ whole(structure), whole(outline), whole(slice), column, row });
+  this->Points.push_back({ structure, outline, slice, column, row });
   this->Modified();
 }
 
@@ -222,6 +294,49 @@ std::array<unsigned char, 3> vtkLacunaSliceOutliner::GetColor(int structure) con
       static_cast<unsigned char>(std::lround(255 * std::clamp(this->Colors[n][c], 0.0, 1.0)));
   }
   return color;
+}
+
+//------------------------------------------------------------------------------
+double* vtkLacunaSliceOutliner::GetInputGrid()
+{
+  auto* image = vtkImageData::SafeDownCast(this->GetInputDataObject(0, 0));
+  std::fill(std::begin(this->InputGrid), std::end(this->InputGrid), 0);
+  if (image &&
+    !image->GetFieldData()->GetAbstractArray(vtkLacunaTrackedSlices::ImageToReferenceName))
+  {
+    std::copy_n(image->GetSpacing(), 3, this->InputGrid);
+    std::copy_n(image->GetOrigin(), 3, this->InputGrid + 3);
+  }
+  return this->InputGrid;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSliceOutliner::CheckGrid(vtkImageData* volume) const
+{
+  const double* known = this->VolumeGrid;
+  if (known[0] == 0 || this->Points.empty())
+  {
+    return;
+  }
+  const double* spacing = volume->GetSpacing();
+  const double* origin = volume->GetOrigin();
+  for (int c = 0; c < 3; ++c)
+  {
+    constexpr double same = 1e-4; // voxels
+    if (!(std::abs(spacing[c] - known[c]) <= same * std::abs(known[c]) &&
+          std::abs(origin[c] - known[3 + c]) <= same * std::abs(known[c])))
+    {
+      std::ostringstream text;
+      text
+        << "the outlines were drawn in a volume with voxels of " << known[0] << " x " << known[1]
+        << " x " << known[2] << " mm and the origin " << known[3] << ", " << known[4] << ", "
+        << known[5] << "; this one has " << spacing[0] << " x " << spacing[1] << " x " << spacing[2]
+        << " mm and " << origin[0] << ", " << origin[1] << ", " << origin[2]
+        << ". Their columns, rows and slices would lie elsewhere in it. Give back that volume, or "
+           "draw anew";
+      throw std::runtime_error(text.str());
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -309,50 +424,17 @@ int vtkLacunaSliceOutliner::RequestData(
       const std::string range = "the slices are " + std::to_string(slices.GetFirst()) + " to " +
         std::to_string(slices.GetLast());
 
-      // the slice
-      const std::optional<int> k = slices.FindIndex(this->Slice);
-      if (!k)
+      if (slices.IsVolume())
+      {
+        this->CheckGrid(input);
+      }
+      if (this->Slice < slices.GetFirst() || this->Slice > slices.GetLast())
       {
         throw std::runtime_error(
           "Slice " + std::to_string(this->Slice) + " is not there; " + range);
       }
-      if (!slices.HasPlace(this->Slice))
-      {
-        throw std::runtime_error("Slice " + std::to_string(this->Slice) +
-          " has no usable pose, so that it has no place in mm; choose another one");
-      }
-      const int* extent = input->GetExtent();
-      const int columns = extent[1] - extent[0] + 1;
-      const int rows = extent[3] - extent[2] + 1;
-      const lacuna::Matrix4 toSpace = slices.GetPixelToSpace(this->Slice);
-      picture->SetExtent(extent[0], extent[1], extent[2], extent[3], 0, 0);
-      vtkNew<vtkPoints> places;
-      places->SetDataTypeToDouble();
-      const vtkIdType pixels = static_cast<vtkIdType>(columns) * rows;
-      vtkLacunaArrays::SetNumberOfPoints(places, pixels);
-      const auto levels =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(scalars->GetDataType()));
-      levels->SetName(scalars->GetName() ? scalars->GetName() : "Intensity");
-      vtkLacunaArrays::SetNumberOfTuples(levels, pixels);
-      levels->InsertTuples(0, pixels, pixels * (*k - extent[4]), scalars);
-      execution.For(rows, 16,
-        [&](std::int64_t begin, std::int64_t end)
-        {
-          for (std::int64_t j = begin; j < end; ++j)
-          {
-            for (int i = 0; i < columns; ++i)
-            {
-              const auto [column, row] =
-                slices.GetPixel(extent[0] + i, extent[2] + static_cast<int>(j));
-              const lacuna::Vec3 x = toSpace.Point({ column, row, 0 });
-              places->SetPoint(j * columns + i, x.data());
-            }
-          }
-        });
-      picture->SetPoints(places);
-      picture->GetPointData()->SetScalars(levels);
-      vtkLacunaFieldData::Set(picture, "PixelSize",
-        { lacuna::Norm(toSpace.Column(0)), lacuna::Norm(toSpace.Column(1)) }, 2);
+      const int shown = slices.FindNearest(this->Slice);
+      SetPicture(execution, input, scalars, slices, shown, picture);
 
       // the outlines
       vtkNew<vtkPoints> points;
@@ -376,15 +458,18 @@ int vtkLacunaSliceOutliner::RequestData(
       colors->SetNumberOfComponents(3);
       std::set<std::pair<int, int>> done;
       std::ostringstream leftOut;
+      for (const Point& p : this->Points)
+      {
+        CheckNumbers(p.Structure, p.Outline, p.Slice);
+      }
       for (std::size_t first = 0, next = 0; first < this->Points.size(); first = next)
       {
-        const Point& one = this->Points[first];
-        if (one.Structure < 1 || one.Outline < 0)
+        const Point& given = this->Points[first];
+        const struct
         {
-          throw std::runtime_error("OutlinePoints: point " + std::to_string(first) +
-            " has the structure " + std::to_string(one.Structure) + " and the outline " +
-            std::to_string(one.Outline) + "; they must be whole numbers from 1 and from 0 on");
-        }
+          int Structure, Outline, Slice;
+        } one{ static_cast<int>(given.Structure), static_cast<int>(given.Outline),
+          static_cast<int>(given.Slice) };
         const std::string what = "outline " + std::to_string(one.Outline) + " of " +
           this->GetName(one.Structure) + " in slice " + std::to_string(one.Slice);
         if (!done.insert({ one.Structure, one.Outline }).second)
@@ -401,8 +486,8 @@ int vtkLacunaSliceOutliner::RequestData(
           const Point& p = this->Points[next];
           if (p.Slice != one.Slice)
           {
-            throw std::runtime_error(what + " has a point in slice " + std::to_string(p.Slice) +
-              "; an outline lies in one slice");
+            throw std::runtime_error(what + " has a point in slice " +
+              lacuna::FormatNumber(p.Slice) + "; an outline lies in one slice");
           }
           if (!std::isfinite(p.Column) || !std::isfinite(p.Row))
           {
@@ -475,7 +560,7 @@ int vtkLacunaSliceOutliner::RequestData(
                                        .Get();
       vtkLacunaProvenance::Record(output, this, { input }, parameters);
       vtkLacunaProvenance::Record(
-        picture, this, { input }, lacuna::ParameterText().Add("Slice", this->Slice).Get());
+        picture, this, { input }, lacuna::ParameterText().Add("Slice", shown).Get());
     });
 }
 
@@ -488,4 +573,10 @@ void vtkLacunaSliceOutliner::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "StructureColors: " << this->Colors.size() << "\n";
   os << indent << "Smooth: " << this->Smooth << "\n";
   os << indent << "Slice: " << this->Slice << "\n";
+  os << indent << "VolumeGrid:";
+  for (const double v : this->VolumeGrid)
+  {
+    os << " " << v;
+  }
+  os << "\n";
 }

@@ -18,12 +18,15 @@
  * Point data: Pixel (float x 3: column, row, slice), and Handle (unsigned char: 1 where a point was given,
  * 0 where the curve goes between them).
  *
- * Output 1: vtkStructuredGrid, mm, the slice of number Slice, one point a pixel, with its grey levels. Field
- * data: PixelSize (double x 2, mm from column to column and from row to row).
+ * Output 1: vtkStructuredGrid, mm, the slice of number Slice, or the nearest one where a stack has only some,
+ * one point a pixel, with its grey levels. Field data: PixelSize (double x 2, mm from point to point along both
+ * axes), PixelOrigin and PixelStep (double x 2: column and row are origin + step times index), SliceNumber. Empty
+ * where the slice has no usable pose.
  *
- * A slice without a usable pose has no place: its outlines are left out with a warning, and as Slice it is an
- * error. Errors: slices that are not calibrated, an outline of fewer than three points, in two slices, or in
- * a slice that is not there, points that are not finite.
+ * A slice without a usable pose has no place: its outlines are left out with a warning. Errors: slices that are
+ * not calibrated, an outline of fewer than three points, in two slices, or in a slice that is not there, points
+ * that are not finite, numbers that are not whole, a Slice before the first or behind the last one, a volume
+ * with another grid than VolumeGrid.
  *
  * Both outputs are whole, on the first rank.
  */
@@ -62,7 +65,7 @@ public:
   ///@}
 
   ///@{
-  /// Colours of the structures 1, 2, ..., red, green, blue from 0 to 1; without one, one of eight of their own.
+  /// Colours of the structures 1, 2, ..., red, green, blue from 0 to 1; without one, one of seven of their own.
   void AddStructureColor(double red, double green, double blue);
   void RemoveAllStructureColors();
   ///@}
@@ -76,10 +79,21 @@ public:
   ///@}
 
   ///@{
+  /// The volume in whose voxels the outlines were drawn: its spacing and origin, mm. In another one the same
+  /// indices would mean other places, so it is refused. Default: 0 0 0 0 0 0, not known. Tracked slices have their
+  /// own places and need none.
+  vtkSetVector6Macro(VolumeGrid, double);
+  vtkGetVector6Macro(VolumeGrid, double);
+  ///@}
+
+  ///@{
   /// Number of the slice of output 1: that of a sweep, or a voxel index. Default: 0.
   vtkSetMacro(Slice, int);
   vtkGetMacro(Slice, int);
   ///@}
+
+  /// Spacing and origin of the input where it is a volume, as it is now; zeros otherwise.
+  double* GetInputGrid() VTK_SIZEHINT(6);
 
   /// Numbers of the first and the last slice of the input, as it is now; 0 and 0 without one.
   int* GetSliceRange() VTK_SIZEHINT(2);
@@ -106,14 +120,16 @@ private:
 
   struct Point
   {
-    int Structure, Outline, Slice;
-    double Column, Row;
+    double Structure, Outline, Slice, Column, Row;
   };
+  void CheckGrid(vtkImageData* volume) const;
   std::vector<Point> Points;
   std::vector<std::string> Names;
   std::vector<std::array<double, 3>> Colors;
   bool Smooth = true;
   int Slice = 0;
   int SliceRange[2] = { 0, 0 };
+  double VolumeGrid[6] = { 0, 0, 0, 0, 0, 0 };
+  double InputGrid[6] = { 0, 0, 0, 0, 0, 0 };
 };
 #endif

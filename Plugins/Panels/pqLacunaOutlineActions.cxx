@@ -1,43 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// pqLacunaOutlinePanel: its widgets, and what they do.
-#include "pqLacunaFetch.h"
 #include "pqLacunaOutlinePanel.h"
 
 #include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaOutlineTools.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
-#include "vtkStringArray.h"
 
 #include <QButtonGroup>
 #include <QCheckBox>
 #include <QColorDialog>
 #include <QComboBox>
 #include <QDoubleSpinBox>
-#include <QFile>
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QInputDialog>
 #include <QLabel>
-#include <QMessageBox>
-#include <QSaveFile>
 #include <QSlider>
 #include <QSpinBox>
 #include <QTableWidget>
-#include <QTextStream>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -188,6 +176,10 @@ QWidget* pqLacunaOutlinePanel::BuildTools()
   this->Level->setToolTip(tr("Grey level between the structure and what is around it"));
   level->addWidget(new QLabel(tr("Level"), box));
   level->addWidget(this->Level, 1);
+  this->LevelNumber = new QLabel(box);
+  this->LevelNumber->setObjectName("TraceLevelNumber");
+  level->addWidget(this->LevelNumber);
+  QObject::connect(this->Level, &QSlider::valueChanged, this, [this] { this->RetraceLast(); });
   this->LevelRow->hide();
   layout->addWidget(this->LevelRow);
   QObject::connect(tools, QOverload<int>::of(&QButtonGroup::idClicked), this,
@@ -222,9 +214,16 @@ QWidget* pqLacunaOutlinePanel::BuildResults()
   QObject::connect(this->SliceNumber, QOverload<int>::of(&QSpinBox::valueChanged), this,
     [this](int slice)
     {
-      const QSignalBlocker blocker(this->SliceSlider);
+      const QSignalBlocker slider(this->SliceSlider);
+      if (this->Canvas->HasPending())
+      {
+        const QSignalBlocker number(this->SliceNumber);
+        this->SliceNumber->setValue(this->Slice);
+        this->SliceSlider->setValue(this->Slice);
+        this->Canvas->SetCaption(tr("Close the outline first (Enter), or forget it (Esc)"));
+        return;
+      }
       this->SliceSlider->setValue(slice);
-      this->Slice = slice;
       this->SliceTimer.start(0); // of many steps at once the last
     });
 
@@ -320,6 +319,7 @@ void pqLacunaOutlinePanel::ShowSlice(int slice)
     this->IsWriting = false;
   }
   this->Canvas->Forget();
+  this->LastTrace.IsValid = false;
   this->ReadPicture();
   this->ShowPicture();
   this->ShowOutlines();
@@ -361,7 +361,7 @@ QPolygonF pqLacunaOutlinePanel::Snapped(const QPolygonF& handles) const
 //------------------------------------------------------------------------------
 void pqLacunaOutlinePanel::AddOutline(const QPolygonF& points, bool isFreehand)
 {
-  QPolygonF handles = points.translated(this->GetFirstPixel());
+  QPolygonF handles = this->FromCanvas(points);
   if (isFreehand)
   {
     vtkNew<vtkPoints> line;
@@ -385,7 +385,7 @@ void pqLacunaOutlinePanel::MoveOutline(int shown, const QPolygonF& handles)
     return;
   }
   Drawing drawing = this->Now;
-  drawing.Outlines[this->Shown[shown]].Handles = handles.translated(this->GetFirstPixel());
+  drawing.Outlines[this->Shown[shown]].Handles = this->FromCanvas(handles);
   this->Push(drawing);
 }
 
@@ -396,31 +396,66 @@ void pqLacunaOutlinePanel::TraceOutline(const QPointF& place, const QRectF& regi
   {
     return;
   }
-  const QPointF first = this->GetFirstPixel();
-  const double level =
-    this->Window[0] + (this->Window[1] - this->Window[0]) * this->Level->value() / LevelSteps;
   const double nowhere[2] = { vtkMath::Nan(), vtkMath::Nan() };
-  const double at[2] = { place.x() + first.x(), place.y() + first.y() };
-  const QRectF area = region.translated(first);
+  const QPolygonF places =
+    this->FromCanvas(QPolygonF({ place, region.topLeft(), region.bottomRight() }));
+  const double at[2] = { places[0].x(), places[0].y() };
   const int all[4] = { 0, -1, 0, -1 };
-  const int part[4] = { static_cast<int>(std::floor(area.left())),
-    static_cast<int>(std::ceil(area.right())), static_cast<int>(std::floor(area.top())),
-    static_cast<int>(std::ceil(area.bottom())) };
+  const int part[4] = { static_cast<int>(std::floor(places[1].x())),
+    static_cast<int>(std::ceil(places[2].x())), static_cast<int>(std::floor(places[1].y())),
+    static_cast<int>(std::ceil(places[2].y())) };
   const bool isPlace = region.isEmpty();
   vtkNew<vtkPoints> line;
-  if (!vtkLacunaOutlineTools::Trace(
-        this->Picture, level, isPlace ? at : nowhere, isPlace ? all : part, MedianSize, line))
+  if (!vtkLacunaOutlineTools::Trace(this->Picture, this->GetLevel(), isPlace ? at : nowhere,
+        isPlace ? all : part, MedianSize, line))
   {
     this->Canvas->SetCaption(tr("There is no contour at this level: move Level"));
     return;
   }
   vtkNew<vtkPoints> few;
   vtkLacunaOutlineTools::Simplify(line, TraceTolerance, few);
+  // instead of the outline that is there, as of a click before
   Drawing drawing = this->Now;
   const int structure = this->GetStructure();
+  const QRectF area(places[1], places[2]);
+  const auto isThere = [&](const Outline& outline)
+  {
+    return outline.Structure == structure && outline.Slice == this->Slice &&
+      (isPlace ? outline.Handles.containsPoint(places[0], Qt::OddEvenFill)
+               : area.contains(outline.Handles.boundingRect().center()));
+  };
+  drawing.Outlines.erase(std::remove_if(drawing.Outlines.begin(), drawing.Outlines.end(), isThere),
+    drawing.Outlines.end());
   drawing.Outlines.push_back(
     { structure, this->NextNumber(structure), this->Slice, this->Snapped(ToPlaces(few)) });
-  this->Push(drawing);
+  const bool isAgain =
+    this->LastTrace.IsValid && this->LastTrace.Place == place && this->LastTrace.Region == region;
+  isAgain ? this->Replace(drawing) : this->Push(drawing);
+  this->LastTrace.IsValid = true;
+  this->LastTrace.Place = place;
+  this->LastTrace.Region = region;
+}
+
+//------------------------------------------------------------------------------
+double pqLacunaOutlinePanel::GetLevel() const
+{
+  return this->LevelRange[0] +
+    (this->LevelRange[1] - this->LevelRange[0]) * this->Level->value() / LevelSteps;
+}
+
+void pqLacunaOutlinePanel::ShowLevel()
+{
+  this->LevelNumber->setText(QString::number(this->GetLevel(), 'f', 0));
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaOutlinePanel::RetraceLast()
+{
+  this->ShowLevel();
+  if (this->LastTrace.IsValid)
+  {
+    this->TraceOutline(this->LastTrace.Place, this->LastTrace.Region);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -430,7 +465,12 @@ void pqLacunaOutlinePanel::CopyOutline()
   const Outline* nearest = nullptr;
   for (const Outline& outline : this->Now.Outlines)
   {
-    if (outline.Structure == structure && outline.Slice != this->Slice &&
+    if (outline.Structure == structure && outline.Slice == this->Slice)
+    {
+      this->Canvas->SetCaption(tr("This structure has an outline here: delete it first"));
+      return;
+    }
+    if (outline.Structure == structure &&
       (!nearest || std::abs(outline.Slice - this->Slice) <= std::abs(nearest->Slice - this->Slice)))
     {
       nearest = &outline;
@@ -442,8 +482,16 @@ void pqLacunaOutlinePanel::CopyOutline()
     return;
   }
   Drawing drawing = this->Now;
-  drawing.Outlines.push_back(
-    { structure, this->NextNumber(structure), this->Slice, this->Snapped(nearest->Handles) });
+  const int from = nearest->Slice;
+  int number = this->NextNumber(structure);
+  for (const Outline& outline : this->Now.Outlines)
+  {
+    if (outline.Structure == structure && outline.Slice == from)
+    {
+      drawing.Outlines.push_back(
+        { structure, number++, this->Slice, this->Snapped(outline.Handles) });
+    }
+  }
   this->Push(drawing);
 }
 
@@ -469,7 +517,12 @@ void pqLacunaOutlinePanel::AddStructure()
 {
   Drawing drawing = this->Now;
   const int n = drawing.Names.size();
-  drawing.Names.push_back(tr("Structure %1").arg(n + 1));
+  QString name = tr("Structure %1").arg(n + 1);
+  while (drawing.Names.contains(name))
+  {
+    name += "'";
+  }
+  drawing.Names.push_back(name);
   drawing.Colors.push_back(this->GetOwnColor(n));
   this->Push(drawing);
   this->Structures->setCurrentIndex(n);
@@ -482,7 +535,11 @@ void pqLacunaOutlinePanel::Rename()
   bool isOk = false;
   const QString name = QInputDialog::getText(
     this, tr("Rename"), tr("Name of the structure"), QLineEdit::Normal, this->Now.Names[n], &isOk);
-  if (isOk && !name.trimmed().isEmpty())
+  if (isOk && this->Now.Names.contains(name.trimmed()) && this->Now.Names[n] != name.trimmed())
+  {
+    this->Canvas->SetCaption(tr("Another structure is called %1").arg(name.trimmed()));
+  }
+  else if (isOk && !name.trimmed().isEmpty())
   {
     Drawing drawing = this->Now;
     drawing.Names[n] = name.trimmed();
@@ -506,197 +563,24 @@ void pqLacunaOutlinePanel::ChooseColor()
 //------------------------------------------------------------------------------
 void pqLacunaOutlinePanel::Undo()
 {
-  if (!this->Before.isEmpty())
+  if (this->Source && !this->Histories[this->Source].Before.isEmpty())
   {
-    this->After.push_back(this->Now);
-    const Drawing drawing = this->Before.takeLast();
+    this->LastTrace.IsValid = false;
+    History& history = this->Histories[this->Source];
+    history.After.push_back(this->Now);
+    const Drawing drawing = history.Before.takeLast();
     this->Write(drawing);
   }
 }
 
 void pqLacunaOutlinePanel::Redo()
 {
-  if (!this->After.isEmpty())
+  if (this->Source && !this->Histories[this->Source].After.isEmpty())
   {
-    this->Before.push_back(this->Now);
-    const Drawing drawing = this->After.takeLast();
+    this->LastTrace.IsValid = false;
+    History& history = this->Histories[this->Source];
+    history.Before.push_back(this->Now);
+    const Drawing drawing = history.After.takeLast();
     this->Write(drawing);
   }
-}
-
-//------------------------------------------------------------------------------
-void pqLacunaOutlinePanel::Save()
-{
-  const vtkSmartPointer<vtkDataObject> data = pqLacunaFetch(this->Source->getSourceProxy(), 0);
-  auto* lines = vtkPolyData::SafeDownCast(data);
-  if (!lines || lines->GetNumberOfLines() == 0)
-  {
-    QMessageBox::information(this, tr("Save outlines"), tr("There is no outline yet."));
-    return;
-  }
-  QString name =
-    QFileDialog::getSaveFileName(this, tr("Save outlines"), "outlines.csv", tr("Outlines (*.csv)"));
-  if (name.isEmpty())
-  {
-    return;
-  }
-  if (!name.endsWith(".csv", Qt::CaseInsensitive))
-  {
-    name += ".csv";
-  }
-  QSaveFile file(name);
-  if (!file.open(QIODevice::WriteOnly | QIODevice::Text))
-  {
-    QMessageBox::critical(
-      this, tr("Save outlines"), tr("%1 cannot be written: %2").arg(name, file.errorString()));
-    return;
-  }
-  QString rows;
-  QTextStream text(&rows); // written as UTF-8, with whatever version of Qt
-  text.setRealNumberPrecision(12);
-  text << "structure,outline,slice,column,row,x,y,z,handle\n";
-  vtkDataArray* pixel = lines->GetPointData()->GetArray("Pixel");
-  vtkDataArray* handle = lines->GetPointData()->GetArray("Handle");
-  auto* names =
-    vtkStringArray::SafeDownCast(lines->GetCellData()->GetAbstractArray("StructureName"));
-  vtkDataArray* numbers = lines->GetCellData()->GetArray("Outline");
-  vtkDataArray* slices = lines->GetCellData()->GetArray("SliceNumber");
-  vtkCellArray* cells = lines->GetLines();
-  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
-  {
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    cells->GetCellAtId(cell, count, ids);
-    QString structure = QString::fromUtf8(names->GetValue(cell).c_str());
-    structure.replace('"', "\"\"");
-    for (vtkIdType i = 0; i + 1 < count; ++i)
-    {
-      double x[3];
-      lines->GetPoint(ids[i], x);
-      text << '"' << structure << "\"," << numbers->GetComponent(cell, 0) << ','
-           << slices->GetComponent(cell, 0) << ',' << pixel->GetComponent(ids[i], 0) << ','
-           << pixel->GetComponent(ids[i], 1) << ',' << x[0] << ',' << x[1] << ',' << x[2] << ','
-           << handle->GetComponent(ids[i], 0) << '\n';
-    }
-  }
-  text.flush();
-  file.write(rows.toUtf8());
-  if (!file.commit())
-  {
-    QMessageBox::critical(
-      this, tr("Save outlines"), tr("%1 cannot be written: %2").arg(name, file.errorString()));
-  }
-}
-
-//------------------------------------------------------------------------------
-void pqLacunaOutlinePanel::Load()
-{
-  const QString name = QFileDialog::getOpenFileName(
-    this, tr("Load outlines"), QString(), tr("Outlines of Lacuna (*.csv)"));
-  if (name.isEmpty())
-  {
-    return;
-  }
-  QFile file(name);
-  const auto fail = [&](const QString& why)
-  { QMessageBox::critical(this, tr("Load outlines"), tr("%1: %2").arg(name, why)); };
-  if (!file.open(QIODevice::ReadOnly | QIODevice::Text))
-  {
-    fail(file.errorString());
-    return;
-  }
-  QString rows = QString::fromUtf8(file.readAll());
-  QTextStream text(&rows);
-  const QStringList titles = text.readLine().split(',');
-  int at[6];
-  const char* const wanted[6] = { "structure", "outline", "slice", "column", "row", "handle" };
-  for (int c = 0; c < 6; ++c)
-  {
-    at[c] = titles.indexOf(wanted[c]);
-    if (at[c] < 0)
-    {
-      fail(tr(
-        "it has no column '%1'. This panel reads what it saved; Outline Reader (File > Open) reads "
-        "outlines of other programs, for the filter Outlined Structures")
-             .arg(wanted[c]));
-      return;
-    }
-  }
-  Drawing drawing = this->Now;
-  QVector<Outline> found;
-  int line = 1;
-  while (!text.atEnd())
-  {
-    ++line;
-    QString row = text.readLine();
-    // the name is the first column, in quotes
-    QString structure;
-    if (row.startsWith('"'))
-    {
-      int end = 1;
-      while (end < row.size() && (row[end] != '"' || (end + 1 < row.size() && row[end + 1] == '"')))
-      {
-        end += row[end] == '"' ? 2 : 1;
-      }
-      structure = row.mid(1, end - 1).replace("\"\"", "\"");
-      row = row.mid(end + 1);
-    }
-    else
-    {
-      structure = row.section(',', 0, 0);
-      row = row.mid(structure.size());
-    }
-    const QStringList values = row.split(',');
-    double number[6] = { 0, 0, 0, 0, 0, 0 };
-    bool isGood = values.size() == titles.size() && at[0] == 0;
-    for (int c = 1; c < 6 && isGood; ++c)
-    {
-      number[c] = values[at[c]].toDouble(&isGood);
-      isGood = isGood && std::isfinite(number[c]);
-    }
-    if (!isGood)
-    {
-      fail(tr("line %1 has not the columns of the first line, as finite numbers").arg(line));
-      return;
-    }
-    int n = static_cast<int>(drawing.Names.indexOf(structure));
-    if (n < 0)
-    {
-      n = static_cast<int>(drawing.Names.size());
-      drawing.Names.push_back(structure);
-      drawing.Colors.push_back(GetOwnColor(n));
-    }
-    const int outline = static_cast<int>(number[1]);
-    const int slice = static_cast<int>(number[2]);
-    if (slice < this->SliceSlider->minimum() || slice > this->SliceSlider->maximum())
-    {
-      fail(tr("line %1 is of slice %2, which is not there").arg(line).arg(slice));
-      return;
-    }
-    if (found.isEmpty() || found.back().Structure != n + 1 || found.back().Number != outline)
-    {
-      found.push_back({ n + 1, outline, slice, {} });
-    }
-    if (number[5] != 0)
-    {
-      found.back().Handles.push_back({ number[3], number[4] });
-    }
-  }
-  for (Outline& outline : found)
-  {
-    if (outline.Handles.size() < 3)
-    {
-      fail(tr("an outline in slice %1 has fewer than three points with 'handle' 1")
-             .arg(outline.Slice));
-      return;
-    }
-    int number = 0;
-    for (const Outline& other : drawing.Outlines)
-    {
-      number = other.Structure == outline.Structure ? std::max(number, other.Number + 1) : number;
-    }
-    outline.Number = number;
-    drawing.Outlines.push_back(outline);
-  }
-  this->Push(drawing);
 }

@@ -410,7 +410,7 @@ void pqLacunaOutlineCanvas::keyPressEvent(QKeyEvent* event)
       this->Forget();
       break;
     case Qt::Key_Backspace:
-      if (!this->Pending.isEmpty())
+      if (this->Tool == Points && !this->Pending.isEmpty())
       {
         this->Pending.removeLast();
         this->update();

@@ -47,6 +47,7 @@ public:
   void SetCaption(const QString& caption);
   void SetMessage(const QString& message); ///< instead of a picture
   void Forget();                           ///< the outline that was begun
+  bool HasPending() const { return !this->Pending.isEmpty(); }
 
   QPointF ToWidget(const QPointF& place) const;
   QSize sizeHint() const override { return { 440, 380 }; }

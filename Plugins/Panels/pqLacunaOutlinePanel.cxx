@@ -78,9 +78,15 @@ pqLacunaOutlinePanel::pqLacunaOutlinePanel(QWidget* parent)
   QObject::connect(model, &pqServerManagerModel::preSourceRemoved, this,
     [this](pqPipelineSource* source)
     {
+      this->Histories.remove(source);
+      if (source == this->Surfaces)
+      {
+        this->Follow(nullptr);
+      }
       if (source == this->Source)
       {
         this->Source = nullptr;
+        this->Follow(nullptr);
         this->Tell(tr("Select a Slice Outliner, or add one: Filters > Lacuna > Slice Outliner"));
       }
     });
@@ -110,10 +116,10 @@ QColor pqLacunaOutlinePanel::GetOwnColor(int n)
 }
 
 //------------------------------------------------------------------------------
-void pqLacunaOutlinePanel::Tell(const QString& message)
+void pqLacunaOutlinePanel::Tell(const QString& message, bool isReady)
 {
   this->Canvas->SetMessage(message);
-  this->widget()->setEnabled(message.isEmpty());
+  this->widget()->setEnabled(isReady || message.isEmpty());
 }
 
 //------------------------------------------------------------------------------
@@ -129,12 +135,11 @@ void pqLacunaOutlinePanel::FindSource()
     QObject::disconnect(this->Source, nullptr, this, nullptr);
   }
   this->Source = source;
-  this->Surfaces = nullptr;
+  this->Follow(nullptr);
+  this->LastTrace.IsValid = false;
   this->IsReady = false;
   this->IsPlaced = false;
   this->HasWindow = false;
-  this->Before.clear();
-  this->After.clear();
   this->Tell(tr("Click Apply in the panel Properties"));
   QObject::connect(source, QOverload<pqPipelineSource*>::of(&pqPipelineSource::dataUpdated), this,
     [this] { this->SourceUpdated(); });
@@ -154,12 +159,7 @@ void pqLacunaOutlinePanel::SourceUpdated()
   const bool isFirst = !this->IsReady;
   this->Read();
   this->ReadPicture();
-  if (!this->Picture)
-  {
-    return;
-  }
   this->IsReady = true;
-  this->Tell({});
   this->ShowStructures();
   this->ShowPicture();
   this->ShowOutlines();
@@ -171,11 +171,28 @@ void pqLacunaOutlinePanel::SourceUpdated()
     {
       if (IsOf(consumer, "LacunaOutlinedStructures"))
       {
-        this->Surfaces = consumer;
+        this->Follow(consumer);
       }
     }
     QTimer::singleShot(0, this, &pqLacunaOutlinePanel::Attach); // when Apply has made the displays
   }
+  this->ShowTable();
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaOutlinePanel::Follow(pqPipelineSource* surfaces)
+{
+  if (this->Surfaces)
+  {
+    QObject::disconnect(this->Surfaces, nullptr, this, nullptr);
+  }
+  this->Surfaces = surfaces;
+  if (surfaces)
+  {
+    QObject::connect(surfaces, QOverload<pqPipelineSource*>::of(&pqPipelineSource::dataUpdated),
+      this, [this] { this->ShowTable(); });
+  }
+  this->ShowTable();
 }
 
 //------------------------------------------------------------------------------
@@ -219,22 +236,34 @@ void pqLacunaOutlinePanel::Read()
     drawing.Colors.push_back(this->GetOwnColor(drawing.Colors.size()));
   }
   this->Now = drawing;
-  this->Slice = vtkSMPropertyHelper(proxy, "Slice").GetAsInt();
+  const int slice = vtkSMPropertyHelper(proxy, "Slice").GetAsInt();
   proxy->UpdatePropertyInformation();
   vtkSMPropertyHelper range(proxy, "SliceRangeInfo");
   const QSignalBlocker slider(this->SliceSlider);
   const QSignalBlocker number(this->SliceNumber);
   this->SliceSlider->setRange(range.GetAsInt(0), range.GetAsInt(1));
   this->SliceNumber->setRange(range.GetAsInt(0), range.GetAsInt(1));
-  this->SliceSlider->setValue(this->Slice);
-  this->SliceNumber->setValue(this->Slice);
+  this->SliceSlider->setValue(slice);
+  this->SliceNumber->setValue(slice);
 }
 
 //------------------------------------------------------------------------------
 void pqLacunaOutlinePanel::Push(const Drawing& drawing)
 {
-  this->Before.push_back(this->Now);
-  this->After.clear();
+  if (this->Source)
+  {
+    this->Histories[this->Source].Before.push_back(this->Now);
+  }
+  this->Replace(drawing);
+}
+
+void pqLacunaOutlinePanel::Replace(const Drawing& drawing)
+{
+  this->LastTrace.IsValid = false;
+  if (this->Source)
+  {
+    this->Histories[this->Source].After.clear();
+  }
   this->Write(drawing);
 }
 
@@ -279,6 +308,10 @@ void pqLacunaOutlinePanel::Write(const Drawing& drawing)
     {
       names.Set(static_cast<unsigned int>(i), drawing.Names[i].toUtf8().constData());
     }
+    double grid[6];
+    proxy->UpdatePropertyInformation();
+    vtkSMPropertyHelper(proxy, "InputGrid").Get(grid, 6);
+    vtkSMPropertyHelper(proxy, "VolumeGrid").Set(grid, 6);
     proxy->UpdateVTKObjects();
   }
   this->IsWriting = true; // the answer is what was written
@@ -287,6 +320,7 @@ void pqLacunaOutlinePanel::Write(const Drawing& drawing)
   this->IsWriting = false;
   this->ShowStructures();
   this->ShowOutlines();
+  this->ShowTable();
 }
 
 //------------------------------------------------------------------------------
@@ -340,11 +374,13 @@ void pqLacunaOutlinePanel::Attach()
   if (!this->Surfaces)
   {
     auto* builder = pqApplicationCore::instance()->getObjectBuilder();
-    this->Surfaces = builder->createFilter("filters", "LacunaOutlinedStructures", this->Source, 0);
-    if (!this->Surfaces)
+    pqPipelineSource* made =
+      builder->createFilter("filters", "LacunaOutlinedStructures", this->Source, 0);
+    if (!made)
     {
       return;
     }
+    this->Surfaces = made;
     this->Surfaces->rename(tr("Structures"));
     this->Surfaces->setModifiedState(pqProxy::UNMODIFIED);
     vtkSMPropertyHelper(this->Surfaces->getProxy(), "RegistrationError")
@@ -358,10 +394,10 @@ void pqLacunaOutlinePanel::Attach()
     }
     color(this->Source, 1);
     color(this->Surfaces, 0.5);
+    this->Follow(made);
     pqActiveObjects::instance().setActiveSource(this->Source);
     this->LookAtSlice(view);
   }
-  this->ShowTable();
 }
 
 //------------------------------------------------------------------------------
@@ -406,22 +442,62 @@ void pqLacunaOutlinePanel::ReadPicture()
   this->Picture = nullptr;
   const vtkSmartPointer<vtkDataObject> data = pqLacunaFetch(this->Source->getSourceProxy(), 1);
   auto* grid = vtkStructuredGrid::SafeDownCast(data);
+  const auto get = [grid](const char* name, int component)
+  {
+    vtkDataArray* array = grid ? grid->GetFieldData()->GetArray(name) : nullptr;
+    return array && component < array->GetNumberOfComponents() && array->GetNumberOfTuples() == 1
+      ? array->GetComponent(0, component)
+      : vtkMath::Nan();
+  };
+  const double number = get("SliceNumber", 0);
+  this->Slice = std::isfinite(number) ? static_cast<int>(number) : this->SliceNumber->value();
   vtkDataArray* levels = grid ? grid->GetPointData()->GetScalars() : nullptr;
   if (!levels || grid->GetNumberOfPoints() == 0)
   {
-    this->Tell(tr("There is no picture: see the messages (View > Output Messages)"));
+    this->Tell(std::isfinite(number)
+        ? tr("Slice %1 has no usable pose, so it has no place in mm. Go on to another slice")
+            .arg(this->Slice)
+        : tr("There is no picture: see the messages (View > Output Messages)"),
+      true);
     return;
   }
+  this->Tell({});
   this->Picture = vtkSmartPointer<vtkImageData>::New();
   this->Picture->SetExtent(grid->GetExtent());
+  this->Picture->SetOrigin(get("PixelOrigin", 0), get("PixelOrigin", 1), 0);
+  this->Picture->SetSpacing(get("PixelStep", 0), get("PixelStep", 1), 1);
   this->Picture->GetPointData()->SetScalars(levels);
-  if (!this->HasWindow)
+  this->Aspect = get("PixelSize", 0) > 0 ? get("PixelSize", 1) / get("PixelSize", 0) : 1;
+  int size[3];
+  grid->GetDimensions(size);
+  auto* coordinates =
+    vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray("Coordinates"));
+  this->Letters[0].clear();
+  this->Letters[1].clear();
+  if (coordinates && coordinates->GetNumberOfValues() == 1 &&
+    coordinates->GetValue(0) == "Patient" && size[0] > 1 && size[1] > 1)
   {
-    levels->GetFiniteRange(this->Window);
+    double corner[3];
+    double right[3];
+    double below[3];
+    grid->GetPoint(0, corner);
+    grid->GetPoint(1, right);
+    grid->GetPoint(size[0], below);
+    vtkMath::Subtract(right, corner, right);
+    vtkMath::Subtract(corner, below, below); // upwards
+    this->Letters[0] = GetLetter(right);
+    this->Letters[1] = GetLetter(below);
+  }
+  double range[2];
+  levels->GetFiniteRange(range);
+  if (!this->HasWindow && range[1] > range[0])
+  {
+    std::copy_n(range, 2, this->LevelRange);
+    std::copy_n(range, 2, this->Window);
     if (levels->GetDataType() == VTK_UNSIGNED_CHAR)
     {
-      this->Window[0] = 0;
-      this->Window[1] = 255;
+      this->Window[0] = this->LevelRange[0] = 0;
+      this->Window[1] = this->LevelRange[1] = 255;
     }
     this->HasWindow = true;
     this->ProposeLevel();
@@ -429,14 +505,38 @@ void pqLacunaOutlinePanel::ReadPicture()
 }
 
 //------------------------------------------------------------------------------
-QPointF pqLacunaOutlinePanel::GetFirstPixel() const
+QPolygonF pqLacunaOutlinePanel::ToCanvas(const QPolygonF& places) const
 {
-  int extent[6] = { 0, 0, 0, 0, 0, 0 };
+  QPolygonF result;
   if (this->Picture)
   {
-    this->Picture->GetExtent(extent);
+    const double* origin = this->Picture->GetOrigin();
+    const double* step = this->Picture->GetSpacing();
+    const int* extent = this->Picture->GetExtent();
+    for (const QPointF& place : places)
+    {
+      result.push_back({ (place.x() - origin[0]) / step[0] - extent[0],
+        (place.y() - origin[1]) / step[1] - extent[2] });
+    }
   }
-  return QPointF(extent[0], extent[2]);
+  return result;
+}
+
+QPolygonF pqLacunaOutlinePanel::FromCanvas(const QPolygonF& places) const
+{
+  QPolygonF result;
+  if (this->Picture)
+  {
+    const double* origin = this->Picture->GetOrigin();
+    const double* step = this->Picture->GetSpacing();
+    const int* extent = this->Picture->GetExtent();
+    for (const QPointF& place : places)
+    {
+      result.push_back({ origin[0] + step[0] * (place.x() + extent[0]),
+        origin[1] + step[1] * (place.y() + extent[2]) });
+    }
+  }
+  return result;
 }
 
 //------------------------------------------------------------------------------
@@ -444,8 +544,10 @@ void pqLacunaOutlinePanel::ProposeLevel()
 {
   const int all[4] = { 0, -1, 0, -1 };
   const double level = vtkLacunaOutlineTools::ProposeLevel(this->Picture, all);
-  const double part = (level - this->Window[0]) / (this->Window[1] - this->Window[0]);
+  const double part = (level - this->LevelRange[0]) / (this->LevelRange[1] - this->LevelRange[0]);
+  const QSignalBlocker blocker(this->Level);
   this->Level->setValue(static_cast<int>(std::lround(LevelSteps * std::clamp(part, 0.0, 1.0))));
+  this->ShowLevel();
 }
 
 //------------------------------------------------------------------------------
@@ -470,35 +572,7 @@ void pqLacunaOutlinePanel::ShowPicture()
       line[column] = static_cast<uchar>(part > 0 ? std::min(255.0, 255 * part + 0.5) : 0);
     }
   }
-  const vtkSmartPointer<vtkDataObject> data = pqLacunaFetch(this->Source->getSourceProxy(), 1);
-  auto* grid = vtkStructuredGrid::SafeDownCast(data);
-  double aspect = 1;
-  QString letters[2];
-  if (grid)
-  {
-    vtkDataArray* pixel = grid->GetFieldData()->GetArray("PixelSize");
-    if (pixel && pixel->GetNumberOfComponents() == 2 && pixel->GetComponent(0, 0) > 0)
-    {
-      aspect = pixel->GetComponent(0, 1) / pixel->GetComponent(0, 0);
-    }
-    auto* coordinates =
-      vtkStringArray::SafeDownCast(grid->GetFieldData()->GetAbstractArray("Coordinates"));
-    if (coordinates && coordinates->GetNumberOfValues() == 1 &&
-      coordinates->GetValue(0) == "Patient" && size[0] > 1 && size[1] > 1)
-    {
-      double corner[3];
-      double right[3];
-      double below[3];
-      grid->GetPoint(0, corner);
-      grid->GetPoint(1, right);
-      grid->GetPoint(size[0], below);
-      vtkMath::Subtract(right, corner, right);
-      vtkMath::Subtract(corner, below, below); // upwards
-      letters[0] = GetLetter(right);
-      letters[1] = GetLetter(below);
-    }
-  }
-  this->Canvas->SetPicture(image, aspect, letters);
+  this->Canvas->SetPicture(image, this->Aspect, this->Letters);
   this->Canvas->SetCaption(tr("Slice %1 (%2 to %3)")
                              .arg(this->Slice)
                              .arg(this->SliceSlider->minimum())
@@ -510,7 +584,6 @@ void pqLacunaOutlinePanel::ShowOutlines()
 {
   QVector<pqLacunaOutlineCanvas::Outline> outlines;
   this->Shown.clear();
-  const QPointF first = this->GetFirstPixel();
   const bool isSmooth =
     this->Source && vtkSMPropertyHelper(this->Source->getProxy(), "Smooth").GetAsInt() != 0;
   for (int i = 0; i < this->Now.Outlines.size(); ++i)
@@ -524,14 +597,15 @@ void pqLacunaOutlinePanel::ShowOutlines()
     vtkNew<vtkPoints> curve;
     ToPoints(outline.Handles, points);
     vtkLacunaOutlineTools::MakeCurve(points, isSmooth, curve);
-    outlines.push_back({ outline.Handles.translated(-first), ToPlaces(curve).translated(-first),
+    outlines.push_back({ this->ToCanvas(outline.Handles), this->ToCanvas(ToPlaces(curve)),
       this->Now.Colors[outline.Structure - 1], outline.Structure == this->GetStructure() });
     this->Shown.push_back(i);
   }
   this->Canvas->SetOutlines(outlines);
   this->Canvas->SetColor(this->Now.Colors[this->GetStructure() - 1]);
-  this->UndoButton->setEnabled(!this->Before.isEmpty());
-  this->RedoButton->setEnabled(!this->After.isEmpty());
+  const History history = this->Histories.value(this->Source);
+  this->UndoButton->setEnabled(!history.Before.isEmpty());
+  this->RedoButton->setEnabled(!history.After.isEmpty());
 }
 
 //------------------------------------------------------------------------------
@@ -565,6 +639,9 @@ void pqLacunaOutlinePanel::ShowTable()
   if (this->Surfaces)
   {
     data = pqLacunaFetch(this->Surfaces->getSourceProxy(), 1);
+    const QSignalBlocker blocker(this->RegistrationError);
+    this->RegistrationError->setValue(
+      vtkSMPropertyHelper(this->Surfaces->getProxy(), "RegistrationError").GetAsDouble());
   }
   auto* table = vtkTable::SafeDownCast(data);
   const int rows = table ? static_cast<int>(table->GetNumberOfRows()) : 0;

@@ -7,6 +7,7 @@
 #include "pqLacunaOutlineCanvas.h"
 
 #include <QDockWidget>
+#include <QHash>
 #include <QPointer>
 #include <QPolygonF>
 #include <QTimer>
@@ -27,7 +28,7 @@ class pqView;
 class vtkImageData;
 class vtkPoints;
 
-/// Opens itself when a Slice Outliner is applied or selected. What is drawn becomes the filter's properties at
+/// Opens itself when a Slice Outliner is applied or selected for the first time. What is drawn becomes the filter's properties at
 /// once, and a filter Outlined Structures behind it makes surfaces and the table.
 class pqLacunaOutlinePanel : public QDockWidget
 {
@@ -81,8 +82,10 @@ private:
   void Build();
   QWidget* BuildTools();
   QWidget* BuildResults();
-  void Read();                       ///< the properties
-  void Push(const Drawing& drawing); ///< makes it the properties, and remembers what was
+  void Read();                          ///< the properties
+  void Push(const Drawing& drawing);    ///< makes it the properties, and remembers what was
+  void Replace(const Drawing& drawing); ///< the same without remembering
+  void Follow(pqPipelineSource* surfaces);
   void Write(const Drawing& drawing);
   void ReadPicture();
   void ProposeLevel();
@@ -95,9 +98,13 @@ private:
   int GetStructure() const;
   static QColor GetOwnColor(int n);
   int NextNumber(int structure) const;
-  void Tell(const QString& message);
+  void Tell(const QString& message, bool isReady = false);
   QPolygonF Snapped(const QPolygonF& handles) const;
-  QPointF GetFirstPixel() const; ///< of the picture, column and row
+  QPolygonF ToCanvas(const QPolygonF& places) const; ///< columns and rows to pixels of the picture
+  QPolygonF FromCanvas(const QPolygonF& places) const;
+  double GetLevel() const;
+  void ShowLevel();
+  void RetraceLast();
   static void ToPoints(const QPolygonF& places, vtkPoints* points);
   static QPolygonF ToPlaces(vtkPoints* points);
 
@@ -106,13 +113,26 @@ private:
   bool IsReady = false;  ///< Source was applied
   bool IsPlaced = false; ///< the camera sees the slice
   Drawing Now;
-  QVector<Drawing> Before;
-  QVector<Drawing> After;
-  QVector<int> Shown; ///< indices of the outlines in the picture
-  int Slice = 0;
+  struct History
+  {
+    QVector<Drawing> Before;
+    QVector<Drawing> After;
+  };
+  QHash<pqPipelineSource*, History> Histories;
+  struct
+  {
+    bool IsValid = false;
+    QPointF Place; ///< of the canvas
+    QRectF Region;
+  } LastTrace;                           ///< which a change of the level does again
+  QVector<int> Shown;                    ///< indices of the outlines in the picture
+  int Slice = 0;                         ///< of the picture
   vtkSmartPointer<vtkImageData> Picture; ///< in columns and rows
   double Window[2] = { 0, 0 };           ///< darkest and brightest
   bool HasWindow = false;
+  double LevelRange[2] = { 0, 1 }; ///< of the slider
+  double Aspect = 1;
+  QString Letters[2];
   bool IsWriting = false;
   QTimer SliceTimer;
 
@@ -122,6 +142,7 @@ private:
   QCheckBox* Snap = nullptr;
   QWidget* LevelRow = nullptr;
   QSlider* Level = nullptr;
+  QLabel* LevelNumber = nullptr;
   QSlider* SliceSlider = nullptr;
   QSpinBox* SliceNumber = nullptr;
   QLabel* Summary = nullptr;

@@ -113,6 +113,25 @@ assert of_volume.Slice == (extent[4] + extent[5]) // 2, (of_volume.Slice, extent
 picture = fetch(servermanager.OutputPort(of_volume, 1))
 assert picture.GetExtent() == (*extent[:4], 0, 0), (picture.GetExtent(), extent)
 
+# Every second pixel of the sweep: the same volume.
+subset = ExtractSubset(Input=FindSource("Sweep"), VOI=[0, 319, 0, 239, 0, 59], SampleRateI=2, SampleRateJ=2)
+strided = SliceOutliner(Input=subset)
+for number in chosen:
+    outlines.trace(strided, "Organ", number, 120, region=(60, 260, 40, 200))
+volume = outlines.table(OutlinedStructures(Input=strided))["Organ"]["Volume (ml)"]
+assert abs(volume / truth - 1) < 0.015, volume
+
+# Structures of the same name are told of; names and numbers that are there stay.
+named = SliceOutliner(Input=FindSource("Sweep"), StructureNames=["", "Organ", "Organ"])
+named.OutlinePoints = [value for structure in (2, 3) for number in chosen for column, row in places[number] for value in (structure, number, number, column, row)]
+outlines.add(named, "Cyst", chosen[2], [(10, 10), (20, 10), (15, 20)])
+assert {outline["index"] for outline in outlines.get(named)} == {2, 3, 4}, outlines.get(named)
+try:
+    outlines.table(OutlinedStructures(Input=named))
+    raise AssertionError("no error")
+except ValueError as error:
+    assert "several structures are called Organ" in str(error), error
+
 # What cannot be is an error.
 for points, words in (((1, 0, 99, 1, 1, 1, 0, 99, 5, 1, 1, 0, 99, 5, 5), "a slice that is not there; the slices are 0 to 59"),
                       ((1, 0, 9, 1, 1, 1, 0, 9, 5, 1), "it needs at least 3")):

@@ -15,21 +15,23 @@ pixel is (0, 0).
 import csv
 import math
 import os
+import warnings
 
 import numpy
 
-COLUMNS = ("structure", "outline", "slice", "column", "row", "x", "y", "z", "handle")
+COLUMNS = ("structure", "outline", "slice", "column", "row", "x", "y", "z", "handle", "color")
 
 
 def get(outliner):
-    """The outlines of a Slice Outliner: a list of dictionaries with structure (name), number, slice, points (N x 2)."""
+    """The outlines of a Slice Outliner: a list of dictionaries with structure (name), index (1, 2, ...), number, slice, points (N x 2)."""
     rows = numpy.array(outliner.OutlinePoints, dtype=float).reshape(-1, 5)
     names = list(outliner.StructureNames)
     found = {}
     for structure, number, where, column, row in rows:
         index = int(structure)
         name = names[index - 1] if index <= len(names) else f"Structure {index}"
-        found.setdefault((index, int(number)), {"structure": name, "number": int(number), "slice": int(where), "points": []})["points"].append((column, row))
+        found.setdefault((index, int(number)), {"structure": name, "index": index, "number": int(number), "slice": int(where),
+                                                "points": []})["points"].append((column, row))
     for outline in found.values():
         outline["points"] = numpy.array(outline["points"])
     return list(found.values())
@@ -81,7 +83,10 @@ def table(structures):
     from .data import fetch
     data = fetch(servermanager.OutputPort(structures, 1))
     titles = [data.GetColumnName(column) for column in range(data.GetNumberOfColumns())]
-    rows = [{title: _value(data.GetColumn(column), row) for column, title in enumerate(titles)} for row in range(data.GetNumberOfRows())]
+    rows = [{title: data.GetColumn(column).GetValue(row) for column, title in enumerate(titles)} for row in range(data.GetNumberOfRows())]
+    names = [row["Name"] for row in rows]
+    if len(set(names)) < len(names):
+        raise ValueError(f"several structures are called {', '.join(sorted({name for name in names if names.count(name) > 1}))}; give each a name of its own")
     return {row["Name"]: row for row in rows}
 
 
@@ -90,7 +95,10 @@ def save(outliner, path):
     from .data import fetch
     data = fetch(outliner)
     cells, points = data.GetCellData(), data.GetPointData()
-    names, numbers, slices = (cells.GetAbstractArray(name) for name in ("StructureName", "Outline", "SliceNumber"))
+    names, numbers, slices, colors = (cells.GetAbstractArray(name) for name in ("StructureName", "Outline", "SliceNumber", "StructureColor"))
+    left_out = len(get(outliner)) - data.GetNumberOfLines()
+    if left_out:
+        warnings.warn(f"{left_out} outlines lie in slices without a usable pose; they have no place in mm and are not in {path}")
     if data.GetNumberOfLines() == 0:
         raise ValueError("there is no outline to save")
     aside = f"{path}.part"
@@ -103,7 +111,8 @@ def save(outliner, path):
                 point = ids.GetId(i)
                 column, row, _ = points.GetArray("Pixel").GetTuple(point)
                 writer.writerow((names.GetValue(cell), numbers.GetValue(cell), slices.GetValue(cell), f"{column:.9g}", f"{row:.9g}",
-                                 *(f"{x:.12g}" for x in data.GetPoint(point)), int(points.GetArray("Handle").GetValue(point))))
+                                 *(f"{x:.12g}" for x in data.GetPoint(point)), int(points.GetArray("Handle").GetValue(point)),
+                                 "#{:02x}{:02x}{:02x}".format(*(int(v) for v in colors.GetTuple(cell)))))
     os.replace(aside, path)
 
 
@@ -172,23 +181,25 @@ def take(outliner, source, distance=0.5, tolerance=0.3):
 
 
 def _set(outliner, outlines):
+    """Outlines that have an index keep it; the others go to the structure of their name, or to a new one."""
     names = list(outliner.StructureNames)
+    for outline in outlines:
+        while len(names) < outline.get("index", 0):
+            names.append(f"Structure {len(names) + 1}")
     numbers, values = {}, []
     for outline in outlines:
-        if outline["structure"] not in names:
+        if "index" not in outline and outline["structure"] not in names:
             names.append(outline["structure"])
     for outline in outlines:
-        structure = names.index(outline["structure"]) + 1
+        structure = outline.get("index") or names.index(outline["structure"]) + 1
         number = numbers.get(structure, 0)
         numbers[structure] = number + 1
         for column, row in outline["points"]:
             values += [structure, number, outline["slice"], float(column), float(row)]
     outliner.StructureNames = names
     outliner.OutlinePoints = values
-
-
-def _value(column, row):
-    return column.GetValue(row)
+    outliner.SMProxy.UpdatePropertyInformation()
+    outliner.VolumeGrid = list(outliner.GetProperty("InputGrid").GetData())
 
 
 def _picture(outliner, number):
@@ -200,8 +211,15 @@ def _picture(outliner, number):
     before, outliner.Slice = outliner.Slice, int(number)
     try:
         grid = fetch(servermanager.OutputPort(outliner, 1))
+        if grid.GetNumberOfPoints() == 0:
+            raise ValueError(f"slice {number} has no usable pose")
+        origin, step = (grid.GetFieldData().GetArray(name).GetTuple(0) for name in ("PixelOrigin", "PixelStep"))
+        if int(grid.GetFieldData().GetArray("SliceNumber").GetValue(0)) != int(number):
+            raise ValueError(f"slice {number} is not in this stack")
         picture = vtkImageData()
         picture.SetExtent(grid.GetExtent())
+        picture.SetOrigin(*origin, 0)
+        picture.SetSpacing(*step, 1)
         picture.GetPointData().SetScalars(grid.GetPointData().GetScalars())
         return picture
     finally:
@@ -214,7 +232,10 @@ def _places(outliner):
     image = fetch(outliner.Input)
     poses = image.GetFieldData().GetArray("ImageToReference")
     if poses:
-        found = {i: numpy.array(poses.GetTuple(i)).reshape(4, 4) for i in range(poses.GetNumberOfTuples())}
+        extent, origin, spacing = image.GetExtent(), image.GetOrigin()[2], image.GetSpacing()[2]
+        status = image.GetFieldData().GetArray("SliceStatus")
+        found = {round(origin + k * spacing): None for k in range(extent[4], extent[5] + 1)}
+        found = {i: numpy.array(poses.GetTuple(i)).reshape(4, 4) for i in found if not (status and int(status.GetValue(i)) & 1)}
         return {i: place for i, place in found.items() if numpy.isfinite(place).all()}
     extent, matrix = image.GetExtent(), image.GetIndexToPhysicalMatrix()
     whole = numpy.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])

@@ -167,6 +167,35 @@ void TestRegistration()
   LACUNA_CHECK_NEAR(found / std::sqrt(squares), 1, 0.25);
 }
 
+// Two bodies of one structure in the same slices move together.
+void TestCommonSlices()
+{
+  const Ellipsoid one{ 1, { 20, 15, 25 }, { 3, -4, 100 } };
+  const Ellipsoid other{ 1, { 20, 15, 25 }, { 63, -4, 100 } };
+  const auto measure = [](vtkPolyData* outlines, bool hasSlices)
+  {
+    if (hasSlices)
+    {
+      vtkNew<vtkIntArray> slices;
+      slices->SetName("SliceNumber");
+      for (vtkIdType l = 0; l < outlines->GetNumberOfLines(); ++l)
+      {
+        slices->InsertNextValue(static_cast<int>(l % 7));
+      }
+      outlines->GetCellData()->AddArray(slices);
+    }
+    vtkNew<vtkLacunaOutlinedStructures> filter;
+    filter->SetSmoothing(0.02);
+    filter->SetRegistrationError(5); // so that drawing does not count
+    filter->SetInputData(outlines);
+    filter->Update();
+    return Get(filter, 0, "Standard error (ml)");
+  };
+  const double alone = measure(MakeOutlines({ one }), true);
+  LACUNA_CHECK_NEAR(measure(MakeOutlines({ one, other }), true) / alone, 2, 0.05);
+  LACUNA_CHECK_NEAR(measure(MakeOutlines({ one, other }), false) / alone, std::sqrt(2), 0.05);
+}
+
 void TestBadInput()
 {
   const Ellipsoid gland{ 1, { 20, 15, 25 }, { 3, -4, 100 } };
@@ -191,6 +220,52 @@ void TestBadInput()
   cells->InsertNextCell(4, ids);
   open->SetLines(cells);
   LACUNA_CHECK_CONTAINS(run(open, 0), "line 0 is not closed");
+
+  // the same outline twice, and one displaced so that both cross: told where the volume stands
+  for (const double aside : { 0.0, 7.0 })
+  {
+    const auto more = MakeOutlines({ gland });
+    const vtkIdType first = more->GetNumberOfPoints();
+    constexpr int n = 60;
+    for (int i = 0; i < n; ++i)
+    {
+      double x[3];
+      more->GetPoint(3 * n + i, x); // of the fourth outline
+      x[0] += aside;
+      more->GetPoints()->InsertNextPoint(x);
+    }
+    more->GetLines()->InsertNextCell(n + 1);
+    for (int i = 0; i <= n; ++i)
+    {
+      more->GetLines()->InsertCellPoint(first + i % n);
+    }
+    vtkIntArray::SafeDownCast(more->GetCellData()->GetArray("Structure"))->InsertNextValue(1);
+    vtkStringArray::SafeDownCast(more->GetCellData()->GetAbstractArray("StructureName"))
+      ->InsertNextValue("Gland");
+    vtkNew<vtkLacunaOutlinedStructures> twice;
+    twice->SetInputData(more);
+    twice->Update();
+    auto* row = vtkTable::SafeDownCast(twice->GetOutputDataObject(1));
+    LACUNA_CHECK(row->GetValueByName(0, "Status").ToString() ==
+      "two outlines cross or are the same: delete one");
+    LACUNA_CHECK(std::isnan(row->GetValueByName(0, "Volume (ml)").ToDouble()));
+  }
+
+  // one number with two names, as of two files: two structures
+  const Ellipsoid other{ 1, { 8, 9, 7 }, { 60, 10, 90 } };
+  const auto both = MakeOutlines({ gland, other });
+  auto* names =
+    vtkStringArray::SafeDownCast(both->GetCellData()->GetAbstractArray("StructureName"));
+  for (vtkIdType l = 7; l < 14; ++l)
+  {
+    names->SetValue(l, "Kidney");
+  }
+  vtkNew<vtkLacunaOutlinedStructures> apart;
+  apart->SetInputData(both);
+  apart->Update();
+  auto* rows = vtkTable::SafeDownCast(apart->GetOutputDataObject(1));
+  LACUNA_CHECK(rows->GetNumberOfRows() == 2);
+  LACUNA_CHECK_NEAR(rows->GetValueByName(1, "Volume (ml)").ToDouble() / GetVolume(other), 1, 0.005);
 
   // two outlines of one structure: no surface yet, told in the table and no error
   vtkNew<vtkPolyData> two;
@@ -221,6 +296,7 @@ int TestOutlinedStructures(int, char*[])
 {
   TestTwo();
   TestRegistration();
+  TestCommonSlices();
   TestBadInput();
   return lacunaCheck::Result();
 }
