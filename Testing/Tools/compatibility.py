@@ -120,7 +120,7 @@ def keep(options):
             each["tests"] = before["tests"]
         kept[each["suite"]] = each
     with open(KEPT, "w", encoding="utf-8") as file:
-        json.dump(order(kept.values()), file, indent=1)
+        json.dump(order(kept.values()), file, indent=1, ensure_ascii=False)
         file.write("\n")
     for name, kind in PAGES.items():
         path = os.path.join(TOP, "Documentation", name)
