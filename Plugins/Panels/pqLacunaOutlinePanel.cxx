@@ -70,8 +70,8 @@ pqLacunaOutlinePanel::pqLacunaOutlinePanel(QWidget* parent)
 {
   this->Build();
   this->SliceTimer.setSingleShot(true);
-  QObject::connect(
-    &this->SliceTimer, &QTimer::timeout, this, [this] { this->ShowSlice(this->Slice); });
+  QObject::connect(&this->SliceTimer, &QTimer::timeout, this,
+    [this] { this->ShowSlice(this->SliceNumber->value()); });
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this,
     &pqLacunaOutlinePanel::FindSource);
