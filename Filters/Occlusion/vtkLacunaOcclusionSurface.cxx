@@ -273,6 +273,22 @@ int vtkLacunaOcclusionSurface::RequestData(
                            "voxels of the surface, not of the body's inside: use "
                            "lacuna.occlusion.closed_surface for these");
       }
+      if (report.Together > 0)
+      {
+        double place[3];
+        const int* extent = angle->GetExtent();
+        const std::int64_t all = report.Outliers + report.DataVoxels;
+        angle->TransformIndexToPhysicalPoint(static_cast<int>(extent[0] + report.TogetherAt[0]),
+          static_cast<int>(extent[2] + report.TogetherAt[1]),
+          static_cast<int>(extent[4] + report.TogetherAt[2]), place);
+        vtkWarningMacro(<< report.Together << " of " << all << " data voxels ("
+                        << std::lround(100.0 * static_cast<double>(report.Together) /
+                             static_cast<double>(all))
+                        << " %) are not used though they lie together, as the wall of a cavity or "
+                        << "bore does, the most around (" << place[0] << ", " << place[1] << ", "
+                        << place[2] << "): the surface closes it, and its volume is too large. If "
+                        << "it is one, use lacuna.occlusion.closed_surface");
+      }
       const auto set = [output](const char* name, double value)
       { vtkLacunaFieldData::Set(output, name, { value }, 1); };
       set("SurfaceVolume", measures.Volume / 1000);

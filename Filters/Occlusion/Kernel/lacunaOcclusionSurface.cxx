@@ -126,6 +126,8 @@ OcclusionSurface::OcclusionSurface(
   }
   this->Report.DataVoxels = static_cast<std::int64_t>(data.Points.size());
   this->Report.Outliers = data.Outliers;
+  this->Report.Together = data.Together;
+  this->Report.TogetherAt = data.TogetherAt;
   this->Report.Nodes = static_cast<std::int64_t>(this->Function->GetReport().NodeCount);
   this->Report.Residual = std::sqrt(square) * images.GetEdge();
 }

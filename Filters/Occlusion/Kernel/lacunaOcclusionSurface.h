@@ -7,6 +7,7 @@
 #include "lacunaOrientedData.h"
 #include "lacunaRadialBasis.h"
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -21,10 +22,12 @@ struct OcclusionSurfaceOptions
 /// What a fit came to. Lengths in mm.
 struct OcclusionSurfaceReport
 {
-  std::int64_t DataVoxels = 0; ///< that carry the surface
-  std::int64_t Outliers = 0;   ///< that do not
-  std::int64_t Nodes = 0;      ///< of the radial basis function
-  double Residual = 0;         ///< root mean square distance of the data from the surface
+  std::int64_t DataVoxels = 0;              ///< that carry the surface
+  std::int64_t Outliers = 0;                ///< that do not
+  std::int64_t Together = 0;                ///< of these, see OrientedData::Together
+  std::array<std::int64_t, 3> TogetherAt{}; ///< voxel of the grid
+  std::int64_t Nodes = 0;                   ///< of the radial basis function
+  double Residual = 0; ///< root mean square distance of the data from the surface
 };
 
 /// s(x), about the signed distance from the surface, negative inside: the radial basis function

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -211,9 +212,50 @@ private:
     return gradient;
   }
 
+  // Outliers that are the wall of one thing.
+  void FindGroups(const std::vector<std::int64_t>& outliers, std::int64_t data)
+  {
+    constexpr std::int64_t Reach = 2;
+    constexpr std::int64_t Fewest = 20;
+    const std::int64_t least = std::max(Fewest, data / 100);
+    std::set<std::int64_t> open(outliers.begin(), outliers.end());
+    std::int64_t largest = 0;
+    while (!open.empty())
+    {
+      std::vector<std::int64_t> group{ *open.begin() };
+      open.erase(open.begin());
+      for (std::size_t k = 0; k < group.size(); ++k)
+      {
+        const auto index = this->GetIndex(group[k]);
+        for (std::int64_t n = 0; n < 125; ++n)
+        {
+          const std::array<std::int64_t, 3> other{ index[0] + n % 5 - Reach,
+            index[1] + n / 5 % 5 - Reach, index[2] + n / 25 - Reach };
+          bool within = true;
+          for (int c = 0; c < 3; ++c)
+          {
+            within = within && other[c] >= 0 && other[c] < this->N[c];
+          }
+          if (within && open.erase(this->GetVoxel(other)) > 0)
+          {
+            group.push_back(this->GetVoxel(other));
+          }
+        }
+      }
+      const auto size = static_cast<std::int64_t>(group.size());
+      this->Result.Together += size >= least ? size : 0;
+      if (size >= least && size > largest)
+      {
+        largest = size;
+        this->Result.TogetherAt = this->GetIndex(group[group.size() / 2]);
+      }
+    }
+  }
+
   void FindPoints()
   {
     std::int64_t data = 0;
+    std::vector<std::int64_t> outliers;
     for (std::int64_t i = 0; i < this->Count; ++i)
     {
       if (!this->Images.Data[i])
@@ -223,6 +265,7 @@ private:
       ++data;
       if (this->Distance[i] < -LargestDepth || this->Distance[i] > LargestHeight)
       {
+        outliers.push_back(i);
         continue;
       }
       const auto index = this->GetIndex(i);
@@ -236,6 +279,7 @@ private:
       }
     }
     this->Result.Outliers = data - static_cast<std::int64_t>(this->Voxels.size());
+    this->FindGroups(outliers, data);
     if (this->Voxels.size() < MinimumSurfacePoints)
     {
       throw std::invalid_argument("only " + std::to_string(this->Voxels.size()) + " of " +

@@ -47,7 +47,19 @@ RadialBasis<Dimension>::RadialBasis(Execution& execution, const std::vector<Poin
   , Loops(GetRadialLoops<Dimension>(options.Kernel, BestInstructionSet()))
 {
   CheckOptions(options);
-  this->SetNodes(nodes, values);
+  const std::vector<double>& errors = options.Errors;
+  const bool isSound = std::all_of(
+    errors.begin(), errors.end(), [](double error) { return error > 0 && std::isfinite(error); });
+  if (options.Smoothing > 0 && isSound && (errors.empty() || errors.size() == nodes.size()))
+  {
+    const AveragedNodes<Dimension> averaged(nodes, values, errors);
+    this->Options.Errors = averaged.Errors;
+    this->SetNodes(averaged.Nodes, averaged.Values);
+  }
+  else
+  {
+    this->SetNodes(nodes, values);
+  }
   const double range = *std::min_element(this->Ranges.begin(), this->Ranges.end(),
     [](double a, double b) { return b == 0 || (a != 0 && a < b); });
   const bool fast = options.Accuracy > 0 &&

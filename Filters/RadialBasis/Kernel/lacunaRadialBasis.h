@@ -85,8 +85,9 @@ public:
   using Point = std::array<double, Dimension>;
 
   /// Fits values given at nodes; reports progress over the current stage of execution.
-  /// Nodes at the same place with the same value are merged. Throws std::invalid_argument when two
-  /// nodes at the same place have different values, when there are fewer than Dimension + 1 nodes
+  /// Nodes at the same place are averaged with their weights where Smoothing is above 0; else they are
+  /// merged if their values are the same. Throws std::invalid_argument when two
+  /// nodes at the same place have different values and Smoothing is 0, when there are fewer than Dimension + 1 nodes
   /// (6 and 10 for the triharmonic), when they lie on one line (plane), or when a number is not
   /// finite; std::length_error when the matrix would exceed MaximumBytes; std::runtime_error when
   /// the system is numerically singular (nodes too close together) or the accuracy out of reach.

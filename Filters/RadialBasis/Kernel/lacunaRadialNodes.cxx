@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -100,6 +101,53 @@ std::vector<std::size_t> FindDistinctNodes(const std::vector<std::array<double, 
       " nodes at different places; at least " + std::to_string(minimum) + " are needed");
   }
   return distinct;
+}
+
+//------------------------------------------------------------------------------
+template <int Dimension>
+AveragedNodes<Dimension>::AveragedNodes(const std::vector<std::array<double, Dimension>>& nodes,
+  const std::vector<std::vector<double>>& values, const std::vector<double>& errors)
+  : Nodes(nodes)
+  , Values(values)
+  , Errors(errors)
+{
+  CheckFinite<Dimension>(nodes, values);
+  std::map<std::array<double, Dimension>, std::size_t> places;
+  std::vector<std::size_t> own; // of each node, the place among those that stay
+  for (const std::array<double, Dimension>& node : nodes)
+  {
+    own.push_back(places.emplace(node, places.size()).first->second);
+  }
+  if (places.size() == nodes.size())
+  {
+    return;
+  }
+  std::vector<double> weights(places.size(), 0.0);
+  this->Nodes.resize(places.size());
+  for (std::vector<double>& list : this->Values)
+  {
+    list.assign(places.size(), 0.0);
+  }
+  const auto getWeight = [&](std::size_t i)
+  { return errors.empty() ? 1 : 1 / (errors[i] * errors[i]); };
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    this->Nodes[own[i]] = nodes[i];
+    weights[own[i]] += getWeight(i);
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+  {
+    const double share = getWeight(i) / weights[own[i]];
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      this->Values[k][own[i]] += share * values[k][i];
+    }
+  }
+  this->Errors.clear();
+  for (const double weight : weights)
+  {
+    this->Errors.push_back(1 / std::sqrt(weight));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -208,6 +256,8 @@ void CheckSpread(const std::vector<std::array<double, Dimension>>& scaled,
   }
 }
 
+template struct AveragedNodes<2>;
+template struct AveragedNodes<3>;
 template std::vector<std::size_t> FindDistinctNodes<2>(
   const std::vector<std::array<double, 2>>&, const std::vector<std::vector<double>>&, std::size_t);
 template std::vector<std::size_t> FindDistinctNodes<3>(

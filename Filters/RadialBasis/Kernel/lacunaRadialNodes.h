@@ -42,6 +42,21 @@ template <int Dimension>
 std::vector<std::size_t> FindDistinctNodes(const std::vector<std::array<double, Dimension>>& nodes,
   const std::vector<std::vector<double>>& values, std::size_t minimum);
 
+/// Nodes with those at the same place taken together, as a smoothing fit does: their values averaged
+/// with the weights 1 / error^2, and the error that the average has. Unchanged when all places differ.
+template <int Dimension>
+struct AveragedNodes
+{
+  std::vector<std::array<double, Dimension>> Nodes;
+  std::vector<std::vector<double>> Values; ///< one list for each right-hand side
+  std::vector<double> Errors;              ///< relative to each other
+
+  /// errors: above 0, one for each node; empty: all 1. Throws as FindDistinctNodes of other lengths
+  /// and numbers that are not finite.
+  AveragedNodes(const std::vector<std::array<double, Dimension>>& nodes,
+    const std::vector<std::vector<double>>& values, const std::vector<double>& errors);
+};
+
 /// The frame for a kernel: the unit cube, or for kernels that have a length its multiple. shape is
 /// that length, in the unit of the nodes; 0 chooses 1.25 times the mean distance of neighbours. Throws
 /// std::invalid_argument when the extent of the nodes is out of range or shape is bad.

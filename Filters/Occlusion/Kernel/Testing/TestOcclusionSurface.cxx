@@ -202,6 +202,46 @@ TEST(OcclusionSurface, WhatIsSeenOrHiddenFromEverywhereDoesNotCount)
   EXPECT_EQ(surface.EvaluateGrid(execution), expected.EvaluateGrid(execution));
 }
 
+// Data inside that lie together are a cavity's wall, not outliers here and there.
+TEST(OcclusionSurface, OutliersTogetherAreReported)
+{
+  ThreadExecution execution(1);
+  {
+    Ball ball(0.3);
+    Numbers number(3);
+    std::int64_t wall = 0;
+    for (std::int64_t i = 0; i < static_cast<std::int64_t>(ball.Data.size()); ++i)
+    {
+      const auto& n = ball.Dimensions;
+      const Vec3 p{ i % n[0] * ball.Spacing[0], i / n[0] % n[1] * ball.Spacing[1],
+        i / (n[0] * n[1]) * ball.Spacing[2] };
+      const Vec3 fromAxis{ p[0] - ball.Centre[0], p[1] - ball.Centre[1], 0 };
+      if (std::abs(Norm(fromAxis) - 4) <= 0.5 && std::abs(p[2] - ball.Centre[2]) < 6 &&
+        number() < 0.4)
+      {
+        ball.Data[i] = 1;
+        ++wall;
+      }
+    }
+    const OcclusionSurface surface(execution, ball.Get(), {});
+    EXPECT_EQ(surface.GetReport().Outliers, wall);
+    EXPECT_EQ(surface.GetReport().Together, wall);
+    const auto& at = surface.GetReport().TogetherAt;
+    EXPECT_EQ(ball.Data[ball.At(at[0], at[1], at[2])], 1);
+    EXPECT_LT(std::abs(at[0] * ball.Spacing[0] - ball.Centre[0]), 5);
+  }
+  // scattered
+  Ball ball(0.3);
+  Numbers number(3);
+  for (std::size_t i = 0; i < ball.Data.size(); ++i)
+  {
+    ball.Data[i] = ball.Data[i] || (ball.Angle[i] > 3 * Pi && number() < 0.004);
+  }
+  const OcclusionSurface surface(execution, ball.Get(), {});
+  EXPECT_GT(surface.GetReport().Outliers, 20);
+  EXPECT_EQ(surface.GetReport().Together, 0);
+}
+
 // Twice continuously differentiable: changes of the curvature are as small as the steps. (r^2 log r,
 // which has no second derivative at its centres: 2 instead of 5.)
 TEST(OcclusionSurface, CurvatureIsContinuous)

@@ -335,6 +335,51 @@ TEST(RadialBasis, MergesEqualNodesAndNamesContradictions)
   ExpectContains(ErrorOf([&] { Fit<2>(nodes, values); }), "nodes 4 and 20 lie at the same place");
 }
 
+// A smoothing fit to nodes at one place is that to nodes side by side, whatever their values.
+TEST(RadialBasis, AveragesEqualNodesWithSmoothing)
+{
+  for (const bool weighted : { false, true })
+  {
+    lacuna::RadialBasisOptions options;
+    options.Smoothing = 0.01;
+    std::vector<Point2> together = Scatter2(40);
+    std::vector<double> values =
+      Transformed(together, [&](const Point2& p) { return Franke(p[0], p[1]); });
+    std::vector<Point2> apart = together;
+    for (const double noise : { 0.3, -0.1, 0.0 })
+    {
+      together.push_back(together[4]);
+      apart.push_back({ apart[4][0] + 1e-7 * (1 + noise), apart[4][1] - 1e-7 * noise });
+      values.push_back(values[4] + noise);
+    }
+    if (weighted)
+    {
+      options.Errors.assign(values.size(), 1);
+      options.Errors[4] = 0.5;
+      options.Errors[40] = 3;
+      options.Errors[41] = 0.2;
+    }
+    const auto fit = Fit<2>(together, values, options);
+    EXPECT_EQ(fit.GetReport().NodeCount, 40u);
+    const std::vector<double> one = Evaluate<2>(fit, Scatter2(30));
+    const std::vector<double> other = Evaluate<2>(Fit<2>(apart, values, options), Scatter2(30));
+    values.resize(40); // the noise counts
+    together.resize(40);
+    options.Errors.clear();
+    const std::vector<double> without =
+      Evaluate<2>(Fit<2>(together, values, options), Scatter2(30));
+    double worst = 0;
+    double effect = 0;
+    for (std::size_t i = 0; i < one.size(); ++i)
+    {
+      worst = std::max(worst, std::abs(one[i] - other[i]));
+      effect = std::max(effect, std::abs(one[i] - without[i]));
+    }
+    EXPECT_LT(worst, 1e-5);
+    EXPECT_GT(effect, 1e-3);
+  }
+}
+
 TEST(RadialBasis, RefusesWhatDoesNotDetermineAFunction)
 {
   const auto error = [](const std::vector<Point2>& nodes, const std::vector<double>& values)
