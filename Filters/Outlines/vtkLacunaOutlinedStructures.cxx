@@ -27,6 +27,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
+#include "vtkStripper.h"
 #include "vtkTable.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -516,6 +517,10 @@ std::shared_ptr<const vtkLacunaOutlinedStructures::Kept> vtkLacunaOutlinedStruct
   {
     throw lacuna::Aborted();
   }
+  if (listener.Error.find("memory") != std::string::npos) // no fault of this structure
+  {
+    throw std::runtime_error(structure.Name + ": " + GetWords(listener.Error));
+  }
   for (const std::string& warning : listener.Warnings)
   {
     // too few outlines as yet: told where the volume stands
@@ -571,6 +576,15 @@ int vtkLacunaOutlinedStructures::RequestData(
       if (!input || input->GetNumberOfPoints() == 0)
       {
         return;
+      }
+      vtkNew<vtkStripper> joined; // pieces of lines, as cutters leave them
+      if (!input->GetCellData()->HasArray("Structure"))
+      {
+        joined->SetInputData(input);
+        joined->SetMaximumLength(1000000);
+        joined->JoinContiguousSegmentsOn();
+        joined->Update();
+        input = joined->GetOutput();
       }
       const std::map<std::pair<int, std::string>, Structure> structures = GetStructures(input);
 

@@ -435,6 +435,11 @@ int vtkLacunaSliceOutliner::RequestData(
       }
       const int shown = slices.FindNearest(this->Slice);
       SetPicture(execution, input, scalars, slices, shown, picture);
+      if (!slices.HasPlace(shown))
+      {
+        vtkWarningMacro(<< "slice " << shown
+                        << " has no usable pose, so it has no place in mm and no picture");
+      }
 
       // the outlines
       vtkNew<vtkPoints> points;

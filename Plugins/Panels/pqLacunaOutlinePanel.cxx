@@ -9,6 +9,7 @@
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
+#include "vtkBoundingBox.h"
 #include "vtkCamera.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -19,6 +20,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
@@ -349,6 +351,21 @@ void pqLacunaOutlinePanel::Attach()
       display->UpdateVTKObjects();
     }
   };
+  // a picture, not a lit surface, with no bar for its grey levels
+  const auto showSlice = [this, viewProxy]
+  {
+    auto* slice = viewProxy ? vtkSMPVRepresentationProxy::SafeDownCast(
+                                viewProxy->FindRepresentation(this->Source->getSourceProxy(), 1))
+                            : nullptr;
+    if (slice)
+    {
+      slice->SetScalarBarVisibility(viewProxy, false);
+      SM_SCOPED_TRACE(PropertiesModified).arg("proxy", slice);
+      vtkSMPropertyHelper(slice, "Ambient").Set(1.0);
+      vtkSMPropertyHelper(slice, "Diffuse").Set(0.0);
+      slice->UpdateVTKObjects();
+    }
+  };
   if (this->Now.Outlines.isEmpty())
   {
     if (this->IsPlaced)
@@ -357,17 +374,7 @@ void pqLacunaOutlinePanel::Attach()
     }
     this->IsPlaced = true;
     color(this->Source, 1);
-    auto* slice = viewProxy ? vtkSMPVRepresentationProxy::SafeDownCast(
-                                viewProxy->FindRepresentation(this->Source->getSourceProxy(), 1))
-                            : nullptr;
-    if (slice) // a picture, not a lit surface
-    {
-      slice->SetScalarBarVisibility(viewProxy, false);
-      SM_SCOPED_TRACE(PropertiesModified).arg("proxy", slice);
-      vtkSMPropertyHelper(slice, "Ambient").Set(1.0);
-      vtkSMPropertyHelper(slice, "Diffuse").Set(0.0);
-      slice->UpdateVTKObjects();
-    }
+    showSlice();
     this->LookAtSlice(view); // which may be elsewhere than what was seen in pixels
     return;
   }
@@ -395,6 +402,7 @@ void pqLacunaOutlinePanel::Attach()
     color(this->Source, 1);
     color(this->Surfaces, 0.5);
     this->Follow(made);
+    showSlice();
     pqActiveObjects::instance().setActiveSource(this->Source);
     this->LookAtSlice(view);
   }
@@ -433,7 +441,17 @@ void pqLacunaOutlinePanel::LookAtSlice(pqView* view)
     focus[1] - into[1] + aside * right[1] - above * down[1],
     focus[2] - into[2] + aside * right[2] - above * down[2]);
   camera->SetViewUp(-down[0], -down[1], -down[2]);
-  view->resetDisplay();
+  vtkBoundingBox seen(grid->GetBounds());
+  const vtkSmartPointer<vtkDataObject> lines = pqLacunaFetch(this->Source->getSourceProxy(), 0);
+  auto* outlines = vtkPolyData::SafeDownCast(lines);
+  if (outlines && outlines->GetNumberOfPoints() > 0)
+  {
+    seen.AddBounds(outlines->GetBounds());
+  }
+  double bounds[6];
+  seen.GetBounds(bounds);
+  render->ResetCamera(bounds);
+  view->render();
 }
 
 //------------------------------------------------------------------------------

@@ -163,7 +163,7 @@ implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
 screen = os.environ.get("DISPLAY")
 os.environ["DISPLAY"] = ":9973"
 alone = os.path.join(home, "alone.stl")
-code, text = run(ct, "--output", alone, "--report", os.path.join(home, "none"))
+code, text = run(ct, "--output", alone, "--report", os.path.join(home, "no screen"))
 assert code == 1 and os.path.getsize(alone) == os.path.getsize(stl) and "implant: " in text, text
 assert len(errors) == 1 and "the implant is written, the report is not" in errors[0] and "xvfb-run" in errors[0], errors
 del implant.print

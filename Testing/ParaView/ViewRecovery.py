@@ -59,7 +59,7 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaTrackerSelfTest": ("SpeedLimit", -1),
 }
 # VTK executes them for each block
-TAKE_BLOCKS = {"LacunaContrastToSpeckle", "LacunaImplantPlate", "LacunaMillingToolPath", "LacunaOcclusionSurface", "LacunaScanRegion",
+TAKE_BLOCKS = {"LacunaContrastToSpeckle", "LacunaImplantPlate", "LacunaMillingToolPath", "LacunaOcclusionSurface", "LacunaOutlinedStructures", "LacunaScanRegion",
                "LacunaSkullImplant", "LacunaSlicePlanes", "LacunaTemporalCalibration", "LacunaTrackerSelfTest"}
 NOT_SHOWN = "LacunaPolhemusVideoSource", "LacunaIGESWriter", "LacunaTrackedSliceWriter", "LacunaGCodeWriter"
 

@@ -12,7 +12,7 @@ import lacuna_window
 
 ERROR = "Stride is 0; give 1 or more"
 MENUS = "LACUNA_MENUS"  # names of the proxies in the menus, without Lacuna
-ELSEWHERE = {"PolhemusVideoSource", "SkullPhantom", "BSplineIsoRayCaster", "DepthMapSurface", "Mirror", "RBFHoleFiller",
+ELSEWHERE = {"PolhemusVideoSource", "SliceOutliner", "SkullPhantom", "BSplineIsoRayCaster", "DepthMapSurface", "Mirror", "RBFHoleFiller",
              "ImplantPlate", "DefectModel", "PressOrientation", "MillingToolPath"}
 
 
@@ -20,7 +20,7 @@ def test(window):
     import calibration_scans as scans
     import lacuna_test
     import numpy as np
-    from paraview.simple import (BSplineIsoRayCaster, Calculator, GetActiveSource, GetSources, SetActiveSource, SkullPhantom, Sphere,
+    from paraview.simple import (BSplineIsoRayCaster, Calculator, GetActiveSource, GetSources, SetActiveSource, SkullPhantom, Slice, Sphere,
                                  Transform)
     from tracked_slice_files import open_slices
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -132,6 +132,9 @@ def test(window):
     moved.UpdatePipeline()
     make("Filters", "RBF Image Warp", cloud, {"Landmarks": places, "Targets": moved})
     make("Filters", "RBF Surface", places, OutputSpacing=9)
+    cuts = Slice(Input=places, SliceOffsetValues=[-40, -20, 0, 20, 40])
+    cuts.UpdatePipeline()
+    make("Filters", "Outlined Structures", cuts, Smoothing=0.5)
 
     assert not faults, "\n".join(faults)
     missing = set(os.environ[MENUS].split()) - set(made) - ELSEWHERE

@@ -100,7 +100,7 @@ output.RowData.append((time / 1.3) % 1, "Gate")""")
     smooth = SpeckleFilter(registrationName="Smooth", Input=gated, Operation="Opening", KernelShape="Ellipsoid", KernelSize=[3, 3, 1])
     SlicePlanes(registrationName="Planes", Input=smooth, ColorBy="Speed", Stride=3)
     corners = (20, 15), (60, 18), (55, 45), (40, 30), (22, 44)
-    outliner = SliceOutliner(registrationName="Outliner", Input=smooth, Slice=9, StructureNames=["Gland", "Cyst"], StructureColors=[0.9, 0.6, 0, 0, 0, 1],
+    outliner = SliceOutliner(registrationName="Outliner", Input=sweep, Slice=9, StructureNames=["Gland", "Cyst"], StructureColors=[0.9, 0.6, 0, 0, 0, 1],
                              OutlinePoints=[value for structure in (1, 2) for number in (5, 9, 14) for column, row in corners
                                             for value in (structure, number, number, column, row + 3 * structure)])
     OutlinedStructures(registrationName="Structures", Input=outliner, RegistrationError=0.5)
