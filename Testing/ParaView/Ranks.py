@@ -33,10 +33,10 @@ IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "Dep
           "SkullBone", "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
 # but of these all ranks have the whole
 WHOLE = {"OccludedAngle", "ProbeCalibration"}
-# Some of the cells of a mesh; of outlined structures the first rank has all, but the others ask for slices, too
-MESHES = {"DepthMapSurface", "OutlinedStructures", "SlicePlanes"}
+# Some of the cells of a mesh
+MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
-FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader",
+FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "OutlinedStructures",
          "PressOrientation", "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
 WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so

@@ -100,7 +100,9 @@ output.RowData.append((time / 1.3) % 1, "Gate")""")
     smooth = SpeckleFilter(registrationName="Smooth", Input=gated, Operation="Opening", KernelShape="Ellipsoid", KernelSize=[3, 3, 1])
     SlicePlanes(registrationName="Planes", Input=smooth, ColorBy="Speed", Stride=3)
     corners = (20, 15), (60, 18), (55, 45), (40, 30), (22, 44)
-    outliner = SliceOutliner(registrationName="Outliner", Input=sweep, Slice=9, StructureNames=["Gland", "Cyst"], StructureColors=[0.9, 0.6, 0, 0, 0, 1],
+    # a sweep of its own: Slice Ray Caster has all of its input on every rank
+    outlined = PhantomSweep(registrationName="Outlined sweep", NumberOfSlices=30, ImageSize=[80, 60], PixelSpacing=0.8, Motion="Arbitrary")
+    outliner = SliceOutliner(registrationName="Outliner", Input=outlined, Slice=9, StructureNames=["Gland", "Cyst"], StructureColors=[0.9, 0.6, 0, 0, 0, 1],
                              OutlinePoints=[value for structure in (1, 2) for number in (5, 9, 14) for column, row in corners
                                             for value in (structure, number, number, column, row + 3 * structure)])
     OutlinedStructures(registrationName="Structures", Input=outliner, RegistrationError=0.5)
@@ -168,7 +170,8 @@ def implant():
     head = SkullPhantom(registrationName="Head", Spacing=[3, 3, 4], DefectRadius=25, DefectDirection=[0.5, -0.2, 0.8])
     bone = SkullBone(registrationName="Bone", Input=head, Level=400)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
-    SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=whole, TemplateLevel=410)
+    template = SkullPhantom(registrationName="Template", Spacing=[3, 3, 4], DefectRadius=0)
+    SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=template, TemplateLevel=410)
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
     RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6, OutputBounds=[-80, 80, -95, 95, -80, 72], DistanceSpacing=19)
