@@ -393,7 +393,13 @@ int vtkLacunaSliceOutliner::RequestInformation(
 int vtkLacunaSliceOutliner::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkLacunaRequest::Whole(this, inputs[0]->GetInformationObject(0), outputs);
+  vtkInformation* input = inputs[0]->GetInformationObject(0);
+  if (vtkLacunaRanks().GetRank() > 0) // whatever VTK asks of a grid that is empty there
+  {
+    vtkLacunaRequest::Nothing(this, input);
+    return 1;
+  }
+  vtkLacunaRequest::Whole(this, input, outputs);
   return 1;
 }
 
@@ -401,7 +407,7 @@ int vtkLacunaSliceOutliner::RequestUpdateExtent(
 int vtkLacunaSliceOutliner::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  const bool isWanted = vtkLacunaRanks().GetRank() == 0 && vtkLacunaRequest::IsWanted(outputs);
   vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
   vtkStructuredGrid* picture = vtkStructuredGrid::GetData(outputs, 1);
   output->GetFieldData()->Initialize(); // VTK passes the slices' own
