@@ -184,7 +184,7 @@ void pqLacunaOutlineCanvas::Close()
 //------------------------------------------------------------------------------
 void pqLacunaOutlineCanvas::mousePressEvent(QMouseEvent* event)
 {
-  if (this->Picture.isNull())
+  if (this->Picture.isNull() || !this->Message.isEmpty()) // there is nothing to draw in
   {
     return;
   }
