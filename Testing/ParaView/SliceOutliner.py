@@ -86,6 +86,17 @@ assert outlines.take(taken, outliner) == 5
 assert sorted(outline["slice"] for outline in outlines.get(taken)) == chosen
 volume = outlines.table(OutlinedStructures(Input=taken))["Organ"]["Volume (ml)"]
 assert abs(volume / row["Volume (ml)"] - 1) < 0.003, volume
+# ParaView's own files: the lines, and the table.
+lines = output("outlines.vtp")
+SaveData(lines, proxy=outliner, DataMode="Binary")
+taken = SliceOutliner(Input=sweep)
+assert outlines.take(taken, XMLPolyDataReader(FileName=[lines])) == 5
+volume = outlines.table(OutlinedStructures(Input=taken))["Organ"]["Volume (ml)"]
+assert abs(volume / row["Volume (ml)"] - 1) < 0.003, volume
+SaveData(output("structures.csv"), proxy=OutputPort(structures, 1))
+with open(output("structures.csv"), encoding="utf-8") as file:
+    titles, numbers = (line.strip().replace('"', "").split(",") for line in file)
+assert abs(float(numbers[titles.index("Volume (ml)")]) - row["Volume (ml)"]) < 1e-4, numbers
 moved = Transform(Input=outliner)
 moved.Transform.Translate = [0, 0, 4]
 try:

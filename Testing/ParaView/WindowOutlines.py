@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Outlines in the ParaView application, drawn by somebody who clicks what is to be seen: menus, Apply, buttons by their words, the picture.
 
-Five outlines of the phantom's organ give its volume in the panel within 1 %. Further: freehand, trace, copy, undo, moving a point.
+Five outlines of the phantom's organ give its volume in the panel within 1 %. Further: freehand, trace, copy, undo, moving a point, snapping,
+keys, names, files.
 The pictures outline-organ-*.png that it leaves in the tests' output are those of the page outline-an-organ.md.
 """
 import os
@@ -117,6 +118,59 @@ def test(window):
     traced = [outline for outline in outlines.get(outliner) if outline["structure"] == "Structure 2"]
     assert len(traced) == 1 and traced[0]["slice"] == between, outlines.get(outliner)
     assert window.get(PANEL + "VolumeSummary") == "Structure 2: 1 of 3 slices outlined", window.get(PANEL + "VolumeSummary")
+    assert window.get(PANEL + "SliceSlider", "value") == str(between)
+
+    # drawn too far out, snapped to the border; undone
+    window.press(PANEL + "Delete outline")
+    window.press(PANEL + "Snap to edge")
+    window.press(PANEL + "Points")
+    true = border(between, 12)
+    outwards = true - true.mean(axis=0)
+    for point in [*(far := true + 3 * outwards / np.linalg.norm(outwards, axis=1, keepdims=True)), far[0]]:
+        click(point)
+    snapped = [outline["points"] for outline in outlines.get(outliner) if outline["structure"] == "Structure 2"][0]
+    away = np.linalg.norm(snapped[:, None] - border(between, 400)[None], axis=2).min(axis=1)
+    assert len(snapped) == 12 and away.max() < 1, away
+    window.press(PANEL + "Snap to edge")
+
+    # keys step through the slices while the picture has the focus
+    window.key(0x01000014)  # Right
+    window.wait(200)
+    assert outliner.Slice == between + 1, outliner.Slice
+    window.key(0x01000013)  # Up
+    window.wait(200)
+    assert outliner.Slice == between, outliner.Slice
+
+    # a name, which another structure must not have
+    def rename(name):
+        def answer():
+            window.type("QLineEdit", name)
+            window.press("OK")
+        window.press(PANEL + "Rename", answer)
+    rename("Structure 1")
+    assert list(outliner.StructureNames) == ["Structure 1", "Structure 2"], list(outliner.StructureNames)
+    rename("Zyste 2")
+    assert list(outliner.StructureNames) == ["Structure 1", "Zyste 2"], list(outliner.StructureNames)
+
+    # written, taken away and read again
+    def choose(button):
+        def answer():
+            window.type("fileNameEdit", os.path.dirname(path))  # Qt lists the folder first, and then knows the name
+            window.type("fileNameEdit", path)
+            window.press(button)
+        return answer
+    path = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "window-outlines.csv")
+    if os.path.exists(path):
+        os.remove(path)
+    window.press(PANEL + "Save", choose("Save"))
+    before = outlines.get(outliner)
+    outliner.OutlinePoints = []
+    outliner.UpdatePipeline()
+    window.wait(200)
+    window.press(PANEL + "Load", choose("Open"))
+    after = outlines.get(outliner)
+    assert [(one["structure"], one["slice"]) for one in after] == [(one["structure"], one["slice"]) for one in before], after
+    assert max(np.abs(one["points"] - other["points"]).max() for one, other in zip(after, before)) < 1e-4
 
 
 lacuna_window.main(test)
