@@ -352,6 +352,19 @@ extern "C"
     return 1;
   }
 
+  /// Puts text into a field at once, as from the clipboard: of any language, and without completions.
+  int lacuna_paste(const char* name, const char* text)
+  {
+    auto* field = qobject_cast<QLineEdit*>(Find(name));
+    if (!field || !field->isEnabled() || !field->isVisible())
+    {
+      return 0;
+    }
+    field->selectAll();
+    field->insert(QString::fromUtf8(text));
+    return 1;
+  }
+
   /// Presses a key, one of Qt::Key, in the main window, and holds it for so many repeats.
   int lacuna_key(int key, int repeats)
   {

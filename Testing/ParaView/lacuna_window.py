@@ -154,6 +154,10 @@ class Window:
         assert self.library.lacuna_type(name.encode(), str(text).encode()), f"{name} is no field, or not seen"
         self.wait(50)
 
+    def paste(self, name, text):
+        """As type(), from the clipboard: letters of any language, and no completions."""
+        assert self.library.lacuna_paste(name.encode(), text.encode()), f"{name} is not there, disabled, or no field"
+
     def key(self, code, repeats=0):
         assert self.library.lacuna_key(code, repeats)
         self.wait(50)
