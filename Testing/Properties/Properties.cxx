@@ -6,8 +6,9 @@
 // --seed: of the first case, the others follow; `clock` takes one from the time. --count: cases of
 // an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone. It is
 // one, too, when an algorithm came to the point in no case: there are more then, up to 60.
+#include "lacunaGrowth.h"
+#include "lacunaGrowth.h"
 #include "lacunaProcessMemory.h"
-#include "lacunaSanitized.h"
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 #include "vtkLogger.h"
@@ -201,6 +202,10 @@ int main(int argc, char* argv[])
       << "usage: LacunaProperties outcome|abort|abort-threads|cycles|exhaustion [--seed N|clock] "
          "[--count N] [--filter NAME]... [--output FOLDER]\n";
     return 2;
+  }
+  if (options.Test == "cycles")
+  {
+    lacuna::CountExactly(argv);
   }
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   const bool areAtWork = options.Test == "abort-threads";
