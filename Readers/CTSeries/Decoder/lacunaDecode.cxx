@@ -25,6 +25,14 @@ namespace
 {
 using namespace lacuna;
 
+// Sanitizers have terabytes of addresses.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) ||                               \
+  __has_feature(address_sanitizer)
+constexpr bool Sanitized = true;
+#else
+constexpr bool Sanitized = false;
+#endif
+
 // Bytes of addresses that the process has.
 std::uint64_t GetAddresses()
 {
@@ -42,16 +50,15 @@ std::uint64_t GetAddresses()
 
 void SetMemoryLimit(std::uint64_t bytes)
 {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&                             \
-  !__has_feature(address_sanitizer) // which have terabytes of addresses
+  if (Sanitized)
+  {
+    return;
+  }
   rlimit limit{};
   getrlimit(RLIMIT_AS, &limit);
   const std::uint64_t most = limit.rlim_max;
   limit.rlim_cur = std::min(most, GetAddresses() + bytes);
   setrlimit(RLIMIT_AS, &limit);
-#else
-  static_cast<void>(bytes);
-#endif
 }
 
 // Of processor time, after which SIGPROF ends the process; 0: none.
