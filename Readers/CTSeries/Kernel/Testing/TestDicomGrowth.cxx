@@ -147,7 +147,7 @@ TEST(DicomGrowth, Elements)
 TEST(DicomGrowth, Frames)
 {
   // what all frames share is as long as they are many
-  ExpectLinear(3000,
+  ExpectLinear(800,
     [](int n)
     {
       const std::string type = Repeat(n, [](int) { return "A\\"; });
