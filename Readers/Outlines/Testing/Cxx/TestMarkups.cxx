@@ -225,7 +225,7 @@ void TestGrowth()
   triangle.Points.push_back({ "[4.0, 3e1, 3.25]" });
   const auto repeat = [](int n, const Curve& curve)
   { return MakeMarkups(std::vector<Curve>(static_cast<std::size_t>(n), curve)); };
-  expectLinear(400, [&](int n) { return repeat(n, triangle); });
+  expectLinear(1000, [&](int n) { return repeat(n, triangle); });
   expectLinear(400,
     [&](int n)
     {
