@@ -39,6 +39,7 @@ macro (vtk_module_find_package) # PACKAGE <name>; its variables are for the call
   find_package(${ARGV1} REQUIRED)
 endmacro ()
 
+set(lacuna_decoder_folder "Lacuna-kernels")
 file(GLOB_RECURSE lacuna_kernel_files RELATIVE "${CMAKE_SOURCE_DIR}" CONFIGURE_DEPENDS
   Filters/vtk.module Readers/vtk.module Sources/vtk.module)
 list(FILTER lacuna_kernel_files INCLUDE REGEX "/Kernel/vtk\\.module$")
@@ -55,6 +56,9 @@ if (BUILD_TESTING)
   endforeach ()
 endif ()
 add_subdirectory(Sources/Acquisition/Emulator)
+if (LACUNA_HAS_GDCM)
+  add_subdirectory(Readers/CTSeries/Decoder)
+endif ()
 if (BUILD_TESTING)
   add_subdirectory(Testing/Fuzz)
 endif ()

@@ -108,13 +108,14 @@ public:
     {
       return false;
     }
-    lacuna::ReadDicomPixels(a, this->First);
-    lacuna::ReadDicomPixels(b, this->Second);
+    this->Decoder.Read(a, this->First);
+    this->Decoder.Read(b, this->Second);
     return this->First.Format.Signed == this->Second.Format.Signed &&
       this->First.Bytes == this->Second.Bytes;
   }
 
 private:
+  lacuna::DicomDecoder Decoder;
   lacuna::CTPixels First;
   lacuna::CTPixels Second;
 };
@@ -391,8 +392,12 @@ int vtkLacunaCTSeriesReader::RequestData(
         lacuna::PreferLargePages(voxels,
           static_cast<std::size_t>(output->GetNumberOfPoints()) *
             lacuna::GetScalarSize(found.Type));
-        lacuna::ReadCTVolume(found.Geometry, extent, found.Type, this->PaddingValue,
-          lacuna::ReadDicomPixels, voxels, execution);
+        lacuna::DicomDecoder decoder;
+        lacuna::ReadCTVolume(
+          found.Geometry, extent, found.Type, this->PaddingValue,
+          [&](const lacuna::CTFrame& frame, lacuna::CTPixels& pixels)
+          { decoder.Read(frame, pixels); },
+          voxels, execution);
         this->SetErrorCode(vtkErrorCode::NoError);
       }
       catch (const lacuna::Aborted&)

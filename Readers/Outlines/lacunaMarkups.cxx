@@ -25,6 +25,7 @@ namespace
 constexpr int DeepestNesting = 64;  // Slicer's files have 6 levels
 constexpr double BytesOfValue = 60; // of jsoncpp for each byte of text, at most: "[1,1,1"
 constexpr std::size_t LongestShown = 40;
+constexpr std::size_t MostNamed = 8; // types in a message
 
 std::string Show(const std::string& text)
 {
@@ -137,8 +138,13 @@ private:
   {
     const auto offset = std::clamp<std::ptrdiff_t>(
       value.getOffsetStart(), 0, static_cast<std::ptrdiff_t>(this->Text.size()));
-    return this->Path + ": line " +
-      std::to_string(1 + std::count(this->Text.begin(), this->Text.begin() + offset, '\n')) + ": ";
+    // lines are counted on from the place before: curves follow one another
+    const bool isBehind = offset >= this->Counted;
+    this->Line = (isBehind ? this->Line : 1) +
+      std::count(
+        this->Text.begin() + (isBehind ? this->Counted : 0), this->Text.begin() + offset, '\n');
+    this->Counted = offset;
+    return this->Path + ": line " + std::to_string(this->Line) + ": ";
   }
 
   static const Json::Value* Find(const Json::Value& object, const std::string& name)
@@ -285,8 +291,13 @@ private:
   std::string DescribeOthers() const
   {
     std::string text;
+    std::size_t named = 0;
     for (const auto& [type, count] : this->OtherTypes)
     {
+      if (++named > MostNamed)
+      {
+        return text + " and others";
+      }
       text += (text.empty() ? "" : ", ") + std::to_string(count) + " of type " + type;
     }
     return text;
@@ -297,6 +308,8 @@ private:
   OutlineSet Outlines;
   std::map<std::string, std::size_t> OtherTypes;
   std::size_t NotPlaced = 0;
+  mutable std::ptrdiff_t Counted = 0; // a place in the text
+  mutable std::ptrdiff_t Line = 1;    // of it
 };
 }
 

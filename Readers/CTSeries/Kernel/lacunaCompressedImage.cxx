@@ -2,6 +2,7 @@
 #include "lacunaCompressedImage.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace lacuna
@@ -9,6 +10,9 @@ namespace lacuna
 namespace
 {
 constexpr std::size_t RunHeader = 64;
+// A stream of a hundred bytes can stand for an image of one value of any size, which is no CT.
+constexpr std::int64_t FreeBytes = std::int64_t(32) << 20; // 4096 x 4096 of 16 bits
+constexpr std::int64_t MostPerByte = 1000;
 constexpr std::size_t Jpeg2000Header = 42; // up to the first component's subsampling
 
 // Numbers of a stream; 0 beyond its end.
@@ -77,6 +81,14 @@ struct ImageSize
   int Bits = 0;
   int Components = 0;
 };
+
+// Whether a JPEG-LS stream has an end: no other two bytes of it are these. CharLS looks for the end of a
+// stream that is cut off for seconds.
+bool HasEnd(const std::vector<unsigned char>& bytes)
+{
+  constexpr std::array<unsigned char, 2> End = { 0xFF, 0xD9 };
+  return std::search(bytes.begin(), bytes.end(), End.begin(), End.end()) != bytes.end();
+}
 
 // JPEG 2000, a code stream without its file format: SOC, SIZ.
 ImageSize ReadJpeg2000Size(const Stream& stream)
@@ -156,6 +168,18 @@ std::string WhyNotImage(const std::vector<unsigned char>& bytes, const std::stri
   if (size.Components == 1 && size.Columns == columns && size.Rows == rows &&
     (size.Bits + 7) / 8 * 8 == allocated)
   {
+    const std::int64_t decoded = columns * rows * (allocated / 8);
+    const auto stored = static_cast<std::int64_t>(bytes.size());
+    if (decoded > FreeBytes && decoded / MostPerByte > stored)
+    {
+      return "are " + std::to_string(stored) + " bytes, too few for an image of " +
+        std::to_string(decoded) + " (at most " + std::to_string(MostPerByte) +
+        " times as many, or 32 MiB); the file is damaged, or no CT";
+    }
+    if (size.Kind == Coding::JpegLS && !HasEnd(bytes))
+    {
+      return "are cut off; get the file again from the archive";
+    }
     return {};
   }
   return "are of " + std::to_string(size.Columns) + " x " + std::to_string(size.Rows) +

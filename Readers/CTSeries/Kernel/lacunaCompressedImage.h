@@ -13,7 +13,9 @@ namespace lacuna
 {
 /// Why a stream is not of the kind of its transfer syntax, JPEG, JPEG-LS or JPEG 2000, with one component
 /// of columns x rows pixels, which take allocated bits each when they are decoded (a multiple of 8: codecs
-/// write as many as the stream has) ("are of 512 x 400 pixels ..."); empty when it is.
+/// write as many as the stream has) ("are of 512 x 400 pixels ..."), or cannot be
+/// an image: JPEG-LS without an end, or more than 1000 times the bytes of the stream and 32 MiB. Empty when it
+/// is one.
 std::string WhyNotImage(const std::vector<unsigned char>& stream, const std::string& transferSyntax,
   std::int64_t columns, std::int64_t rows, int allocated);
 

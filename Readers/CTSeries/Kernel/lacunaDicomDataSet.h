@@ -29,7 +29,8 @@ struct DicomSelection
   /// Sequences whose items are kept. Files that do not say what is a sequence have one where these are.
   std::vector<DicomTag> Sequences = { 0x00189329, 0x00209111, 0x00209113, 0x00209116, 0x00289110,
     0x00289145, 0x52009229, 0x52009230 };
-  std::int64_t LongestValue = 16384; ///< bytes; longer values are left out
+  /// Bytes; longer values are left out. What frames share is read for each of them.
+  std::int64_t LongestValue = 1024;
 };
 
 /// Elements by tag, without private ones and what a DicomSelection leaves out.

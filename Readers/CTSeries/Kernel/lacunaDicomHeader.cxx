@@ -14,6 +14,7 @@ namespace lacuna
 namespace
 {
 constexpr int MostFrames = 100000;
+constexpr std::size_t LongestImageType = 128;                // bytes: each frame keeps its own
 constexpr std::int64_t LargestImage = 65535;                 // columns or rows
 constexpr const char* CTClass = "1.2.840.10008.5.1.4.1.1.2"; // and what begins so: enhanced CT
 constexpr DicomTag SharedGroups = 0x52009229;
@@ -321,10 +322,12 @@ CTFrame ReadFrame(
   frame.Header = header;
   frame.Number = index;
   const DicomDataSet& type = values.Get(0x00189329);
-  frame.ImageType = SplitDicomValues(type.GetText(0x00089007));
+  const auto split = [](const std::string& text)
+  { return SplitDicomValues(std::string_view(text).substr(0, LongestImageType)); };
+  frame.ImageType = split(type.GetText(0x00089007));
   if (frame.ImageType.empty())
   {
-    frame.ImageType = SplitDicomValues(data.GetText(0x00080008));
+    frame.ImageType = split(data.GetText(0x00080008));
   }
   constexpr DicomTag Measures = 0x00289110;
   constexpr DicomTag Rescale = 0x00289145;

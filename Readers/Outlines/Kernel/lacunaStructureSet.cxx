@@ -33,6 +33,7 @@ constexpr DicomTag PointCountTag = 0x30060046;
 constexpr DicomTag PointsTag = 0x30060050;
 constexpr DicomTag ReferencedNumberTag = 0x30060084;
 constexpr std::size_t MostNamed = 5;
+constexpr std::size_t LongestName = 1024; // bytes
 
 std::string Join(const std::vector<std::string>& names)
 {
@@ -124,6 +125,11 @@ private:
         this->Fail("a structure has no valid ROI Number (3006,0022); save the structures again");
       }
       std::string name = DicomTextToUtf8(item.GetBytes(StructureNameTag), characters);
+      if (name.size() > LongestName) // each outline tells it
+      {
+        this->Fail("a structure has a name (3006,0026) of " + std::to_string(name.size()) +
+          " bytes, where 64 characters are allowed; the file may be damaged: export it again");
+      }
       name = name.empty() ? "Structure " + std::to_string(*number) : name;
       if (!this->Names.emplace(*number, name).second)
       {

@@ -259,11 +259,11 @@ std::int64_t ByteStream::Read(unsigned char* output, std::int64_t size)
 }
 
 //------------------------------------------------------------------------------
-std::int64_t ByteStream::CountBytes()
+std::int64_t ByteStream::CountBytes(std::int64_t most)
 {
   std::vector<unsigned char> scratch(BufferSize);
   std::int64_t bytes = 0;
-  while (!this->Ended)
+  while (!this->Ended && bytes <= most)
   {
     bytes += this->Read(scratch.data(), static_cast<std::int64_t>(scratch.size()));
   }

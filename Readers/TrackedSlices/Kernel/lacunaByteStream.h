@@ -27,8 +27,9 @@ public:
   /// Puts up to size decoded bytes into output and returns how many there were; fewer means that
   /// nothing more can be had: see the functions below.
   std::int64_t Read(unsigned char* output, std::int64_t size);
-  /// Decodes what is left and returns how many bytes that was.
-  std::int64_t CountBytes();
+  /// Decodes what is left, but hardly more than most bytes, and returns how many bytes that was. More
+  /// than most: there may be still more.
+  std::int64_t CountBytes(std::int64_t most);
 
   /// Why nothing more can be had: "are corrupt" or such; empty when the stream just ended.
   const std::string& GetDamage() const { return this->Damage; }

@@ -159,7 +159,8 @@ private:
       this->Fail("has more than " + std::to_string(MostTransforms) + " transforms");
     }
     std::vector<TransformGraph::Link> chain;
-    if (!this->Graph.FindChain(transform.From, transform.To, chain))
+    if (!this->Graph.HasFrame(transform.From) || !this->Graph.HasFrame(transform.To) ||
+      !this->Graph.FindChain(transform.From, transform.To, chain))
     {
       this->Graph.Add(transform.From, transform.To, static_cast<int>(this->Transforms.size()));
       this->Transforms.push_back(transform);

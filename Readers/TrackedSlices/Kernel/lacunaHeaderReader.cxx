@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaHeaderReader.h"
 
+#include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
 
 #include <algorithm>
@@ -148,6 +149,25 @@ void HeaderReader::FailTwice(
     (IdentifiesPatient(field, { first, second }) ? ", with another text"
                                                  : ", as '" + second + "' after '" + first + "'") +
     "; remove the wrong one");
+}
+
+//------------------------------------------------------------------------------
+void HeaderReader::AddCustomField(const std::string& name, const std::string& value)
+{
+  // No crowd of other fields keeps away what says where slices lie.
+  const bool isPlace = EndsWithIgnoringCase(name, "Transform") ||
+    EndsWithIgnoringCase(name, "TransformStatus") || name == FirstColumnField ||
+    name == FirstRowField;
+  std::size_t& count = isPlace ? this->PlaceFields : this->OtherFields;
+  if (count < MostFields)
+  {
+    ++count;
+    this->Header.CustomFields.emplace_back(name, value);
+  }
+  else
+  {
+    this->Surplus.push_back(name);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -474,6 +494,11 @@ void HeaderReader::CheckFrameFields() const
       " frames, but fields Seq_Frame... describe only " + std::to_string(described.size()) +
       " of them");
   }
+  if (names.size() > MostFields)
+  {
+    this->Fail("the frames have " + std::to_string(names.size()) + " different fields; up to " +
+      std::to_string(MostFields) + " are read: is the file damaged?");
+  }
   if (names.size() * count > 100 * this->FrameFields.size() + 1000000)
   {
     this->Fail("the frames have " + std::to_string(names.size()) +
@@ -489,6 +514,13 @@ void HeaderReader::SortFrameFields()
     this->Header.Warnings.push_back(
       "ignored what is neither a field of the header nor of the form Seq_Frame0000_Name: " +
       JoinSome(this->Ignored));
+  }
+  if (!this->Surplus.empty())
+  {
+    const std::size_t kept = this->Header.CustomFields.size();
+    this->Header.Warnings.push_back("the header has " +
+      std::to_string(kept + this->Surplus.size()) + " fields of its own; the first " +
+      std::to_string(kept) + " are kept. Left out are " + JoinSome(this->Surplus));
   }
   if (this->CutOff)
   {

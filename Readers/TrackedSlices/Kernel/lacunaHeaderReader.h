@@ -61,6 +61,8 @@ protected:
   [[noreturn]] void FailTwice(
     const std::string& field, const std::string& first, const std::string& second) const;
 
+  /// Keeps a field that the format does not define. Beyond MostFields it is left out, and a warning.
+  void AddCustomField(const std::string& name, const std::string& value);
   /// Keeps Seq_Frame0012_Timestamp. A name that is not of this form is noted as ignored.
   void AddFrameField(const std::string& name, const std::string& value);
   void Ignore(const std::string& what) { this->Ignored.push_back(what); }
@@ -85,6 +87,9 @@ protected:
   void SetPixelSpacing(const std::vector<std::string>& spacings);
   /// Sets the place of the pixels to a file named in the header; name is the field's.
   void SetDataFile(const std::string& name, const std::string& value);
+  /// Names of fields that are kept: of frames, of transforms in the header, and of other fields. Each becomes an array, and what passes arrays on
+  /// compares each name with all others.
+  static constexpr std::size_t MostFields = 1000;
   /// Gives the frames their fields; reports what was ignored. The last step.
   void SortFrameFields();
 
@@ -115,6 +120,9 @@ private:
   std::size_t FirstAxis = 0; ///< of the columns: colours may come before it
   std::vector<FrameField> FrameFields;
   std::vector<std::string> Ignored;
+  std::size_t PlaceFields = 0;      ///< custom fields that say where slices lie
+  std::size_t OtherFields = 0;      ///< all others
+  std::vector<std::string> Surplus; ///< what either has beyond MostFields
 };
 
 /// The readers proper.

@@ -213,7 +213,7 @@ void MetaImageHeaderReader::AddField(const std::string& givenName, const std::st
   }
   if (inserted.second && KnownFields.count(name) == 0)
   {
-    this->Header.CustomFields.emplace_back(name, value);
+    this->AddCustomField(name, value);
   }
 }
 

@@ -246,7 +246,7 @@ void NrrdHeaderReader::AddField(const NrrdLine& line)
   }
   if (inserted.second && !known)
   {
-    this->Header.CustomFields.emplace_back(line.Name, line.Value);
+    this->AddCustomField(line.Name, line.Value);
   }
 }
 

@@ -98,6 +98,7 @@ public:
     : PixelSource(header)
   {
     const std::int64_t start = FindDataStart(header);
+    this->MostBehind = fileSize + (std::int64_t(1) << 16);
     switch (header.Encoding)
     {
       case PixelEncoding::Hex:
@@ -118,9 +119,11 @@ public:
     else
     {
       this->SkipBytes();
-      const std::int64_t bytes = this->Stream->CountBytes();
-      this->Divide(bytes, this->Stream->GetDamage());
-      if (header.IsVolume && header.Encoding == PixelEncoding::Zlib &&
+      const std::int64_t most =
+        (header.TypeIsLong ? 2 : 1) * header.GetFrameSize() * header.Frames + this->MostBehind;
+      const std::int64_t bytes = this->Stream->CountBytes(most);
+      this->Divide(bytes, this->Stream->GetDamage(), bytes <= most);
+      if (header.IsVolume && header.Encoding == PixelEncoding::Zlib && bytes <= most &&
         !this->Stream->IsComplete() &&
         this->WholeFrames == header.Frames) // else the reader reports the missing slices
       {
@@ -216,7 +219,11 @@ private:
   /// After the last frame: damage may show only in what follows, at the latest in the check sum.
   void CheckEnd()
   {
-    this->Stream->CountBytes();
+    if (this->Stream->CountBytes(this->MostBehind) > this->MostBehind)
+    {
+      this->Fail(this->Name + " go on after the last " + this->FrameWord +
+        "; are the size (DimSize or sizes) and the element type in the header right?");
+    }
     if (!this->Stream->IsComplete())
     {
       this->Fail(this->Name + " are corrupt: their check sum is wrong or missing");
@@ -226,7 +233,9 @@ private:
   std::unique_ptr<ByteStream> Stream;
   std::string Name = "the pixels";
   bool SizeKnown = false; ///< without decoding
-  std::int64_t Next = 0;  ///< frame at which the stream stands
+  /// What follows the last frame is decoded up to so many bytes: a file of 1 MB can hold 1 GB of it.
+  std::int64_t MostBehind = 0;
+  std::int64_t Next = 0; ///< frame at which the stream stands
 };
 
 //------------------------------------------------------------------------------
@@ -276,7 +285,7 @@ std::unique_ptr<PixelSource> PixelSource::Open(const SequenceHeader& header)
 }
 
 //------------------------------------------------------------------------------
-void PixelSource::Divide(std::int64_t bytes, const std::string& damage)
+void PixelSource::Divide(std::int64_t bytes, const std::string& damage, bool all)
 {
   if (this->Header.TypeIsLong && bytes >= 2 * this->FrameSize * this->Header.Frames)
   {
@@ -300,8 +309,9 @@ void PixelSource::Divide(std::int64_t bytes, const std::string& damage)
   }
   else if (bytes > this->FrameSize * this->Header.Frames && this->Header.SkippedBytes >= 0)
   {
-    this->Warning = std::to_string(bytes - this->FrameSize * this->Header.Frames) +
-      " bytes after the last " + this->FrameWord +
+    this->Warning = (all ? "" : "more than ") +
+      std::to_string(bytes - this->FrameSize * this->Header.Frames) + " bytes after the last " +
+      this->FrameWord +
       " are ignored; are the size (DimSize or sizes) and the element type in the header right?";
   }
 }

@@ -47,8 +47,9 @@ protected:
   explicit PixelSource(const SequenceHeader& header);
   virtual void ReadStored(std::int64_t frame, unsigned char* pixels) = 0;
   [[noreturn]] void Fail(const std::string& text) const;
-  /// Sets the members below from the number of bytes there are. damage: why there are no more.
-  void Divide(std::int64_t bytes, const std::string& damage = {});
+  /// Sets the members below from the number of bytes there are. damage: why there are no more. all: no
+  /// more of them follow.
+  void Divide(std::int64_t bytes, const std::string& damage = {}, bool all = true);
 
   const SequenceHeader& Header;
   const std::string FrameWord; ///< what a frame is called in messages

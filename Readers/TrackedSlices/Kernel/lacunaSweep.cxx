@@ -344,8 +344,15 @@ bool SweepBuilder::FindChain(Chain& chain)
     this->Fail("ImageFrame and ReferenceFrame are both '" + image +
       "'; the reference frame must be one that does not move with the image");
   }
+  constexpr std::size_t LongestChain = 64; // each link is computed for each frame
   if (this->Graph().FindChain(image, reference, chain))
   {
+    if (chain.size() > LongestChain)
+    {
+      this->Fail("a chain of " + std::to_string(chain.size()) + " transforms leads from '" + image +
+        "' to '" + reference + "'; up to " + std::to_string(LongestChain) +
+        " are read. Remove those that are not needed");
+    }
     return true;
   }
   const std::string none = this->Graph().HasFrame(image)

@@ -55,6 +55,39 @@ TEST(CompressedImage, SizeOfJpeg)
   EXPECT_EQ(why(MakeJpeg(0xC3, 1), "90", 30, 20, 16), "are JPEG, not JPEG 2000");
 }
 
+// A few bytes cannot claim gigabytes, whatever the codec makes of them. A large image that is alike everywhere
+// can be small.
+TEST(CompressedImage, Bombs)
+{
+  const auto why = [](Bytes stream, const std::string& syntax, int edge)
+  {
+    for (int i = 13; i < 17; i += 2)
+    {
+      stream[i] = static_cast<unsigned char>(edge >> 8);
+      stream[i + 1] = static_cast<unsigned char>(edge & 0xFF);
+    }
+    return WhyNotImage(stream, "1.2.840.10008.1.2.4." + syntax, edge, edge, 16);
+  };
+  const std::string bomb =
+    "are 36 bytes, too few for an image of 1800000000 (at most 1000 times as "
+    "many, or 32 MiB); the file is damaged, or no CT";
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "70", 30000), bomb);
+  EXPECT_EQ(why(MakeJpeg(0xF7, 0), "80", 30000), bomb);
+  EXPECT_EQ(why(MakeJpeg(0xC3, 1), "70", 4096), "");
+  EXPECT_NE(why(MakeJpeg(0xC3, 1), "70", 4097), "");
+  Bytes large = MakeJpeg(0xC3, 1);
+  large.resize(1800000);
+  EXPECT_EQ(why(large, "70", 30000), "");
+
+  Bytes blocks = { 0xFF, 0x4F, 0xFF, 0x51, 0, 41, 0, 0, 0, 0, 0x75, 0x30, 0, 0, 0x75, 0x30 };
+  blocks.resize(46);
+  blocks[41] = 1;
+  blocks[42] = 11;
+  blocks[43] = blocks[44] = 1;
+  EXPECT_EQ(
+    WhyNotImage(blocks, "1.2.840.10008.1.2.4.90", 30000, 30000, 16), "are 46" + bomb.substr(6));
+}
+
 TEST(CompressedImage, RunLength)
 {
   Bytes pixels(16);

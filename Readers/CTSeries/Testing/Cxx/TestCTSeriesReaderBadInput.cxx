@@ -44,6 +44,7 @@ void Patch(const std::string& file, const std::string& tag, const std::string& v
 }
 
 const std::string RowsTag("\x28\0\x10\0", 4);
+const std::string HighBitTag("\x28\0\x02\x01", 4);
 const std::string ColumnsTag("\x28\0\x11\0", 4);
 
 void TestMixedSeries()
@@ -210,6 +211,21 @@ void TestClaimedSizes()
     LACUNA_CHECK_CONTAINS(test.Errors, BaseName(test.Files[0]) + ": its compressed pixels are ");
     LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
   }
+  // a layout of ACR-NEMA, for which GDCM ends its process by an assertion; the reader goes on
+  CTTestSeries layout = Edited({});
+  layout.TransferSyntax = "1.2.840.10008.1.2.4.70";
+  layout.BitsStored = 12;
+  layout.Signed = false;
+  layout.Intercept = -1024;
+  ReaderOf test(layout);
+  test.ExpectGood();
+  Patch(test.Files[3], HighBitTag, std::string("\x0F\0", 2));
+  test.Reader->Modified();
+  test.ExpectError(BaseName(test.Files[3]) + ": its compressed pixels cannot be decoded: ");
+  LACUNA_CHECK_CONTAINS(test.Errors, "; get this slice from the archive again");
+  Patch(test.Files[3], HighBitTag, std::string("\x0B\0", 2));
+  test.Reader->Modified();
+  test.ExpectGood();
   // a shear that no grid could hold
   CTTestSeries sheared = Edited({}, 3);
   sheared.Step = { 1e5, 0, 2 };

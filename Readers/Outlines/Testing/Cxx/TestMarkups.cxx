@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Markups as 3D Slicer writes them: LPS and RAS, units, points that are not placed, damage.
 #include "OutlineReaderTesting.h"
+#include "lacunaDoubling.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
+#include <functional>
 #include <locale>
+#include <memory>
 #include <vector>
 
 namespace
@@ -198,6 +202,64 @@ void TestLocale()
   LACUNA_CHECK(test.Errors.empty());
   std::locale::global(before);
 }
+
+// Many curves, points, other markups and types of them.
+void TestGrowth()
+{
+  const auto expectLinear = [](int size, const std::function<std::string(int)>& make)
+  {
+    const double growth = lacuna::GetGrowthOfThreeDoublings(size,
+      [&](int n) -> std::function<void()>
+      {
+        const auto test = std::make_shared<ReaderOf>(make(n));
+        return [test]
+        {
+          test->Reader->Modified();
+          test->Update();
+        };
+      });
+    LACUNA_CHECK_THAT(growth < lacuna::MostGrowth, std::to_string(growth));
+  };
+  Curve triangle;
+  triangle.Points.resize(2);
+  triangle.Points.push_back({ "[4.0, 3e1, 3.25]" });
+  const auto repeat = [](int n, const Curve& curve)
+  { return MakeMarkups(std::vector<Curve>(static_cast<std::size_t>(n), curve)); };
+  expectLinear(1000, [&](int n) { return repeat(n, triangle); });
+  expectLinear(400,
+    [&](int n)
+    {
+      Curve curve;
+      curve.Points.assign(static_cast<std::size_t>(n), { "[1.5, 2.0, 3.25]" });
+      return MakeMarkups({ triangle, curve });
+    });
+  const auto others = [&](int n)
+  {
+    std::vector<Curve> curves(static_cast<std::size_t>(n), triangle);
+    for (int i = 1; i < n; ++i)
+    {
+      curves[static_cast<std::size_t>(i)].Type = "Type" + std::to_string(i);
+    }
+    return MakeMarkups(curves);
+  };
+  expectLinear(400, others);
+  ReaderOf many(others(1000));
+  many.Update();
+  LACUNA_CHECK_CONTAINS(
+    many.Warnings, "markups that are not closed curves are left out: 1 of type");
+  LACUNA_CHECK_CONTAINS(many.Warnings, " and others");
+  LACUNA_CHECK_THAT(many.Warnings.size() < 600, many.Warnings);
+
+  // lines are counted on, also from a place before
+  Curve bad = triangle;
+  bad.Points[1].Position = "[1.0, true, 2.0]";
+  ReaderOf lines(MakeMarkups({ triangle, triangle, bad }));
+  lines.Update();
+  const std::string text = MakeMarkups({ triangle, triangle, bad });
+  const std::string before = text.substr(0, text.rfind("\"id\": \"2\""));
+  const auto line = std::count(before.begin(), before.end(), '\n'); // that of the brace before
+  LACUNA_CHECK_CONTAINS(lines.Errors, "line " + std::to_string(line) + ": control point 2");
+}
 }
 
 int TestMarkups(int, char*[])
@@ -207,5 +269,6 @@ int TestMarkups(int, char*[])
   TestErrors();
   TestDamage();
   TestLocale();
+  TestGrowth();
   return lacunaCheck::Result();
 }

@@ -305,6 +305,26 @@ void TestAbort()
   LACUNA_CHECK(test.Errors.empty());
   LACUNA_CHECK(test.Reader->GetOutput()->GetNumberOfPoints() == 0);
 }
+
+// What passes arrays on compares their names: of many fields, some become arrays.
+void TestManyFields()
+{
+  SequenceFile file = MakeSequence(2);
+  std::string fields;
+  for (int i = 0; i < 20000; ++i)
+  {
+    fields += "C" + std::to_string(i) + " = v\n";
+  }
+  std::string content = file.GetContent();
+  content.insert(content.find('\n') + 1, fields);
+  ReaderOf test(content);
+  test.Reader->Update();
+  LACUNA_CHECK_THAT(test.Errors.empty(), test.Errors);
+  LACUNA_CHECK(test.Reader->GetOutput()->GetFieldData()->GetNumberOfArrays() < 1100);
+  LACUNA_CHECK(test.Reader->GetOutput()->GetFieldData()->GetAbstractArray("C900"));
+  LACUNA_CHECK_CONTAINS(
+    test.Warnings, " fields of its own; the first 1000 are kept. Left out are C");
+}
 }
 
 int TestTrackedSliceReader(int, char*[])
@@ -319,5 +339,6 @@ int TestTrackedSliceReader(int, char*[])
   TestScanLines();
   TestContradictions();
   TestAbort();
+  TestManyFields();
   return lacunaCheck::Result();
 }

@@ -5,13 +5,11 @@
 #include "lacunaDicomHeader.h"
 #include "lacunaMemory.h"
 
-#ifdef LACUNA_HAS_GDCM
-#include "lacunaGDCMDecoder.h"
-#endif
-
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace lacuna
 {
@@ -30,9 +28,68 @@ void MakeRoom(const CTFrame& frame, CTPixels& pixels)
   pixels.Bytes.resize(size);
 }
 
+DecoderRequest MakeRequest(const CTFrame& frame, const CTPixels& pixels)
+{
+  const CTFileHeader& header = *frame.Header;
+  DecoderRequest request;
+  request.StreamBytes = pixels.Stream.size();
+  request.PixelBytes = pixels.Bytes.size();
+  request.Columns = static_cast<std::uint32_t>(header.Columns);
+  request.Rows = static_cast<std::uint32_t>(header.Rows);
+  request.Format = { header.Format.BitsAllocated, header.Format.BitsStored, header.Format.HighBit,
+    header.Format.Signed ? 1 : 0 };
+  header.TransferSyntax.copy(request.TransferSyntax, sizeof request.TransferSyntax - 1);
+  return request;
+}
+}
+
+//------------------------------------------------------------------------------
+DicomDecoder::DicomDecoder(std::string program)
+  : Program(std::move(program))
+{
+}
+
+//------------------------------------------------------------------------------
+std::string DicomDecoder::DecodeByProcess(const CTFrame& frame, CTPixels& pixels)
+{
+  constexpr std::size_t LongestFragment = 0xFFFFFFFE;
+  pixels.Stream.resize(pixels.Stream.size() + pixels.Stream.size() % 2); // fragments are even
+  if (pixels.Stream.size() > LongestFragment)
+  {
+    return "are too long";
+  }
+  std::unique_ptr<DecoderProcess> process;
+  {
+    const std::lock_guard<std::mutex> lock(this->Lock);
+    if (!this->Idle.empty())
+    {
+      process = std::move(this->Idle.back());
+      this->Idle.pop_back();
+    }
+  }
+  if (!process)
+  {
+    process = std::make_unique<DecoderProcess>(this->Program);
+  }
+  DecoderFormat found;
+  std::string wrong =
+    process->Decode(MakeRequest(frame, pixels), pixels.Stream.data(), pixels.Bytes.data(), found);
+  if (wrong.empty())
+  {
+    pixels.Format = { found.BitsAllocated, found.BitsStored, found.HighBit, found.Signed == 1 };
+  }
+  if (process->IsAlive())
+  {
+    const std::lock_guard<std::mutex> lock(this->Lock);
+    this->Idle.push_back(std::move(process));
+  }
+  return wrong;
+}
+
+//------------------------------------------------------------------------------
 // Returns what is wrong with the stream. The header's size is believed only when the stream bears it
 // out: a few bytes may claim an image of gigabytes.
-std::string Decode(const CTFrame& frame, CTPixels& pixels)
+std::string DicomDecoder::Decode(const CTFrame& frame, CTPixels& pixels)
 {
   const CTFileHeader& header = *frame.Header;
   if (header.TransferSyntax == RunLengthSyntax)
@@ -46,25 +103,18 @@ std::string Decode(const CTFrame& frame, CTPixels& pixels)
       DecodeRunLength(pixels.Stream, header.Format.BitsAllocated / 8, pixels.Bytes);
     return decoded ? "" : "cannot be decoded";
   }
-#ifdef LACUNA_HAS_GDCM
   std::string wrong = WhyNotImage(
     pixels.Stream, header.TransferSyntax, header.Columns, header.Rows, header.Format.BitsAllocated);
   if (wrong.empty())
   {
-    pixels.Bytes.clear(); // what a codec leaves out shall not be the image before
     MakeRoom(frame, pixels);
-    wrong = DecodeWithGDCM(frame, pixels);
+    wrong = this->DecodeByProcess(frame, pixels);
   }
   return wrong;
-#else
-  return "cannot be decoded, since this program was built without GDCM; gdcmconv --raw makes an "
-         "uncompressed file";
-#endif
-}
 }
 
 //------------------------------------------------------------------------------
-void ReadDicomPixels(const CTFrame& frame, CTPixels& pixels)
+void DicomDecoder::Read(const CTFrame& frame, CTPixels& pixels)
 {
   const CTFileHeader& header = *frame.Header;
   pixels.Format = header.Format;
@@ -82,7 +132,19 @@ void ReadDicomPixels(const CTFrame& frame, CTPixels& pixels)
   }
   pixels.Stream.resize(static_cast<std::size_t>(GetDicomSize(frame)));
   ReadDicomBytes(frame, pixels.Stream.data());
-  std::string wrong = Decode(frame, pixels);
+  std::string wrong;
+  try
+  {
+    wrong = this->Decode(frame, pixels);
+  }
+  catch (const MemoryExceeded&)
+  {
+    throw;
+  }
+  catch (const std::runtime_error& error) // of a process that does not start
+  {
+    wrong = error.what();
+  }
   pixels.Data = pixels.Bytes.data();
   if (wrong.empty() && pixels.Format.BitsAllocated != header.Format.BitsAllocated)
   {
