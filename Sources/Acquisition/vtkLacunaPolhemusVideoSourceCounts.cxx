@@ -104,6 +104,12 @@ vtkIdType vtkLacunaPolhemusVideoSource::GetRecordedSlices() const
 }
 
 //------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetVerifiedSlices() const
+{
+  return this->Now->GetSweepState().File.Verified;
+}
+
+//------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetRecordedFileName()
 {
   this->Now->FileName = this->Now->GetSweepState().File.FileName;
@@ -128,7 +134,8 @@ double vtkLacunaPolhemusVideoSource::GetDiskSpace() const
 //------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetDiskMessage()
 {
-  this->Now->DiskMessage = this->Now->GetSweepState().File.Trouble;
+  const lacuna::SweepFile::State file = this->Now->GetSweepState().File;
+  this->Now->DiskMessage = file.Trouble.empty() ? file.Notice : file.Trouble;
   return this->Now->DiskMessage.c_str();
 }
 

@@ -128,6 +128,50 @@ void OutputFile::Sync()
 }
 
 //------------------------------------------------------------------------------
+void OutputFile::CheckName(const std::string& path) const
+{
+  struct stat named;
+  struct stat open;
+  if (fstat(this->Descriptor, &open) != 0)
+  {
+    this->Throw(errno);
+  }
+  if (stat(path.c_str(), &named) != 0)
+  {
+    if (errno == ENOENT || errno == ENOTDIR || errno == ESTALE)
+    {
+      throw FileLost("'" + this->Name + "' is no longer there: it was removed or renamed");
+    }
+    throw FileError::Make("cannot look at", this->Name, errno);
+  }
+  if (named.st_dev != open.st_dev || named.st_ino != open.st_ino)
+  {
+    throw FileLost("'" + this->Name + "' is another file now");
+  }
+}
+
+//------------------------------------------------------------------------------
+void OutputFile::CheckSize(std::int64_t size) const
+{
+  struct stat open;
+  if (fstat(this->Descriptor, &open) != 0)
+  {
+    this->Throw(errno);
+  }
+  if (open.st_size < size)
+  {
+    throw FileLost("'" + this->Name + "' was cut off: it has " + std::to_string(open.st_size) +
+      " bytes, and " + std::to_string(size) + " were written");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string OutputFile::GetOpenName() const
+{
+  return "/proc/self/fd/" + std::to_string(this->Descriptor);
+}
+
+//------------------------------------------------------------------------------
 // By the descriptor, as the name may be another file's by now, in a folder where others write.
 void OutputFile::TakeAccess(const std::string& from)
 {

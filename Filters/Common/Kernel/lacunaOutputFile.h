@@ -36,6 +36,16 @@ private:
   Kind Reason;
 };
 
+/// A file is no longer what was written: its name is gone or another file's, or it was cut off.
+class FileLost : public FileError
+{
+public:
+  explicit FileLost(const std::string& message)
+    : FileError(Kind::Other, message)
+  {
+  }
+};
+
 /// A file open for writing, without a buffer: what a function has written has left the program, so
 /// that the program's end, however sudden, does not lose it. Offsets are 64 bits wide. All
 /// functions throw FileError, with the name that errors shall show.
@@ -63,6 +73,11 @@ public:
   void Truncate(std::int64_t size);
   /// Waits until the disk has it all.
   void Sync();
+  /// Throws FileLost when path does not name this file, or the file has fewer than size bytes.
+  void CheckName(const std::string& path) const;
+  void CheckSize(std::int64_t size) const;
+  /// A name by which this process can read the file, also when it has no other.
+  std::string GetOpenName() const;
   /// Gives the file the permissions, access list and, where the system allows it, owner and group of
   /// another one, which it is to replace; a link is none. What cannot be given is nobody's: not one
   /// user may do more than with the other file.
