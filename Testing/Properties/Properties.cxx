@@ -7,7 +7,6 @@
 // an algorithm of cost 1 (cycles: cycles). A failure prints the options that repeat it alone. It is
 // one, too, when an algorithm came to the point in no case: there are more then, up to 60.
 #include "lacunaGrowth.h"
-#include "lacunaGrowth.h"
 #include "lacunaProcessMemory.h"
 #include "lacunaTests.h"
 #include "lacunaTrial.h"

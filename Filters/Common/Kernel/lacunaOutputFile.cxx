@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -53,6 +54,42 @@ OutputFile::OutputFile(const std::string& path, Mode mode, const std::string& sh
   {
     this->Throw(errno);
   }
+}
+
+//------------------------------------------------------------------------------
+OutputFile::OutputFile(int descriptor, const std::string& shownName)
+  : Name(shownName)
+  , Descriptor(descriptor)
+{
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<OutputFile> OutputFile::MakeUnnamed(
+  const std::string& folder, bool isPrivate, const std::string& shownName)
+{
+  const int descriptor =
+    open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, isPrivate ? 0600 : 0666);
+  if (descriptor < 0)
+  {
+    return nullptr;
+  }
+  std::unique_ptr<OutputFile> file(new OutputFile(descriptor, shownName));
+  const bool canBeLinked = access(file->GetOpenName().c_str(), F_OK) == 0;
+  return canBeLinked ? std::move(file) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool OutputFile::Link(const std::string& path)
+{
+  if (linkat(AT_FDCWD, this->GetOpenName().c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0)
+  {
+    return true;
+  }
+  if (errno != EEXIST)
+  {
+    this->Throw(errno);
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------

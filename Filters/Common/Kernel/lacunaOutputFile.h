@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -59,6 +60,10 @@ public:
     Existing       ///< a device, pipe or file that is there; not truncated
   };
   OutputFile(const std::string& path, Mode mode, const std::string& shownName);
+  /// A new file in folder that has no name before Link: whatever ends the program, nothing is left
+  /// of it. isPrivate: for nobody else to read. Null where the system or the disk has no such files.
+  static std::unique_ptr<OutputFile> MakeUnnamed(
+    const std::string& folder, bool isPrivate, const std::string& shownName);
   /// Closes, without a word about errors.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -82,10 +87,13 @@ public:
   /// another one, which it is to replace; a link is none. What cannot be given is nobody's: not one
   /// user may do more than with the other file.
   void TakeAccess(const std::string& from);
+  /// Names an unnamed file. False when there is another one of that name.
+  bool Link(const std::string& path);
   /// Closes; the last chance for an error.
   void Close();
 
 private:
+  OutputFile(int descriptor, const std::string& shownName);
   [[noreturn]] void Throw(int error) const;
 
   std::string Name;
