@@ -2,6 +2,7 @@
 #include "vtkLacunaExecution.h"
 
 #include "lacunaMemory.h"
+#include "lacunaPrintableText.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
@@ -76,11 +77,11 @@ std::string ErrorOf(const std::function<void()>& body, bool* isOfMemory = nullpt
     {
       *isOfMemory = true;
     }
-    return e.what();
+    return lacuna::ToPrintable(e.what());
   }
   catch (const std::exception& e)
   {
-    return e.what();
+    return lacuna::ToPrintable(e.what());
   }
 }
 

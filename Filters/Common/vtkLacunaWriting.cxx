@@ -3,6 +3,7 @@
 
 #include "lacunaExecution.h"
 #include "lacunaOutputFile.h"
+#include "lacunaPrintableText.h"
 #include "vtkAlgorithm.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
@@ -76,7 +77,7 @@ unsigned long vtkLacunaWriting::Run(
   {
     error = e.what();
   }
-  vtkErrorWithObjectMacro(writer, << error);
+  vtkErrorWithObjectMacro(writer, << lacuna::ToPrintable(error));
   return code;
 }
 

@@ -4,6 +4,7 @@
 #include "lacunaAtomicFile.h"
 #include "lacunaGCode.h"
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "lacunaToolPath.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -305,16 +306,16 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   this->NumberOfBlocks = program.Blocks;
   if (mirrored)
   {
-    vtkWarningMacro(<< this->FileName
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName)
                     << ": the path is over a mirror image of the patient; the file says so, too");
   }
   for (const std::string& warning : program.Warnings)
   {
-    vtkWarningMacro(<< this->FileName << ": " << warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
   if (!moved.empty())
   {
-    vtkWarningMacro(<< this->FileName << ": " << moved);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + moved)));
   }
   vtkLog(INFO, << "G-Code Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << this->NumberOfBlocks << " blocks");

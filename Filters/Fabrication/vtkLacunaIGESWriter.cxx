@@ -4,6 +4,7 @@
 #include "lacunaAtomicFile.h"
 #include "lacunaIGESDocument.h"
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkLacunaExecution.h"
@@ -279,7 +280,7 @@ void vtkLacunaIGESWriter::WriteContent()
   this->FileSize = static_cast<vtkTypeInt64>(text.size());
   for (const std::string& warning : content.Warnings)
   {
-    vtkWarningMacro(<< this->FileName << ": " << warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
   vtkLog(INFO, << "IGES Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << this->NumberOfSurfaces << " surfaces, " << this->NumberOfCurves << " curves, "

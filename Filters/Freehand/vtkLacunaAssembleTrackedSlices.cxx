@@ -2,6 +2,7 @@
 #include "vtkLacunaAssembleTrackedSlices.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -315,11 +316,11 @@ void vtkLacunaAssembleTrackedSlices::Assemble(
   const vtkLacunaPoseRecords records(table, slices, this->GetSliceTimes(stack, slices), request);
   if (!chain.Warning.empty())
   {
-    vtkWarningMacro(<< chain.Warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(chain.Warning));
   }
   for (const std::string& warning : records.Warnings)
   {
-    vtkWarningMacro(<< warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(warning));
   }
   std::vector<lacuna::Matrix4> poses;
   for (const lacuna::Matrix4& pose : records.ToReference)

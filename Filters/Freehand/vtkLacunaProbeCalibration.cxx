@@ -3,6 +3,7 @@
 
 #include "lacunaOutputFile.h"
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -346,7 +347,7 @@ int vtkLacunaProbeCalibration::RequestData(
       {
         if (first)
         {
-          vtkWarningMacro(<< sentence);
+          vtkWarningMacro(<< lacuna::ToPrintable(sentence));
         }
       }
 
@@ -445,8 +446,8 @@ int vtkLacunaProbeCalibration::RequestData(
         }
         if (!refusal.empty())
         {
-          vtkErrorMacro(<< "'" << this->OutputFileName
-                        << "' is not written, and kept if it is there: " << refusal);
+          vtkErrorMacro(<< lacuna::ToPrintable("'" + std::string(this->OutputFileName) +
+                          "' is not written, and kept if it is there: " + refusal));
         }
       }
     });

@@ -2,6 +2,7 @@
 #include "vtkLacunaOutlinedStructures.h"
 
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "lacunaVector.h"
 #include "vtkAppendPolyData.h"
 #include "vtkCallbackCommand.h"
@@ -614,7 +615,7 @@ int vtkLacunaOutlinedStructures::RequestData(
         made.push_back(result);
         for (const std::string& warning : result->Warnings)
         {
-          vtkWarningMacro(<< structure.Name << ": " << warning);
+          vtkWarningMacro(<< lacuna::ToPrintable(structure.Name + ": " + warning));
         }
         numbers->InsertNextValue(number);
         names->InsertNextValue(structure.Name);

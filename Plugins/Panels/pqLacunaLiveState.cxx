@@ -108,7 +108,8 @@ pqLacunaReadout pqLacunaLiveState::DescribeDisk() const
   pqLacunaReadout readout;
   if (!this->DiskMessage.isEmpty() || this->Waiting > ManyWaiting)
   {
-    readout.Text = Translate("Disk: %1 wait").arg(this->Waiting);
+    readout.Text = this->Waiting > 0 ? Translate("Disk: %1 wait").arg(this->Waiting)
+                                     : Translate("Disk: %1, see here").arg(this->OnDisk);
     readout.ToolTip = this->DiskMessage.isEmpty()
       ? Translate("Slices wait in memory: the disk is slower than they come")
       : this->DiskMessage;

@@ -10,6 +10,7 @@
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
 #include "lacunaPatientIdentity.h"
+#include "lacunaPrintableText.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -361,7 +362,7 @@ int vtkLacunaCTSeriesReader::RequestData(
   {
     if (found.Opened && !found.Warned)
     {
-      vtkWarningMacro(<< warning);
+      vtkWarningMacro(<< lacuna::ToPrintable(warning));
     }
   }
   found.Warned = true;

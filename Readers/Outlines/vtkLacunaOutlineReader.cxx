@@ -5,6 +5,7 @@
 #include "lacunaOutlineFile.h"
 #include "lacunaOutlineTable.h"
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "lacunaStructureSet.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -178,7 +179,7 @@ void vtkLacunaOutlineReader::ReadInto(vtkPolyData* output)
       .Get());
   for (const std::string& warning : outlines.Warnings)
   {
-    vtkWarningMacro(<< this->FileName << ": " << warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "lacunaPropertyRange.h"
 #include "lacunaSequenceFormat.h"
 #include "lacunaSequenceText.h"
@@ -288,7 +289,7 @@ void vtkLacunaTrackedSliceReader::MakeFieldData()
   }
   for (const std::string& warning : warnings)
   {
-    vtkWarningMacro(<< this->FileName << ": " << warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
   this->Opened->Fields = fields;
 }

@@ -2,6 +2,7 @@
 #include "vtkLacunaTrackedSliceWriter.h"
 
 #include "lacunaOutputFile.h"
+#include "lacunaPrintableText.h"
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -123,11 +124,11 @@ void vtkLacunaTrackedSliceWriter::WriteStack(vtkImageData* stack)
     lacuna::WriteSequence(this->FileName, content.Get(), this->CompressionLevel, execution);
   for (const std::string& warning : content.GetWarnings())
   {
-    vtkWarningMacro(<< this->FileName << ": " << warning);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
   }
   if (!neighbour.empty())
   {
-    vtkWarningMacro(<< this->FileName << ": " << neighbour);
+    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + neighbour)));
   }
   vtkLog(INFO, << "Tracked Slice Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << content.Get().Frames.size() << " slices");

@@ -5,6 +5,7 @@
 #include "lacunaNiftiVolume.h"
 #include "lacunaParameterText.h"
 #include "lacunaPixelSource.h"
+#include "lacunaPrintableText.h"
 #include "lacunaSequenceText.h"
 #include "lacunaVolumeGrid.h"
 #include "vtkDataArray.h"
@@ -184,7 +185,7 @@ void vtkLacunaVolumeReader::AddFieldData(vtkImageData* output)
   {
     for (const std::string& warning : content.File.Warnings)
     {
-      vtkWarningMacro(<< this->FileName << ": " << warning);
+      vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
     }
     content.Warned = true;
   }

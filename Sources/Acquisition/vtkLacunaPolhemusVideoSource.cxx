@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaPolhemusVideoSource.h"
 
+#include "lacunaPrintableText.h"
 #include "vtkDataObject.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -86,7 +87,7 @@ void vtkLacunaPolhemusVideoSource::Start()
   }
   if (this->Now->StackIsOfOthers)
   {
-    vtkErrorMacro(<< this->DescribeKept());
+    vtkErrorMacro(<< lacuna::ToPrintable(this->DescribeKept()));
     return;
   }
   this->Now->MayDiscard = false;
@@ -134,7 +135,7 @@ void vtkLacunaPolhemusVideoSource::Clear()
   catch (const std::exception& e)
   {
     now.MayDiscard = true;
-    vtkErrorMacro(<< e.what() << ". Clear again to drop these slices");
+    vtkErrorMacro(<< lacuna::ToPrintable(e.what()) << ". Clear again to drop these slices");
   }
   this->Modified();
 }
@@ -267,7 +268,7 @@ int vtkLacunaPolhemusVideoSource::RequestData(
       now.ToldCapturing = now.GetState().Capturing;
       for (const std::string& message : std::exchange(now.News, {}))
       {
-        vtkWarningMacro(<< message);
+        vtkWarningMacro(<< lacuna::ToPrintable(message));
       }
       for (int port = 0; port < 2; ++port)
       {

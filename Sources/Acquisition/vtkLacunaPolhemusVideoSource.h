@@ -166,13 +166,14 @@ public:
   ///@{
   /// Slices that are on the disk, and the file they are in.
   vtkIdType GetRecordedSlices() const;
+  vtkIdType GetVerifiedSlices() const; ///< read back after Stop, and as they were taken
   const char* GetRecordedFileName();
   ///@}
   /// Slices that are to be recorded and not on the disk yet; for less than a second if all is well.
   vtkIdType GetWaitingSlices() const;
   /// MiB that are free on that disk; NaN when nothing is recorded.
   double GetDiskSpace() const;
-  /// Why nothing is written; empty: all is well.
+  /// Why nothing is written, or what happened to the file; empty: all is well.
   const char* GetDiskMessage();
   ///@{
   /// MiB of pixels, taken or waiting for the disk, and how many there may be; 0 before Connect.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What vtkLacunaPolhemusVideoSource tells of its state, in figures and in words.
+#include "lacunaPrintableText.h"
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
 
@@ -104,6 +105,12 @@ vtkIdType vtkLacunaPolhemusVideoSource::GetRecordedSlices() const
 }
 
 //------------------------------------------------------------------------------
+vtkIdType vtkLacunaPolhemusVideoSource::GetVerifiedSlices() const
+{
+  return this->Now->GetSweepState().File.Verified;
+}
+
+//------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetRecordedFileName()
 {
   this->Now->FileName = this->Now->GetSweepState().File.FileName;
@@ -128,7 +135,8 @@ double vtkLacunaPolhemusVideoSource::GetDiskSpace() const
 //------------------------------------------------------------------------------
 const char* vtkLacunaPolhemusVideoSource::GetDiskMessage()
 {
-  this->Now->DiskMessage = this->Now->GetSweepState().File.Trouble;
+  const lacuna::SweepFile::State file = this->Now->GetSweepState().File;
+  this->Now->DiskMessage = lacuna::ToPrintable(file.Trouble.empty() ? file.Notice : file.Trouble);
   return this->Now->DiskMessage.c_str();
 }
 
@@ -182,6 +190,6 @@ const char* vtkLacunaPolhemusVideoSource::GetMessage()
   const lacuna::AcquisitionState state = now.GetState();
   std::for_each(state.Messages.begin(), state.Messages.end(), add);
   std::for_each(state.Notes.begin(), state.Notes.end(), add);
-  now.Messages = std::move(text);
+  now.Messages = lacuna::ToPrintable(text);
   return now.Messages.c_str();
 }

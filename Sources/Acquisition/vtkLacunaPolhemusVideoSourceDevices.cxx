@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How vtkLacunaPolhemusVideoSource opens its devices and makes its acquisition what the properties say.
 #include "lacunaParameterText.h"
+#include "lacunaPrintableText.h"
 #include "lacunaProbeFrames.h"
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaPolhemusVideoSource.h"
@@ -156,7 +157,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
       rules.TrackerToReference = frames.TrackerToReference;
       if (!frames.Warning.empty())
       {
-        vtkWarningMacro(<< calibration << ": " << frames.Warning);
+        vtkWarningMacro(<< lacuna::ToPrintable(calibration + ": " + frames.Warning));
       }
     }
     // One that is chosen together with other devices is theirs.
@@ -210,7 +211,7 @@ void vtkLacunaPolhemusVideoSource::Configure()
   catch (const std::exception& e)
   {
     now.Trouble = e.what();
-    vtkErrorMacro(<< now.Trouble);
+    vtkErrorMacro(<< lacuna::ToPrintable(now.Trouble));
     if (this->ButtonStarts && now.Acquisition && !now.GetState().Capturing)
     {
       now.Rules.ButtonStarts = false; // as Start, which does nothing with rules that are not wanted

@@ -2,7 +2,9 @@
 """The demo says which stage failed and why; so does lacuna.errors.raising."""
 import os
 import re
+import resource
 import runpy
+import shutil
 import subprocess
 import sys
 
@@ -91,6 +93,21 @@ uncalibrated = file_with("uncalibrated.igs.mha", "ObjectType = Image\nNDims = 3\
                          "Seq_Frame0001_ProbeToTrackerTransformStatus = OK\nElementDataFile = LOCAL\n01234567")
 message = failure("--only", "ultrasound", "--sweep", uncalibrated)
 assert "stage 'reconstruct the volume' failed" in message and "not calibrated" in message, message
+
+# a full disk cuts nothing off in silence: what was there stays, and there is no part of a file
+limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+shutil.rmtree(output("demo-errors"))
+os.mkdir(output("demo-errors"))
+with open(os.path.join(output("demo-errors"), "volume.vti"), "w", encoding="ascii") as file:
+    file.write("of yesterday")
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, limit[1]))
+try:
+    message = failure("--only", "ultrasound", "--spacing", "2")
+finally:
+    resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+assert "stage 'reconstruct the volume' failed" in message and "volume.vti" in message, message
+assert os.listdir(output("demo-errors")) == ["volume.vti"]
+assert os.path.getsize(os.path.join(output("demo-errors"), "volume.vti")) == len("of yesterday")
 
 try:
     demo.main(["--hole", "1", "2", "3", "4"])  # without --ct

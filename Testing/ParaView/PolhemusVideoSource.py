@@ -126,6 +126,7 @@ try:
     assert abs(arrays["ProbeToTracker"][valid][:, 3] - 150).max() < 0.01  # x
     assert abs(arrays["ProbeToTracker"][valid][:, 7] - 50).max() < 20.01  # y: 30 to 70 mm
     wait(source, lambda: live.get(source, "RecordedSlices") == count, "the disk")
+    wait(source, lambda: f"{count} slices verified" in live.get(source, "Message"), "read back")
 
     # the recording is the same, for the reader without any setting
     reader = TrackedSliceReader(FileName=live.get(source, "RecordedFileName"))
@@ -275,6 +276,31 @@ try:
         print(ends[0][2], flush=True)
         assert ends[0] == ends[1], ends
         assert len(ends[0][0]) > 1 and max(ends[0][1]) < 9 and "not joined" in ends[0][2], ends[0]
+    Delete(reader)
+
+    # the folder of the recording is removed while slices come: a warning at once, and all of them in another file
+    gone = os.path.join(folder, "gone")
+    os.mkdir(gone)
+    live.clear(source)
+    source.RecordFileName = os.path.join(gone, "lost.mhd")
+    live.start(source)
+    wait(source, lambda: live.get(source, "RecordedSlices") >= 20, "slices in a folder")
+    warnings = []
+    shutil.rmtree(gone)
+    removed = time.monotonic()
+    with raising(warnings):
+        wait(source, lambda: "lost.raw' is no longer there" in live.get(source, "Message"), "the folder is removed")
+        assert lacuna_test.SANITIZED or time.monotonic() - removed < 2
+        count = live.get(source, "RecordedSlices")
+        wait(source, lambda: live.get(source, "RecordedSlices") >= count + 20, "slices in another folder")
+        live.stop(source)
+    assert any("removed" in warning for warning in warnings), warnings
+    wait(source, lambda: live.get(source, "VerifiedSlices") == live.get(source, "SliceCount"), "read back")
+    assert live.get(source, "RecordedFileName") == os.path.join(folder, "lost.mhd") in live.get(source, "DiskMessage")
+    reader = TrackedSliceReader(FileName=live.get(source, "RecordedFileName"))
+    (data, arrays), (read, fields) = slices_of(source), slices_of(reader)
+    assert (vtk_to_numpy(read.GetPointData().GetScalars()) == vtk_to_numpy(data.GetPointData().GetScalars())).all()
+    assert (fields["FrameNumber"] == arrays["FrameNumber"]).all()
     live.disconnect(source)
     Delete(reader)
     Delete(source)

@@ -8,6 +8,7 @@
 // one, too, when an algorithm came to the point in no case: there are more then, up to 60.
 #include "lacunaGrowth.h"
 #include "lacunaProcessMemory.h"
+#include "lacunaSanitized.h"
 #include "lacunaTests.h"
 #include "lacunaTrial.h"
 #include "vtkLogger.h"

@@ -3,6 +3,8 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <random>
+#include <sstream>
 #include <system_error>
 
 #include <fcntl.h>
@@ -43,14 +45,27 @@ AtomicFile::AtomicFile(const std::string& path, const std::string& companion)
   {
     throw FileError::Make("cannot overwrite", path, errno); // a rename would not ask
   }
-  const std::string temporary = this->Target + ".part" + std::to_string(getpid());
-  // One may be left over by a dead process of the same number.
-  unlink(temporary.c_str());
   this->Companion = fs::canonical(companion, code).string(); // empty when it is not there
   const bool isNew = !fs::exists(status) && this->Companion.empty();
-  this->File = std::make_unique<OutputFile>(
-    temporary, isNew ? OutputFile::Mode::CreateNew : OutputFile::Mode::CreatePrivate, path);
-  this->Temporary = temporary;
+  const std::string folder = fs::path(this->Target).parent_path().string();
+  this->File = OutputFile::MakeUnnamed(folder.empty() ? "." : folder, !isNew, path);
+  if (!this->File)
+  {
+    const std::string temporary = this->MakeTemporary();
+    this->File = std::make_unique<OutputFile>(
+      temporary, isNew ? OutputFile::Mode::CreateNew : OutputFile::Mode::CreatePrivate, path);
+    this->Temporary = temporary;
+  }
+}
+
+//------------------------------------------------------------------------------
+// A name beside the target that nobody can foresee.
+std::string AtomicFile::MakeTemporary() const
+{
+  std::random_device random;
+  std::ostringstream name;
+  name << ".lacuna-" << std::hex << random() << random();
+  return (std::filesystem::path(this->Target).parent_path() / name.str()).string();
 }
 
 //------------------------------------------------------------------------------
@@ -87,6 +102,11 @@ void AtomicFile::Finish()
     this->File->TakeAccess(
       std::filesystem::exists(this->Target, code) ? this->Target : this->Companion);
     this->File->Sync();
+    while (this->Temporary.empty())
+    {
+      const std::string temporary = this->MakeTemporary();
+      this->Temporary = this->File->Link(temporary) ? temporary : std::string();
+    }
   }
   this->File->Close();
   this->File.reset();

@@ -12,9 +12,10 @@
 
 namespace lacuna
 {
-/// A file that takes its name when it is complete: it is written under another name beside its
-/// place, seen on the disk and renamed, so that path is either what it was before or the whole new
-/// content, also after a crash. A file that is there before passes on its permissions, access list
+/// A file that takes its name when it is complete: it is written without a name, seen on the disk,
+/// named at random beside its place and renamed, so that path is either what it was before or the
+/// whole new content, also after a crash, which leaves nothing else. Where the disk has no files
+/// without a name it has the random one from the beginning, and a crash leaves it. A file that is there before passes on its permissions, access list
 /// and, where the system allows it, owner and group (OutputFile::TakeAccess). A symbolic link is
 /// followed; a device or pipe is written to directly. All functions throw FileError.
 class AtomicFile
@@ -40,6 +41,8 @@ public:
   void Commit();
 
 private:
+  std::string MakeTemporary() const;
+
   std::string Path;      ///< as the caller knows it
   std::string Target;    ///< the file itself, links followed
   std::string Companion; ///< links followed; empty: none

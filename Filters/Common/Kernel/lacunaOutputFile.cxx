@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -53,6 +54,42 @@ OutputFile::OutputFile(const std::string& path, Mode mode, const std::string& sh
   {
     this->Throw(errno);
   }
+}
+
+//------------------------------------------------------------------------------
+OutputFile::OutputFile(int descriptor, const std::string& shownName)
+  : Name(shownName)
+  , Descriptor(descriptor)
+{
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<OutputFile> OutputFile::MakeUnnamed(
+  const std::string& folder, bool isPrivate, const std::string& shownName)
+{
+  const int descriptor =
+    open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, isPrivate ? 0600 : 0666);
+  if (descriptor < 0)
+  {
+    return nullptr;
+  }
+  std::unique_ptr<OutputFile> file(new OutputFile(descriptor, shownName));
+  const bool canBeLinked = access(file->GetOpenName().c_str(), F_OK) == 0;
+  return canBeLinked ? std::move(file) : nullptr;
+}
+
+//------------------------------------------------------------------------------
+bool OutputFile::Link(const std::string& path)
+{
+  if (linkat(AT_FDCWD, this->GetOpenName().c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0)
+  {
+    return true;
+  }
+  if (errno != EEXIST)
+  {
+    this->Throw(errno);
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------
@@ -125,6 +162,50 @@ void OutputFile::Sync()
   {
     this->Throw(errno);
   }
+}
+
+//------------------------------------------------------------------------------
+void OutputFile::CheckName(const std::string& path) const
+{
+  struct stat named;
+  struct stat open;
+  if (fstat(this->Descriptor, &open) != 0)
+  {
+    this->Throw(errno);
+  }
+  if (stat(path.c_str(), &named) != 0)
+  {
+    if (errno == ENOENT || errno == ENOTDIR || errno == ESTALE)
+    {
+      throw FileLost("'" + this->Name + "' is no longer there: it was removed or renamed");
+    }
+    throw FileError::Make("cannot look at", this->Name, errno);
+  }
+  if (named.st_dev != open.st_dev || named.st_ino != open.st_ino)
+  {
+    throw FileLost("'" + this->Name + "' is another file now");
+  }
+}
+
+//------------------------------------------------------------------------------
+void OutputFile::CheckSize(std::int64_t size) const
+{
+  struct stat open;
+  if (fstat(this->Descriptor, &open) != 0)
+  {
+    this->Throw(errno);
+  }
+  if (open.st_size < size)
+  {
+    throw FileLost("'" + this->Name + "' was cut off: it has " + std::to_string(open.st_size) +
+      " bytes, and " + std::to_string(size) + " were written");
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string OutputFile::GetOpenName() const
+{
+  return "/proc/self/fd/" + std::to_string(this->Descriptor);
 }
 
 //------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,6 +37,16 @@ private:
   Kind Reason;
 };
 
+/// A file is no longer what was written: its name is gone or another file's, or it was cut off.
+class FileLost : public FileError
+{
+public:
+  explicit FileLost(const std::string& message)
+    : FileError(Kind::Other, message)
+  {
+  }
+};
+
 /// A file open for writing, without a buffer: what a function has written has left the program, so
 /// that the program's end, however sudden, does not lose it. Offsets are 64 bits wide. All
 /// functions throw FileError, with the name that errors shall show.
@@ -49,6 +60,10 @@ public:
     Existing       ///< a device, pipe or file that is there; not truncated
   };
   OutputFile(const std::string& path, Mode mode, const std::string& shownName);
+  /// A new file in folder that has no name before Link: whatever ends the program, nothing is left
+  /// of it. isPrivate: for nobody else to read. Null where the system or the disk has no such files.
+  static std::unique_ptr<OutputFile> MakeUnnamed(
+    const std::string& folder, bool isPrivate, const std::string& shownName);
   /// Closes, without a word about errors.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -63,14 +78,22 @@ public:
   void Truncate(std::int64_t size);
   /// Waits until the disk has it all.
   void Sync();
+  /// Throws FileLost when path does not name this file, or the file has fewer than size bytes.
+  void CheckName(const std::string& path) const;
+  void CheckSize(std::int64_t size) const;
+  /// A name by which this process can read the file, also when it has no other.
+  std::string GetOpenName() const;
   /// Gives the file the permissions, access list and, where the system allows it, owner and group of
   /// another one, which it is to replace; a link is none. What cannot be given is nobody's: not one
   /// user may do more than with the other file.
   void TakeAccess(const std::string& from);
+  /// Names an unnamed file. False when there is another one of that name.
+  bool Link(const std::string& path);
   /// Closes; the last chance for an error.
   void Close();
 
 private:
+  OutputFile(int descriptor, const std::string& shownName);
   [[noreturn]] void Throw(int error) const;
 
   std::string Name;

@@ -106,7 +106,8 @@ class Report:
         return [value for _, rows in self.sections for name, value in rows if name == what][-1]
 
     def write(self, name, version):
-        with open(name, "w", encoding="utf-8") as file:
+        from lacuna.files import writing
+        with writing(name) as aside, open(aside, "w", encoding="utf-8") as file:
             file.write(f"# Lacuna {version}: demo report\n")
             for title, rows in self.sections:
                 file.write(f"\n## {title}\n\n| quantity | value |\n|---|---|\n")
@@ -131,7 +132,10 @@ def main(arguments=None):
     if options.only != "ultrasound" and not options.live:
         demo_implant.run(options, report)
     name = os.path.join(options.output, "report.md")
-    report.write(name, lacuna.__version__)
+    try:
+        report.write(name, lacuna.__version__)
+    except OSError as error:
+        raise SystemExit(f"demo.sh: {name} cannot be written: {error.strerror}") from error
     print(f"== done: see {name} and the pictures beside it")
     return report
 

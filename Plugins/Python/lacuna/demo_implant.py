@@ -10,6 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 import lacuna
 from lacuna import pictures, views
 from lacuna.data import fetch, open_volume
+from lacuna.files import save_data
 
 ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
 
@@ -36,7 +37,7 @@ def run(options, report):
         filled = fill(depth, options, skull, ct)
         image = fetch(filled)
         describe(image, skull, report)
-        pv.SaveData(os.path.join(options.output, "filled-depth-map.vti"), proxy=filled, DataMode="Binary")
+        save_data(os.path.join(options.output, "filled-depth-map.vti"), filled, DataMode="Binary")
     with report.stage("write the implant surface"):
         writer = lacuna.vtkLacunaIGESWriter()
         writer.SetInputData(image)

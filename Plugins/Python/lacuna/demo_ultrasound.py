@@ -11,6 +11,7 @@ from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties, vtkTri
 
 from lacuna import pictures
 from lacuna.data import fetch
+from lacuna.files import save_data
 
 PHANTOM = dict(NumberOfSlices=120, Motion="Arbitrary", Anatomy="Ellipsoids", SpeckleLevel=0.15)
 
@@ -31,7 +32,7 @@ def run(options, report):
         report.add("volume, voxels", " × ".join(map(str, dimensions(volume))))
         report.add("voxel, mm", f"{options.spacing:g}")
         report.add("origin, mm", " ".join(f"{b:.3f}" for b in volume.GetDataInformation().GetBounds()[::2]))
-        pv.SaveData(os.path.join(options.output, "volume.vti"), proxy=volume, DataMode="Binary")
+        save_data(os.path.join(options.output, "volume.vti"), volume, DataMode="Binary")
     with report.stage("filter and contour"):
         truth = None if options.sweep else sweep.GetClientSideObject()
         if options.level is not None:
@@ -40,7 +41,7 @@ def run(options, report):
             level = truth.GetTrueIsoValue() if truth else surface_level(volume)
         surface = closed_surface(sweep, volume, level, options.median)
         surface.UpdatePipeline()
-        pv.SaveData(os.path.join(options.output, "surface.stl"), proxy=surface)
+        save_data(os.path.join(options.output, "surface.stl"), surface)
         millilitres, open_edges = measure(surface)
         report.add("surface level, grey", f"{level:.1f}")
         report.add("enclosed volume, ml", f"{millilitres:.3f}")

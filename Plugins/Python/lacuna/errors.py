@@ -8,7 +8,11 @@ VTK and ParaView print what goes wrong and go on; a batch script wants to stop:
         volume.UpdatePipeline()
 """
 import contextlib
+import errno
+import os
 import re
+import sys
+import time
 
 from vtkmodules.vtkCommonCore import vtkOutputWindow
 
@@ -18,6 +22,7 @@ class PipelineError(RuntimeError):
 
 
 _set_aside = []
+CLOCK_STEP = 10**8  # ns; times of files are coarser than the clock
 _AGAIN = " (change a property to try again)"
 
 
@@ -33,6 +38,8 @@ def set_aside(*texts):
 
 def _clean(text):
     """The sentence alone, without the line that names a source file and the object's address."""
+    if text is None:  # what VTK gives Python of a text that is not UTF-8; those of Lacuna are
+        return "a message that is not UTF-8, which Python cannot show; it is in the output above"
     lines = [line for line in text.strip().splitlines()
              if not re.match(r"(ERROR|Warning|Generic Warning): In ", line)]
     return re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", " ".join(line.strip() for line in lines)).strip()
@@ -51,13 +58,91 @@ def _check_outputs(proxy):
             _check_outputs(servermanager._getPyProxy(prop.GetProxy(i)))
 
 
+def _ranks():
+    """The controller of pvbatch --sym, whose ranks all run the script; None elsewhere."""
+    if "paraview.servermanager" not in sys.modules:
+        return None
+    from paraview.modules.vtkRemotingCore import vtkProcessModule
+    from vtkmodules.vtkParallelCore import vtkMultiProcessController
+    module = vtkProcessModule.GetProcessModule()
+    controller = vtkMultiProcessController.GetGlobalController()
+    return controller if module and module.GetSymmetricMPIMode() and controller and controller.GetNumberOfProcesses() > 1 else None
+
+
+def _agree(own):
+    """The text of the first rank that has one; all ranks of pvbatch --sym meet here."""
+    controller = _ranks()
+    if controller is None:
+        return own
+    from vtkmodules.vtkCommonCore import vtkIntArray, vtkUnsignedCharArray
+    from vtkmodules.vtkParallelCore import vtkCommunicator
+    ranks = controller.GetNumberOfProcesses()
+    mine, first = vtkIntArray(), vtkIntArray()
+    mine.InsertNextValue(controller.GetLocalProcessId() if own else ranks)
+    first.SetNumberOfValues(1)
+    controller.AllReduce(mine, first, vtkCommunicator.MIN_OP)
+    if first.GetValue(0) == ranks:
+        return ""
+    text = vtkUnsignedCharArray()
+    for byte in own.encode("utf-8", "backslashreplace"):
+        text.InsertNextValue(byte)
+    controller.Broadcast(text, first.GetValue(0))
+    return bytes(text.GetValue(i) for i in range(text.GetNumberOfValues())).decode()
+
+
+def _check_written(writer, begun):
+    """Raises OSError when a file of a writer of ParaView is missing or may be cut off; most of these writers do not look."""
+    from lacuna.files import check_whole
+    name = writer.FileName if isinstance(writer.FileName, str) else writer.FileName[0]
+    if os.path.exists(name) and not os.path.isfile(name):
+        return  # a device or a pipe
+    folder, root = os.path.dirname(name) or ".", os.path.splitext(os.path.basename(name))[0]
+    pieces = os.path.join(folder, root)  # of formats of several files
+    made = [entry.path for place in (folder, pieces) if os.path.isdir(place) for entry in os.scandir(place)
+            if entry.name.startswith(root) and entry.is_file() and entry.stat().st_mtime_ns >= begun]
+    if not made:
+        raise FileNotFoundError(errno.ENOENT, "the file was not written", name)
+    for each in made:
+        check_whole(each)
+
+
+@contextlib.contextmanager
+def _checking_writers(errors):
+    """Within the block ParaView's writers, as SaveData uses them, add to errors when what they wrote may be cut off."""
+    servermanager = sys.modules.get("paraview.servermanager")
+    connection = servermanager.ActiveConnection if servermanager else None
+    ranks = _ranks()
+    # the files of a remote server are not here, and of several ranks one looks
+    if not connection or connection.IsRemote() or (ranks and ranks.GetLocalProcessId() > 0):
+        yield
+        return
+    update = servermanager.SourceProxy.UpdatePipeline
+
+    def update_and_check(proxy, *arguments):
+        begun = time.time_ns() - CLOCK_STEP
+        before = len(errors)
+        update(proxy, *arguments)
+        if proxy.SMProxy.GetXMLGroup() == "writers" and "FileName" in proxy.ListProperties() and len(errors) == before:
+            try:
+                _check_written(proxy, begun)
+            except OSError as error:
+                errors.append(f"{error.filename}: {error.strerror}")
+
+    servermanager.SourceProxy.UpdatePipeline = update_and_check
+    try:
+        yield
+    finally:
+        servermanager.SourceProxy.UpdatePipeline = update
+
+
 @contextlib.contextmanager
 def raising(warnings=None, proxies=()):
-    """Raises PipelineError at the end of the block when an algorithm reported an error in it.
+    """Raises PipelineError at the end of the block when an algorithm reported an error in it, or a writer of ParaView cut a file off.
 
     warnings: a list that receives the texts of warnings, or None.
     proxies: sources and filters of ParaView. An error that their outputs, or those of filters before them, hold is raised, too: ParaView
     does not execute again what has failed in an earlier block, and its own filters pass on what is left.
+    Under pvbatch --sym an error of one rank is raised on all; so all of them must come to the end of the block.
     """
     errors = []
 
@@ -71,20 +156,23 @@ def raising(warnings=None, proxies=()):
     keep.CallDataType = "string0"
     window = vtkOutputWindow.GetInstance()
     tags = [window.AddObserver(event, keep) for event in ("ErrorEvent", "WarningEvent")]
-    consequence = None
+    failure = None
     try:
-        yield
-    except Exception as exception:
-        # what an algorithm said is the cause of what Python stumbled over later
+        with _checking_writers(errors):
+            yield
         if not errors:
-            raise
-        consequence = exception
+            for proxy in proxies:
+                _check_outputs(proxy)
+    except Exception as exception:
+        failure = exception
     finally:
         for tag in tags:
             window.RemoveObserver(tag)
-    if errors:
-        # of several ranks an error that is kept is told again with a hint
-        told = dict.fromkeys(text for text in errors if text.removesuffix(_AGAIN) == text or text.removesuffix(_AGAIN) not in errors)
-        raise PipelineError("; ".join(told)) from consequence
-    for proxy in proxies:
-        _check_outputs(proxy)
+    # of several ranks an error that is kept is told again with a hint
+    told = "; ".join(dict.fromkeys(text for text in errors if text.removesuffix(_AGAIN) == text or text.removesuffix(_AGAIN) not in errors))
+    agreed = _agree(told or (failure and (str(failure) or type(failure).__name__)) or "")
+    if failure is not None and not errors:
+        raise failure
+    if told or agreed:
+        # what an algorithm said is the cause of what Python stumbled over later
+        raise PipelineError(told or agreed) from failure

@@ -17,6 +17,7 @@ import lacuna
 from lacuna import coordinates, implant, pictures, views
 from lacuna.data import fetch
 from lacuna.demo_implant import view_up
+from lacuna.files import writing
 from lacuna.solids import NOTICE
 
 IMPLANT = (0.25, 0.55, 0.78)
@@ -133,7 +134,7 @@ def write(folder, made, record, ct_name, warnings, template_name=None):
     """
     numbers = implant.measures(made)
     shown = _draw(folder, made, numbers)
-    with open(os.path.join(folder, "index.html"), "w", encoding="utf-8") as file:
+    with writing(os.path.join(folder, "index.html")) as name, open(name, "w", encoding="utf-8") as file:
         file.write(_page(made, numbers, record, ct_name, warnings, shown, template_name))
 
 

@@ -331,5 +331,5 @@ def plot_volume(source, file_name=None, **options):
     display.XArrayName = "Threshold / pi"
     display.SeriesVisibility = ["Volume"]
     if file_name:
-        pv.SaveScreenshot(file_name, view, ImageResolution=list(view.ViewSize))
+        pictures.save(view, file_name)
     return view

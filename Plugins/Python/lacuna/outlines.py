@@ -14,7 +14,6 @@ pixel is (0, 0).
 """
 import csv
 import math
-import os
 import warnings
 
 import numpy
@@ -93,6 +92,7 @@ def table(structures):
 def save(outliner, path):
     """Writes all outlines as CSV: the points of the curves in pixels and mm; `handle` is 1 for points that were given."""
     from .data import fetch
+    from .files import writing
     data = fetch(outliner)
     cells, points = data.GetCellData(), data.GetPointData()
     names, numbers, slices, colors = (cells.GetAbstractArray(name) for name in ("StructureName", "Outline", "SliceNumber", "StructureColor"))
@@ -101,8 +101,7 @@ def save(outliner, path):
         warnings.warn(f"{left_out} outlines lie in slices without a usable pose; they have no place in mm and are not in {path}")
     if data.GetNumberOfLines() == 0:
         raise ValueError("there is no outline to save")
-    aside = f"{path}.part"
-    with open(aside, "w", newline="", encoding="utf-8") as file:
+    with writing(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
         for cell in range(data.GetNumberOfCells()):
@@ -113,7 +112,6 @@ def save(outliner, path):
                 writer.writerow((names.GetValue(cell), numbers.GetValue(cell), slices.GetValue(cell), f"{column:.9g}", f"{row:.9g}",
                                  *(f"{x:.12g}" for x in data.GetPoint(point)), int(points.GetArray("Handle").GetValue(point)),
                                  "#{:02x}{:02x}{:02x}".format(*(int(v) for v in colors.GetTuple(cell)))))
-    os.replace(aside, path)
 
 
 def load(outliner, path):

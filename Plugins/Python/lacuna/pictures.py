@@ -13,6 +13,7 @@ from vtkmodules.vtkViewsContext2D import vtkContextView
 import vtkmodules.vtkRenderingContextOpenGL2  # noqa: F401 (draws charts)
 
 from lacuna.data import fetch
+from lacuna.files import writing
 from lacuna.views import annotations, map_letters
 
 BONE = (0.93, 0.89, 0.80)
@@ -194,7 +195,8 @@ def add_title(view, text):
 def save(view, name):
     """Renders into a PNG file."""
     pv.Render(view)
-    pv.SaveScreenshot(name, view, ImageResolution=list(view.ViewSize))
+    with writing(name) as aside:
+        pv.SaveScreenshot(aside, view, ImageResolution=list(view.ViewSize))
 
 
 def lay_out(views, title):
@@ -217,7 +219,8 @@ def save_layout(layout, name):
     layout.SetSize(*size)
     for view in views:
         pv.Render(view)
-    pv.SaveScreenshot(name, layout, SaveAllViews=1, ImageResolution=size, SeparatorWidth=2, SeparatorColor=[1, 1, 1])
+    with writing(name) as aside:
+        pv.SaveScreenshot(aside, layout, SaveAllViews=1, ImageResolution=size, SeparatorWidth=2, SeparatorColor=[1, 1, 1])
 
 
 def shaded_pixels(proxy):
@@ -245,9 +248,10 @@ def write_pixels(name, pixels):
     upwards = np.ascontiguousarray(pixels[::-1], dtype=np.uint8)  # VTK writes the last row first
     image.GetPointData().SetScalars(numpy_to_vtk(upwards.reshape(-1, 3), deep=1))
     writer = vtkPNGWriter()
-    writer.SetFileName(name)
     writer.SetInputData(image)
-    writer.Write()
+    with writing(name) as aside:
+        writer.SetFileName(aside)
+        writer.Write()
 
 
 def read_pixels(name):

@@ -10,8 +10,7 @@ import json
 import math
 import os
 import re
-import stat
-import tempfile
+import shutil
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
@@ -19,7 +18,6 @@ NOTICE = "Research software, not a medical device."
 TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
 # Characters that an XML file cannot have, not even escaped.
 NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-ROOM = 1 << 16  # bytes that a disk must have left
 
 
 def save_solid(path, proxy, allow_mirrored=False, **options):
@@ -46,16 +44,16 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
     try:
         return _save_solid(path, proxy, allow_mirrored, options)
     except BaseException:
-        _set_aside(path)
+        _set_aside(os.path.realpath(path), os.path.realpath(path + ".json"))
         raise
 
 
-def _set_aside(path):
+def _set_aside(*paths):
     """Gives an older solid and its record the first free names of path.old, path.old2, ...; where that cannot be, they stay."""
     number = 1
-    while any(os.path.lexists(_get_old_name(each, number)) for each in (path, path + ".json")):
+    while any(os.path.lexists(_get_old_name(each, number)) for each in paths):
         number += 1
-    for each in (path, path + ".json"):
+    for each in paths:
         try:
             os.rename(each, _get_old_name(each, number))
         except OSError:
@@ -71,7 +69,9 @@ def _save_solid(path, proxy, allow_mirrored, options):
     from lacuna import __version__, coordinates
     from lacuna.data import fetch
     from lacuna.errors import PipelineError, raising
+    from lacuna.files import folder_beside
 
+    target = os.path.realpath(path)  # a link stays
     with raising():
         proxy.UpdatePipeline()
         data = fetch(proxy)
@@ -86,8 +86,7 @@ def _save_solid(path, proxy, allow_mirrored, options):
     if not coordinates.keeps_points(proxy):
         measures = {}  # of the surface before it was moved or scaled
     try:
-        with tempfile.TemporaryDirectory(prefix=".lacuna-", dir=os.path.dirname(path) or ".",
-                                         ignore_cleanup_errors=True) as folder:
+        with folder_beside(target) as folder:
             root, ending = os.path.splitext(os.path.basename(path))
             name = os.path.join(folder, root + ending.lower())  # ParaView knows its writers by these only
             if ending.lower() == ".3mf":
@@ -105,44 +104,28 @@ def _save_solid(path, proxy, allow_mirrored, options):
             record_name = name + ".json"
             with open(record_name, "w", encoding="utf-8") as file:
                 file.write(json.dumps(record, indent=2, allow_nan=False) + "\n")
-            _replace(path, name, record_name)
+            _replace(target, name, os.path.realpath(path + ".json"), record_name)
     except OSError as error:
         raise PipelineError(f"{path} cannot be written: {error.strerror}") from error
     return record
 
 
-def _replace(path, solid, record):
+def _replace(path, solid, beside, record):
     """Gives both their names; an older record is never beside another solid than its own."""
-    beside = path + ".json"
+    from lacuna.files import take_access
     if os.path.exists(path):
-        _take_access(solid, path)
-        _take_access(record, beside if os.path.exists(beside) else path)
+        take_access(solid, path)
+        take_access(record, beside if os.path.exists(beside) else path)
     older = record + ".old"
     if os.path.lexists(beside):
-        os.rename(beside, older)
+        shutil.move(beside, older)  # its link may lead to another disk
     try:
         os.replace(solid, path)
     except OSError:
         if os.path.lexists(older):
-            os.rename(older, beside)
+            shutil.move(older, beside)
         raise
-    os.replace(record, beside)
-
-
-def _take_access(path, old):
-    """Gives a file owner (where the system lets us), group, permissions and access list of an older one, or it is private."""
-    os.chmod(path, 0o600)
-    status = os.stat(old)
-    try:
-        try:
-            os.chown(path, status.st_uid, status.st_gid)
-        except OSError:
-            os.chown(path, -1, status.st_gid)
-        for name in (each for each in os.listxattr(old) if each == "system.posix_acl_access"):
-            os.setxattr(path, name, os.getxattr(old, name))
-        os.chmod(path, stat.S_IMODE(status.st_mode))
-    except OSError:
-        pass
+    shutil.move(record, beside)
 
 
 def _check_surface(path, data):
@@ -188,32 +171,18 @@ def _without_nan(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _require_room(name):
-    """Raises OSError when a disk has no room for more than the file: its writer did not notice and may have cut it."""
-    size = os.path.getsize(name)
-    with open(name, "r+b") as file:
-        file.seek(size)
-        file.write(bytes(ROOM))
-        file.flush()
-        os.fsync(file.fileno())
-        file.truncate(size)
-
-
 def _write_by_paraview(name, path, proxy, options):
     """Writes the file name, alone in its folder, for path; raises for formats of several files."""
-    from lacuna.errors import PipelineError, raising
+    from lacuna.errors import raising
+    from lacuna.files import check_whole, only_file
     from paraview.simple import SaveData
 
     if name.endswith(".vtp"):  # Debian 12's libexpat breaks ParaView 5.11's reading of its default, appended
         options = {"DataMode": "Binary"} | options
     with raising():
         SaveData(name, proxy, **options)
-    made = os.listdir(os.path.dirname(name))
-    if made != [os.path.basename(name)]:
-        raise PipelineError(f"{path} was not written" if not made else
-                            f"{path}: ParaView writes several files for this ({', '.join(sorted(made))}); save it in a "
-                            "format of one, such as STL, PLY, OBJ or VTP")
-    _require_room(name)
+    only_file(name, path)
+    check_whole(name)
 
 
 def _check_closed(path, points, triangles):

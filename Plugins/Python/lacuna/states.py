@@ -17,11 +17,20 @@ def save(path):
     It has about a sixth of the size of ParaView's own. File names are kept as they were given to the readers.
     """
     import paraview.simple as pv
-    from paraview import servermanager
+    from lacuna.files import writing
     for view in pv.GetViews():
         if pv.GetLayout(view) is None:  # ParaView's window shows none of these
             pv.AssignViewToLayout(view)
+    with writing(path) as name:
+        _write(name)
+
+
+def _write(path):
+    import paraview.simple as pv
+    from lacuna.files import check_whole
+    from paraview import servermanager
     pv.SaveState(path)
+    check_whole(path)
     session = servermanager.ActiveConnection.Session
     tree = ElementTree.parse(path)
     for element in tree.getroot().iter("Proxy"):

@@ -38,6 +38,8 @@ SequenceRecorder::SequenceRecorder(
       "' cannot be recorded to: a single file has its header before the pixels and cannot grow; "
       "record to .mhd or .nhdr, and convert the finished recording");
   }
+  this->HeaderName = std::filesystem::absolute(fileName).string();
+  this->DataName = std::filesystem::absolute(this->Kind.GetDataFileName()).string();
   this->HeaderStart = this->Kind.GetBeginning(description);
   if (compressionLevel > 0)
   {
@@ -89,6 +91,7 @@ void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
   {
     throw std::invalid_argument("the recording is closed");
   }
+  this->CheckSizes(); // before more is written behind what is missing
   if (std::none_of(fields.begin(), fields.end(),
         [](const auto& field) { return field.first == "ImageStatus" && !field.second.empty(); }))
   {
@@ -136,6 +139,39 @@ void SequenceRecorder::Append(const void* pixels, SequenceFields fields)
   {
     this->Now.Compressor = std::move(compressor);
   }
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::CheckSizes() const
+{
+  this->Data->CheckSize(this->Now.DataSize);
+  this->Header->CheckSize(
+    this->Now.HeaderSize + static_cast<std::int64_t>(this->Kind.GetEnd().size()));
+}
+
+//------------------------------------------------------------------------------
+void SequenceRecorder::Check() const
+{
+  if (this->Header)
+  {
+    this->CheckSizes();
+    this->Data->CheckName(this->DataName);
+    this->Header->CheckName(this->HeaderName);
+  }
+}
+
+//------------------------------------------------------------------------------
+SequenceHeader SequenceRecorder::GetOpenHeader() const
+{
+  SequenceHeader header;
+  header.FileName = this->HeaderName;
+  header.Columns = this->Description.Columns;
+  header.Rows = this->Description.Rows;
+  header.Type = this->Description.Type;
+  header.Frames = this->Now.Slices;
+  header.Encoding = this->Now.Compressor ? PixelEncoding::Zlib : PixelEncoding::Raw;
+  header.DataFileName = this->Data->GetOpenName();
+  return header;
 }
 
 //------------------------------------------------------------------------------

@@ -19,6 +19,7 @@
 
 #include "lacunaOutputFile.h"
 #include "lacunaSequenceFormat.h"
+#include "lacunaSequenceHeader.h"
 
 #include <cstdint>
 #include <memory>
@@ -46,10 +47,17 @@ public:
   /// Adds a slice: Columns x Rows elements in this machine's byte order, and its fields;
   /// ImageStatus is OK unless given. Throws std::invalid_argument when a field cannot be written,
   /// FileError when the disk is full or fails. Then the recording is as it was before, and the same
-  /// or another slice may be added later.
+  /// or another slice may be added later. Throws FileLost as Check does, but looks at no names.
   void Append(const void* pixels, SequenceFields fields);
 
   std::int64_t GetNumberOfSlices() const { return this->Now.Slices; }
+
+  /// Throws FileLost when one of the files was removed, renamed, replaced or cut off. Nothing else
+  /// tells: the system goes on writing to files without a name.
+  void Check() const;
+  /// Where PixelSource finds the pixels that are written, also when their file has no name any
+  /// more. Without fields. Not after Close.
+  SequenceHeader GetOpenHeader() const;
 
   /// Waits until the disk has all slices. Throws FileError: then the system may have dropped what it
   /// could not write, and says so only once. The recording is as it was after the last Sync that
@@ -71,10 +79,13 @@ private:
   void WriteHeader(const std::string& fields, std::int64_t slices, std::int64_t compressedSize);
   void RestoreHeader();
   void SyncFiles();
+  void CheckSizes() const;
   void End();
 
   SequenceKind Kind;
   SequenceDescription Description;
+  std::string HeaderName; ///< absolute, as the program may change its folder
+  std::string DataName;
   std::string HeaderStart; ///< and the pixels', written again while no Sync has worked
   std::string DataStart;
   std::unique_ptr<OutputFile> Header;

@@ -209,6 +209,11 @@ AcquisitionState SweepAcquisition::GetState() const
     messages.push_back(std::move(message));
   }
   state.Messages.insert(state.Messages.begin(), messages.begin(), messages.end());
+  if (!state.Capturing && state.File.Verified > 0 && state.File.Verified == state.File.Synced)
+  {
+    state.Notes.push_back(std::to_string(state.File.Verified) +
+      " slices verified: read back from '" + state.File.FileName + "', each as it was taken");
+  }
   return state;
 }
 }

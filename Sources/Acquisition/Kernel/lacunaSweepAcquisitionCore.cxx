@@ -332,6 +332,10 @@ void SweepAcquisition::Core::Publish(std::int64_t processed, std::vector<Acquire
     std::make_move_iterator(slices.end()));
   this->Pending -= processed;
   this->Capturing = this->Capturing && !this->Taking.IsFull();
+  if (!this->Capturing && this->Pending == 0)
+  {
+    this->Taking.VerifyFile();
+  }
   this->State.Counts = this->Taking.GetCounts();
   this->State.Speed = this->Taking.GetSpeed();
   this->State.LargestResidual = this->Taking.GetLargestResidual();

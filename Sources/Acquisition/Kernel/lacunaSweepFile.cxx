@@ -22,12 +22,6 @@ namespace
 constexpr double RetryInterval = 1;                  // s
 constexpr std::chrono::milliseconds ShortWait{ 10 }; // enough for most disks, and no device is late
 
-bool Exists(const std::string& path)
-{
-  std::error_code none;
-  return std::filesystem::exists(std::filesystem::symlink_status(path, none));
-}
-
 SequenceKind MakeKind(const std::string& fileName, int compressionLevel)
 {
   SequenceKind kind(fileName, compressionLevel > 0);
@@ -55,25 +49,6 @@ void AddNumber(SequenceFields& fields, const std::string& name, double value)
     fields.emplace_back(name, FormatNumber(value));
   }
 }
-}
-
-std::string FindFreeSweepName(const std::string& fileName, int compressionLevel)
-{
-  const std::filesystem::path path(fileName);
-  // sweep.igs.mhd becomes sweep-2.igs.mhd
-  const std::string name = path.filename().string();
-  const std::size_t dot = name.find('.', 1);
-  std::string candidate = fileName;
-  for (int i = 2;; ++i)
-  {
-    if (!Exists(candidate) && !Exists(MakeKind(candidate, compressionLevel).GetDataFileName()))
-    {
-      return candidate;
-    }
-    candidate =
-      (path.parent_path() / (name.substr(0, dot) + "-" + std::to_string(i) + name.substr(dot)))
-        .string();
-  }
 }
 
 SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame)
@@ -226,7 +201,11 @@ SweepFile::State SweepFile::GetState() const
   if (this->Recorder)
   {
     const SweepRecorder::State recorded = this->Recorder->GetState();
+    state.FileName = recorded.FileName;
     state.Synced = recorded.Synced;
+    state.Verified = recorded.Verified;
+    state.Lost = recorded.Lost;
+    state.Notice = recorded.Notice;
     state.WaitingBytes = recorded.WaitingBytes;
     state.FreeBytes = recorded.FreeBytes;
     state.Trouble = state.Trouble.empty() ? recorded.Trouble : state.Trouble;
@@ -236,6 +215,14 @@ SweepFile::State SweepFile::GetState() const
     state.WaitingBytes += static_cast<std::int64_t>(entry.Pixels->size());
   }
   return state;
+}
+
+void SweepFile::Verify()
+{
+  if (this->Recorder && this->Waiting.empty())
+  {
+    this->Recorder->Verify();
+  }
 }
 
 void SweepFile::Finish()

@@ -18,10 +18,6 @@
 
 namespace lacuna
 {
-/// "sweep.mhd", or "sweep-2.mhd", "sweep-3.mhd" ... when there is one already: the first name for
-/// which neither the header nor the pixels exist.
-std::string FindFreeSweepName(const std::string& fileName, int compressionLevel);
-
 /// The fields with which a slice is stored: poses by their names with the states that readers ask
 /// for, ImageToProbe for the pixels of the file, ElementSpacing as the video says it, Timestamp,
 /// FrameNumber, SliceStatus, Residual, Speed and, where the pose was held, PoseHeld (s since it was
@@ -40,9 +36,12 @@ public:
     std::string FileName;          ///< empty until it is open
     std::int64_t Added = 0;        ///< slices to be recorded
     std::int64_t Synced = 0;       ///< those on the disk
+    std::int64_t Verified = 0;     ///< see SweepRecorder::State
+    std::int64_t Lost = 0;         ///< the same
     std::int64_t WaitingBytes = 0; ///< of pixels that are not written
     std::int64_t FreeBytes = -1;   ///< see SweepRecorder::State
     std::string Trouble; ///< why nothing is written now, and what to do; empty: all is well
+    std::string Notice;  ///< see SweepRecorder::State
   };
 
   /// Throws std::invalid_argument for a name by which no sweep can be recorded.
@@ -61,6 +60,8 @@ public:
   /// told by the state.
   void Retry();
   State GetState() const;
+  /// See SweepRecorder.
+  void Verify();
   /// Tries to write all that waits and ends the file. Throws FileError; the slices still wait.
   void Finish();
 

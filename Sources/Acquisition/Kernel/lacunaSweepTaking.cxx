@@ -165,6 +165,14 @@ void SweepTaking::RetryFile()
   }
 }
 
+void SweepTaking::VerifyFile()
+{
+  if (this->File)
+  {
+    this->File->Verify();
+  }
+}
+
 void SweepTaking::Resume()
 {
   this->Full = false; // unless the next slice finds it so
@@ -410,10 +418,13 @@ std::vector<std::string> SweepTaking::GetMessages() const
     messages.push_back("The video comes damaged: look at its cable or network; such slices are "
                        "flagged");
   }
-  const std::string trouble = this->GetFile().Trouble;
-  if (!trouble.empty())
+  const SweepFile::State file = this->GetFile();
+  for (const std::string& message : { file.Trouble, file.Notice })
   {
-    messages.push_back(trouble);
+    if (!message.empty())
+    {
+      messages.push_back(message);
+    }
   }
   return messages;
 }

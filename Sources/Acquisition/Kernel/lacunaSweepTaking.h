@@ -77,6 +77,8 @@ public:
   std::optional<SweepFrame> GetWindow(const VideoFrame& frame) const;
   /// Hands over to the file what waits for it, if that can be.
   void RetryFile();
+  /// See SweepRecorder::Verify.
+  void VerifyFile();
   bool IsFull() const { return this->Full; }
   /// Tries again what was full.
   void Resume();

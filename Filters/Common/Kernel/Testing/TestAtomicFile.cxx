@@ -3,15 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <sys/xattr.h>
 #include <unistd.h>
 
@@ -60,7 +65,30 @@ protected:
     ADD_FAILURE() << "no error for " << path;
     return FileError::Kind::Other;
   }
+  // The file that is written under another name; empty: none.
+  std::string FindUnfinished() const
+  {
+    for (const auto& entry : fs::directory_iterator(this->Folder))
+    {
+      if (entry.path().filename().string().rfind(".lacuna-", 0) == 0)
+      {
+        return entry.path().string();
+      }
+    }
+    return {};
+  }
   fs::path Folder;
+};
+
+// A disk that has only files with names.
+class NoUnnamedFiles
+{
+public:
+  NoUnnamedFiles() { Fail = true; }
+  ~NoUnnamedFiles() { Fail = false; }
+  NoUnnamedFiles(const NoUnnamedFiles&) = delete;
+  NoUnnamedFiles& operator=(const NoUnnamedFiles&) = delete;
+  static inline bool Fail = false; // every one
 };
 
 // The super-user may write everywhere, so the tests of permissions act as nobody.
@@ -110,6 +138,58 @@ std::string List(const std::vector<std::string>& users, int mask)
   }
   return list + Entry(4, 0, none) + Entry(16, mask, none) + Entry(32, 0, none);
 }
+}
+
+// The program's, instead of the library's.
+extern "C" int open(const char* path, int flags, ...)
+{
+  va_list arguments;
+  va_start(arguments, flags);
+  const mode_t mode = (flags & (O_CREAT | __O_TMPFILE)) ? va_arg(arguments, mode_t) : 0;
+  va_end(arguments);
+  if (NoUnnamedFiles::Fail && (flags & __O_TMPFILE))
+  {
+    errno = EOPNOTSUPP;
+    return -1;
+  }
+  return static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, flags, mode));
+}
+
+TEST_F(AtomicFile, OutlivesNoWriterThatIsKilled)
+{
+  const std::string path = this->Path("a");
+  WriteFileAtomically(path, "old");
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0)
+  {
+    lacuna::AtomicFile file(path);
+    file.Write("new");
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(Read(path), "old");
+  EXPECT_EQ(this->CountFiles(), 1u);
+}
+
+TEST_F(AtomicFile, WritesWhereAllFilesHaveNames)
+{
+  const NoUnnamedFiles none;
+  const std::string path = this->Path("a");
+  WriteFileAtomically(path, "new");
+  EXPECT_EQ(Read(path), "new");
+  {
+    lacuna::AtomicFile first(path);
+    lacuna::AtomicFile second(path); // of the same process
+    first.Write("first");
+    second.Write("second");
+    EXPECT_EQ(this->CountFiles(), 3u);
+    second.Commit();
+    EXPECT_EQ(Read(path), "second");
+  }
+  EXPECT_EQ(this->CountFiles(), 1u);
 }
 
 TEST_F(AtomicFile, WritesAndReplacesTheWholeFile)
@@ -176,9 +256,10 @@ TEST_F(AtomicFile, OpensNoOtherFileToAnyone)
   }
   ASSERT_EQ(chmod(path.c_str(), 0666), 0);
   ASSERT_EQ(chmod(secret.c_str(), 0600), 0);
+  const NoUnnamedFiles none; // else there is nothing to be replaced
   lacuna::AtomicFile file(path);
   file.Write("new");
-  const std::string unfinished = path + ".part" + std::to_string(getpid());
+  const std::string unfinished = this->FindUnfinished();
   ASSERT_TRUE(fs::remove(unfinished));
   fs::create_symlink("secret", unfinished);
   file.Finish();
