@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSkullShells.h"
 
+#include "lacunaVoxelSampler.h"
 #include "vtkDataArray.h"
+#include "vtkExtractVOI.h"
+#include "vtkFlyingEdges3D.h"
 #include "vtkGenericCell.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
@@ -16,10 +19,13 @@
 #include "vtkTriangle.h"
 #include "vtkTriangleFilter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace lacuna
@@ -172,6 +178,62 @@ VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& ke
     Matrix4::Translation({ static_cast<double>(extent[0]), static_cast<double>(extent[2]),
       static_cast<double>(extent[4]) });
   return volume;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<BoneDistance> MakeBoneDistance(
+  const VoxelVolume& volume, vtkDataArray* voxels, double level, const std::array<Vec3, 2>& box)
+{
+  const Matrix4 worldToIndex = volume.IndexToWorld.Inverse();
+  int voi[6];
+  for (int a = 0; a < 3; ++a)
+  {
+    voi[2 * a] = volume.Size[a] - 1;
+    voi[2 * a + 1] = 0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const Vec3 x{ box[corner & 1][0], box[corner >> 1 & 1][1], box[corner >> 2][2] };
+      const double index = std::clamp(worldToIndex.Point(x)[a], 0.0, volume.Size[a] - 1.0);
+      voi[2 * a] = std::min(voi[2 * a], static_cast<int>(std::floor(index)));
+      voi[2 * a + 1] = std::max(voi[2 * a + 1], static_cast<int>(std::ceil(index)));
+    }
+  }
+  vtkNew<vtkImageData> image; // in indices: turned and mirrored volumes are like others
+  image->SetDimensions(volume.Size.data());
+  image->GetPointData()->SetScalars(voxels);
+  vtkNew<vtkExtractVOI> part;
+  part->SetInputData(image);
+  part->SetVOI(voi);
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputConnection(part->GetOutputPort());
+  contour->SetValue(0, level);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  contour->Update();
+  vtkPolyData* found = contour->GetOutput();
+  TriangleSurface surface;
+  surface.Points.resize(found->GetNumberOfPoints());
+  for (vtkIdType p = 0; p < found->GetNumberOfPoints(); ++p)
+  {
+    Vec3 index;
+    found->GetPoint(p, index.data());
+    surface.Points[p] = volume.IndexToWorld.Point(index);
+  }
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < found->GetNumberOfCells(); ++c)
+  {
+    found->GetCellPoints(c, corners);
+    surface.Triangles.push_back({ static_cast<std::int32_t>(corners->GetId(0)),
+      static_cast<std::int32_t>(corners->GetId(1)), static_cast<std::int32_t>(corners->GetId(2)) });
+  }
+  std::function<bool(const Vec3&)> isBone;
+  DispatchScalars(volume.Type, volume.Voxels,
+    [&](const auto* values)
+    {
+      isBone = [sample = VoxelSampler(volume, values), level](const Vec3& x)
+      { return sample(x) >= level; };
+    });
+  return std::make_unique<TriangleBone>(std::move(surface), std::move(isBone));
 }
 
 //------------------------------------------------------------------------------

@@ -36,6 +36,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -61,6 +62,9 @@ constexpr double MostDistance = 30;     // mm of Point from a hole
 constexpr double AutomaticTriangle = 1; // mm
 constexpr double SmallHole = 400;       // mm^2, below which it may be none
 constexpr double ThinPlace = 1.5;       // mm, of an implant
+constexpr double WideUndercut = 1;      // mm: of which is told
+constexpr double BelowBone = 25;        // mm, of the box in which bone is looked at
+constexpr double BesideBone = 12;       // mm
 constexpr double LeastGap = 10;         // mm^2, of those that are told of
 // A template that fits: part of the sound bone that it has to have, scale or its inverse, RMS in mm.
 constexpr double LeastCovered = 0.6;
@@ -373,6 +377,32 @@ PlacedTemplate FindTemplate(vtkDataObject* data, double level, const lacuna::Sku
   return example;
 }
 
+// Holds the hole with the bone around it, and what is in front of it.
+std::array<Vec3, 2> GetBox(const lacuna::SkullRays& rays, const std::vector<Vec3>& missing)
+{
+  double least = lacuna::MostSkullRadius;
+  for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
+  {
+    least = rays.Kinds[i] == lacuna::SkullRayKind::Sound ? std::min(least, rays.Outer[i]) : least;
+  }
+  std::array<Vec3, 2> box{ rays.Center, rays.Center };
+  bool isFirst = true;
+  for (const Vec3& direction : missing)
+  {
+    for (const double radius : { least - BelowBone, lacuna::MostSkullRadius })
+    {
+      const Vec3 x = rays.Center + radius * direction;
+      for (int a = 0; a < 3; ++a)
+      {
+        box[0][a] = isFirst ? x[a] - BesideBone : std::min(box[0][a], x[a] - BesideBone);
+        box[1][a] = isFirst ? x[a] + BesideBone : std::max(box[1][a], x[a] + BesideBone);
+      }
+      isFirst = false;
+    }
+  }
+  return box;
+}
+
 // How much of the outer surface is probably more than 1 mm off, where it is worst, and what is known there.
 std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRays& rays,
   const lacuna::MirrorPlane& plane)
@@ -545,6 +575,21 @@ int vtkLacunaSkullImplant::RequestData(
       throw std::runtime_error("EdgeClearance is " + lacuna::FormatNumber(this->EdgeClearance) +
         " mm; it must be between 0 and 5");
     }
+    if (!(this->Thickness == 0 || (this->Thickness >= 0.5 && this->Thickness <= 20)))
+    {
+      throw std::runtime_error("Thickness is " + lacuna::FormatNumber(this->Thickness) +
+        " mm; it must be 0 (that of the bone) or between 0.5 and 20");
+    }
+    if (!(this->MinimumThickness >= 0 && this->MinimumThickness <= 10))
+    {
+      throw std::runtime_error("MinimumThickness is " +
+        lacuna::FormatNumber(this->MinimumThickness) + " mm; it must be between 0 and 10");
+    }
+    if (!lacuna::IsFinite({ this->InsertionDirection[0], this->InsertionDirection[1],
+          this->InsertionDirection[2] }))
+    {
+      throw std::runtime_error("InsertionDirection is not finite");
+    }
     const double triangle = this->TriangleSize == 0 ? AutomaticTriangle : this->TriangleSize;
     if (!(triangle >= 0.2 && triangle <= 5))
     {
@@ -629,12 +674,17 @@ int vtkLacunaSkullImplant::RequestData(
     const lacuna::SkullShape shape(
       bone, missing, symmetry.Plane, execution, hasTemplate ? &example.Rays : nullptr);
     execution.SetStage(0.8, 1);
+    const std::unique_ptr<lacuna::BoneDistance> near =
+      MakeBoneDistance(volume, keep, this->Level, GetBox(rays, missing));
     lacuna::SkullImplantOptions options;
+    options.Thickness = this->Thickness;
+    options.MinimumThickness = this->MinimumThickness;
+    std::copy_n(this->InsertionDirection, 3, options.InsertionDirection.data());
     options.Level = this->Level;
     options.EdgeClearance = this->EdgeClearance;
     options.TriangleSize = triangle;
     const lacuna::SkullImplant implant =
-      MakeSkullImplant(volume, rays, defects[chosen], shape, options, execution);
+      MakeSkullImplant(volume, rays, defects[chosen], shape, *near, options, execution);
 
     for (const std::string& warning : implant.Warnings)
     {
@@ -660,10 +710,13 @@ int vtkLacunaSkullImplant::RequestData(
     {
       vtkWarningMacro(<< thin);
     }
-    if (implant.LeastTaper < 0)
+    if (implant.UndercutWidth > WideUndercut)
     {
-      vtkWarningMacro(<< "the implant cannot be put in straight: bone is in the way by "
-                      << Rounded(-implant.LeastTaper) << " degrees");
+      vtkWarningMacro(
+        << "the wall of bone has undercuts, so that the gap beside the implant is up to "
+        << Rounded(implant.UndercutWidth + this->EdgeClearance) << " mm wide, most at "
+        << Name(implant.UndercutPoint)
+        << ". Another InsertionDirection may suit this place better");
     }
     vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
     SetSolid(output, implant);
@@ -688,6 +741,12 @@ int vtkLacunaSkullImplant::RequestData(
     setPoint("PredictedErrorMaximumPoint", implant.LargestErrorPoint);
     setPoint("InsertionDirection", implant.InsertionDirection);
     set("LeastTaper", implant.LeastTaper);
+    set("InsertionClearance", implant.InsertionClearance);
+    set("UndercutVolume", implant.UndercutVolume);
+    set("UndercutWidth", implant.UndercutWidth);
+    setPoint("UndercutPoint", implant.UndercutPoint);
+    set("MinimumThickness", implant.MinimumThickness);
+    setPoint("MinimumThicknessPoint", implant.ThinnestPoint);
     const lacuna::MirrorPlane& plane = shape.GetPlane();
     setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
     setPoint("SymmetryPlaneNormal", plane.Normal);
@@ -705,6 +764,10 @@ int vtkLacunaSkullImplant::RequestData(
       .Add("DefectChoice", this->DefectChoice)
       .Add("Point", std::vector<double>(this->Point, this->Point + 3))
       .Add("EdgeClearance", this->EdgeClearance)
+      .Add("Thickness", this->Thickness)
+      .Add("MinimumThickness", this->MinimumThickness)
+      .Add("InsertionDirection",
+        std::vector<double>(this->InsertionDirection, this->InsertionDirection + 3))
       .Add("TriangleSize", this->TriangleSize)
       .Add("Density", this->Density)
       .Add("TemplateLevel", this->TemplateLevel);
@@ -732,6 +795,10 @@ void vtkLacunaSkullImplant::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Point: " << this->Point[0] << " " << this->Point[1] << " " << this->Point[2]
      << "\n";
   os << indent << "EdgeClearance: " << this->EdgeClearance << "\n";
+  os << indent << "Thickness: " << this->Thickness << "\n";
+  os << indent << "MinimumThickness: " << this->MinimumThickness << "\n";
+  os << indent << "InsertionDirection: " << this->InsertionDirection[0] << " "
+     << this->InsertionDirection[1] << " " << this->InsertionDirection[2] << "\n";
   os << indent << "TriangleSize: " << this->TriangleSize << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "TemplateLevel: " << this->TemplateLevel << "\n";

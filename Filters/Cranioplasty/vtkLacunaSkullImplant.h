@@ -29,9 +29,14 @@
  * | PredictedErrorRMS          | 1          | mm, root of the mean squared PredictedError over the area|
  * | PredictedErrorMaximum      | 1          | mm                                                       |
  * | PredictedErrorMaximumPoint | 3          | where that is, world mm                                  |
+ * | MinimumThickness           | 1          | mm, least distance of an outer point from the inner face |
+ * | MinimumThicknessPoint      | 3          | where that is, world mm                                  |
  * | InsertionDirection         | 3          | unit, the way in which the implant is put in             |
- * | LeastTaper                 | 1          | degrees, least angle between it and the walls; bone is in|
- * |                            |            | the way where it is negative                             |
+ * | LeastTaper                 | 1          | degrees, least angle between it and the implant's walls  |
+ * | InsertionClearance         | 1          | mm, least distance of the implant's points from bone on  |
+ * |                            |            | the way in, at most 3                                    |
+ * | UndercutVolume             | 1          | mm^3, free space beside the edge that cannot be filled   |
+ * | UndercutWidth, UndercutPoint | 1, 3     | mm, its largest width, and where, world mm               |
  * | SymmetryPlaneOrigin, SymmetryPlaneNormal | 3 | a point of the refined plane, world mm; its normal  |
  * | TemplateFitRMS             | 1          | with a template: mm, distance of its outer table from sound bone |
  * | TemplateScale              | 1          | mm of the skull for one of the template                  |
@@ -40,8 +45,8 @@
  * Output 1: vtkPolyData, triangles on the ellipsoid that fits the skull for each hole that was found; cell array
  * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
  *
- * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole; a
- * negative taper; places thinner than 1.5 mm; a template that is not used; data of which Level is the end of the range.
+ * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole;
+ * undercuts wider than 1 mm; places thinner than 1.5 mm; a template that is not used; data of which Level is the end of the range.
  * Errors: a template that does not fit; no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
  *
  * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone
@@ -88,6 +93,21 @@ public:
   vtkGetMacro(EdgeClearance, double);
   ///@}
   ///@{
+  /** mm along the normal of the outer surface, 0.5..20; 0: that of the patient's bone. Default 0. */
+  vtkSetMacro(Thickness, double);
+  vtkGetMacro(Thickness, double);
+  ///@}
+  ///@{
+  /** mm, 0..10: where it is less, the inner face is moved inwards. Default 1.5. */
+  vtkSetMacro(MinimumThickness, double);
+  vtkGetMacro(MinimumThickness, double);
+  ///@}
+  ///@{
+  /** The way in which the implant is put in, world; 0 0 0: for which the wall of bone has the most taper. Default 0 0 0. */
+  vtkSetVector3Macro(InsertionDirection, double);
+  vtkGetVector3Macro(InsertionDirection, double);
+  ///@}
+  ///@{
   /** mm, edges of triangles, 0.2..5; 0: 1 mm. Default 0. */
   vtkSetMacro(TriangleSize, double);
   vtkGetMacro(TriangleSize, double);
@@ -124,6 +144,9 @@ private:
   int DefectChoice = Largest;
   double Point[3] = { 0, 0, 0 };
   double EdgeClearance = 0.5;
+  double Thickness = 0;
+  double MinimumThickness = 1.5;
+  double InsertionDirection[3] = { 0, 0, 0 };
   double TriangleSize = 0;
   double Density = 1.3;
   double TemplateLevel = 0;

@@ -15,7 +15,7 @@ UNITS = re.compile(r"\b(mm|millimetres|mm²|mm³|mm/s|mm/min|degrees?|seconds?|s
 # numbers that have no unit, or whose unit is the data's own; a new one is listed here after a thought
 WITHOUT_UNIT = {
     "Ambient", "Diffuse", "Specular", "SpecularPower", "DepthCue", "SurfaceColor", "BackgroundColor", "Lights",
-    "ViewDirection", "ViewUp", "Normal", "DefectDirection", "Hemisphere", "GateRange", "Period", "OutputBounds",
+    "ViewDirection", "ViewUp", "Normal", "DefectDirection", "InsertionDirection", "Hemisphere", "GateRange", "Period", "OutputBounds",
     "InsideBounds", "OutsideBounds", "PixelAspect", "SpeckleLevel", "PresentFraction", "TissueFraction",
     "OutlierFraction", "ObjectOpacity", "Accuracy", "IsoValue", "IsoValues", "OutsideValue", "OutlierLimit",
     "Smoothing", "TimestepValues", "FootprintScale", "PaddingValue", "NoiseLevel", "TrueIsoValue", "Envelope",

@@ -262,6 +262,9 @@ Subject MakeSkullImplant()
     },
     { Real("Level", &T::SetLevel, 200, 400), Whole("DefectChoice", &T::SetDefectChoice, 0, 1),
       Reals<3>("Point", &T::SetPoint, -30, 60), Real("EdgeClearance", &T::SetEdgeClearance, 0, 2),
+      Real("Thickness", &T::SetThickness, 0, 6),
+      Real("MinimumThickness", &T::SetMinimumThickness, 0, 4),
+      Reals<3>("InsertionDirection", &T::SetInsertionDirection, -1, 1),
       Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5),
       Real("TemplateLevel", &T::SetTemplateLevel, 0, 400) } };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(4); };

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSkullImplant.h"
 
+#include "lacunaImplantEdge.h"
 #include "lacunaParameterText.h"
 #include "lacunaPlanarCurves.h"
 #include "lacunaPlanarLattice.h"
+#include "lacunaSkullChart.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +20,6 @@ namespace lacuna
 {
 namespace
 {
-constexpr double Pi = 3.14159265358979323846;
 constexpr double GridSpacing = 0.4; // mm of the map in which the free space is found
 constexpr double ErrorSpacing = 3;  // mm: standard errors vary slowly
 constexpr double FarFromRim = 3;    // mm: where distances to the rim do not matter any more
@@ -32,189 +33,24 @@ constexpr double LeastPart = 100;  // mm^2: of a free space that is told of
 constexpr double ScanEnd = 20;     // mm^2: of a hole beyond the scan
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double LatticeToRim = 0.6; // of TriangleSize: the rim's edges stay Delaunay edges
-constexpr int InsertionSteps = 400;
-
-// Directions as points of a plane: the distance from the middle is the angle (azimuthal equidistant), mm at
-// a typical radius.
-class Chart
-{
-public:
-  Chart(const Vec3& axis, const Vec3& beside, double scale)
-    : Axis(axis)
-    , U(Normalized(beside - Dot(beside, axis) * axis))
-    , V(Cross(axis, U))
-    , Scale(scale)
-  {
-  }
-  Vec2 ToPlane(const Vec3& direction) const
-  {
-    const double x = Dot(direction, this->U);
-    const double y = Dot(direction, this->V);
-    const double angle = std::atan2(std::hypot(x, y), Dot(direction, this->Axis));
-    const double factor = angle < 1e-9 ? 1 : angle / std::hypot(x, y);
-    return { this->Scale * factor * x, this->Scale * factor * y };
-  }
-  Vec3 ToDirection(const Vec2& p) const
-  {
-    const double angle = std::hypot(p[0], p[1]) / this->Scale;
-    const double factor = angle < 1e-9 ? 1 / this->Scale : std::sin(angle) / (angle * this->Scale);
-    return Normalized(
-      std::cos(angle) * this->Axis + (factor * p[0]) * this->U + (factor * p[1]) * this->V);
-  }
-  double GetScale() const { return this->Scale; }
-
-private:
-  Vec3 Axis;
-  Vec3 U;
-  Vec3 V;
-  double Scale;
-};
-
-PlanarGrid MakeGrid(const std::vector<Vec2>& points, double margin, double spacing)
-{
-  Vec2 low = points[0];
-  Vec2 high = points[0];
-  for (const Vec2& p : points)
-  {
-    for (int a = 0; a < 2; ++a)
-    {
-      low[a] = std::min(low[a], p[a] - margin);
-      high[a] = std::max(high[a], p[a] + margin);
-    }
-  }
-  PlanarGrid grid;
-  grid.Origin = low;
-  grid.Spacing = { spacing, spacing };
-  grid.Columns = static_cast<std::int64_t>(std::ceil((high[0] - low[0]) / spacing)) + 2;
-  grid.Rows = static_cast<std::int64_t>(std::ceil((high[1] - low[1]) / spacing)) + 2;
-  return grid;
-}
-
-// For each node the distance to the nearest of some points, at most limit.
-std::vector<double> FindDistances(
-  const PlanarGrid& grid, const std::vector<Vec2>& points, double limit)
-{
-  std::vector<double> distances(static_cast<std::size_t>(grid.Columns * grid.Rows), limit);
-  const auto reach = static_cast<std::int64_t>(std::ceil(limit / grid.Spacing[0]));
-  for (const Vec2& p : points)
-  {
-    const auto i = static_cast<std::int64_t>((p[0] - grid.Origin[0]) / grid.Spacing[0]);
-    const auto j = static_cast<std::int64_t>((p[1] - grid.Origin[1]) / grid.Spacing[1]);
-    for (std::int64_t n = std::max<std::int64_t>(0, j - reach);
-         n <= std::min(grid.Rows - 1, j + reach + 1); ++n)
-    {
-      for (std::int64_t m = std::max<std::int64_t>(0, i - reach);
-           m <= std::min(grid.Columns - 1, i + reach + 1); ++m)
-      {
-        const Vec2 node = grid.GetNode(m, n);
-        double& distance = distances[m + grid.Columns * n];
-        distance = std::min(distance, std::hypot(node[0] - p[0], node[1] - p[1]));
-      }
-    }
-  }
-  return distances;
-}
-
-// Connected nodes (four neighbours) where values are positive, the most first.
-std::vector<std::vector<std::int64_t>> FindFreeParts(
-  const PlanarGrid& grid, const std::vector<double>& values)
-{
-  std::vector<std::vector<std::int64_t>> parts;
-  std::vector<bool> seen(values.size(), false);
-  for (std::size_t start = 0; start < values.size(); ++start)
-  {
-    if (seen[start] || values[start] <= 0)
-    {
-      continue;
-    }
-    std::vector<std::int64_t> part{ static_cast<std::int64_t>(start) };
-    seen[start] = true;
-    for (std::size_t k = 0; k < part.size(); ++k)
-    {
-      for (const std::int64_t step :
-        { std::int64_t{ -1 }, std::int64_t{ 1 }, -grid.Columns, grid.Columns })
-      {
-        const std::int64_t other = part[k] + step; // the border has no positive values
-        if (!seen[other] && values[other] > 0)
-        {
-          seen[other] = true;
-          part.push_back(other);
-        }
-      }
-    }
-    parts.push_back(std::move(part));
-  }
-  std::stable_sort(
-    parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  return parts;
-}
-
-// Points about so far apart along a closed polygon.
-Loop Resample(const Loop& loop, double spacing)
-{
-  std::vector<double> along{ 0 };
-  for (std::size_t k = 0; k < loop.size(); ++k)
-  {
-    const Vec2& a = loop[k];
-    const Vec2& b = loop[(k + 1) % loop.size()];
-    along.push_back(along.back() + std::hypot(b[0] - a[0], b[1] - a[1]));
-  }
-  const int count = std::max(8, static_cast<int>(std::lround(along.back() / spacing)));
-  Loop points;
-  std::size_t k = 0;
-  for (int i = 0; i < count; ++i)
-  {
-    const double s = along.back() * i / count;
-    while (k + 1 < loop.size() && along[k + 1] <= s)
-    {
-      ++k;
-    }
-    const Vec2& a = loop[k];
-    const Vec2& b = loop[(k + 1) % loop.size()];
-    const double t = along[k + 1] > along[k] ? (s - along[k]) / (along[k + 1] - along[k]) : 0;
-    points.push_back({ a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]) });
-  }
-  return points;
-}
-
-// The loop of the largest area and the loops within it.
-std::vector<Loop> KeepLargest(std::vector<Loop> loops)
-{
-  const auto largest = std::max_element(loops.begin(), loops.end(),
-    [](const Loop& a, const Loop& b) { return SignedArea(a) < SignedArea(b); });
-  if (largest == loops.end() || !(SignedArea(*largest) > 0))
-  {
-    return {};
-  }
-  std::vector<Loop> kept{ *largest };
-  for (const Loop& loop : loops)
-  {
-    if (SignedArea(loop) < 0 && IsInside(std::vector<Loop>{ kept[0] }, loop[0]))
-    {
-      kept.push_back(loop);
-    }
-  }
-  return kept;
-}
-
-double GetArea(const std::vector<Loop>& loops)
-{
-  double area = 0;
-  for (const Loop& loop : loops)
-  {
-    area += SignedArea(loop);
-  }
-  return area;
-}
+constexpr double Beside = 3;     // mm of the surfaces beside the hole, for walls that open outwards
+constexpr double WallReach = 5;  // mm from the outline, within which its wall is
+constexpr double WallFace = 0.8; // cosine between wall and surface: the bone is a table, no wall
+constexpr std::int64_t Sparse = 8;   // nodes between those from which the free space is sought
+constexpr double Interesting = 2.5;  // mm of clearance: nodes around may have less
+constexpr double ThickEnough = 1.01; // of the least thickness
 
 class Builder
 {
 public:
   Builder(const VoxelVolume& volume, const SkullRays& rays, const std::vector<int>& defect,
-    const SkullShape& shape, const SkullImplantOptions& options, Execution& execution)
+    const SkullShape& shape, const BoneDistance& bone, const SkullImplantOptions& options,
+    Execution& execution)
     : Volume(volume)
+    , WorldToIndex(volume.IndexToWorld.Inverse())
     , Rays(rays)
     , Shape(shape)
+    , Bone(bone)
     , Options(options)
     , Run(execution)
     , Plane(MakeChart(rays, defect, shape, execution))
@@ -236,20 +72,33 @@ public:
   {
     this->Run.SetStage(0.05, 0.2);
     std::vector<Loop> hole = this->FindHole();
-    this->Run.SetStage(0.35, 0.4);
+    this->Run.SetStage(0.25, 0.3);
     std::vector<Loop> outline = this->MoveInwards(hole);
+    this->Run.SetStage(0.3, 0.5);
+    const InsertionPath path(this->Bone, this->ChooseDirection(outline));
+    outline = this->WithoutTongues(this->FindFreeWays(path), 0);
+    if (outline.empty())
+    {
+      throw std::runtime_error(
+        "no implant can be put in along this direction: bone is above all of "
+        "the hole. Give another direction");
+    }
     for (Loop& loop : outline)
     {
       loop = Resample(loop, 0.5 * this->Options.TriangleSize);
     }
-    this->OutlineArea = GetArea(outline);
-    this->Run.SetStage(0.4, 0.5);
-    this->AddMesh(outline);
-    this->Run.SetStage(0.5, 1);
+    this->Run.SetStage(0.5, 0.55);
+    const ImplantEdge edge =
+      FollowWall(this->Slab, this->Bone, path, outline, this->Options.EdgeClearance, this->Run);
+    this->Run.SetStage(0.55, 0.6);
+    this->AddMesh(edge);
+    this->Run.SetStage(0.6, 0.95);
     this->AddErrors();
+    this->Run.SetStage(0.95, 1);
     this->Measure();
-    this->SetHoleArea(hole);
-    this->FindInsertion(outline);
+    this->MeasureThickness();
+    this->SetHoleArea(hole, edge.Levels[0]);
+    this->SetInsertion(edge, path);
     return std::move(this->Implant);
   }
 
@@ -299,39 +148,37 @@ private:
   std::vector<Loop> FindHole()
   {
     const double near = 2 * this->Rays.Spacing * this->Plane.GetScale(); // of rays beside bone
-    this->Grid = MakeGrid(this->Defect, near + 2 * GridSpacing, GridSpacing);
-    const std::vector<double> away = FindDistances(this->Grid, this->Defect, 2 * near);
+    const double reach = near + Beside;
+    this->Grid = MakeGrid(this->Defect, reach + 2 * GridSpacing, GridSpacing);
+    const std::vector<double> away = FindDistances(this->Grid, this->Defect, 2 * reach);
     std::vector<std::int64_t> nodes;
-    std::vector<Vec2> points;
     for (std::size_t k = 0; k < away.size(); ++k)
     {
-      if (away[k] < near + 2 * GridSpacing)
+      if (away[k] < reach + 2 * GridSpacing)
       {
-        const auto node = static_cast<std::int64_t>(k);
-        nodes.push_back(node);
-        points.push_back(this->Grid.GetNode(node % this->Grid.Columns, node / this->Grid.Columns));
+        nodes.push_back(static_cast<std::int64_t>(k));
       }
     }
-    const std::vector<Vec3> directions = this->DirectionsOf(points);
-    const std::vector<SkullEstimate> shape = this->Shape.PredictSurfaces(directions, this->Run);
-    this->Run.SetStage(0.2, 0.3);
+    this->SetSlab(nodes);
+    this->Run.SetStage(0.2, 0.25);
     std::vector<RaySegment> segments;
-    for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (const std::int64_t node : nodes)
     {
-      const double outer = shape[k].Outer + this->Options.EdgeClearance;
-      const double inner = shape[k].Outer - shape[k].Thickness - this->Options.EdgeClearance;
-      segments.push_back({ directions[k], std::max(inner, 1.0), outer });
+      const Vec3 outer = this->Slab.Outer[node] - this->Rays.Center;
+      const double inner = Norm(this->Slab.Inner[node] - this->Rays.Center);
+      const double clearance = this->Options.EdgeClearance;
+      segments.push_back(
+        { Normalized(outer), std::max(inner - clearance, 1.0), Norm(outer) + clearance });
     }
     const std::vector<double> largest =
       FindLargestAlong(this->Volume, this->Rays.Center, segments, this->Run);
-    this->Run.SetStage(0.3, 0.35);
     this->Free.assign(away.size(), -1);
-    this->Inner.assign(away.size(), 0);
     for (std::size_t k = 0; k < nodes.size(); ++k)
     {
       this->Free[nodes[k]] =
-        std::clamp((this->Options.Level - largest[k]) / ValueScale, -near, near - away[nodes[k]]);
-      this->Inner[nodes[k]] = shape[k].Outer - shape[k].Thickness;
+        std::clamp((this->Options.Level - largest[k]) / ValueScale, -reach, near - away[nodes[k]]);
+      this->Slab.IsKnown[nodes[k]] =
+        largest[k] < Infinity && this->IsInScan(this->Slab.Outer[nodes[k]]);
     }
     const std::vector<std::vector<std::int64_t>> parts = FindFreeParts(this->Grid, this->Free);
     if (parts.empty())
@@ -363,6 +210,73 @@ private:
     return KeepLargest(FindContours(this->Grid, this->Free, 0));
   }
 
+  bool IsInScan(const Vec3& x) const
+  {
+    const Vec3 index = this->WorldToIndex.Point(x);
+    bool isIn = true;
+    for (int a = 0; a < 3; ++a)
+    {
+      isIn = isIn && index[a] >= 0 && index[a] <= this->Volume.Size[a] - 1;
+    }
+    return isIn;
+  }
+
+  // Both surfaces at some nodes.
+  void SetSlab(const std::vector<std::int64_t>& nodes)
+  {
+    std::vector<Vec2> points;
+    for (const std::int64_t node : nodes)
+    {
+      points.push_back(this->Grid.GetNode(node % this->Grid.Columns, node / this->Grid.Columns));
+    }
+    const std::vector<Vec3> directions = this->DirectionsOf(points);
+    const std::vector<SkullEstimate> shape = this->Shape.PredictSurfaces(directions, this->Run);
+    const auto count = static_cast<std::size_t>(this->Grid.Columns * this->Grid.Rows);
+    ImplantSlab& slab = this->Slab;
+    slab.Grid = this->Grid;
+    slab.IsKnown.assign(count, false);
+    slab.Outer.assign(count, Vec3{ 0, 0, 0 });
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+    {
+      slab.IsKnown[nodes[k]] = true;
+      slab.Outer[nodes[k]] = this->PointAt(directions[k], shape[k].Outer);
+    }
+    slab.Inner = slab.Outer;
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+    {
+      const std::int64_t node = nodes[k];
+      const Vec3 normal = this->GetNormal(node, directions[k]);
+      const double least = ThickEnough * this->Options.MinimumThickness;
+      if (this->Options.Thickness > 0)
+      {
+        slab.Inner[node] = slab.Outer[node] - std::max(this->Options.Thickness, least) * normal;
+        continue;
+      }
+      const double cosine = std::max(Dot(normal, directions[k]), 0.3);
+      const double inner = shape[k].Outer - std::max(shape[k].Thickness, least / cosine);
+      if (!(inner > 1))
+      {
+        throw std::runtime_error("the inner surface reaches the middle of the skull");
+      }
+      slab.Inner[node] = this->PointAt(directions[k], inner);
+    }
+  }
+
+  // Of the outer surface, by the nodes beside one.
+  Vec3 GetNormal(std::int64_t node, const Vec3& direction) const
+  {
+    const ImplantSlab& slab = this->Slab;
+    const auto count = static_cast<std::int64_t>(slab.Outer.size());
+    const auto along = [&](std::int64_t step)
+    {
+      const bool before = node - step >= 0 && slab.IsKnown[node - step];
+      const bool after = node + step < count && slab.IsKnown[node + step];
+      return slab.Outer[after ? node + step : node] - slab.Outer[before ? node - step : node];
+    };
+    const Vec3 normal = Cross(along(1), along(this->Grid.Columns));
+    return HasDirection(normal) ? Normalized(normal) : direction;
+  }
+
   // Of the rays next to the defect that leave the scan before they come to the skull, mm^2.
   double FindUnknownArea() const
   {
@@ -382,29 +296,6 @@ private:
     return area;
   }
 
-  // Linear between nodes.
-  double InnerAt(const Vec2& p) const
-  {
-    const auto i = static_cast<std::int64_t>((p[0] - this->Grid.Origin[0]) / GridSpacing);
-    const auto j = static_cast<std::int64_t>((p[1] - this->Grid.Origin[1]) / GridSpacing);
-    const double x = (p[0] - this->Grid.Origin[0]) / GridSpacing - static_cast<double>(i);
-    const double y = (p[1] - this->Grid.Origin[1]) / GridSpacing - static_cast<double>(j);
-    double sum = 0;
-    double weights = 0;
-    for (const int m : { 0, 1 })
-    {
-      for (const int n : { 0, 1 })
-      {
-        const std::int64_t node = std::min(i + m, this->Grid.Columns - 1) +
-          this->Grid.Columns * std::min(j + n, this->Grid.Rows - 1);
-        const double weight = (m ? x : 1 - x) * (n ? y : 1 - y);
-        sum += this->Inner[node] > 0 ? weight * this->Inner[node] : 0;
-        weights += this->Inner[node] > 0 ? weight : 0;
-      }
-    }
-    return weights > 0 ? sum / weights : this->Plane.GetScale();
-  }
-
   std::vector<Loop> MoveInwards(const std::vector<Loop>& hole)
   {
     if (hole.empty())
@@ -422,34 +313,38 @@ private:
           for (std::int64_t i = 0; i < this->Grid.Columns; ++i)
           {
             const std::int64_t node = i + this->Grid.Columns * j;
-            if (this->Inner[node] > 0)
+            if (this->Slab.IsKnown[node])
             {
-              const Vec3 direction = this->Plane.ToDirection(this->Grid.GetNode(i, j));
-              const double distance =
-                rim.Find(this->PointAt(direction, this->Inner[node]), limit).Distance;
+              const double distance = rim.Find(this->Slab.Inner[node], limit).Distance;
               distances[node] = this->Free[node] > 0 ? distance : -distance;
             }
           }
         }
       });
-    return this->WithoutTongues(std::move(distances));
-  }
-
-  // The outline at the clearance from the rim, without what is narrow (an opening).
-  std::vector<Loop> WithoutTongues(std::vector<double> distances)
-  {
-    const double clearance = this->Options.EdgeClearance;
-    const std::vector<Loop> core =
-      KeepLargest(FindContours(this->Grid, distances, clearance + LeastRadius));
-    if (core.empty())
+    this->FromHole = distances;
+    std::vector<Loop> outline =
+      this->WithoutTongues(std::move(distances), this->Options.EdgeClearance);
+    if (outline.empty())
     {
       throw std::runtime_error("the hole is nowhere wider than " +
-        FormatNumber(2 * (clearance + LeastRadius)) +
+        FormatNumber(2 * (this->Options.EdgeClearance + LeastRadius)) +
         " mm: it may be a gap in thin bone, which this level does not show");
     }
-    const double before = GetArea(KeepLargest(FindContours(this->Grid, distances, clearance)));
+    return outline;
+  }
+
+  // The outline where distances are a limit, without what is narrow (an opening). Empty: nothing is wide.
+  std::vector<Loop> WithoutTongues(std::vector<double> distances, double limit)
+  {
+    const std::vector<Loop> core =
+      KeepLargest(FindContours(this->Grid, distances, limit + LeastRadius));
+    if (core.empty())
+    {
+      return {};
+    }
+    const double before = GetArea(KeepLargest(FindContours(this->Grid, distances, limit)));
     const CurveIndex edge(this->OnInner(core), 2);
-    const double limit = LeastRadius + Slack;
+    const double reach = LeastRadius + Slack;
     this->Run.For(this->Grid.Rows, 8,
       [&](std::int64_t begin, std::int64_t end)
       {
@@ -457,25 +352,24 @@ private:
         {
           for (std::int64_t i = 0; i < this->Grid.Columns; ++i)
           {
-            double& distance = distances[i + this->Grid.Columns * j];
-            const Vec2 node = this->Grid.GetNode(i, j);
-            if (distance > clearance && !IsInside(core, node))
+            const std::int64_t node = i + this->Grid.Columns * j;
+            double& distance = distances[node];
+            if (distance > limit && !IsInside(core, this->Grid.GetNode(i, j)))
             {
-              const Vec3 point = this->PointAt(
-                this->Plane.ToDirection(node), this->Inner[i + this->Grid.Columns * j]);
-              distance =
-                std::min(distance, clearance + limit - edge.Find(point, 2 * limit).Distance);
+              distance = std::min(
+                distance, limit + reach - edge.Find(this->Slab.Inner[node], 2 * reach).Distance);
             }
           }
         }
       });
-    std::vector<Loop> outline = KeepLargest(FindContours(this->Grid, distances, clearance));
+    std::vector<Loop> outline = KeepLargest(FindContours(this->Grid, distances, limit));
     const double without = before - GetArea(outline);
-    if (without > LeastPart)
+    if (without > LeastPart && limit > 0)
     {
       this->Implant.Warnings.push_back("the hole has parts that are narrower than " +
-        FormatNumber(2 * (clearance + LeastRadius)) + " mm, or that are behind such: " +
-        FormatNumber(std::round(without / 10) / 10) + " cm^2 are left out");
+        FormatNumber(2 * (this->Options.EdgeClearance + LeastRadius)) +
+        " mm, or that are behind such: " + FormatNumber(std::round(without / 10) / 10) +
+        " cm^2 are left out");
     }
     return outline;
   }
@@ -488,62 +382,165 @@ private:
       curves.emplace_back();
       for (const Vec2& p : loop)
       {
-        curves.back().push_back(this->PointAt(this->Plane.ToDirection(p), this->InnerAt(p)));
+        curves.back().push_back(this->Slab.GetPoint(p, 1));
       }
     }
     return curves;
   }
 
   //----------------------------------------------------------------------------
-  void AddMesh(const std::vector<Loop>& outline)
+  // The way in: as given, or that of the walls of bone along an outline.
+  Vec3 ChooseDirection(const std::vector<Loop>& outline) const
   {
-    const double h = this->Options.TriangleSize;
-    std::vector<std::vector<std::int32_t>> edges;
+    Vec3 in{ 0, 0, 0 };
+    std::vector<Vec3> walls;
     for (const Loop& loop : outline)
     {
-      edges.emplace_back();
-      for (const Vec2& p : loop)
+      for (const Vec2& p : Resample(loop, 1))
       {
-        edges.back().push_back(static_cast<std::int32_t>(this->Feet.size()));
-        this->Feet.push_back(p);
+        const Vec3 normal = this->Slab.GetNormal(p);
+        in = in - normal;
+        for (const double depth : { 0.25, 0.5, 0.75 })
+        {
+          const Vec3 x = this->Slab.GetPoint(p, depth);
+          const NearestBone bone = this->Bone.Find(x, WallReach);
+          const Vec3 wall = Normalized(x - bone.Point);
+          if (bone.Distance > 0 && bone.Distance < WallReach &&
+            std::abs(Dot(wall, normal)) < WallFace)
+          {
+            walls.push_back(wall);
+          }
+        }
       }
     }
-    const Loop lattice = FillWithLattice(this->Run, outline, h, LatticeToRim * h);
-    this->Feet.insert(this->Feet.end(), lattice.begin(), lattice.end());
-    std::vector<Vec2> rounded = this->Feet;
-    const std::vector<Triangle> triangles = TriangulateRegion(rounded, edges);
-    const std::vector<Vec3> directions = this->DirectionsOf(this->Feet);
-    const std::vector<SkullEstimate> shape = this->Shape.PredictSurfaces(directions, this->Run);
-    const auto n = static_cast<std::int32_t>(this->Feet.size());
-    SkullImplant& implant = this->Implant;
-    for (const bool outer : { true, false })
+    const Vec3& given = this->Options.InsertionDirection;
+    return HasDirection(given) ? Normalized(given) : FindInsertionDirection(walls, in);
+  }
+
+  // Of each node the least clearance of both surfaces and what is between them, on the way out, without EdgeClearance.
+  std::vector<double> FindFreeWays(const InsertionPath& path) const
+  {
+    std::vector<double> free(this->Free.size(), -FarFromRim);
+    std::vector<bool> wanted(free.size(), false);
+    std::vector<std::int64_t> nodes;
+    for (std::int64_t node = 0; node < static_cast<std::int64_t>(free.size()); ++node)
     {
-      for (std::int32_t k = 0; k < n; ++k)
+      const bool isSparse =
+        node % this->Grid.Columns % Sparse == 0 && node / this->Grid.Columns % Sparse == 0;
+      const bool isHole = this->Free[node] > 0;
+      free[node] = isHole ? InsertionPath::Limit : -FarFromRim;
+      if (this->Slab.IsKnown[node] && (std::abs(this->FromHole[node]) < 1 || (isHole && isSparse)))
       {
-        const double radius = shape[k].Outer - (outer ? 0 : shape[k].Thickness);
-        if (!(radius > 1))
-        {
-          throw std::runtime_error("the inner surface reaches the middle of the skull");
-        }
-        implant.Points.push_back(this->PointAt(directions[k], radius));
-        implant.Thickness.push_back(shape[k].Thickness);
+        nodes.push_back(node);
+        wanted[node] = true;
       }
+    }
+    while (!nodes.empty())
+    {
+      this->Run.For(static_cast<std::int64_t>(nodes.size()), 64,
+        [&](std::int64_t begin, std::int64_t end)
+        {
+          for (std::int64_t k = begin; k < end; ++k)
+          {
+            double least = InsertionPath::Limit;
+            for (int level = 0; level <= WallSteps && least > -1; ++level)
+            {
+              const double depth = static_cast<double>(level) / WallSteps;
+              const Vec3 x =
+                (1 - depth) * this->Slab.Outer[nodes[k]] + depth * this->Slab.Inner[nodes[k]];
+              least = std::min(least, path.GetClearance(x) - this->Options.EdgeClearance);
+            }
+            free[nodes[k]] = least;
+          }
+        });
+      std::vector<std::int64_t> next;
+      for (const std::int64_t node : nodes)
+      {
+        for (const std::int64_t step :
+          { std::int64_t{ -1 }, std::int64_t{ 1 }, -this->Grid.Columns, this->Grid.Columns })
+        {
+          const std::int64_t other = node + step; // nodes at the border are not known
+          if (free[node] > -1 && free[node] < Interesting && this->Slab.IsKnown[other] &&
+            !wanted[other])
+          {
+            wanted[other] = true;
+            next.push_back(other);
+          }
+        }
+      }
+      nodes = std::move(next);
+    }
+    return free;
+  }
+
+  //----------------------------------------------------------------------------
+  // Points of both surfaces are those of the slab.
+  void AddMesh(const ImplantEdge& edge)
+  {
+    std::vector<std::vector<std::int32_t>> rings; // level by level, loop by loop
+    for (int level = 0; level <= WallSteps; ++level)
+    {
+      for (const Loop& loop : edge.Levels[level])
+      {
+        rings.emplace_back();
+        for (const Vec2& p : loop)
+        {
+          rings.back().push_back(this->AddPoint(p, static_cast<double>(level) / WallSteps));
+        }
+      }
+    }
+    const std::size_t loops = edge.Levels[0].size();
+    this->AddFace(edge.Levels.front(), &rings[0], SkullImplantFace::Outer);
+    this->AddFace(edge.Levels.back(), &rings[WallSteps * loops], SkullImplantFace::Inner);
+    for (std::size_t r = 0; r < WallSteps * loops; ++r)
+    {
+      const std::vector<std::int32_t>& upper = rings[r];
+      const std::vector<std::int32_t>& lower = rings[r + loops];
+      for (std::size_t k = 0; k < upper.size(); ++k)
+      {
+        const std::size_t next = (k + 1) % upper.size();
+        this->AddTriangle(upper[k], lower[k], lower[next], SkullImplantFace::Edge);
+        this->AddTriangle(upper[k], lower[next], upper[next], SkullImplantFace::Edge);
+      }
+    }
+  }
+
+  std::int32_t AddPoint(const Vec2& p, double depth)
+  {
+    this->Feet.push_back(p);
+    this->Implant.Points.push_back(this->Slab.GetPoint(p, depth));
+    this->Implant.Thickness.push_back(Norm(this->Slab.GetPoint(p, 0) - this->Slab.GetPoint(p, 1)));
+    return static_cast<std::int32_t>(this->Feet.size()) - 1;
+  }
+
+  // rings: points of the loops.
+  void AddFace(
+    const std::vector<Loop>& loops, const std::vector<std::int32_t>* rings, SkullImplantFace face)
+  {
+    const double h = this->Options.TriangleSize;
+    const bool isOuter = face == SkullImplantFace::Outer;
+    Loop feet;
+    std::vector<std::int32_t> points;
+    std::vector<std::vector<std::int32_t>> edges;
+    for (std::size_t l = 0; l < loops.size(); ++l)
+    {
+      edges.emplace_back();
+      for (std::size_t k = 0; k < loops[l].size(); ++k)
+      {
+        edges.back().push_back(static_cast<std::int32_t>(feet.size()));
+        feet.push_back(loops[l][k]);
+        points.push_back(rings[l][k]);
+      }
+    }
+    for (const Vec2& p : FillWithLattice(this->Run, loops, h, LatticeToRim * h))
+    {
+      feet.push_back(p);
+      points.push_back(this->AddPoint(p, isOuter ? 0 : 1));
     }
     // counterclockwise in the chart is so from outside
-    for (const Triangle& t : triangles)
+    for (const Triangle& t : TriangulateRegion(feet, edges))
     {
-      this->AddTriangle(t[0], t[1], t[2], SkullImplantFace::Outer);
-      this->AddTriangle(n + t[0], n + t[2], n + t[1], SkullImplantFace::Inner);
-    }
-    for (const std::vector<std::int32_t>& edge : edges)
-    {
-      for (std::size_t k = 0; k < edge.size(); ++k)
-      {
-        const std::int32_t a = edge[k];
-        const std::int32_t b = edge[(k + 1) % edge.size()];
-        this->AddTriangle(a, n + a, n + b, SkullImplantFace::Edge);
-        this->AddTriangle(a, n + b, b, SkullImplantFace::Edge);
-      }
+      this->AddTriangle(points[t[0]], points[t[isOuter ? 1 : 2]], points[t[isOuter ? 2 : 1]], face);
     }
   }
 
@@ -592,8 +589,8 @@ private:
       this->Shape.Predict(this->DirectionsOf(points), this->Run);
     SkullImplant& implant = this->Implant;
     const std::size_t count = this->Feet.size();
-    implant.Errors.resize(2 * count);
-    implant.ThicknessErrors.resize(2 * count);
+    implant.Errors.resize(count);
+    implant.ThicknessErrors.resize(count);
     for (std::size_t k = 0; k < count; ++k)
     {
       const Cell& cell = cells[k];
@@ -609,12 +606,12 @@ private:
           thickness += weight * e.ThicknessError;
         }
       }
-      implant.Errors[k] = implant.Errors[count + k] = error;
-      implant.ThicknessErrors[k] = implant.ThicknessErrors[count + k] = thickness;
+      implant.Errors[k] = error;
+      implant.ThicknessErrors[k] = thickness;
       if (error > implant.LargestError)
       {
         implant.LargestError = error;
-        implant.LargestErrorPoint = implant.Points[k];
+        implant.LargestErrorPoint = this->Slab.GetPoint(this->Feet[k], 0);
       }
     }
   }
@@ -646,67 +643,107 @@ private:
   }
 
   // By the ratio of areas in the chart: the surface goes on evenly over the clearance.
-  void SetHoleArea(const std::vector<Loop>& hole)
+  void SetHoleArea(const std::vector<Loop>& hole, const std::vector<Loop>& outline)
   {
-    this->Implant.HoleArea = this->Implant.OuterArea * GetArea(hole) / this->OutlineArea;
-  }
-
-  // The direction that is farthest from all walls: each wall that is nearest turns it a little.
-  void FindInsertion(const std::vector<Loop>& outline)
-  {
-    std::vector<Vec3> walls; // unit normals, into the implant
-    Vec3 out{ 0, 0, 0 };
-    std::size_t first = 0;
+    double length = 0;
     for (const Loop& loop : outline)
     {
       for (std::size_t k = 0; k < loop.size(); ++k)
       {
-        const Vec3 here = this->Implant.Points[first + k] - this->Rays.Center;
-        const Vec3 next = this->Implant.Points[first + (k + 1) % loop.size()] - this->Rays.Center;
-        walls.push_back(Normalized(Cross(here, next)));
-        out = out + Normalized(here);
+        const Vec2& next = loop[(k + 1) % loop.size()];
+        length += std::hypot(next[0] - loop[k][0], next[1] - loop[k][1]);
       }
-      first += loop.size();
     }
-    out = Normalized(out);
-    Vec3 best = out;
-    double bestTaper = -1;
-    for (int step = 0; step < InsertionSteps; ++step)
+    const double area = GetArea(outline);
+    const double whole = std::max(GetArea(hole), area + this->Options.EdgeClearance * length);
+    this->Implant.HoleArea = this->Implant.OuterArea * whole / area;
+  }
+
+  // Of the points of one face that are not at the edge, the least distance to the triangles of the other.
+  void MeasureThickness()
+  {
+    SkullImplant& implant = this->Implant;
+    TriangleSurface inner;
+    inner.Points = implant.Points;
+    std::vector<bool> isOuter(implant.Points.size(), false);
+    for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
     {
-      const auto nearest = std::min_element(walls.begin(), walls.end(),
-        [&](const Vec3& a, const Vec3& b) { return Dot(a, out) < Dot(b, out); });
-      const double taper = Dot(*nearest, out);
-      if (taper > bestTaper)
+      if (implant.Faces[t] == SkullImplantFace::Inner)
       {
-        bestTaper = taper;
-        best = out;
+        inner.Triangles.push_back(implant.Triangles[t]);
       }
-      out = Normalized(out + (0.5 / (step + 2)) * *nearest);
+      for (const std::int32_t corner : implant.Triangles[t])
+      {
+        isOuter[corner] = isOuter[corner] || implant.Faces[t] == SkullImplantFace::Outer;
+      }
     }
-    this->Implant.InsertionDirection = -1 * best;
-    this->Implant.LeastTaper = std::asin(std::clamp(bestTaper, -1.0, 1.0)) * 180 / Pi;
+    std::vector<std::size_t> points;
+    for (std::size_t k = 0; k < isOuter.size(); ++k)
+    {
+      if (isOuter[k])
+      {
+        points.push_back(k);
+      }
+    }
+    const TriangleBone face(std::move(inner), [](const Vec3&) { return false; });
+    std::vector<double> distances(points.size());
+    this->Run.For(static_cast<std::int64_t>(points.size()), 256,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t k = begin; k < end; ++k)
+        {
+          const Vec3& x = implant.Points[points[k]];
+          distances[k] = face.Find(x, 1.1 * implant.Thickness[points[k]] + 0.1).Distance;
+        }
+      });
+    const auto least = std::min_element(distances.begin(), distances.end());
+    implant.MinimumThickness = *least;
+    implant.ThinnestPoint = implant.Points[points[least - distances.begin()]];
+  }
+
+  void SetInsertion(const ImplantEdge& edge, const InsertionPath& path)
+  {
+    SkullImplant& implant = this->Implant;
+    implant.InsertionDirection = path.GetDirection();
+    implant.LeastTaper = edge.LeastTaper;
+    implant.UndercutVolume = edge.UndercutVolume;
+    implant.UndercutWidth = edge.UndercutWidth;
+    implant.UndercutPoint = edge.UndercutPoint;
+    std::vector<double> clearances(implant.Points.size());
+    this->Run.For(static_cast<std::int64_t>(clearances.size()), 256,
+      [&](std::int64_t begin, std::int64_t end)
+      {
+        for (std::int64_t k = begin; k < end; ++k)
+        {
+          clearances[k] = path.GetClearance(implant.Points[k]);
+        }
+      });
+    implant.InsertionClearance = *std::min_element(clearances.begin(), clearances.end());
   }
 
   const VoxelVolume& Volume;
+  Matrix4 WorldToIndex;
   const SkullRays& Rays;
   const SkullShape& Shape;
+  const BoneDistance& Bone;
   const SkullImplantOptions& Options;
   Execution& Run;
   Chart Plane;
   std::vector<Vec2> Defect;
   PlanarGrid Grid;
-  std::vector<double> Free;  // of each node; positive where no bone is
-  std::vector<double> Inner; // radius of the inner surface; 0 away from the defect
-  std::vector<Vec2> Feet;    // of the outer points, then of the inner ones
-  double OutlineArea = 0;
+  ImplantSlab Slab;
+  std::vector<double> Free; // of each node; positive where no bone is
+  std::vector<double>
+    FromHole;             // the same: mm from the rim on the inner surface, positive in the hole
+  std::vector<Vec2> Feet; // of the implant's points
   SkullImplant Implant;
 };
 }
 
 //------------------------------------------------------------------------------
 SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
-  const std::vector<int>& defect, const SkullShape& shape, const SkullImplantOptions& options,
-  Execution& execution)
+  const std::vector<int>& defect, const SkullShape& shape, const BoneDistance& bone,
+  const SkullImplantOptions& options, Execution& execution)
 {
   if (defect.empty())
   {
@@ -722,8 +759,18 @@ SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
     throw std::invalid_argument("TriangleSize is " + FormatNumber(options.TriangleSize) +
       " mm; it must be between 0.2 and 5");
   }
+  if (!(options.Thickness == 0 || (options.Thickness >= 0.5 && options.Thickness <= 20)))
+  {
+    throw std::invalid_argument("Thickness is " + FormatNumber(options.Thickness) +
+      " mm; it must be 0 (that of bone) or between 0.5 and 20");
+  }
+  if (!(options.MinimumThickness >= 0 && options.MinimumThickness <= 10))
+  {
+    throw std::invalid_argument("MinimumThickness is " + FormatNumber(options.MinimumThickness) +
+      " mm; it must be between 0 and 10");
+  }
   const Execution::NestedStages nested(execution);
   execution.SetStage(0, 0.05);
-  return Builder(volume, rays, defect, shape, options, execution).Make();
+  return Builder(volume, rays, defect, shape, bone, options, execution).Make();
 }
 }

@@ -4,6 +4,7 @@
 #ifndef lacunaSkullImplant_h
 #define lacunaSkullImplant_h
 
+#include "lacunaBoneDistance.h"
 #include "lacunaExecution.h"
 #include "lacunaPlanarTriangulation.h"
 #include "lacunaSkullRays.h"
@@ -22,6 +23,11 @@ struct SkullImplantOptions
   double Level = 300;         ///< grey level of bone
   double EdgeClearance = 0.5; ///< mm between the wall of the implant and bone, 0..5
   double TriangleSize = 1;    ///< mm, 0.2..5; half of it along the edge
+  /// mm along the normal of the outer surface, 0.5..20; 0: that of bone, along rays.
+  double Thickness = 0;
+  double MinimumThickness = 0; ///< mm, 0..10: the inner surface is moved inwards where it is less
+  /// The way in which it is put in; zero: that for which the walls have the most taper.
+  Vec3 InsertionDirection{ 0, 0, 0 };
 };
 
 /// What a triangle of the implant belongs to.
@@ -54,22 +60,27 @@ struct SkullImplant
   double LargestError = 0;
   Vec3 LargestErrorPoint{ 0, 0, 0 };
   double DoubtfulArea = 0; ///< mm^2 of the outer surface that are expected to be more than 1 mm off
-  /// Unit, the way in which it is put in, and the least angle between it and the walls, degrees: where it is
-  /// negative bone stands in the way.
-  Vec3 InsertionDirection{ 0, 0, 0 };
-  double LeastTaper = 0;
+  double MinimumThickness = 0; ///< mm, least distance between the outer points and the inner face
+  Vec3 ThinnestPoint{ 0, 0, 0 };
+  Vec3 InsertionDirection{ 0, 0, 0 }; ///< unit, the way in which it is put in
+  double LeastTaper = 0; ///< degrees, least angle between it and the walls of the implant
+  double InsertionClearance =
+    0; ///< mm, least distance of points from bone on the way in, at most 3
+  /// Free space beside the edge that cannot be filled when it is put in so: mm^3, its width in mm, and where.
+  double UndercutVolume = 0;
+  double UndercutWidth = 0;
+  Vec3 UndercutPoint{ 0, 0, 0 };
   std::vector<std::string> Warnings;
 };
 
-/// The outer and inner surface are those of the shape. The edge runs along rays from the centre, so that the
-/// implant grows wider outwards. Its outline is the one of the free space: no bone is met between the
-/// surfaces, nor within the clearance of them, in the volume (trilinear). It is moved inwards by the
-/// clearance, measured on the inner surface. Parts into which no ball of 2 mm fits then are left out, and so is all
+/// The outer and inner surface are those of the shape. Between them the edge keeps the clearance from bone at each
+/// depth, also on the way in: it follows the wall where that opens outwards, and goes along the direction where
+/// bone is above free space. Parts into which no ball of 2 mm fits then are left out, and so is all
 /// but the largest of several free spaces.
 /// defect: rays, as of FindDefects. Throws std::invalid_argument when an option is out of range or the defect is
 /// empty, and std::runtime_error when no free space is left.
 SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
-  const std::vector<int>& defect, const SkullShape& shape, const SkullImplantOptions& options,
-  Execution& execution);
+  const std::vector<int>& defect, const SkullShape& shape, const BoneDistance& bone,
+  const SkullImplantOptions& options, Execution& execution);
 }
 #endif

@@ -4,6 +4,7 @@
 #include "lacunaPlanarCurves.h"
 #include "lacunaSkullEllipsoid.h"
 #include "lacunaSymmetricFactorization.h"
+#include "lacunaVoxelSampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,55 +36,6 @@ constexpr double ClearBorder = 0.5;
 constexpr double LeastBorder = 0.4;
 constexpr std::size_t LeastSound = 100;
 
-// Trilinear voxels along rays.
-template <class T>
-class RaySampler
-{
-public:
-  RaySampler(const VoxelVolume& volume, const T* voxels)
-    : Volume(volume)
-    , Voxels(voxels)
-    , WorldToIndex(volume.IndexToWorld.Inverse())
-  {
-  }
-
-  // NaN outside
-  double operator()(const Vec3& world) const
-  {
-    const Vec3 index = this->WorldToIndex.Point(world);
-    std::int64_t base = 0;
-    std::int64_t stride = 1;
-    std::int64_t next[3];
-    double f[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      const int last = this->Volume.Size[a] - 1;
-      if (!(index[a] >= 0 && index[a] <= last))
-      {
-        return NotANumber;
-      }
-      const int i = std::min(static_cast<int>(index[a]), last - 1);
-      f[a] = index[a] - i;
-      base += stride * i;
-      next[a] = stride;
-      stride *= this->Volume.Size[a];
-    }
-    const auto along = [&](std::int64_t at)
-    {
-      return (1 - f[0]) * static_cast<double>(this->Voxels[at]) +
-        f[0] * static_cast<double>(this->Voxels[at + next[0]]);
-    };
-    const auto plane = [&](std::int64_t at)
-    { return (1 - f[1]) * along(at) + f[1] * along(at + next[1]); };
-    return (1 - f[2]) * plane(base) + f[2] * plane(base + next[2]);
-  }
-
-private:
-  const VoxelVolume& Volume;
-  const T* Voxels;
-  Matrix4 WorldToIndex;
-};
-
 struct RayTables
 {
   double Outer = NotANumber;
@@ -93,8 +45,8 @@ struct RayTables
 };
 
 template <class T>
-RayTables FollowRay(
-  const RaySampler<T>& sample, const Vec3& center, const Vec3& direction, double level, double step)
+RayTables FollowRay(const VoxelSampler<T>& sample, const Vec3& center, const Vec3& direction,
+  double level, double step)
 {
   RayTables tables;
   double before = NotANumber; // the value one step farther out
@@ -236,7 +188,7 @@ std::vector<RayTables> Follow(const VoxelVolume& volume, double level, const Vec
   DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels)
     {
-      const RaySampler sample(volume, voxels);
+      const VoxelSampler sample(volume, voxels);
       if (std::isnan(sample(center)))
       {
         throw std::invalid_argument(
@@ -559,7 +511,7 @@ std::vector<double> FindLargestAlong(const VoxelVolume& volume, const Vec3& cent
   DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* voxels)
     {
-      const RaySampler sample(volume, voxels);
+      const VoxelSampler sample(volume, voxels);
       execution.For(static_cast<std::int64_t>(segments.size()), 256,
         [&](std::int64_t begin, std::int64_t end)
         {

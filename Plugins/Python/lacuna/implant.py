@@ -38,12 +38,13 @@ Made = collections.namedtuple("Made", "bone implant defects")
 Defect = collections.namedtuple("Defect", "area center")  # mm², mm
 
 
-def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None, template=None):
+def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None, template=None, thickness=0):
     """Makes the pipeline from a CT (a proxy) to an implant, and updates it. Opens no file and shows nothing.
 
     hole: a point in or near the hole, x y z in the CT's patient millimetres; None takes the largest hole. level: of the bone's
     surface in Hounsfield units. clearance: of the implant's edge from the bone in mm. progress: is called with the part of the design
     that is done, 0 to 1. template: another skull (a proxy of a CT or of a mesh in mm), or None.
+    thickness: of the implant in mm; 0 takes that of the bone.
     Returns the proxies bone (Skull Bone), implant (Skull Implant) and defects (its second output). Raises PipelineError when a
     filter reports an error, for example when there is no hole. Nothing of the pipeline is left then.
     """
@@ -56,7 +57,7 @@ def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None,
                 template = pv.SkullBone(Input=template)
                 made.append(template)
                 template.Level = level
-            design = pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance)
+            design = pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance, Thickness=thickness)
             made.append(design)
             if template is not None:
                 design.Template = template
@@ -109,12 +110,21 @@ def describe(made):
         chosen = "  <- the implant closes this one" if k == numbers["Chosen"] else ""
         lines.append(f"  {k + 1}: about {defect.area / 100:.1f} cm², centre at {place(defect.center)}{chosen}")
     lines.append(f"implant: {numbers['Volume'] / 1000:.2f} ml, {numbers['Mass']:.1f} g; thickness {numbers['ThicknessMinimum']:.1f} to "
-                 f"{numbers['ThicknessMaximum']:.1f} mm, mean {numbers['ThicknessMean']:.1f} mm")
+                 f"{numbers['ThicknessMaximum']:.1f} mm, mean {numbers['ThicknessMean']:.1f} mm; thinnest place "
+                 f"{numbers['MinimumThickness']:.1f} mm, at {place(numbers['MinimumThicknessPoint'])}")
+    lines.append(f"way in: no nearer to bone than {numbers['InsertionClearance']:.1f} mm; undercuts of the bone: {undercut_text(numbers, place)}")
     lines.append(f"predicted error of the outer surface (standard error): {numbers['PredictedErrorRMS']:.2f} mm RMS; largest "
                  f"{numbers['PredictedErrorMaximum']:.2f} mm, at {place(numbers['PredictedErrorMaximumPoint'])}")
     if "TemplateFitRMS" in numbers:
         lines.append(f"template: {template_text(numbers)}")
     return lines
+
+
+def undercut_text(numbers, place):
+    """What of the hole an implant cannot fill because bone is above it. numbers: of measures; place: of places."""
+    if not numbers["UndercutVolume"] > 0:
+        return "none"
+    return f"{numbers['UndercutVolume']:.0f} mm³, up to {numbers['UndercutWidth']:.1f} mm wide, at {place(numbers['UndercutPoint'])}"
 
 
 def template_text(numbers):
@@ -160,6 +170,7 @@ def parse_arguments(arguments):
     parser.add_argument("--report", metavar="DIR", help="write index.html with pictures, numbers and warnings into this folder")
     parser.add_argument("--level", type=float, metavar="HU", help=f"of the bone's surface ({LEVEL} in Hounsfield units; needed for other values)")
     parser.add_argument("--clearance", type=float, default=CLEARANCE, metavar="MM", help="gap between the implant's edge and the bone (%(default)s)")
+    parser.add_argument("--thickness", type=float, default=0, metavar="MM", help="of the implant, 0.5 to 20; 0: that of the bone (%(default)s)")
     options = parser.parse_args(arguments)
     folder = os.path.dirname(options.output) or "."
     if not options.output.lower().endswith(ENDINGS):
@@ -172,6 +183,8 @@ def parse_arguments(arguments):
         parser.error(f"--level: {options.level:g} is no number above 0")
     if not 0 <= options.clearance <= 5:
         parser.error(f"--clearance: {options.clearance:g} mm is not from 0 to 5")
+    if options.thickness != 0 and not 0.5 <= options.thickness <= 20:
+        parser.error(f"--thickness: {options.thickness:g} mm is neither 0 nor from 0.5 to 20")
     if options.report and os.path.exists(options.report) and not os.path.isdir(options.report):
         parser.error(f"--report: {options.report} is a file, not a folder")
     return options
@@ -213,7 +226,7 @@ def _run(options):
     _say("designing the implant")
     with _told_once(warnings):
         template = options.template and _open_template(options.template)
-        made = make_implant(ct, options.hole, level, options.clearance, _Steps(), template)
+        made = make_implant(ct, options.hole, level, options.clearance, _Steps(), template, options.thickness)
         lines = describe(made)
         record = save_solid(options.output, made.implant)
     warnings = list(dict.fromkeys(warnings))

@@ -242,12 +242,15 @@ def _rows(made, numbers):
     rows += [(f"mass in {name} ({density:g} g/cm³)", f"{numbers['Volume'] / 1000 * density:.1f} g") for name, density in MATERIALS]
     rows += [("thickness, least to largest", f"{numbers['ThicknessMinimum']:.1f} to {numbers['ThicknessMaximum']:.1f} mm"),
              ("thickness, mean", f"{numbers['ThicknessMean']:.1f} mm"),
+             ("thinnest place", f"{numbers['MinimumThickness']:.1f} mm at {place(numbers['MinimumThicknessPoint'])}"),
              ("clearance of the edge", f"{made.implant.EdgeClearance:g} mm"),
              ("predicted error of the outer surface, RMS", f"{numbers['PredictedErrorRMS']:.2f} mm"),
              ("predicted error, largest", f"{numbers['PredictedErrorMaximum']:.2f} mm at {place(numbers['PredictedErrorMaximumPoint'])}"),
              *_mirror_rows(made, place),
              ("insertion direction", text),
-             ("least taper of the walls", f"{numbers['LeastTaper']:.1f}° (below 0: bone is in the way)"),
+             ("least taper of the implant's walls", f"{numbers['LeastTaper']:.1f}°"),
+             ("least distance from bone on the way in", f"{numbers['InsertionClearance']:.2f} mm"),
+             ("undercuts of the bone, not filled", implant.undercut_text(numbers, place)),
              ("bone level", f"{made.bone.Level:g} HU")]
     return rows
 
