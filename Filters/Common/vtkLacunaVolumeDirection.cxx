@@ -5,6 +5,7 @@
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkMatrix3x3.h"
 
@@ -74,6 +75,13 @@ void Update(vtkDataObject* output)
   {
     Record(image);
   }
+}
+
+//------------------------------------------------------------------------------
+void AnnounceAlongAxes(vtkInformation* output)
+{
+  const double axes[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+  output->Set(vtkDataObject::DIRECTION(), axes, 9);
 }
 
 //------------------------------------------------------------------------------

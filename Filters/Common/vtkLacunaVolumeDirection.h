@@ -12,6 +12,7 @@
 
 class vtkDataObject;
 class vtkImageData;
+class vtkInformation;
 
 namespace vtkLacunaVolumeDirection
 {
@@ -26,6 +27,9 @@ VTKLACUNAFILTERSCOMMON_EXPORT void Check(vtkDataObject* data);
 /// Makes the record of what Lacuna has made right: an image that is turned, or that has a record from its
 /// input, gets that of its own direction; other data lose it.
 VTKLACUNAFILTERSCOMMON_EXPORT void Update(vtkDataObject* output);
+/// Announces an image along the world's axes. Without this VTK 9.3 and later gives it the direction of its input, also
+/// when that is only there while an error is told.
+VTKLACUNAFILTERSCOMMON_EXPORT void AnnounceAlongAxes(vtkInformation* output);
 /// Removes the record, which VTK passes from an input, from what has a geometry of its own.
 VTKLACUNAFILTERSCOMMON_EXPORT void Remove(vtkDataObject* data);
 }

@@ -17,6 +17,7 @@
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaStackPixels.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -154,7 +155,7 @@ int vtkLacunaAssembleTrackedSlices::RequestInformation(
       const double rows = this->RowOrder == BottomRowFirst ? -extent[2] : 0;
       out->Set(vtkDataObject::ORIGIN(), 0.0, rows, -static_cast<double>(extent[4]));
       out->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
-      out->Remove(vtkDataObject::DIRECTION());
+      vtkLacunaVolumeDirection::AnnounceAlongAxes(out);
       out->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
       vtkImageData* stack = vtkImageData::GetData(in);
       if (stack && stack->GetNumberOfPoints() > 0 && !stack->GetPointData()->GetScalars())

@@ -16,6 +16,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkLacunaVolumeDirection.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -197,6 +198,7 @@ int vtkLacunaProbeCalibration::RequestInformation(
       map->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), grid.Extent, 6);
       map->Set(vtkDataObject::ORIGIN(), grid.Origin, 3);
       map->Set(vtkDataObject::SPACING(), grid.Spacing, 3);
+      vtkLacunaVolumeDirection::AnnounceAlongAxes(map);
       vtkDataObject::SetPointDataActiveScalarInfo(map, VTK_DOUBLE, 1);
     });
 }

@@ -270,7 +270,7 @@ int vtkLacunaRBFInterpolator::RequestInformation(
       vtkDataSet* points = vtkDataSet::GetData(inputs[0]);
       vtkInformation* info = outputs->GetInformationObject(0);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      info->Remove(vtkDataObject::DIRECTION());
+      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
       if (points && points->GetNumberOfPoints() > 0)
       {
         const OutputGrid to(points, this->OutputSpacing, this->OutputBounds);

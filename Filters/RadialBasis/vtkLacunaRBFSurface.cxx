@@ -231,8 +231,7 @@ int vtkLacunaRBFSurface::RequestInformation(
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
       const double h = this->DistanceSpacing;
       vtkInformation* info = outputs->GetInformationObject(1);
-      // an input's, which VTK 9.3 and later gives the output
-      info->Remove(vtkDataObject::DIRECTION());
+      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
       if (h > 0 && std::isfinite(h) && this->HasOutputBounds() && vtkLacunaRanks().GetRank() == 0)
       {
         lacuna::Vec3 origin;

@@ -57,9 +57,9 @@ public:
     return { self->EyePosition[0], self->EyePosition[1], self->EyePosition[2] };
   }
 
-  static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkInformation* inInfo)
+  static lacuna::ImagePlane MakePlane(vtkLacunaBSplineIsoRayCaster* self, vtkImageData* volume)
   {
-    const View::Frame frame = View::FrameOf(inInfo);
+    const View::Frame frame = View::FrameOf(volume);
     const lacuna::ViewSettings view = vtkLacunaDepthMap::GetView(self);
     if (self->Projection == Parallel)
     {
@@ -341,14 +341,17 @@ int vtkLacunaBSplineIsoRayCaster::RequestInformation(
         outInfo->Set(SDDP::WHOLE_EXTENT(), extent, 6);
         return;
       }
-      if (!inInfo->Has(vtkDataObject::DIRECTION()))
+      // Only the data know where the volume is: ParaView 5.11 drops the direction from the information, and what its
+      // Resample To Image announces is its input's. When they are up to date, as they usually are, this does nothing.
+      vtkLacunaRequest::UpdateNow(this);
+      vtkImageData* input = vtkImageData::GetData(inInfo);
+      if (!input || View::IsEmpty(input->GetExtent()))
       {
-        // ParaView's filter between any two proxies drops the direction from the information, so that
-        // only the data know where the volume is. When they are up to date, as they usually are, this does nothing.
-        vtkLacunaRequest::UpdateNow(this);
+        const int none[6] = { 0, -1, 0, -1, 0, -1 };
+        outInfo->Set(SDDP::WHOLE_EXTENT(), none, 6);
+        return;
       }
-      const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
-      vtkLacunaDepthMap::SetInformation(outInfo, plane);
+      vtkLacunaDepthMap::SetInformation(outInfo, Internals::MakePlane(this, input));
     });
 }
 
@@ -397,9 +400,7 @@ int vtkLacunaBSplineIsoRayCaster::RequestData(
         }
       }
 
-      vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
-      View::RequireSamePlace(input, inInfo);
-      const lacuna::ImagePlane plane = Internals::MakePlane(this, inInfo);
+      const lacuna::ImagePlane plane = Internals::MakePlane(this, input);
       execution.SetStage(0, 0.1);
       const lacuna::IsoRayCaster& caster = this->Internal->Caster.Prepare(
         input, scalars, this->Interpolation, this->SolidSide, execution);

@@ -5,13 +5,11 @@
 #include "lacunaVoxelVolume.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
 #include "vtkLacunaDepthMap.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <array>
@@ -70,56 +68,6 @@ vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkImageData* volume)
   return { SizeOf(volume->GetExtent()),
     IndexToWorld(volume->GetOrigin(), volume->GetSpacing(), volume->GetDirectionMatrix()->GetData(),
       volume->GetExtent()) };
-}
-
-//------------------------------------------------------------------------------
-vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkInformation* volume)
-{
-  int extent[6];
-  double origin[3] = { 0, 0, 0 };
-  double spacing[3] = { 1, 1, 1 };
-  double direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
-  volume->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-  vtkImageData* data = vtkImageData::GetData(volume);
-  if (!volume->Has(vtkDataObject::DIRECTION()) && data && !IsEmpty(data->GetExtent()))
-  {
-    // ParaView's Resample To Image leaves the origin and spacing of its input in the information
-    return { SizeOf(extent),
-      IndexToWorld(
-        data->GetOrigin(), data->GetSpacing(), data->GetDirectionMatrix()->GetData(), extent) };
-  }
-  if (volume->Has(vtkDataObject::ORIGIN()))
-  {
-    volume->Get(vtkDataObject::ORIGIN(), origin);
-  }
-  if (volume->Has(vtkDataObject::SPACING()))
-  {
-    volume->Get(vtkDataObject::SPACING(), spacing);
-  }
-  if (volume->Has(vtkDataObject::DIRECTION()))
-  {
-    volume->Get(vtkDataObject::DIRECTION(), direction);
-  }
-  return { SizeOf(extent), IndexToWorld(origin, spacing, direction, extent) };
-}
-
-//------------------------------------------------------------------------------
-void vtkLacunaCasterView::RequireSamePlace(vtkImageData* volume, vtkInformation* information)
-{
-  const Frame there = FrameOf(volume);
-  const Frame said = FrameOf(information);
-  const double tolerance = 1e-3 * lacuna::SmallestEdgeOf(there.IndexToWorld);
-  const auto corners = lacuna::CornersOf(there.IndexToWorld, there.Size);
-  const auto others = lacuna::CornersOf(said.IndexToWorld, said.Size);
-  for (std::size_t i = 0; i < corners.size(); ++i)
-  {
-    if (!(lacuna::Norm(corners[i] - others[i]) <= tolerance))
-    {
-      throw std::runtime_error("the volume has another size, origin, spacing or direction than the "
-                               "filter that made it has announced; update that filter and give its "
-                               "output as data (SetInputData)");
-    }
-  }
 }
 
 //------------------------------------------------------------------------------

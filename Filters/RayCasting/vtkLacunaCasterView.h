@@ -16,7 +16,6 @@
 #include <vector>
 
 class vtkImageData;
-class vtkInformation;
 
 class vtkLacunaCasterView
 {
@@ -24,18 +23,14 @@ public:
   static std::array<int, 3> SizeOf(const int extent[6]);
   static bool IsEmpty(const int extent[6]);
 
-  /// The frame of a volume; the kernel's indices start at the first voxel of its extent.
+  /// The frame of a volume; the kernel's indices start at the first voxel of its extent. Throws
+  /// std::runtime_error for voxels without size, and directions that were lost.
   struct Frame
   {
     std::array<int, 3> Size;
     lacuna::Matrix4 IndexToWorld;
   };
   static Frame FrameOf(vtkImageData* volume);
-  /// The same of a volume that is yet to come. Throws std::runtime_error for voxels without size.
-  static Frame FrameOf(vtkInformation* volume);
-  /// Throws std::runtime_error when the volume lies elsewhere than its pipeline information says, from
-  /// which the place of the depth map follows: its pixels would look past the volume.
-  static void RequireSamePlace(vtkImageData* volume, vtkInformation* information);
 
   /// The depths of the start map in extent. Throws std::runtime_error unless it shows the same view
   /// as plane; eye: null for a parallel projection.

@@ -189,6 +189,7 @@ int vtkLacunaPhantomSweep::RequestInformation(
       info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
       info->Set(vtkDataObject::ORIGIN(), 0.0, 0.0, 0.0);
       info->Set(vtkDataObject::SPACING(), 1.0, 1.0, 1.0);
+      vtkLacunaVolumeDirection::AnnounceAlongAxes(info);
       vtkDataObject::SetPointDataActiveScalarInfo(
         info, this->OutputScalarType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, 1);
       info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);

@@ -89,6 +89,10 @@ as_user cmake -S kernels -B of-kernels >"$work/cmake.log" || { cat "$work/cmake.
 as_user cmake --build of-kernels >"$work/build.log" || { cat "$work/build.log"; exit 1; }
 as_user of-kernels/Kernels "$work/calibration.xml"
 
+echo "== both jobs, from slices and from CT"
+on_display pvpython --force-offscreen-rendering -- -m lacuna.demo --output demo >"$work/demo.log" 2>&1 || { cat "$work/demo.log"; exit 1; }
+for file in surface.stl implant.igs report.md; do test -s "$work/demo/$file"; done
+
 echo "== in ParaView's window"
 on_display paraview --script=in_window.py >"$work/window.log" 2>&1 || cat "$work/window.log"
 grep -x works "$work/in_window.txt"

@@ -33,10 +33,13 @@ def write_volume():
 
 def readers(name, shape, voxel):
     """Of NRRD and raw files."""
+    from paraview import servermanager
     from paraview import simple as pv
-    extent = [index for size in reversed(shape) for index in (0, size - 1)]
+    size = {"Dimensions": list(reversed(shape))}  # ParaView 6.1
+    if servermanager.sources.ImageReader().GetProperty("DataExtent") is not None:
+        size = {"DataExtent": [index for count in reversed(shape) for index in (0, count - 1)]}
     return (("nrrd", lambda: pv.NrrdReader(FileName=os.path.join(FOLDER, f"{name}.nrrd"))),
-            ("raw", lambda: pv.ImageReader(FileNames=[os.path.join(FOLDER, f"{name}.raw")], DataScalarType=voxel, DataExtent=extent, FileDimensionality=3)))
+            ("raw", lambda: pv.ImageReader(FileNames=[os.path.join(FOLDER, f"{name}.raw")], DataScalarType=voxel, FileDimensionality=3, **size)))
 
 
 def run():

@@ -119,7 +119,7 @@ vertices = np.asarray(dsa.WrapDataObject(servermanager.Fetch(surface)).Points)
 pixels = np.asarray(dsa.WrapDataObject(servermanager.Fetch(surface)).PointData["PixelId"])
 Show(surface, CreateView("RenderView"))
 near = pixels[np.argsort(np.linalg.norm(vertices - np.array(typed), axis=1))[:4]]
-QuerySelect(QueryString="in1d(PixelId, [%s])" % ", ".join(map(str, near)), FieldType="POINT",
+QuerySelect(QueryString=" | ".join(f"(PixelId == {k})" for k in near), FieldType="POINT",
             Source=surface)
 picked = ExtractSelection(Input=surface)
 plate.HolePoints = []

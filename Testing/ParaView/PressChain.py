@@ -96,7 +96,7 @@ for name in ("axial", "feet first", "sagittal", "oblique"):
         # the mill is where it should be, and the plane lies flat
         assert abs(back[:3, 2] @ normal - (1 if face % 2 else -1)) < 1e-8
         assert abs(np.linalg.norm(np.radians(np.asarray(wrapped.FieldData["Angles"])))) > 0.1
-        columns, rows, _ = data.GetDimensions()
+        columns, rows = (last + 1 for last in data.GetExtent()[1:4:2])
         grid = np.asarray(wrapped.Points)
         region = np.asarray(wrapped.PointData["PressRegion"])
         defect = np.asarray(wrapped.PointData["DefectMask"]) == 1

@@ -205,7 +205,7 @@ def check_trace():
     trace = smtrace.stop_trace()
     for line in ("Operation = 'Opening'", "KernelShape = 'Ellipsoid'", "KernelSize = [7, 5, 1]",
                  "InsideBounds = [0.0, 20.0, 0.0, 20.0, 0.0, 0.0]", "IsoValue = 60.0"):
-        assert line in trace, (line, trace)
+        assert line.replace(" ", "") in trace.replace(" ", ""), (line, trace)  # ParaView 6.1 writes fewer blanks
     before = servermanager.Fetch(contrast).GetColumnByName("CSR").GetValue(0)
     Delete(contrast)
     Delete(opening)

@@ -108,7 +108,8 @@ def followers(proxy, among):
 
 
 class Views:
-    """A render view and a spreadsheet, in which each output is drawn once and shown by turns: to make them takes longer than all else here."""
+    """A render view and a spreadsheet, in which each output is drawn once and shown by turns: to make them takes longer than all else here.
+    Each pipeline has its own: a view of ParaView 6.1 keeps a texture for each hidden surface, until there are no more and nothing is drawn."""
 
     def __init__(self):
         self.drawing, self.sheet = pv.CreateView("RenderView"), pv.CreateView("SpreadSheetView")
@@ -148,6 +149,10 @@ class Views:
                         self.displays[key].SetRepresentationType("Surface")  # an outline shows the grid that was announced, not data
                 self.displays[key].Visibility = 1
         pv.ResetCamera(self.drawing)
+
+    def close(self):
+        for each in (self.drawing, self.sheet):
+            pv.Delete(each)
 
     def draw(self):
         for each in (self.drawing, self.sheet):
@@ -197,8 +202,8 @@ def check(proxy, among, views):
 
 make_files("ViewRecovery", *sys.argv[1:2])
 checked, failures = set(), []
-views = Views()
 for pipeline in PIPELINES:
+    views = Views()
     earlier = set(pv.GetSources())  # they stay, hidden, for it takes seconds to delete them
     pipeline()
     firsts = {}
@@ -213,6 +218,7 @@ for pipeline in PIPELINES:
             except (AssertionError, PipelineError) as failure:
                 print(f"{name} FAILED: {failure}", flush=True)
                 failures.append(name)
+    views.close()
 missing = every_kind() - checked - set(NOT_SHOWN)
 if len(sys.argv) < 2:
     missing -= {"LacunaCTSeriesReader"}

@@ -68,6 +68,10 @@ if [ "$what" != package ]; then
   if [ ! -d "$folder/lacuna" ]; then git clone -q "$source" "$folder/lacuna"; fi
   git -C "$folder/lacuna" fetch -q "$source" HEAD
   git -C "$folder/lacuna" reset -q --hard FETCH_HEAD
+  # of "make", when it was interrupted: without tests
+  if grep -qs '^LACUNA_DEBIAN:BOOL=ON' "$folder/lacuna/build/release/CMakeCache.txt"; then
+    rm "$folder/lacuna/build/release/CMakeCache.txt"
+  fi
   mkdir -p "$folder/data"
   if [ -d "$data" ]; then cp -r "$data/." "$folder/data/"; fi
 fi

@@ -177,8 +177,10 @@ def _write_by_paraview(name, path, proxy, options):
     from lacuna.files import check_whole, only_file
     from paraview.simple import SaveData
 
-    if name.endswith(".vtp"):  # Debian 12's libexpat breaks ParaView 5.11's reading of its default, appended
-        options = {"DataMode": "Binary"} | options
+    if name.endswith(".vtp"):
+        # Debian 12's libexpat breaks ParaView 5.11's reading of its default, raw bytes; VTK 9.6 writing anything else than
+        # appended ends the program when the disk is full
+        options = {"DataMode": "Appended", "EncodeAppendedData": 1} | options
     with raising():
         SaveData(name, proxy, **options)
     only_file(name, path)

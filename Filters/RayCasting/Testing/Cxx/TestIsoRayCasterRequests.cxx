@@ -312,7 +312,7 @@ class SilentMover : public vtkImageAlgorithm
 public:
   static SilentMover* New() { VTK_STANDARD_NEW_BODY(SilentMover); }
   vtkTypeMacro(SilentMover, vtkImageAlgorithm);
-  bool AnnouncesDirection = true; ///< few filters of VTK do
+  bool AnnouncesDirection = true; ///< another than it gives
 
 protected:
   int RequestInformation(
@@ -322,7 +322,7 @@ protected:
     information->Remove(vtkDataObject::DIRECTION());
     if (this->AnnouncesDirection)
     {
-      const double direction[9] = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
+      const double direction[9] = { 1, 0, 0, 0, -1, 0, 0, 0, -1 };
       information->Set(vtkDataObject::DIRECTION(), direction, 9);
     }
     return 1;
@@ -346,14 +346,16 @@ void TestSilentMover()
   caster->SetPlaneOrigin(VTK_DOUBLE_MAX, VTK_DOUBLE_MAX, VTK_DOUBLE_MAX);
   caster->SetImageSize(0, 0);
   caster->SetInputConnection(mover->GetOutputPort());
-  CheckError(caster, "than the filter that made it has announced");
-  mover->AnnouncesDirection = false;
-  mover->Modified();
-  caster->Update();
-  const double* bounds = caster->GetOutput()->GetBounds();
-  LACUNA_CHECK_THAT(IsNear(bounds[0], mover->GetOutput()->GetBounds()[0], 1) &&
-      IsNear(bounds[2], mover->GetOutput()->GetBounds()[2], 1),
-    "where the voxels are");
+  for (const bool announces : { true, false })
+  {
+    mover->AnnouncesDirection = announces;
+    mover->Modified();
+    caster->Update();
+    const double* bounds = caster->GetOutput()->GetBounds();
+    LACUNA_CHECK_THAT(IsNear(bounds[0], mover->GetOutput()->GetBounds()[0], 1) &&
+        IsNear(bounds[2], mover->GetOutput()->GetBounds()[2], 1),
+      "where the voxels are");
+  }
 }
 
 /// Stopped, and what VTK copies of what it announces has no direction.
@@ -419,12 +421,12 @@ void TestErrors()
   ball->SetSpacing(1, 0, 1);
   CheckError(caster, "every edge must be longer than 0");
   ball->SetSpacing(1, 1, std::nan(""));
-  CheckError(caster, "every edge must be longer than 0");
+  CheckError(caster, "its spacing is 1 1 nan; these must be finite numbers");
   ball->SetSpacing(1, 1, 1);
   ball->SetDirectionMatrix(1, 0, 1, 0, 1, 0, 0, 0, 0);
   CheckError(caster, "the direction matrix of the volume is 1,0,1,0,1,0,0,0,0:");
   ball->SetDirectionMatrix(1, 0, 0, 0, std::nan(""), 0, 0, 0, 1);
-  CheckError(caster, "the direction matrix of the volume is 1,0,0,0,nan,0,0,0,1:");
+  CheckError(caster, "1 0 0 0 nan 0 0 0 1; these must be finite numbers");
   ball->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
   LACUNA_CHECK_THAT(IsNear(DepthAt(caster, 20, 15), 20 - std::sqrt(99.0)), "recovered");
 
