@@ -4,6 +4,8 @@
 #ifndef lacunaDoubling_h
 #define lacunaDoubling_h
 
+#include "lacunaSanitized.h"
+
 #include <algorithm>
 #include <ctime>
 #include <functional>
@@ -13,7 +15,7 @@ namespace lacuna
 {
 /// How much longer three doublings take: 8 times as long by a work in proportion, 64 times by one of the
 /// square. Of processor time, the least of several runs: other programs do not count. make(size) makes the
-/// input, which is not measured, and returns the work.
+/// input, which is not measured, and returns the work. Under sanitizers sizes are an eighth.
 inline double GetGrowthOfThreeDoublings(
   int size, const std::function<std::function<void()>(int)>& make)
 {
@@ -30,6 +32,7 @@ inline double GetGrowthOfThreeDoublings(
     return least;
   };
   constexpr double Noise = 0.004; // s, of which nothing can be told
+  size = Sanitized ? std::max(1, size / 8) : size;
   return measure(8 * size) / std::max(measure(size), Noise);
 }
 

@@ -231,9 +231,13 @@ TEST(DicomDecoder, CodecStalls)
   EXPECT_FALSE(process.IsAlive());
 }
 
-// Neither image takes more memory than it may.
+// The process takes no more memory than the image may.
 TEST(DicomDecoder, CodecTakesMemory)
 {
+  if (Sanitized)
+  {
+    GTEST_SKIP() << "a sanitizer takes the addresses, so that there is no limit";
+  }
   const Temporary folder;
   constexpr int Edge = 2000;
   const CTFrame frame =
@@ -245,6 +249,6 @@ TEST(DicomDecoder, CodecTakesMemory)
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
   const double most = (std::uint64_t{ 320 } << 20) + 17.0 * 2 * Edge * Edge;
-  EXPECT_TRUE(Sanitized || 1024.0 * static_cast<double>(usage.ru_maxrss) < most) << usage.ru_maxrss;
+  EXPECT_LT(1024.0 * static_cast<double>(usage.ru_maxrss), most) << usage.ru_maxrss;
 }
 #endif
