@@ -70,10 +70,13 @@ public:
   Eigen::MatrixXd GetNormalMatrix(
     const CalibrationState& state, const std::vector<double>& weights) const;
 
+  /// Weighted mean square of the errors.
+  double GetCost(const CalibrationState& state, const std::vector<double>& weights) const;
+  /// state after a step of GetUnknowns().
+  CalibrationState Move(const CalibrationState& state, const Eigen::VectorXd& step) const;
+
 private:
   std::vector<double> GetCauchyWeights(const CalibrationState& state) const;
-  double GetCost(const CalibrationState& state, const std::vector<double>& weights) const;
-  CalibrationState Move(const CalibrationState& state, const Eigen::VectorXd& step) const;
 
   const std::vector<CalibrationPick>& Picks;
   std::vector<Pose> Poses;

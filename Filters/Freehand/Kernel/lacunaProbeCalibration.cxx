@@ -4,6 +4,7 @@
 #include "lacunaCalibrationAdvice.h"
 #include "lacunaCalibrationClusters.h"
 #include "lacunaCalibrationModel.h"
+#include "lacunaCalibrationPosterior.h"
 #include "lacunaCalibrationStart.h"
 #include "lacunaGeometryGate.h"
 
@@ -413,13 +414,25 @@ ProbeCalibration ProbeCalibration::Solve(
   result.Condition = std::sqrt(largest / conditioning.Values[0]);
 
   // Covariance of all unknowns, of which the image's are kept.
+  // The root is symmetric but for units, so that it does not depend on the signs of eigenvectors.
   const Eigen::MatrixXd root = conditioning.Lengths.cwiseInverse().asDiagonal() *
-    conditioning.Vectors * conditioning.Values.cwiseSqrt().cwiseInverse().asDiagonal();
+    conditioning.Vectors * conditioning.Values.cwiseSqrt().cwiseInverse().asDiagonal() *
+    conditioning.Vectors.transpose();
   const std::vector<std::size_t> clusters =
     FindCalibrationClusters(picks, state, solver.GetFarPixel(), RestSpreads * result.Spread);
   const ClusteredCovariance clustered =
     GetClusteredCovariance(solver.GetModel(), state, best.Weights, clusters, root, result.Spread);
-  const Eigen::MatrixXd& covariance = clustered.Covariance;
+  // In units of the root: what linear equations give with errors as they are in common, and what
+  // they leave out.
+  const Eigen::MatrixXd inverse = conditioning.Vectors *
+    conditioning.Values.cwiseSqrt().asDiagonal() * conditioning.Vectors.transpose() *
+    conditioning.Lengths.asDiagonal();
+  const Eigen::MatrixXd linear = inverse * clustered.Covariance * inverse.transpose();
+  const double tempering =
+    std::max(1.0, linear.trace() / (static_cast<double>(count) * result.Spread * result.Spread));
+  const Eigen::MatrixXd bend = root *
+    GetPosteriorRoot(solver.GetModel(), state, best.Weights, root * result.Spread, tempering);
+  const Eigen::MatrixXd covariance = bend * linear * bend.transpose();
   result.Views = clustered.Clusters;
   for (std::size_t a = 0; a < unknowns.size(); ++a)
   {

@@ -172,6 +172,7 @@ inline double MahalanobisSquare(const std::array<Vec3, 3>& c, const Vec3& e)
 struct Study
 {
   int Count = 0, Converged = 0, Covered = 0, InChiSquare = 0;
+  double TrueSquares = 0, ExpectedSquares = 0; // mm^2, summed over corners
   std::vector<double> Errors, Rms;
 
   // F: 95 % of the F distribution with 3 and the views less unknowns degrees of freedom
@@ -184,16 +185,19 @@ struct Study
     this->Rms.push_back(found.Rms);
     for (const Vec2& pixel : Scene::Corners())
     {
-      this->Covered +=
-        MahalanobisSquare(found.GetCovariance(pixel), scene.Error(found, pixel)) < 3 * f;
+      const Vec3 error = scene.Error(found, pixel);
+      this->Covered += MahalanobisSquare(found.GetCovariance(pixel), error) < 3 * f;
+      this->TrueSquares += Dot(error, error);
+      this->ExpectedSquares += std::pow(found.GetExpectedError(pixel), 2);
     }
   }
+  double GetSquareRatio() const { return this->TrueSquares / this->ExpectedSquares; }
   double GetCoverage() const { return this->Covered / (4.0 * this->Count); }
 };
 
 // Three wires, 10 picks of each that are off by up to 1 mm in each direction, a part of them by up to
-// 25 mm.
-inline Study StudyWires(unsigned geometries, double outliers)
+// 25 mm. Slices within so many degrees of a right angle to the wire.
+inline Study StudyWires(unsigned geometries, double outliers, double tilt = 50)
 {
   Study study;
   for (unsigned seed = 0; seed < geometries; ++seed)
@@ -203,7 +207,7 @@ inline Study StudyWires(unsigned geometries, double outliers)
     {
       const double error = scene.Uniform(0, 1) < outliers ? 25 : 1;
       const Vec2 offset{ scene.Uniform(-error, error), scene.Uniform(-error, error) };
-      scene.PickWire(i % 3, offset);
+      scene.PickWire(i % 3, offset, tilt);
     }
     const ProbeCalibration found = ProbeCalibration::Solve(scene.Picks, scene.Options());
     study.Add(scene, found, 3.16); // 30 less 12
