@@ -3,7 +3,7 @@
 
     . build/release/lacuna-env.sh
     xvfb-run -a pvpython Testing/Science/implant_fit.py --tool PATH/implant_cases.py --out FOLDER [--cases NAME,...] [--random FIRST-LAST]
-                         [--check] [NAME=CT.mha ...]
+                         [--picture FILE.png] [--check] [NAME=CT.mha ...]
 
 Cuts holes as skull_implants.py does, has lacuna.implant close them, and measures each implant against the CT with the hole:
 
@@ -15,6 +15,8 @@ contact     points of the implant, 1 mm apart, that meet bone on their way out a
 least       mm, the least distance of these points from bone on the first 12 mm of the way
 closed, intersecting   by VTK's edges; pairs of triangles that cut each other, by CGAL (compiled where g++ and libcgal-dev are)
 admesh, slicer         what Debian's admesh would repair, and whether prusa-slicer finds a manifold; empty without the program
+
+The picture shows the first implant in its skull, cut open along InsertionDirection, and both ends of the cut from near.
 
 FOLDER keeps the implants and fit.csv; a later call makes only what is missing. FOLDER/fit.md is the table. --check ends with 1 when an
 implant misses a goal (is_good), and with 77 when the tool or the skulls are missing.
@@ -30,11 +32,14 @@ import sys
 import numpy as np
 from scipy.spatial import cKDTree
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkThreshold
+from vtkmodules.vtkFiltersGeneral import vtkClipClosedSurface
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
+from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from skull_implants import LEVEL, find_skulls, load_tool, skull_surface  # noqa: E402
@@ -191,6 +196,9 @@ def measure(tool, options, skull, ct, name):
     direction = np.array(fields.GetArray("InsertionDirection").GetTuple(0))
     case.a = np.minimum(case.cut(), case.a)  # from here on the skull with the hole
 
+    if options.picture:
+        draw(options.picture, case, implant)
+        options.picture = None
     edges = vtkFeatureEdges()
     edges.SetInputData(implant)
     edges.FeatureEdgesOff()
@@ -231,6 +239,72 @@ def measure(tool, options, skull, ct, name):
                   "warnings": made.stdout.count("warning:")}
 
 
+# The picture
+
+def opened(data, plane, color, inside):
+    """A closed surface cut by a plane, the cut in another colour."""
+    planes = vtkPlaneCollection()
+    planes.AddItem(plane)
+    clip = vtkClipClosedSurface()
+    clip.SetInputData(data)
+    clip.SetClippingPlanes(planes)
+    clip.SetScalarModeToColors()
+    clip.SetBaseColor(*color)
+    clip.SetClipColor(*inside)
+    clip.SetPassPointData(False)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(clip.GetOutputPort())
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetAmbient(0.25)
+    actor.GetProperty().SetDiffuse(0.75)
+    return actor
+
+
+def draw(path, case, implant):
+    """case: of the skull with the hole."""
+    direction = np.array(implant.GetFieldData().GetArray("InsertionDirection").GetTuple(0))
+    middle = vtk_to_numpy(implant.GetPoints().GetData()).mean(axis=0)
+    beside = np.cross(direction, (0, 0, 1) if abs(direction[2]) < 0.8 else (0, 1, 0))
+    beside /= np.linalg.norm(beside)
+    along = np.cross(beside, direction)
+    plane = vtkPlane()
+    plane.SetOrigin(*middle)
+    plane.SetNormal(*beside)
+    bare = vtkPolyData()
+    bare.SetPoints(implant.GetPoints())
+    bare.SetPolys(implant.GetPolys())
+    places = corners_of(face_of(implant, EDGE)).mean(axis=1)
+    places = places[np.abs((places - middle) @ beside) < 1]
+    ends = [places[np.argmin((places - middle) @ along)], places[np.argmax((places - middle) @ along)]]
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(4)
+    window.SetSize(960, 330)
+    for k, (focus, scale, tilt) in enumerate(((middle, 75, 0.8), (ends[0], 7, 0.0), (ends[1], 7, 0.0))):
+        renderer = vtkRenderer()
+        renderer.SetBackground(1, 1, 1)
+        renderer.SetViewport(k / 3, 0, (k + 1) / 3, 1)
+        renderer.AddActor(opened(skull_surface(case), plane, (0.93, 0.90, 0.83), (0.80, 0.70, 0.52)))
+        renderer.AddActor(opened(bare, plane, (0.62, 0.78, 0.90), (0.10, 0.33, 0.56)))
+        camera = renderer.GetActiveCamera()
+        camera.ParallelProjectionOn()
+        camera.SetFocalPoint(*focus)
+        camera.SetPosition(*(focus - 500 * (beside + tilt * direction)))
+        camera.SetViewUp(*-direction)
+        renderer.ResetCameraClippingRange()
+        camera.SetParallelScale(scale)
+        window.AddRenderer(renderer)
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    writer = vtkPNGWriter()
+    writer.SetFileName(path)
+    writer.SetInputConnection(grab.GetOutputPort())
+    writer.Write()
+
+
 def is_good(row):
     """The goals: printable without repair, a gap of 0.5 ± 0.1 mm, at most 20 mm³ in bone, and a way in that is free."""
     if row["problem"]:
@@ -259,6 +333,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--cases", default="")
     parser.add_argument("--random", default="")
+    parser.add_argument("--picture")
     parser.add_argument("--settings", default="", help="further options of lacuna.implant, one text")
     options = parser.parse_args()
     options.pvpython = shutil.which("pvpython")

@@ -165,11 +165,11 @@ Vec3 FindInsertionDirection(const std::vector<Vec3>& walls, const Vec3& start)
   double y = 0;
   for (int step = 0; step < DirectionSteps && !walls.empty(); ++step)
   {
-    const double held = 1e-6 * static_cast<double>(walls.size());
+    const double held = 1e-3 * static_cast<double>(walls.size());
     double xx = held;
     double xy = 0;
     double yy = held;
-    Vec2 right{ 0, 0 };
+    Vec2 right{ -held * x, -held * y };
     for (const Vec3& wall : walls)
     {
       const Vec2 slope{ Dot(wall, u), Dot(wall, v) };

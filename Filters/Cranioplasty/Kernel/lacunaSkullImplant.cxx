@@ -36,9 +36,10 @@ constexpr double LatticeToRim = 0.6; // of TriangleSize: the rim's edges stay De
 constexpr double Beside = 3;     // mm of the surfaces beside the hole, for walls that open outwards
 constexpr double WallReach = 5;  // mm from the outline, within which its wall is
 constexpr double WallFace = 0.8; // cosine between wall and surface: the bone is a table, no wall
-constexpr std::int64_t Sparse = 8;   // nodes between those from which the free space is sought
-constexpr double Interesting = 2.5;  // mm of clearance: nodes around may have less
-constexpr double ThickEnough = 1.01; // of the least thickness
+constexpr std::size_t WallSmoothing = 4; // mm on either side
+constexpr std::int64_t Sparse = 8;       // nodes between those from which the free space is sought
+constexpr double Interesting = 2.5;      // mm of clearance: nodes around may have less
+constexpr double ThickEnough = 1.01;     // of the least thickness
 
 class Builder
 {
@@ -389,6 +390,17 @@ private:
   }
 
   //----------------------------------------------------------------------------
+  // Unit, out of the wall of bone beside a place of the outline; zero where there is none.
+  Vec3 FindWall(const Vec2& p, double depth) const
+  {
+    const Vec3 x = this->Slab.GetPoint(p, depth);
+    const NearestBone bone = this->Bone.Find(x, WallReach);
+    const Vec3 wall = Normalized(x - bone.Point);
+    const bool isWall = bone.Distance > 0 && bone.Distance < WallReach &&
+      std::abs(Dot(wall, this->Slab.GetNormal(p))) < WallFace;
+    return isWall ? wall : Vec3{ 0, 0, 0 };
+  }
+
   // The way in: as given, or that of the walls of bone along an outline.
   Vec3 ChooseDirection(const std::vector<Loop>& outline) const
   {
@@ -396,19 +408,29 @@ private:
     std::vector<Vec3> walls;
     for (const Loop& loop : outline)
     {
-      for (const Vec2& p : Resample(loop, 1))
+      const Loop places = Resample(loop, 1);
+      for (const Vec2& p : places)
       {
-        const Vec3 normal = this->Slab.GetNormal(p);
-        in = in - normal;
-        for (const double depth : { 0.25, 0.5, 0.75 })
+        in = in - this->Slab.GetNormal(p);
+      }
+      for (const double depth : { 0.25, 0.5, 0.75 })
+      {
+        std::vector<Vec3> found;
+        for (const Vec2& p : places)
         {
-          const Vec3 x = this->Slab.GetPoint(p, depth);
-          const NearestBone bone = this->Bone.Find(x, WallReach);
-          const Vec3 wall = Normalized(x - bone.Point);
-          if (bone.Distance > 0 && bone.Distance < WallReach &&
-            std::abs(Dot(wall, normal)) < WallFace)
+          found.push_back(this->FindWall(p, depth));
+        }
+        const std::size_t n = found.size();
+        for (std::size_t k = 0; k < n; ++k)
+        {
+          Vec3 sum{ 0, 0, 0 }; // single places of rough bone do not decide
+          for (std::size_t r = 0; r <= 2 * WallSmoothing; ++r)
           {
-            walls.push_back(wall);
+            sum = sum + found[(k + n + r - std::min(WallSmoothing, n)) % n];
+          }
+          if (Norm(sum) > WallSmoothing)
+          {
+            walls.push_back(Normalized(sum));
           }
         }
       }
