@@ -47,7 +47,10 @@ if [ -d archive ]; then
   cp -r archive/lacuna-* "$work"
   archive=$(cd "$work" && echo lacuna-*/)
   refused() { # what it says begins with the ParaView that it fits
-    if as_user bash -c "$2 . ./${archive}lacuna-env.sh" 2>"$work/refused"; then exit 1; fi
+    if as_user bash -c "$2 . ./${archive}lacuna-env.sh" 2>"$work/refused"; then
+      echo "it was not refused. Is a ParaView left here by an interrupted run? Then make the folder anew"
+      exit 1
+    fi
     cat "$work/refused"
     grep -q "^This Lacuna $version fits ParaView .*$1" "$work/refused"
   }
