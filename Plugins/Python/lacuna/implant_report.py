@@ -178,7 +178,7 @@ def _draw(folder, made, numbers):
     save(view, "error", "Predicted error of the outer surface")
     display.SetScalarBarVisibility(view, False)
     low, high = numbers["ThicknessMinimum"], numbers["ThicknessMaximum"]
-    _color(display, view, "Thickness", "thickness, mm", (low, max(high, low + 0.1)), "Plasma (matplotlib)")
+    _color(display, view, "Thickness", "thickness, mm", (low, max(high, low + 0.1)), "Plasma")
     save(view, "thickness", "Thickness")
     pv.Delete(view)
     return files, sides
