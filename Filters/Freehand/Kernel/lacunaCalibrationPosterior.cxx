@@ -128,7 +128,7 @@ Eigen::MatrixXd GetPosteriorRoot(const CalibrationModel& model, const Calibratio
   const std::vector<double>& weights, const Eigen::MatrixXd& root, double tempering)
 {
   const Posterior posterior(model, state, weights, root, tempering);
-  const Eigen::MatrixXd linear = Eigen::MatrixXd::Identity(root.rows(), root.cols());
+  Eigen::MatrixXd linear = Eigen::MatrixXd::Identity(root.rows(), root.cols());
   if (!(model.GetCost(state, weights) > std::numeric_limits<double>::min()) || posterior.IsLinear())
   {
     return linear;
