@@ -18,6 +18,7 @@ constexpr double DeepEnough = -1;  // mm in bone: no more is sought
 constexpr double WantedTaper = 10; // degrees
 constexpr int DirectionSteps = 60;
 constexpr double MostLean = 1;        // tangent of the angle from where the search starts
+constexpr double NearStart = 1e-3;    // weight of the lean beside that of a wall
 constexpr double MostOutwards = 6;    // mm, of the edge from the outline
 constexpr double MostInwards = 1;     // mm
 constexpr double Exact = 0.005;       // mm, of the clearance
@@ -165,7 +166,7 @@ Vec3 FindInsertionDirection(const std::vector<Vec3>& walls, const Vec3& start)
   double y = 0;
   for (int step = 0; step < DirectionSteps && !walls.empty(); ++step)
   {
-    const double held = 1e-3 * static_cast<double>(walls.size());
+    const double held = NearStart * static_cast<double>(walls.size());
     double xx = held;
     double xy = 0;
     double yy = held;

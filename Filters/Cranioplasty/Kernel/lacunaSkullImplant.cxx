@@ -413,7 +413,7 @@ private:
       {
         in = in - this->Slab.GetNormal(p);
       }
-      for (const double depth : { 0.25, 0.5, 0.75 })
+      for (const double depth : { 0.35, 0.5, 0.65 }) // away from rounded edges
       {
         std::vector<Vec3> found;
         for (const Vec2& p : places)

