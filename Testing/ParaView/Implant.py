@@ -11,7 +11,7 @@ lacuna.plugin.load()
 import numpy as np
 from lacuna import implant, implant_report
 from lacuna.data import fetch
-from lacuna_test import output
+from lacuna_test import output, picture_error
 from paraview.simple import Delete, GetSources, SkullPhantom, XMLPolyDataReader
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
@@ -164,8 +164,11 @@ screen = os.environ.get("DISPLAY")
 os.environ["DISPLAY"] = ":9973"
 alone = os.path.join(home, "alone.stl")
 code, text = run(ct, "--output", alone, "--report", os.path.join(home, "no screen"))
-assert code == 1 and os.path.getsize(alone) == os.path.getsize(stl) and "implant: " in text, text
-assert len(errors) == 1 and "the implant is written, the report is not" in errors[0] and "xvfb-run" in errors[0], errors
+assert os.path.getsize(alone) == os.path.getsize(stl) and "implant: " in text, text
+if code == 0:  # VTK 9.4 and later draw without a screen
+    assert not errors and picture_error(os.path.join(home, "no screen", "implant.png"), os.path.join(report, "implant.png")) < 10, errors
+else:
+    assert len(errors) == 1 and "the implant is written, the report is not" in errors[0] and "xvfb-run" in errors[0], errors
 del implant.print
 if screen is not None:
     os.environ["DISPLAY"] = screen
