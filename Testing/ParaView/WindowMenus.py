@@ -117,7 +117,7 @@ def test(window):
     depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[4, 4, 4]), PixelSpacing=3)
     make("Filters", "Depth Map Shader", depth)
     bone = make("Filters", "Skull Bone", SkullPhantom(Spacing=[3, 3, 3]))
-    make("Filters", "Skull Implant", bone)
+    make("Filters", "Skull Implant", bone, says="the wall of bone has undercuts")
 
     shape = make("Sources", "Incomplete Shape", Shape="Sphere", Dimensions=[28, 28, 28])
     angle = make("Filters", "Occluded Angle", shape, slow=True, NumberOfDirections=60)
