@@ -95,6 +95,9 @@ endif ()
 if (LACUNA_HAS_FFMPEG)
   list(APPEND kernel_libraries libavformat-dev libavcodec-dev libswscale-dev libavutil-dev)
 endif ()
+if (NOT VTK_DIR MATCHES "paraview") # ParaView 6.1 uses Debian's VTK, and paraview-dev does not bring its headers
+  list(APPEND kernel_libraries libvtk9-qt-dev)
+endif ()
 math(EXPR next_paraview "${ParaView_VERSION_MINOR} + 1")
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
   "lacuna (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})"
