@@ -48,7 +48,7 @@ def test(window):
     from paraview.simple import GetActiveSource
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    window.resize(1300, 900)
+    window.resize_view(992, 665)
     window.menu("Sources/Lacuna/Phantom Sweep")
     for name, values in {"NumberOfSlices": (12,), "ImageSize": (80, 60)}.items():
         for k, value in enumerate(values):

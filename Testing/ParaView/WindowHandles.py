@@ -54,7 +54,7 @@ def test(window):
         way = place(view, after) - place(view, before)
         assert np.abs(way - expected).max() < 8, way
 
-    window.resize(1300, 900)
+    window.resize_view(992, 665)
     make("Sources/Lacuna/Skull Phantom", Spacing=(4, 4, 4))
     window.apply()
     make("Filters/Lacuna/B-Spline Iso Ray Caster", ViewDirection=(-0.4, 0.2, -0.9), PixelSpacing=(6,))

@@ -57,7 +57,7 @@ def test(window):
         with open(path, "rb") as file:
             return file.read()
 
-    window.resize(1300, 900)
+    window.resize_view(992, 665)
     assert not window.has_menu("Filters/Lacuna/RBF Hole Filler") and not window.has_menu("File/Save Data...")
     make("Skull Phantom", Spacing=(2, 2, 2))
     depth = make("B-Spline Iso Ray Caster", ViewDirection=(-0.4, 0.2, -0.9), PixelSpacing=(1.5,))

@@ -91,7 +91,7 @@ def test(window):
     def names():
         return {source: name for (name, _), source in GetSources().items()}
 
-    window.resize(1300, 900)
+    window.resize_view(992, 665)
     random = np.random.default_rng(3)
     sweep = make("Sources", "Phantom Sweep", NumberOfSlices=12, ImageSize=[80, 60], PixelSpacing=0.8)
     make("Filters", "Slice Planes", sweep)

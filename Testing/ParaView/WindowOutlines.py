@@ -25,7 +25,7 @@ def test(window):
         window.wait(300)
         window.save(os.path.join(os.environ["LACUNA_TEST_OUTPUT"], f"outline-organ-{name}.png"), widget)
 
-    window.resize(1300, 900)
+    window.resize_view(992, 665)
     window.menu("Sources/Lacuna/Phantom Sweep")
     window.apply()
     window.menu("Filters/Lacuna/Slice Outliner")

@@ -39,14 +39,6 @@ def reduce(pixels):
     return pixels[:rows * size, :columns * size].reshape(rows, size, columns, size, 3).mean(axis=(1, 3))
 
 
-def missing(path, baseline):
-    """(columns, rows): so many pixels the picture lacks to have the size of its baseline; 0, 0 where there is none."""
-    pixels = read(path)
-    found, expected = reduce(pixels).shape, read(baseline).shape if os.path.exists(baseline) else reduce(pixels).shape
-    size = max(1, round(pixels.shape[1] / WIDTH))
-    return [0 if found[k] == expected[k] else expected[k] * size + size // 2 - pixels.shape[k] for k in (1, 0)]
-
-
 def compare(path, baseline, difference, likeness, renew):
     """difference: of grey levels, on average at most; likeness: correlation of the brightness, at least."""
     found = reduce(read(path))
