@@ -21,6 +21,7 @@ constexpr double MostLean = 1;        // tangent of the angle from where the sea
 constexpr double NearStart = 1e-3;    // weight of the lean beside that of a wall
 constexpr double MostOutwards = 6;    // mm, of the edge from the outline
 constexpr double MostInwards = 1;     // mm
+constexpr double MostLack = 0.1;      // mm, of the clearance
 constexpr double Exact = 0.005;       // mm, of the clearance
 constexpr int MostSearch = 40;        // steps of it
 constexpr double OverBone = 0.7;      // cosine: bone is below rather than beside
@@ -324,6 +325,16 @@ private:
       }
       here = next;
       excess = this->GetExcess(x);
+    }
+    // where bone is too rough for steps of that size
+    for (double back = here - 0.1; excess < -MostLack && back > -MostInwards; back -= 0.1)
+    {
+      const Vec2 p = GetMoved(place, back);
+      if (this->Slab.Covers(p))
+      {
+        here = back;
+        excess = this->GetExcess(this->Slab.GetPoint(p, depth));
+      }
     }
     return here;
   }
