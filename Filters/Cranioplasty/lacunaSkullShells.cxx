@@ -181,7 +181,7 @@ VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& ke
 }
 
 //------------------------------------------------------------------------------
-std::unique_ptr<BoneDistance> MakeBoneDistance(
+TriangleSurface MakeBoneSurface(
   const VoxelVolume& volume, vtkDataArray* voxels, double level, const std::array<Vec3, 2>& box)
 {
   const Matrix4 worldToIndex = volume.IndexToWorld.Inverse();
@@ -226,6 +226,13 @@ std::unique_ptr<BoneDistance> MakeBoneDistance(
     surface.Triangles.push_back({ static_cast<std::int32_t>(corners->GetId(0)),
       static_cast<std::int32_t>(corners->GetId(1)), static_cast<std::int32_t>(corners->GetId(2)) });
   }
+  return surface;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<BoneDistance> MakeBoneDistance(
+  const VoxelVolume& volume, vtkDataArray* voxels, double level, const std::array<Vec3, 2>& box)
+{
   std::function<bool(const Vec3&)> isBone;
   DispatchScalars(volume.Type, volume.Voxels,
     [&](const auto* values)
@@ -233,7 +240,8 @@ std::unique_ptr<BoneDistance> MakeBoneDistance(
       isBone = [sample = VoxelSampler(volume, values), level](const Vec3& x)
       { return sample(x) >= level; };
     });
-  return std::make_unique<TriangleBone>(std::move(surface), std::move(isBone));
+  return std::make_unique<TriangleBone>(
+    MakeBoneSurface(volume, voxels, level, box), std::move(isBone));
 }
 
 //------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 
 #include "lacunaBoneDistance.h"
 #include "lacunaSkullTemplate.h"
+#include "lacunaTriangleSurface.h"
 #include "lacunaVoxelVolume.h"
 #include "vtkSmartPointer.h"
 
@@ -21,6 +22,11 @@ namespace lacuna
 /// The active point scalars of one component. keep gets the voxels where they must be copied. Throws
 /// std::runtime_error without them.
 VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep);
+
+/// The surface of vtkFlyingEdges3D at a level in a box (opposite corners, world mm), in world mm. volume: of GetBoneVolume;
+/// voxels: its values, or others of its grid.
+TriangleSurface MakeBoneSurface(
+  const VoxelVolume& volume, vtkDataArray* voxels, double level, const std::array<Vec3, 2>& box);
 
 /// Bone at or above a level in a box (opposite corners, world mm), with the surface of vtkFlyingEdges3D. volume: of
 /// GetBoneVolume, whose voxels must be kept.

@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaSkullImplant.h"
 
+#include "lacunaImplantData.h"
 #include "lacunaMemory.h"
 #include "lacunaParameterText.h"
-#include "lacunaSkullEllipsoid.h"
 #include "lacunaSkullImplant.h"
 #include "lacunaSkullRays.h"
 #include "lacunaSkullShape.h"
 #include "lacunaSkullShells.h"
 #include "lacunaSkullTemplate.h"
 #include "lacunaVolumeSymmetry.h"
-#include "vtkCell.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkDelaunay2D.h"
-#include "vtkDoubleArray.h"
-#include "vtkIdList.h"
+#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkIntArray.h"
-#include "vtkLacunaArrays.h"
 #include "vtkLacunaExecution.h"
 #include "vtkLacunaFieldData.h"
 #include "vtkLacunaProvenance.h"
@@ -29,22 +23,18 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkTypeInt64Array.h"
-#include "vtkUnsignedCharArray.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <locale>
 #include <memory>
 #include <new>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,37 +44,24 @@ vtkStandardNewMacro(vtkLacunaSkullImplant);
 
 namespace
 {
+using lacuna::NameOf;
+using lacuna::Rounded;
 using lacuna::Vec3;
 
-constexpr double RaySpacing = 2;        // mm at 90 mm
-constexpr double Seen = 10;             // mm, the farthest bone that shows what a place is like
-constexpr double MostDistance = 30;     // mm of Point from a hole
-constexpr double AutomaticTriangle = 1; // mm
-constexpr double SmallHole = 400;       // mm^2, below which it may be none
-constexpr double ThinPlace = 1.5;       // mm, of an implant
-constexpr double WideUndercut = 1;      // mm: of which is told
-constexpr double BelowBone = 25;        // mm, of the box in which bone is looked at
-constexpr double BesideBone = 12;       // mm
-constexpr double LeastGap = 10;         // mm^2, of those that are told of
+constexpr double RaySpacing = 2;    // mm at 90 mm
+constexpr double Seen = 10;         // mm, the farthest bone that shows what a place is like
+constexpr double MostDistance = 30; // mm of Point from a hole
+constexpr double SmallHole = 400;   // mm^2, below which it may be none
+constexpr double ThinPlace = 1.5;   // mm, of an implant
+constexpr double WideUndercut = 1;  // mm: of which is told
+constexpr double BelowBone = 25;    // mm, of the box in which bone is looked at
+constexpr double BesideBone = 12;   // mm
+constexpr double LeastGap = 10;     // mm^2, of those that are told of
 // A template that fits: part of the sound bone that it has to have, scale or its inverse, RMS in mm.
 constexpr double LeastCovered = 0.6;
 constexpr double MostScale = 1.5;
 constexpr double MostTemplateError = 6;
 constexpr std::int16_t LevelOfHalf = 300; // of the copy in which symmetry is sought
-
-std::string Name(const Vec3& p)
-{
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(1);
-  text << std::fixed << "(" << p[0] << ", " << p[1] << ", " << p[2] << ") mm";
-  return text.str();
-}
-
-std::string Rounded(double value, double steps = 10)
-{
-  return lacuna::FormatNumber(std::round(steps * value) / steps);
-}
 
 // Bone and what is like it have the same value: teeth and metal do not decide.
 lacuna::SymmetryResult FindSymmetry(
@@ -130,198 +107,13 @@ lacuna::SymmetryResult FindSymmetry(
   }
 }
 
-std::vector<Vec3> GetCurve(vtkPolyData* data)
-{
-  std::vector<Vec3> curve;
-  Vec3 p{};
-  for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
-  {
-    if (data->GetCellType(c) == VTK_POLY_LINE || data->GetCellType(c) == VTK_POLYGON)
-    {
-      vtkCell* cell = data->GetCell(c);
-      for (vtkIdType k = 0; k < cell->GetNumberOfPoints(); ++k)
-      {
-        data->GetPoint(cell->GetPointId(static_cast<int>(k)), p.data());
-        curve.push_back(p);
-      }
-      break;
-    }
-  }
-  const bool hasLine = !curve.empty();
-  for (vtkIdType k = 0; !hasLine && k < data->GetNumberOfPoints(); ++k)
-  {
-    data->GetPoint(k, p.data());
-    curve.push_back(p);
-  }
-  return curve;
-}
-
-// Holes on the ellipsoid that fits the skull.
-class Holes
-{
-public:
-  Holes(const lacuna::SkullRays& rays, std::vector<std::vector<int>> defects)
-    : Rays(rays)
-    , Defects(std::move(defects))
-    , Ellipsoid(rays.Center, GetPoints(rays))
-  {
-    for (const std::vector<int>& defect : this->Defects)
-    {
-      Vec3 middle{ 0, 0, 0 };
-      double area = 0;
-      for (const int ray : defect)
-      {
-        middle = middle + rays.Directions[ray];
-        const double radius = this->GetRadius(rays.Directions[ray]);
-        area += 0.866 * rays.Spacing * rays.Spacing * radius * radius;
-      }
-      const Vec3 direction = lacuna::Normalized(middle);
-      this->Centers.push_back(rays.Center + this->GetRadius(direction) * direction);
-      this->Areas.push_back(area);
-    }
-  }
-
-  double GetArea(std::size_t defect) const { return this->Areas[defect]; } ///< mm^2
-  double GetDistance(std::size_t defect, const Vec3& point) const
-  {
-    double least = std::numeric_limits<double>::infinity();
-    for (const int ray : this->Defects[defect])
-    {
-      least = std::min(least, lacuna::Norm(this->GetPoint(ray) - point));
-    }
-    return least;
-  }
-
-  std::string GetText(std::size_t defect) const
-  {
-    return Rounded(this->Areas[defect] / 100) + " cm^2 around " + Name(this->Centers[defect]);
-  }
-
-  std::string GetText() const
-  {
-    std::string text;
-    for (std::size_t k = 0; k < this->Areas.size(); ++k)
-    {
-      text += (k ? "; " : "") + this->GetText(k);
-    }
-    return text;
-  }
-
-  // first: number of the first defect.
-  void SetOutput(vtkPolyData* output, int first) const
-  {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    vtkNew<vtkIntArray> numbers;
-    numbers->SetName("Defect");
-    std::vector<std::int64_t> corners;
-    for (std::size_t k = 0; k < this->Defects.size(); ++k)
-    {
-      this->AddTriangles(k, points, corners);
-      while (numbers->GetNumberOfTuples() < static_cast<vtkIdType>(corners.size() / 3))
-      {
-        numbers->InsertNextValue(first + static_cast<int>(k));
-      }
-    }
-    vtkNew<vtkTypeInt64Array> triangles;
-    vtkLacunaArrays::SetNumberOfTuples(triangles, static_cast<vtkIdType>(corners.size()));
-    std::copy(corners.begin(), corners.end(), triangles->GetPointer(0));
-    output->SetPoints(points);
-    vtkLacunaArrays::SetTriangles(output, triangles);
-    output->GetCellData()->SetScalars(numbers);
-    std::vector<double> centers;
-    for (const Vec3& c : this->Centers)
-    {
-      centers.insert(centers.end(), c.data(), c.data() + 3);
-    }
-    vtkLacunaFieldData::Set(output, "DefectAreas", this->Areas, 1);
-    vtkLacunaFieldData::Set(output, "DefectCenters", centers, 3);
-  }
-
-private:
-  static std::vector<Vec3> GetPoints(const lacuna::SkullRays& rays)
-  {
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i < rays.Kinds.size(); ++i)
-    {
-      if (rays.Kinds[i] == lacuna::SkullRayKind::Sound)
-      {
-        points.push_back(rays.Center + rays.Outer[i] * rays.Directions[i]);
-      }
-    }
-    return points;
-  }
-
-  double GetRadius(const Vec3& direction) const
-  {
-    const double radius = this->Ellipsoid.GetRadius(direction);
-    return radius > 0 && radius < 200 ? radius : 90;
-  }
-
-  Vec3 GetPoint(int ray) const
-  {
-    const Vec3& d = this->Rays.Directions[ray];
-    return this->Rays.Center + this->GetRadius(d) * d;
-  }
-
-  // Delaunay's, seen from the opposite side of the sphere.
-  void AddTriangles(std::size_t k, vtkPoints* points, std::vector<std::int64_t>& corners) const
-  {
-    const Vec3 axis = lacuna::Normalized(this->Centers[k] - this->Rays.Center);
-    const Vec3 u = lacuna::Normalized(
-      lacuna::Cross(axis, std::abs(axis[0]) < 0.8 ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 }));
-    const Vec3 v = lacuna::Cross(axis, u);
-    vtkNew<vtkPoints> plane;
-    plane->SetDataTypeToDouble();
-    std::vector<int> used;
-    for (const int ray : this->Defects[k])
-    {
-      const Vec3& d = this->Rays.Directions[ray];
-      const double height = 1 + lacuna::Dot(d, axis);
-      if (height > 0.2)
-      {
-        plane->InsertNextPoint(2 * lacuna::Dot(d, u) / height, 2 * lacuna::Dot(d, v) / height, 0);
-        used.push_back(ray);
-      }
-    }
-    vtkNew<vtkPolyData> given;
-    given->SetPoints(plane);
-    vtkNew<vtkDelaunay2D> delaunay;
-    delaunay->SetInputData(given);
-    delaunay->SetAlpha(2 * this->Rays.Spacing);
-    delaunay->Update();
-    vtkPolyData* flat = delaunay->GetOutput();
-    const auto before = static_cast<std::int64_t>(points->GetNumberOfPoints());
-    for (const int ray : used)
-    {
-      points->InsertNextPoint(this->GetPoint(ray).data());
-    }
-    vtkNew<vtkIdList> ids;
-    for (vtkIdType c = 0; c < flat->GetNumberOfCells(); ++c)
-    {
-      flat->GetCellPoints(c, ids);
-      if (ids->GetNumberOfIds() == 3)
-      {
-        for (vtkIdType corner = 0; corner < 3; ++corner)
-        {
-          corners.push_back(before + ids->GetId(corner));
-        }
-      }
-    }
-  }
-
-  const lacuna::SkullRays& Rays;
-  std::vector<std::vector<int>> Defects;
-  lacuna::SkullEllipsoid Ellipsoid;
-  std::vector<Vec3> Centers;
-  std::vector<double> Areas;
-};
-
 // The largest of the holes that are too small.
 std::string GetSmallHole(const lacuna::SkullRays& rays)
 {
   const std::vector<std::vector<int>> small = FindDefects(rays, LeastGap);
-  return small.empty() ? "" : ". The largest gap has " + Holes(rays, { small[0] }).GetText();
+  return small.empty()
+    ? ""
+    : ". The largest gap has " + lacuna::SkullHoles(rays, { small[0] }).GetText();
 }
 
 struct PlacedTemplate
@@ -423,7 +215,7 @@ std::string GetDoubts(const lacuna::SkullImplant& implant, const lacuna::SkullRa
   const Vec3& worst = implant.LargestErrorPoint;
   std::string text = "parts of the outer surface may be more than 1 mm off, about " +
     Rounded(implant.DoubtfulArea / 100) + " of " + Rounded(implant.OuterArea / 100) +
-    " cm^2. The least certain place is " + Name(worst) + ", " + Rounded(distanceOf(worst), 1) +
+    " cm^2. The least certain place is " + NameOf(worst) + ", " + Rounded(distanceOf(worst), 1) +
     " mm away from sound bone";
   if (distanceOf(plane.Reflect(worst)) > Seen)
   {
@@ -462,53 +254,27 @@ std::string GetThinPlaces(const lacuna::SkullImplant& implant)
   }
   return "the implant is thinner than " + lacuna::FormatNumber(ThinPlace) + " mm on about " +
     Rounded(area / 100) + " cm^2. The thinnest place has " + Rounded(implant.Thickness[thinnest]) +
-    " mm, at " + Name(implant.Points[thinnest]) + ". Look whether the material allows that";
+    " mm, at " + NameOf(implant.Points[thinnest]) + ". Look whether the material allows that";
 }
 
-void AddArray(vtkPolyData* output, const char* name, const std::vector<double>& values)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  vtkLacunaArrays::SetNumberOfTuples(array, static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  output->GetPointData()->AddArray(array);
-}
-
-void SetSolid(vtkPolyData* output, const lacuna::SkullImplant& implant)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkLacunaArrays::SetNumberOfPoints(points, static_cast<vtkIdType>(implant.Points.size()));
-  for (std::size_t k = 0; k < implant.Points.size(); ++k)
-  {
-    points->SetPoint(static_cast<vtkIdType>(k), implant.Points[k].data());
-  }
-  const auto count = static_cast<vtkIdType>(implant.Triangles.size());
-  vtkNew<vtkTypeInt64Array> corners;
-  vtkLacunaArrays::SetNumberOfTuples(corners, 3 * count);
-  vtkNew<vtkUnsignedCharArray> faces;
-  faces->SetName("ImplantFace");
-  vtkLacunaArrays::SetNumberOfTuples(faces, count);
-  for (vtkIdType k = 0; k < count; ++k)
-  {
-    std::copy_n(implant.Triangles[k].begin(), 3, corners->GetPointer(3 * k));
-    faces->SetValue(k, static_cast<unsigned char>(implant.Faces[k]));
-  }
-  output->SetPoints(points);
-  vtkLacunaArrays::SetTriangles(output, corners);
-  output->GetCellData()->AddArray(faces);
-  AddArray(output, "PredictedError", implant.Errors);
-  AddArray(output, "Thickness", implant.Thickness);
-  AddArray(output, "ThicknessError", implant.ThicknessErrors);
-  output->GetPointData()->SetActiveScalars("PredictedError");
-}
 }
 
 //------------------------------------------------------------------------------
 vtkLacunaSkullImplant::vtkLacunaSkullImplant()
 {
   this->SetNumberOfInputPorts(3);
-  this->SetNumberOfOutputPorts(2);
+  this->SetNumberOfOutputPorts(3);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullImplant::SetEngravedText(const char* text)
+{
+  const std::string value = text ? text : "";
+  if (this->EngravedText != value)
+  {
+    this->EngravedText = value;
+    this->Modified();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -541,6 +307,37 @@ int vtkLacunaSkullImplant::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
+lacuna::SkullImplantOptions vtkLacunaSkullImplant::GetOptions() const
+{
+  lacuna::SkullImplantOptions options;
+  options.Level = this->Level;
+  options.EdgeClearance = this->EdgeClearance;
+  options.TriangleSize = this->TriangleSize;
+  options.Thickness = this->Thickness;
+  options.MinimumThickness = this->MinimumThickness;
+  std::copy_n(this->InsertionDirection, 3, options.InsertionDirection.data());
+  options.OuterOffset = this->OuterOffset;
+  options.InnerOffset = this->InnerOffset;
+  options.OffsetFade = this->OffsetFade;
+  options.Parts = this->Parts;
+  options.DrainageSpacing = this->DrainageSpacing;
+  options.DrainageDiameter = this->DrainageDiameter;
+  options.SutureSpacing = this->SutureSpacing;
+  options.SutureDiameter = this->SutureDiameter;
+  options.Plates = this->Plates;
+  options.ScrewDiameter = this->ScrewDiameter;
+  options.ScrewLength = this->ScrewLength;
+  options.RimDistance = this->RimDistance;
+  if (!(this->TextHeight >= 2 && this->TextHeight <= 20))
+  {
+    throw std::runtime_error("TextHeight is " + lacuna::FormatNumber(this->TextHeight) +
+      " mm; it must be between 2 and 20");
+  }
+  options.Text = lacuna::GetTextOutlines(this->EngravedText, this->TextHeight);
+  return options;
+}
+
+//------------------------------------------------------------------------------
 int vtkLacunaSkullImplant::RequestData(
   vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -570,32 +367,8 @@ int vtkLacunaSkullImplant::RequestData(
       throw std::runtime_error("Density is " + lacuna::FormatNumber(this->Density) +
         "; it must be a number of g/cm^3 above 0");
     }
-    if (!(this->EdgeClearance >= 0 && this->EdgeClearance <= 5))
-    {
-      throw std::runtime_error("EdgeClearance is " + lacuna::FormatNumber(this->EdgeClearance) +
-        " mm; it must be between 0 and 5");
-    }
-    if (!(this->Thickness == 0 || (this->Thickness >= 0.5 && this->Thickness <= 20)))
-    {
-      throw std::runtime_error("Thickness is " + lacuna::FormatNumber(this->Thickness) +
-        " mm; it must be 0 (that of the bone) or between 0.5 and 20");
-    }
-    if (!(this->MinimumThickness >= 0 && this->MinimumThickness <= 10))
-    {
-      throw std::runtime_error("MinimumThickness is " +
-        lacuna::FormatNumber(this->MinimumThickness) + " mm; it must be between 0 and 10");
-    }
-    if (!lacuna::IsFinite({ this->InsertionDirection[0], this->InsertionDirection[1],
-          this->InsertionDirection[2] }))
-    {
-      throw std::runtime_error("InsertionDirection is not finite");
-    }
-    const double triangle = this->TriangleSize == 0 ? AutomaticTriangle : this->TriangleSize;
-    if (!(triangle >= 0.2 && triangle <= 5))
-    {
-      throw std::runtime_error("TriangleSize is " + lacuna::FormatNumber(this->TriangleSize) +
-        " mm; it must be 0 (automatic) or between 0.2 and 5");
-    }
+    const lacuna::SkullImplantOptions options = this->GetOptions();
+    CheckSkullImplantOptions(options);
     if (!(this->TemplateLevel >= 0) || !std::isfinite(this->TemplateLevel))
     {
       throw std::runtime_error("TemplateLevel is " + lacuna::FormatNumber(this->TemplateLevel) +
@@ -614,7 +387,7 @@ int vtkLacunaSkullImplant::RequestData(
     const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
     if (isDrawn)
     {
-      defects.push_back(FindRaysWithin(rays, GetCurve(outline)));
+      defects.push_back(FindRaysWithin(rays, lacuna::GetCurve(outline)));
       if (defects[0].empty())
       {
         throw std::runtime_error("the outline of the defect encloses nothing of the skull");
@@ -634,7 +407,7 @@ int vtkLacunaSkullImplant::RequestData(
         GetSmallHole(rays) +
         ". Look at the bone at this Level, or draw an outline around the defect");
     }
-    const Holes holes(rays, defects);
+    const lacuna::SkullHoles holes(rays, defects);
     holes.SetOutput(vtkPolyData::GetData(outputs, 1), isDrawn ? 0 : 1);
     std::size_t chosen = 0;
     if (!isDrawn && this->DefectChoice == NearestToPoint)
@@ -652,7 +425,7 @@ int vtkLacunaSkullImplant::RequestData(
       }
       if (!(least <= MostDistance))
       {
-        throw std::runtime_error("Point " + Name(point) + " is " + Rounded(least) +
+        throw std::runtime_error("Point " + NameOf(point) + " is " + Rounded(least) +
           " mm away from the nearest hole. Found: " + holes.GetText());
       }
     }
@@ -676,50 +449,48 @@ int vtkLacunaSkullImplant::RequestData(
     execution.SetStage(0.8, 1);
     const std::unique_ptr<lacuna::BoneDistance> near =
       MakeBoneDistance(volume, keep, this->Level, GetBox(rays, missing));
-    lacuna::SkullImplantOptions options;
-    options.Thickness = this->Thickness;
-    options.MinimumThickness = this->MinimumThickness;
-    std::copy_n(this->InsertionDirection, 3, options.InsertionDirection.data());
-    options.Level = this->Level;
-    options.EdgeClearance = this->EdgeClearance;
-    options.TriangleSize = triangle;
     const lacuna::SkullImplant implant =
       MakeSkullImplant(volume, rays, defects[chosen], shape, *near, options, execution);
 
-    for (const std::string& warning : implant.Warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
+    std::vector<std::string> warnings = implant.Warnings;
     if (!isDrawn && holes.GetArea(chosen) < SmallHole)
     {
-      vtkWarningMacro(
-        << "the hole has only " << holes.GetText(chosen)
-        << ": it may be thin bone that this Level does not show. Look at it in the CT");
+      warnings.push_back("the hole has only " + holes.GetText(chosen) +
+        ": it may be thin bone that this Level does not show. Look at it in the CT");
     }
     if (hasTemplate && shape.GetOuterFactor() == 0 && shape.GetThicknessFactor() == 0)
     {
-      vtkWarningMacro(
-        << "the template is not used: the sound bone of this skull has nothing of its "
-           "shape. Compare both in the picture, or give another skull");
+      warnings.emplace_back(
+        "the template is not used: the sound bone of this skull has nothing of its shape. Compare "
+        "both in the picture, or give another skull");
     }
     if (implant.LargestError > lacuna::TrustedError)
     {
-      vtkWarningMacro(<< GetDoubts(implant, rays, shape.GetPlane()));
+      warnings.push_back(GetDoubts(implant, rays, shape.GetPlane()));
     }
     if (const std::string thin = GetThinPlaces(implant); !thin.empty())
     {
-      vtkWarningMacro(<< thin);
+      warnings.push_back(thin);
     }
     if (implant.UndercutWidth > WideUndercut)
     {
-      vtkWarningMacro(
-        << "the wall of bone has undercuts, so that the gap beside the implant is up to "
-        << Rounded(implant.UndercutWidth + this->EdgeClearance) << " mm wide, most at "
-        << Name(implant.UndercutPoint)
-        << ". Another InsertionDirection may suit this place better");
+      warnings.push_back("the wall of bone has undercuts, so that the gap beside the implant is up "
+                         "to " +
+        Rounded(implant.UndercutWidth + this->EdgeClearance) + " mm wide, most at " +
+        NameOf(implant.UndercutPoint) + ". Another InsertionDirection may suit this place better");
+    }
+    vtkNew<vtkStringArray> told;
+    told->SetName("Warnings");
+    for (const std::string& warning : warnings)
+    {
+      vtkWarningMacro(<< warning);
+      told->InsertNextValue(warning);
     }
     vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-    SetSolid(output, implant);
+    lacuna::SetImplant(output, implant);
+    output->GetFieldData()->AddArray(told);
+    vtkPolyData* plates = vtkPolyData::GetData(outputs, 2);
+    lacuna::SetPlates(plates, implant, this->ScrewLength);
     const auto set = [&](const char* name, double value)
     { vtkLacunaFieldData::Set(output, name, { value }, 1); };
     const auto setPoint = [&](const char* name, const Vec3& p) {
@@ -747,6 +518,7 @@ int vtkLacunaSkullImplant::RequestData(
     setPoint("UndercutPoint", implant.UndercutPoint);
     set("MinimumThickness", implant.MinimumThickness);
     setPoint("MinimumThicknessPoint", implant.ThinnestPoint);
+    set("NumberOfHoles", implant.Holes);
     const lacuna::MirrorPlane& plane = shape.GetPlane();
     setPoint("SymmetryPlaneOrigin", center - plane.Distance(center) * plane.Normal);
     setPoint("SymmetryPlaneNormal", plane.Normal);
@@ -768,6 +540,20 @@ int vtkLacunaSkullImplant::RequestData(
       .Add("MinimumThickness", this->MinimumThickness)
       .Add("InsertionDirection",
         std::vector<double>(this->InsertionDirection, this->InsertionDirection + 3))
+      .Add("OuterOffset", this->OuterOffset)
+      .Add("InnerOffset", this->InnerOffset)
+      .Add("OffsetFade", this->OffsetFade)
+      .Add("Parts", this->Parts)
+      .Add("DrainageSpacing", this->DrainageSpacing)
+      .Add("DrainageDiameter", this->DrainageDiameter)
+      .Add("SutureSpacing", this->SutureSpacing)
+      .Add("SutureDiameter", this->SutureDiameter)
+      .Add("Plates", this->Plates)
+      .Add("ScrewDiameter", this->ScrewDiameter)
+      .Add("ScrewLength", this->ScrewLength)
+      .Add("RimDistance", this->RimDistance)
+      .Add("EngravedText", this->EngravedText)
+      .Add("TextHeight", this->TextHeight)
       .Add("TriangleSize", this->TriangleSize)
       .Add("Density", this->Density)
       .Add("TemplateLevel", this->TemplateLevel);
@@ -782,6 +568,7 @@ int vtkLacunaSkullImplant::RequestData(
     }
     vtkLacunaProvenance::Record(output, this, given, parameters.Get());
     vtkLacunaProvenance::Record(vtkPolyData::GetData(outputs, 1), this, given, parameters.Get());
+    vtkLacunaProvenance::Record(plates, this, given, parameters.Get());
   };
   return vtkLacunaExecution::RunAgreed(this, outputs, isWanted, body);
 }
@@ -799,6 +586,20 @@ void vtkLacunaSkullImplant::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumThickness: " << this->MinimumThickness << "\n";
   os << indent << "InsertionDirection: " << this->InsertionDirection[0] << " "
      << this->InsertionDirection[1] << " " << this->InsertionDirection[2] << "\n";
+  os << indent << "OuterOffset: " << this->OuterOffset << "\n";
+  os << indent << "InnerOffset: " << this->InnerOffset << "\n";
+  os << indent << "OffsetFade: " << this->OffsetFade << "\n";
+  os << indent << "Parts: " << this->Parts << "\n";
+  os << indent << "DrainageSpacing: " << this->DrainageSpacing << "\n";
+  os << indent << "DrainageDiameter: " << this->DrainageDiameter << "\n";
+  os << indent << "SutureSpacing: " << this->SutureSpacing << "\n";
+  os << indent << "SutureDiameter: " << this->SutureDiameter << "\n";
+  os << indent << "Plates: " << this->Plates << "\n";
+  os << indent << "ScrewDiameter: " << this->ScrewDiameter << "\n";
+  os << indent << "ScrewLength: " << this->ScrewLength << "\n";
+  os << indent << "RimDistance: " << this->RimDistance << "\n";
+  os << indent << "EngravedText: " << this->EngravedText << "\n";
+  os << indent << "TextHeight: " << this->TextHeight << "\n";
   os << indent << "TriangleSize: " << this->TriangleSize << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "TemplateLevel: " << this->TemplateLevel << "\n";

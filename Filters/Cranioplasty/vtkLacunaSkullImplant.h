@@ -17,8 +17,9 @@
  *
  * Output 0: vtkPolyData, a watertight, outward oriented triangle mesh in world mm, double precision, never
  * mirrored (lacuna::MakeSkullImplant). Point arrays (double, mm along the ray from the middle of the
- * skull): PredictedError (standard error of the outer surface; active scalars), Thickness, ThicknessError. Cell array
- * ImplantFace (unsigned char): 0 outer, 1 inner, 2 edge. Field data (double):
+ * skull): PredictedError (standard error of the outer surface; active scalars), Thickness, ThicknessError. Cell arrays
+ * ImplantFace (unsigned char): 0 outer, 1 inner with text, 2 edge and walls of holes; Part (int, from 1): each is closed.
+ * Field data (double):
  * | array                      | components | meaning                                                  |
  * |----------------------------|------------|----------------------------------------------------------|
  * | Volume                     | 1          | mm^3                                                     |
@@ -35,18 +36,24 @@
  * | LeastTaper                 | 1          | degrees, least angle between it and the implant's walls  |
  * | InsertionClearance         | 1          | mm, least distance of the implant's points from bone on  |
  * |                            |            | the way in, at most 3                                    |
+ * | NumberOfHoles              | 1          | through the implant                                      |
  * | UndercutVolume             | 1          | mm^3, free space beside the edge that cannot be filled   |
  * | UndercutWidth, UndercutPoint | 1, 3     | mm, its largest width, and where, world mm               |
  * | SymmetryPlaneOrigin, SymmetryPlaneNormal | 3 | a point of the refined plane, world mm; its normal  |
  * | TemplateFitRMS             | 1          | with a template: mm, distance of its outer table from sound bone |
  * | TemplateScale              | 1          | mm of the skull for one of the template                  |
  * | TemplateFactor, TemplateThicknessFactor | 1 | how far its shape and thickness count: 0 not at all, about 1 wholly |
+ * | Warnings                   | texts      | the warnings below                                       |
  *
  * Output 1: vtkPolyData, triangles on the ellipsoid that fits the skull for each hole that was found; cell array
  * Defect (int, 1 = the largest; 0: within the curve). Field data: DefectAreas (mm^2), DefectCenters (3, world mm).
  *
+ * Output 2: vtkPolyData, a line for each plate from its hole in the implant to its screw in the bone; cell arrays
+ * BoneThickness (double, mm, the least within 3 mm of the screw) and IsThickEnough (unsigned char: at least ScrewLength).
+ *
  * Warnings: 1.96 PredictedError above 1 mm, with the area and the worst place; bone that divides the hole;
- * undercuts wider than 1 mm; places thinner than 1.5 mm; a template that is not used; data of which Level is the end of the range.
+ * undercuts wider than 1 mm; places thinner than 1.5 mm; a template that is not used; no place
+ * for text, plates or parts of the hole; data of which Level is the end of the range.
  * Errors: a template that does not fit; no hole; properties out of range; Point farther than 30 mm from every hole; too little bone.
  *
  * @sa lacuna::SkullShape lacuna::MakeSkullImplant vtkLacunaSkullBone
@@ -57,6 +64,13 @@
 #include "vtkLacunaFiltersCranioplastyModule.h" // for export macro
 #include "vtkLacunaVersionCompat.h"             // for stops
 #include "vtkPolyDataAlgorithm.h"
+
+#include <string>
+
+namespace lacuna
+{
+struct SkullImplantOptions;
+}
 
 class VTKLACUNAFILTERSCRANIOPLASTY_EXPORT vtkLacunaSkullImplant : public vtkPolyDataAlgorithm
 {
@@ -108,6 +122,76 @@ public:
   vtkGetVector3Macro(InsertionDirection, double);
   ///@}
   ///@{
+  /** mm along the normal of the outer face, positive outwards, -10..10; it fades to 0 at the rim. Default 0. */
+  vtkSetMacro(OuterOffset, double);
+  vtkGetMacro(OuterOffset, double);
+  ///@}
+  ///@{
+  /** The same for the inner face. MinimumThickness is kept. Default 0. */
+  vtkSetMacro(InnerOffset, double);
+  vtkGetMacro(InnerOffset, double);
+  ///@}
+  ///@{
+  /** mm from the rim over which both offsets fade, 0..50. Default 15. */
+  vtkSetMacro(OffsetFade, double);
+  vtkGetMacro(OffsetFade, double);
+  ///@}
+  ///@{
+  /** Parts of the implant, 1..6: cut along the way in, EdgeClearance apart. Default 1. */
+  vtkSetMacro(Parts, int);
+  vtkGetMacro(Parts, int);
+  ///@}
+  ///@{
+  /** mm between drainage holes, 4..50; 0: none. Default 0. */
+  vtkSetMacro(DrainageSpacing, double);
+  vtkGetMacro(DrainageSpacing, double);
+  ///@}
+  ///@{
+  /** mm, 0.5..10. Default 2.5. */
+  vtkSetMacro(DrainageDiameter, double);
+  vtkGetMacro(DrainageDiameter, double);
+  ///@}
+  ///@{
+  /** mm between holes for sutures along the rim, 4..50; 0: none. Default 0. */
+  vtkSetMacro(SutureSpacing, double);
+  vtkGetMacro(SutureSpacing, double);
+  ///@}
+  ///@{
+  /** mm, 0.5..10. Default 1.5. */
+  vtkSetMacro(SutureDiameter, double);
+  vtkGetMacro(SutureDiameter, double);
+  ///@}
+  ///@{
+  /** Plates that fasten the implant, 0..12: each has a hole in it and a screw in the bone (output 2). Default 0. */
+  vtkSetMacro(Plates, int);
+  vtkGetMacro(Plates, int);
+  ///@}
+  ///@{
+  /** mm, 0.5..10: of the plates' holes in the implant. Default 1.5. */
+  vtkSetMacro(ScrewDiameter, double);
+  vtkGetMacro(ScrewDiameter, double);
+  ///@}
+  ///@{
+  /** mm, 1..20: places are preferred where bone is at least as thick. Default 4. */
+  vtkSetMacro(ScrewLength, double);
+  vtkGetMacro(ScrewLength, double);
+  ///@}
+  ///@{
+  /** mm from the rim to the middles of holes and of screws in bone, 2..20. Default 5. */
+  vtkSetMacro(RimDistance, double);
+  vtkGetMacro(RimDistance, double);
+  ///@}
+  ///@{
+  /** Engraved 0.4 mm deep into the inner face, readable from within; printable ASCII. Default empty. */
+  void SetEngravedText(const char* text);
+  const char* GetEngravedText() const { return this->EngravedText.c_str(); }
+  ///@}
+  ///@{
+  /** mm, of capital letters, 2..20. Default 5. */
+  vtkSetMacro(TextHeight, double);
+  vtkGetMacro(TextHeight, double);
+  ///@}
+  ///@{
   /** mm, edges of triangles, 0.2..5; 0: 1 mm. Default 0. */
   vtkSetMacro(TriangleSize, double);
   vtkGetMacro(TriangleSize, double);
@@ -139,6 +223,7 @@ protected:
 private:
   vtkLacunaSkullImplant(const vtkLacunaSkullImplant&) = delete;
   void operator=(const vtkLacunaSkullImplant&) = delete;
+  lacuna::SkullImplantOptions GetOptions() const;
 
   double Level = 300;
   int DefectChoice = Largest;
@@ -147,6 +232,20 @@ private:
   double Thickness = 0;
   double MinimumThickness = 1.5;
   double InsertionDirection[3] = { 0, 0, 0 };
+  double OuterOffset = 0;
+  double InnerOffset = 0;
+  double OffsetFade = 15;
+  int Parts = 1;
+  double DrainageSpacing = 0;
+  double DrainageDiameter = 2.5;
+  double SutureSpacing = 0;
+  double SutureDiameter = 1.5;
+  int Plates = 0;
+  double ScrewDiameter = 1.5;
+  double ScrewLength = 4;
+  double RimDistance = 5;
+  std::string EngravedText;
+  double TextHeight = 5;
   double TriangleSize = 0;
   double Density = 1.3;
   double TemplateLevel = 0;

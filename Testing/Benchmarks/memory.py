@@ -229,6 +229,7 @@ CASES = {
     "Mirror, best symmetry": lambda n: Mirror(Input=skull(n)),
     "Skull Bone": lambda n: SkullBone(Input=skull(n)),
     "Skull Implant": lambda n: SkullImplant(Input=skull(n)),
+    "Skull Resection": lambda n: SkullResection(Input=skull(n), Tumour=Sphere(Center=[-30, 20, 45], Radius=10)),
     "RBF Hole Filler": filled,
     "RBF Interpolator": interpolate,
     "RBF Image Warp": warp,

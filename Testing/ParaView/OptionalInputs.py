@@ -61,4 +61,5 @@ assert found == {
     "LacunaRBFSurface": {"PriorSurface"},
     "LacunaSkullBone": {"Exclude"},
     "LacunaSkullImplant": {"DefectOutline", "Template"},
+    "LacunaSkullResection": {"CutOutline", "Tumour"},
 }

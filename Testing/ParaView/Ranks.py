@@ -30,7 +30,7 @@ from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader, vtkXMLTableReader
 # Parts of an image, which overlap in nothing but shared faces
 IMAGES = {"AssembleTrackedSlices", "BSplineIsoRayCaster", "CTSeriesReader", "DepthMapShader", "GateSlices", "IncompleteShape",
           "Mirror", "OccludedAngle", "PhantomSweep", "ProbeCalibration", "RBFHoleFiller", "RBFImageWarp", "RBFInterpolator",
-          "SkullBone", "SkullPhantom", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
+          "SkullBone", "SkullPhantom", "SkullResection", "SliceRayCaster", "SpeckleFilter", "SweptVolume", "TrackedSliceReader", "VolumeReader"}
 # but of these all ranks have the whole
 WHOLE = {"OccludedAngle", "ProbeCalibration"}
 # Some of the cells of a mesh

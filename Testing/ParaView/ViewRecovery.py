@@ -47,6 +47,7 @@ BAD = {  # a property of each proxy, and a value that is an error
     "LacunaScanRegion": ("TickLength", -1),
     "LacunaSkullBone": ("Level", 1e6),
     "LacunaSkullImplant": ("EdgeClearance", -1),
+    "LacunaSkullResection": ("Bevel", -1),
     "LacunaSkullPhantom": ("Spacing", [-1, 1, 1]),
     "LacunaSliceOutliner": ("Slice", -1),
     "LacunaSlicePlanes": ("Stride", 0),

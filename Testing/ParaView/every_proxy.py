@@ -172,6 +172,8 @@ def implant():
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
     template = SkullPhantom(registrationName="Template", Spacing=[3, 3, 4], DefectRadius=0)
     SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=template, TemplateLevel=410)
+    SkullResection(registrationName="Cut", Input=bone, Tumour=Sphere(registrationName="Tumour", Center=[-30, 20, 45], Radius=10), Level=400, Margin=4,
+                   GuideWidth=6)
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)
     prior = BSplineIsoRayCaster(registrationName="Prior", Input=whole, IsoValues=[500], ViewDirection=[-0.5, 0.2, -0.8], PixelSpacing=2)
     RBFSurface(registrationName="Closed", Input=prior, OutputSpacing=6, OutputBounds=[-80, 80, -95, 95, -80, 72], DistanceSpacing=19)

@@ -19,12 +19,14 @@
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkLacunaRBFSurface.h"
 #include "vtkLacunaSkullImplant.h"
+#include "vtkLacunaSkullResection.h"
 #include "vtkLacunaSplineLoop.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkSphere.h"
+#include "vtkSphereSource.h"
 #include "vtkStructuredGrid.h"
 
 #include <algorithm>
@@ -265,10 +267,44 @@ Subject MakeSkullImplant()
       Real("Thickness", &T::SetThickness, 0, 6),
       Real("MinimumThickness", &T::SetMinimumThickness, 0, 4),
       Reals<3>("InsertionDirection", &T::SetInsertionDirection, -1, 1),
-      Real("TriangleSize", &T::SetTriangleSize, 2, 5), Real("Density", &T::SetDensity, 1, 5),
+      Real("OuterOffset", &T::SetOuterOffset, -3, 3),
+      Real("InnerOffset", &T::SetInnerOffset, -3, 3), Real("OffsetFade", &T::SetOffsetFade, 0, 20),
+      Whole("Parts", &T::SetParts, 1, 3), Real("DrainageSpacing", &T::SetDrainageSpacing, 4, 12),
+      Real("DrainageDiameter", &T::SetDrainageDiameter, 1, 3),
+      Real("SutureSpacing", &T::SetSutureSpacing, 4, 12),
+      Real("SutureDiameter", &T::SetSutureDiameter, 0.5, 2), Whole("Plates", &T::SetPlates, 0, 4),
+      Real("ScrewDiameter", &T::SetScrewDiameter, 0.5, 2),
+      Real("ScrewLength", &T::SetScrewLength, 1, 6), Real("RimDistance", &T::SetRimDistance, 2, 6),
+      Real("TextHeight", &T::SetTextHeight, 2, 6), Real("TriangleSize", &T::SetTriangleSize, 2, 5),
+      Real("Density", &T::SetDensity, 1, 5),
       Real("TemplateLevel", &T::SetTemplateLevel, 0, 400) } };
   subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetTriangleSize(4); };
   subject.Cost = 200;
+  return subject;
+}
+
+vtkSmartPointer<vtkDataObject> RandomTumour(Dice& dice)
+{
+  vtkNew<vtkSphereSource> ball;
+  ball->SetCenter(0, 25, 5);
+  ball->SetRadius(dice.Real(4, 8));
+  ball->Update();
+  return ball->GetOutput();
+}
+
+Subject MakeSkullResection()
+{
+  using T = vtkLacunaSkullResection;
+  Subject subject{ "SkullResection", NewOf<T>,
+    [](Dice& dice) -> Inputs {
+      return { RandomHead(dice), nullptr, RandomTumour(dice) };
+    },
+    { Real("Level", &T::SetLevel, 200, 400), Real("Margin", &T::SetMargin, 0, 8),
+      Real("Bevel", &T::SetBevel, 0, 30), Real("GuideWidth", &T::SetGuideWidth, 3, 8),
+      Real("GuideHeight", &T::SetGuideHeight, 2, 8),
+      Real("GuideClearance", &T::SetGuideClearance, 0, 1),
+      Real("GuideHole", &T::SetGuideHole, 0.5, 2) } };
+  subject.Cost = 20;
   return subject;
 }
 
@@ -348,6 +384,7 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
   subjects.push_back(MakeOutlinedStructures());
   subjects.push_back(MakePlate());
   subjects.push_back(MakeSkullImplant());
+  subjects.push_back(MakeSkullResection());
   {
     using T = vtkLacunaDefectModel;
     subjects.push_back({ "DefectModel", NewOf<T>, MakeFilledMap,

@@ -2,6 +2,8 @@
 #include "lacunaSkullImplant.h"
 
 #include "lacunaImplantEdge.h"
+#include "lacunaImplantMesh.h"
+#include "lacunaImplantSpace.h"
 #include "lacunaParameterText.h"
 #include "lacunaPlanarCurves.h"
 #include "lacunaPlanarLattice.h"
@@ -14,32 +16,16 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace lacuna
 {
 namespace
 {
-constexpr double GridSpacing = 0.4; // mm of the map in which the free space is found
-constexpr double ErrorSpacing = 3;  // mm: standard errors vary slowly
-constexpr double FarFromRim = 3;    // mm: where distances to the rim do not matter any more
-// mm: of a ball that fits into all of the implant's outline, seen from outside. What is narrower than twice as
-// much is a gap in thin bone, a suture or a drill hole.
-constexpr double LeastRadius = 2;
-constexpr double Slack = 0.4;      // mm: of that, for what is not exact
-constexpr double MostAngle = 2.4;  // radians from the middle of a defect
-constexpr double ValueScale = 500; // of grey levels a mm, at the edge of bone; only the sign counts
-constexpr double LeastPart = 100;  // mm^2: of a free space that is told of
-constexpr double ScanEnd = 20;     // mm^2: of a hole beyond the scan
-constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr double LatticeToRim = 0.6; // of TriangleSize: the rim's edges stay Delaunay edges
-constexpr double Beside = 3;     // mm of the surfaces beside the hole, for walls that open outwards
-constexpr double WallReach = 5;  // mm from the outline, within which its wall is
-constexpr double WallFace = 0.8; // cosine between wall and surface: the bone is a table, no wall
-constexpr std::size_t WallSmoothing = 4; // mm on either side
-constexpr std::int64_t Sparse = 8;       // nodes between those from which the free space is sought
-constexpr double Interesting = 2.5;      // mm of clearance: nodes around may have less
-constexpr double ThickEnough = 1.01;     // of the least thickness
+constexpr double ErrorSpacing = 3;      // mm: standard errors vary slowly
+constexpr double AutomaticTriangle = 1; // mm
+constexpr double LeastLost = 50;        // mm^2 of a part: of which is told
 
 class Builder
 {
@@ -47,52 +33,46 @@ public:
   Builder(const VoxelVolume& volume, const SkullRays& rays, const std::vector<int>& defect,
     const SkullShape& shape, const BoneDistance& bone, const SkullImplantOptions& options,
     Execution& execution)
-    : Volume(volume)
-    , WorldToIndex(volume.IndexToWorld.Inverse())
-    , Rays(rays)
+    : Rays(rays)
     , Shape(shape)
     , Bone(bone)
     , Options(options)
     , Run(execution)
-    , Plane(MakeChart(rays, defect, shape, execution))
+    , Space(volume, rays, defect, shape, bone, options, execution)
+    , Slab(Space.GetSlab())
   {
-    for (const int ray : defect)
-    {
-      if (Dot(rays.Directions[ray], this->Plane.ToDirection({ 0, 0 })) > std::cos(MostAngle))
-      {
-        this->Defect.push_back(this->Plane.ToPlane(rays.Directions[ray]));
-      }
-    }
-    if (this->Defect.empty())
-    {
-      throw std::runtime_error("the hole goes around the whole skull");
-    }
   }
 
   SkullImplant Make()
   {
     this->Run.SetStage(0.05, 0.2);
-    std::vector<Loop> hole = this->FindHole();
+    const std::vector<Loop> hole = this->Space.FindHole();
+    this->Space.Offset(hole);
     this->Run.SetStage(0.25, 0.3);
-    std::vector<Loop> outline = this->MoveInwards(hole);
+    std::vector<Loop> outline = this->Space.MoveInwards(hole);
     this->Run.SetStage(0.3, 0.5);
-    const InsertionPath path(this->Bone, this->ChooseDirection(outline));
-    outline = this->WithoutTongues(this->FindFreeWays(path), 0);
+    const InsertionPath path(this->Bone, this->Space.ChooseDirection(outline));
+    const std::vector<double> free = this->Space.FindFreeWays(path);
+    outline = this->Space.FindOutline(free);
     if (outline.empty())
     {
       throw std::runtime_error(
         "no implant can be put in along this direction: bone is above all of "
         "the hole. Give another direction");
     }
-    for (Loop& loop : outline)
-    {
-      loop = Resample(loop, 0.5 * this->Options.TriangleSize);
-    }
     this->Run.SetStage(0.5, 0.55);
-    const ImplantEdge edge =
-      FollowWall(this->Slab, this->Bone, path, outline, this->Options.EdgeClearance, this->Run);
+    const ImplantEdge edge = this->Follow(this->Bone, path, outline);
     this->Run.SetStage(0.55, 0.6);
-    this->AddMesh(edge);
+    this->Implant.Plates =
+      PlacePlates(this->Slab, this->Rays, this->Space.GetChart(), edge.Levels, this->Options);
+    if (this->Options.Parts == 1)
+    {
+      this->AddPart(edge, 1);
+    }
+    else
+    {
+      this->AddParts(free, edge, path);
+    }
     this->Run.SetStage(0.6, 0.95);
     this->AddErrors();
     this->Run.SetStage(0.95, 1);
@@ -100,476 +80,166 @@ public:
     this->MeasureThickness();
     this->SetHoleArea(hole, edge.Levels[0]);
     this->SetInsertion(edge, path);
+    this->Warn();
     return std::move(this->Implant);
   }
 
 private:
-  static Chart MakeChart(const SkullRays& rays, const std::vector<int>& defect,
-    const SkullShape& shape, Execution& execution)
+  ImplantEdge Follow(const BoneDistance& bone, const InsertionPath& path, std::vector<Loop> outline)
   {
-    Vec3 axis{ 0, 0, 0 };
-    std::vector<Vec3> directions;
-    for (const int ray : defect)
+    for (Loop& loop : outline)
     {
-      directions.push_back(rays.Directions[ray]);
-      axis = axis + directions.back();
+      loop = Resample(loop, 0.5 * this->Options.TriangleSize);
     }
-    axis = Normalized(axis);
-    std::vector<double> radii;
-    for (const SkullEstimate& e : shape.PredictSurfaces(directions, execution))
-    {
-      radii.push_back(e.Outer);
-    }
-    std::nth_element(radii.begin(), radii.begin() + radii.size() / 2, radii.end());
-    // Rays turn with the volume, so that the chart does.
-    const std::size_t n = rays.Directions.size();
-    const Vec3& first = rays.Directions[0];
-    const Vec3& beside = std::abs(Dot(first, axis)) < 0.9 ? first : rays.Directions[n / 2];
-    return { axis, beside, radii[radii.size() / 2] };
+    return FollowWall(this->Slab, bone, path, outline, this->Options.EdgeClearance, this->Run);
   }
 
-  std::vector<Vec3> DirectionsOf(const std::vector<Vec2>& points) const
+  // The same text, holes where there is room for them.
+  void AddPart(ImplantEdge edge, int number)
   {
-    std::vector<Vec3> directions;
-    directions.reserve(points.size());
-    for (const Vec2& p : points)
+    std::vector<std::vector<Loop>>& levels = edge.Levels;
+    const std::vector<Loop> outline = levels[0];
+    const ImplantRim rim(this->Slab, levels);
+    const SkullImplantOptions& options = this->Options;
+    const TextPlace text =
+      PlaceText(this->Slab, rim, levels.back(), options.Text, options.Up, options.MinimumThickness);
+    if (!options.Text.empty() && !text.IsGood)
     {
-      directions.push_back(this->Plane.ToDirection(p));
+      this->Implant.Warnings.push_back("there is no place for the text on the inner face" +
+        this->NameOf(number) + ": make it shorter or its letters smaller");
     }
-    return directions;
-  }
-
-  Vec3 PointAt(const Vec3& direction, double radius) const
-  {
-    return this->Rays.Center + radius * direction;
-  }
-
-  //----------------------------------------------------------------------------
-  // Outlines of the space that is free of bone, in the chart.
-  std::vector<Loop> FindHole()
-  {
-    const double near = 2 * this->Rays.Spacing * this->Plane.GetScale(); // of rays beside bone
-    const double reach = near + Beside;
-    this->Grid = MakeGrid(this->Defect, reach + 2 * GridSpacing, GridSpacing);
-    const std::vector<double> away = FindDistances(this->Grid, this->Defect, 2 * reach);
-    std::vector<std::int64_t> nodes;
-    for (std::size_t k = 0; k < away.size(); ++k)
+    std::vector<Vec2> screws;
+    for (const ImplantPlateScrews& plate : this->Implant.Plates)
     {
-      if (away[k] < reach + 2 * GridSpacing)
+      screws.push_back(plate.Foot);
+    }
+    for (const ImplantHole& hole :
+      PlaceHoles(this->Slab, rim, outline, screws, text, options, this->Run))
+    {
+      const std::vector<Loop> tunnel = FindTunnel(this->Slab, hole, 0.5 * options.TriangleSize);
+      for (std::size_t level = 0; level < tunnel.size(); ++level)
       {
-        nodes.push_back(static_cast<std::int64_t>(k));
+        levels[level].push_back(tunnel[level]);
+      }
+      this->Implant.Holes += tunnel.empty() ? 0 : 1;
+    }
+    const std::vector<Vec2> feet =
+      AddImplantMesh(this->Slab, levels, text.Text, options.TriangleSize, this->Run, this->Implant);
+    this->Feet.insert(this->Feet.end(), feet.begin(), feet.end());
+    this->Implant.Parts.resize(this->Implant.Triangles.size(), number);
+    this->PartArea += GetArea(outline);
+    this->MeshedArea += GetArea(levels[0]);
+  }
+
+  std::string NameOf(int part) const
+  {
+    return this->Options.Parts > 1 ? " of part " + std::to_string(part) : "";
+  }
+
+  // Cuts across the longest extent, parallel to the way in, between equal shares of the outer surface.
+  void AddParts(
+    const std::vector<double>& free, const ImplantEdge& whole, const InsertionPath& path)
+  {
+    const int parts = this->Options.Parts;
+    const std::vector<Vec3> points = this->FindOuterPoints(whole.Levels[0]);
+    const Vec3 axis = FindLongestAxis(points, path.GetDirection());
+    std::vector<double> along;
+    for (const Vec3& x : points)
+    {
+      along.push_back(Dot(x, axis));
+    }
+    std::sort(along.begin(), along.end());
+    const double clearance = this->Options.EdgeClearance;
+    // each side keeps half of the clearance from a cut, which counts as a wall of bone behind it
+    const double behind = 0.5 * clearance;
+    for (int part = 0; part < parts; ++part)
+    {
+      const double low = part == 0 ? -Far : along[along.size() * part / parts] - behind;
+      const double high =
+        part + 1 == parts ? Far : along[along.size() * (part + 1) / parts] + behind;
+      const PartBone bone(this->Bone, axis, low, high);
+      const InsertionPath way(bone, path.GetDirection());
+      const std::vector<Loop> outline =
+        this->Space.FindOutline(this->Space.FindPart(free, bone, clearance));
+      if (outline.empty())
+      {
+        throw std::runtime_error("part " + std::to_string(part + 1) + " of " +
+          std::to_string(parts) + " is too narrow: give fewer parts");
+      }
+      this->AddPart(this->Follow(bone, way, outline), part + 1);
+    }
+    const double lost = GetArea(whole.Levels[0]) - this->PartArea -
+      clearance * (parts - 1) * this->FindExtent(points, Cross(axis, path.GetDirection()));
+    if (lost > LeastLost)
+    {
+      this->Implant.Warnings.push_back("the parts leave about " +
+        FormatNumber(std::round(lost / 10) / 10) +
+        " cm^2 of the hole open, where a cut leaves pieces that are narrow or apart");
+    }
+  }
+
+  std::vector<Vec3> FindOuterPoints(const std::vector<Loop>& outline) const
+  {
+    std::vector<Vec3> points;
+    for (const Vec2& p : FillWithLattice(this->Run, outline, 1, 0))
+    {
+      points.push_back(this->Slab.GetPoint(p, 0));
+    }
+    return points;
+  }
+
+  static double FindExtent(const std::vector<Vec3>& points, const Vec3& axis)
+  {
+    double low = Far;
+    double high = -Far;
+    for (const Vec3& x : points)
+    {
+      low = std::min(low, Dot(x, axis));
+      high = std::max(high, Dot(x, axis));
+    }
+    return high - low;
+  }
+
+  // Unit, across a direction.
+  static Vec3 FindLongestAxis(const std::vector<Vec3>& points, const Vec3& across)
+  {
+    const Vec3 u =
+      Normalized(Cross(across, std::abs(across[0]) < 0.8 ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 }));
+    const Vec3 v = Cross(across, u);
+    double longest = 0;
+    Vec3 axis = u;
+    for (int k = 0; k < 180; ++k)
+    {
+      const double angle = k * std::acos(-1.0) / 180;
+      const Vec3 each = std::cos(angle) * u + std::sin(angle) * v;
+      const double extent = FindExtent(points, each);
+      if (extent > longest)
+      {
+        longest = extent;
+        axis = each;
       }
     }
-    this->SetSlab(nodes);
-    this->Run.SetStage(0.2, 0.25);
-    std::vector<RaySegment> segments;
-    for (const std::int64_t node : nodes)
-    {
-      const Vec3 outer = this->Slab.Outer[node] - this->Rays.Center;
-      const double inner = Norm(this->Slab.Inner[node] - this->Rays.Center);
-      const double clearance = this->Options.EdgeClearance;
-      segments.push_back(
-        { Normalized(outer), std::max(inner - clearance, 1.0), Norm(outer) + clearance });
-    }
-    const std::vector<double> largest =
-      FindLargestAlong(this->Volume, this->Rays.Center, segments, this->Run);
-    this->Free.assign(away.size(), -1);
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-    {
-      this->Free[nodes[k]] =
-        std::clamp((this->Options.Level - largest[k]) / ValueScale, -reach, near - away[nodes[k]]);
-      this->Slab.IsKnown[nodes[k]] =
-        largest[k] < Infinity && this->IsInScan(this->Slab.Outer[nodes[k]]);
-    }
-    const std::vector<std::vector<std::int64_t>> parts = FindFreeParts(this->Grid, this->Free);
-    if (parts.empty())
-    {
-      throw std::runtime_error("bone fills the hole: between the predicted surfaces no space is "
-                               "free. Check the level, and that the hole is a hole");
-    }
-    const double nodeArea = GridSpacing * GridSpacing;
-    // where the scan ends: within an outline that was drawn, or beside the rays that surely miss bone
-    const auto beyond = static_cast<double>(std::count(largest.begin(), largest.end(), Infinity));
-    if (beyond * nodeArea > ScanEnd || this->FindUnknownArea() > ScanEnd)
-    {
-      this->Implant.Warnings.push_back(
-        "the scan ends within the hole: the implant ends there, too, and does not meet bone");
-    }
-    for (std::size_t p = 1; p < parts.size(); ++p)
-    {
-      for (const std::int64_t node : parts[p])
-      {
-        this->Free[node] = -1;
-      }
-      if (static_cast<double>(parts[p].size()) * nodeArea > LeastPart)
-      {
-        this->Implant.Warnings.push_back("bone divides the hole: a part of " +
-          FormatNumber(std::round(static_cast<double>(parts[p].size()) * nodeArea / 100)) +
-          " cm^2 is left out");
-      }
-    }
-    return KeepLargest(FindContours(this->Grid, this->Free, 0));
+    return axis;
   }
 
-  bool IsInScan(const Vec3& x) const
+  void Warn()
   {
-    const Vec3 index = this->WorldToIndex.Point(x);
-    bool isIn = true;
-    for (int a = 0; a < 3; ++a)
+    std::vector<std::string>& warnings = this->Implant.Warnings;
+    const std::vector<std::string>& before = this->Space.GetWarnings();
+    warnings.insert(warnings.begin(), before.begin(), before.end());
+    const auto& plates = this->Implant.Plates;
+    if (static_cast<int>(plates.size()) < this->Options.Plates)
     {
-      isIn = isIn && index[a] >= 0 && index[a] <= this->Volume.Size[a] - 1;
+      warnings.push_back("only " + std::to_string(plates.size()) + " of " +
+        std::to_string(this->Options.Plates) + " plates have a place with bone beside the rim");
     }
-    return isIn;
-  }
-
-  // Both surfaces at some nodes.
-  void SetSlab(const std::vector<std::int64_t>& nodes)
-  {
-    std::vector<Vec2> points;
-    for (const std::int64_t node : nodes)
+    const auto thin = std::count_if(plates.begin(), plates.end(),
+      [&](const ImplantPlateScrews& p) { return p.BoneThickness < this->Options.ScrewLength; });
+    if (thin > 0)
     {
-      points.push_back(this->Grid.GetNode(node % this->Grid.Columns, node / this->Grid.Columns));
+      warnings.push_back(std::to_string(thin) + " of the plates' screws are in bone thinner than " +
+        FormatNumber(this->Options.ScrewLength) + " mm: use shorter screws there");
     }
-    const std::vector<Vec3> directions = this->DirectionsOf(points);
-    const std::vector<SkullEstimate> shape = this->Shape.PredictSurfaces(directions, this->Run);
-    const auto count = static_cast<std::size_t>(this->Grid.Columns * this->Grid.Rows);
-    ImplantSlab& slab = this->Slab;
-    slab.Grid = this->Grid;
-    slab.IsKnown.assign(count, false);
-    slab.Outer.assign(count, Vec3{ 0, 0, 0 });
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-    {
-      slab.IsKnown[nodes[k]] = true;
-      slab.Outer[nodes[k]] = this->PointAt(directions[k], shape[k].Outer);
-    }
-    slab.Inner = slab.Outer;
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-    {
-      const std::int64_t node = nodes[k];
-      const Vec3 normal = this->GetNormal(node, directions[k]);
-      const double least = ThickEnough * this->Options.MinimumThickness;
-      if (this->Options.Thickness > 0)
-      {
-        slab.Inner[node] = slab.Outer[node] - std::max(this->Options.Thickness, least) * normal;
-        continue;
-      }
-      const double cosine = std::max(Dot(normal, directions[k]), 0.3);
-      const double inner = shape[k].Outer - std::max(shape[k].Thickness, least / cosine);
-      if (!(inner > 1))
-      {
-        throw std::runtime_error("the inner surface reaches the middle of the skull");
-      }
-      slab.Inner[node] = this->PointAt(directions[k], inner);
-    }
-  }
-
-  // Of the outer surface, by the nodes beside one.
-  Vec3 GetNormal(std::int64_t node, const Vec3& direction) const
-  {
-    const ImplantSlab& slab = this->Slab;
-    const auto count = static_cast<std::int64_t>(slab.Outer.size());
-    const auto along = [&](std::int64_t step)
-    {
-      const bool before = node - step >= 0 && slab.IsKnown[node - step];
-      const bool after = node + step < count && slab.IsKnown[node + step];
-      return slab.Outer[after ? node + step : node] - slab.Outer[before ? node - step : node];
-    };
-    const Vec3 normal = Cross(along(1), along(this->Grid.Columns));
-    return HasDirection(normal) ? Normalized(normal) : direction;
-  }
-
-  // Of the rays next to the defect that leave the scan before they come to the skull, mm^2.
-  double FindUnknownArea() const
-  {
-    const double edge = this->Rays.Spacing * this->Plane.GetScale();
-    double area = 0;
-    for (std::size_t i = 0; i < this->Rays.Kinds.size(); ++i)
-    {
-      if (this->Rays.Kinds[i] == SkullRayKind::Unknown)
-      {
-        const Vec2 p = this->Plane.ToPlane(this->Rays.Directions[i]);
-        area += std::any_of(this->Defect.begin(), this->Defect.end(),
-                  [&](const Vec2& q) { return std::hypot(p[0] - q[0], p[1] - q[1]) < 1.6 * edge; })
-          ? 0.866 * edge * edge
-          : 0;
-      }
-    }
-    return area;
-  }
-
-  std::vector<Loop> MoveInwards(const std::vector<Loop>& hole)
-  {
-    if (hole.empty())
-    {
-      throw std::runtime_error("no space in the hole is free of bone");
-    }
-    const CurveIndex rim(this->OnInner(hole), 2);
-    std::vector<double> distances(this->Free.size(), -FarFromRim);
-    const double limit = FarFromRim + this->Options.EdgeClearance;
-    this->Run.For(this->Grid.Rows, 8,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t j = begin; j < end; ++j)
-        {
-          for (std::int64_t i = 0; i < this->Grid.Columns; ++i)
-          {
-            const std::int64_t node = i + this->Grid.Columns * j;
-            if (this->Slab.IsKnown[node])
-            {
-              const double distance = rim.Find(this->Slab.Inner[node], limit).Distance;
-              distances[node] = this->Free[node] > 0 ? distance : -distance;
-            }
-          }
-        }
-      });
-    this->FromHole = distances;
-    std::vector<Loop> outline =
-      this->WithoutTongues(std::move(distances), this->Options.EdgeClearance);
-    if (outline.empty())
-    {
-      throw std::runtime_error("the hole is nowhere wider than " +
-        FormatNumber(2 * (this->Options.EdgeClearance + LeastRadius)) +
-        " mm: it may be a gap in thin bone, which this level does not show");
-    }
-    return outline;
-  }
-
-  // The outline where distances are a limit, without what is narrow (an opening). Empty: nothing is wide.
-  std::vector<Loop> WithoutTongues(std::vector<double> distances, double limit)
-  {
-    const std::vector<Loop> core =
-      KeepLargest(FindContours(this->Grid, distances, limit + LeastRadius));
-    if (core.empty())
-    {
-      return {};
-    }
-    const double before = GetArea(KeepLargest(FindContours(this->Grid, distances, limit)));
-    const CurveIndex edge(this->OnInner(core), 2);
-    const double reach = LeastRadius + Slack;
-    this->Run.For(this->Grid.Rows, 8,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t j = begin; j < end; ++j)
-        {
-          for (std::int64_t i = 0; i < this->Grid.Columns; ++i)
-          {
-            const std::int64_t node = i + this->Grid.Columns * j;
-            double& distance = distances[node];
-            if (distance > limit && !IsInside(core, this->Grid.GetNode(i, j)))
-            {
-              distance = std::min(
-                distance, limit + reach - edge.Find(this->Slab.Inner[node], 2 * reach).Distance);
-            }
-          }
-        }
-      });
-    std::vector<Loop> outline = KeepLargest(FindContours(this->Grid, distances, limit));
-    const double without = before - GetArea(outline);
-    if (without > LeastPart && limit > 0)
-    {
-      this->Implant.Warnings.push_back("the hole has parts that are narrower than " +
-        FormatNumber(2 * (this->Options.EdgeClearance + LeastRadius)) +
-        " mm, or that are behind such: " + FormatNumber(std::round(without / 10) / 10) +
-        " cm^2 are left out");
-    }
-    return outline;
-  }
-
-  std::vector<std::vector<Vec3>> OnInner(const std::vector<Loop>& loops) const
-  {
-    std::vector<std::vector<Vec3>> curves;
-    for (const Loop& loop : loops)
-    {
-      curves.emplace_back();
-      for (const Vec2& p : loop)
-      {
-        curves.back().push_back(this->Slab.GetPoint(p, 1));
-      }
-    }
-    return curves;
-  }
-
-  //----------------------------------------------------------------------------
-  // Unit, out of the wall of bone beside a place of the outline; zero where there is none.
-  Vec3 FindWall(const Vec2& p, double depth) const
-  {
-    const Vec3 x = this->Slab.GetPoint(p, depth);
-    const NearestBone bone = this->Bone.Find(x, WallReach);
-    const Vec3 wall = Normalized(x - bone.Point);
-    const bool isWall = bone.Distance > 0 && bone.Distance < WallReach &&
-      std::abs(Dot(wall, this->Slab.GetNormal(p))) < WallFace;
-    return isWall ? wall : Vec3{ 0, 0, 0 };
-  }
-
-  // The way in: as given, or that of the walls of bone along an outline.
-  Vec3 ChooseDirection(const std::vector<Loop>& outline) const
-  {
-    Vec3 in{ 0, 0, 0 };
-    std::vector<Vec3> walls;
-    for (const Loop& loop : outline)
-    {
-      const Loop places = Resample(loop, 1);
-      for (const Vec2& p : places)
-      {
-        in = in - this->Slab.GetNormal(p);
-      }
-      for (const double depth : { 0.35, 0.5, 0.65 }) // away from rounded edges
-      {
-        std::vector<Vec3> found;
-        for (const Vec2& p : places)
-        {
-          found.push_back(this->FindWall(p, depth));
-        }
-        const std::size_t n = found.size();
-        for (std::size_t k = 0; k < n; ++k)
-        {
-          Vec3 sum{ 0, 0, 0 }; // single places of rough bone do not decide
-          for (std::size_t r = 0; r <= 2 * WallSmoothing; ++r)
-          {
-            sum = sum + found[(k + n + r - std::min(WallSmoothing, n)) % n];
-          }
-          if (Norm(sum) > WallSmoothing)
-          {
-            walls.push_back(Normalized(sum));
-          }
-        }
-      }
-    }
-    const Vec3& given = this->Options.InsertionDirection;
-    return HasDirection(given) ? Normalized(given) : FindInsertionDirection(walls, in);
-  }
-
-  // Of each node the least clearance of both surfaces and what is between them, on the way out, without EdgeClearance.
-  std::vector<double> FindFreeWays(const InsertionPath& path) const
-  {
-    std::vector<double> free(this->Free.size(), -FarFromRim);
-    std::vector<bool> wanted(free.size(), false);
-    std::vector<std::int64_t> nodes;
-    for (std::int64_t node = 0; node < static_cast<std::int64_t>(free.size()); ++node)
-    {
-      const bool isSparse =
-        node % this->Grid.Columns % Sparse == 0 && node / this->Grid.Columns % Sparse == 0;
-      const bool isHole = this->Free[node] > 0;
-      free[node] = isHole ? InsertionPath::Limit : -FarFromRim;
-      if (this->Slab.IsKnown[node] && (std::abs(this->FromHole[node]) < 1 || (isHole && isSparse)))
-      {
-        nodes.push_back(node);
-        wanted[node] = true;
-      }
-    }
-    while (!nodes.empty())
-    {
-      this->Run.For(static_cast<std::int64_t>(nodes.size()), 64,
-        [&](std::int64_t begin, std::int64_t end)
-        {
-          for (std::int64_t k = begin; k < end; ++k)
-          {
-            double least = InsertionPath::Limit;
-            for (int level = 0; level <= WallSteps && least > -1; ++level)
-            {
-              const double depth = static_cast<double>(level) / WallSteps;
-              const Vec3 x =
-                (1 - depth) * this->Slab.Outer[nodes[k]] + depth * this->Slab.Inner[nodes[k]];
-              least = std::min(least, path.GetClearance(x) - this->Options.EdgeClearance);
-            }
-            free[nodes[k]] = least;
-          }
-        });
-      std::vector<std::int64_t> next;
-      for (const std::int64_t node : nodes)
-      {
-        for (const std::int64_t step :
-          { std::int64_t{ -1 }, std::int64_t{ 1 }, -this->Grid.Columns, this->Grid.Columns })
-        {
-          const std::int64_t other = node + step; // nodes at the border are not known
-          if (free[node] > -1 && free[node] < Interesting && this->Slab.IsKnown[other] &&
-            !wanted[other])
-          {
-            wanted[other] = true;
-            next.push_back(other);
-          }
-        }
-      }
-      nodes = std::move(next);
-    }
-    return free;
-  }
-
-  //----------------------------------------------------------------------------
-  // Points of both surfaces are those of the slab.
-  void AddMesh(const ImplantEdge& edge)
-  {
-    std::vector<std::vector<std::int32_t>> rings; // level by level, loop by loop
-    for (int level = 0; level <= WallSteps; ++level)
-    {
-      for (const Loop& loop : edge.Levels[level])
-      {
-        rings.emplace_back();
-        for (const Vec2& p : loop)
-        {
-          rings.back().push_back(this->AddPoint(p, static_cast<double>(level) / WallSteps));
-        }
-      }
-    }
-    const std::size_t loops = edge.Levels[0].size();
-    this->AddFace(edge.Levels.front(), &rings[0], SkullImplantFace::Outer);
-    this->AddFace(edge.Levels.back(), &rings[WallSteps * loops], SkullImplantFace::Inner);
-    for (std::size_t r = 0; r < WallSteps * loops; ++r)
-    {
-      const std::vector<std::int32_t>& upper = rings[r];
-      const std::vector<std::int32_t>& lower = rings[r + loops];
-      for (std::size_t k = 0; k < upper.size(); ++k)
-      {
-        const std::size_t next = (k + 1) % upper.size();
-        this->AddTriangle(upper[k], lower[k], lower[next], SkullImplantFace::Edge);
-        this->AddTriangle(upper[k], lower[next], upper[next], SkullImplantFace::Edge);
-      }
-    }
-  }
-
-  std::int32_t AddPoint(const Vec2& p, double depth)
-  {
-    this->Feet.push_back(p);
-    this->Implant.Points.push_back(this->Slab.GetPoint(p, depth));
-    this->Implant.Thickness.push_back(Norm(this->Slab.GetPoint(p, 0) - this->Slab.GetPoint(p, 1)));
-    return static_cast<std::int32_t>(this->Feet.size()) - 1;
-  }
-
-  // rings: points of the loops.
-  void AddFace(
-    const std::vector<Loop>& loops, const std::vector<std::int32_t>* rings, SkullImplantFace face)
-  {
-    const double h = this->Options.TriangleSize;
-    const bool isOuter = face == SkullImplantFace::Outer;
-    Loop feet;
-    std::vector<std::int32_t> points;
-    std::vector<std::vector<std::int32_t>> edges;
-    for (std::size_t l = 0; l < loops.size(); ++l)
-    {
-      edges.emplace_back();
-      for (std::size_t k = 0; k < loops[l].size(); ++k)
-      {
-        edges.back().push_back(static_cast<std::int32_t>(feet.size()));
-        feet.push_back(loops[l][k]);
-        points.push_back(rings[l][k]);
-      }
-    }
-    for (const Vec2& p : FillWithLattice(this->Run, loops, h, LatticeToRim * h))
-    {
-      feet.push_back(p);
-      points.push_back(this->AddPoint(p, isOuter ? 0 : 1));
-    }
-    // counterclockwise in the chart is so from outside
-    for (const Triangle& t : TriangulateRegion(feet, edges))
-    {
-      this->AddTriangle(points[t[0]], points[t[isOuter ? 1 : 2]], points[t[isOuter ? 2 : 1]], face);
-    }
-  }
-
-  void AddTriangle(std::int32_t a, std::int32_t b, std::int32_t c, SkullImplantFace face)
-  {
-    this->Implant.Triangles.push_back({ a, b, c });
-    this->Implant.Faces.push_back(face);
   }
 
   //----------------------------------------------------------------------------
@@ -608,7 +278,7 @@ private:
       }
     }
     const std::vector<SkullEstimate> estimates =
-      this->Shape.Predict(this->DirectionsOf(points), this->Run);
+      this->Shape.Predict(this->Space.DirectionsOf(points), this->Run);
     SkullImplant& implant = this->Implant;
     const std::size_t count = this->Feet.size();
     implant.Errors.resize(count);
@@ -678,7 +348,7 @@ private:
     }
     const double area = GetArea(outline);
     const double whole = std::max(GetArea(hole), area + this->Options.EdgeClearance * length);
-    this->Implant.HoleArea = this->Implant.OuterArea * whole / area;
+    this->Implant.HoleArea = this->Implant.OuterArea * whole / this->MeshedArea;
   }
 
   // Of the points of one face that are not at the edge, the least distance to the triangles of the other.
@@ -743,23 +413,56 @@ private:
     implant.InsertionClearance = *std::min_element(clearances.begin(), clearances.end());
   }
 
-  const VoxelVolume& Volume;
-  Matrix4 WorldToIndex;
+  static constexpr double Far = 1e6; // mm
+
   const SkullRays& Rays;
   const SkullShape& Shape;
   const BoneDistance& Bone;
   const SkullImplantOptions& Options;
   Execution& Run;
-  Chart Plane;
-  std::vector<Vec2> Defect;
-  PlanarGrid Grid;
-  ImplantSlab Slab;
-  std::vector<double> Free; // of each node; positive where no bone is
-  std::vector<double>
-    FromHole;             // the same: mm from the rim on the inner surface, positive in the hole
+  ImplantSpace Space;
+  const ImplantSlab& Slab;
   std::vector<Vec2> Feet; // of the implant's points
+  double PartArea = 0;    // mm^2 in the chart
+  double MeshedArea = 0;  // the same without holes
   SkullImplant Implant;
 };
+
+void CheckRange(const char* name, double value, double low, double high, const char* unit,
+  const char* zero = nullptr)
+{
+  if (!((value >= low && value <= high) || (zero && value == 0)))
+  {
+    throw std::invalid_argument(std::string(name) + " is " + FormatNumber(value) + unit +
+      "; it must be " + (zero ? std::string("0 (") + zero + ") or " : "") + "between " +
+      FormatNumber(low) + " and " + FormatNumber(high));
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void CheckSkullImplantOptions(const SkullImplantOptions& options)
+{
+  CheckRange("EdgeClearance", options.EdgeClearance, 0, 5, " mm");
+  CheckRange("TriangleSize", options.TriangleSize, 0.2, 5, " mm", "automatic");
+  CheckRange("Thickness", options.Thickness, 0.5, 20, " mm", "that of bone");
+  CheckRange("MinimumThickness", options.MinimumThickness, 0, 10, " mm");
+  CheckRange("OuterOffset", options.OuterOffset, -10, 10, " mm");
+  CheckRange("InnerOffset", options.InnerOffset, -10, 10, " mm");
+  CheckRange("OffsetFade", options.OffsetFade, 0, 50, " mm");
+  CheckRange("Parts", options.Parts, 1, 6, "");
+  CheckRange("DrainageSpacing", options.DrainageSpacing, 4, 50, " mm", "no holes");
+  CheckRange("DrainageDiameter", options.DrainageDiameter, 0.5, 10, " mm");
+  CheckRange("SutureSpacing", options.SutureSpacing, 4, 50, " mm", "no holes");
+  CheckRange("SutureDiameter", options.SutureDiameter, 0.5, 10, " mm");
+  CheckRange("Plates", options.Plates, 0, 12, "");
+  CheckRange("ScrewDiameter", options.ScrewDiameter, 0.5, 10, " mm");
+  CheckRange("ScrewLength", options.ScrewLength, 1, 20, " mm");
+  CheckRange("RimDistance", options.RimDistance, 2, 20, " mm");
+  if (!IsFinite(options.InsertionDirection))
+  {
+    throw std::invalid_argument("InsertionDirection is not finite");
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -771,28 +474,11 @@ SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
   {
     throw std::invalid_argument("there is no defect to fill");
   }
-  if (!(options.EdgeClearance >= 0 && options.EdgeClearance <= 5))
-  {
-    throw std::invalid_argument("EdgeClearance is " + FormatNumber(options.EdgeClearance) +
-      " mm; it must be between 0 and 5");
-  }
-  if (!(options.TriangleSize >= 0.2 && options.TriangleSize <= 5))
-  {
-    throw std::invalid_argument("TriangleSize is " + FormatNumber(options.TriangleSize) +
-      " mm; it must be between 0.2 and 5");
-  }
-  if (!(options.Thickness == 0 || (options.Thickness >= 0.5 && options.Thickness <= 20)))
-  {
-    throw std::invalid_argument("Thickness is " + FormatNumber(options.Thickness) +
-      " mm; it must be 0 (that of bone) or between 0.5 and 20");
-  }
-  if (!(options.MinimumThickness >= 0 && options.MinimumThickness <= 10))
-  {
-    throw std::invalid_argument("MinimumThickness is " + FormatNumber(options.MinimumThickness) +
-      " mm; it must be between 0 and 10");
-  }
+  CheckSkullImplantOptions(options);
   const Execution::NestedStages nested(execution);
   execution.SetStage(0, 0.05);
-  return Builder(volume, rays, defect, shape, bone, options, execution).Make();
+  SkullImplantOptions used = options;
+  used.TriangleSize = options.TriangleSize == 0 ? AutomaticTriangle : options.TriangleSize;
+  return Builder(volume, rays, defect, shape, bone, used, execution).Make();
 }
 }

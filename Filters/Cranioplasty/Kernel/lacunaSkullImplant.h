@@ -22,31 +22,60 @@ struct SkullImplantOptions
 {
   double Level = 300;         ///< grey level of bone
   double EdgeClearance = 0.5; ///< mm between the wall of the implant and bone, 0..5
-  double TriangleSize = 1;    ///< mm, 0.2..5; half of it along the edge
+  double TriangleSize = 1;    ///< mm, 0.2..5; half of it along the edge; 0: 1 mm
   /// mm along the normal of the outer surface, 0.5..20; 0: that of bone, along rays.
   double Thickness = 0;
   double MinimumThickness = 0; ///< mm, 0..10: the inner surface is moved inwards where it is less
   /// The way in which it is put in; zero: that for which the walls have the most taper.
   Vec3 InsertionDirection{ 0, 0, 0 };
+  /// mm along the normal of the outer surface, positive outwards, -10..10; each fades to 0 at the rim over
+  /// OffsetFade, 0..50 mm. MinimumThickness is kept.
+  double OuterOffset = 0;
+  double InnerOffset = 0;
+  double OffsetFade = 15;
+  int Parts = 1; ///< 1..6, divided along the way in, EdgeClearance apart
+  /// Round holes along the normal of the outer surface: mm between their middles (0: none, else 4..50) and
+  /// their diameters, 0.5..10 mm. Drainage holes are on a hexagonal lattice, those for sutures along the rim.
+  double DrainageSpacing = 0;
+  double DrainageDiameter = 2.5;
+  double SutureSpacing = 0;
+  double SutureDiameter = 1.5;
+  int Plates = 0;             ///< 0..12: as many screws in the implant, and in the bone beside it
+  double ScrewDiameter = 1.5; ///< mm, 0.5..10: of the holes in the implant
+  double ScrewLength = 4;     ///< mm, 1..20: bone should be as thick
+  double RimDistance = 5;     ///< mm from the rim to the middles of holes, 2..20
+  /// Closed curves (mm, as read: x to the right, y up) of text that is engraved into the inner face, its top towards Up.
+  std::vector<std::vector<Vec2>> Text;
+  Vec3 Up{ 0, 0, 1 };
 };
 
 /// What a triangle of the implant belongs to.
 enum class SkullImplantFace : unsigned char
 {
   Outer, ///< towards the scalp
-  Inner, ///< towards the brain
-  Edge
+  Inner, ///< towards the brain, with engraved text
+  Edge   ///< the edge and the walls of holes
 };
 
 /// Standard error, mm, above which 95 % of errors are not within 1 mm.
 constexpr double TrustedError = 1 / 1.959963984540054;
 
-/// A closed, oriented triangle mesh and what was measured on it.
+/// The screws of a plate that fastens an implant.
+struct ImplantPlateScrews
+{
+  Vec3 OnImplant{ 0, 0, 0 }; ///< on the outer surface, world mm
+  Vec3 OnBone{ 0, 0, 0 };    ///< on the outer table
+  double BoneThickness = 0;  ///< mm, the least within 3 mm
+  Vec2 Foot{};               ///< of OnImplant, in the chart
+};
+
+/// A closed, oriented triangle mesh (one a part) and what was measured on it.
 struct SkullImplant
 {
   std::vector<Vec3> Points;            ///< world mm
   std::vector<Triangle> Triangles;     ///< counterclockwise from outside
   std::vector<SkullImplantFace> Faces; ///< one per triangle
+  std::vector<int> Parts;              ///< one per triangle, from 1
   /// One per point: standard error of the outer surface, thickness, standard error of the thickness; mm along
   /// the ray from the centre.
   std::vector<double> Errors;
@@ -70,15 +99,20 @@ struct SkullImplant
   double UndercutVolume = 0;
   double UndercutWidth = 0;
   Vec3 UndercutPoint{ 0, 0, 0 };
+  std::vector<ImplantPlateScrews> Plates;
+  int Holes = 0; ///< for drainage, sutures and screws
   std::vector<std::string> Warnings;
 };
 
+/// Throws std::invalid_argument that names an option out of range.
+void CheckSkullImplantOptions(const SkullImplantOptions& options);
+
 /// The outer and inner surface are those of the shape. Between them the edge keeps the clearance from bone at each
 /// depth, also on the way in: it follows the wall where that opens outwards, and goes along the direction where
-/// bone is above free space. Parts into which no ball of 2 mm fits then are left out, and so is all
+/// bone is above free space. What into which no ball of 2 mm fits is left out, and so is all
 /// but the largest of several free spaces.
-/// defect: rays, as of FindDefects. Throws std::invalid_argument when an option is out of range or the defect is
-/// empty, and std::runtime_error when no free space is left.
+/// defect: rays, as of FindDefects. Throws as CheckSkullImplantOptions, std::invalid_argument for an empty
+/// defect, and std::runtime_error when no free space is left.
 SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
   const std::vector<int>& defect, const SkullShape& shape, const BoneDistance& bone,
   const SkullImplantOptions& options, Execution& execution);

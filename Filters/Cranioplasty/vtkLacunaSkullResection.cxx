@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkLacunaSkullResection.h"
+
+#include "lacunaImplantData.h"
+#include "lacunaMemory.h"
+#include "lacunaParameterText.h"
+#include "lacunaSkullRays.h"
+#include "lacunaSkullResection.h"
+#include "lacunaSkullShells.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSet.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkLacunaArrays.h"
+#include "vtkLacunaExecution.h"
+#include "vtkLacunaFieldData.h"
+#include "vtkLacunaProvenance.h"
+#include "vtkLacunaRequest.h"
+#include "vtkLacunaVolumeDirection.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+vtkStandardNewMacro(vtkLacunaSkullResection);
+
+namespace
+{
+using lacuna::Vec3;
+
+constexpr double InMask = 0.5;
+
+// Of a mask the middles of voxels that are in it, of a surface its points.
+std::vector<Vec3> GetTumour(vtkDataSet* data)
+{
+  std::vector<Vec3> points;
+  auto* image = vtkImageData::SafeDownCast(data);
+  vtkDataArray* mask = image ? image->GetPointData()->GetScalars() : nullptr;
+  if (image && (!mask || mask->GetNumberOfComponents() != 1))
+  {
+    throw std::runtime_error("the tumour's image has no active point scalars with one component: "
+                             "give a mask, in which the tumour is above 0.5");
+  }
+  if (image)
+  {
+    vtkLacunaVolumeDirection::Check(image);
+  }
+  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
+  {
+    if (!mask || mask->GetComponent(k, 0) > InMask)
+    {
+      points.emplace_back();
+      data->GetPoint(k, points.back().data());
+    }
+  }
+  if (points.empty())
+  {
+    throw std::runtime_error("the tumour is empty: no voxel of the mask is above 0.5");
+  }
+  return points;
+}
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaSkullResection::vtkLacunaSkullResection()
+{
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(4);
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullResection::FillInputPortInformation(int port, vtkInformation* info)
+{
+  if (port != 1)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  }
+  if (port != 0)
+  {
+    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullResection::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkImageData" : "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullResection::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < 3; ++port)
+  {
+    if (vtkInformation* info = inputs[port]->GetInformationObject(0))
+    {
+      vtkLacunaRequest::Whole(this, info, outputs);
+    }
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullResection::MakeMeshes(const lacuna::VoxelVolume& volume, vtkDataArray* alone,
+  const lacuna::SkullResection& cut, vtkInformationVector* outputs, lacuna::Execution& execution)
+{
+  vtkPolyData* others[3];
+  for (int k = 0; k < 3; ++k)
+  {
+    others[k] = vtkPolyData::GetData(outputs, k + 1);
+  }
+  lacuna::SetCurve(others[0], cut.GetOutline());
+  std::array<Vec3, 2> all{ volume.IndexToWorld.Point({ 0, 0, 0 }),
+    volume.IndexToWorld.Point({ 0, 0, 0 }) };
+  for (const Vec3& corner : CornersOf(volume.IndexToWorld, volume.Size))
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      all[0][a] = std::min(all[0][a], corner[a]);
+      all[1][a] = std::max(all[1][a], corner[a]);
+    }
+  }
+  const lacuna::TriangleSurface piece = lacuna::MakeBoneSurface(volume, alone, this->Level, all);
+  if (piece.Triangles.empty())
+  {
+    throw std::runtime_error("nothing is cut out: no bone is within the outline at this Level");
+  }
+  const double pieceVolume = lacuna::SetTriangles(others[1], piece.Points, piece.Triangles);
+  vtkLacunaFieldData::Set(others[1], "Volume", { pieceVolume }, 1);
+  const Vec3& way = cut.GetDirection();
+  vtkLacunaFieldData::Set(others[1], "CutDirection", { way[0], way[1], way[2] }, 3);
+  execution.SetStage(0.7, 1);
+  if (this->GuideWidth > 0)
+  {
+    const lacuna::SkullImplant guide = cut.MakeGuide(execution);
+    lacuna::SetImplant(others[2], guide);
+    vtkLacunaFieldData::Set(others[2], "Volume", { guide.Volume }, 1);
+    for (const std::string& warning : guide.Warnings)
+    {
+      vtkWarningMacro(<< warning);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullResection::RequestInformation(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
+{
+  // Each rank makes the extent that VTK turns its piece into.
+  return vtkLacunaExecution::RunInformation(this, outputs,
+    [&] { outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1); });
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSkullResection::RequestData(
+  vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const bool isWanted = vtkLacunaRequest::IsWanted(outputs);
+  const auto body = [&](vtkLacunaExecution& execution)
+  {
+    vtkImageData* image = vtkImageData::GetData(inputs[0]);
+    vtkPolyData* outline = vtkPolyData::GetData(inputs[1]);
+    vtkDataSet* tumour = vtkDataSet::GetData(inputs[2]);
+    if (!image || image->GetNumberOfPoints() == 0)
+    {
+      return; // empty in, empty out
+    }
+    if (!(this->Level > 0) || !std::isfinite(this->Level))
+    {
+      throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
+        "; it must be a number above 0, the grey level of bone");
+    }
+    if (!(this->Margin >= 0 && this->Margin <= 50))
+    {
+      throw std::runtime_error(
+        "Margin is " + lacuna::FormatNumber(this->Margin) + " mm; it must be between 0 and 50");
+    }
+    lacuna::ResectionOptions options;
+    options.Level = this->Level;
+    options.Bevel = this->Bevel;
+    options.GuideWidth = this->GuideWidth == 0 ? options.GuideWidth : this->GuideWidth;
+    options.GuideHeight = this->GuideHeight;
+    options.GuideClearance = this->GuideClearance;
+    options.GuideHole = this->GuideHole;
+    CheckResectionOptions(options);
+    const bool isDrawn = outline && outline->GetNumberOfPoints() > 0;
+    const bool hasTumour = tumour && tumour->GetNumberOfPoints() > 0;
+    if (!isDrawn && !hasTumour)
+    {
+      throw std::runtime_error(
+        "there is neither an outline nor a tumour: give a closed curve on the "
+        "skull as Outline, or a mask or surface as Tumour");
+    }
+    vtkSmartPointer<vtkDataArray> keep;
+    const lacuna::VoxelVolume volume = lacuna::GetBoneVolume(image, keep);
+    lacuna::RequireMemory("the bone after the cut and what is cut out",
+      2.0 * static_cast<double>(volume.NumberOfVoxels()) * keep->GetDataTypeSize());
+    execution.SetStage(0, 0.2);
+    const Vec3 middle = FindMeanOfBone(volume, this->Level, execution);
+    execution.SetStage(0.2, 0.3);
+    const lacuna::SkullResection cut(volume,
+      isDrawn ? lacuna::GetCurve(outline)
+              : lacuna::FindOutlineAround(GetTumour(tumour), this->Margin, middle),
+      middle, options, execution);
+    const auto make = [&]
+    {
+      const auto values =
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep->GetDataType()));
+      vtkLacunaArrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
+      values->SetName(keep->GetName());
+      return values;
+    };
+    const vtkSmartPointer<vtkDataArray> kept = make();
+    const vtkSmartPointer<vtkDataArray> alone = make();
+    execution.SetStage(0.3, 0.7);
+    cut.Cut(kept->GetVoidPointer(0), alone->GetVoidPointer(0), execution);
+
+    vtkImageData* bone = vtkImageData::GetData(outputs);
+    bone->ShallowCopy(image);
+    bone->GetPointData()->SetScalars(kept);
+    std::vector<vtkDataObject*> from{ image };
+    from.push_back(isDrawn ? static_cast<vtkDataObject*>(outline) : tumour);
+    const std::string parameters = lacuna::ParameterText()
+                                     .Add("Level", this->Level)
+                                     .Add("Margin", this->Margin)
+                                     .Add("Bevel", this->Bevel)
+                                     .Add("GuideWidth", this->GuideWidth)
+                                     .Add("GuideHeight", this->GuideHeight)
+                                     .Add("GuideClearance", this->GuideClearance)
+                                     .Add("GuideHole", this->GuideHole)
+                                     .Get();
+    vtkLacunaProvenance::Record(bone, this, from, parameters);
+    if (vtkLacunaRequest::IsFirst(outputs)) // meshes are there alone
+    {
+      this->MakeMeshes(volume, alone, cut, outputs, execution);
+      for (int port = 1; port < 4; ++port)
+      {
+        vtkLacunaProvenance::Record(vtkPolyData::GetData(outputs, port), this, from, parameters);
+      }
+    }
+    int asked[6];
+    outputs->GetInformationObject(0)->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked);
+    bone->Crop(asked);
+  };
+  return vtkLacunaExecution::RunAgreed(this, outputs, isWanted, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSkullResection::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Level: " << this->Level << "\n";
+  os << indent << "Margin: " << this->Margin << "\n";
+  os << indent << "Bevel: " << this->Bevel << "\n";
+  os << indent << "GuideWidth: " << this->GuideWidth << "\n";
+  os << indent << "GuideHeight: " << this->GuideHeight << "\n";
+  os << indent << "GuideClearance: " << this->GuideClearance << "\n";
+  os << indent << "GuideHole: " << this->GuideHole << "\n";
+}
