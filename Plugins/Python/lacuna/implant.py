@@ -6,6 +6,8 @@
     from lacuna import implant
     made = implant.make_implant(ct)           # ct: a proxy; made.bone, made.implant, made.defects are proxies
     numbers = implant.measures(made)
+
+Holes, plates, parts, offsets and text are properties of made.implant, or settings of make_implant: DrainageSpacing=12, Plates=4.
 """
 import argparse
 import collections
@@ -34,18 +36,28 @@ MESHES = (".stl", ".ply", ".obj", ".vtp")  # of a template
 SCREEN = 'xvfb-run -a -s "-screen 0 1280x1024x24 -noreset"'
 WORDS = {"L": "left", "R": "right", "P": "back", "A": "front", "H": "top", "F": "bottom"}
 
-Made = collections.namedtuple("Made", "bone implant defects")
+# Options of the command: the property of Skull Implant, its unit, what it is for.
+PROPERTIES = {"drainage": "DrainageSpacing", "sutures": "SutureSpacing", "plates": "Plates", "parts": "Parts", "engrave": "EngravedText",
+              "outer-offset": "OuterOffset", "inner-offset": "InnerOffset"}
+SETTINGS = {"drainage": ("MM", "drainage holes so far apart, 4 to 50"), "sutures": ("MM", "holes for sutures along the rim, so far apart, 4 to 50"),
+            "plates": ("N", "plates that fasten the implant, up to 12: a hole in it for each"),
+            "parts": ("N", "parts into which the implant is divided, up to 6"),
+            "engrave": ("TEXT", "text in the inner face, such as a code"),
+            "outer-offset": ("MM", "moves the outer face outwards, or inwards if negative; fades to the rim"),
+            "inner-offset": ("MM", "the same for the inner face")}
+
+Made = collections.namedtuple("Made", "bone implant defects plates")
 Defect = collections.namedtuple("Defect", "area center")  # mm², mm
 
 
-def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None, template=None, thickness=0):
+def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None, template=None, thickness=0, **settings):
     """Makes the pipeline from a CT (a proxy) to an implant, and updates it. Opens no file and shows nothing.
 
     hole: a point in or near the hole, x y z in the CT's patient millimetres; None takes the largest hole. level: of the bone's
     surface in Hounsfield units. clearance: of the implant's edge from the bone in mm. progress: is called with the part of the design
     that is done, 0 to 1. template: another skull (a proxy of a CT or of a mesh in mm), or None.
-    thickness: of the implant in mm; 0 takes that of the bone.
-    Returns the proxies bone (Skull Bone), implant (Skull Implant) and defects (its second output). Raises PipelineError when a
+    thickness: of the implant in mm; 0 takes that of the bone. settings: other properties of Skull Implant.
+    Returns the proxies bone (Skull Bone), implant (Skull Implant), defects and plates (its other outputs). Raises PipelineError when a
     filter reports an error, for example when there is no hole. Nothing of the pipeline is left then.
     """
     made = []
@@ -57,7 +69,7 @@ def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None,
                 template = pv.SkullBone(Input=template)
                 made.append(template)
                 template.Level = level
-            design = pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance, Thickness=thickness)
+            design = pv.SkullImplant(Input=made[0], Level=level, EdgeClearance=clearance, Thickness=thickness, **settings)
             made.append(design)
             if template is not None:
                 design.Template = template
@@ -70,7 +82,7 @@ def make_implant(ct, hole=None, level=LEVEL, clearance=CLEARANCE, progress=None,
         for proxy in reversed(made):
             pv.Delete(proxy)
         raise
-    return Made(made[0], design, pv.OutputPort(design, 1))
+    return Made(made[0], design, pv.OutputPort(design, 1), pv.OutputPort(design, 2))
 
 
 def _is_volume(proxy):
@@ -117,7 +129,25 @@ def describe(made):
                  f"{numbers['PredictedErrorMaximum']:.2f} mm, at {place(numbers['PredictedErrorMaximumPoint'])}")
     if "TemplateFitRMS" in numbers:
         lines.append(f"template: {template_text(numbers)}")
-    return lines
+    if numbers["NumberOfHoles"]:
+        lines.append(f"holes through the implant: {numbers['NumberOfHoles']:.0f}")
+    return lines + [f"plate {k}: {text}" for k, text in enumerate(plate_texts(made, place), 1)]
+
+
+def plate_texts(made, place):
+    """Where each plate is screwed to the bone, and how thick that is. place: of places."""
+    data = fetch(made.plates)
+    if not data.GetNumberOfCells():
+        return []
+    screws = vtk_to_numpy(data.GetPoints().GetData()).reshape(-1, 2, 3)[:, 1]
+    thickness = vtk_to_numpy(data.GetCellData().GetArray("BoneThickness"))
+    return [f"screw in bone of {mm:.1f} mm at {place(screw)}" for screw, mm in zip(screws, thickness)]
+
+
+def warnings_of(proxy):
+    """What an implant (a proxy of Skull Implant) warns of, a list of texts."""
+    array = fetch(proxy).GetFieldData().GetAbstractArray("Warnings")
+    return [array.GetValue(k) for k in range(array.GetNumberOfValues())]
 
 
 def undercut_text(numbers, place):
@@ -167,9 +197,12 @@ def parse_arguments(arguments):
     parser.add_argument("--template", metavar="FILE",
                         help="another skull without this hole: a CT as above, or a mesh in mm (" + " ".join(MESHES) + "). It counts as far as the "
                         "sound bone is like it")
-    parser.add_argument("--report", metavar="DIR", help="write index.html with pictures, numbers and warnings into this folder")
+    parser.add_argument("--report", metavar="DIR", help="write index.html and report.pdf with pictures, numbers and warnings into this folder")
     parser.add_argument("--level", type=float, metavar="HU", help=f"of the bone's surface ({LEVEL} in Hounsfield units; needed for other values)")
     parser.add_argument("--clearance", type=float, default=CLEARANCE, metavar="MM", help="gap between the implant's edge and the bone (%(default)s)")
+    for name, (unit, text) in SETTINGS.items():
+        kind = str if name == "engrave" else int if name in ("plates", "parts") else float
+        parser.add_argument("--" + name, type=kind, metavar=unit, help=text)
     parser.add_argument("--thickness", type=float, default=0, metavar="MM", help="of the implant, 0.5 to 20; 0: that of the bone (%(default)s)")
     options = parser.parse_args(arguments)
     folder = os.path.dirname(options.output) or "."
@@ -226,7 +259,8 @@ def _run(options):
     _say("designing the implant")
     with _told_once(warnings):
         template = options.template and _open_template(options.template)
-        made = make_implant(ct, options.hole, level, options.clearance, _Steps(), template, options.thickness)
+        chosen = {PROPERTIES[name]: value for name, value in ((name, getattr(options, name.replace("-", "_"))) for name in SETTINGS) if value is not None}
+        made = make_implant(ct, options.hole, level, options.clearance, _Steps(), template, options.thickness, **chosen)
         lines = describe(made)
         record = save_solid(options.output, made.implant)
     warnings = list(dict.fromkeys(warnings))
@@ -237,9 +271,11 @@ def _run(options):
         from lacuna import implant_report
         _check_screen()
         with _told_once():
-            implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings,
-                                 options.template and os.path.basename(os.path.abspath(options.template)))
-        _say(f"written: {os.path.join(options.report, 'index.html')}")
+            written = implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings,
+                                           options.template and os.path.basename(os.path.abspath(options.template)))
+        _say(f"written: {' and '.join(written)}")
+        if len(written) < 2:
+            _say("no report.pdf: that needs matplotlib (Debian: python3-matplotlib)")
     _say("Research software, not a medical device.")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A page with pictures, numbers and warnings of an implant of lacuna.implant: index.html and its PNGs in one folder."""
+"""Pictures, numbers and warnings of an implant of lacuna.implant: index.html, its PNGs and report.pdf in one folder."""
 import collections
 import html
 import math
@@ -126,16 +126,54 @@ def mirror_deviation(bone, level, implant, origin, normal):
                      float(areas[rows].sum() / areas.sum()))
 
 
+Content = collections.namedtuple("Content", "title subject notice warnings pictures letters rows explanations sides checks origin steps foot")
+
+CHECKS = ("Open the CT and the implant together in another program. Is it the patient, the side, the hole?",
+          "Measure a known distance in both. The unit is the millimetre; STL, PLY and OBJ files do not say so.",
+          "Cut through bone and implant. The gap should be even, nothing should overlap or stand out.",
+          "Print skull and implant, and fit them by hand.")
+EXPLANATIONS = (
+    "The predicted error is a standard error. Expect about two thirds of the surface within it, and 95 % within twice as much. "
+    "It assumes that the missing bone was shaped like sound bone. It does not know about a tumour, a fracture that has moved, or artefacts.",
+    "The deviation from the mirrored other side is positive where the implant is farther out. The sides of most heads differ by 1 to 2 mm, so it "
+    "is no error by itself. Look for the reason where it is larger.")
+
+
 def write(folder, made, record, ct_name, warnings, template_name=None):
-    """Writes index.html and its pictures into a folder that exists.
+    """Writes index.html, report.pdf and their pictures into a folder that exists. Returns the names of both, without the PDF where
+    matplotlib is not installed.
 
     made: of implant.make_implant; record: of solids.save_solid; ct_name: of the CT's file, without its folder; warnings: texts; template_name:
     as ct_name, of the template.
     """
+    from lacuna import implant_pdf
     numbers = implant.measures(made)
     shown = _draw(folder, made, numbers)
-    with writing(os.path.join(folder, "index.html")) as name, open(name, "w", encoding="utf-8") as file:
-        file.write(_page(made, numbers, record, ct_name, warnings, shown, template_name))
+    all_of_it = content(made, numbers, record, ct_name, warnings, shown, template_name)
+    written = [os.path.join(folder, "index.html")]
+    with writing(written[0]) as name, open(name, "w", encoding="utf-8") as file:
+        file.write(_page(all_of_it))
+    try:
+        with writing(os.path.join(folder, "report.pdf")) as name:
+            implant_pdf.write(name, all_of_it, folder)
+    except ImportError:
+        return written
+    return written + [os.path.join(folder, "report.pdf")]
+
+
+def content(made, numbers, record, ct_name, warnings, shown, template_name=None):
+    """What both forms of the report say: a Content of texts and of (file, title) of pictures."""
+    rows = _rows(made, numbers)
+    if template_name:
+        rows.append(("template", f"{template_name}: {implant.template_text(numbers)}"))
+    letters = "L, R, A, P, H, F at the edges of the pictures are the patient's left, right, front, back, head and feet." if \
+        coordinates.is_patient(made.bone) else "The CT does not say how the patient lay: check left and right by other means. The pictures have no letters."
+    return Content(
+        "Cranial implant", f"CT: {ct_name} · implant: {record['file']}",
+        f"{NOTICE} Who makes an implant answers for it. Check side, size, shape and gap by other means.", warnings, shown[0],
+        letters + " The hole that the implant closes is outlined in red, other holes in orange.", rows, EXPLANATIONS, shown[1], CHECKS,
+        f"Lacuna {lacuna.__version__}. Coordinates: {record['coordinates']}. SHA-256 of {record['file']}: {record['sha256']}", record["steps"],
+        f"Cranial implant · {record['file']}")
 
 
 def _draw(folder, made, numbers):
@@ -149,7 +187,7 @@ def _draw(folder, made, numbers):
         files.append((name + ".png", title))
 
     view = _new_view((640, 560))
-    bone = show_bone(made.bone, made.bone.Level, view)
+    bone = show_bone(made.bone, made.implant.Level, view)
     pictures.show_surface(made.implant, view, IMPLANT)
     if patient:  # the bone is too: the Transform of show_bone takes it to where the patient is
         views.show_orientation(view, force=True)
@@ -171,6 +209,9 @@ def _draw(folder, made, numbers):
     for proxy in outlines:
         pv.Hide(proxy, view)
     pictures.show_surface(made.implant, view, IMPLANT)
+    if fetch(made.plates).GetNumberOfCells():
+        plates = pv.Tube(Input=made.plates, Radius=1)
+        pictures.show_surface(plates, view, pictures.METAL)
     save(view, "implant", "The implant in the skull, seen the way it is put in")
     pv.Hide(made.implant, view)
     outer = pv.Threshold(Input=made.implant, Scalars=["CELLS", "ImplantFace"], ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5)
@@ -251,7 +292,9 @@ def _rows(made, numbers):
              ("least taper of the implant's walls", f"{numbers['LeastTaper']:.1f}°"),
              ("least distance from bone on the way in", f"{numbers['InsertionClearance']:.2f} mm"),
              ("undercuts of the bone, not filled", implant.undercut_text(numbers, place)),
-             ("bone level", f"{made.bone.Level:g} HU")]
+             ("holes through the implant", f"{numbers['NumberOfHoles']:.0f}"),
+             *((f"plate {k}", text) for k, text in enumerate(implant.plate_texts(made, place), 1)),
+             ("bone level", f"{made.implant.Level:g} HU")]
     return rows
 
 
@@ -262,7 +305,7 @@ def _mirror_rows(made, place):
     fields = fetch(mirror).GetFieldData()
     origin, normal = (vtk_to_numpy(fields.GetArray("MirrorPlane" + name)).ravel() for name in ("Origin", "Normal"))
     pv.Delete(mirror)
-    off = mirror_deviation(fetch(made.bone), made.bone.Level, fetch(made.implant), origin, normal)
+    off = mirror_deviation(fetch(made.bone), made.implant.Level, fetch(made.implant), origin, normal)
     if off.covered < LEAST_MIRRORED:
         return [("deviation from the mirrored other side", f"not given: the other side has bone for only {100 * off.covered:.0f} % of the implant, "
                                                            "as at the midline")]
@@ -285,58 +328,50 @@ code { font-size: 0.85em; overflow-wrap: anywhere; } li { margin: 0.25em 0; }
 """
 
 
-def _page(made, numbers, record, ct_name, warnings, shown, template_name):
+def _page(told):
+    """The HTML of a Content."""
     text = html.escape
-    main, sides = shown
 
     def figures(files, columns):
         inside = "\n".join(f'<figure><img src="{name}" alt="{text(title)}"><figcaption>{text(title)}</figcaption></figure>' for name, title in files)
         return f'<div class="{columns}">\n{inside}\n</div>'
 
-    rows = _rows(made, numbers)
-    if template_name:
-        rows.append(("template", f"{template_name}: {implant.template_text(numbers)}"))
-    rows = "\n".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in rows)
-    told = "\n".join(f'<p class="warning">{text(warning)}</p>' for warning in warnings) or '<p class="fine">No warnings.</p>'
-    steps = "\n".join(f"<li><code>{text(step)}</code></li>" for step in record["steps"])
-    letters = "L, R, A, P, H, F at the edges of the pictures are the patient's left, right, front, back, head and feet." if \
-        coordinates.is_patient(made.bone) else "The CT does not say how the patient lay: check left and right by other means. The pictures have no letters."
+    def each(texts, tag, kind=""):
+        return "\n".join(f"<{tag}{kind}>{text(one)}</{tag}>" for one in texts)
+
+    rows = "\n".join(f"<tr><td>{text(name)}</td><td>{text(value)}</td></tr>" for name, value in told.rows)
+    warnings = each(told.warnings, "p", ' class="warning"') or '<p class="fine">No warnings.</p>'
+    steps = "\n".join(f"<li><code>{text(step)}</code></li>" for step in told.steps)
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width">
-<title>Cranial implant</title>
+<title>{text(told.title)}</title>
 <style>{STYLE}</style>
 </head>
 <body>
-<h1>Cranial implant</h1>
-<p>CT: {text(ct_name)} · implant: {text(record["file"])}</p>
-<p class="notice"><b>{text(NOTICE)}</b> Who makes an implant answers for it. Check side, size, shape and gap by other means.</p>
+<h1>{text(told.title)}</h1>
+<p>{text(told.subject)}</p>
+<p class="notice"><b>{text(told.notice)}</b></p>
 <h2>Warnings</h2>
-{told}
+{warnings}
 <h2>The implant</h2>
-{figures(main, "two")}
-<p>{letters} The hole that the implant closes is outlined in red, other holes in orange.</p>
+{figures(told.pictures, "two")}
+<p>{text(told.letters)}</p>
 <h2>Numbers</h2>
 <table>
 {rows}
 </table>
-<p>The predicted error is a standard error. Expect about two thirds of the surface within it, and 95 % within twice as much.
-It assumes that the missing bone was shaped like sound bone. It does not know about a tumour, a fracture that has moved, or artefacts.</p>
-<p>The deviation from the mirrored other side is positive where the implant is farther out. The sides of most heads differ by 1 to 2 mm, so it is
-no error by itself. Look for the reason where it is larger.</p>
+{each(told.explanations, "p")}
 <h2>From six sides</h2>
-{figures(sides, "three")}
+{figures(told.sides, "three")}
 <h2>Before anything is made</h2>
 <ul>
-<li>Open the CT and the implant together in another program. Is it the patient, the side, the hole?</li>
-<li>Measure a known distance in both. The unit is the millimetre; STL, PLY and OBJ files do not say so.</li>
-<li>Cut through bone and implant. The gap should be even, nothing should overlap or stand out.</li>
-<li>Print skull and implant, and fit them by hand.</li>
+{each(told.checks, "li")}
 </ul>
 <h2>Where this comes from</h2>
-<p>Lacuna {text(lacuna.__version__)}. Coordinates: {text(record["coordinates"])}. SHA-256 of {text(record["file"])}: <code>{record["sha256"]}</code></p>
+<p>{text(told.origin)}</p>
 <ol>
 {steps}
 </ol>

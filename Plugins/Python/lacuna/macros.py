@@ -4,6 +4,7 @@
     surface = macros.sweep_to_surface()     # tracked slices -> volume -> median -> surface
     filled, name = macros.ct_to_iges()      # CT -> depth map as the view looks -> filled hole -> IGES file
     made = macros.ct_to_implant()           # CT -> bone alone -> implant, coloured by the error to expect
+    folder = macros.report_implant()        # a Skull Implant -> implant.stl, report.pdf and index.html
 """
 import math
 import os
@@ -11,7 +12,7 @@ import os
 import numpy as np
 import paraview.simple as pv
 
-from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, views
+from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, solids, views
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
 
@@ -126,7 +127,7 @@ def ct_to_iges(source=None, folder=None):
 def ct_to_implant(source=None):
     """A CT (by default the active source) becomes an implant for its largest hole, shown in the skull and coloured by its predicted error.
 
-    Returns the proxies bone, implant and defects (implant.Made). Raises ValueError when the source is no CT, and PipelineError when
+    Returns the proxies bone, implant, defects and plates (implant.Made). Raises ValueError when the source is no CT, and PipelineError when
     a filter fails, for example because there is no hole. lacuna.solids.save_solid writes the implant.
     """
     source = _data_of(source, "a CT: a CT Series Reader, another reader of a volume, or Skull Phantom")
@@ -154,8 +155,33 @@ def ct_to_implant(source=None):
     pv.Render(view)
     for line in implant.describe(result):
         print(f"Lacuna: {line}")
-    print(f"Lacuna: to write '{_name(result.implant)}', call lacuna.solids.save_solid('implant.stl', GetActiveSource()) in View > Python Shell")
+    print(f"Lacuna: the macro Implant report writes '{_name(result.implant)}' and a report; save_solid of lacuna.solids writes the implant alone")
     return result
+
+
+def report_implant(source=None, folder=None):
+    """A Skull Implant (by default the active source) becomes implant.stl and a report (index.html, report.pdf) in a folder of their own.
+
+    That is implant-report, implant-report-2, ... in the folder, by default the user's home. Returns its name. Raises ValueError when the
+    source is no Skull Implant, and PipelineError when a filter fails.
+    """
+    source = _data_of(source, "a Skull Implant")
+    if source.GetXMLName() != "LacunaSkullImplant":
+        raise ValueError(f"'{_name(source)}' is no Skull Implant; run the macro CT to implant first, and select what it makes")
+    view = _view()
+    made = implant.Made(source.Input, source, pv.OutputPort(source, 1), pv.OutputPort(source, 2))
+    folder = _free_name(folder or os.path.expanduser("~"), "implant-report", "")
+    os.makedirs(folder)
+    template = source.Template and _name(source.Template)
+    with raising():
+        record = solids.save_solid(os.path.join(folder, "implant.stl"), source)
+        written = implant_report.write(folder, made, record, _name(source.Input), implant.warnings_of(source), template)
+    pv.SetActiveView(view)
+    pv.SetActiveSource(source)
+    pv.Render(view)
+    missing = "" if len(written) > 1 else "; no report.pdf: that needs matplotlib (Debian: python3-matplotlib)"
+    print(f"Lacuna: {', '.join(written)} and implant.stl are written{missing}")
+    return folder
 
 
 def _data_of(source, what):
@@ -224,10 +250,10 @@ def _look_from_aside(image, view):
     return pictures.look(view, depth + 0.5 * lateral + 1.2 * travel, -depth)
 
 
-def _free_name(folder):
+def _free_name(folder, stem="implant", ending=".igs"):
     number = 1
     while True:
-        name = os.path.join(folder, "implant.igs" if number == 1 else f"implant-{number}.igs")
+        name = os.path.join(folder, stem + ("" if number == 1 else f"-{number}") + ending)
         if not os.path.exists(name):
             return name
         number += 1
