@@ -3,6 +3,7 @@
 
 #include "lacunaParameterText.h"
 #include "vtkCell.h"
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCleanPolyData.h"
 #include "vtkDelaunay2D.h"
@@ -326,9 +327,10 @@ void SetCurve(vtkPolyData* output, const std::vector<Vec3>& curve)
     line->InsertNextId(points->InsertNextPoint(x.data()));
   }
   line->InsertNextId(0);
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell(line);
   output->SetPoints(points);
-  output->AllocateExact(1, line->GetNumberOfIds());
-  output->InsertNextCell(VTK_POLY_LINE, line);
+  output->SetLines(lines);
 }
 
 //------------------------------------------------------------------------------
@@ -401,16 +403,17 @@ void SetPlates(vtkPolyData* output, const SkullImplant& implant, double screwLen
   thickness->SetName("BoneThickness");
   vtkNew<vtkUnsignedCharArray> isThick;
   isThick->SetName("IsThickEnough");
-  output->AllocateExact(static_cast<vtkIdType>(implant.Plates.size()), 2);
-  output->SetPoints(points);
+  vtkNew<vtkCellArray> lines;
   for (const ImplantPlateScrews& plate : implant.Plates)
   {
     const vtkIdType ends[2] = { points->InsertNextPoint(plate.OnImplant.data()),
       points->InsertNextPoint(plate.OnBone.data()) };
-    output->InsertNextCell(VTK_LINE, 2, ends);
+    lines->InsertNextCell(2, ends);
     thickness->InsertNextValue(plate.BoneThickness);
     isThick->InsertNextValue(plate.BoneThickness >= screwLength ? 1 : 0);
   }
+  output->SetPoints(points);
+  output->SetLines(lines);
   output->GetCellData()->SetScalars(thickness);
   output->GetCellData()->AddArray(isThick);
 }

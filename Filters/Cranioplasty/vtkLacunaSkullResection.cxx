@@ -19,9 +19,11 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaVolumeDirection.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkPolyDataPointSampler.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -40,11 +42,20 @@ namespace
 using lacuna::Vec3;
 
 constexpr double InMask = 0.5;
+constexpr double SampleDistance = 1; // mm
 
-// Of a mask the middles of voxels that are in it, of a surface its points.
+// Of a mask the middles of voxels that are in it, of a surface points all over it.
 std::vector<Vec3> GetTumour(vtkDataSet* data)
 {
   std::vector<Vec3> points;
+  vtkNew<vtkPolyDataPointSampler> sampler;
+  if (auto* surface = vtkPolyData::SafeDownCast(data))
+  {
+    sampler->SetInputData(surface);
+    sampler->SetDistance(SampleDistance);
+    sampler->Update();
+    data = sampler->GetOutput();
+  }
   auto* image = vtkImageData::SafeDownCast(data);
   vtkDataArray* mask = image ? image->GetPointData()->GetScalars() : nullptr;
   if (image && (!mask || mask->GetNumberOfComponents() != 1))

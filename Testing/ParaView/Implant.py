@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command lacuna.implant makes a closed implant of a CT in a file, a report without the patient's name, and clear errors."""
 import glob
+import html
+import importlib.util
 import os
 import re
 import shutil
+import subprocess
 
 import lacuna.plugin
 
@@ -60,7 +63,7 @@ middle = np.array(phantom.Center) + direction * truth.IntersectOuterSurface(phan
 
 # The largest hole, with a report
 stl, report = os.path.join(home, "implant.stl"), os.path.join(home, "report")
-code, text = run(ct, "--output", stl, "--report", report)
+code, text = run(ct, "--output", stl, "--report", report, "--plates", 3, "--drainage", 15, "--engrave", "L 7")
 assert code == 0, text
 reader = vtkSTLReader()
 reader.SetFileName(stl)
@@ -93,7 +96,9 @@ with open(os.path.join(report, "index.html"), encoding="utf-8") as file:
     page = file.read()
 pictures = re.findall('src="(.*?)"', page)
 assert len(pictures) == 10 and all(os.path.basename(each) == each for each in pictures), pictures
-assert sorted(os.listdir(report)) == sorted(pictures + ["index.html"])
+has_pdf = importlib.util.find_spec("matplotlib") is not None
+assert sorted(os.listdir(report)) == sorted(pictures + ["index.html"] + has_pdf * ["report.pdf"])
+assert ("no report.pdf: that needs matplotlib" in text) != has_pdf, text
 assert all(os.path.getsize(os.path.join(report, each)) > 10000 for each in pictures)
 assert f"{printed:.2f} ml" in page and f"{1.18 * volume:.1f} g" in page and "head.vti" in page
 assert "Research software, not a medical device" in page and lacuna.__version__ in page
@@ -104,6 +109,17 @@ for word in ("Doe", "Jane", home):
 # the phantom's sides are alike within 0.6 mm, and the level adds some tenths on both sides
 assert abs(printed_number(r"deviation from the mirrored other side, mean</td><td>([-+.\d]+) mm", page)) < 0.7, page
 assert printed_number(r"the same, RMS</td><td>([.\d]+) mm", page) < 0.9, page
+assert page.count("screw in bone of") == 3 and printed_number(r"least distance from bone on the way in</td><td>([.\d]+) mm", page) > 0.4, page
+if has_pdf and shutil.which("pdftotext"):  # another program reads it
+    pdf = subprocess.run(["pdftotext", "-layout", os.path.join(report, "report.pdf"), "-"], check=True, stdout=subprocess.PIPE).stdout.decode()
+    for title, value in re.findall("<tr><td>(.*?)</td><td>(.*?)</td></tr>", page):
+        for word in html.unescape(f"{title} {value}").split():
+            assert word in pdf, (word, pdf)
+    images = subprocess.run(["pdfimages", "-list", os.path.join(report, "report.pdf")], check=True, stdout=subprocess.PIPE).stdout.decode()
+    assert len(re.findall(r"\d image ", images)) == 10, images
+    assert "Doe" not in pdf and home not in pdf
+else:
+    print("the PDF is not read: pdftotext or matplotlib is missing")
 for proxy in list(GetSources().values()):
     Delete(proxy)
 
@@ -163,7 +179,7 @@ implant.print = lambda *texts, **_: errors.append(" ".join(map(str, texts)))
 screen = os.environ.get("DISPLAY")
 os.environ["DISPLAY"] = ":9973"
 alone = os.path.join(home, "alone.stl")
-code, text = run(ct, "--output", alone, "--report", os.path.join(home, "no screen"))
+code, text = run(ct, "--output", alone, "--report", os.path.join(home, "no screen"), "--plates", 3, "--drainage", 15, "--engrave", "L 7")
 assert os.path.getsize(alone) == os.path.getsize(stl) and "implant: " in text, text
 if code == 0:  # VTK 9.4 and later draw without a screen
     assert not errors and picture_error(os.path.join(home, "no screen", "implant.png"), os.path.join(report, "implant.png")) < 10, errors
@@ -186,7 +202,7 @@ assert abs(printed_number(r"scaled by ([.\d]+);", text) - 1) < 0.01, text
 
 # A point near the hole gives the same implant, in another format
 vtp = os.path.join(home, "implant.vtp")
-code, text = run(ct, "--output", vtp, "--hole", *(middle + 5), "--clearance", 0.5)
+code, text = run(ct, "--output", vtp, "--hole", *(middle + 5), "--clearance", 0.5, "--plates", 3, "--drainage", 15, "--engrave", "L 7")
 assert code == 0 and printed_number(r"implant: ([\d.]+) ml", text) == printed, text
 back = fetch(XMLPolyDataReader(FileName=[vtp]))
 assert np.allclose(back.GetBounds(), clean.GetOutput().GetBounds(), atol=1e-3), back.GetBounds()

@@ -88,6 +88,44 @@ bool CrossesItself(const Loop& loop)
   return false;
 }
 
+// A place of the guide's inner edge: the way out of the cut, and how far (mm) neighbours can go along theirs.
+struct InnerPlace
+{
+  Vec2 Foot{};
+  Vec2 Out{};
+  double Most = std::numeric_limits<double>::infinity();
+};
+
+// Clockwise. loop: counterclockwise.
+std::vector<InnerPlace> FindInnerPlaces(const Loop& loop)
+{
+  const std::size_t n = loop.size();
+  const std::size_t reach = std::clamp<std::size_t>(n / 12, 1, 4);
+  std::vector<InnerPlace> places(n);
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    const Vec2& before = loop[(k + n - reach) % n];
+    const Vec2& after = loop[(k + reach) % n];
+    const double length = std::max(std::hypot(after[0] - before[0], after[1] - before[1]), 1e-9);
+    places[n - 1 - k].Foot = loop[k];
+    places[n - 1 - k].Out = { (after[1] - before[1]) / length, -(after[0] - before[0]) / length };
+  }
+  for (std::size_t k = 0; k < n; ++k)
+  {
+    InnerPlace& a = places[k];
+    InnerPlace& b = places[(k + 1) % n];
+    const Vec2 way{ b.Foot[0] - a.Foot[0], b.Foot[1] - a.Foot[1] };
+    const double closing = (b.Out[0] - a.Out[0]) * way[0] + (b.Out[1] - a.Out[1]) * way[1];
+    if (closing < 0)
+    {
+      const double most = 0.7 * (way[0] * way[0] + way[1] * way[1]) / -closing;
+      a.Most = std::min(a.Most, most);
+      b.Most = std::min(b.Most, most);
+    }
+  }
+  return places;
+}
+
 // So far apart, in space.
 std::vector<Vec3> ResampleCurve(const std::vector<Vec3>& curve, double spacing)
 {
@@ -500,27 +538,24 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
   }
   outside[0] = Resample(outside[0], 0.5 * GuideTriangle);
   std::vector<std::vector<Loop>> levels(WallSteps + 1);
+  const std::vector<InnerPlace> places = FindInnerPlaces(inner);
   for (int level = 0; level <= WallSteps; ++level)
   {
+    const double depth = static_cast<double>(level) / WallSteps;
     Loop hole;
-    for (std::size_t k = inner.size(); k-- > 0;) // clockwise
+    for (const InnerPlace& place : places)
     {
-      const Vec2& before = inner[(k + inner.size() - 1) % inner.size()];
-      const Vec2& after = inner[(k + 1) % inner.size()];
-      const double length = std::max(std::hypot(after[0] - before[0], after[1] - before[1]), 1e-9);
-      const Vec2 out{ (after[1] - before[1]) / length, -(after[0] - before[0]) / length };
-      Vec2 p = inner[k];
+      const double below = this->FindWall(place.Foot).Height;
+      Vec2 p = place.Foot;
       for (int step = 0; step < 6; ++step)
       {
         if (!slab.Covers(p))
         {
           throw std::runtime_error("the guide has no bone below all of its inner edge");
         }
-        const double depth = static_cast<double>(level) / WallSteps;
-        const double above =
-          this->HeightOf(slab.GetPoint(p, depth)) - this->FindWall(inner[k]).Height;
-        const double moved = this->Slope * above;
-        p = { inner[k][0] + moved * out[0], inner[k][1] + moved * out[1] };
+        const double moved =
+          std::min(this->Slope * (this->HeightOf(slab.GetPoint(p, depth)) - below), place.Most);
+        p = { place.Foot[0] + moved * place.Out[0], place.Foot[1] + moved * place.Out[1] };
       }
       hole.push_back(p);
     }
@@ -531,14 +566,11 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
   {
     for (int quarter = 0; quarter < 4; ++quarter)
     {
-      const std::size_t k = (2 * quarter + 1) * inner.size() / 8;
-      const Vec2& before = inner[(k + inner.size() - 4) % inner.size()];
-      const Vec2& after = inner[(k + 4) % inner.size()];
-      const double length = std::max(std::hypot(after[0] - before[0], after[1] - before[1]), 1e-9);
+      const InnerPlace& place = places[(2 * quarter + 1) * places.size() / 8];
       const double middle = 0.5 * (width + this->Slope * height);
       ImplantHole hole;
-      hole.Middle = { inner[k][0] + middle * (after[1] - before[1]) / length,
-        inner[k][1] - middle * (after[0] - before[0]) / length };
+      hole.Middle = { place.Foot[0] + middle * place.Out[0],
+        place.Foot[1] + middle * place.Out[1] };
       hole.Radius = 0.5 * this->Options.GuideHole;
       const std::vector<Loop> tunnel = FindTunnel(slab, hole, 0.5 * GuideTriangle);
       for (std::size_t level = 0; level < tunnel.size(); ++level)

@@ -15,8 +15,9 @@ def write(path, content, folder):
     path: of the file. content: of implant_report.content. folder: that of the pictures. Raises ImportError without matplotlib (Debian:
     python3-matplotlib).
     """
+    import matplotlib
     from matplotlib.backends.backend_pdf import PdfPages
-    with PdfPages(path, metadata={"Title": content.title, "Creator": "Lacuna", "CreationDate": None}) as pages:
+    with matplotlib.rc_context({"pdf.fonttype": 42}), PdfPages(path, metadata={"Title": content.title, "Creator": "Lacuna", "CreationDate": None}) as pages:
         sheet = _Sheet(pages, content.foot)
         sheet.text(content.title, size=18, bold=True)
         sheet.text(content.subject)

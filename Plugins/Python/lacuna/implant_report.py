@@ -210,10 +210,11 @@ def _draw(folder, made, numbers):
         pv.Hide(proxy, view)
     pictures.show_surface(made.implant, view, IMPLANT)
     if fetch(made.plates).GetNumberOfCells():
-        plates = pv.Tube(Input=made.plates, Radius=1)
-        pictures.show_surface(plates, view, pictures.METAL)
+        outlines = [pv.Tube(Input=made.plates, Radius=1)]
+        pictures.show_surface(outlines[0], view, pictures.METAL)
     save(view, "implant", "The implant in the skull, seen the way it is put in")
-    pv.Hide(made.implant, view)
+    for proxy in [made.implant, *outlines]:
+        pv.Hide(proxy, view)
     outer = pv.Threshold(Input=made.implant, Scalars=["CELLS", "ImplantFace"], ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5)
     display = show_error(outer, view, numbers)
     save(view, "error", "Predicted error of the outer surface")
