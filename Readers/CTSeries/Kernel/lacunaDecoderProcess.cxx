@@ -182,7 +182,7 @@ void DecoderProcess::Start(int socket)
   high[1].Set(::fcntl(this->Memory.Get(), F_DUPFD_CLOEXEC, FirstFree));
   if (high[0].Get() < 0 || high[1].Get() < 0)
   {
-    Fail("too many files are open", errno);
+    Fail("the program that decodes cannot be started", errno);
   }
   std::string name = this->Program;
   char* const arguments[] = { name.data(), nullptr };
