@@ -112,7 +112,7 @@ def _check_written(writer, begun):
     folder, root = os.path.dirname(name) or ".", os.path.splitext(os.path.basename(name))[0]
     pieces = os.path.join(folder, root)  # of formats of several files
     made = [entry.path for place in (folder, pieces) if os.path.isdir(place) for entry in os.scandir(place)
-            if entry.name.startswith(root) and entry.is_file() and entry.stat().st_mtime_ns >= begun]
+            if re.match(re.escape(root) + "([^A-Za-z]|$)", entry.name) and entry.is_file() and entry.stat().st_mtime_ns >= begun]
     if not made:
         raise FileNotFoundError(errno.ENOENT, "the file was not written", name)
     for each in made:
