@@ -228,7 +228,7 @@ void vtkLacunaCTSeriesReader::FindVolume(const lacuna::CTSeriesList& list)
     found.Notes->InsertNextValue(note);
   }
   lacuna::CheckSameVolume(frames);
-  const std::vector<std::string> doubts = lacuna::FindDoubtsOfPatient(frames);
+  const std::vector<std::string> doubts = lacuna::FindDoubtsOfSeries(frames);
   found.Warnings.insert(found.Warnings.end(), doubts.begin(), doubts.end());
   const std::string doubt = lacuna::CheckRescaleType(frames);
   if (!doubt.empty())

@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       !ListSeries(frames).Describe().empty() || frames.empty() || !ListSeries(frames).Notes.empty(),
       "every image is listed or noted");
     CheckSameVolume(frames);
-    FindDoubtsOfPatient(frames);
+    FindDoubtsOfSeries(frames);
     for (const CTFrame& frame : frames)
     {
       CTPixels pixels;

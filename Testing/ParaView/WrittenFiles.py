@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """All that writes files alike: links are followed and stay, a full disk is an error that leaves what was there, nothing is left aside."""
 import contextlib
+import errno
 import glob
 import os
 import resource
 import shutil
 import signal
+import stat
 import time
+import unittest.mock
 
 import calibration_scans as scans
 import numpy as np
@@ -183,6 +186,39 @@ for ending, source, options in (("vti", depth, {"DataMode": "Binary"}), ("vti", 
             print(ending, options, error, flush=True)
     for each in glob.glob(os.path.join(place, "paraview*")):
         shutil.rmtree(each) if os.path.isdir(each) else os.remove(each)
+# a pipe gets the whole file and stays; so would a device
+for name, write in (("pipe.txt", text_file), ("pipe.png", pixels)):
+    pipe = os.path.join(place, name)
+    os.mkfifo(pipe)
+    end = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write(pipe)
+    assert stat.S_ISFIFO(os.lstat(pipe).st_mode), name
+    write(pipe + ".file" + os.path.splitext(name)[1])
+    assert os.read(end, 1 << 16) == content(pipe + ".file" + os.path.splitext(name)[1]), name
+    os.close(end)
+for pipe in (os.path.join(place, "pipe.stl"), os.path.join(place, "piped.stl.json")):
+    os.mkfifo(pipe)
+    try:
+        save_solid(pipe.removesuffix(".json"), sphere)
+        raise AssertionError("no error")
+    except PipelineError as error:
+        assert "is a device or a pipe" in str(error), error
+    assert stat.S_ISFIFO(os.lstat(pipe).st_mode), pipe
+loop = os.path.join(place, "loop.txt")
+os.symlink("loop.txt", loop)
+try:
+    text_file(loop)
+    raise AssertionError("no error")
+except OSError as error:
+    assert error.errno == errno.ELOOP and os.path.islink(loop), error
+
+# the disk's clock may be late: what was just written was written; an empty file of somebody else is none of the writer's
+other = os.path.join(place, "lately.lock")
+open(other, "w", encoding="ascii").close()
+os.utime(other, (time.time() + 60,) * 2)
+with unittest.mock.patch("lacuna.errors.time.time_ns", return_value=time.time_ns() + 10**10), raising():
+    SaveData(os.path.join(place, "late.vti"), depth)
+
 # what a killed process leaves, the next one takes away; what a living one has, and others' folders, it does not
 folder = os.path.join(place, "left")
 os.mkdir(folder)

@@ -70,8 +70,38 @@ MapMask Follow(const MapGrid& grid, const std::vector<double>& depth, const MapM
   }
   return reached;
 }
+
+// Takes away the pixels of mask where the difference of two surfaces is larger than where they are
+// nearest: through a hole of one of them the other is compared with a far wall, perhaps in most pixels.
+// Returns the least difference, mm.
+double KeepNearest(const std::vector<double>& difference, MapMask& mask)
+{
+  constexpr double Least = 0.05; // of the pixels
+  constexpr double Band = 10;    // mm, less than the distance of any two walls of a skull's cavity
+  std::vector<double> sizes;
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    if (mask[pixel])
+    {
+      sizes.push_back(std::abs(difference[pixel]));
+    }
+  }
+  if (sizes.empty())
+  {
+    return 0;
+  }
+  const auto least =
+    sizes.begin() + static_cast<std::ptrdiff_t>(Least * static_cast<double>(sizes.size()));
+  std::nth_element(sizes.begin(), least, sizes.end());
+  for (std::size_t pixel = 0; pixel < mask.size(); ++pixel)
+  {
+    mask[pixel] = mask[pixel] && std::abs(difference[pixel]) <= *least + Band;
+  }
+  return *least;
+}
 }
 
+//------------------------------------------------------------------------------
 BaseSurface::BaseSurface(Execution& execution, const SurfaceSheet& prior, const MarkedMap& map,
   const SupportMargins& margins)
   : Prior(prior)
@@ -96,6 +126,7 @@ BaseSurface::BaseSurface(Execution& execution, const SurfaceSheet& prior, const 
   {
     along = SelectWithin(execution, this->Grid, map.Defect, margins.Defect, along);
   }
+  this->Distance = KeepNearest(difference, along);
   RemoveBeyondSteps(this->Grid, difference, { SteepSlope(), SteepSlope() }, along);
   this->Sound = Follow(this->Grid, this->OnMap, along);
   if (margins.Step > 0)
@@ -157,6 +188,16 @@ void BaseSurface::SetTrend(const MapMask& support)
 //------------------------------------------------------------------------------
 void BaseSurface::WarnOfGaps(std::vector<std::string>& warnings) const
 {
+  constexpr double Doubtful = 25; // mm
+  if (this->Distance > Doubtful)
+  {
+    std::ostringstream message;
+    message << "the prior surface is " << std::lround(this->Distance)
+            << " mm from the bone around the defect, where they are nearest. It may be a far wall, "
+            << "seen through a hole of the prior that is larger than the defect, or lie in other "
+            << "coordinates: show it together with the bone";
+    warnings.push_back(message.str());
+  }
   std::size_t missing = 0;
   std::size_t first = 0;
   std::size_t all = 0;
@@ -302,6 +343,21 @@ void BaseSurface::EvaluateFit(Execution& execution,
 }
 
 //------------------------------------------------------------------------------
+// A pinhole may show itself between the pixels of the map only.
+bool BaseSurface::IsSoundAt(const Vec2& p, double depth, std::int64_t nearest) const
+{
+  const auto pixel = static_cast<std::size_t>(nearest);
+  if (!std::isfinite(depth) || nearest < 0 || !this->Sound[pixel])
+  {
+    return false;
+  }
+  constexpr double Rounding = 1e-3; // mm
+  const Vec2 q = GetPosition(this->Grid, pixel);
+  return std::abs(depth - this->OnMap[pixel]) <=
+    SteepSlope() * std::hypot(p[0] - q[0], p[1] - q[1]) + Rounding;
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> BaseSurface::Evaluate(Execution& execution, const MapGrid& grid,
   const std::vector<std::int64_t>& nearest, const std::array<int, 4>& rectangle) const
 {
@@ -329,9 +385,7 @@ std::vector<double> BaseSurface::Evaluate(Execution& execution, const MapGrid& g
     {
       depth[pixel] = this->Trend->GetDepth(p[0], p[1]);
     }
-    else if (this->Fit &&
-      !(std::isfinite(depth[pixel]) && nearest[pixel] >= 0 &&
-        this->Sound[static_cast<std::size_t>(nearest[pixel])]))
+    else if (this->Fit && !this->IsSoundAt(p, depth[pixel], nearest[pixel]))
     {
       pixels.push_back(pixel);
       points.push_back({ p[0], p[1] });

@@ -50,6 +50,8 @@ public:
 
 private:
   void WarnOfGaps(std::vector<std::string>& warnings) const;
+  // Whether the prior's depth at p is that of the surface which the map's nearest pixel shows.
+  bool IsSoundAt(const Vec2& p, double depth, std::int64_t nearest) const;
   void EvaluateFit(Execution& execution, const std::vector<std::array<double, 2>>& points,
     std::vector<double>& values) const;
 
@@ -57,7 +59,8 @@ private:
   const MarkedMap& Map;
   const MapGrid& Grid;
   std::vector<double> OnMap;
-  MapMask Sound; ///< where the prior is as it was given
+  MapMask Sound;       ///< where the prior is as it was given
+  double Distance = 0; ///< mm, of prior and surface around the defect where they are nearest
   std::unique_ptr<EllipsoidTrend> Trend;
   std::unique_ptr<RadialBasis<2>> Fit; ///< of the prior; none: it is complete
   double Accuracy = 0;                 ///< of Fit, of its range

@@ -12,6 +12,7 @@ import errno
 import os
 import re
 import sys
+import tempfile
 import time
 
 from vtkmodules.vtkCommonCore import vtkOutputWindow
@@ -22,7 +23,6 @@ class PipelineError(RuntimeError):
 
 
 _set_aside = []
-CLOCK_STEP = 10**8  # ns; times of files are coarser than the clock
 _AGAIN = " (change a property to try again)"
 
 
@@ -90,16 +90,29 @@ def _agree(own):
     return bytes(text.GetValue(i) for i in range(text.GetNumberOfValues())).decode()
 
 
+def _file_name(writer):
+    return writer.FileName if isinstance(writer.FileName, str) else writer.FileName[0]
+
+
+def _disk_time(folder):
+    """Now, in ns, by the clock that gives a folder's files their times: the one of a server may be late."""
+    try:
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            return os.fstat(probe.fileno()).st_mtime_ns
+    except OSError:  # the writer says what is wrong
+        return time.time_ns()
+
+
 def _check_written(writer, begun):
     """Raises OSError when a file of a writer of ParaView is missing or may be cut off; most of these writers do not look."""
     from lacuna.files import check_whole
-    name = writer.FileName if isinstance(writer.FileName, str) else writer.FileName[0]
+    name = _file_name(writer)
     if os.path.exists(name) and not os.path.isfile(name):
         return  # a device or a pipe
     folder, root = os.path.dirname(name) or ".", os.path.splitext(os.path.basename(name))[0]
     pieces = os.path.join(folder, root)  # of formats of several files
     made = [entry.path for place in (folder, pieces) if os.path.isdir(place) for entry in os.scandir(place)
-            if entry.name.startswith(root) and entry.is_file() and entry.stat().st_mtime_ns >= begun]
+            if re.match(re.escape(root) + "([^A-Za-z]|$)", entry.name) and entry.is_file() and entry.stat().st_mtime_ns >= begun]
     if not made:
         raise FileNotFoundError(errno.ENOENT, "the file was not written", name)
     for each in made:
@@ -119,10 +132,11 @@ def _checking_writers(errors):
     update = servermanager.SourceProxy.UpdatePipeline
 
     def update_and_check(proxy, *arguments):
-        begun = time.time_ns() - CLOCK_STEP
+        is_writer = proxy.SMProxy.GetXMLGroup() == "writers" and "FileName" in proxy.ListProperties()
+        begun = _disk_time(os.path.dirname(_file_name(proxy)) or ".") if is_writer else 0
         before = len(errors)
         update(proxy, *arguments)
-        if proxy.SMProxy.GetXMLGroup() == "writers" and "FileName" in proxy.ListProperties() and len(errors) == before:
+        if is_writer and len(errors) == before:
             try:
                 _check_written(proxy, begun)
             except OSError as error:

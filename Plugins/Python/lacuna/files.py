@@ -26,12 +26,23 @@ ENDS = {".png": b"IEND\xaeB`\x82", **{f".{parallel}vt{kind}": b"</VTKFile>" for 
 def writing(path):
     """Yields a name with the ending of path in a folder of its own beside it. After the block the file of that name replaces path, whose
     permissions it takes. A symbolic link is followed and stays. When the block fails, or the file may be cut off, path stays as it was.
+    A device or a pipe receives the whole file and stays, too.
 
     Raises OSError when the folder cannot be written to, when the block has written no file, and when the disk has no room left.
     """
     target = os.path.realpath(path)
     if os.path.isdir(target):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), path)
+    if os.path.islink(target):
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), path)
+    if is_stream(path):
+        with tempfile.TemporaryDirectory(prefix=PREFIX) as folder:
+            name = os.path.join(folder, os.path.basename(path))
+            yield name
+            check_whole(name)
+            with open(name, "rb") as file, open(path, "wb") as stream:
+                shutil.copyfileobj(file, stream)
+        return
     with folder_beside(target) as folder:
         name = os.path.join(folder, os.path.basename(path))
         yield name
@@ -39,6 +50,11 @@ def writing(path):
         if os.path.exists(target):
             take_access(name, target)
         os.replace(name, target)
+
+
+def is_stream(path):
+    """Whether path is a device or a pipe, which no file may replace. It may be gone behind links, as that of /dev/stdout."""
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 @contextlib.contextmanager

@@ -37,10 +37,13 @@ def save_solid(path, proxy, allow_mirrored=False, **options):
     options go to ParaView's SaveData. Returns the record, as it is in the file.
     """
     from lacuna.errors import PipelineError
+    from lacuna.files import is_stream
 
     for each in (path, path + ".json"):
         if os.path.isdir(each):
             raise PipelineError(f"{each} is a folder")
+        if is_stream(each):  # which would get another name
+            raise PipelineError(f"{each} is a device or a pipe; save the solid in a file, and copy that")
     try:
         return _save_solid(path, proxy, allow_mirrored, options)
     except BaseException:

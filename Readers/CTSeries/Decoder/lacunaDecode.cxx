@@ -4,10 +4,13 @@
 #include "lacunaGDCMDecoder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
+#include <fcntl.h>
 #include <malloc.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -95,13 +98,45 @@ private:
   std::uint64_t Size = 0;
 };
 
+// What codecs write to stderr. libjpeg makes up the pixels of damaged data and GDCM takes them, so a message
+// is all that tells.
+class Messages
+{
+public:
+  Messages()
+  {
+    int ends[2];
+    if (pipe2(ends, O_NONBLOCK | O_CLOEXEC) == 0)
+    {
+      dup2(ends[1], STDERR_FILENO); // what it has no room for is lost
+      this->End = ends[0];
+    }
+  }
+  bool TellOfDamage() const
+  {
+    std::string text;
+    std::array<char, 4096> part;
+    for (ssize_t size = 0; (size = read(this->End, part.data(), part.size())) > 0;)
+    {
+      text.append(part.data(), static_cast<std::size_t>(size));
+    }
+    const std::array<const char*, 3> damages = { "premature end of data segment",
+      "bad Huffman code", "Premature end of JPEG file" };
+    return std::any_of(damages.begin(), damages.end(),
+      [&](const char* damage) { return text.find(damage) != std::string::npos; });
+  }
+
+private:
+  int End = -1;
+};
+
 bool Send(const DecoderReply& reply)
 {
   return send(DecoderSocket, &reply, sizeof reply, MSG_NOSIGNAL) ==
     static_cast<ssize_t>(sizeof reply);
 }
 
-DecoderReply Decode(const DecoderRequest& request, SharedMemory& memory)
+DecoderReply Decode(const DecoderRequest& request, SharedMemory& memory, const Messages& messages)
 {
   DecoderReply reply;
   SetMemoryLimit(request.MemoryBytes + GetDecoderBytes(request));
@@ -114,6 +149,10 @@ DecoderReply Decode(const DecoderRequest& request, SharedMemory& memory)
   SetTimeLimit(GetDecoderSeconds(request));
   reply = DecodeWithGDCM(request, bytes, bytes + request.PixelOffset);
   SetTimeLimit(0);
+  if (messages.TellOfDamage() && reply.Status == DecoderStatus::Decoded)
+  {
+    reply.Status = DecoderStatus::Damaged;
+  }
   return reply;
 }
 }
@@ -134,13 +173,14 @@ int main()
   // memory of one image serves for the next: pages that the system gives anew take a third of decoding
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  const Messages messages;
   SharedMemory memory;
   DecoderRequest request;
   if (Send(DecoderReply()))
   {
     while (recv(DecoderSocket, &request, sizeof request, 0) == static_cast<ssize_t>(sizeof request))
     {
-      if (!Send(Decode(request, memory)))
+      if (!Send(Decode(request, memory, messages)))
       {
         break;
       }

@@ -597,7 +597,7 @@ void CheckSameVolume(const std::vector<CTFrame>& frames)
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames)
+std::vector<std::string> FindDoubtsOfSeries(const std::vector<CTFrame>& frames)
 {
   using Value = std::function<const std::string&(const CTFileHeader&)>;
   const std::pair<const char*, Value> tags[] = {
@@ -607,6 +607,8 @@ std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames)
       [](const CTFileHeader& h) -> const std::string& { return h.Patient.Sex; } },
     { "Patient Position (0018,5100)",
       [](const CTFileHeader& h) -> const std::string& { return h.PatientPosition; } },
+    { "Convolution Kernel (0018,1210)",
+      [](const CTFileHeader& h) -> const std::string& { return h.ConvolutionKernel; } },
   };
   std::vector<std::string> doubts;
   for (const auto& [name, value] : tags)
@@ -629,7 +631,9 @@ std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames)
       doubts.push_back(other->GetNameBeside(*first) +
         (count > 1 ? " and " + std::to_string(count - 1) + " more have" : std::string(" has")) +
         " another " + name + " than " + first->GetNameBeside(*other) +
-        ": two scans may have got into one series; compare with the hospital's viewer");
+        ": two scans, or two reconstructions of one, may have got into one series; compare with "
+        "the "
+        "hospital's viewer");
     }
   }
   return doubts;

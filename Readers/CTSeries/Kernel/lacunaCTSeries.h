@@ -66,7 +66,8 @@ std::vector<std::string> TakeOutScouts(std::vector<CTFrame>& frames);
 void CheckSameVolume(const std::vector<CTFrame>& frames);
 
 /// Sentences that name files and tags where images of a volume have different birth dates, sexes or
-/// positions of the patient; the values are not in them. Images that do not say are passed over.
-std::vector<std::string> FindDoubtsOfPatient(const std::vector<CTFrame>& frames);
+/// positions of the patient, or convolution kernels; the values are not in them. Images that do not say
+/// are passed over.
+std::vector<std::string> FindDoubtsOfSeries(const std::vector<CTFrame>& frames);
 }
 #endif

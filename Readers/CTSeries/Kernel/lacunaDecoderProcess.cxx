@@ -41,13 +41,20 @@ std::string DescribeSignal(int number)
   return "signal " + std::to_string(number) + (name ? std::string(", ") + name : "");
 }
 
-// Signals as a program begins with, whatever this one has made of them; a group of its own, for which an
-// interrupt of the terminal is not meant.
-class SpawnAttributes
+// How the process begins. Nothing is open but what it needs, and what codecs write to the terminal is for
+// nobody. Its signals do what they do in a new program, whatever this one has made of them. It has a group
+// of its own, for which an interrupt of the terminal is not meant.
+class SpawnSettings
 {
 public:
-  SpawnAttributes()
+  SpawnSettings(int socket, int memory)
   {
+    posix_spawn_file_actions_init(&this->Actions);
+    posix_spawn_file_actions_adddup2(&this->Actions, socket, DecoderSocket);
+    posix_spawn_file_actions_addopen(&this->Actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&this->Actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&this->Actions, memory, DecoderMemory);
+    posix_spawn_file_actions_addclosefrom_np(&this->Actions, DecoderMemory + 1);
     sigset_t signals;
     posix_spawnattr_init(&this->Attributes);
     posix_spawnattr_setflags(
@@ -58,35 +65,16 @@ public:
     posix_spawnattr_setsigdefault(&this->Attributes, &signals);
     posix_spawnattr_setpgroup(&this->Attributes, 0);
   }
-  ~SpawnAttributes() { posix_spawnattr_destroy(&this->Attributes); }
-  SpawnAttributes(const SpawnAttributes&) = delete;
-  SpawnAttributes& operator=(const SpawnAttributes&) = delete;
-  const posix_spawnattr_t* Get() const { return &this->Attributes; }
-
-private:
-  posix_spawnattr_t Attributes{};
-};
-
-// Nothing is open but what it needs. What codecs write to the terminal is for nobody.
-class SpawnActions
-{
-public:
-  SpawnActions(int socket, int memory)
+  ~SpawnSettings()
   {
-    posix_spawn_file_actions_init(&this->Actions);
-    posix_spawn_file_actions_adddup2(&this->Actions, socket, DecoderSocket);
-    posix_spawn_file_actions_addopen(&this->Actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&this->Actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&this->Actions, memory, DecoderMemory);
-    posix_spawn_file_actions_addclosefrom_np(&this->Actions, DecoderMemory + 1);
+    posix_spawnattr_destroy(&this->Attributes);
+    posix_spawn_file_actions_destroy(&this->Actions);
   }
-  ~SpawnActions() { posix_spawn_file_actions_destroy(&this->Actions); }
-  SpawnActions(const SpawnActions&) = delete;
-  SpawnActions& operator=(const SpawnActions&) = delete;
-  const posix_spawn_file_actions_t* Get() const { return &this->Actions; }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
 
-private:
   posix_spawn_file_actions_t Actions{};
+  posix_spawnattr_t Attributes{};
 };
 }
 
@@ -194,14 +182,13 @@ void DecoderProcess::Start(int socket)
   high[1].Set(::fcntl(this->Memory.Get(), F_DUPFD_CLOEXEC, FirstFree));
   if (high[0].Get() < 0 || high[1].Get() < 0)
   {
-    Fail("too many files are open", errno);
+    Fail("the program that decodes cannot be started", errno);
   }
   std::string name = this->Program;
   char* const arguments[] = { name.data(), nullptr };
-  const SpawnActions actions(high[0].Get(), high[1].Get());
-  const SpawnAttributes attributes;
-  const int wrong =
-    ::posix_spawn(&this->Child, name.c_str(), actions.Get(), attributes.Get(), arguments, environ);
+  const SpawnSettings settings(high[0].Get(), high[1].Get());
+  const int wrong = ::posix_spawn(
+    &this->Child, name.c_str(), &settings.Actions, &settings.Attributes, arguments, environ);
   if (wrong == ENOENT)
   {
     this->Child = 0;

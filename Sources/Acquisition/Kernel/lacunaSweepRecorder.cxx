@@ -32,6 +32,7 @@ constexpr double SyncInterval = 0.3;  // s
 constexpr double RetryInterval = 1;   // s
 constexpr double CheckInterval = 0.5; // s
 constexpr double VerifyPart = 0.1;    // s; then slices that came meanwhile are written
+constexpr int MostUnlike = 3; // files that are written anew since they are not what was written
 constexpr const char* MoveAdvice =
   ". The capture goes on, its slices wait in memory: mend that, then they are written; or save the "
   "sweep elsewhere";
@@ -147,7 +148,8 @@ struct SweepRecorder::Work
 {
   // Begins the thread, which waits for the first slice.
   Work(const std::string& fileName, const SequenceDescription& description, int level)
-    : Path(std::filesystem::absolute(fileName).string())
+    : Name(std::filesystem::path(fileName).filename().string())
+    , Path(std::filesystem::absolute(fileName).string())
     , Description(description)
     , Level(level)
     , Kind(fileName, level > 0)
@@ -229,6 +231,7 @@ struct SweepRecorder::Work
   void Copy();
 
   SteadyClock Clock;
+  const std::string Name; // of the first file; others get numbers
   std::string
     Path; // absolute, as the program may change its folder; the thread's, as the next ones
   const SequenceDescription Description;
@@ -239,6 +242,7 @@ struct SweepRecorder::Work
   std::deque<Written> Slices;                 // of Recorder
   std::unique_ptr<LostFile> Old;              // null unless there is one to be replaced
   std::unique_ptr<ReadFile> Back;             // null unless slices are being read back
+  int Unlike = 0;                             // files that were not what was written
 
   mutable std::mutex Mutex;
   std::condition_variable Changed;
@@ -460,8 +464,16 @@ void SweepRecorder::Work::Verify(std::unique_lock<std::mutex>& lock)
     }
     if (!right)
     {
-      throw FileLost("'" + this->Path + "' was changed: its slice " + std::to_string(verified) +
-        " is not what was recorded");
+      const std::string what = "'" + this->Path + "' was changed: its slice " +
+        std::to_string(verified) + " is not what was recorded";
+      if (this->Unlike == MostUnlike) // another copy would be no better
+      {
+        throw FileError(FileError::Kind::Other,
+          what + ", as in " + std::to_string(MostUnlike) +
+            " files before: the disk may be failing, save the sweep on another one (Save Data)");
+      }
+      ++this->Unlike;
+      throw FileLost(what);
     }
   };
   if (this->Try(lock, this->Verifying, ". The slices cannot be read back", verify))
@@ -517,8 +529,7 @@ void SweepRecorder::Work::OpenElsewhere()
   {
     try
     {
-      const std::string path =
-        FindFreeSweepName((folder / before.filename()).string(), this->Level);
+      const std::string path = FindFreeSweepName((folder / this->Name).string(), this->Level);
       this->Recorder = std::make_unique<SequenceRecorder>(path, this->Description, this->Level);
       this->Path = path;
       return;

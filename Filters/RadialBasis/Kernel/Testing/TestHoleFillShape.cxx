@@ -183,7 +183,8 @@ TEST(HoleFill, BridgesHolesOfThePrior)
     bool Rim;            // whether it comes into the rim
   };
   for (const Case& c : { Case{ 45, 27, 1.6, 0.03, false }, Case{ 38, 30, 5, 0.05, false },
-         Case{ 60, 27, 12, 0.2, true }, Case{ 30, 36, 12, 0.2, true } })
+         Case{ 60, 27, 12, 0.2, true }, Case{ 30, 36, 12, 0.2, true },
+         Case{ 65, 27, 33, 0.3, true } }) // in most of the rim
   {
     for (const double depth : { 80.0, std::nan("") })
     {
@@ -220,6 +221,44 @@ TEST(HoleFill, BridgesHolesOfThePrior)
       EXPECT_EQ(rim > 0, c.Rim);
     }
   }
+}
+
+// Through a hole that is larger than the defect and its rim only a far wall is seen: nothing is to be bridged.
+TEST(HoleFill, DoubtsAPriorThatIsFarAway)
+{
+  HoleFillInput input = MakeMap(Sphere);
+  input.Prior.Width = Width;
+  input.Prior.Height = Height;
+  for (std::size_t i = 0; i < Width * Height; ++i)
+  {
+    input.Prior.Points.push_back({ GetX(i), GetY(i), 150 + 0.01 * GetX(i) });
+  }
+  const std::vector<std::string> warnings = Fill(input).Warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  ExpectContains(warnings[0], "the prior surface is 135 mm from the bone around the defect");
+  for (lacuna::Vec3& point : input.Prior.Points)
+  {
+    point[2] = Sphere(point[0], point[1]) + 20;
+  }
+  EXPECT_TRUE(Fill(input).Warnings.empty());
+}
+
+// A drill hole that lies between the pixels of the map shows itself on a finer output.
+TEST(HoleFill, BridgesPinholesBetweenPixels)
+{
+  HoleFillInput input = MakeMap(Sphere);
+  input.Prior.Width = 420;
+  input.Prior.Height = 220;
+  for (int k = 0; k < input.Prior.Width * input.Prior.Height; ++k)
+  {
+    const double x = 0.25 * (k % input.Prior.Width);
+    const double y = 0.25 * (k / input.Prior.Width);
+    const bool hole = std::hypot(x - 45.75, y - 27.5) < 0.45;
+    input.Prior.Points.push_back({ x, y, hole ? 150 : Sphere(x, y) });
+  }
+  HoleFillOptions options;
+  options.OutputSpacing = { 0.25, 0.25 };
+  EXPECT_LT(GetWorst(Fill(input, options)), 0.05);
 }
 
 // What Fitted is needed for beyond the trend or the prior is there, and goes on without a kink.

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <fstream>
+#include <iterator>
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -61,14 +63,14 @@ std::string MakePrecincts(int columns, int rows)
     std::string(40, '\0') + JpegEnd;
 }
 
-std::string MakeDicom(
-  const std::string& syntax, const std::string& stream, int columns, int rows, int highBit = 11)
+std::string MakeDicom(const std::string& syntax, const std::string& stream, int columns, int rows,
+  int highBit = 11, int stored = 12)
 {
   const auto number = [](DicomTag tag, int value)
   { return Short(tag, "US", Number(static_cast<std::uint32_t>(value), 2)); };
   const std::string even = stream + std::string(stream.size() % 2, '\0');
   return Head(syntax) + Short(0x00080060, "CS", "CT") + number(0x00280010, rows) +
-    number(0x00280011, columns) + number(0x00280100, 16) + number(0x00280101, 12) +
+    number(0x00280011, columns) + number(0x00280100, 16) + number(0x00280101, stored) +
     number(0x00280102, highBit) + number(0x00280103, 0) +
     Long(
       0x7FE00010, "OB", Implicit(0xFFFEE000, "") + Implicit(0xFFFEE000, even) + SequenceEnd, true);
@@ -180,6 +182,49 @@ TEST(DicomDecoder, Decodes)
     });
   signal(SIGCHLD, SIG_DFL);
   signal(SIGPROF, SIG_DFL);
+}
+
+// Wherever a stream ends, there is an error or the whole image: codecs fill the rest with what they like.
+TEST(DicomDecoder, CutStreams)
+{
+  const std::pair<const char*, const char*> images[] = { { "jpeg-lossless-letter", JpegLossless },
+    { "jpeg-ls-letter", JpegLS }, { "jpeg-2000-letter", Jpeg2000 } };
+  for (const auto& [name, syntax] : images)
+  {
+    std::ifstream file(std::string(LACUNA_COMPRESSED_IMAGES) + "/" + name, std::ios::binary);
+    const std::string image(std::istreambuf_iterator<char>(file), {});
+    const std::string stream = image.substr(7); // behind what the fuzzer's target needs
+    std::string flat = MakeJpeg(44, 36);
+    flat[6] = 16; // bits
+    const Temporary folder;
+    DicomDecoder decoder(LACUNA_DECODER_PROGRAM);
+    const auto decode = [&](const char* codec, const std::string& bytes)
+    {
+      CTPixels pixels;
+      const std::string dicom = MakeDicom(codec, bytes, 44, 36, 15, 16);
+      try
+      {
+        decoder.Read(ReadDicomFrames(folder.Write(dicom)).at(0), pixels);
+      }
+      catch (const std::runtime_error&)
+      {
+        pixels.Bytes.clear();
+      }
+      return pixels.Bytes;
+    };
+    const std::vector<unsigned char> whole = decode(syntax, stream);
+    ASSERT_EQ(whole.size(), 44u * 36 * 2) << name;
+    for (std::size_t length = stream.size() - 1; length > 60; length -= 7)
+    {
+      for (const std::string& end : { std::string(), JpegEnd })
+      {
+        // another image before: what is left of it must not be taken for this one's
+        EXPECT_FALSE(decode(JpegLossless, flat).empty());
+        const std::vector<unsigned char> part = decode(syntax, stream.substr(0, length) + end);
+        EXPECT_TRUE(part.empty() || part == whole) << name << " " << length << " " << end.size();
+      }
+    }
+  }
 }
 
 // GDCM's assertion, which ends its process. The same decoder serves the next image.

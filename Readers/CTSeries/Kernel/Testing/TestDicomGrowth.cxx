@@ -28,7 +28,7 @@ void ReadAll(std::vector<CTFrame> frames)
     }
     TakeOutScouts(frames);
     CheckSameVolume(frames);
-    FindDoubtsOfPatient(frames);
+    FindDoubtsOfSeries(frames);
     CheckRescaleType(frames);
     GetHounsfieldType(frames, -1024);
     CTGeometryOptions options;

@@ -200,19 +200,19 @@ TEST(CheckSameVolume, FramesAtOnePosition)
 }
 
 // Who the patient is does not get into the sentences.
-TEST(FindDoubtsOfPatient, NamesFilesAndTagsOnly)
+TEST(FindDoubtsOfSeries, NamesFilesAndTagsOnly)
 {
   const auto sex = [](const char* text)
   { return [text](CTFileHeader& header) { header.Patient.Sex = text; }; };
-  EXPECT_TRUE(FindDoubtsOfPatient({ MakeFrame(0, sex("")), MakeFrame(1, sex("F")),
-                                    MakeFrame(2, sex("")), MakeFrame(3, sex("F")) })
+  EXPECT_TRUE(FindDoubtsOfSeries({ MakeFrame(0, sex("")), MakeFrame(1, sex("F")),
+                                   MakeFrame(2, sex("")), MakeFrame(3, sex("F")) })
                 .empty());
   std::vector<std::string> doubts =
-    FindDoubtsOfPatient({ MakeFrame(0, sex("")), MakeFrame(1, sex("F")), MakeFrame(2, sex("M")) });
+    FindDoubtsOfSeries({ MakeFrame(0, sex("")), MakeFrame(1, sex("F")), MakeFrame(2, sex("M")) });
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(doubts[0].rfind("IM2 has another Patient's Sex (0010,0040) than IM1: ", 0), 0u)
     << doubts[0];
-  doubts = FindDoubtsOfPatient(
+  doubts = FindDoubtsOfSeries(
     { MakeFrame(0, [](CTFileHeader& header) { header.Patient.BirthDate = "19500101"; }),
       MakeFrame(1, [](CTFileHeader& header) { header.Patient.BirthDate = "19500102"; }),
       MakeFrame(2, [](CTFileHeader& header) { header.Patient.BirthDate = "19600101"; }),
@@ -223,4 +223,13 @@ TEST(FindDoubtsOfPatient, NamesFilesAndTagsOnly)
     << doubts[0];
   EXPECT_FALSE(Has(doubts[0], "19500")) << doubts[0];
   EXPECT_TRUE(Has(doubts[1], "Patient Position (0018,5100) than IM3")) << doubts[1];
+  const auto kernel = [](const char* text)
+  { return [text](CTFileHeader& header) { header.ConvolutionKernel = text; }; };
+  doubts = FindDoubtsOfSeries({ MakeFrame(0, kernel("H30s")), MakeFrame(1, kernel("H60s")),
+    MakeFrame(2, kernel("H30s")), MakeFrame(3, kernel("H60s")) });
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_TRUE(Has(doubts[0],
+    "IM1 and 1 more have another Convolution Kernel (0018,1210) than IM0: two scans, or two "
+    "reconstructions of one, may"))
+    << doubts[0];
 }

@@ -236,6 +236,32 @@ TEST(LostRecording, ChangedPixelsAreFoundWhenTheyAreReadBack)
   EXPECT_THROW(recorder.Finish(), FileError); // as long as nobody gives it up
 }
 
+// A disk that gives back other slices, however often they are written, does not fill with copies.
+TEST(LostRecording, IsNotWrittenAnewForEver)
+{
+  const TemporaryFolder folder;
+  SweepRecorder recorder(folder / "sweep.mhd", MakeDescription());
+  SequenceFields fields; // more than are read
+  for (int i = 0; i < 1100; ++i)
+  {
+    fields.emplace_back("Field" + std::to_string(i), "1");
+  }
+  const std::string pixels = MakePixels(0);
+  recorder.Add(std::make_shared<std::vector<std::uint8_t>>(pixels.begin(), pixels.end()), fields);
+  recorder.Verify();
+  WaitFor(recorder,
+    [&](const auto& now) { return !now.Trouble.empty() || fs::exists(folder / "sweep-9.mhd"); });
+  EXPECT_FALSE(fs::exists(folder / "sweep-5.mhd"));
+  EXPECT_THROW(recorder.Finish(), FileError);
+  const SweepRecorder::State state = recorder.GetState();
+  EXPECT_NE(state.Trouble.find("sweep-4.mhd' was changed: its slice 0 is not what was recorded, as "
+                               "in 3 files before: the disk may be failing"),
+    std::string::npos)
+    << state.Trouble;
+  EXPECT_EQ(state.Synced, 1);
+  EXPECT_EQ(state.Verified, 0);
+}
+
 // The new one is lost, too, and at last there is no place: what comes then waits in memory.
 TEST(LostRecording, IsFollowedFromPlaceToPlace)
 {
