@@ -9,6 +9,8 @@
 #include <climits>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 
 namespace lacuna
 {
@@ -267,5 +269,35 @@ std::string SequenceKind::GetEnd() const
   return "ElementDataFile = " +
     (this->IsDetached() ? std::filesystem::path(this->DataFileName).filename().string() : "LOCAL") +
     "\n";
+}
+
+namespace
+{
+bool Exists(const std::string& path)
+{
+  std::error_code none;
+  return std::filesystem::exists(std::filesystem::symlink_status(path, none));
+}
+}
+
+//------------------------------------------------------------------------------
+std::string FindFreeSweepName(const std::string& fileName, int compressionLevel)
+{
+  const std::filesystem::path path(fileName);
+  // sweep.igs.mhd becomes sweep-2.igs.mhd
+  const std::string name = path.filename().string();
+  const std::size_t dot = name.find('.', 1);
+  std::string candidate = fileName;
+  for (int i = 2;; ++i)
+  {
+    if (!Exists(candidate) &&
+      !Exists(SequenceKind(candidate, compressionLevel > 0).GetDataFileName()))
+    {
+      return candidate;
+    }
+    candidate =
+      (path.parent_path() / (name.substr(0, dot) + "-" + std::to_string(i) + name.substr(dot)))
+        .string();
+  }
 }
 }

@@ -81,5 +81,9 @@ private:
   bool Compressed;
   std::string DataFileName;
 };
+
+/// "sweep.mhd", or "sweep-2.mhd", "sweep-3.mhd" ... when there is one already: the first name for
+/// which neither the header nor the pixels exist.
+std::string FindFreeSweepName(const std::string& fileName, int compressionLevel);
 }
 #endif

@@ -108,12 +108,6 @@ std::string CountSlices(std::int64_t slices)
   return std::to_string(slices) + (slices == 1 ? " slice" : " slices");
 }
 
-bool Exists(const std::string& path)
-{
-  std::error_code none;
-  return std::filesystem::exists(std::filesystem::symlink_status(path, none));
-}
-
 constexpr double Never = std::numeric_limits<double>::infinity();
 
 // What the disk did not do last time it was asked to; until when it is left alone.
@@ -122,26 +116,6 @@ struct Refusal
   std::string Trouble; // empty: it did
   double RetryTime = 0;
 };
-}
-
-std::string FindFreeSweepName(const std::string& fileName, int compressionLevel)
-{
-  const std::filesystem::path path(fileName);
-  // sweep.igs.mhd becomes sweep-2.igs.mhd
-  const std::string name = path.filename().string();
-  const std::size_t dot = name.find('.', 1);
-  std::string candidate = fileName;
-  for (int i = 2;; ++i)
-  {
-    if (!Exists(candidate) &&
-      !Exists(SequenceKind(candidate, compressionLevel > 0).GetDataFileName()))
-    {
-      return candidate;
-    }
-    candidate =
-      (path.parent_path() / (name.substr(0, dot) + "-" + std::to_string(i) + name.substr(dot)))
-        .string();
-  }
 }
 
 struct SweepRecorder::Work

@@ -13,10 +13,6 @@
 
 namespace lacuna
 {
-/// "sweep.mhd", or "sweep-2.mhd", "sweep-3.mhd" ... when there is one already: the first name for
-/// which neither the header nor the pixels exist.
-std::string FindFreeSweepName(const std::string& fileName, int compressionLevel);
-
 /// A SequenceRecorder on a thread of its own: who takes slices never waits for a disk. Slices are
 /// written as they come, and every 0.3 s the disk is made to have them, so that the end of the
 /// program loses none that are written and a failure of the power none that are synced.
