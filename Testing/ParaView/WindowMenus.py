@@ -118,6 +118,7 @@ def test(window):
     make("Filters", "Depth Map Shader", depth)
     bone = make("Filters", "Skull Bone", SkullPhantom(Spacing=[3, 3, 3]))
     make("Filters", "Skull Implant", bone, says="the wall of bone has undercuts")
+    make("Filters", "Skull Resection", bone, Tumour=Sphere(Center=[-38, -15, 32], Radius=12))
 
     shape = make("Sources", "Incomplete Shape", Shape="Sphere", Dimensions=[28, 28, 28])
     angle = make("Filters", "Occluded Angle", shape, slow=True, NumberOfDirections=60)

@@ -127,6 +127,8 @@ def files():
     turned = VolumeReader(registrationName="Turned volume", FileName=path("volume.nrrd"))
     Mirror(registrationName="Mirrored volume", Input=turned, PlaneMethod="Given", Origin=[-11.9, 4.3, 0], Normal=[1, 0.02, 0])
     SkullBone(registrationName="Turned bone", Input=turned, Level=100)
+    SkullResection(registrationName="Turned cut", Input=turned, Tumour=Sphere(registrationName="Within", Center=[0, 4, 0], Radius=3), Level=100,
+                   Margin=1, GuideWidth=0)
     OccludedAngle(registrationName="Turned angle", Input=turned, NumberOfDirections=8)
     SpeckleFilter(registrationName="Turned and smooth", Input=turned, Operation="Median", KernelSize=[3, 3, 1])
     RBFInterpolator(registrationName="Of turned", Input=turned, ScalarArray="Intensity", Kernel="Linear", OutputSpacing=[4, 4, 4])

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of Documentation/UserGuide/implant-gallery.md: implants for a patient's forehead and for half of the vault.
+"""Pictures of implants in Documentation/UserGuide: for a patient's forehead and for half of the vault (implant-gallery.md), with holes, plates and
+text (implant-details.md), and after a planned cut (skull-resection.md).
 
     . build/release/lacuna-env.sh
     xvfb-run -a -s "-screen 0 1280x1024x24 -noreset" pvpython Testing/Science/implant_pictures.py [--project Cranium.inv3] FOLDER
 
-Makes implant-forehead.png and implant-hemisphere.png in FOLDER, within a minute or two. The CT is in Debian's package invesalius-examples
+Makes implant-forehead.png, implant-hemisphere.png, implant-details.png and skull-resection.png in FOLDER, within some minutes. The CT is in Debian's package invesalius-examples
 (GPL-2): that of a patient with a gap in the forehead. The second hole is cut by this script.
 
 InVesalius keeps axial slices with the rows turned over: x to the patient's left, y to the front, z to the head. Here y becomes that of
@@ -33,6 +34,8 @@ SOFT = 40  # HU, of what fills a cut
 PANEL = (480, 450)  # pixels
 CUT_BONE, CUT_IMPLANT = (0.80, 0.70, 0.52), (0.10, 0.33, 0.56)
 BEHIND = (0.62, 0.78, 0.90)  # the implant behind its cut
+TUMOUR, EDGES = (0.55, 0.16, 0.2), (0.05, 0.1, 0.2)
+TUMOUR_PLACE = np.array([0.72, 0.42, 0.78])  # in the box of the bone
 GREYS = 6  # of 256 that look alike: the files get smaller
 
 
@@ -188,6 +191,52 @@ def hemisphere(folder, voxels, spacing):
     sheet.write("implant-hemisphere.png")
 
 
+def details(folder, voxels, spacing):
+    """Holes, plates, two parts and text."""
+    voxels, point = cut(voxels, spacing, (0.80, 0.10, 0.60), 38)
+    made = implant.make_implant(as_proxy(voxels, spacing), hole=point, DrainageSpacing=14, SutureSpacing=18, Plates=5, Parts=2, EngravedText="L 1742",
+                                TextHeight=7)
+    print("\n".join(implant.describe(made)), flush=True)
+    inwards = np.array(implant.measures(made)["InsertionDirection"])
+    hole = np.array(made.implant.GetDataInformation().GetBounds()).reshape(3, 2).mean(axis=1)
+    sheet = Sheet(folder)
+    view = sheet.view()
+    implant_report.show_bone(made.bone, implant.LEVEL, view)
+    pictures.show_surface(made.implant, view, implant_report.IMPLANT)
+    pictures.show_surface(pv.Tube(Input=made.plates, Radius=1.2), view, pictures.METAL)
+    sheet.add(view, "Two parts, holes, five plates", tuple(inwards), hole, 62, 20)
+    view = sheet.view()
+    pictures.show_surface(made.implant, view, implant_report.IMPLANT)
+    edges = pictures.show_surface(pv.FeatureEdges(Input=made.implant, BoundaryEdges=0, NonManifoldEdges=0, FeatureAngle=50), view, EDGES)
+    edges.LineWidth, edges.Ambient, edges.Diffuse = 1.5, 1, 0
+    sheet.add(view, "From within", tuple(-inwards), hole, 62, 20)
+    sheet.write("implant-details.png")
+
+
+def resection(folder, voxels, spacing):
+    """A cut around a tumour, its guide and its implant."""
+    bone = pv.SkullBone(Input=as_proxy(voxels, spacing), Level=implant.LEVEL)
+    bone.UpdatePipeline()
+    low, high = np.array(bone.GetDataInformation().GetBounds()).reshape(3, 2).T
+    place = low + (high - low) * TUMOUR_PLACE
+    tumour = pv.Sphere(Center=list(place), Radius=17, ThetaResolution=48, PhiResolution=48)
+    made = pv.SkullResection(Input=bone, Tumour=tumour, Margin=8, Bevel=15)
+    made.UpdatePipeline()
+    direction = np.array(fetch(pv.OutputPort(made, 2)).GetFieldData().GetArray("CutDirection").GetTuple(0))
+    design = pv.SkullImplant(Input=made, DefectOutline=pv.OutputPort(made, 1), Level=implant.LEVEL, DrainageSpacing=12)
+    middle = np.array(pv.OutputPort(made, 3).GetDataInformation().GetBounds()).reshape(3, 2).mean(axis=1)
+    aside = tuple(direction + [0, 0.4, -0.2])
+    sheet = Sheet(folder)
+    for title, shown in (("The guide on the bone, the tumour below", ((pv.OutputPort(made, 3), pictures.METAL), (tumour, TUMOUR))),
+                         ("The implant", ((design, implant_report.IMPLANT),))):
+        view = sheet.view()
+        implant_report.show_bone(made, implant.LEVEL, view)
+        for proxy, colour in shown:
+            pictures.show_surface(proxy, view, colour)
+        sheet.add(view, title, aside, middle, 60, 20)
+    sheet.write("skull-resection.png")
+
+
 def _slice(data, origin, normal):
     section = pv.Slice(Input=data, SliceType="Plane")
     section.SliceType.Origin, section.SliceType.Normal = list(origin), list(normal)
@@ -208,16 +257,19 @@ def _face(solid, origin, normal):
     return _behind(closed, np.array(origin) + 0.01 * np.array(normal), normal, invert=1)
 
 
+PICTURES = {make.__name__: make for make in (forehead, hemisphere, details, resection)}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("folder")
     parser.add_argument("--project", default=PROJECT)
-    parser.add_argument("--only", choices=("forehead", "hemisphere"))
+    parser.add_argument("--only", choices=tuple(PICTURES))
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
     voxels, spacing = read_project(options.project)
-    for make in (forehead, hemisphere):
-        if options.only in (None, make.__name__):
+    for name, make in PICTURES.items():
+        if options.only in (None, name):
             make(options.folder, voxels, spacing)
 
 
