@@ -55,8 +55,8 @@ struct ShapePlace
   Vec3 Point{ 0, 0, 0 };    ///< world mm
   Vec3 Mirrored{ 0, 0, 0 }; ///< its image
   double Roughness = 1;     ///< multiplies the standard deviations of RoughLengths
-  /// Multiplies the common part of each length, which is a sum over the place and its image: so its variance is the
-  /// same everywhere, and not twice as large at the midline, where both are one.
+  /// Multiplies the common part of each length, which is a sum over the place and its image. So its variance is the
+  /// same everywhere: without this it would be twice as large at the midline, where both are one.
   std::array<double, 4> Share{};
 };
 

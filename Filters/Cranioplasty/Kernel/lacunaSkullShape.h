@@ -52,11 +52,13 @@ class SkullShape
 {
 public:
   /// defect: unit directions that cover what is missing, some mm apart. Nodes are dense near them and near
-  /// their mirror images. plane: of best symmetry, within some 5 degrees and 5 mm. Throws
-  /// std::invalid_argument when arrays differ in length or have elements that are not finite or not positive,
-  /// or when too little bone is given (fewer than 200 nodes remain). other: a template (PlaceTemplate), which counts as
-  /// far as the sound bone is like it. likelihoodNodes: so many of the nodes, at
-  /// least 200, decide on variances and plane, in a time of their third power (5 s of one core for 800).
+  /// their mirror images. plane: of best symmetry, within some 5 degrees and 5 mm. other: a template
+  /// (PlaceTemplate), which counts as far as the sound bone is like it. likelihoodNodes: this many of the
+  /// nodes, at least 200, decide on variances and plane. Their time grows with the third power (5 s of one
+  /// core for 800).
+  ///
+  /// Throws std::invalid_argument when arrays differ in length, when elements are not finite or not positive,
+  /// or when there is too little bone (fewer than 200 nodes remain).
   SkullShape(const SoundBone& bone, const std::vector<Vec3>& defect, const MirrorPlane& plane,
     Execution& execution, const SkullRays* other = nullptr, std::size_t likelihoodNodes = 800);
   ~SkullShape();

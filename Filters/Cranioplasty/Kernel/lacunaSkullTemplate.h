@@ -56,8 +56,8 @@ struct TemplateFit
   double Covered = 0;      ///< part of the sound bone for which the template has bone
 };
 
-/// Turn, shift and scale that bring the template's outer table closest to sound bone, along the rays of the skull: the
-/// best of all turns, then least squares with Tukey's biweight, so that holes and steps of both do not count. Throws
+/// Turn, shift and scale that bring the template's outer table closest to sound bone, along the rays of the skull. The
+/// best of all turns comes first, then least squares. Tukey's biweight keeps out holes and steps of both. Throws
 /// std::invalid_argument when the template has too little of a vault.
 /// Beaton and Tukey, Technometrics 16, 1974.
 TemplateFit FitTemplate(const SkullShell& shell, const SoundBone& bone, Execution& execution);

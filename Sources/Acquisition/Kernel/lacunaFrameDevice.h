@@ -28,9 +28,9 @@ public:
 
   /// Waits for the next frame. Arrival is of the acquisition's clock. After End there is none more.
   virtual VideoEvent Read(VideoFrame& frame) = 0;
-  /// s from the instant that the probe saw what a frame shows to its Arrival, as far as the kind of
-  /// the device tells: a frame grabber has a frame when its last line was sent, one frame's time
-  /// after its first. 0: not known.
+  /// s from the instant at which the probe saw a frame's content to the frame's Arrival, as far as the
+  /// kind of device determines it; 0: not known. A frame grabber has a frame when its last line was
+  /// sent, one frame's time after its first.
   virtual double GetLatency() const = 0;
   /// See VideoSource.
   virtual std::vector<std::optional<double>> TakeArrivals() { return {}; }

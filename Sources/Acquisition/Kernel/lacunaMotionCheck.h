@@ -20,17 +20,21 @@ struct MotionLimits
   double MaximumGap = 0.5;         ///< s after which the motion before says nothing
 };
 
-/// Sees damage that leaves a possible record, and the receiver's passage into the other hemisphere,
-/// by continuity: a pose is taken when it is where the two before it lead, as far as the limits
-/// allow (for a uniformly accelerated motion exactly; noise is extrapolated too). One whose position
-/// fits with all three signs changed is taken with them changed: the FASTRAK's field is the same at
-/// opposite places, so that there the orientation is right and the position mirrored through the
-/// origin. Others wait; three in a row that fit each other are a new motion and are taken together,
-/// late; those that do not are dropped when one fits the motion before. A new motion after one that
-/// was in the other hemisphere is on the side that is nearer to its end; one within 2 s of one that
-/// was not is in the other hemisphere when it is three times nearer there. So is a pose that fits
-/// with either sign, as after 0.3 s without any within 8 cm of the transmitter. What remains
-/// undetected is within the limits: at 50 poses a second 1.2 mm and three times the noise.
+/// Detects damage that leaves a possible record, and the receiver's passage into the other
+/// hemisphere, by continuity.
+///
+/// A pose is taken when it is where the two before it lead, as far as the limits allow. This is exact
+/// for a uniformly accelerated motion; noise is extrapolated too. A pose whose position fits with all
+/// three signs changed is taken with them changed. The FASTRAK's field is the same at opposite places:
+/// there the orientation is right and the position mirrored through the origin. Others wait. Three in
+/// a row that fit each other are a new motion and are taken together, late. Those that do not are
+/// dropped when one fits the motion before.
+///
+/// A new motion after one that was in the other hemisphere is on the side that is nearer to its end.
+/// One within 2 s of one that was not is in the other hemisphere when it is three times nearer there.
+/// So is a pose that fits with either sign, as after 0.3 s without any within 8 cm of the transmitter.
+///
+/// Undetected errors are within the limits: at 50 poses a second 1.2 mm and three times the noise.
 class MotionCheck
 {
 public:

@@ -88,8 +88,8 @@ public:
     std::shared_ptr<OpenIGTLinkConnection> connection, std::function<bool()> stopped);
   ~OpenIGTLinkFrameDevice() override;
 
-  /// Throws VideoError when no image comes for 3 s, when the first one cannot be used or five in a row
-  /// cannot (fewer count as undecodable), and std::invalid_argument when the server sends images of
+  /// Throws VideoError when no image comes for 3 s, or when the first one or five in a row cannot be
+  /// used; fewer count as undecodable. Throws std::invalid_argument when the server sends images of
   /// several devices and the address names none.
   VideoEvent Read(VideoFrame& frame) override;
   /// 0: a stamp is of the instant.

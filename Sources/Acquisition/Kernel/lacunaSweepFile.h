@@ -18,11 +18,11 @@
 
 namespace lacuna
 {
-/// The fields with which a slice is stored: poses by their names with the states that readers ask
-/// for, ImageToProbe for the pixels of the file, ElementSpacing as the video says it, Timestamp,
-/// FrameNumber, SliceStatus, Residual, Speed and, where the pose was held, PoseHeld (s since it was
-/// measured). That the spacing contradicts the calibration is not written: a reader compares them,
-/// with the calibration that it is given.
+/// The fields with which a slice is stored. Poses have their names and the states that readers ask
+/// for. ImageToProbe is for the pixels of the file, ElementSpacing is that of the video. The others
+/// are Timestamp, FrameNumber, SliceStatus, Residual, Speed and, where the pose was held, PoseHeld
+/// (s since it was measured). There is no field for a spacing that contradicts the calibration: a
+/// reader compares them, with the calibration that it is given.
 SequenceFields MakeSliceFields(const AcquiredSlice& slice, const SweepFrame& frame);
 
 /// Opens its file by a free name with the first slice, since only then the size is known, on a thread

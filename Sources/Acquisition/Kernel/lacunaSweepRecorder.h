@@ -20,9 +20,9 @@ namespace lacuna
 /// On a full or failing disk slices wait in memory, in order, and writing is tried again every
 /// second: with room made, the recording goes on by itself.
 ///
-/// Twice a second the files are compared with what was written. When one was removed,
-/// renamed, replaced or cut off, all slices that its open files or the memory still have are
-/// written to another sweep: in the same folder, else in the one above it, the user's home or the
+/// Twice a second the files are compared with what was written. When one was removed, renamed,
+/// replaced or cut off, the recorder writes another sweep. This has all slices that the open files or
+/// the memory still have. It is in the same folder, else in the one above it, the user's home or the
 /// folder for temporary files. State::Notice names it, and counts what is lost.
 class SweepRecorder
 {
