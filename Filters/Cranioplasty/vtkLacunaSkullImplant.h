@@ -18,7 +18,7 @@
  * Output 0: vtkPolyData, a watertight, outward oriented triangle mesh in world mm, double precision, never
  * mirrored (lacuna::MakeSkullImplant). Point arrays (double, mm along the ray from the middle of the
  * skull): PredictedError (standard error of the outer surface; active scalars), Thickness, ThicknessError. Cell arrays
- * ImplantFace (unsigned char): 0 outer, 1 inner with text, 2 edge and walls of holes; Part (int, from 1): each is closed.
+ * ImplantFace (unsigned char): 0 outer, 1 inner, 2 edge and walls of holes, 3 text; Part (int, from 1): each is closed.
  * Field data (double):
  * | array                      | components | meaning                                                  |
  * |----------------------------|------------|----------------------------------------------------------|

@@ -503,10 +503,10 @@ public:
     {
       Rings floor;
       this->AddRings(text, Floor, floor);
-      this->AddFace(text, &floor[0], Floor, SkullImplantFace::Inner);
+      this->AddFace(text, &floor[0], Floor, SkullImplantFace::Text);
       for (std::size_t k = 0; k < floor.size(); ++k)
       {
-        this->AddWall(below[loops + k], floor[k], SkullImplantFace::Inner);
+        this->AddWall(below[loops + k], floor[k], SkullImplantFace::Text);
       }
     }
     return std::move(this->Feet);

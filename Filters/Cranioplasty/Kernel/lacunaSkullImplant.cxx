@@ -360,7 +360,7 @@ private:
     std::vector<bool> isOuter(implant.Points.size(), false);
     for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
     {
-      if (implant.Faces[t] == SkullImplantFace::Inner)
+      if (implant.Faces[t] == SkullImplantFace::Inner || implant.Faces[t] == SkullImplantFace::Text)
       {
         inner.Triangles.push_back(implant.Triangles[t]);
       }

@@ -53,8 +53,9 @@ struct SkullImplantOptions
 enum class SkullImplantFace : unsigned char
 {
   Outer, ///< towards the scalp
-  Inner, ///< towards the brain, with engraved text
-  Edge   ///< the edge and the walls of holes
+  Inner, ///< towards the brain
+  Edge,  ///< the edge and the walls of holes
+  Text   ///< engraved into the inner face
 };
 
 /// Standard error, mm, above which 95 % of errors are not within 1 mm.

@@ -337,7 +337,7 @@ TEST(ImplantMesh, IsEngravedSoThatItIsReadFromWithin)
   double area = 0;
   for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
   {
-    if (implant.Faces[t] != SkullImplantFace::Inner)
+    if (implant.Faces[t] != SkullImplantFace::Text)
     {
       continue;
     }
