@@ -72,4 +72,5 @@ with raising(warnings):
         Render(view)
         assert any(display.Visibility for display in view.Representations), f"a view of {state} shows nothing"
 print(f"{os.path.relpath(state, ROOT)}: {len(made)} outputs as the script made them, {len(shown)} views")
-check_warnings(warnings, os.path.join(folder, "README.md"))
+old_format = "is a printf format. The format will be converted to std::format"  # the page before all examples tells of it
+check_warnings([text for text in warnings if old_format not in text], os.path.join(folder, "README.md"))
