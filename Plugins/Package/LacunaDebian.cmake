@@ -54,7 +54,7 @@ string(JOIN ", " CPACK_DEBIAN_LACUNA_PACKAGE_DEPENDS
   "python3 (>= 3.${Python3_VERSION_MINOR}~)" "python3 (<< 3.${next_python}~)"
   python3-paraview python3-numpy)
 set(CPACK_DEBIAN_LACUNA_PACKAGE_SUGGESTS "lacuna-doc, lacuna-dev")
-set(recommended) # Qt's SVG, which shows icons
+set(recommended python3-matplotlib) # writes reports as PDF; Qt's SVG shows icons
 if (LACUNA_WITH_QT AND lacuna_qt STREQUAL "Qt5")
   list(APPEND recommended libqt5svg5)
 elseif (LACUNA_WITH_QT)

@@ -251,8 +251,8 @@ def join_mesh(pieces):
 
 def check_field_data(key, pieces):
     """Those that have something say the same of it."""
-    field, *others = ({name: values for name, values in pipelines.values(piece).items() if name[0] == "FieldData"}
-                      for piece in pieces if piece.GetNumberOfPoints() > 0)
+    field, *others = [{name: values for name, values in pipelines.values(piece).items() if name[0] == "FieldData"}
+                      for piece in pieces if piece.GetNumberOfPoints() > 0] or [{}]  # nothing is asked for, such as no guide
     for other in others:
         assert set(field) == set(other), (key, set(field) ^ set(other))
         for name, values in field.items():

@@ -52,7 +52,8 @@ pictures.show_surface(surface, views[1], pictures.BONE)
 pictures.show_surface(OutputPort(cut, 3), views[0], pictures.METAL)
 pictures.show_surface(tumour, views[0], TUMOUR)
 pictures.show_surface(design, views[1], implant_report.IMPLANT)
-pictures.show_surface(Tube(registrationName="Plates", Input=made.plates, Radius=1), views[1], pictures.METAL)
+plates = pictures.show_surface(made.plates, views[1], pictures.METAL)
+plates.LineWidth, plates.RenderLinesAsTubes = 7, 1
 pictures.show_surface(design, views[2], implant_report.IMPLANT)
 edges = pictures.show_surface(FeatureEdges(registrationName="Edges", Input=design, BoundaryEdges=0, NonManifoldEdges=0, FeatureAngle=50), views[2],
                               EDGE)

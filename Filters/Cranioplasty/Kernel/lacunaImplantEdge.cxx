@@ -17,21 +17,21 @@ constexpr double LeastStep = 0.15; // mm along the way out
 constexpr double DeepEnough = -1;  // mm in bone: no more is sought
 constexpr double WantedTaper = 10; // degrees
 constexpr int DirectionSteps = 60;
-constexpr double MostLean = 1;         // tangent of the angle from where the search starts
-constexpr double NearStart = 1e-3;     // weight of the lean beside that of a wall
-constexpr double MostOutwards = 6;     // mm, of the edge from the outline
-constexpr double MostInwards = 1;      // mm
-constexpr double MostLack = 0.1;       // mm, of the clearance
-constexpr double Exact = 0.005;        // mm, of the clearance
-constexpr int MostSearch = 40;         // steps of it
-constexpr double OverBone = 0.7;       // cosine: bone is below rather than beside
-constexpr double AtBone = 0.3;         // mm of more than the clearance: the outline is not at bone
-constexpr int SmoothReach = 4;         // places on either side
-constexpr double LeastSpacing = 0.3;   // of neighbours, of what it was
-constexpr double MostSlopeAlong = 0.4; // of the edge's width, mm a mm
-constexpr double MostSlopeDown = 1.7;  // the same from the outer to the inner surface
-constexpr double UndercutReach = 5;    // mm
-constexpr double LeastUndercut = 0.2;  // mm
+constexpr double MostLean = 1;        // tangent of the angle from where the search starts
+constexpr double NearStart = 1e-3;    // weight of the lean beside that of a wall
+constexpr double MostOutwards = 6;    // mm, of the edge from the outline
+constexpr double MostInwards = 1;     // mm
+constexpr double MostLack = 0.1;      // mm, of the clearance
+constexpr double Exact = 0.005;       // mm, of the clearance
+constexpr int MostSearch = 40;        // steps of it
+constexpr double OverBone = 0.7;      // cosine: bone is below rather than beside
+constexpr double AtBone = 0.3;        // mm of more than the clearance: the outline is not at bone
+constexpr int SmoothReach = 4;        // places on either side
+constexpr double LeastSpacing = 0.3;  // of neighbours, of what it was
+constexpr double MostSlopeAlong = 1;  // of the edge's width, mm a mm
+constexpr double MostSlopeDown = 1.7; // the same from the outer to the inner surface
+constexpr double UndercutReach = 5;   // mm
+constexpr double LeastUndercut = 0.2; // mm
 
 // Unit, along a closed loop, smooth.
 std::vector<Vec2> GetTangents(const Loop& loop)

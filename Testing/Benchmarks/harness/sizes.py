@@ -33,6 +33,7 @@ SIZES = {
     "Mirror, best symmetry": (1, 0.5),
     "Skull Bone": (1, 0.5),
     "Skull Implant": (1, 0.5),
+    "Skull Resection": (1, 0.5),
     "RBF Hole Filler": (0.25, 0.15),
     "RBF Interpolator": (0.5, 0.3),
     "RBF Image Warp": (160, 256),
