@@ -230,7 +230,7 @@ int vtkLacunaSkullResection::RequestData(
       middle, options, execution);
     const auto make = [&]
     {
-      const auto values =
+      auto values =
         vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(keep->GetDataType()));
       vtkLacunaArrays::SetNumberOfTuples(values, image->GetNumberOfPoints());
       values->SetName(keep->GetName());
