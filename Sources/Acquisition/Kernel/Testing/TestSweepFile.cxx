@@ -300,6 +300,11 @@ TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
     file.Add(MakeSlice(i), MakeFrame(true));
   }
   EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
+  // told by the writing thread, which may come late on a busy machine
+  for (int wait = 0; wait < 500 && file.GetState().Trouble.empty(); ++wait)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   EXPECT_NE(file.GetState().Trouble.find("missing"), std::string::npos);
   EXPECT_EQ(file.GetState().Added, 4);
   EXPECT_EQ(file.GetState().Synced, 0);
