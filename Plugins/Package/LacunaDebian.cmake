@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Debian packages by cpack, when LACUNA_DEBIAN is on (preset package; Testing/Tools/package.sh):
-#   lacuna      plugins, libraries, Python package, macros, emulator
+#   lacuna      plugins, libraries, Python package, emulator
 #   lacuna-dev  headers, kernels and what find_package(Lacuna) reads
 #   lacuna-doc  examples and, if it was built before (Documentation/build-site.sh), the site
 if (NOT LACUNA_WITH_PARAVIEW)
@@ -77,7 +77,7 @@ a measurement; a skull CT becomes a depth map whose hole is filled by radial
 basis functions, an implant plate, a mould and a milling program.
 
 It has the plugins for Debian's ParaView, the Python package lacuna for
-pvpython, the libraries, macros, and an emulator of a FASTRAK tracker.
+pvpython, the libraries, and an emulator of a FASTRAK tracker.
 
 It is research software, not a medical device.")
 
@@ -152,7 +152,6 @@ foreach (package IN ITEMS lacuna lacuna-dev lacuna-doc)
       DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides" COMPONENT ${component})
   endif ()
 endforeach ()
-set(macros "${CMAKE_INSTALL_FULL_DATADIR}/Lacuna-${lacuna_flavor}/macros")
 configure_file("${debian}/README.Debian.in" "${made}/README.Debian" @ONLY)
 install(FILES "${made}/README.Debian"
   DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/lacuna" COMPONENT runtime)

@@ -3,7 +3,6 @@
 
 pvpython --force-offscreen-rendering installed.py <version> <folder for the results>
 """
-import glob
 import os
 import sys
 
@@ -39,7 +38,4 @@ filled.DefectRegion.Radius = 39
 iges = os.path.join(folder, "implant.igs")
 SaveData(iges, proxy=filled)
 assert os.path.getsize(iges) > 10000
-for macro in ("Lacuna_CT_to_IGES.py", "Lacuna_CT_to_implant.py", "Lacuna_Sweep_to_surface.py"):
-    path, = glob.glob(f"/usr/share/Lacuna-pv*/macros/{macro}")
-    compile(open(path, encoding="utf-8").read(), path, "exec")
 print("installed: pvpython works")

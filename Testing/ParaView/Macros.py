@@ -1,46 +1,41 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The macros do their jobs on the active source, and say what is wrong when it is of another kind.
-
-Macros.py <folder of the macros>
-"""
+"""The jobs of the menu Lacuna do their work on the active source, and say what is wrong when it is of another kind."""
 import glob
 import os
 import shutil
-import sys
 
 import lacuna.plugin
 
 lacuna.plugin.load()
 import numpy as np
-from lacuna import demo_ultrasound, macros
+from lacuna import demo_ultrasound, macros, window
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
 from lacuna_test import output
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-SWEEP, CT, IMPLANT = (os.path.join(sys.argv[1], f"Lacuna_{name}.py") for name in ("Sweep_to_surface", "CT_to_IGES", "CT_to_implant"))
+SWEEP, CT, IMPLANT = "sweep_to_surface", "ct_to_iges", "ct_to_implant"
 home = os.path.abspath(output("Macros"))
 shutil.rmtree(home, ignore_errors=True)
 os.makedirs(home)
 os.environ["HOME"] = home
 
 
-def run(macro):
-    """A macro as ParaView's menu runs it: the errors that it reports, in one text."""
+def run(job):
+    """A job as the menu runs it: the errors that it reports, in one text."""
     try:
         with raising():
-            with open(macro, encoding="utf-8") as file:
-                exec(compile(file.read(), macro, "exec"), {"__name__": "__main__"})
+            window.run(job)
     except PipelineError as error:
         return str(error)
     return ""
 
 
-def refused(macro, words):
-    """The macro reports this and leaves the pipeline browser and the active source alone."""
+def refused(job, words):
+    """The job reports this and leaves the pipeline browser and the active source alone."""
     before, active = set(GetSources()), GetActiveSource()
-    said = run(macro)
+    said = run(job)
     assert words in said, (words, said)
     assert set(GetSources()) == before and GetActiveSource() == active, set(GetSources()) - before
     assert not glob.glob(home + "/*"), os.listdir(home)
@@ -70,7 +65,7 @@ refused(SWEEP, "'Wavelet1' holds no tracked slices")
 refused(CT, "range from 37.35 to 276.8: bone, at 500 Hounsfield units, is not among them")
 refused(IMPLANT, "range from 37.35 to 276.8: bone, at 300 Hounsfield units, is not among them")
 sweep = PhantomSweep(registrationName="My sweep", NumberOfSlices=50, ImageSize=[160, 120], PixelSpacing=0.4, Motion="Arbitrary", SpeckleLevel=0.2)
-refused(CT, "'My sweep' is a sweep, not a CT: use the macro for sweeps")
+refused(CT, "'My sweep' is a sweep, not a CT: use Sweep to Surface")
 uncalibrated = ProgrammableFilter(registrationName="No pose", Input=sweep, Script="""
 output.ShallowCopy(inputs[0].VTKObject)
 output.GetFieldData().RemoveArray("ImageToReference")

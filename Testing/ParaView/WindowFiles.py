@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files in the ParaView application: every kind is written by File > Save Data and opened by File > Open; macros are imported.
+"""Files in the ParaView application: every kind is written by File > Save Data and opened by File > Open.
 
-WindowFiles.py <folder of the macros> [program that makes a CT series]
+WindowFiles.py [program that makes a CT series]
 """
 import glob
 import os
@@ -16,7 +16,6 @@ from lacuna_window import PANEL
 NIFTI_AXES = [[0.8, 0.6, 0], [0.6, -0.8, 0], [0, 0, -1]]  # of columns, rows and slices, as coordinates to the right, the front and up
 NIFTI_SPACING, NIFTI_ORIGIN = [0.6, 0.7, 2], [-5, 6, 7]
 FOLDER = os.path.join(os.environ["LACUNA_TEST_OUTPUT"], "WindowFiles")
-MACROS = "LACUNA_MACROS"
 
 
 def path(name):
@@ -94,19 +93,6 @@ def test(window):
     right, front, up = np.array(NIFTI_AXES) @ (np.array(NIFTI_SPACING) * index) + NIFTI_ORIGIN
     assert np.allclose(volume.GetPoint(volume.GetNumberOfPoints() - 1), [-right, -front, up], atol=1e-5)  # LPS; of 32-bit numbers
 
-    # macros: imported once, then they are in the menu
-    for name in ("Lacuna_Sweep_to_surface", "Lacuna_CT_to_IGES", "Lacuna_CT_to_implant"):
-        file = os.path.join(os.environ[MACROS], name + ".py")
-        window.menu("Macros/Import new macro...", lambda: window.choose_file(file))
-        assert window.has_menu("Macros/" + name)
-    window.press("actionPBHideAll")
-    window.select("pipelineBrowser", "PhantomSweep1")
-    window.menu("Macros/Lacuna_Sweep_to_surface")
-    window.check_messages()
-    surface = GetActiveSource()
-    assert surface.SMProxy.GetXMLName() == "Contour" and surface.GetDataInformation().GetNumberOfPoints() > 100
-    window.compare("FilesMacro")
-
     # outlines: those of 3D Slicer without a question, tables by choice
     for name, choice in (("Liver.mrk.json", None), ("liver.csv", "Outline Reader")):
         window.open_file(path(name), choice)
@@ -126,8 +112,8 @@ else:
                       '{"position": [9, 7, 0]}]}]}')
     with open(path("liver.csv"), "w", encoding="ascii") as table:
         table.write("structure,outline,x,y,z\nLiver,1,0,0,0\nLiver,1,9,0,0\nLiver,1,9,7,0\n")
-    if len(sys.argv) > 2:
-        subprocess.run([sys.argv[2], path("ct")], check=True)
-    said = lacuna_window.run(__file__, **{MACROS: sys.argv[1]})
+    if len(sys.argv) > 1:
+        subprocess.run([sys.argv[1], path("ct")], check=True)
+    said = lacuna_window.run(__file__)
     assert "WARN|" not in said
     print("ok")

@@ -23,13 +23,12 @@ import lacuna.plugin
 lacuna.plugin.load()
 from paraview.simple import *
 SaveData("skull.vti", proxy=SkullPhantom(), DataMode="Binary")
-SaveData("sweep.igs.mha", proxy=PhantomSweep())
+SaveData("sweep.igs.mha", proxy=PhantomSweep(SpeckleLevel=0.2))
 """
-OPEN, SAVE_DATA, APPLY, RESET_CAMERA = (28, 42), (62, 42), (49, 462), (712, 82)
-SWEPT_VOLUME, RAY_CASTER, HOLE_FILLER, CONTOUR = (29, 122), (62, 122), (131, 122), (199, 122)
+OPEN, APPLY, MENU = (28, 42), (49, 462), (506, 12)
+IMPLANT, SURFACE, SAVE_SOLID = (560, 36), (560, 112), (560, 138)  # entries of the menu
 FIRST_FILE, SECOND_FILE, DIALOG_OK = (515, 267), (520, 286), (930, 541)
-REPRESENTATION, VOLUME, YES, WRITER_OK = (575, 82), (535, 257), (521, 426), (875, 562)
-TOP, PANEL, WINDOW, DIALOG = (0, 0, 700, 150), (0, 140, 300, 520), (0, 0, 1300, 870), (0, 0, 990, 600)
+WINDOW, DIALOG = (0, 0, 1300, 870), (0, 0, 990, 600)
 
 
 def run(*command, **options):
@@ -92,7 +91,7 @@ class Job:
 
     def type(self, text):
         run("xdotool", "type", "--delay", "40", text)
-        self.settle()
+        time.sleep(2)  # it never settles: the cursor blinks
 
     def picture(self, name, area, *coming, percent=60):
         """What is seen now, with the numbers of the clicks since the last picture and of those to come."""
@@ -121,61 +120,42 @@ class Job:
         print(f"{self.name}: {self.clicks} clicks")
 
 
-def ct_to_iges(folder, data):
+def ct_to_implant(folder, data):
     job = Job("ct", folder, data)
     job.click(OPEN)
     job.picture("1-open", DIALOG, FIRST_FILE, DIALOG_OK, percent=50)
     job.click(FIRST_FILE)
     job.click(DIALOG_OK)
-    job.marks = []
-    job.picture("2-apply", PANEL, APPLY)
-    job.click(APPLY)
-    job.click(REPRESENTATION)
-    job.picture("3-volume", (480, 10, 330, 300), VOLUME)
-    job.click(VOLUME)
-    job.click(YES)
-    job.marks = []
-    job.drag((800, 500), (734, 480))
-    job.picture("4-hole", (480, 200, 820, 640), percent=40)
-    job.picture("5-cast", TOP, RAY_CASTER)
-    job.click(RAY_CASTER)
-    job.marks = []
-    job.picture("6-view", PANEL, APPLY)
     job.click(APPLY)
     job.marks = []
-    job.picture("7-map", WINDOW, HOLE_FILLER, percent=45)
-    job.click(HOLE_FILLER)
-    job.click(APPLY)
-    job.picture("8-filled", WINDOW, percent=45)
-    job.click(SAVE_DATA)
-    job.type("implant.igs")
-    job.picture("9-save", DIALOG, DIALOG_OK, percent=50)
+    job.click(MENU)
+    job.picture("2-menu", WINDOW, IMPLANT, percent=45)
+    job.click(IMPLANT)
+    job.marks = []
+    job.picture("3-implant", WINDOW, percent=45)
+    job.click(MENU)
+    job.click(SAVE_SOLID)
+    job.marks = []
+    job.type("implant.stl")
+    job.picture("4-save", DIALOG, DIALOG_OK, percent=50)
     job.click(DIALOG_OK)
-    job.marks = []
-    job.picture("10-write", (340, 195, 600, 400), WRITER_OK)
-    job.click(WRITER_OK)
-    job.end(14)
-    with open(os.path.join(data, "implant.igs"), encoding="ascii") as file:
-        assert file.readline()[72] == "S"
+    job.end(9)
+    assert os.path.getsize(os.path.join(data, "implant.stl")) > 10000
 
 
 def sweep_to_surface(folder, data):
     job = Job("sweep", folder, data)
     job.click(OPEN)
-    job.picture("1-open", DIALOG, SECOND_FILE, DIALOG_OK, percent=50)
     job.click(SECOND_FILE)
     job.click(DIALOG_OK)
+    job.click(APPLY)
     job.marks = []
-    job.picture("2-slices", WINDOW, APPLY, SWEPT_VOLUME, percent=45)
-    job.click(APPLY)
-    job.click(SWEPT_VOLUME)
-    job.picture("3-volume", WINDOW, APPLY, CONTOUR, percent=45)
-    job.click(APPLY)
-    job.click(CONTOUR)
-    job.click(APPLY)
-    job.click(RESET_CAMERA)
-    job.picture("4-surface", WINDOW, percent=45)
-    job.end(9)
+    job.click(MENU)
+    job.picture("1-menu", WINDOW, SURFACE, percent=45)
+    job.click(SURFACE)
+    job.marks = []
+    job.picture("2-surface", WINDOW, percent=45)
+    job.end(6)
 
 
 def main(folder=PICTURES):
@@ -188,8 +168,9 @@ def main(folder=PICTURES):
         stack.callback(server.terminate)
         os.environ["DISPLAY"] = display
         time.sleep(2)
-        ct_to_iges(folder, data)
-        os.remove(os.path.join(data, "implant.igs"))
+        ct_to_implant(folder, data)
+        for name in "implant.stl", "implant.stl.json":
+            os.remove(os.path.join(data, name))
         sweep_to_surface(folder, data)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The main jobs in one step, on what is selected in the pipeline browser: what the macros in Plugins/Macros call.
+"""The main jobs in one step, on what is selected in the pipeline browser: what the menu Lacuna of ParaView calls.
 
     surface = macros.sweep_to_surface()     # tracked slices -> volume -> median -> surface
     filled, name = macros.ct_to_iges()      # CT -> depth map as the view looks -> filled hole -> IGES file
@@ -12,18 +12,21 @@ import os
 import numpy as np
 import paraview.simple as pv
 
-from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, solids, views
+from lacuna import vtkLacunaScanRegion
+from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, solids, views, window
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
+from vtkmodules.vtkCommonCore import vtkObject
 
 BONE = 500  # Hounsfield units
 MEDIAN = 5  # voxels
 VOXELS = 30_000_000  # of a volume, at most
-OUTLINES = 20
+PICTURES = 4  # slices shown beside a surface
+SURE = 0.5  # of a scan region: below it Scan Region warns
 
 
 def run(job):
-    """Runs one of the jobs below as a macro: what is wrong is said in ParaView's Output Messages, without a traceback."""
+    """Runs one of the jobs below as the menu does: what is wrong is said in ParaView's Output Messages, without a traceback."""
     import paraview
     try:
         return job()
@@ -33,7 +36,7 @@ def run(job):
 
 
 def sweep_to_surface(source=None):
-    """A sweep (by default the active source) becomes a volume, less speckle and a surface, shown among outlines of its slices.
+    """A sweep (by default the active source) becomes a volume, less speckle and a surface, shown with some of its slices.
 
     The level is half-way for a Phantom Sweep, else Otsu's threshold of the smoothed volume: change Isosurfaces of the result.
     Returns the Contour. Raises ValueError when the source has no calibrated tracked slices.
@@ -48,7 +51,7 @@ def sweep_to_surface(source=None):
     if not fields.HasArray("ImageToReference"):
         raise ValueError(f"'{name}' is not calibrated: where its images lie is not known. Set CalibrationFileName, or use Probe Calibration")
     with _made() as made, raising():
-        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source))
+        volume = made(pv.SweptVolume(registrationName=f"Volume of {name}", Input=source, FanMask=_fan_mask(image)))
         _fit(volume)
         smooth = made(pv.SpeckleFilter(registrationName=f"Median of {name}", Input=volume, Operation="Median", KernelSize=[MEDIAN] * 3))
         smooth.UpdatePipeline()
@@ -59,13 +62,12 @@ def sweep_to_surface(source=None):
         surface = made(pv.Contour(registrationName=f"Surface of {name}", Input=smooth, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
         surface.UpdatePipeline()
         slices = image.GetDimensions()[2]
-        outlines = made(pv.SlicePlanes(registrationName=f"Outlines of {name}", Input=source, OutlineOnly=1, InvalidSlices="Show",
-                                       Stride=max(1, slices // OUTLINES)))
+        pictured = made(pv.SlicePlanes(registrationName=f"Slices of {name}", Input=source, Stride=max(1, (slices - 1) // (PICTURES - 1))))
         if surface.GetDataInformation().GetNumberOfCells() == 0:
             raise ValueError(f"the volume of '{name}' has no surface at the grey level {level:.4g}")
     view = _view(hide=source)
     pictures.show_surface(surface, view, pictures.TISSUE)
-    pictures.show_slices(outlines, view)
+    window.show_pictures(pictured, view)
     _look_from_aside(image, view)
     pv.SetActiveSource(surface)
     pv.Render(view)
@@ -102,7 +104,7 @@ def ct_to_iges(source=None, folder=None):
         result = fetch(filled)
         mask = result.GetPointData().GetArray("FilledMask") if result else None
         if mask is None or mask.GetRange()[1] < 1:
-            raise ValueError(f"no hole is seen in '{name}': turn the 3-D view so that you look straight into the hole, and run the macro again; "
+            raise ValueError(f"no hole is seen in '{name}': turn the 3-D view so that you look straight into the hole, and run the job again; "
                              "or mark the hole in DefectRegion of RBF Hole Filler")
         surface = made(pv.DepthMapSurface(registrationName=f"Surface of {name}", Input=filled, MaximumAngle=80))
         inside = dict(Input=surface, Scalars=["POINTS", "FilledMask"])
@@ -155,7 +157,7 @@ def ct_to_implant(source=None):
     pv.Render(view)
     for line in implant.describe(result):
         print(f"Lacuna: {line}")
-    print(f"Lacuna: the macro Implant report writes '{_name(result.implant)}' and a report; save_solid of lacuna.solids writes the implant alone")
+    print("Lacuna: the menu Lacuna writes the implant: with a report by Implant to Files and Report, alone by Save Solid")
     return result
 
 
@@ -167,7 +169,7 @@ def report_implant(source=None, folder=None):
     """
     source = _data_of(source, "a Skull Implant")
     if source.GetXMLName() != "LacunaSkullImplant":
-        raise ValueError(f"'{_name(source)}' is no Skull Implant; run the macro CT to implant first, and select what it makes")
+        raise ValueError(f"'{_name(source)}' is no Skull Implant; run CT to Implant first, and select what it makes")
     view = _view()
     made = implant.Made(source.Input, source, pv.OutputPort(source, 1), pv.OutputPort(source, 2))
     folder = _free_name(folder or os.path.expanduser("~"), "implant-report", "")
@@ -205,13 +207,27 @@ def _check_volume(image, name, level=BONE):
     if not image.IsA("vtkImageData") or min(image.GetDimensions()) < 2:
         raise ValueError(f"'{name}' is no volume; select a CT Series Reader, another reader of a volume, or Skull Phantom in the pipeline browser")
     if image.GetFieldData().HasArray("SliceStatus"):
-        raise ValueError(f"'{name}' is a sweep, not a CT: use the macro for sweeps")
+        raise ValueError(f"'{name}' is a sweep, not a CT: use Sweep to Surface")
     grey = image.GetPointData().GetScalars()
     if grey is None or grey.GetNumberOfComponents() != 1:
         raise ValueError(f"'{name}' has no grey levels (one number per voxel)")
     low, high = grey.GetRange()
     if not low < level <= high:
         raise ValueError(f"the values of '{name}' range from {low:.4g} to {high:.4g}: bone, at {level} Hounsfield units, is not among them")
+
+
+def _fan_mask(image):
+    """Automatic where the images show surely what the probe sees (Scan Region), else None: rulers and texts are no tissue."""
+    region = vtkLacunaScanRegion()
+    region.SetInputData(image)
+    display = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()  # that there is none is no error here
+    try:
+        region.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(display)
+    confidence = region.GetOutputDataObject(0).GetFieldData().GetArray("Confidence")
+    return "Automatic" if confidence and confidence.GetValue(0) >= SURE else "None"
 
 
 def _fit(volume):

@@ -14,7 +14,7 @@ import vtkmodules.vtkRenderingContextOpenGL2  # noqa: F401 (draws charts)
 
 from lacuna.data import fetch
 from lacuna.files import writing
-from lacuna.views import annotations, map_letters
+from lacuna.views import annotations, map_letters, text_color
 
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
@@ -94,7 +94,7 @@ def color_by(display, view, array, title, bounds, preset="Cool to Warm"):
     display.SetScalarBarVisibility(view, True)
     bar = pv.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = title, ""
-    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.TitleColor = bar.LabelColor = text_color(view)
     _set_digits(bar, 2)
     bar.WindowLocation = "Lower Right Corner"
     return table
@@ -137,7 +137,7 @@ def show_slices(planes, view):
     bar = pv.GetScalarBar(table, view)
     bar.Title = {"Intensity": "Grey level", "Speed": "Speed (mm/s)"}.get(name, "Expected error (mm)")
     bar.ComponentTitle = ""
-    bar.TitleColor = bar.LabelColor = [0.1, 0.1, 0.1]
+    bar.TitleColor = bar.LabelColor = text_color(view)
     _set_digits(bar, 2 if name == "RegistrationError" else 0)
     bar.WindowLocation = "Lower Right Corner"
     return display
@@ -171,11 +171,11 @@ def add_scale_bar(view, millimetres, aside=False):
     if aside:
         middle -= 0.4 * scale * width / height * right
     line = pv.Line(Point1=list(middle - millimetres / 2 * right), Point2=list(middle + millimetres / 2 * right))
-    show_surface(line, view, (0.1, 0.1, 0.1)).LineWidth = 5
+    show_surface(line, view, text_color(view)).LineWidth = 5
     annotations.add(line.GetGlobalIDAsString())
     text = f"{millimetres:g} mm"
     display = pv.Show(pv.Text(Text=text), view)
-    display.Color = [0.1, 0.1, 0.1]
+    display.Color = text_color(view)
     display.FontSize = 18
     display.WindowLocation = "Lower Center"
     if aside:

@@ -154,13 +154,20 @@ def _check_view(view):
             _check_patient(display.Input, f"what the view shows of {display.Input.GetXMLLabel()}")
 
 
-def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18, force=False):
+def text_color(view):
+    """Dark grey or white, whichever is seen better on the background of a view."""
+    from paraview.simple import GetSettingsProxy
+    back = GetSettingsProxy("ColorPalette").Background if view.UseColorPaletteForBackground else view.Background
+    return [0.1] * 3 if sum(back) > 1.5 else [1.0] * 3
+
+
+def show_orientation(view=None, color=None, font_size=18, force=False):
     """Marks the edges of a render view with L, R, A, P, H, F: where the patient's left is, and so on.
 
     For data in patient coordinates only (in_patient_coordinates), not for moulds, mirror images or tracked ultrasound,
     whose reference frame knows no patient: raises ValueError when the view shows any such data, unless force. What is
-    shown later is not asked. The letters follow the camera. Call it again to change color or size, hide_orientation to
-    take them away. They are not in the pipeline browser and not in state files: loaded from one they would not follow
+    shown later is not asked. The letters follow the camera. Call it again to change color (by
+    default text_color) or size, hide_orientation to take them away. They are not in the pipeline browser and not in state files: loaded from one they would not follow
     the camera any more. Returns the letters by edge.
     """
     import paraview.simple as pv
@@ -171,6 +178,7 @@ def show_orientation(view=None, color=(0.1, 0.1, 0.1), font_size=18, force=False
     if not force:
         _check_view(view)
     hide_orientation(view)
+    color = color or text_color(view)
     camera = view.GetActiveCamera()
     width, height = view.ViewSize
     marks = {}

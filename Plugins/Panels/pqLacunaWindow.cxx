@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pqLacunaWindow.h"
+
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqFileDialog.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVDataSetAttributesInformation.h"
+#include "vtkPythonInterpreter.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSourceProxy.h"
+
+#include <QAction>
+#include <QMainWindow>
+#include <QMenu>
+#include <QMenuBar>
+#include <QTimer>
+
+#include <cstring>
+
+namespace
+{
+struct Entry
+{
+  const char* Text;
+  const char* Job; ///< of lacuna.window; of filters and sources the name of the proxy
+  const char* ToolTip;
+};
+
+constexpr Entry Jobs[] = {
+  { "CT to &Implant", "ct_to_implant",
+    "The largest hole of a skull is closed: bone, implant and the error to expect. Select the CT "
+    "first." },
+  { "Implant to &Files and Report", "report_implant",
+    "Writes implant.stl and a report (HTML, PDF). Select a Skull Implant first." },
+  { "CT to I&GES", "ct_to_iges",
+    "The hole that the 3-D view looks into becomes an IGES surface. Select the CT first." },
+  { "&Sweep to Surface", "sweep_to_surface",
+    "Tracked slices become a volume and a surface. Select the sweep first." },
+};
+constexpr Entry Samples[] = {
+  { "Sample &CT: Skull with a Hole", "sample_ct", "A skull of mathematics, with a hole." },
+  { "Sample Sweep: &Ultrasound", "sample_sweep", "Tracked slices of an ellipsoid in speckle." },
+};
+
+/// What filters are for; one without a name begins a part of the menu.
+constexpr Entry Filters[] = {
+  { "Ultrasound", nullptr, nullptr },
+  { "Frames with poses", "LacunaAssembleTrackedSlices", nullptr },
+  { "What the probe sees", "LacunaScanRegion", nullptr },
+  { "Where pixels lie", "LacunaProbeCalibration", nullptr },
+  { "How late frames are", "LacunaTemporalCalibration", nullptr },
+  { "Is the tracker right?", "LacunaTrackerSelfTest", nullptr },
+  { "Slices at one moment of the heart or breath", "LacunaGateSlices", nullptr },
+  { "Less speckle", "LacunaSpeckleFilter", nullptr },
+  { "Contrast to speckle", "LacunaContrastToSpeckle", nullptr },
+  { "Slices as pictures in space", "LacunaSlicePlanes", nullptr },
+  { "Draw around an organ", "LacunaSliceOutliner", nullptr },
+  { "An organ's volume in ml", "LacunaOutlinedStructures", nullptr },
+  { "Volume of a sweep", "LacunaSweptVolume", nullptr },
+  { "Surface while you scan", "LacunaSliceRayCaster", nullptr },
+  { "Skull and implant", nullptr, nullptr },
+  { "Skull alone", "LacunaSkullBone", nullptr },
+  { "Implant for any hole", "LacunaSkullImplant", nullptr },
+  { "Cut, guide and implant planned", "LacunaSkullResection", nullptr },
+  { "The other side", "LacunaMirror", nullptr },
+  { "Depth map of a skull", "LacunaBSplineIsoRayCaster", nullptr },
+  { "Shaded picture of a depth map", "LacunaDepthMapShader", nullptr },
+  { "Surface of a depth map", "LacunaDepthMapSurface", nullptr },
+  { "Fill a hole of a depth map", "LacunaRBFHoleFiller", nullptr },
+  { "Making it", nullptr, nullptr },
+  { "Plate of a filled hole", "LacunaImplantPlate", nullptr },
+  { "Model of the defect", "LacunaDefectModel", nullptr },
+  { "Mould to press a sheet", "LacunaPressOrientation", nullptr },
+  { "Milling path", "LacunaMillingToolPath", nullptr },
+  { "Surfaces and shapes", nullptr, nullptr },
+  { "Surface through points", "LacunaRBFSurface", nullptr },
+  { "How enclosed a place is", "LacunaOccludedAngle", nullptr },
+  { "Surface of an incomplete shape", "LacunaOcclusionSurface", nullptr },
+  { "Values between points", "LacunaRBFInterpolator", nullptr },
+  { "Warp by landmarks", "LacunaRBFImageWarp", nullptr },
+};
+
+void Run(const QString& call)
+{
+  vtkPythonInterpreter::Initialize();
+  vtkPythonInterpreter::RunSimpleString(QString(
+    "try:\n"
+    "  import lacuna.window\n"
+    "except ImportError as lacuna_error:\n"
+    "  import paraview\n"
+    "  paraview.print_error(f\"Lacuna's Python package is not found ({lacuna_error}): start "
+    "ParaView after '. lacuna-env.sh'\")\n"
+    "else:\n"
+    "  lacuna.window.%1\n")
+                                          .arg(call)
+                                          .toUtf8()
+                                          .constData());
+}
+
+void SaveSolid(QMainWindow* window)
+{
+  pqFileDialog dialog(nullptr, window, QObject::tr("Save Solid"), QString(),
+    QObject::tr("STL (*.stl);;PLY (*.ply);;3MF (*.3mf)"), false);
+  dialog.setObjectName("LacunaSaveSolid");
+  dialog.setFileMode(pqFileDialog::AnyFile);
+  if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
+  {
+    const QByteArray path = dialog.getSelectedFiles().first().toUtf8().toHex();
+    Run("run('save_solid', bytes.fromhex('" + QString(path) + "').decode())");
+  }
+}
+
+/// ParaView's action that makes a filter, by the name of its proxy; null when there is none.
+QAction* FindAction(const QWidget* window, const char* filter)
+{
+  const QStringList data{ "filters", filter };
+  for (QAction* action : window->findChildren<QAction*>())
+  {
+    if (action->data().toStringList() == data)
+    {
+      return action;
+    }
+  }
+  return nullptr;
+}
+
+/// A submenu for each part, in which filters have the name of what they are for beside their own. What is there stays.
+void AddFilters(QMenu* menu, QMainWindow* window)
+{
+  QMenu* part = nullptr;
+  for (const Entry& entry : Filters)
+  {
+    if (!entry.Job)
+    {
+      part = menu->findChild<QMenu*>(entry.Text);
+      if (!part)
+      {
+        part = menu->addMenu(QObject::tr(entry.Text));
+        part->setObjectName(entry.Text);
+      }
+      continue;
+    }
+    QAction* original = FindAction(window, entry.Job);
+    if (!original || part->findChild<QAction*>(entry.Job))
+    {
+      continue; // its module is not built, or it is there
+    }
+    const QString text = QString("%1: %2").arg(QObject::tr(entry.Text), original->text());
+    original->setToolTip(text); // in toolbars
+    QAction* action = part->addAction(original->icon(), text);
+    action->setObjectName(entry.Job);
+    QObject::connect(action, &QAction::triggered, original, &QAction::trigger);
+    // ParaView's menu knows what fits the selection
+    const auto follow = [action, original] { action->setEnabled(original->isEnabled()); };
+    QObject::connect(original, &QAction::changed, action, follow);
+    follow();
+  }
+}
+
+bool HasHounsfieldUnits(vtkSMSourceProxy* source)
+{
+  const auto* points = source->GetDataInformation(0)->GetPointDataInformation();
+  return points->GetArrayInformation("HounsfieldUnits") != nullptr;
+}
+
+/// Whether it is Lacuna's, or made of what is.
+bool IsOurs(vtkSMProxy* proxy)
+{
+  if (!proxy || !proxy->GetXMLName())
+  {
+    return false;
+  }
+  if (std::strncmp(proxy->GetXMLName(), "Lacuna", 6) == 0)
+  {
+    return true;
+  }
+  return proxy->GetProperty("Input") &&
+    IsOurs(vtkSMPropertyHelper(proxy, "Input", true).GetAsProxy());
+}
+}
+
+//------------------------------------------------------------------------------
+pqLacunaWindow::pqLacunaWindow(QObject* parent)
+  : Superclass(parent)
+{
+}
+
+//------------------------------------------------------------------------------
+pqLacunaWindow::~pqLacunaWindow() = default;
+
+//------------------------------------------------------------------------------
+void pqLacunaWindow::startup()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  QObject::connect(
+    model, &pqServerManagerModel::modifiedStateChanged, this, &pqLacunaWindow::FollowState);
+  QObject::connect(model, &pqServerManagerModel::preItemRemoved, this,
+    [this](pqServerManagerModelItem* item) { this->NewSources.remove(item); });
+  QTimer::singleShot(0, this, &pqLacunaWindow::AddMenu); // when the window has its own
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaWindow::shutdown() {}
+
+//------------------------------------------------------------------------------
+void pqLacunaWindow::AddMenu()
+{
+  auto* window = qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+  if (!window)
+  {
+    return;
+  }
+  auto* menu = new QMenu(tr("&Lacuna"), window);
+  menu->setObjectName("menuLacuna");
+  menu->setToolTipsVisible(true);
+  const auto add = [this, menu](const Entry& entry)
+  {
+    QAction* action = menu->addAction(tr(entry.Text));
+    action->setObjectName(QString("Lacuna_") + entry.Job);
+    action->setToolTip(tr(entry.ToolTip));
+    QObject::connect(
+      action, &QAction::triggered, this, [job = QString(entry.Job)] { Run("run('" + job + "')"); });
+  };
+  for (const Entry& entry : Jobs)
+  {
+    add(entry);
+  }
+  QAction* save = menu->addAction(tr("Save S&olid (STL, PLY, 3MF)..."));
+  save->setObjectName("Lacuna_save_solid");
+  save->setToolTip(
+    tr("Writes what is selected for a printer, in mm, with a record; mirrored data are refused."));
+  QObject::connect(save, &QAction::triggered, this, [window] { SaveSolid(window); });
+  menu->addSeparator();
+  for (const Entry& entry : Samples)
+  {
+    add(entry);
+  }
+  menu->addSeparator();
+  AddFilters(menu, window);
+  // where ParaView learns of the filters later
+  QObject::connect(menu, &QMenu::aboutToShow, this, [menu, window] { AddFilters(menu, window); });
+  QAction* before = nullptr; // Help is the last
+  for (QAction* action : window->menuBar()->actions())
+  {
+    if (action->text().remove('&') == "Help")
+    {
+      before = action;
+    }
+  }
+  window->menuBar()->insertMenu(before, menu);
+}
+
+//------------------------------------------------------------------------------
+void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
+{
+  auto* source = qobject_cast<pqPipelineSource*>(item);
+  if (!source)
+  {
+    return;
+  }
+  vtkSMSourceProxy* proxy = source->getSourceProxy();
+  const QString identity = QString::number(proxy->GetGlobalID());
+  if (source->modifiedState() == pqProxy::UNINITIALIZED)
+  {
+    this->NewSources.insert(item);
+    if (std::strcmp(proxy->GetXMLName(), "LacunaTrackedSliceReader") == 0)
+    {
+      Run("offer_calibration(" + identity + ")");
+    }
+  }
+  else if (source->modifiedState() == pqProxy::UNMODIFIED && this->NewSources.remove(item) &&
+    (IsOurs(proxy) || HasHounsfieldUnits(proxy)))
+  {
+    Run("show_applied(" + identity + ")");
+  }
+}

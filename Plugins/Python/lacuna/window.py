@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How ParaView's window shows data the first time, and the jobs of its menu Lacuna. In scripts, too:
+
+    from lacuna import window
+    window.show(reader)        # a CT as bone, upright, with letters at the edges; a sweep as slices in space
+
+The plugin calls show_applied after Apply of what is new, offer_calibration for a new Tracked Slice Reader, and run for the menu.
+"""
+import functools
+import itertools
+import math
+import os
+import xml.etree.ElementTree
+
+import numpy as np
+import paraview.simple as pv
+from paraview import servermanager
+
+from lacuna import coordinates, demo_ultrasound, pictures, solids, views
+from lacuna.data import fetch
+
+AIR, BONE = -200, 300  # Hounsfield units: below the first there is air, above the second bone
+SLICES = "Slices in Space"
+# Of a volume rendering: Hounsfield units, then colour or opacity. Soft tissue is not seen.
+BONE_COLORS = ((150, 0.75, 0.55, 0.45), (350, 0.90, 0.83, 0.70), (1200, 0.97, 0.95, 0.90), (3000, 1, 1, 1))
+BONE_OPACITIES = ((250, 0), (400, 0.6), (700, 0.95), (3000, 1))
+SLICE_OPACITIES = ((0, 0), (0.03, 0), (0.12, 0.85), (1, 1))  # part of the range, opacity
+FRONT, UP = (0, 1, 0), (0, 0, 1)  # the view into the face, in patient coordinates (LPS)
+
+
+def run(job, *arguments):
+    """A job of the menu by its name: one of lacuna.macros on the active source, or one of here. What is wrong is said in Output Messages."""
+    from lacuna import macros
+    own = {"sample_ct": sample_ct, "sample_sweep": sample_sweep, "save_solid": save_solid}
+    return macros.run(functools.partial(own.get(job) or getattr(macros, job), *arguments))
+
+
+def save_solid(path):
+    """Writes the active source by lacuna.solids.save_solid."""
+    source = pv.GetActiveSource()
+    if source is None:
+        raise ValueError("nothing is selected in the pipeline browser; select an implant or another closed surface")
+    solids.save_solid(path, source)
+    print(f"Lacuna: {path} is written")
+
+
+def sample_ct():
+    """A Skull Phantom, shown."""
+    return _show_sample(pv.SkullPhantom(registrationName="Sample CT", Spacing=[1, 1, 1]))
+
+
+def sample_sweep():
+    """A Phantom Sweep, shown."""
+    return _show_sample(pv.PhantomSweep(registrationName="Sample sweep", SpeckleLevel=0.2))
+
+
+def _show_sample(source):
+    """Alone: each sample has coordinates of its own."""
+    view = pv.GetActiveViewOrCreate("RenderView")
+    pv.HideAll(view)
+    views.hide_orientation(view)
+    show(source, view)
+    pv.SetActiveSource(source)
+    pv.Render(view)
+    return source
+
+
+def show_applied(identity):
+    """Shows a source that was applied for the first time, by the global ID of its proxy. Never raises: ParaView shows it already."""
+    try:
+        source = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
+        view = pv.GetActiveView()
+        if view is not None and hasattr(view, "GetActiveCamera") and pv.GetDisplayProperties(source, view).Visibility:
+            show(source, view)
+    except Exception as error:  # pylint: disable=broad-exception-caught
+        import paraview
+        paraview.print_warning(f"Lacuna: the view is ParaView's own, since {error}")
+
+
+def show(source, view=None):
+    """Shows a source in a view, by default the active one, as who works with such data expects. Returns the source.
+
+    A volume in Hounsfield units (is_ct): bone, volume rendered; alone in the view it is seen upright from the front, with letters at the
+    edges when it is known to be in patient coordinates. Tracked slices with poses: pictures where they lie. Contours in one colour: of a
+    CT that of bone, else that of tissue. The camera goes to what it cannot see.
+    """
+    view = view or pv.GetActiveView() or pv.CreateRenderView()
+    display = pv.Show(source, view)
+    source.UpdatePipeline()
+    fields = source.FieldData
+    information = source.GetDataInformation()
+    bounds = information.GetBounds()
+    is_alone = not any(each is not display for each in _shown(view))
+    if is_ct(source):
+        _show_bone(source, display, view)
+        if is_alone:
+            pictures.look(view, FRONT, UP, 1.2)
+            _mark_sides(view)
+            return source
+    elif fields["ImageToReference"] and information.GetDataSetTypeAsString() == "vtkImageData":
+        display.SetRepresentationType(SLICES)
+        _color_slices(source, display, view)
+        bounds = _slice_bounds(fetch(source))
+        if is_alone and bounds:
+            poses = demo_ultrasound.slice_poses(fetch(source))
+            _look_askance(poses[np.isfinite(poses).all(axis=(1, 2))], view)
+            return source
+    elif source.GetXMLName() == "Contour":
+        display.ColorArrayName = [None, ""]
+        display.AmbientColor = display.DiffuseColor = list(pictures.BONE if coordinates.is_patient(source) else pictures.TISSUE)
+        display.Specular = 0.15
+    if bounds and not _is_seen(bounds, view):
+        pv.ResetCamera(view)
+    return source
+
+
+def is_ct(source):
+    """Whether a source is a volume with one number per voxel in Hounsfield units: an array of that name, or values from air to bone."""
+    information = source.GetDataInformation()
+    if information.GetDataSetTypeAsString() != "vtkImageData" or source.FieldData["SliceStatus"]:
+        return False
+    extent = information.GetExtent()
+    if min(extent[2 * axis + 1] - extent[2 * axis] for axis in range(3)) < 1:
+        return False
+    for name in source.PointData.keys():
+        grey = source.PointData[name]
+        if grey.GetNumberOfComponents() == 1 and (name == "HounsfieldUnits" or (name == "Intensity" and grey.GetRange()[0] <= AIR)):
+            return grey.GetRange()[1] > BONE
+    return False
+
+
+def _show_bone(source, display, view):
+    """Volume rendering with colours of its own: slices of the same data stay grey."""
+    name = "HounsfieldUnits" if "HounsfieldUnits" in source.PointData.keys() else "Intensity"
+    _color_apart(display, view, name, BONE_COLORS, BONE_OPACITIES)
+    display.SetRepresentationType("Volume")
+    display.Shade = 1
+
+
+def show_pictures(planes, view):
+    """Shows Slice Planes as grey pictures, in which black is not seen."""
+    display = pv.Show(planes, view)
+    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+    _color_slices(planes, display, view)
+    return display
+
+
+def _color_slices(source, display, view):
+    """Grey pictures; what is black is not seen, so that slices do not hide each other."""
+    grey = source.PointData["Intensity"]
+    if grey is None or grey.GetNumberOfComponents() != 1:
+        return
+    low, high = grey.GetRange()
+    span = high - low or 1
+    table = _color_apart(display, view, "Intensity", ((low, 0, 0, 0), (low + span, 1, 1, 1)),
+                         [(low + part * span, opacity) for part, opacity in SLICE_OPACITIES])
+    table.EnableOpacityMapping = 1
+
+
+def _color_apart(display, view, name, colors, opacities):
+    """Colours a display by a point array with functions of its own: (value, red, green, blue) and (value, opacity). Returns the colours."""
+    if display.ColorArrayName[1]:
+        display.SetScalarBarVisibility(view, False)
+    display.UseSeparateColorMap = 1
+    pv.ColorBy(display, ("POINTS", name), separate=True)
+    table = pv.GetColorTransferFunction(name, display, separate=True)
+    opacity = pv.GetOpacityTransferFunction(name, display, separate=True)
+    table.AutomaticRescaleRangeMode = "Never"
+    table.ColorSpace = "RGB"
+    table.RGBPoints = list(itertools.chain(*colors))
+    opacity.Points = list(itertools.chain(*((value, each, 0.5, 0) for value, each in opacities)))
+    table.ScalarOpacityFunction = opacity
+    display.LookupTable = table
+    if display.GetProperty("ScalarOpacityFunction"):
+        display.ScalarOpacityFunction = opacity
+    display.SetScalarBarVisibility(view, False)
+    return table
+
+
+def _shown(view):
+    """The displays of data that a view shows."""
+    return [each for each in view.Representations if each.GetProperty("Input") and each.GetProperty("WindowLocation") is None
+            and each.Visibility and each.Input is not None]
+
+
+def _mark_sides(view):
+    try:
+        views.show_orientation(view)
+    except ValueError:  # not known to be the patient's, or something else is shown
+        pass
+
+
+def _slice_bounds(image):
+    """The box around the slices that have poses, mm; None without."""
+    columns, rows, _ = image.GetDimensions()
+    corners = np.array([[u, v, 0, 1] for u in (0, columns - 1) for v in (0, rows - 1)], float)
+    poses = demo_ultrasound.slice_poses(image)
+    points = np.concatenate([corners @ pose.T for pose in poses if np.isfinite(pose).all()] or [np.empty((0, 4))])[:, :3]
+    return [f(points[:, axis]) for axis in range(3) for f in (np.min, np.max)] if len(points) else None
+
+
+def _look_askance(poses, view):
+    """From the probe into the tissue and from aside, so that slices are not seen head-on."""
+    middle = poses[len(poses) // 2][:3, :2]
+    lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
+    pictures.look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
+
+
+def _is_seen(bounds, view):
+    """Whether the camera of a view has a box in sight, neither as a speck nor from within."""
+    camera = view.GetActiveCamera()
+    low, high = np.array(bounds[::2]), np.array(bounds[1::2])
+    if not (low <= high).all():
+        return True  # empty
+    forwards = np.array(camera.GetDirectionOfProjection())
+    to = (low + high) / 2 - np.array(camera.GetPosition())
+    depth = to @ forwards
+    half = camera.GetParallelScale() if camera.GetParallelProjection() else depth * math.tan(math.radians(camera.GetViewAngle()) / 2)
+    size = np.linalg.norm(high - low) / 2
+    aside = np.linalg.norm(to - depth * forwards)
+    return bool(half > 0 and aside < 1.5 * half and 0.1 * half < size < 5 * half)
+
+
+def offer_calibration(identity):
+    """Fills in CalibrationFileName of a new Tracked Slice Reader when the sweep has no calibration and one lies beside it.
+
+    That is the only device set configuration (XML of PLUS) in the folder with a transform from Image to Probe. The panel shows it
+    before Apply. The files of a remote server are not looked at.
+    """
+    if servermanager.ActiveConnection.IsRemote():
+        return
+    reader = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
+    found = calibration_beside(reader.FileName) if not reader.CalibrationFileName and not _is_calibrated(reader.FileName) else None
+    if found:
+        reader.CalibrationFileName = found
+        print(f"Lacuna: CalibrationFileName is {found}, which lies beside the sweep. Another probe's would give wrong millimetres: look at it before Apply")
+
+
+def calibration_beside(path):
+    """The name of the only XML file beside a sweep that has a transform from Image to Probe, or None."""
+    folder = os.path.dirname(path) or "."
+    found = []
+    try:
+        for name in sorted(os.listdir(folder)):
+            file = os.path.join(folder, name)
+            if name.lower().endswith(".xml") and os.path.isfile(file) and os.path.getsize(file) < 1 << 20 and _has_calibration(file):
+                found.append(file)
+    except OSError:
+        return None
+    return found[0] if len(found) == 1 else None
+
+
+def _is_calibrated(path):
+    """Whether the header of a sweep names a transform from or to its images."""
+    try:
+        with open(path, "rb") as file:
+            head = file.read(1 << 16)
+    except OSError:
+        return False
+    return any(word in head for word in (b"ImageTo", b"ToImageTransform", b"ToCroppedImageTransform"))
+
+
+def _has_calibration(file):
+    try:
+        root = xml.etree.ElementTree.parse(file).getroot()
+    except (xml.etree.ElementTree.ParseError, OSError, ValueError):
+        return False
+    return any(each.get("From") == "Image" and each.get("To") == "Probe" for each in root.iter("Transform"))
