@@ -27,7 +27,9 @@ vtkLacunaDepthMap::vtkLacunaDepthMap(vtkImageData* map)
   {
     std::ostringstream message;
     message << "a depth map is one pixel deep (W x H x 1), this image has "
-            << extent[5] - extent[4] + 1 << " layers";
+            << extent[5] - extent[4] + 1
+            << " layers. B-Spline Iso Ray Caster makes a depth map of a volume: put it before this "
+               "filter";
     throw std::runtime_error(message.str());
   }
   this->Depth = map->GetPointData()->GetArray(DepthName);

@@ -15,6 +15,16 @@
 #include <stdexcept>
 
 //------------------------------------------------------------------------------
+void vtkLacunaTrackedSlices::Refuse(vtkImageData* image)
+{
+  if (image->GetFieldData()->HasArray(SliceStatusName))
+  {
+    throw std::runtime_error("these are tracked slices, not a volume: their pixels are not in "
+                             "millimetres. Put Swept Volume before this filter");
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkLacunaTrackedSlices::vtkLacunaTrackedSlices(vtkImageData* stack)
   : Stack(stack)
   , GreyLevels(stack->GetPointData()->GetScalars())

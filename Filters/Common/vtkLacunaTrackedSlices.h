@@ -53,6 +53,10 @@ public:
   /// wrong with it. Keeps no reference: stack must outlive this object.
   explicit vtkLacunaTrackedSlices(vtkImageData* stack);
 
+  /// Throws std::runtime_error when an image is a stack of slices, for filters of volumes: its pixels
+  /// are no millimetres.
+  static void Refuse(vtkImageData* image);
+
   /// Slices of the original sweep: the length of the field data arrays.
   vtkIdType GetNumberOfSlices() const { return static_cast<vtkIdType>(this->Poses.size()); }
 

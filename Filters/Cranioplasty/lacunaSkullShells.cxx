@@ -10,6 +10,7 @@
 #include "vtkImageData.h"
 #include "vtkLacunaArrays.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -156,6 +157,7 @@ private:
 //------------------------------------------------------------------------------
 VoxelVolume GetBoneVolume(vtkImageData* image, vtkSmartPointer<vtkDataArray>& keep)
 {
+  vtkLacunaTrackedSlices::Refuse(image);
   vtkLacunaVolumeDirection::Check(image);
   vtkDataArray* scalars = image->GetPointData()->GetScalars();
   if (!scalars || scalars->GetNumberOfComponents() != 1)

@@ -17,6 +17,7 @@
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaRequest.h"
 #include "vtkLacunaScalarType.h"
+#include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
@@ -488,6 +489,7 @@ int vtkLacunaSkullBone::RequestData(
         throw std::runtime_error("BridgeDiameter is " + lacuna::FormatNumber(this->BridgeDiameter) +
           " mm; it must be between 0 and 20");
       }
+      vtkLacunaTrackedSlices::Refuse(input);
       vtkLacunaVolumeDirection::Check(input);
       vtkDataArray* scalars = input->GetPointData()->GetScalars();
       if (!scalars || scalars->GetNumberOfComponents() != 1)

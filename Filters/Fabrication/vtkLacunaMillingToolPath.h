@@ -126,7 +126,8 @@ public:
   vtkBooleanMacro(Finishing, bool);
   ///@}
   ///@{
-  /** mm between the levels of roughing; 0: none. Default 0. */
+  /** mm between the levels of roughing; 0: none. -1: half of the tool's radius where finishing alone
+   * would take off more than the radius, else none. Default -1. */
   vtkSetMacro(RoughingStep, double);
   vtkGetMacro(RoughingStep, double);
   ///@}
@@ -224,7 +225,7 @@ private:
   double Direction = 0;
   int Pattern = ZigZag;
   bool Finishing = true;
-  double RoughingStep = 0;
+  double RoughingStep = -1;
   double RoughingStepOver = 0;
   double StockAllowance = 0.5;
   double StockTop = 0;

@@ -6,6 +6,7 @@
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaTrackedSlices.h"
 #include "vtkLacunaVolumeDirection.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMatrix4x4.h"
@@ -64,6 +65,7 @@ bool vtkLacunaCasterView::IsEmpty(const int extent[6])
 //------------------------------------------------------------------------------
 vtkLacunaCasterView::Frame vtkLacunaCasterView::FrameOf(vtkImageData* volume)
 {
+  vtkLacunaTrackedSlices::Refuse(volume);
   vtkLacunaVolumeDirection::Check(volume);
   return { SizeOf(volume->GetExtent()),
     IndexToWorld(volume->GetOrigin(), volume->GetSpacing(), volume->GetDirectionMatrix()->GetData(),

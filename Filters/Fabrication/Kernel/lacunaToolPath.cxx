@@ -33,7 +33,8 @@ void CheckOptions(const ToolPathOptions& o)
   const auto within = [](double x, double low, double high) { return x >= low && x <= high; };
   Require(o.Tool.Radius > 0 && o.Tool.Radius <= 1000,
     "ToolRadius is " + FormatNumber(o.Tool.Radius) + " mm; above 0 and at most 1000 is possible");
-  Require(o.Finishing || o.RoughingStep > 0,
+  const bool isAutomatic = o.RoughingStep == ToolPathOptions::AutomaticRoughing;
+  Require(o.Finishing || o.RoughingStep > 0 || isAutomatic,
     "there is nothing to do: Finishing is off and RoughingStep is 0");
   Require(o.ScallopHeight >= 0 && o.ScallopHeight < o.Tool.Radius,
     "ScallopHeight is " + FormatNumber(o.ScallopHeight) +
@@ -56,10 +57,9 @@ void CheckOptions(const ToolPathOptions& o)
       "is possible");
   Require(within(o.Tolerance, 0.0001, 10),
     "Tolerance is " + FormatNumber(o.Tolerance) + " mm; 0.0001 to 10 is possible");
-  Require(o.RoughingStep == 0 || within(o.RoughingStep, 0.01, 1000),
+  Require(isAutomatic || o.RoughingStep == 0 || within(o.RoughingStep, 0.01, 1000),
     "RoughingStep is " + FormatNumber(o.RoughingStep) +
-      " mm; 0 (no roughing) or 0.01 to 1000 is "
-      "possible");
+      " mm; -1 (automatic), 0 (no roughing) or 0.01 to 1000 is possible");
   Require(o.RoughingStepOver == 0 || within(o.RoughingStepOver, 0.01, 2 * o.Tool.Radius),
     "RoughingStepOver is " + FormatNumber(o.RoughingStepOver) +
       " mm; 0 (the tool's radius) or 0.01 to the tool's diameter is possible");
@@ -393,7 +393,14 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   const std::vector<Samples> lines =
     DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
   const double deepest = FindDeepest(lines)[2];
-  const double levels = std::ceil((path.StockTop - deepest) / options.RoughingStep - 1e-9);
+  const bool isAutomatic = options.RoughingStep == ToolPathOptions::AutomaticRoughing;
+  if (isAutomatic && options.Finishing &&
+    path.StockTop - deepest + options.StockAllowance <= options.Tool.Radius)
+  {
+    return;
+  }
+  const double depthOfLevel = isAutomatic ? options.Tool.Radius / 2 : options.RoughingStep;
+  const double levels = std::ceil((path.StockTop - deepest) / depthOfLevel - 1e-9);
   Require(levels <= LargestLevels,
     "RoughingStep gives " + FormatNumber(levels) + " levels; at most 10000 are possible");
   path.Levels = static_cast<std::int32_t>(std::max(0.0, levels));
@@ -403,7 +410,7 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
     for (const Vec3& p : line)
     {
       cuts += std::isfinite(p[2]) && p[2] < path.StockTop
-        ? std::ceil((path.StockTop - p[2]) / options.RoughingStep)
+        ? std::ceil((path.StockTop - p[2]) / depthOfLevel)
         : 0;
     }
   }
@@ -411,14 +418,14 @@ void AddRoughing(Execution& execution, ToolPath& path, Assembler& assembler,
   for (std::int32_t level = 0; level < path.Levels; ++level)
   {
     execution.SetStage(0.1 + 0.4 * level / path.Levels, 0.1 + 0.4 * (level + 1) / path.Levels);
-    const double ceiling = path.StockTop - level * options.RoughingStep;
-    const double floor = ToMicrometres(0, 0, std::max(deepest, ceiling - options.RoughingStep))[2];
+    const double ceiling = path.StockTop - level * depthOfLevel;
+    const double floor = ToMicrometres(0, 0, std::max(deepest, ceiling - depthOfLevel))[2];
     AddPass(execution, assembler, lines,
       { cutter, floor, ceiling - 0.5 * MotionTolerance, options.OneWay ? 0 : 3 * step, along,
         false },
       level, options);
   }
-  if (const double depth = std::min(options.RoughingStep, path.StockTop - deepest);
+  if (const double depth = std::min(depthOfLevel, path.StockTop - deepest);
       depth > options.Tool.Radius)
   {
     path.Warnings.push_back("a level of roughing takes off up to " +
@@ -459,7 +466,7 @@ void AddFinishing(Execution& execution, ToolPath& path, Assembler& assembler,
     DropLines(execution, cutter, raster, offsets, along, options.Overrun > 0);
   const Vec3 deepest = FindDeepest(lines);
   const double depth = path.StockTop - deepest[2];
-  if (!(options.RoughingStep > 0) && depth > options.Tool.Radius)
+  if (options.RoughingStep == 0 && depth > options.Tool.Radius)
   {
     const double top = path.StockTop + 0.0; // not -0
     path.Warnings.push_back("without roughing the first pass takes off up to " +
@@ -496,7 +503,7 @@ ToolPath MakeToolPath(
     options.PathStep > 0 ? options.PathStep : std::max(0.01, surface.GetSpacing());
   Assembler assembler(path, options);
   execution.SetStage(0, 0.1);
-  if (options.RoughingStep > 0)
+  if (options.RoughingStep != 0)
   {
     AddRoughing(execution, path, assembler, surface, options, raster, along);
   }

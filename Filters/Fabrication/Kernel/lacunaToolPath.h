@@ -26,8 +26,10 @@ struct ToolPathOptions
   double PathStep = 0;      ///< largest distance of positions on a line; 0: the surface's spacing
   double Tolerance = 0.005; ///< largest height that a straight motion leaves above the tool's own
   bool Finishing = true;
-  double RoughingStep = 0;     ///< depth of the levels of roughing; 0: none
+  double RoughingStep = 0;     ///< depth of the levels of roughing; 0: none; or AutomaticRoughing
   double RoughingStepOver = 0; ///< 0: the tool's radius
+  /// Half of the tool's radius where finishing alone would take off more than the radius, else none.
+  static constexpr double AutomaticRoughing = -1;
   double StockAllowance = 0.5; ///< left by roughing
   double StockTop = 0;         ///< z; the surface's highest point if that is higher
   double SafeHeight = 5;       ///< of rapid motions above the stock

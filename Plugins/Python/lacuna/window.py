@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 import numpy as np
 import paraview.simple as pv
 from paraview import servermanager
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from lacuna import coordinates, demo_ultrasound, pictures, solids, views
 from lacuna.data import fetch
@@ -24,7 +25,7 @@ SLICES = "Slices in Space"
 # Of a volume rendering: Hounsfield units, then colour or opacity. Soft tissue is not seen.
 BONE_COLORS = ((150, 0.75, 0.55, 0.45), (350, 0.90, 0.83, 0.70), (1200, 0.97, 0.95, 0.90), (3000, 1, 1, 1))
 BONE_OPACITIES = ((250, 0), (400, 0.6), (700, 0.95), (3000, 1))
-SLICE_OPACITIES = ((0, 0), (0.03, 0), (0.12, 0.85), (1, 1))  # part of the range, opacity
+DARK, BRIGHT = 0.03, 0.3  # parts of the grey levels: slices are transparent up to the first, or the median, and opaque behind the second
 FRONT, UP = (0, 1, 0), (0, 0, 1)  # the view into the face, in patient coordinates (LPS)
 
 
@@ -145,15 +146,23 @@ def show_pictures(planes, view):
     return display
 
 
+def _median(source):
+    """Of some grey levels; those of a remote server are not fetched for it."""
+    if servermanager.ActiveConnection.IsRemote():
+        return -math.inf
+    grey = vtk_to_numpy(fetch(source).GetPointData().GetArray("Intensity"))
+    return float(np.median(grey[::max(1, len(grey) // 100000)])) if len(grey) else -math.inf
+
+
 def _color_slices(source, display, view):
     """Grey pictures; what is black is not seen, so that slices do not hide each other."""
     grey = source.PointData["Intensity"]
     if grey is None or grey.GetNumberOfComponents() != 1:
         return
     low, high = grey.GetRange()
-    span = high - low or 1
-    table = _color_apart(display, view, "Intensity", ((low, 0, 0, 0), (low + span, 1, 1, 1)),
-                         [(low + part * span, opacity) for part, opacity in SLICE_OPACITIES])
+    dark = max(_median(source), low + DARK * (high - low))  # tissue without echoes, bath, margins
+    opacities = ((low, 0), (dark, 0), (dark + BRIGHT * (high - dark), 0.85), (high, 1)) if low < dark < high else ((low, 1), (low + 1, 1))
+    table = _color_apart(display, view, "Intensity", ((low, 0, 0, 0), (max(high, low + 1), 1, 1, 1)), opacities)
     table.EnableOpacityMapping = 1
 
 

@@ -35,6 +35,32 @@ std::string Name(DicomTag tag)
   std::snprintf(text, sizeof(text), "(%04X,%04X)", tag >> 16, tag & 0xFFFFU);
   return text;
 }
+
+/// What a file is that is no DICOM file, with what to do; empty when that is not known.
+std::string DescribeOther(FileBytes& bytes)
+{
+  constexpr std::int64_t niftiMark = 344;
+  std::string begin(niftiMark + 4, '\0');
+  begin.resize(static_cast<std::size_t>(std::min<std::int64_t>(bytes.GetSize(), begin.size())));
+  if (begin.empty() ||
+    !bytes.Read(
+      0, static_cast<std::int64_t>(begin.size()), reinterpret_cast<unsigned char*>(begin.data())))
+  {
+    return {};
+  }
+  const auto startsWith = [&](const char* mark) { return begin.rfind(mark, 0) == 0; };
+  if (startsWith("\xFF\xD8\xFF") || startsWith("\x89PNG"))
+  {
+    return " but a picture (JPEG or PNG). Choose a file that the scanner wrote, or its folder";
+  }
+  const bool isNifti = begin.size() > niftiMark &&
+    (begin.compare(niftiMark, 3, "n+1") == 0 || begin.compare(niftiMark, 3, "ni1") == 0);
+  if (startsWith("ObjectType") || startsWith("NDims") || startsWith("NRRD0") || isNifti)
+  {
+    return " but MetaImage, NRRD or NIfTI: open it by Volume Reader";
+  }
+  return {};
+}
 }
 
 /// Reads elements one after the other; no length is believed that goes beyond what holds it.
@@ -287,7 +313,7 @@ std::int64_t DicomParser::ReadMeta(DicomFile& file)
   const DicomBegin begin = FindDicomBegin(this->Bytes);
   if (begin == DicomBegin::None)
   {
-    throw NotDicomError(this->Path + ": is not a DICOM file");
+    throw NotDicomError(this->Path + ": is not a DICOM file" + DescribeOther(this->Bytes));
   }
   if (begin == DicomBegin::Implicit || begin == DicomBegin::Explicit)
   {

@@ -179,9 +179,10 @@ void DicomFolder::Scan(const std::string& path, Execution& execution)
         {
           entry.Frames = ReadDicomFrames(fresh[static_cast<std::size_t>(i)]->first);
         }
-        catch (const NotDicomError&)
+        catch (const NotDicomError& e)
         {
           entry.IsDicom = false;
+          entry.NoDicom = e.what();
         }
         catch (const std::exception& e)
         {
@@ -247,8 +248,9 @@ std::string DicomFolder::GetOpenedSeries() const
   const Entry& entry = this->Files.at(this->Opened);
   if (!entry.Error.empty() || entry.Frames.empty())
   {
-    throw std::runtime_error(
-      entry.Error.empty() ? this->Opened + ": is not a DICOM file" : entry.Error);
+    throw std::runtime_error(!entry.Error.empty() ? entry.Error
+        : !entry.NoDicom.empty()                  ? entry.NoDicom
+                                                  : this->Opened + ": is not a DICOM file");
   }
   const std::string& uid = entry.Frames.front().Header->SeriesUid;
   if (uid.empty())

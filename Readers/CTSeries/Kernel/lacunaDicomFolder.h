@@ -39,6 +39,7 @@ private:
     std::int64_t Size = -1;
     std::int64_t Time = 0;
     bool IsDicom = false;
+    std::string NoDicom; ///< why it is none
     std::vector<CTFrame> Frames;
     std::string Error;
   };

@@ -105,6 +105,31 @@ TEST(ToolPathWarnings, WarnsOfDeepCutsWithoutRoughing)
 }
 
 //------------------------------------------------------------------------------
+// By itself it roughs where the tool would be in over its radius, and there only.
+TEST(ToolPathWarnings, RoughsByItself)
+{
+  const auto make = [](double depth, double step, bool finishing = true)
+  {
+    const MillSurface surface = Surface(41, 31, 1,
+      [&](double x, double y) { return -depth * std::exp(-std::hypot(x - 30, y - 10) / 9); });
+    ToolPathOptions options;
+    options.RoughingStep = step;
+    options.Finishing = finishing;
+    return Path(surface, options);
+  };
+  constexpr double automatic = ToolPathOptions::AutomaticRoughing;
+  const ToolPath deep = make(18, automatic);
+  EXPECT_TRUE(deep.Warnings.empty());
+  EXPECT_GT(deep.Levels, 3);
+  EXPECT_EQ(deep.Points, make(18, 2).Points); // half of the radius of 4 mm
+  const ToolPath shallow = make(3, automatic);
+  EXPECT_EQ(shallow.Levels, 0);
+  EXPECT_TRUE(shallow.Warnings.empty());
+  EXPECT_EQ(shallow.Points, make(3, 0).Points);
+  EXPECT_EQ(make(3, automatic, false).Points, make(3, 2, false).Points);
+}
+
+//------------------------------------------------------------------------------
 TEST(ToolPathWarnings, RefusesBadInput)
 {
   const auto plane = [](double, double) { return 0.0; };

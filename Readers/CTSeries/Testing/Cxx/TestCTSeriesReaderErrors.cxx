@@ -338,6 +338,19 @@ void TestFiles()
   test.Reader->SetFileName(text.c_str());
   test.ExpectError("text.dcm: is not a DICOM file");
   LACUNA_CHECK(test.Reader->CanReadFile(text.c_str()) == 0);
+  const std::string nifti = std::string(344, 'x') + "n+1";
+  for (const auto& [bytes, words] : { std::pair<std::string, const char*>{ "\xFF\xD8\xFF\xE0 JFIF",
+                                        "text.dcm: is not a DICOM file but a picture (JPEG or "
+                                        "PNG). Choose a file that the scanner wrote" },
+         { "\x89PNG\r\n", "is not a DICOM file but a picture" },
+         { "ObjectType = Image\nNDims = 3\n", "open it by Volume Reader" },
+         { "NRRD0004\n", "open it by Volume Reader" }, { nifti, "open it by Volume Reader" } })
+  {
+    std::ofstream(text) << bytes;
+    test.Reader->SetFileName(text.c_str());
+    test.Reader->Modified();
+    test.ExpectError(words);
+  }
   LACUNA_CHECK(test.Reader->CanReadFile(test.Files[0].c_str()) == 1);
   LACUNA_CHECK(test.Reader->CanReadFile(test.Folder.c_str()) == 1);
   LACUNA_CHECK(test.Reader->CanReadFile("/nonexistent/scan") == 0);
