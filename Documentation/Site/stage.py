@@ -14,7 +14,8 @@ import re
 import shutil
 import sys
 
-from proxies import ROOT, read_proxies
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Plugins", "Python", "lacuna"))
+from proxies import ROOT, read_proxies  # noqa: E402
 
 GUIDE = "Documentation/UserGuide"
 EXAMPLES = "Documentation/Examples"

@@ -27,8 +27,9 @@ assert abs(volume / demo_live.TRUE_VOLUME - 1) < 0.08, volume
 assert report.get("pictures of the growing surface") > 0
 film = sorted(os.listdir(os.path.join(folder, "live-film")))
 assert len(film) > 1 and film[0] == "0000.png", film
-for name in ("live.png", "live-calibration.xml", "report.md"):
+for name in ("live.png", "live-calibration.xml", "report.md", "report.html"):
     assert os.path.getsize(os.path.join(folder, name)) > 200, name
+assert report.verdict()[0] is True and "the live surface's volume" in report.verdict()[1], report.verdict()
 
 # the sweep on the disk: each slice is of the place that its pose says
 reader = pv.TrackedSliceReader(FileName=os.path.join(folder, "live-sweep.mhd"))

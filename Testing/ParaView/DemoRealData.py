@@ -27,3 +27,7 @@ compare_with_baseline(output("demo-real-data/implant.png"), "head.png", 30)
 assert float(report.get("error against the bone that was there: largest, mm")) <= 1.0
 assert float(report.get("error against the bone that was there: RMS, mm")) <= 0.35
 assert float(report.get("IGES surface: largest deviation from the fit, mm")) <= 0.005
+
+# of an intact skull nobody wants an implant: the bone encloses a small foramen only
+report = demo.main(["--only", "implant", "--output", output("demo-no-hole"), "--ct", ct])
+assert report.verdict()[0] is False and "mark it with --hole" in report.verdict()[1], report.verdict()

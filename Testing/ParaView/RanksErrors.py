@@ -453,6 +453,31 @@ def at_other_times():
         holds("no sample is inside", outside)
 
 
+def by_default(rank):
+    """After lacuna.load() calls raise by themselves: an error of one rank, and what is held, on both; and when it is mended on both, nothing."""
+    import lacuna
+    from lacuna.errors import PipelineError, raise_errors
+    from paraview import servermanager
+    from paraview import simple as pv
+    lacuna.load()
+    sweep = lacuna.PhantomSweep(NumberOfSlices=1, ImageSize=[64, 48])
+    volume = lacuna.SweptVolume(Input=sweep, OutputSpacing=[2] * 3)
+    alone = pv.ProgrammableSource(Script="" if rank == 0 else "from vtkmodules.vtkCommonCore import vtkOutputWindow\n"
+                                  "vtkOutputWindow.GetInstance().DisplayErrorText('of one rank')")
+    for word, ask in (("slices are too few", volume.UpdatePipeline), ("slices are too few", volume.UpdatePipeline),
+                      ("slices are too few", lambda: servermanager.Fetch(volume)), ("of one rank", alone.UpdatePipeline)):
+        try:
+            ask()
+        except PipelineError as error:
+            assert word in str(error), (word, str(error))
+            continue
+        raise AssertionError(f"nothing is said of {word!r}")
+    sweep.NumberOfSlices = 12
+    volume.UpdatePipeline()
+    assert volume.GetDataInformation().GetNumberOfPoints() > 100
+    raise_errors(False)
+
+
 def stopped(make, rank):
     """Stopped on one rank, at some moment."""
     source = wavelet(48)
@@ -523,6 +548,8 @@ def run():
     of_first_rank()
     signal.alarm(SECONDS)
     at_other_times()
+    signal.alarm(SECONDS)
+    by_default(rank)
     signal.alarm(0)
 
 

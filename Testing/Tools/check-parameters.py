@@ -9,7 +9,7 @@ import re
 import sys
 
 ROOT = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-sys.path.insert(0, os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Documentation", "Site")))
+sys.path.append(os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Plugins", "Python", "lacuna")))
 from proxies import NOT_GIVEN, read_proxies  # noqa: E402
 
 GUIDE = os.path.join("Documentation", "UserGuide")

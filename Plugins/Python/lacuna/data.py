@@ -21,7 +21,7 @@ def fetch(source):
     output, or a block of it, is then empty and holds the error.
     """
     data = _fetch(source)
-    for block in _blocks(data):
+    for block in blocks(data):
         error = block.GetFieldData().GetAbstractArray("LacunaError")
         if error:
             from lacuna.errors import PipelineError
@@ -29,17 +29,17 @@ def fetch(source):
     return data
 
 
-def _blocks(data):
-    """The data, and all that are in them."""
+def blocks(data):
+    """The data (vtkDataObject), and all that are in them."""
     if data is None:
         return
     yield data
     if data.IsA("vtkCompositeDataSet"):
-        blocks = data.NewIterator()
-        blocks.InitTraversal()
-        while not blocks.IsDoneWithTraversal():
-            yield blocks.GetCurrentDataObject()
-            blocks.GoToNextItem()
+        visitor = data.NewIterator()
+        visitor.InitTraversal()
+        while not visitor.IsDoneWithTraversal():
+            yield visitor.GetCurrentDataObject()
+            visitor.GoToNextItem()
 
 
 def _fetch(source):

@@ -3,15 +3,13 @@
 implant surface for the hole in a skull. Without arguments it works on built-in phantoms
 whose truth is known; with --sweep and --ct on your own files. It writes pictures, the
 volume (.vti), the closed surface (.stl), the filled depth map (.vti), the implant surface
-(.igs) and report.md with the numbers. --live does something else: it acquires a sweep from an
+(.igs), and report.md and report.html with the numbers and pictures, which say first whether all is well. --live does something else: it acquires a sweep from an
 emulated tracker and scanner and shows the surface while it grows. Without demo.sh: pvpython -- -m lacuna.demo, where the --
 keeps ParaView from turning numbers such as -13 into --13."""
 import argparse
-import contextlib
 import math
 import os
 import sys
-import time
 
 
 def parse_arguments(arguments):
@@ -44,8 +42,8 @@ def parse_arguments(arguments):
     implant.add_argument("--hole", type=float, nargs=4, metavar=("X", "Y", "Z", "R"),
                          help="a point in the hole and its radius, mm: what lies inside this cylinder along the view is "
                               "replaced; default: the holes of the depth map")
-    implant.add_argument("--margin", type=float, default=12, metavar="MM", help="sound bone used around the hole (%(default)s)")
-    implant.add_argument("--node-spacing", type=float, default=1, metavar="MM", help="distance of the spline's nodes (%(default)s)")
+    implant.add_argument("--margin", type=float, metavar="MM", help="sound bone used around the hole (12; phantom: 20)")
+    implant.add_argument("--node-spacing", type=float, metavar="MM", help="distance of the spline's nodes (1; phantom: 2)")
     options = parser.parse_args(arguments)
     if options.calibration and not options.sweep:
         parser.error("--calibration belongs to --sweep")
@@ -59,7 +57,7 @@ def parse_arguments(arguments):
         parser.error(f"--seconds: {options.seconds:g} is not from 4 to 3600")
     for name in ("spacing", "margin", "node_spacing"):
         value = getattr(options, name)
-        if not (math.isfinite(value) and value > 0):
+        if value is not None and not (math.isfinite(value) and value > 0):
             parser.error(f"--{name.replace('_', '-')}: {value:g} is not a length above 0 mm")
     if options.median < 1 or options.median % 2 == 0:
         parser.error(f"--median: {options.median} is not an odd number above 0")
@@ -72,54 +70,11 @@ def parse_arguments(arguments):
     return options
 
 
-class Report:
-    """Collects numbers and the seconds of each stage, and says which stage failed."""
-
-    def __init__(self):
-        self.sections = []
-        self.stages = []
-
-    @contextlib.contextmanager
-    def stage(self, name):
-        from lacuna.errors import raising
-        print(f"== {name}", flush=True)
-        started = time.perf_counter()
-        warnings = []
-        try:
-            with raising(warnings):
-                yield
-        except Exception as error:
-            raise SystemExit(f"demo.sh: stage '{name}' failed: {error}") from error
-        for warning in dict.fromkeys(warnings):
-            print(f"   note: {warning}", flush=True)
-        self.stages.append((name, time.perf_counter() - started))
-
-    def section(self, title):
-        self.sections.append((title, []))
-
-    def add(self, what, value):
-        self.sections[-1][1].append((what, value))
-        print(f"   {what}: {value}", flush=True)
-
-    def get(self, what):
-        """The value added last under a name."""
-        return [value for _, rows in self.sections for name, value in rows if name == what][-1]
-
-    def write(self, name, version):
-        from lacuna.files import writing
-        with writing(name) as aside, open(aside, "w", encoding="utf-8") as file:
-            file.write(f"# Lacuna {version}: demo report\n")
-            for title, rows in self.sections:
-                file.write(f"\n## {title}\n\n| quantity | value |\n|---|---|\n")
-                file.writelines(f"| {what} | {value} |\n" for what, value in rows)
-            file.write("\n## Seconds per stage\n\n| stage | s |\n|---|---|\n")
-            file.writelines(f"| {stage} | {seconds:.2f} |\n" for stage, seconds in self.stages)
-
-
 def main(arguments=None):
     options = parse_arguments(arguments)
     import lacuna.plugin
     from lacuna import demo_implant, demo_live, demo_ultrasound
+    from lacuna.demo_report import Report
     report = Report()
     with report.stage("make the output folder"):
         os.makedirs(options.output, exist_ok=True)
@@ -131,12 +86,12 @@ def main(arguments=None):
         demo_ultrasound.run(options, report)
     if options.only != "ultrasound" and not options.live:
         demo_implant.run(options, report)
-    name = os.path.join(options.output, "report.md")
     try:
-        report.write(name, lacuna.__version__)
+        name = report.write(options.output, lacuna.__version__)
     except OSError as error:
-        raise SystemExit(f"demo.sh: {name} cannot be written: {error.strerror}") from error
-    print(f"== done: see {name} and the pictures beside it")
+        raise SystemExit(f"demo.sh: the report cannot be written to {options.output}: {error.strerror}") from error
+    print(f"== {report.verdict()[1]}")
+    print(f"== done: see {name} and the files beside it")
     return report
 
 

@@ -13,6 +13,13 @@ from lacuna.data import fetch, open_volume
 from lacuna.files import save_data
 
 ERROR = "Error"  # point array of the picture: fitted minus true depth, mm
+# a large hole of the left side; voxels whose steps are not seen in the picture
+PHANTOM = dict(Spacing=[1.25] * 3, DefectRadius=38, DefectDirection=[0.7, -0.2, 0.66], NoiseLevel=20)
+# what the guide's study of skulls recommends for large holes
+LARGE = dict(Kernel="Cubic", SupportStepMargin=3, CutoffWavelength=10)
+WALL = 10  # mm: what lies deeper behind the filled surface was seen through the hole
+SMALL = 100  # mm² that nobody makes an implant for
+ALLOWED, ALLOWED_RMS, ALLOWED_IGES = 0.7, 0.2, 0.005  # mm
 
 
 def run(options, report):
@@ -34,9 +41,9 @@ def run(options, report):
         report.add("bone surface, HU", f"{options.iso:g}")
         report.add("view direction", " ".join(f"{c:.3g}" for c in view))
     with report.stage("fill the hole"):
-        filled = fill(depth, options, skull, ct)
+        filled = fill(depth, options, skull)
         image = fetch(filled)
-        describe(image, skull, report)
+        describe(image, skull, options.hole, report)
         save_data(os.path.join(options.output, "filled-depth-map.vti"), filled, DataMode="Binary")
     with report.stage("write the implant surface"):
         writer = lacuna.vtkLacunaIGESWriter()
@@ -46,14 +53,21 @@ def run(options, report):
             raise RuntimeError("implant.igs was not written")
         report.add("IGES surface: largest deviation from the fit, mm", f"{writer.GetMaximumDeviation():.2g}")
         report.add("IGES surface: control points", " × ".join(map(str, writer.GetNumberOfControlPoints())))
+        report.require(writer.GetMaximumDeviation() <= ALLOWED_IGES, "the IGES surface is "
+                       f"{writer.GetMaximumDeviation():.2g} mm off the fitted one, more than {ALLOWED_IGES:g} mm")
     with report.stage("picture of skull and implant"):
-        picture(image, view, os.path.join(options.output, "implant.png"))
+        area = image.GetFieldData().GetArray("DefectArea").GetValue(0)
+        shown = f"{area / 100:.0f} cm²" if area >= 100 else f"{area:.0f} mm²"
+        picture(depth, image, view, f"bone that is replaced: {shown}" if options.hole else f"the hole: {shown}",
+                1.1 if options.ct else 1.25, os.path.join(options.output, "implant.png"))
+        report.picture("implant.png", "Left: the skull before. Right: the surface of the implant in it" +
+                       (", coloured by its error against the bone." if np.isfinite(errors(image)).any() else "."))
 
 
 def read(options):
     """The CT's proxy, and the phantom as an object that knows the truth (None for --ct)."""
     if not options.ct:
-        ct = pv.SkullPhantom()
+        ct = pv.SkullPhantom(**PHANTOM)
         ct.UpdatePipeline()
         return ct, ct.GetClientSideObject()
     ct = open_volume(options.ct)
@@ -66,18 +80,11 @@ def view_up(view):
     return [0, -1, 0] if abs(z) > 0.7 * math.sqrt(x * x + y * y + z * z) else [0, 0, 1]
 
 
-def fill(depth, options, skull, ct):
-    """The hole filler on the hole that the user gave, that the phantom has, or that the map shows."""
-    filled = pv.RBFHoleFiller(Input=depth, SupportMargin=options.margin, NodeSpacing=options.node_spacing)
-    if skull:
-        # a ball over the hole, a little larger than the irregular outline
-        center, direction = np.array(ct.Center), np.array(ct.DefectDirection)
-        direction = direction / np.linalg.norm(direction)
-        on_bone = center + direction * skull.IntersectOuterSurface(center, direction)
-        filled.DefectRegion = "Sphere"
-        filled.DefectRegion.Center = list(on_bone)
-        filled.DefectRegion.Radius = 1.3 * ct.DefectRadius
-    elif options.hole:
+def fill(depth, options, skull):
+    """The hole filler on the hole that the user gave, or on what the map's bone encloses."""
+    filled = pv.RBFHoleFiller(Input=depth, SupportMargin=options.margin or (20 if skull else 12),
+                              NodeSpacing=options.node_spacing or (2 if skull else 1), **(LARGE if skull else {}))
+    if options.hole:
         filled.DefectRegion = "Cylinder"
         filled.DefectRegion.Center = options.hole[:3]
         filled.DefectRegion.Axis = options.view
@@ -86,8 +93,13 @@ def fill(depth, options, skull, ct):
     return filled
 
 
-def describe(image, skull, report):
-    """Numbers of the fit; adds the array Error to the filled pixels where the truth is known."""
+def errors(image):
+    """Fitted minus true depth at each pixel, mm; NaN where the truth is not known."""
+    return vtk_to_numpy(image.GetPointData().GetArray(ERROR))
+
+
+def describe(image, skull, hole, report):
+    """Numbers of the fit; adds the array Error to the map: at filled pixels where the truth is known."""
     field = image.GetFieldData()
     mask = image.GetPointData().GetArray("FilledMask")
     if mask is None or not vtk_to_numpy(mask).any():
@@ -97,50 +109,90 @@ def describe(image, skull, report):
     report.add("nodes of the spline", int(field.GetArray("NodeCount").GetValue(0)))
     condition = field.GetArray("ConditionEstimate").GetValue(0)
     report.add("condition estimate", f"{condition:.2g}" if condition else "unknown (fast solution)")
-    report.add("hole, mm² of surface", f"{field.GetArray('DefectArea').GetValue(0):.0f}")
-
+    area = field.GetArray("DefectArea").GetValue(0)
+    report.add("hole, mm² of surface", f"{area:.0f}")
+    report.require(hole or area >= SMALL, f"what the bone encloses in this view is only {area:.0f} mm², too small for an implant: look into the hole "
+                   "with --view, or mark it with --hole X Y Z R")
     if skull:
-        error = np.full(mask.shape, np.nan)
-        fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted"))
-        to_world = np.array(field.GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
-        ray = to_world[:3, 2]
-        width = image.GetDimensions()[0]
-        for pixel in np.flatnonzero(mask):
-            start = to_world @ (pixel % width, pixel // width, 0, 1)
-            error[pixel] = fitted[pixel] - skull.IntersectOuterSurface(start[:3], ray)
-        truth = "the intact phantom"
+        error, truth = true_error(image, mask, skull), "the intact phantom"
     else:
-        error = np.where(mask, vtk_to_numpy(image.GetPointData().GetArray("Deviation")), np.nan)
-        truth = "the bone that was there"
+        error, truth = removed_error(image, mask, hole), "the bone that was there"
     array = numpy_to_vtk(error, deep=True)
     array.SetName(ERROR)
     image.GetPointData().AddArray(array)
     known = error[np.isfinite(error)]
-    if known.size:
-        report.add(f"error against {truth}: largest, mm", f"{np.abs(known).max():.3f}")
-        report.add(f"error against {truth}: RMS, mm", f"{np.sqrt((known ** 2).mean()):.3f}")
+    if not known.size:
+        report.add("error", "unknown: bone is missing there. --hole X Y Z R on sound bone replaces it and tells the error")
+        return
+    if known.size < mask.sum():
+        report.add("pixels where bone was there", f"{known.size} of {mask.sum()}; the others saw through the hole")
+    largest, rms = np.abs(known).max(), np.sqrt((known ** 2).mean())
+    report.add(f"error against {truth}: largest, mm", f"{largest:.3f}")
+    report.add(f"error against {truth}: RMS, mm", f"{rms:.3f}")
+    if skull:
+        report.compare("the implant", f"{rms:.2f} mm RMS", "0 mm", f"{largest:.2f} mm at most ({rms:.2f} mm RMS)",
+                       f"{ALLOWED:g} mm ({ALLOWED_RMS:g} mm RMS)", largest <= ALLOWED and rms <= ALLOWED_RMS)
 
 
-def picture(image, view, name):
-    """The bone in one colour, the implant coloured by its error where the truth is known."""
+def true_error(image, mask, skull):
+    """Against the intact phantom, along the rays."""
+    error = np.full(mask.shape, np.nan)
+    fitted = vtk_to_numpy(image.GetPointData().GetArray("Fitted"))
+    to_world = np.array(image.GetFieldData().GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
+    ray = to_world[:3, 2]
+    width = image.GetDimensions()[0]
+    for pixel in np.flatnonzero(mask):
+        start = to_world @ (pixel % width, pixel // width, 0, 1)
+        error[pixel] = fitted[pixel] - skull.IntersectOuterSurface(start[:3], ray)
+    return error
+
+
+def removed_error(image, mask, hole):
+    """Against the bone that was replaced. Only where the user marked a place there can be such bone: of a hole of its own the rays saw the inside
+    of the skull's other side."""
+    deviation = vtk_to_numpy(image.GetPointData().GetArray("Deviation"))
+    return np.where(mask & (np.abs(deviation) <= WALL) & bool(hole), deviation, np.nan)
+
+
+def show_map(proxy, view):
+    """The surface of a depth map, steep sides and the wall of the hole too: they are no gaps."""
+    return pictures.show_surface(pv.DepthMapSurface(Input=proxy, MaximumAngle=88), view, pictures.BONE)
+
+
+def picture(depth, image, view, hole, zoom, name):
+    """The skull with its hole, and beside it with the implant, coloured by its error where the truth is known."""
     source = pv.TrivialProducer()
     source.GetClientSideObject().SetOutput(image)
     source.UpdatePipeline()
-    surface = pv.DepthMapSurface(Input=source, MaximumAngle=80)  # steep sides are no gaps
+    surface = pv.DepthMapSurface(Input=source, MaximumAngle=80)
     mask = ["POINTS", "FilledMask"]  # triangles across the border count as bone
     bone = pv.Threshold(Input=surface, Scalars=mask, ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5,
                         AllScalars=0)
     implant = pv.Threshold(Input=surface, Scalars=mask, ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
-    render = pictures.new_view()
-    pictures.show_surface(bone, render, pictures.BONE)
-    display = pictures.show_surface(implant, render, pictures.METAL)
-    error = vtk_to_numpy(image.GetPointData().GetArray(ERROR))
-    if np.isfinite(error).any():
-        limit = math.ceil(10 * np.nanmax(np.abs(error))) / 10
-        pictures.color_by(display, render, ERROR, "error of the implant, mm", (-limit, limit))
-    pictures.look(render, view, view_up(view), 1.1)
+    before, after = pictures.new_view((720, 720)), pictures.new_view((880, 720))
+    show_map(depth, before)
+    before.OrientationAxesVisibility = 0
+    pictures.show_surface(bone, after, pictures.BONE)
+    display = pictures.show_surface(implant, after, pictures.METAL)
+    known = np.isfinite(errors(image)).any()
+    if known:
+        limit = math.ceil(10 * np.nanmax(np.abs(errors(image)))) / 10
+        pictures.color_by(display, after, ERROR, "error of the implant, mm", (-limit, limit))
     marked = views.in_patient_coordinates(image)
-    pictures.add_scale_bar(render, 50, aside=marked)
-    if marked:
-        views.show_orientation(render)
-    pictures.save(render, name)
+    for render, title in ((before, hole), (after, "the implant's surface" + (", coloured by its error" if known else ""))):
+        pictures.look(render, view, view_up(view), zoom)
+        render.CameraParallelScale = before.CameraParallelScale  # both as large
+        pictures.add_scale_bar(render, 50, aside=marked)
+        if marked:
+            views.show_orientation(render)
+            title_beside(render, title)
+        else:
+            pictures.add_title(render, title)
+    pictures.save_layout(pictures.lay_out([before, after], "Cranial implant"), name)
+
+
+def title_beside(view, text):
+    """A line of dark text left of the letter at the upper edge."""
+    display = pv.Show(pv.Text(Text=text), view)
+    display.Color, display.FontSize = [0.1, 0.1, 0.1], 18
+    display.WindowLocation = "Upper Left Corner"

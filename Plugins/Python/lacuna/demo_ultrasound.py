@@ -5,27 +5,30 @@ import os
 import numpy as np
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkMassProperties, vtkTriangleFilter
 
 from lacuna import pictures
 from lacuna.data import fetch
 from lacuna.files import save_data
 
-PHANTOM = dict(NumberOfSlices=120, Motion="Arbitrary", Anatomy="Ellipsoids", SpeckleLevel=0.15)
+# fully developed speckle, in floating point so that no bright pixel is cut off
+PHANTOM = dict(NumberOfSlices=90, Motion="Arbitrary", Anatomy="Ellipsoids", SpeckleLevel=0.52, OutputScalarType="Float")
+BEAM = [5, 3, 1]  # pixels, across and along the beam: makes speckle of a scanner from noise of single pixels
+# the sector of a curved probe: where its beams meet (column, row), their directions (degrees) and lengths (mm)
+SECTOR = dict(FanOrigin=[160, -90], FanAngles=[-34, 34], FanRadii=[19.6, 65])
+ALLOWED = 0.015  # of the volume
 
 
 def run(options, report):
     """All stages; options are demo.py's, report its Report."""
     report.section("Freehand ultrasound")
     with report.stage("read the sweep" if options.sweep else "make the phantom sweep"):
-        sweep = read(options)
+        sweep, truth = read(options)
         width, height, slices = dimensions(sweep)
         report.add("sweep", options.sweep or "Phantom Sweep (truth known)")
         report.add("slices", f"{slices} of {width} × {height} pixels")
     with report.stage("reconstruct the volume"):
-        volume = pv.SweptVolume(Input=sweep, OutputSpacing=[options.spacing] * 3)
+        volume = pv.SweptVolume(Input=sweep, OutputSpacing=[options.spacing] * 3, **(SECTOR if truth else {}))
         if options.clip:
             volume.ClipRectangle = options.clip
         volume.UpdatePipeline()
@@ -34,7 +37,6 @@ def run(options, report):
         report.add("origin, mm", " ".join(f"{b:.3f}" for b in volume.GetDataInformation().GetBounds()[::2]))
         save_data(os.path.join(options.output, "volume.vti"), volume, DataMode="Binary")
     with report.stage("filter and contour"):
-        truth = None if options.sweep else sweep.GetClientSideObject()
         if options.level is not None:
             level = options.level
         else:
@@ -48,20 +50,42 @@ def run(options, report):
         report.add("open edges of the surface", open_edges)
         if truth:
             exact = truth.GetTrueVolume() / 1000
-            report.add("true volume, ml", f"{exact:.3f} (error {100 * (millilitres / exact - 1):+.2f} %)")
+            error = f"{100 * (millilitres / exact - 1):+.2f} %"
+            report.add("true volume, ml", f"{exact:.3f} (error {error})")
+            report.compare("the organ's volume", f"{millilitres:.2f} ml", f"{exact:.2f} ml", error, f"{100 * ALLOWED:g} %",
+                           abs(millilitres / exact - 1) <= ALLOWED)
+        report.require(open_edges == 0, f"the organ's surface is not closed ({open_edges} open edges), so its volume is not sure")
     with report.stage("picture of slices and surface"):
-        picture(sweep, surface, os.path.join(options.output, "ultrasound.png"))
+        picture(sweep, surface, truth is not None, f"{millilitres:.1f} ml" + (f" (truth {exact:.1f} ml)" if truth else ""),
+                os.path.join(options.output, "ultrasound.png"))
+        report.picture("ultrasound.png", f"Left: one of {slices} freehand slices as on the scanner's screen, with the outline of the surface. "
+                       "Right: the surface among the slices in space.")
 
 
 def read(options):
+    """The sweep's proxy, and the phantom as an object that knows the truth (None for --sweep)."""
     if options.sweep:
         sweep = pv.TrackedSliceReader(FileName=options.sweep)
         if options.calibration:
             sweep.CalibrationFileName = options.calibration
-    else:
-        sweep = pv.PhantomSweep(**PHANTOM)
-    sweep.UpdatePipeline()
-    return sweep
+        sweep.UpdatePipeline()
+        return sweep, None
+    phantom = pv.PhantomSweep(**PHANTOM)
+    return scanned(pv.SpeckleFilter(Input=phantom, Operation="Gaussian", KernelSize=BEAM)), phantom.GetClientSideObject()
+
+
+def scanned(sweep):
+    """The phantom's slices as a curved probe shows them: a sector on black."""
+    image = fetch(sweep)
+    grey = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(image.GetDimensions()[::-1])
+    columns, rows = np.meshgrid(np.arange(grey.shape[2]) - SECTOR["FanOrigin"][0], np.arange(grey.shape[1]) - SECTOR["FanOrigin"][1])
+    radius, angle = np.hypot(columns, rows) * 0.2, np.degrees(np.arctan2(columns, rows))  # of Phantom Sweep's pixels, mm
+    near, far = SECTOR["FanRadii"]
+    grey[:, (abs(angle) > SECTOR["FanAngles"][1]) | (radius < near) | (radius > far)] = 0
+    producer = pv.TrivialProducer()
+    producer.GetClientSideObject().SetOutput(image)
+    producer.UpdatePipeline()
+    return producer
 
 
 def dimensions(image):
@@ -88,8 +112,8 @@ def closed_surface(sweep, volume, level, median):
     bounds = volume.GetDataInformation().GetBounds()
     rim = [median * s for s in volume.OutputSpacing]
     grown = [b + side * rim[i] for i in range(3) for b, side in ((bounds[2 * i], -1), (bounds[2 * i + 1], 1))]
-    padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown,
-                            ClipRectangle=list(volume.ClipRectangle))
+    seen = {name: list(volume.GetProperty(name)) for name in ("ClipRectangle", *SECTOR)}
+    padded = pv.SweptVolume(Input=sweep, OutputSpacing=list(volume.OutputSpacing), OutputBounds=grown, **seen)
     smooth = pv.SpeckleFilter(Input=padded, Operation="Median", KernelSize=[median] * 3)
     contour = pv.Contour(Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[level],
                          ComputeNormals=1, ComputeScalars=0)
@@ -118,34 +142,55 @@ def slice_poses(image):
     return vtk_to_numpy(image.GetFieldData().GetArray("ImageToReference")).reshape(-1, 4, 4)
 
 
-def slice_frames(image, step):
-    """Outlines of every step-th slice, as lines in the reference frame."""
-    x0, x1, y0, y1 = image.GetBounds()[:4]
-    points, lines = vtkPoints(), vtkCellArray()
-    for pose in slice_poses(image)[::step]:
-        if np.isfinite(pose).all():
-            corners = [points.InsertNextPoint((pose @ (x, y, 0, 1))[:3])
-                       for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-            lines.InsertNextCell(5, corners + corners[:1])
-    frames = vtkPolyData()
-    frames.SetPoints(points)
-    frames.SetLines(lines)
-    return frames
+def show_slice(sweep, number, views, sector, points=80000):
+    """Shows a slice as a picture in space."""
+    extent = sweep.GetDataInformation().GetExtent()
+    one = pv.ExtractSubset(Input=sweep, VOI=[*extent[:4], extent[4] + number, extent[4] + number])
+    show_picture(pv.SlicePlanes(Input=one, MaximumNumberOfPoints=points), views, sector)
 
 
-def picture(sweep, surface, name):
-    """The surface among the outlines of the slices that it was made from."""
-    render = pictures.new_view()
-    pictures.show_surface(surface, render, pictures.TISSUE)
-    image = fetch(sweep)
-    frames = pv.TrivialProducer()
-    frames.GetClientSideObject().SetOutput(slice_frames(image, max(1, dimensions(sweep)[2] // 20)))
-    display = pictures.show_surface(frames, render, (0.35, 0.45, 0.6))
-    display.LineWidth = 1.5
-    # from the probe into the tissue, a little from the side
-    middle = slice_poses(image)[dimensions(sweep)[2] // 2][:3, :2]
-    lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
+def show_picture(planes, views, sector):
+    """Shows Slice Planes in grey levels; sector: without the black beside it."""
+    if sector:
+        planes = pv.Threshold(Input=planes, Scalars=["POINTS", "Intensity"], ThresholdMethod="Above Upper Threshold", UpperThreshold=1)
+    for view in views:
+        display = pv.Show(planes, view)
+        display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+        pv.ColorBy(display, ("POINTS", "Intensity"))
+        table = pv.GetColorTransferFunction("Intensity")
+        pictures.apply_preset(table, "Grayscale")
+        table.RescaleTransferFunction(0, 220)
+        display.SetScalarBarVisibility(view, False)
+
+
+def picture(sweep, surface, sector, volume, name):
+    """A slice as on the screen with the outline of the surface, and beside it the surface among the slices that it was made from."""
+    poses = slice_poses(fetch(sweep))
+    good = np.flatnonzero(np.isfinite(poses).all(axis=(1, 2)))
+    middle, behind = good[len(good) // 2], good[len(good) * 5 // 6]
+    center = poses[middle] @ (*[(low + high) / 2 for low, high in zip(fetch(sweep).GetBounds()[:4:2], fetch(sweep).GetBounds()[1:4:2])], 0, 1)
+    lateral, depth = (poses[middle][:3, :2] / np.linalg.norm(poses[middle][:3, :2], axis=0)).T
     travel = np.cross(lateral, depth)
-    pictures.look(render, depth + 0.35 * lateral + 0.5 * travel, travel - 0.5 * depth, 1.1)
-    pictures.add_scale_bar(render, 10)
-    pictures.save(render, name)
+    screen, space = pictures.new_view((620, 720)), pictures.new_view((980, 720))
+
+    show_slice(sweep, middle, (screen, space), sector)
+    outline = pv.Slice(Input=surface, SliceType="Plane")
+    outline.SliceType.Origin, outline.SliceType.Normal = list(center[:3] - 0.05 * travel), list(travel)
+    outline.UpdatePipeline()
+    if outline.GetDataInformation().GetNumberOfPoints() > 0:
+        line = pictures.show_surface(outline, screen, (1, 0.8, 0.1))
+        line.LineWidth, line.Ambient, line.Diffuse = 3, 1, 0
+    screen.OrientationAxesVisibility = 0
+    pictures.look(screen, travel, -depth)
+    pictures.add_scale_bar(screen, 10)
+    pictures.add_title(screen, "one slice, and the surface's outline in it")
+
+    show_slice(sweep, behind, (space,), sector, 40000)
+    pictures.show_surface(surface, space, pictures.TISSUE)
+    frames = pv.SlicePlanes(Input=sweep, OutlineOnly=1, Stride=max(1, len(good) // 12))
+    pictures.show_surface(frames, space, (0.55, 0.63, 0.75)).LineWidth = 1
+    # as on the scanner's screen, with the probe above, but from aside and a little from above
+    pictures.look(space, travel + 0.9 * lateral + 0.45 * depth, -depth, 1.35)
+    pictures.add_scale_bar(space, 10)
+    pictures.add_title(space, f"all {len(good)} slices in space: {volume}")
+    pictures.save_layout(pictures.lay_out([screen, space], "Freehand ultrasound"), name)

@@ -6,9 +6,14 @@ VTK and ParaView print what goes wrong and go on; a batch script wants to stop:
     from lacuna.errors import raising
     with raising():
         volume.UpdatePipeline()
+
+After lacuna.load() every call that executes a pipeline does so by itself, except in ParaView's window:
+
+    raise_errors(False)   # prints errors and goes on, as VTK does
 """
 import contextlib
 import errno
+import functools
 import os
 import re
 import sys
@@ -45,17 +50,38 @@ def _clean(text):
     return re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", " ".join(line.strip() for line in lines)).strip()
 
 
-def _check_outputs(proxy):
+def _check_outputs(proxy, seen=None):
     """Raises the error that an output of proxy, or of one of those before it, holds."""
     from lacuna.data import fetch
     from paraview import servermanager
-    for port in range(proxy.SMProxy.GetNumberOfOutputPorts()):
-        if proxy.SMProxy.GetDataInformation(port).GetFieldDataInformation().GetArrayInformation("LacunaError"):
-            fetch(servermanager.OutputPort(proxy, port))
+    seen = set() if seen is None else seen
+    if proxy.SMProxy.GetGlobalID() in seen:
+        return
+    seen.add(proxy.SMProxy.GetGlobalID())
+    connection = servermanager.ActiveConnection
+    if not connection.IsRemote() and (connection.GetNumberOfDataPartitions() == 1 or _ranks() is not None):
+        _check_own_outputs(proxy)  # no rank waits here for another one
+    else:
+        for port in range(proxy.SMProxy.GetNumberOfOutputPorts()):
+            if proxy.SMProxy.GetDataInformation(port).GetFieldDataInformation().GetArrayInformation("LacunaError"):
+                fetch(servermanager.OutputPort(proxy, port))
     for name in proxy.ListProperties():
         prop = proxy.SMProxy.GetProperty(name)
-        for i in range(prop.GetNumberOfProxies() if prop.IsA("vtkSMInputProperty") else 0):
-            _check_outputs(servermanager._getPyProxy(prop.GetProxy(i)))
+        for i in range(prop.GetNumberOfProxies() if prop and prop.IsA("vtkSMInputProperty") else 0):
+            _check_outputs(servermanager._getPyProxy(prop.GetProxy(i)), seen)
+
+
+def _check_own_outputs(proxy):
+    """Raises the error that the data of an algorithm in this process hold."""
+    from lacuna.data import blocks
+    algorithm = proxy.GetClientSideObject()
+    if algorithm is None or not algorithm.IsA("vtkAlgorithm"):
+        return
+    for port in range(algorithm.GetNumberOfOutputPorts()):
+        for block in blocks(algorithm.GetOutputDataObject(port)):
+            error = block.GetFieldData().GetAbstractArray("LacunaError")
+            if error:
+                raise PipelineError(error.GetValue(0))
 
 
 def _ranks():
@@ -190,3 +216,72 @@ def raising(warnings=None, proxies=()):
     if told or agreed:
         # what an algorithm said is the cause of what Python stumbled over later
         raise PipelineError(told or agreed) from failure
+
+
+# What executes pipelines, by the module or class that has it.
+EXECUTING = {
+    "paraview.simple": ("Show", "Render", "RenderAllViews", "SaveData", "SaveScreenshot", "SaveAnimation"),
+    "paraview.servermanager": ("Fetch",),
+    "paraview.servermanager.SourceProxy": ("UpdatePipeline",)}
+_default = {"raises": False, "depth": 0}
+_replaced = {}  # ParaView's own function: the one that raises
+
+
+def raise_errors(on=True):
+    """Whether every call that executes a pipeline raises what an algorithm reports in it, as by raising(): UpdatePipeline, Show, Render,
+    SaveData, SaveScreenshot, SaveAnimation and Fetch. lacuna.load() turns it on, except in ParaView's window.
+
+    An error that the data still hold is raised again by each call that asks for them. Under pvbatch --sym all ranks must make these calls.
+    """
+    _default["raises"] = bool(on)
+    if on and not _replaced:
+        import paraview.simple as simple
+        from paraview import servermanager
+        owners = dict(zip(EXECUTING, (simple, servermanager, servermanager.SourceProxy)))
+        for owner, names in EXECUTING.items():
+            for name in names:
+                before = getattr(owners[owner], name)
+                _replaced[before] = _raising_call(owners[owner], name, before)
+                setattr(owners[owner], name, _replaced[before])
+
+
+def replace_in(script):
+    """Gives a script's globals the functions that raise in place of those that it has imported from ParaView."""
+    for name, value in list(script.items()):
+        if callable(value) and getattr(value, "__hash__", None) and value in _replaced:
+            script[name] = _replaced[value]
+
+
+def _asked_for(name, given):
+    """The proxies whose data a call asks for, as far as its arguments tell; of views those that they show."""
+    import paraview.simple as simple
+    from paraview import servermanager
+    if name == "Render" and not any(given):
+        given = [simple.GetActiveView()]
+    elif name == "RenderAllViews":
+        given = simple.GetViews()
+    found = []
+    for each in given:
+        if isinstance(each, servermanager.SourceProxy):
+            found.append(each)
+        elif isinstance(each, servermanager.Proxy) and each.SMProxy.IsA("vtkSMViewProxy"):
+            found += [shown.Input for shown in each.Representations
+                      if getattr(shown, "Visibility", False) and isinstance(getattr(shown, "Input", None), servermanager.SourceProxy)]
+    return found
+
+
+def _raising_call(owner, name, before):
+    """A function of ParaView with raising() about it."""
+    @functools.wraps(before)
+    def call(*arguments, **options):
+        if not _default["raises"] or _default["depth"]:
+            return before(*arguments, **options)
+        asked = _asked_for(name, [*arguments, *options.values()])
+        _default["depth"] += 1
+        try:
+            with raising(proxies=asked):
+                # not before(): raising() has put a look at writers about UpdatePipeline
+                return getattr(owner, name)(*arguments, **options)
+        finally:
+            _default["depth"] -= 1
+    return call

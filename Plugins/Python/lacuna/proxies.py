@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the plugin's XML says of its sources, readers, filters and writers: the one truth behind the parameter tables.
+"""What the plugin's XML says of its sources, readers, filters and writers: the one truth behind lacuna.help, the stubs for completion
+and the guide's parameter tables.
 
-Used by the site (stage.py) and by the test that compares the handwritten pages with it (Testing/Tools/check-parameters.py).
+Needs neither VTK nor ParaView: the build (Plugins/Python/make_stubs.py), the site (Documentation/Site/stage.py) and
+Testing/Tools/check-parameters.py use it as a file of its own.
 """
 import glob
 import os
@@ -9,7 +11,9 @@ import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 
-ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.normpath(os.path.join(HERE, "..", "..", ".."))  # of the sources
+INSTALLED = os.path.join(HERE, "proxies.xml")  # beside the package
 NOT_GIVEN = "1e299"  # a length that cannot be meant: the filter takes its own
 
 
@@ -28,7 +32,19 @@ class Property:
     high: list
     choices: list  # of a proxy property: names of what it can be
     optional: bool
+    count: int  # of values; 0: any number
+    label: str  # empty: the name's words
     group: str = ""
+
+    @property
+    def python(self):
+        """The name in Python, which ParaView makes of the label."""
+        return re.sub(r"[^A-Za-z0-9_]", "", self.label) or self.name
+
+    @property
+    def in_python(self):
+        """Whether it is an attribute that scripts read or set: buttons, and information that no panel shows, are not."""
+        return bool(self.kind) and (not self.information or self.advanced or self.name == "TimestepValues")
 
     def default_text(self):
         """As a person reads it: on and off, names of choices, empty."""
@@ -68,6 +84,7 @@ class Proxy:
     short_help: str
     kind: str  # source, reader, filter, writer, or the name of another group
     extensions: str
+    help: str
     properties: list = field(default_factory=list)
 
     @property
@@ -111,7 +128,9 @@ def read_property(element):
         boolean=element.find("BooleanDomain") is not None,
         low=domain.get("min", "").split(), high=domain.get("max", "").split(),
         choices=[choice.get("name") for choice in find("ProxyListDomain")],
-        optional=element.find("Hints/Optional") is not None)
+        optional=element.find("Hints/Optional") is not None,
+        count=0 if element.get("repeat_command") == "1" else int(element.get("number_of_elements", "1")),
+        label=element.get("label", ""))
 
 
 def read_proxy(element, group):
@@ -123,6 +142,7 @@ def read_proxy(element, group):
     proxy = Proxy(name=element.get("name"), cls=element.get("class"), label=element.get("label"),
                   short_help=documentation.get("short_help"), kind=kind,
                   extensions="" if factory is None else " ".join(dict.fromkeys(factory.get("extensions").lower().split())),
+                  help=words(documentation.text),
                   properties=[read_property(child) for child in element
                               if child.tag.endswith("Property") and child.get("is_internal") != "1"])
     for panel in element.findall("PropertyGroup"):
@@ -133,10 +153,14 @@ def read_proxy(element, group):
     return proxy
 
 
-def read_proxies(root=ROOT):
-    """All proxies of Plugins/Lacuna, by label."""
+def read_files(paths):
+    """All proxies of XML files, by label."""
     proxies = [read_proxy(element, group.get("name"))
-               for path in glob.glob(os.path.join(root, "Plugins", "Lacuna", "*", "*.xml"))
-               for group in ET.parse(path).getroot().findall("ProxyGroup") for element in group
+               for path in paths for group in ET.parse(path).getroot().findall("ProxyGroup") for element in group
                if element.get("label")]
     return sorted(proxies, key=lambda proxy: proxy.label.lower())
+
+
+def read_proxies(root=ROOT):
+    """All proxies of Plugins/Lacuna in the sources, by label."""
+    return read_files(glob.glob(os.path.join(root, "Plugins", "Lacuna", "*", "*.xml")))
