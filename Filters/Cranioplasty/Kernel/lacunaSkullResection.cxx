@@ -367,6 +367,31 @@ double SkullResection::GetInside(const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
+template <class Sampler>
+double SkullResection::FindContrast(const Sampler& sample) const
+{
+  std::vector<double> above;
+  for (std::size_t k = 0; k < this->Flat.size(); ++k)
+  {
+    for (double depth = 0; depth < Depth; depth += NodeSpacing)
+    {
+      const double value = sample(this->ToWorld(this->Flat[k], this->Heights[k] - depth));
+      if (std::isfinite(value) && value > this->Options.Level)
+      {
+        above.push_back(value - this->Options.Level);
+      }
+    }
+  }
+  if (above.empty())
+  {
+    return this->Options.Level;
+  }
+  const auto quarter = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 4);
+  std::nth_element(above.begin(), quarter, above.end());
+  return *quarter;
+}
+
+//------------------------------------------------------------------------------
 void SkullResection::Cut(void* kept, void* piece, Execution& execution) const
 {
   const VoxelVolume& volume = this->Volume;
@@ -385,13 +410,9 @@ void SkullResection::Cut(void* kept, void* piece, Execution& execution) const
       using T = std::remove_cv_t<std::remove_reference_t<decltype(*values)>>;
       auto* without = static_cast<T*>(kept);
       auto* alone = static_cast<T*>(piece);
-      double most = this->Options.Level;
-      for (std::int64_t i = 0; i < volume.NumberOfVoxels(); ++i)
-      {
-        const auto value = static_cast<double>(values[i]);
-        most = std::isfinite(value) ? std::max(most, value) : most;
-      }
-      const double contrast = most - this->Options.Level;
+      const double contrast =
+        std::min(this->FindContrast(VoxelSampler(volume, values)), // unsigned voxels
+          this->Options.Level - static_cast<double>(std::numeric_limits<T>::lowest()));
       const auto toValue = [&](double wanted)
       {
         const double least = static_cast<double>(std::numeric_limits<T>::lowest());

@@ -78,6 +78,10 @@ private:
     return p[0] * this->U + p[1] * this->V - height * this->Direction;
   }
   void FindTable(Execution& execution);
+  // By how much bone along the wall is brighter than the level, or nearly all of it. So the wall is where it should be
+  // between voxels of any brightness.
+  template <class Sampler>
+  double FindContrast(const Sampler& sample) const;
   double GetTable(const Vec2& p) const; // height of the outer table; NaN without bone
   double SmoothTable(std::int64_t i, std::int64_t j, double radius, bool isHighest) const;
 

@@ -114,10 +114,11 @@ TEST(SkullResection, CutsAlongABevelThroughTheOutline)
   }
 }
 
-// Where the grey levels cross the level is the wall, between voxels.
+// Where the grey levels cross the level is the wall, between voxels. Metal elsewhere in the head does not matter.
 TEST(SkullResection, HasItsWallBetweenVoxels)
 {
-  const Shell shell({}, -100, -10, Hole::None);
+  Shell shell({}, -100, -10, Hole::None);
+  shell.Voxels[shell.Voxels.size() / 2] = 20000;
   ResectionOptions options;
   options.Bevel = 20;
   const Cuts cuts(shell, options, MakeOutline(shell, 0, 0));
