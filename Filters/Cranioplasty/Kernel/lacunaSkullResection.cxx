@@ -32,7 +32,9 @@ constexpr double ContactReach = 0.8;  // mm: the guide lies on the highest place
 constexpr double SmoothReach = 2;     // mm: of its top
 constexpr double GuideTriangle = 0.8; // mm
 constexpr double MostUnsupported = 0.2;
-constexpr double FarAway = -1e3; // mm
+constexpr double MostMissing = 0.05; // of the outline: of which is told
+constexpr double FarAway = -1e3;     // mm
+constexpr double Farthest = 500;     // mm from the middle of all bone
 
 void CheckRange(const char* name, double value, double low, double high, const char* unit)
 {
@@ -165,6 +167,7 @@ std::vector<Vec3> FindOutlineAround(
   {
     throw std::invalid_argument("the tumour has no points");
   }
+  CheckRange("Margin", margin, LeastMargin, 50, " mm");
   Vec3 mean{ 0, 0, 0 };
   for (const Vec3& x : points)
   {
@@ -186,12 +189,19 @@ std::vector<Vec3> FindOutlineAround(
     top = std::max(top, Dot(x, out));
   }
   const PlanarGrid grid = MakeGrid(flat, margin + 3, NodeSpacing);
-  std::vector<double> near = FindDistances(grid, flat, margin + 1.5);
-  for (double& distance : near)
+  std::vector<double> within = FindDistances(grid, flat, margin + 1.5);
+  for (double& distance : within)
   {
-    distance = -distance;
+    distance = margin - distance;
   }
-  const std::vector<Loop> loops = KeepLargest(FindContours(grid, near, -margin));
+  const std::size_t parts = FindFreeParts(grid, within).size();
+  if (parts > 1)
+  {
+    throw std::invalid_argument("the tumour is in " + std::to_string(parts) +
+      " parts that are farther apart than twice the margin: leave all but one out, give a larger "
+      "margin, or draw an outline around them");
+  }
+  const std::vector<Loop> loops = KeepLargest(FindContours(grid, within, 0));
   std::vector<Vec3> outline;
   for (const Vec2& p : Resample(loops.at(0), OutlineSpacing))
   {
@@ -211,6 +221,11 @@ SkullResection::SkullResection(const VoxelVolume& volume, const std::vector<Vec3
   if (outline.size() < 3)
   {
     throw std::invalid_argument("the outline has fewer than three points");
+  }
+  if (!std::all_of(outline.begin(), outline.end(),
+        [&](const Vec3& x) { return Norm(x - middleOfBone) < Farthest; }))
+  {
+    throw std::invalid_argument("the outline is not at the head: draw it on the skull, in mm");
   }
   this->Outline = ResampleCurve(outline, OutlineSpacing);
   const Vec3 out = FindOut(this->Outline, middleOfBone);
@@ -251,6 +266,12 @@ SkullResection::SkullResection(const VoxelVolume& volume, const std::vector<Vec3
   {
     throw std::runtime_error("below the outline is no bone: draw it on the skull, and look at the "
                              "bone at this Level");
+  }
+  const double missing = 1 - static_cast<double>(found) / static_cast<double>(this->Flat.size());
+  if (missing > MostMissing)
+  {
+    this->Warnings.push_back("below " + FormatNumber(std::round(100 * missing)) +
+      " % of the outline is no bone: the cut ends there at a hole, or at the end of the scan");
   }
 }
 
