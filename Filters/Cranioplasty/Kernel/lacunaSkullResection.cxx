@@ -31,6 +31,8 @@ constexpr double BridgedReach = 4;    // mm over which the guide goes on where t
 constexpr double ContactReach = 0.8;  // mm: the guide lies on the highest places around
 constexpr double SmoothReach = 2;     // mm: of its top
 constexpr double GuideTriangle = 0.8; // mm
+constexpr std::size_t GuideHoles = 4;
+constexpr double LeastTop = 2; // mm: width of the guide's upper face
 constexpr double MostUnsupported = 0.2;
 constexpr double MostMissing = 0.05; // of the outline: of which is told
 constexpr double FarAway = -1e3;     // mm
@@ -156,6 +158,15 @@ void CheckResectionOptions(const ResectionOptions& options)
   if (options.GuideHole != 0)
   {
     CheckRange("GuideHole", options.GuideHole, 0.5, 5, " mm");
+  }
+  // its inner wall leans outwards
+  const double least = std::tan(options.Bevel * Pi / 180) * options.GuideHeight +
+    std::max(LeastTop, options.GuideHole == 0 ? 0 : options.GuideHole + 2 * LeastHoleToRim);
+  if (options.GuideWidth < least)
+  {
+    throw std::invalid_argument("GuideWidth is " + FormatNumber(options.GuideWidth) +
+      " mm; with this Bevel, GuideHeight and GuideHole it must be at least " +
+      FormatNumber(std::ceil(10 * least) / 10));
   }
 }
 
@@ -606,20 +617,39 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
   SkullImplant guide;
   if (this->Options.GuideHole > 0)
   {
-    for (int quarter = 0; quarter < 4; ++quarter)
+    const ImplantRim rim(slab, levels);
+    const double radius = 0.5 * this->Options.GuideHole;
+    const double middle = 0.5 * (width + this->Slope * height);
+    const std::size_t quarter = places.size() / GuideHoles;
+    for (std::size_t hole = 0; hole < GuideHoles; ++hole)
     {
-      const InnerPlace& place = places[(2 * quarter + 1) * places.size() / 8];
-      const double middle = 0.5 * (width + this->Slope * height);
-      ImplantHole hole;
-      hole.Middle = { place.Foot[0] + middle * place.Out[0],
-        place.Foot[1] + middle * place.Out[1] };
-      hole.Radius = 0.5 * this->Options.GuideHole;
-      const std::vector<Loop> tunnel = FindTunnel(slab, hole, 0.5 * GuideTriangle);
-      for (std::size_t level = 0; level < tunnel.size(); ++level)
+      // in the middle of its quarter, else as near to that as there is room
+      bool isMade = false;
+      for (std::size_t off = 0; off < quarter && !isMade; ++off)
       {
-        levels[level].push_back(tunnel[level]);
+        const std::size_t at = hole * quarter + quarter / 2 + (off + 1) / 2 * (off % 2 ? 1 : -1);
+        const InnerPlace& place = places[at % places.size()];
+        const Vec2 p{ place.Foot[0] + middle * place.Out[0],
+          place.Foot[1] + middle * place.Out[1] };
+        Vec2 end{};
+        if (rim.Find(p, 2 * radius + LeastHoleToRim, end) < radius + 0.9 * LeastHoleToRim)
+        {
+          continue;
+        }
+        const std::vector<Loop> tunnel = FindTunnel(slab, { p, radius }, 0.5 * GuideTriangle);
+        isMade = !tunnel.empty();
+        for (std::size_t level = 0; level < tunnel.size(); ++level)
+        {
+          levels[level].push_back(tunnel[level]);
+        }
       }
-      guide.Holes += tunnel.empty() ? 0 : 1;
+      guide.Holes += isMade ? 1 : 0;
+    }
+    if (guide.Holes < static_cast<int>(GuideHoles))
+    {
+      guide.Warnings.push_back("only " + std::to_string(guide.Holes) + " of " +
+        std::to_string(GuideHoles) +
+        " holes for screws have room in the guide: make it wider, or lower");
     }
   }
   AddImplantMesh(slab, levels, {}, GuideTriangle, execution, guide);
