@@ -260,25 +260,36 @@ void SkullHoles::AddTriangles(
 std::vector<Vec3> GetCurve(vtkPolyData* data)
 {
   std::vector<Vec3> curve;
-  Vec3 p{};
+  int lines = 0;
+  const auto add = [&](vtkIdType point)
+  {
+    curve.emplace_back();
+    data->GetPoint(point, curve.back().data());
+  };
   for (vtkIdType c = 0; c < data->GetNumberOfCells(); ++c)
   {
     if (data->GetCellType(c) == VTK_POLY_LINE || data->GetCellType(c) == VTK_POLYGON)
     {
       vtkCell* cell = data->GetCell(c);
-      for (vtkIdType k = 0; k < cell->GetNumberOfPoints(); ++k)
+      for (int k = 0; k < cell->GetNumberOfPoints(); ++k)
       {
-        data->GetPoint(cell->GetPointId(static_cast<int>(k)), p.data());
-        curve.push_back(p);
+        add(cell->GetPointId(k));
       }
-      break;
+      ++lines;
     }
   }
-  const bool hasLine = !curve.empty();
-  for (vtkIdType k = 0; !hasLine && k < data->GetNumberOfPoints(); ++k)
+  for (vtkIdType k = 0; lines == 0 && k < data->GetNumberOfPoints(); ++k)
   {
-    data->GetPoint(k, p.data());
-    curve.push_back(p);
+    add(k);
+  }
+  if (lines > 1)
+  {
+    throw std::runtime_error(
+      "the outline has " + std::to_string(lines) + " lines: give one closed curve");
+  }
+  if (!std::all_of(curve.begin(), curve.end(), [](const Vec3& x) { return IsFinite(x); }))
+  {
+    throw std::runtime_error("a point of the outline is not finite: draw it again");
   }
   return curve;
 }

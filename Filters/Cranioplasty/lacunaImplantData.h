@@ -51,7 +51,8 @@ private:
   std::vector<double> Areas;
 };
 
-/// The first polyline, else the points in their order.
+/// The polyline, else the points in their order. Throws std::runtime_error for several lines, and for a point that is not
+/// finite.
 std::vector<Vec3> GetCurve(vtkPolyData* data);
 
 /// Outlines of text whose capitals are so high (mm), x to the right. Throws std::runtime_error for other than printable ASCII.

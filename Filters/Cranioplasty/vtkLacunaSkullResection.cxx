@@ -44,40 +44,90 @@ using lacuna::Vec3;
 constexpr double InMask = 0.5;
 constexpr double SampleDistance = 1; // mm
 
-// Of a mask the middles of voxels that are in it, of a surface points all over it.
-std::vector<Vec3> GetTumour(vtkDataSet* data)
+// Adds points all over a voxel, at most SampleDistance apart.
+void AddVoxel(vtkImageData* image, const std::array<int, 3>& voxel, std::vector<Vec3>& points)
 {
-  std::vector<Vec3> points;
-  vtkNew<vtkPolyDataPointSampler> sampler;
-  if (auto* surface = vtkPolyData::SafeDownCast(data))
+  int steps[3];
+  for (int a = 0; a < 3; ++a)
   {
-    sampler->SetInputData(surface);
-    sampler->SetDistance(SampleDistance);
-    sampler->Update();
-    data = sampler->GetOutput();
+    steps[a] = static_cast<int>(std::ceil(image->GetSpacing()[a] / SampleDistance));
   }
-  auto* image = vtkImageData::SafeDownCast(data);
-  vtkDataArray* mask = image ? image->GetPointData()->GetScalars() : nullptr;
-  if (image && (!mask || mask->GetNumberOfComponents() != 1))
+  for (int k = 0; k <= steps[2]; ++k)
+  {
+    for (int j = 0; j <= steps[1]; ++j)
+    {
+      for (int i = 0; i <= steps[0]; ++i)
+      {
+        points.emplace_back();
+        image->TransformContinuousIndexToPhysicalPoint(
+          voxel[0] - 0.5 + static_cast<double>(i) / steps[0],
+          voxel[1] - 0.5 + static_cast<double>(j) / steps[1],
+          voxel[2] - 0.5 + static_cast<double>(k) / steps[2], points.back().data());
+      }
+    }
+  }
+}
+
+// Points all over the voxels of a mask that have a neighbour outside of it, so that no part of a thick slice is nearer.
+std::vector<Vec3> GetMask(vtkImageData* image)
+{
+  vtkDataArray* mask = image->GetPointData()->GetScalars();
+  if (!mask || mask->GetNumberOfComponents() != 1)
   {
     throw std::runtime_error("the tumour's image has no active point scalars with one component: "
                              "give a mask, in which the tumour is above 0.5");
   }
-  if (image)
+  vtkLacunaVolumeDirection::Check(image);
+  const int* extent = image->GetExtent();
+  const auto isTumour = [&](std::array<int, 3> voxel)
   {
-    vtkLacunaVolumeDirection::Check(image);
-  }
-  for (vtkIdType k = 0; k < data->GetNumberOfPoints(); ++k)
-  {
-    if (!mask || mask->GetComponent(k, 0) > InMask)
+    for (int a = 0; a < 3; ++a)
     {
-      points.emplace_back();
-      data->GetPoint(k, points.back().data());
+      if (voxel[a] < extent[2 * a] || voxel[a] > extent[2 * a + 1])
+      {
+        return false;
+      }
+    }
+    return mask->GetComponent(image->ComputePointId(voxel.data()), 0) > InMask;
+  };
+  std::vector<Vec3> points;
+  for (int k = extent[4]; k <= extent[5]; ++k)
+  {
+    for (int j = extent[2]; j <= extent[3]; ++j)
+    {
+      for (int i = extent[0]; i <= extent[1]; ++i)
+      {
+        if (isTumour({ i, j, k }) &&
+          !(isTumour({ i - 1, j, k }) && isTumour({ i + 1, j, k }) && isTumour({ i, j - 1, k }) &&
+            isTumour({ i, j + 1, k }) && isTumour({ i, j, k - 1 }) && isTumour({ i, j, k + 1 })))
+        {
+          AddVoxel(image, { i, j, k }, points);
+        }
+      }
     }
   }
   if (points.empty())
   {
     throw std::runtime_error("the tumour is empty: no voxel of the mask is above 0.5");
+  }
+  return points;
+}
+
+// Points all over a mask or a surface.
+std::vector<Vec3> GetTumour(vtkDataSet* data)
+{
+  if (auto* image = vtkImageData::SafeDownCast(data))
+  {
+    return GetMask(image);
+  }
+  vtkNew<vtkPolyDataPointSampler> sampler;
+  sampler->SetInputData(vtkPolyData::SafeDownCast(data));
+  sampler->SetDistance(SampleDistance);
+  sampler->Update();
+  std::vector<Vec3> points(static_cast<std::size_t>(sampler->GetOutput()->GetNumberOfPoints()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    sampler->GetOutput()->GetPoint(static_cast<vtkIdType>(k), points[k].data());
   }
   return points;
 }
@@ -196,11 +246,6 @@ int vtkLacunaSkullResection::RequestData(
       throw std::runtime_error("Level is " + lacuna::FormatNumber(this->Level) +
         "; it must be a number above 0, the grey level of bone");
     }
-    if (!(this->Margin >= 0 && this->Margin <= 50))
-    {
-      throw std::runtime_error(
-        "Margin is " + lacuna::FormatNumber(this->Margin) + " mm; it must be between 0 and 50");
-    }
     lacuna::ResectionOptions options;
     options.Level = this->Level;
     options.Bevel = this->Bevel;
@@ -228,6 +273,10 @@ int vtkLacunaSkullResection::RequestData(
       isDrawn ? lacuna::GetCurve(outline)
               : lacuna::FindOutlineAround(GetTumour(tumour), this->Margin, middle),
       middle, options, execution);
+    for (const std::string& warning : cut.GetWarnings())
+    {
+      vtkWarningMacro(<< warning);
+    }
     const auto make = [&]
     {
       auto values =

@@ -57,7 +57,7 @@ public:
   vtkGetMacro(Level, double);
   ///@}
   ///@{
-  /** mm around the tumour, 0..50. Default 10. */
+  /** mm around the tumour, 1..50. Default 10. */
   vtkSetMacro(Margin, double);
   vtkGetMacro(Margin, double);
   ///@}

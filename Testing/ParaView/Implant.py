@@ -15,7 +15,7 @@ import numpy as np
 from lacuna import implant, implant_report
 from lacuna.data import fetch
 from lacuna_test import output, picture_error
-from paraview.simple import Delete, GetSources, SkullPhantom, XMLPolyDataReader
+from paraview.simple import Delete, ExtractSubset, GetSources, SkullPhantom, TrivialProducer, XMLPolyDataReader
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
@@ -188,6 +188,24 @@ else:
 del implant.print
 if screen is not None:
     os.environ["DISPLAY"] = screen
+
+# The side in words is that of the head, which need not be in the middle of the scan, nor straight: here its right half alone is
+tilt = np.radians(20)
+sides = vtkSphereSource()
+sides.Update()
+for field, numbers in (("Origin", [[-4.0, 1, 3]]), ("Normal", [[-np.cos(tilt), np.sin(tilt), 0]])):  # turned to the left: y is the back
+    array = numpy_to_vtk(np.array(numbers), deep=True)
+    array.SetName("SymmetryPlane" + field)
+    sides.GetOutput().GetFieldData().AddArray(array)
+shown = TrivialProducer()
+shown.GetClientSideObject().SetOutput(sides.GetOutput())
+whole = SkullPhantom(Spacing=[5, 5, 5])
+size = fetch(whole).GetExtent()
+half = ExtractSubset(Input=whole, VOI=[size[0], (size[0] + size[1]) // 2, *size[2:]])
+half.UpdatePipeline()
+place = implant.places(implant.Made(half, shown, None, None))
+for point, words in ([-34, 1, 63], "top right"), ([26, 1, 63], "top left"), ([-4 - 80 * np.sin(tilt), 1 - 80 * np.cos(tilt), 3], "front"):
+    assert place(point).endswith(f" mm ({words})"), (place(point), words)
 
 # Another skull as a template: the phantom without its hole
 whole = SkullPhantom(Spacing=[2.5, 2.5, 2.5], DefectRadius=0)

@@ -5,6 +5,7 @@
 #include "lacunaPlanarTriangulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,6 +21,7 @@ constexpr int LeastSides = 16;       // of a round hole
 constexpr double OnLine = 1e-7;      // mm
 constexpr int MostNewton = 30;
 constexpr double BetweenHoles = 2; // mm of material between holes, and between holes and text
+constexpr double NearRim = 0.8;    // of RimDistance, where the rim bends
 constexpr double TextToRim = 2;    // mm
 constexpr double TextSearch = 2;   // mm between places that are tried
 constexpr double PlateSearch = 2;  // mm, the same
@@ -33,6 +35,11 @@ struct Line
   Vec3 U;
   Vec3 V;
 };
+
+double DepthOf(std::size_t level)
+{
+  return static_cast<double>(level) / WallSteps;
+}
 
 Line MakeLine(const ImplantSlab& slab, const Vec2& p)
 {
@@ -148,14 +155,16 @@ bool GoInwards(const ImplantRim& rim, const RimPlace& place, double distance, Ve
   for (int step = 0; step < 8; ++step)
   {
     p = { place.Foot[0] - along * place.Out[0], place.Foot[1] - along * place.Out[1] };
-    const double missing = distance - rim.Find(p, 2 * distance + 1);
+    Vec2 inner{};
+    const double missing = distance - rim.Find(p, 2 * distance + 1, inner);
     if (std::abs(missing) < 0.02)
     {
       return true;
     }
     along = std::clamp(along + missing, 0.3 * distance, 3 * distance);
   }
-  return rim.Find(p, 2 * distance + 1) > 0.9 * distance;
+  Vec2 inner{};
+  return rim.Find(p, 2 * distance + 1, inner) > 0.9 * distance;
 }
 }
 
@@ -193,32 +202,44 @@ std::vector<Loop> FindTunnel(const ImplantSlab& slab, const ImplantHole& hole, d
 //------------------------------------------------------------------------------
 ImplantRim::ImplantRim(const ImplantSlab& slab, const std::vector<std::vector<Loop>>& levels)
   : Slab(slab)
-  , Outer(levels.front())
-  , Inner(levels.back())
-  , OuterRim(OnLevel(slab, levels.front(), 0), 2)
-  , InnerRim(OnLevel(slab, levels.back(), 1), 2)
+  , Levels(levels)
 {
+  for (std::size_t level = 0; level < levels.size(); ++level)
+  {
+    this->Rims.emplace_back(OnLevel(slab, levels[level], DepthOf(level)), 2);
+  }
+}
+
+//------------------------------------------------------------------------------
+double ImplantRim::FindOn(std::size_t level, const Vec2& p, double limit) const
+{
+  const bool isIn = this->Slab.Covers(p) && IsInside(this->Levels[level], p);
+  return isIn ? this->Rims[level].Find(this->Slab.GetPoint(p, DepthOf(level)), limit).Distance : -1;
 }
 
 //------------------------------------------------------------------------------
 double ImplantRim::FindInner(const Vec2& p, double limit) const
 {
-  const bool isIn = this->Slab.Covers(p) && IsInside(this->Inner, p);
-  return isIn ? this->InnerRim.Find(this->Slab.GetPoint(p, 1), limit).Distance : -1;
+  return this->FindOn(WallSteps, p, limit);
 }
 
 //------------------------------------------------------------------------------
-double ImplantRim::Find(const Vec2& p, double limit) const
+double ImplantRim::Find(const Vec2& p, double limit, Vec2& inner) const
 {
-  if (!IsFarInside(this->Slab, p) || !IsInside(this->Outer, p))
+  if (!IsFarInside(this->Slab, p))
   {
     return -1;
   }
-  const double outer = this->OuterRim.Find(this->Slab.GetPoint(p, 0), limit).Distance;
-  Vec2 end = p;
-  return FindBeside(this->Slab, 1, MakeLine(this->Slab, p), 0, 0, end)
-    ? std::min(outer, this->FindInner(end, limit))
-    : -1;
+  const Line line = MakeLine(this->Slab, p);
+  double least = limit;
+  inner = p;
+  for (std::size_t level = 0; level <= WallSteps && least >= 0; ++level)
+  {
+    least = level == 0 || FindBeside(this->Slab, DepthOf(level), line, 0, 0, inner)
+      ? std::min(least, this->FindOn(level, inner, limit))
+      : -1;
+  }
+  return least;
 }
 
 //------------------------------------------------------------------------------
@@ -335,7 +356,7 @@ TextPlace PlaceText(const ImplantSlab& slab, const ImplantRim& rim,
 //------------------------------------------------------------------------------
 std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const SkullRays& rays,
   const Chart& chart, const std::vector<std::vector<Loop>>& levels,
-  const SkullImplantOptions& options)
+  const SkullImplantOptions& options, const std::function<bool(const Vec3&)>& hasRoom)
 {
   std::vector<ImplantPlateScrews> plates;
   if (options.Plates == 0)
@@ -374,7 +395,8 @@ std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const Skull
   for (std::size_t k = 0; k < places.size(); ++k)
   {
     ImplantPlateScrews screws;
-    if (!GoInwards(rim, places[k], options.RimDistance, screws.Foot))
+    if (!GoInwards(rim, places[k], options.RimDistance, screws.Foot) ||
+      !hasRoom(slab.GetPoint(screws.Foot, 0)))
     {
       continue;
     }
@@ -417,29 +439,41 @@ std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const Skull
 }
 
 //------------------------------------------------------------------------------
+double GetLeastToRim(const SkullImplantOptions& options, double diameter)
+{
+  return std::max(NearRim * options.RimDistance, 0.5 * diameter + LeastHoleToRim);
+}
+
+//------------------------------------------------------------------------------
 std::vector<ImplantHole> PlaceHoles(const ImplantSlab& slab, const ImplantRim& rim,
   const std::vector<Loop>& outline, const std::vector<Vec2>& screws, const TextPlace& text,
   const SkullImplantOptions& options, Execution& execution)
 {
   std::vector<ImplantHole> holes;
+  std::vector<std::array<Vec3, 2>> axes;
   const auto add = [&](const Vec2& p, double radius, double toRim)
   {
-    bool isFree = rim.Find(p, toRim + 1) >= toRim &&
-      (!text.IsGood || text.GetDistance(p) >= radius + BetweenHoles);
-    const Vec3 x = isFree ? slab.GetPoint(p, 0) : Vec3{ 0, 0, 0 };
-    for (const ImplantHole& hole : holes)
+    Vec2 inner{};
+    if (rim.Find(p, toRim + 1, inner) < toRim ||
+      (text.IsGood && text.GetDistance(inner) < radius + BetweenHoles))
     {
-      isFree =
-        isFree && Norm(slab.GetPoint(hole.Middle, 0) - x) >= hole.Radius + radius + BetweenHoles;
+      return;
     }
-    if (isFree)
+    const std::array<Vec3, 2> axis{ slab.GetPoint(p, 0), slab.GetPoint(inner, 1) };
+    for (std::size_t k = 0; k < holes.size(); ++k)
     {
-      holes.push_back({ p, radius });
+      if (std::min(Norm(axis[0] - axes[k][0]), Norm(axis[1] - axes[k][1])) <
+        holes[k].Radius + radius + BetweenHoles)
+      {
+        return;
+      }
     }
+    holes.push_back({ p, radius });
+    axes.push_back(axis);
   };
   for (const Vec2& p : screws)
   {
-    add(p, 0.5 * options.ScrewDiameter, 0.8 * options.RimDistance);
+    add(p, 0.5 * options.ScrewDiameter, GetLeastToRim(options, options.ScrewDiameter));
   }
   if (options.SutureSpacing > 0)
   {
@@ -450,7 +484,7 @@ std::vector<ImplantHole> PlaceHoles(const ImplantSlab& slab, const ImplantRim& r
         Vec2 p{};
         if (GoInwards(rim, place, options.RimDistance, p))
         {
-          add(p, 0.5 * options.SutureDiameter, 0.8 * options.RimDistance);
+          add(p, 0.5 * options.SutureDiameter, GetLeastToRim(options, options.SutureDiameter));
         }
       }
     }

@@ -13,6 +13,7 @@
 #include "lacunaVector.h"
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace lacuna
@@ -34,17 +35,18 @@ class ImplantRim
 public:
   /// Keeps a reference to slab. levels: of ImplantEdge.
   ImplantRim(const ImplantSlab& slab, const std::vector<std::vector<Loop>>& levels);
-  /// Of both ends of a hole's axis the least distance to the rim, at most limit; negative outside of the rim.
-  double Find(const Vec2& p, double limit) const;
+  /// Of a hole's axis, which starts at p, the least distance to the rim on each level, at most limit; negative outside of
+  /// the rim. inner: where it ends.
+  double Find(const Vec2& p, double limit, Vec2& inner) const;
   /// Of a place on the inner surface; the same.
   double FindInner(const Vec2& p, double limit) const;
 
 private:
+  double FindOn(std::size_t level, const Vec2& p, double limit) const;
+
   const ImplantSlab& Slab;
-  std::vector<Loop> Outer;
-  std::vector<Loop> Inner;
-  CurveIndex OuterRim;
-  CurveIndex InnerRim;
+  std::vector<std::vector<Loop>> Levels;
+  std::vector<CurveIndex> Rims;
 };
 
 /// A rectangle of the chart that text fills on the inner surface.
@@ -67,9 +69,13 @@ TextPlace PlaceText(const ImplantSlab& slab, const ImplantRim& rim,
   double leastThickness);
 
 /// Where plates fasten the implant: about evenly along the rim, where bone is thick if there is such. rays: of the skull.
+/// hasRoom: whether a screw at a place of the outer surface is off the cuts between parts.
 std::vector<ImplantPlateScrews> PlacePlates(const ImplantSlab& slab, const SkullRays& rays,
   const Chart& chart, const std::vector<std::vector<Loop>>& levels,
-  const SkullImplantOptions& options);
+  const SkullImplantOptions& options, const std::function<bool(const Vec3&)>& hasRoom);
+
+/// Of holes along the rim, mm from it to their middles.
+double GetLeastToRim(const SkullImplantOptions& options, double diameter);
 
 /// Suture holes along the rim, screws of plates, then drainage holes; each keeps off the rim, the text and those before it.
 std::vector<ImplantHole> PlaceHoles(const ImplantSlab& slab, const ImplantRim& rim,

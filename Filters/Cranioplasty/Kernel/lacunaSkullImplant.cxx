@@ -26,6 +26,7 @@ namespace
 constexpr double ErrorSpacing = 3;      // mm: standard errors vary slowly
 constexpr double AutomaticTriangle = 1; // mm
 constexpr double LeastLost = 50;        // mm^2 of a part: of which is told
+constexpr double BesideCut = 0.5;       // mm: of a screw, more than it needs
 
 class Builder
 {
@@ -63,16 +64,31 @@ public:
     this->Run.SetStage(0.5, 0.55);
     const ImplantEdge edge = this->Follow(this->Bone, path, outline);
     this->Run.SetStage(0.55, 0.6);
+    const Cuts cuts = this->FindCuts(edge, path);
+    const double ofCut = 0.5 * this->Options.EdgeClearance +
+      GetLeastToRim(this->Options, this->Options.ScrewDiameter) + BesideCut;
     this->Implant.Plates =
-      PlacePlates(this->Slab, this->Rays, this->Space.GetChart(), edge.Levels, this->Options);
+      PlacePlates(this->Slab, this->Rays, this->Space.GetChart(), edge.Levels, this->Options,
+        [&](const Vec3& x)
+        {
+          return std::all_of(cuts.At.begin(), cuts.At.end(),
+            [&](double at) { return std::abs(Dot(x, cuts.Axis) - at) > ofCut; });
+        });
     if (this->Options.Parts == 1)
     {
       this->AddPart(edge, 1);
     }
     else
     {
-      this->AddParts(free, edge, path);
+      this->AddParts(free, edge, path, cuts);
     }
+    auto& plates = this->Implant.Plates; // those that have a hole
+    plates.erase(std::remove_if(plates.begin(), plates.end(),
+                   [&](const ImplantPlateScrews& plate) {
+                     return std::find(this->Holes.begin(), this->Holes.end(), plate.Foot) ==
+                       this->Holes.end();
+                   }),
+      plates.end());
     this->Run.SetStage(0.6, 0.95);
     this->AddErrors();
     this->Run.SetStage(0.95, 1);
@@ -121,7 +137,11 @@ private:
       {
         levels[level].push_back(tunnel[level]);
       }
-      this->Implant.Holes += tunnel.empty() ? 0 : 1;
+      if (!tunnel.empty())
+      {
+        this->Holes.push_back(hole.Middle);
+        ++this->Implant.Holes;
+      }
     }
     const std::vector<Vec2> feet =
       AddImplantMesh(this->Slab, levels, text.Text, options.TriangleSize, this->Run, this->Implant);
@@ -136,28 +156,49 @@ private:
     return this->Options.Parts > 1 ? " of part " + std::to_string(part) : "";
   }
 
-  // Cuts across the longest extent, parallel to the way in, between equal shares of the outer surface.
-  void AddParts(
-    const std::vector<double>& free, const ImplantEdge& whole, const InsertionPath& path)
+  struct Cuts
   {
-    const int parts = this->Options.Parts;
+    Vec3 Axis{ 0, 0, 0 };   // unit, across the cuts
+    std::vector<double> At; // along it, mm
+    double Length = 0;      // of a cut, at most
+  };
+
+  // Across the longest extent, parallel to the way in, between equal shares of the outer surface.
+  Cuts FindCuts(const ImplantEdge& whole, const InsertionPath& path) const
+  {
+    Cuts cuts;
+    if (this->Options.Parts == 1)
+    {
+      return cuts;
+    }
     const std::vector<Vec3> points = this->FindOuterPoints(whole.Levels[0]);
-    const Vec3 axis = FindLongestAxis(points, path.GetDirection());
+    cuts.Axis = FindLongestAxis(points, path.GetDirection());
+    cuts.Length = FindExtent(points, Cross(cuts.Axis, path.GetDirection()));
     std::vector<double> along;
     for (const Vec3& x : points)
     {
-      along.push_back(Dot(x, axis));
+      along.push_back(Dot(x, cuts.Axis));
     }
     std::sort(along.begin(), along.end());
+    for (int part = 1; part < this->Options.Parts; ++part)
+    {
+      cuts.At.push_back(along[along.size() * part / this->Options.Parts]);
+    }
+    return cuts;
+  }
+
+  void AddParts(const std::vector<double>& free, const ImplantEdge& whole,
+    const InsertionPath& path, const Cuts& cuts)
+  {
+    const int parts = this->Options.Parts;
     const double clearance = this->Options.EdgeClearance;
     // each side keeps half of the clearance from a cut, which counts as a wall of bone behind it
     const double behind = 0.5 * clearance;
     for (int part = 0; part < parts; ++part)
     {
-      const double low = part == 0 ? -Far : along[along.size() * part / parts] - behind;
-      const double high =
-        part + 1 == parts ? Far : along[along.size() * (part + 1) / parts] + behind;
-      const PartBone bone(this->Bone, axis, low, high);
+      const double low = part == 0 ? -Far : cuts.At[part - 1] - behind;
+      const double high = part + 1 == parts ? Far : cuts.At[part] + behind;
+      const PartBone bone(this->Bone, cuts.Axis, low, high);
       const InsertionPath way(bone, path.GetDirection());
       const std::vector<Loop> outline =
         this->Space.FindOutline(this->Space.FindPart(free, bone, clearance));
@@ -168,8 +209,8 @@ private:
       }
       this->AddPart(this->Follow(bone, way, outline), part + 1);
     }
-    const double lost = GetArea(whole.Levels[0]) - this->PartArea -
-      clearance * (parts - 1) * this->FindExtent(points, Cross(axis, path.GetDirection()));
+    const double lost =
+      GetArea(whole.Levels[0]) - this->PartArea - clearance * (parts - 1) * cuts.Length;
     if (lost > LeastLost)
     {
       this->Implant.Warnings.push_back("the parts leave about " +
@@ -231,7 +272,8 @@ private:
     if (static_cast<int>(plates.size()) < this->Options.Plates)
     {
       warnings.push_back("only " + std::to_string(plates.size()) + " of " +
-        std::to_string(this->Options.Plates) + " plates have a place with bone beside the rim");
+        std::to_string(this->Options.Plates) +
+        " plates have a place: with bone beside the rim, and room for a hole in the implant");
     }
     const auto thin = std::count_if(plates.begin(), plates.end(),
       [&](const ImplantPlateScrews& p) { return p.BoneThickness < this->Options.ScrewLength; });
@@ -422,9 +464,10 @@ private:
   Execution& Run;
   ImplantSpace Space;
   const ImplantSlab& Slab;
-  std::vector<Vec2> Feet; // of the implant's points
-  double PartArea = 0;    // mm^2 in the chart
-  double MeshedArea = 0;  // the same without holes
+  std::vector<Vec2> Feet;  // of the implant's points
+  std::vector<Vec2> Holes; // their middles
+  double PartArea = 0;     // mm^2 in the chart
+  double MeshedArea = 0;   // the same without holes
   SkullImplant Implant;
 };
 
@@ -436,6 +479,15 @@ void CheckRange(const char* name, double value, double low, double high, const c
     throw std::invalid_argument(std::string(name) + " is " + FormatNumber(value) + unit +
       "; it must be " + (zero ? std::string("0 (") + zero + ") or " : "") + "between " +
       FormatNumber(low) + " and " + FormatNumber(high));
+  }
+}
+
+void CheckToRim(const char* what, double distance, double least)
+{
+  if (distance < least)
+  {
+    throw std::invalid_argument("RimDistance is " + FormatNumber(distance) + " mm; for these " +
+      what + " it must be at least " + FormatNumber(least));
   }
 }
 }
@@ -459,6 +511,16 @@ void CheckSkullImplantOptions(const SkullImplantOptions& options)
   CheckRange("ScrewDiameter", options.ScrewDiameter, 0.5, 10, " mm");
   CheckRange("ScrewLength", options.ScrewLength, 1, 20, " mm");
   CheckRange("RimDistance", options.RimDistance, 2, 20, " mm");
+  if (options.Plates > 0)
+  {
+    CheckToRim("plates", options.RimDistance,
+      std::max(LeastPlateToRim, 0.5 * options.ScrewDiameter + LeastHoleToRim));
+  }
+  if (options.SutureSpacing > 0)
+  {
+    CheckToRim(
+      "holes for sutures", options.RimDistance, 0.5 * options.SutureDiameter + LeastHoleToRim);
+  }
   if (!IsFinite(options.InsertionDirection))
   {
     throw std::invalid_argument("InsertionDirection is not finite");

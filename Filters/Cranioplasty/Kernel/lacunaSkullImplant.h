@@ -58,6 +58,10 @@ enum class SkullImplantFace : unsigned char
   Text   ///< engraved into the inner face
 };
 
+constexpr double LeastHoleToRim = 1; ///< mm of material between the wall of a hole and the rim
+constexpr double LeastPlateToRim =
+  4; ///< mm, RimDistance of plates: screws break bone that is nearer to its edge
+
 /// Standard error, mm, above which 95 % of errors are not within 1 mm.
 constexpr double TrustedError = 1 / 1.959963984540054;
 

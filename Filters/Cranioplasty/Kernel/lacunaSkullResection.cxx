@@ -31,8 +31,12 @@ constexpr double BridgedReach = 4;    // mm over which the guide goes on where t
 constexpr double ContactReach = 0.8;  // mm: the guide lies on the highest places around
 constexpr double SmoothReach = 2;     // mm: of its top
 constexpr double GuideTriangle = 0.8; // mm
+constexpr std::size_t GuideHoles = 4;
+constexpr double LeastTop = 2; // mm: width of the guide's upper face
 constexpr double MostUnsupported = 0.2;
-constexpr double FarAway = -1e3; // mm
+constexpr double MostMissing = 0.05; // of the outline: of which is told
+constexpr double FarAway = -1e3;     // mm
+constexpr double Farthest = 500;     // mm from the middle of all bone
 
 void CheckRange(const char* name, double value, double low, double high, const char* unit)
 {
@@ -155,6 +159,15 @@ void CheckResectionOptions(const ResectionOptions& options)
   {
     CheckRange("GuideHole", options.GuideHole, 0.5, 5, " mm");
   }
+  // its inner wall leans outwards
+  const double least = std::tan(options.Bevel * Pi / 180) * options.GuideHeight +
+    std::max(LeastTop, options.GuideHole == 0 ? 0 : options.GuideHole + 2 * LeastHoleToRim);
+  if (options.GuideWidth < least)
+  {
+    throw std::invalid_argument("GuideWidth is " + FormatNumber(options.GuideWidth) +
+      " mm; with this Bevel, GuideHeight and GuideHole it must be at least " +
+      FormatNumber(std::ceil(10 * least) / 10));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -165,6 +178,7 @@ std::vector<Vec3> FindOutlineAround(
   {
     throw std::invalid_argument("the tumour has no points");
   }
+  CheckRange("Margin", margin, LeastMargin, 50, " mm");
   Vec3 mean{ 0, 0, 0 };
   for (const Vec3& x : points)
   {
@@ -186,12 +200,19 @@ std::vector<Vec3> FindOutlineAround(
     top = std::max(top, Dot(x, out));
   }
   const PlanarGrid grid = MakeGrid(flat, margin + 3, NodeSpacing);
-  std::vector<double> near = FindDistances(grid, flat, margin + 1.5);
-  for (double& distance : near)
+  std::vector<double> within = FindDistances(grid, flat, margin + 1.5);
+  for (double& distance : within)
   {
-    distance = -distance;
+    distance = margin - distance;
   }
-  const std::vector<Loop> loops = KeepLargest(FindContours(grid, near, -margin));
+  const std::size_t parts = FindFreeParts(grid, within).size();
+  if (parts > 1)
+  {
+    throw std::invalid_argument("the tumour is in " + std::to_string(parts) +
+      " parts that are farther apart than twice the margin: leave all but one out, give a larger "
+      "margin, or draw an outline around them");
+  }
+  const std::vector<Loop> loops = KeepLargest(FindContours(grid, within, 0));
   std::vector<Vec3> outline;
   for (const Vec2& p : Resample(loops.at(0), OutlineSpacing))
   {
@@ -211,6 +232,11 @@ SkullResection::SkullResection(const VoxelVolume& volume, const std::vector<Vec3
   if (outline.size() < 3)
   {
     throw std::invalid_argument("the outline has fewer than three points");
+  }
+  if (!std::all_of(outline.begin(), outline.end(),
+        [&](const Vec3& x) { return Norm(x - middleOfBone) < Farthest; }))
+  {
+    throw std::invalid_argument("the outline is not at the head: draw it on the skull, in mm");
   }
   this->Outline = ResampleCurve(outline, OutlineSpacing);
   const Vec3 out = FindOut(this->Outline, middleOfBone);
@@ -251,6 +277,12 @@ SkullResection::SkullResection(const VoxelVolume& volume, const std::vector<Vec3
   {
     throw std::runtime_error("below the outline is no bone: draw it on the skull, and look at the "
                              "bone at this Level");
+  }
+  const double missing = 1 - static_cast<double>(found) / static_cast<double>(this->Flat.size());
+  if (missing > MostMissing)
+  {
+    this->Warnings.push_back("below " + FormatNumber(std::round(100 * missing)) +
+      " % of the outline is no bone: the cut ends there at a hole, or at the end of the scan");
   }
 }
 
@@ -367,6 +399,31 @@ double SkullResection::GetInside(const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
+template <class Sampler>
+double SkullResection::FindContrast(const Sampler& sample) const
+{
+  std::vector<double> above;
+  for (std::size_t k = 0; k < this->Flat.size(); ++k)
+  {
+    for (double depth = 0; depth < Depth; depth += NodeSpacing)
+    {
+      const double value = sample(this->ToWorld(this->Flat[k], this->Heights[k] - depth));
+      if (std::isfinite(value) && value > this->Options.Level)
+      {
+        above.push_back(value - this->Options.Level);
+      }
+    }
+  }
+  if (above.empty())
+  {
+    return this->Options.Level;
+  }
+  const auto quarter = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 4);
+  std::nth_element(above.begin(), quarter, above.end());
+  return *quarter;
+}
+
+//------------------------------------------------------------------------------
 void SkullResection::Cut(void* kept, void* piece, Execution& execution) const
 {
   const VoxelVolume& volume = this->Volume;
@@ -385,13 +442,9 @@ void SkullResection::Cut(void* kept, void* piece, Execution& execution) const
       using T = std::remove_cv_t<std::remove_reference_t<decltype(*values)>>;
       auto* without = static_cast<T*>(kept);
       auto* alone = static_cast<T*>(piece);
-      double most = this->Options.Level;
-      for (std::int64_t i = 0; i < volume.NumberOfVoxels(); ++i)
-      {
-        const auto value = static_cast<double>(values[i]);
-        most = std::isfinite(value) ? std::max(most, value) : most;
-      }
-      const double contrast = most - this->Options.Level;
+      const double contrast =
+        std::min(this->FindContrast(VoxelSampler(volume, values)), // unsigned voxels
+          this->Options.Level - static_cast<double>(std::numeric_limits<T>::lowest()));
       const auto toValue = [&](double wanted)
       {
         const double least = static_cast<double>(std::numeric_limits<T>::lowest());
@@ -564,20 +617,39 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
   SkullImplant guide;
   if (this->Options.GuideHole > 0)
   {
-    for (int quarter = 0; quarter < 4; ++quarter)
+    const ImplantRim rim(slab, levels);
+    const double radius = 0.5 * this->Options.GuideHole;
+    const double middle = 0.5 * (width + this->Slope * height);
+    const std::size_t quarter = places.size() / GuideHoles;
+    for (std::size_t hole = 0; hole < GuideHoles; ++hole)
     {
-      const InnerPlace& place = places[(2 * quarter + 1) * places.size() / 8];
-      const double middle = 0.5 * (width + this->Slope * height);
-      ImplantHole hole;
-      hole.Middle = { place.Foot[0] + middle * place.Out[0],
-        place.Foot[1] + middle * place.Out[1] };
-      hole.Radius = 0.5 * this->Options.GuideHole;
-      const std::vector<Loop> tunnel = FindTunnel(slab, hole, 0.5 * GuideTriangle);
-      for (std::size_t level = 0; level < tunnel.size(); ++level)
+      // in the middle of its quarter, else as near to that as there is room
+      bool isMade = false;
+      for (std::size_t off = 0; off < quarter && !isMade; ++off)
       {
-        levels[level].push_back(tunnel[level]);
+        const std::size_t at = hole * quarter + quarter / 2 + (off + 1) / 2 * (off % 2 ? 1 : -1);
+        const InnerPlace& place = places[at % places.size()];
+        const Vec2 p{ place.Foot[0] + middle * place.Out[0],
+          place.Foot[1] + middle * place.Out[1] };
+        Vec2 end{};
+        if (rim.Find(p, 2 * radius + LeastHoleToRim, end) < radius + 0.9 * LeastHoleToRim)
+        {
+          continue;
+        }
+        const std::vector<Loop> tunnel = FindTunnel(slab, { p, radius }, 0.5 * GuideTriangle);
+        isMade = !tunnel.empty();
+        for (std::size_t level = 0; level < tunnel.size(); ++level)
+        {
+          levels[level].push_back(tunnel[level]);
+        }
       }
-      guide.Holes += tunnel.empty() ? 0 : 1;
+      guide.Holes += isMade ? 1 : 0;
+    }
+    if (guide.Holes < static_cast<int>(GuideHoles))
+    {
+      guide.Warnings.push_back("only " + std::to_string(guide.Holes) + " of " +
+        std::to_string(GuideHoles) +
+        " holes for screws have room in the guide: make it wider, or lower");
     }
   }
   AddImplantMesh(slab, levels, {}, GuideTriangle, execution, guide);

@@ -32,9 +32,13 @@ struct ResectionOptions
 /// Throws std::invalid_argument that names an option out of range.
 void CheckResectionOptions(const ResectionOptions& options);
 
-/// A closed curve around points (world mm) such as those of a tumour, margin mm away from them as seen from outside:
-/// from the mean of bone through their middle. It is as high as the highest point. Throws std::invalid_argument for no
-/// points, or for points around the middle of the head.
+/// mm: margins are wider than points all over a tumour are apart.
+constexpr double LeastMargin = 1;
+
+/// A closed curve around points (world mm) such as those all over a tumour, at most 1 mm apart, margin mm away from them as
+/// seen from outside: from the mean of bone through their middle. It is as high as the highest point. Throws
+/// std::invalid_argument for no points, points around the middle of the head, parts that are farther apart than twice
+/// the margin, and a margin that is not LeastMargin..50.
 std::vector<Vec3> FindOutlineAround(
   const std::vector<Vec3>& points, double margin, const Vec3& middleOfBone);
 
@@ -78,6 +82,10 @@ private:
     return p[0] * this->U + p[1] * this->V - height * this->Direction;
   }
   void FindTable(Execution& execution);
+  // By how much bone along the wall is brighter than the level, or nearly all of it. So the wall is where it should be
+  // between voxels of any brightness.
+  template <class Sampler>
+  double FindContrast(const Sampler& sample) const;
   double GetTable(const Vec2& p) const; // height of the outer table; NaN without bone
   double SmoothTable(std::int64_t i, std::int64_t j, double radius, bool isHighest) const;
 

@@ -18,6 +18,7 @@ import os
 import sys
 import tempfile
 
+import numpy as np
 import paraview.simple as pv
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow
@@ -31,6 +32,7 @@ LEVEL = 300  # Hounsfield units
 AIR = -300  # the same: below it there is air around the head
 BONE = (100, 1000)  # the same: levels of bone
 CLEARANCE = 0.5  # mm
+LATERAL = 0.7  # cosine between the left and the normal of a plane that can be one of symmetry
 ENDINGS = (".stl", ".ply", ".obj", ".vtp", ".3mf")
 MESHES = (".stl", ".ply", ".obj", ".vtp")  # of a template
 SCREEN = 'xvfb-run -a -s "-screen 0 1280x1024x24 -noreset"'
@@ -164,14 +166,24 @@ def template_text(numbers):
 
 
 def places(made):
-    """A function that writes a point as text: x y z in mm, and on which side of the head it is if the CT is known to be the patient's."""
-    bounds = made.bone.GetDataInformation().GetBounds()
-    middle = [(low + high) / 2 for low, high in zip(bounds[::2], bounds[1::2])]
+    """A function that writes a point as text: x y z in mm, and on which side of the head it is if the CT is known to be the patient's.
+
+    The sides are those of the head, however it is turned and wherever it is in the scan: of its symmetry plane.
+    """
+    fields = fetch(made.implant).GetFieldData()
+    middle, normal = (vtk_to_numpy(fields.GetArray("SymmetryPlane" + name)).ravel() for name in ("Origin", "Normal"))
+    left = normal if normal[0] > 0 else -normal
+    if left[0] < LATERAL:
+        left = np.array([1.0, 0, 0])  # what was found are no sides
+    back = np.array([0, 1, 0]) - left[1] * left
+    back /= np.linalg.norm(back)
+    head = np.array([left, back, np.cross(left, back)])
     patient = coordinates.is_patient(made.bone)
 
     def place(point):
         text = " ".join(f"{x:.1f}" for x in point) + " mm"
-        return f"{text} ({direction_words([a - b for a, b in zip(point, middle)])})" if patient else text
+        off = head @ (np.asarray(point) - middle)
+        return f"{text} ({direction_words(off)})" if patient and off.any() else text
 
     return place
 

@@ -31,49 +31,6 @@ SkullImplantOptions Coarse()
   return options;
 }
 
-// Of the edge's triangles that hang together: lists of points. The rim is one of them.
-std::vector<std::vector<int>> FindWalls(const SkullImplant& implant)
-{
-  std::vector<int> parent(implant.Points.size());
-  for (std::size_t k = 0; k < parent.size(); ++k)
-  {
-    parent[k] = static_cast<int>(k);
-  }
-  const auto find = [&](int k)
-  {
-    while (parent[k] != k)
-    {
-      k = parent[k] = parent[parent[k]];
-    }
-    return k;
-  };
-  std::set<int> used;
-  for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
-  {
-    if (implant.Faces[t] == SkullImplantFace::Edge)
-    {
-      for (const int corner : implant.Triangles[t])
-      {
-        used.insert(corner);
-        parent[find(corner)] = find(implant.Triangles[t][0]);
-      }
-    }
-  }
-  std::map<int, std::vector<int>> walls;
-  for (const int k : used)
-  {
-    walls[find(k)].push_back(k);
-  }
-  std::vector<std::vector<int>> found;
-  for (const auto& [root, points] : walls)
-  {
-    found.push_back(points);
-  }
-  std::sort(
-    found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  return found;
-}
-
 struct Round
 {
   Vec3 Middle; // on the sphere
@@ -232,6 +189,82 @@ TEST(ImplantMesh, PutsPlatesWhereBoneIsThick)
   ASSERT_EQ(warned.Warnings.size(), 1u);
   EXPECT_NE(warned.Warnings[0].find("4 of the plates' screws are in bone thinner than 8 mm"),
     std::string::npos);
+}
+
+// A plate that is told of has its hole: beside the cuts of parts, and not where another one has it already.
+TEST(ImplantMesh, HasAHoleForEachPlate)
+{
+  const Shell shell;
+  const auto check = [](const SkullImplant& implant)
+  {
+    const std::vector<std::vector<int>> walls = FindWalls(implant);
+    for (const lacuna::ImplantPlateScrews& plate : implant.Plates)
+    {
+      const bool hasHole = std::any_of(walls.begin(), walls.end(),
+        [&](const std::vector<int>& wall)
+        {
+          double farthest = 0;
+          for (const int k : wall)
+          {
+            const Vec3 axis = lacuna::Normalized(plate.OnImplant);
+            const Vec3& x = implant.Points[k];
+            farthest = std::max(farthest, Norm(x - Dot(x, axis) * axis));
+          }
+          return farthest < 5.2;
+        });
+      EXPECT_TRUE(hasHole);
+    }
+    EXPECT_EQ(static_cast<int>(implant.Plates.size()), implant.Holes);
+    EXPECT_TRUE(IsClosed(implant));
+  };
+  SkullImplantOptions options = Coarse();
+  options.Plates = 6;
+  options.Parts = 2;
+  const SkullImplant inParts = Make(shell, options);
+  check(inParts);
+  EXPECT_EQ(inParts.Plates.size(), 6u);
+  EXPECT_TRUE(inParts.Warnings.empty());
+  options = Coarse();
+  options.Plates = 12;
+  options.ScrewDiameter = 10;
+  options.RimDistance = 7;
+  const SkullImplant crowded = Make(shell, options);
+  check(crowded);
+  EXPECT_LT(crowded.Plates.size(), 12u);
+  ASSERT_EQ(crowded.Warnings.size(), 1u);
+  EXPECT_NE(crowded.Warnings[0].find(
+              "only " + std::to_string(crowded.Plates.size()) + " of 12 plates have a place"),
+    std::string::npos);
+}
+
+// Holes come closer to each other inwards.
+TEST(ImplantMesh, LeavesMaterialBetweenHoles)
+{
+  const Shell shell;
+  SkullImplantOptions options = Coarse();
+  options.Thickness = 20;
+  options.DrainageSpacing = 8.5;
+  options.DrainageDiameter = 6;
+  options.RimDistance = 2;
+  const SkullImplant implant = Make(shell, options);
+  EXPECT_TRUE(IsClosed(implant));
+  const std::vector<std::vector<int>> walls = FindWalls(implant);
+  ASSERT_GT(walls.size(), 3u);
+  for (std::size_t a = 0; a < walls.size(); ++a) // the rim, too
+  {
+    for (std::size_t b = 0; b < a; ++b)
+    {
+      double least = 100;
+      for (const int k : walls[a])
+      {
+        for (const int m : walls[b])
+        {
+          least = std::min(least, Norm(implant.Points[k] - implant.Points[m]));
+        }
+      }
+      EXPECT_GT(least, 1.9) << a << " " << b;
+    }
+  }
 }
 
 // Three parts that can be put in one after the other, half a mm apart.
@@ -427,5 +460,9 @@ TEST(ImplantMesh, RefusesOptionsOutOfRange)
   check("ScrewDiameter", [](auto& o) { o.ScrewDiameter = 0.1; });
   check("ScrewLength", [](auto& o) { o.ScrewLength = 0; });
   check("RimDistance", [](auto& o) { o.RimDistance = 1; });
+  // holes that would cross the rim
+  check("RimDistance", [](auto& o) { o.SutureSpacing = 10, o.SutureDiameter = 10; });
+  check("RimDistance", [](auto& o) { o.Plates = 4, o.ScrewDiameter = 10; });
+  check("RimDistance", [](auto& o) { o.Plates = 4, o.RimDistance = 2; });
   EXPECT_NO_THROW(lacuna::CheckSkullImplantOptions({}));
 }

@@ -114,10 +114,11 @@ TEST(SkullResection, CutsAlongABevelThroughTheOutline)
   }
 }
 
-// Where the grey levels cross the level is the wall, between voxels.
+// Where the grey levels cross the level is the wall, between voxels. Metal elsewhere in the head does not matter.
 TEST(SkullResection, HasItsWallBetweenVoxels)
 {
-  const Shell shell({}, -100, -10, Hole::None);
+  Shell shell({}, -100, -10, Hole::None);
+  shell.Voxels[shell.Voxels.size() / 2] = 20000;
   ResectionOptions options;
   options.Bevel = 20;
   const Cuts cuts(shell, options, MakeOutline(shell, 0, 0));
@@ -195,6 +196,40 @@ TEST(SkullResection, HasAGuideThatLiesOnBone)
   EXPECT_NEAR(area, length * 10 + Pi * 100, 0.04 * length * 10);
 }
 
+// A high guide on a steep part of the skull: holes along its normal stay within it, or are told to be missing.
+TEST(SkullResection, HasHolesWithinItsGuide)
+{
+  const Shell shell({}, -100, -10, Hole::None);
+  for (const double height : { 5.0, 12.0 })
+  {
+    ResectionOptions options;
+    options.GuideHeight = height;
+    options.GuideWidth = 8;
+    options.GuideHole = 3;
+    Cuts cuts(shell, options, MakeOutline(shell, 2, 0.3));
+    const SkullImplant guide = cuts.Resection.MakeGuide(cuts.Run);
+    EXPECT_TRUE(IsClosed(guide));
+    EXPECT_EQ(guide.Warnings.empty(), guide.Holes == 4);
+    const std::vector<std::vector<int>> walls = FindWalls(guide);
+    ASSERT_EQ(walls.size(), 2u + guide.Holes);
+    for (std::size_t hole = 2; hole < walls.size(); ++hole)
+    {
+      for (std::size_t rim = 0; rim < 2; ++rim)
+      {
+        double least = 100;
+        for (const int k : walls[hole])
+        {
+          for (const int m : walls[rim])
+          {
+            least = std::min(least, Norm(guide.Points[k] - guide.Points[m]));
+          }
+        }
+        EXPECT_GT(least, 0.8);
+      }
+    }
+  }
+}
+
 TEST(SkullResection, GoesAroundATumour)
 {
   // a ball under the bone: the outline is a circle, margin around it
@@ -246,6 +281,19 @@ TEST(SkullResection, RefusesWhatCannotBeCut)
   ResectionOptions options;
   options.Bevel = 50;
   EXPECT_THROW(Cuts(shell, options, MakeOutline(shell, 0)), std::invalid_argument);
+  // guides of which nothing would be left above, or beside a hole
+  const auto guide = [](double bevel, double width, double height, double hole)
+  {
+    ResectionOptions options;
+    options.Bevel = bevel;
+    options.GuideWidth = width;
+    options.GuideHeight = height;
+    options.GuideHole = hole;
+    CheckResectionOptions(options);
+  };
+  EXPECT_THROW(guide(45, 10, 12, 0), std::invalid_argument);
+  EXPECT_THROW(guide(10, 5, 5, 5), std::invalid_argument);
+  EXPECT_NO_THROW(guide(45, 15, 12, 0));
   EXPECT_THROW(lacuna::FindOutlineAround({}, 5, {}), std::invalid_argument);
   EXPECT_THROW(
     lacuna::FindOutlineAround({ { 1, 0, 0 }, { -1, 0, 0 } }, 5, {}), std::invalid_argument);

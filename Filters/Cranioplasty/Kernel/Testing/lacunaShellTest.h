@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -245,6 +246,49 @@ inline bool IsClosed(const SkullImplant& implant)
     [&](const auto& e) {
       return e.second == 1 && edges.count({ e.first.second, e.first.first }) == 1;
     });
+}
+
+// Of the edge's triangles that hang together: lists of points. The rim is one of them.
+inline std::vector<std::vector<int>> FindWalls(const SkullImplant& implant)
+{
+  std::vector<int> parent(implant.Points.size());
+  for (std::size_t k = 0; k < parent.size(); ++k)
+  {
+    parent[k] = static_cast<int>(k);
+  }
+  const auto find = [&](int k)
+  {
+    while (parent[k] != k)
+    {
+      k = parent[k] = parent[parent[k]];
+    }
+    return k;
+  };
+  std::set<int> used;
+  for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
+  {
+    if (implant.Faces[t] == SkullImplantFace::Edge)
+    {
+      for (const int corner : implant.Triangles[t])
+      {
+        used.insert(corner);
+        parent[find(corner)] = find(implant.Triangles[t][0]);
+      }
+    }
+  }
+  std::map<int, std::vector<int>> walls;
+  for (const int k : used)
+  {
+    walls[find(k)].push_back(k);
+  }
+  std::vector<std::vector<int>> found;
+  for (const auto& [root, points] : walls)
+  {
+    found.push_back(points);
+  }
+  std::sort(
+    found.begin(), found.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return found;
 }
 }
 #endif
