@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLacunaFittedPart.h"
 
+#include "lacunaFaceRelief.h"
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkLacunaDepthMap.h"
+#include "vtkLacunaImplantPlate.h"
 #include "vtkLacunaMirrored.h"
 #include "vtkPointData.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <cmath>
@@ -130,4 +136,66 @@ vtkLacunaFittedPart::vtkLacunaFittedPart(vtkImageData* map, const std::string& p
       { static_cast<double>(extent[0] + first[0]), static_cast<double>(extent[2] + first[1]), 0 }) *
     lacuna::Matrix4::Scaling({ 1 / this->Spacing[0], 1 / this->Spacing[1], 1 });
   CheckAxes(this->ToWorld, purpose);
+}
+
+//------------------------------------------------------------------------------
+vtkLacunaFittedPart::vtkLacunaFittedPart(lacuna::Execution& execution, vtkPolyData* solid,
+  double spacing, double margin, const std::string& purpose)
+{
+  if (vtkLacunaMirrored::IsMarked(solid))
+  {
+    throw std::runtime_error("the solid is a mirror image (field data Mirrored), so " + purpose +
+      " made from it would not fit the patient");
+  }
+  vtkDataArray* faces = nullptr;
+  for (const char* name : { "ImplantFace", vtkLacunaImplantPlate::PlateFaceName })
+  {
+    faces = faces ? faces : solid->GetCellData()->GetArray(name);
+  }
+  vtkCellArray* polys = solid->GetPolys();
+  if (!faces || faces->GetNumberOfComponents() != 1 || polys->IsHomogeneous() != 3 ||
+    polys->GetNumberOfCells() != solid->GetNumberOfCells())
+  {
+    throw std::runtime_error("the surface is no solid of triangles with the cell array ImplantFace "
+                             "or PlateFace, which says "
+                             "where its outer face is; give the output of Skull Implant or Implant "
+                             "Plate, or a filled depth map");
+  }
+  std::vector<lacuna::Vec3> points(static_cast<std::size_t>(solid->GetNumberOfPoints()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+  {
+    solid->GetPoint(static_cast<vtkIdType>(k), points[k].data());
+    if (!lacuna::IsFinite(points[k]))
+    {
+      throw std::runtime_error("point " + std::to_string(k) + " of the surface is not finite");
+    }
+  }
+  std::vector<lacuna::Triangle> outer;
+  auto cells = vtk::TakeSmartPointer(polys->NewIterator());
+  vtkIdType cell = 0;
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell(), ++cell)
+  {
+    vtkIdType size;
+    const vtkIdType* ids;
+    cells->GetCurrentCell(size, ids);
+    if (faces->GetComponent(cell, 0) == 0)
+    {
+      outer.push_back(
+        { static_cast<int>(ids[0]), static_cast<int>(ids[1]), static_cast<int>(ids[2]) });
+    }
+  }
+  if (outer.empty())
+  {
+    throw std::runtime_error(std::string("no triangle of the surface is of the outer face (0 in ") +
+      faces->GetName() + ")");
+  }
+  const lacuna::FaceRelief relief =
+    lacuna::MakeFaceRelief(execution, points, outer, spacing, margin);
+  this->Size = relief.Size;
+  this->Spacing = { spacing, spacing };
+  this->Depths = relief.Depths;
+  this->Mask = relief.Mask;
+  this->ToWorld = relief.ToWorld;
+  this->Deviation = relief.Deviation;
+  this->SteepestAngle = relief.SteepestAngle;
 }

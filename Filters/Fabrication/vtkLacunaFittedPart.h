@@ -12,8 +12,14 @@
 #include <vector>
 
 class vtkImageData;
+class vtkPolyData;
 
-/// The part of a parallel depth map on which Fitted is a number.
+namespace lacuna
+{
+class Execution;
+}
+
+/// The part of a parallel depth map on which Fitted is a number, or the outer face of a solid as such a part.
 struct vtkLacunaFittedPart
 {
   std::int64_t Column = 0; ///< of its first pixel, from the first of the map
@@ -30,5 +36,14 @@ struct vtkLacunaFittedPart
   /// Fitted and FilledMask, is marked as a mirror image (vtkLacunaMirrored), Fitted is not a complete
   /// rectangle, nothing is filled, or the map's axes are not right-handed and perpendicular. purpose: what needs the map, "a mould".
   vtkLacunaFittedPart(vtkImageData* map, const std::string& purpose);
+
+  /// The outer face (0) by the cell array ImplantFace or PlateFace of a solid, seen from where its steepest place is least steep,
+  /// with as much around it as a margin in mm. spacing: of the samples, mm. Throws likewise, and when no view sees all of the face.
+  vtkLacunaFittedPart(lacuna::Execution& execution, vtkPolyData* solid, double spacing,
+    double margin, const std::string& purpose);
+
+  // Of a solid, else 0.
+  double Deviation = 0;     ///< mm, largest distance of the face's points from the surface
+  double SteepestAngle = 0; ///< degrees, between the view and the face's normal
 };
 #endif

@@ -5,6 +5,7 @@
 #include "lacunaPressSurface.h"
 #include "vtkCharArray.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -23,6 +24,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
@@ -46,6 +48,10 @@ constexpr double SquareView = 5;
 constexpr double ObliqueView = 60;
 constexpr double Degrees = 180 / 3.14159265358979323846;
 constexpr double CoarsestSpacing = 1; // mm, when OutputSpacing is left to the filter
+constexpr double SolidSpacing = 0.75; // mm between samples of a solid's face
+constexpr double SteepestWall =
+  60; // degrees: a sheet that is drawn over more has less than half of its thickness
+constexpr double LargestDeviation = 0.05; // mm, of a solid's face, without a warning
 
 void CheckChoice(const char* name, int value, int count, const char* choices)
 {
@@ -67,9 +73,9 @@ std::vector<double> ToVector(const lacuna::Vec3& v)
 class vtkLacunaPressOrientation::Plan
 {
 public:
-  Plan(lacuna::Execution& execution, vtkLacunaPressOrientation* self, vtkImageData* map)
+  Plan(lacuna::Execution& execution, vtkLacunaPressOrientation* self, vtkDataObject* input)
     : Options(GetOptions(self))
-    , Part(map, "a mould")
+    , Part(MakePart(execution, input, this->Options))
     , Surface(execution, this->Part.Size, this->Part.Depths, this->Part.Spacing)
   {
     if (this->Options.Spacing == 0)
@@ -80,10 +86,15 @@ public:
     const lacuna::Vec3 flat = lacuna::FitPlaneNormal(
       this->Part.Size, this->Part.Depths, this->Part.Spacing, this->Part.Mask);
     lacuna::Vec3 normal = flat;
-    vtkDataArray* given = vtkLacunaFieldData::Find(map, PlaneNormalName, 3, 1);
-    this->HasPlane = given != nullptr;
-    this->OwnPlane = self->PlaneMethod == Fit && given;
-    if (this->OwnPlane)
+    vtkDataArray* given = vtkLacunaFieldData::Find(input, PlaneNormalName, 3, 1);
+    this->IsSolid = vtkPolyData::SafeDownCast(input) != nullptr;
+    this->HasPlane = given != nullptr || this->IsSolid;
+    this->OwnPlane = self->PlaneMethod == Fit && this->HasPlane;
+    if (this->OwnPlane && this->IsSolid)
+    {
+      normal = { 0, 0, -1 }; // it is seen from where its steepest place is least steep
+    }
+    else if (this->OwnPlane)
     {
       lacuna::Vec3 ofFit;
       given->GetTuple(0, ofFit.data());
@@ -111,7 +122,8 @@ public:
   lacuna::PressOptions Options;
   vtkLacunaFittedPart Part;
   lacuna::ReliefSurface Surface;
-  bool HasPlane = true;   // from the hole filler
+  bool IsSolid = false;
+  bool HasPlane = true;   // from the hole filler, or the best view of a solid
   bool OwnPlane = false;  // and it is what lies flat
   double Inclination = 0; // degrees, of the hole filler's plane to the least squares plane
   lacuna::PressLayout Layout;
@@ -121,6 +133,20 @@ public:
   lacuna::Vec3 View{}; // unit, world
 
 private:
+  static vtkLacunaFittedPart MakePart(
+    lacuna::Execution& execution, vtkDataObject* input, const lacuna::PressOptions& options)
+  {
+    auto* solid = vtkPolyData::SafeDownCast(input);
+    if (!solid)
+    {
+      return { vtkImageData::SafeDownCast(input), "a mould" };
+    }
+    // What the offset and a turn of the plane take is added. PlanPress refuses numbers below 0.
+    const double margin = 1.3 * std::max(0.0, options.PlateMargin) +
+      3 * std::max(0.0, options.PlateThickness) + 8 * SolidSpacing;
+    return { execution, solid, SolidSpacing, margin, "a mould" };
+  }
+
   lacuna::PressLayout Lay(lacuna::Execution& execution, const lacuna::Vec3& normal) const
   {
     return lacuna::PlanPress(execution, this->Surface, this->Part.Size, this->Part.Spacing,
@@ -151,6 +177,13 @@ private:
                      "plane of the fit is inclined by " +
         lacuna::FormatNumber(std::round(this->Inclination)) +
         " degrees to the surface over the defect)";
+      return;
+    }
+    if (this->IsSolid)
+    {
+      this->WayOut =
+        "One mould cannot make it: take a smaller PlateMargin, a wider FlangeWidth, or "
+        "make the implant in parts";
       return;
     }
     const std::string smaller =
@@ -251,6 +284,7 @@ void SetText(vtkDataObject* output, const char* name, const char* text)
 int vtkLacunaPressOrientation::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   return 1;
 }
 
@@ -273,7 +307,7 @@ int vtkLacunaPressOrientation::RequestInformation(
       // the size of the grid depends on the defect
       const bool first = vtkLacunaRequest::UpdateNowOnFirst(this);
       int extent[6] = { 0, -1, 0, -1, 0, -1 };
-      vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+      vtkDataSet* map = vtkDataSet::GetData(inputVector[0]);
       if (first && map && map->GetNumberOfPoints() > 0)
       {
         vtkLacunaExecution execution(this);
@@ -305,7 +339,7 @@ int vtkLacunaPressOrientation::RequestInformation(
 int vtkLacunaPressOrientation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkImageData* map = vtkImageData::GetData(inputVector[0]);
+  vtkDataSet* map = vtkDataSet::GetData(inputVector[0]); // or a solid
   vtkStructuredGrid* output = vtkStructuredGrid::GetData(outputVector);
   output->GetFieldData()
     ->Initialize(); // VTK passes the map's, whose ImageToWorld is not of the grid
@@ -353,6 +387,17 @@ int vtkLacunaPressOrientation::RequestData(
       vtkLacunaFieldData::Set(output, "DraftAngle", { surface.DraftAngle }, 1);
       vtkLacunaFieldData::Set(output, "Depth", { surface.Depth }, 1);
       vtkLacunaFieldData::Set(output, "BlockSize", ToVector(surface.BlockSize), 3);
+      this->WarnOfWalls(surface, toWorld);
+      if (plan.IsSolid)
+      {
+        vtkLacunaFieldData::Set(output, "FaceDeviation", { plan.Part.Deviation }, 1);
+        if (plan.Part.Deviation > LargestDeviation)
+        {
+          vtkWarningMacro(<< "the mould's surface is smooth, and up to "
+                          << lacuna::FormatNumber(std::round(100 * plan.Part.Deviation) / 100)
+                          << " mm from the outer face of the solid");
+        }
+      }
     }
     else
     {
@@ -371,8 +416,9 @@ int vtkLacunaPressOrientation::RequestData(
     vtkLacunaFieldData::Set(output, "SurfaceOffset", { layout.Offset }, 1);
     vtkLacunaFieldData::Set(output, "Outward", { layout.ConvexOutward ? 1.0 : 0.0 }, 1);
     SetText(output, "PlaneSource",
-      plan.OwnPlane ? "PlaneNormal of the hole filler"
-                    : "least squares plane through Fitted over the defect");
+      plan.OwnPlane && plan.IsSolid ? "best direction of pressing"
+        : plan.OwnPlane             ? "PlaneNormal of the hole filler"
+                                    : "least squares plane through Fitted over the defect");
 
     vtkLacunaCoordinates::MarkPress(map, output);
     lacuna::ParameterText parameters;
@@ -388,6 +434,29 @@ int vtkLacunaPressOrientation::RequestData(
     vtkLacunaProvenance::Record(output, this, { map }, parameters.Get());
   };
   return vtkLacunaExecution::RunAgreed(this, outputVector, isWanted, body);
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaPressOrientation::WarnOfWalls(
+  const lacuna::PressSurface& surface, const lacuna::Matrix4& toWorld)
+{
+  const auto steepest = std::max_element(surface.WallAngles.begin(), surface.WallAngles.end()) -
+    surface.WallAngles.begin();
+  const double angle = surface.WallAngles[steepest];
+  if (angle > SteepestWall)
+  {
+    const double left = this->PlateThickness * std::cos(angle / Degrees);
+    vtkWarningMacro(<< "a sheet can hardly follow the mould: at "
+                    << lacuna::FormatPlace(
+                         toWorld * surface.PressToRelief, surface.Points[steepest])
+                    << " mm, in the "
+                    << (surface.Regions[steepest] == lacuna::PressRegion::Plate ? "plate"
+                                                                                : "flange")
+                    << ", the wall is " << lacuna::FormatNumber(std::round(angle))
+                    << " degrees steep, where " << lacuna::FormatNumber(this->PlateThickness)
+                    << " mm thin to about " << lacuna::FormatNumber(std::round(100 * left) / 100)
+                    << " mm. Take a wider FlangeWidth, press in steps, or make the plate in parts");
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkLacunaPressOrientation
- * @brief the surface of a mould for pressing a plate, lying flat, from a filled depth map
+ * @brief the surface of a mould for pressing a plate, lying flat, from a filled depth map or an implant
  *
  * Input: a parallel depth map (vtkLacunaDepthMap) with Fitted and FilledMask, the output of
  * vtkLacunaRBFHoleFiller. Output: vtkStructuredGrid of n x m x 1 points in press coordinates (mm,
@@ -26,6 +26,11 @@
  * slopes go over to those of the plane, from the border of Fitted on), and over FlangeWidth mm it goes
  * over into the press plane, all with continuous second derivatives. The press plane lies
  * FlangeWidth / 8 above (male: below) plate and margin.
+ *
+ * Or input: vtkPolyData, triangles with the cell array ImplantFace or PlateFace, the output of
+ * vtkLacunaSkullImplant or vtkLacunaImplantPlate. Its outer face (0), seen along the direction in which its
+ * steepest place is least steep, takes the place of Fitted, and the plane across that direction that of
+ * the plane of the fit. Holes are closed; beyond the rim the surface goes on with its curvature.
  *
  * Point data:
  * | array         | type          | meaning                                                        |
@@ -53,15 +58,21 @@
  * |                        |            | towards the viewer                                    |
  * | Outward                | 1          | 1 when the surface bulges to the viewer, else 0       |
  * | PlaneSource            | string     | where the plane comes from                            |
+ * | FaceDeviation          | 1          | of a solid: mm, largest distance of its outer face's  |
+ * |                        |            | points from the surface before the offset             |
  *
  * When the surface is not single valued there are no points but the field data, and a warning that
  * names the place and what to do: PlaneMethod LeastSquares if that gives a mould; otherwise, if the
  * view is between 5 and 60 degrees off the one that faces defect and margin squarely, to cast rays
  * again along that (SuggestedViewDirection; lacuna::FindFacingView) with PlaneMethod LeastSquares.
  *
+ * Further warnings: walls steeper than 60 degrees, with the place and what is left of the sheet; a
+ * FaceDeviation above 0.05 mm.
+ *
  * Errors: a perspective map, no Fitted or FilledMask, holes in them, properties out of range, a
  * surface that bends with a radius below PlateThickness on the side of the offset, Fitted that
- * hardly reaches beyond PlateMargin, a block that is too small.
+ * hardly reaches beyond PlateMargin, a block that is too small; a solid without these arrays, that is
+ * a mirror image, or whose outer face no direction of pressing sees as a whole.
  *
  * Source: Carr 1996, section 6.4.1; offset, flange and male moulds are beyond it.
  * @sa lacuna::PlanPress lacuna::MakePressSurface vtkLacunaRBFHoleFiller vtkLacunaIGESWriter
@@ -72,6 +83,12 @@
 #include "vtkLacunaFiltersFabricationModule.h" // for export macro
 #include "vtkLacunaVersionCompat.h"            // for stops
 #include "vtkStructuredGridAlgorithm.h"
+
+namespace lacuna
+{
+class Matrix4;
+struct PressSurface;
+}
 
 class VTKLACUNAFILTERSFABRICATION_EXPORT vtkLacunaPressOrientation
   : public vtkStructuredGridAlgorithm
@@ -179,6 +196,7 @@ private:
   void operator=(const vtkLacunaPressOrientation&) = delete;
 
   class Plan;
+  void WarnOfWalls(const lacuna::PressSurface& surface, const lacuna::Matrix4& toWorld);
 
   int PlaneMethod = Fit;
   int Mould = Female;

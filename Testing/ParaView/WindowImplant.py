@@ -38,13 +38,18 @@ def test(window):
     for name in os.listdir(folder):
         os.remove(os.path.join(folder, name))
 
-    def make(label, **settings):
-        """From the menu, with settings typed in the panel; Apply."""
+    def make(label, says="", **settings):
+        """From the menu, with settings typed in the panel; Apply. says: what it warns of."""
         window.menu(f"Filters/Lacuna/{label}" if GetActiveSource() else f"Sources/Lacuna/{label}")
         for name, values in settings.items():
             for k, value in enumerate(values):
                 window.type(f"{PANEL}{name}/DoubleLineEdit{k}", value)
-        window.apply()
+        if says:
+            window.press(lacuna_window.ACCEPT)
+            said = window.take_messages()
+            assert says in said, said
+        else:
+            window.apply()
         made = GetActiveSource()
         assert made.GetDataInformation().GetNumberOfPoints() > 100, label
         return made
@@ -103,7 +108,7 @@ def test(window):
     write("model.ply", "PLY")
     window.select("pipelineBrowser", "RBFHoleFiller1")
     window.press("actionPBHideAll")
-    make("Press Orientation")
+    make("Press Orientation", says="a sheet can hardly follow the mould")
     window.compare("ImplantMould")
     assert b"Coordinates of the press" in write("mould.igs", "IGES")
     make("Milling Tool Path", ToolRadius=(3,), StepOver=(3,), RoughingStep=(3,))

@@ -173,7 +173,8 @@ def implant():
     bone = SkullBone(registrationName="Bone", Input=head, Level=400)
     whole = SkullPhantom(registrationName="Whole skull", Spacing=[3, 3, 4], DefectRadius=0)
     template = SkullPhantom(registrationName="Template", Spacing=[3, 3, 4], DefectRadius=0)
-    SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=template, TemplateLevel=410)
+    solid = SkullImplant(registrationName="Implant", Input=bone, Level=400, TriangleSize=3, Template=template, TemplateLevel=410)
+    PressOrientation(registrationName="Implant mould", Input=solid, Seating="Inlay", FlangeWidth=25)
     SkullResection(registrationName="Cut", Input=bone, Tumour=Sphere(registrationName="Tumour", Center=[-30, 20, 45], Radius=10), Level=400, Margin=4,
                    GuideWidth=6)
     PhantomSweep(registrationName="Scanned", Input=skull, NumberOfSlices=9, ImageSize=[40, 30], PixelSpacing=4, SpeckleLevel=0.1)

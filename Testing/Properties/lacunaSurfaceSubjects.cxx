@@ -28,6 +28,7 @@
 #include "vtkSphere.h"
 #include "vtkSphereSource.h"
 #include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,54 @@ namespace
 Inputs MakeFilledMap(Dice& dice)
 {
   return { RandomDepthMap(dice, true, dice.Chance(0.2) ? 3 : 18) };
+}
+
+// An egg of rings of points: outer face, inner face, and a wall between them.
+vtkSmartPointer<vtkPolyData> RandomSolid(Dice& dice)
+{
+  const int rings = dice.Whole(3, 12);
+  const int around = dice.Whole(3, 24);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int j = 0; j <= rings; ++j)
+  {
+    const double angle = std::acos(-1.0) * j / rings;
+    for (int i = 0; i < (j == 0 || j == rings ? 1 : around); ++i)
+    {
+      const double turn = 2 * std::acos(-1.0) * i / around;
+      points->InsertNextPoint(20 * std::sin(angle) * std::cos(turn),
+        14 * std::sin(angle) * std::sin(turn), 9 * std::cos(angle));
+    }
+  }
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> faces;
+  faces->SetName(dice.Chance(0.8) ? "ImplantFace" : "PlateFace");
+  const auto add = [&](int ring, vtkIdType a, vtkIdType b, vtkIdType c)
+  {
+    cells->InsertNextCell({ a, b, c });
+    faces->InsertNextValue(3 * ring < rings ? 0 : (3 * ring < 2 * rings ? 2 : 1));
+  };
+  const auto at = [&](int ring, int i) -> vtkIdType
+  { return ring == 0 ? 0 : 1 + (ring - 1) * around + (ring == rings ? 0 : i % around); };
+  for (int j = 0; j < rings; ++j)
+  {
+    for (int i = 0; i < around; ++i)
+    {
+      if (j > 0)
+      {
+        add(j, at(j, i), at(j + 1, i), at(j, i + 1));
+      }
+      if (j + 1 < rings)
+      {
+        add(j, at(j, i + 1), at(j + 1, i), at(j + 1, i + 1));
+      }
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  data->GetCellData()->SetScalars(faces);
+  return data;
 }
 
 // Points on a map's plane, near its middle.
@@ -399,6 +448,10 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
     subjects.push_back({ "PressOrientation", NewOf<T>,
       [](Dice& dice) -> Inputs
       {
+        if (dice.Chance(0.2))
+        {
+          return { RandomSolid(dice) };
+        }
         // flanges need a wide border: large as they are
         Dice own(dice.Seed());
         return { RandomDepthMap(own, true, dice.Chance(0.2) ? 18 : 90) };
