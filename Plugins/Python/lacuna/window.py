@@ -95,7 +95,7 @@ def show(source, view=None):
     if is_ct(source):
         _show_bone(source, display, view)
         if is_alone:
-            pictures.look(view, FRONT, UP, 1.2)
+            _look(view, FRONT, UP)
             _mark_sides(view)
             return source
     elif fields["ImageToReference"] and information.GetDataSetTypeAsString() == "vtkImageData":
@@ -212,7 +212,15 @@ def _look_askance(poses, view):
     """From the probe into the tissue and from aside, so that slices are not seen head-on."""
     middle = poses[len(poses) // 2][:3, :2]
     lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
-    pictures.look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
+    _look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
+
+
+def _look(view, direction, up):
+    """As pictures.look, but parallel or in perspective as the view was."""
+    projection = view.CameraParallelProjection
+    pictures.look(view, direction, up)
+    view.CameraParallelProjection = projection
+    pv.ResetCamera(view)
 
 
 def _is_seen(bounds, view):

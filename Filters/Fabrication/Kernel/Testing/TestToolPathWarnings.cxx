@@ -166,7 +166,7 @@ TEST(ToolPathWarnings, RefusesBadInput)
   EXPECT_NE(refuses([&](auto& o) { o.Overrun = nan; }).find("Overrun"), std::string::npos);
   EXPECT_NE(refuses([&](auto& o) { o.Direction = nan; }).find("Direction"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.PathStep = -1; }).find("PathStep"), std::string::npos);
-  EXPECT_NE(refuses([](auto& o) { o.RoughingStep = -1; }).find("RoughingStep"), std::string::npos);
+  EXPECT_NE(refuses([](auto& o) { o.RoughingStep = -2; }).find("RoughingStep"), std::string::npos);
   EXPECT_NE(refuses([&](auto& o) { o.StockTop = nan; }).find("StockTop"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.SafeHeight = 0; }).find("SafeHeight"), std::string::npos);
   EXPECT_NE(refuses([](auto& o) { o.LeadRadius = -1; }).find("LeadRadius"), std::string::npos);
