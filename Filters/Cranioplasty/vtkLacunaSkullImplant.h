@@ -34,8 +34,8 @@
  * | MinimumThicknessPoint      | 3          | where that is, world mm                                  |
  * | InsertionDirection         | 3          | unit, the way in which the implant is put in             |
  * | LeastTaper                 | 1          | degrees, least angle between it and the implant's walls  |
- * | InsertionClearance         | 1          | mm, least distance of the implant's points from bone on  |
- * |                            |            | the way in, at most 3                                    |
+ * | InsertionClearance         | 1          | mm, least distance of the implant from bone on           |
+ * |                            |            | the way in, at most 3, or 2.5 more than EdgeClearance    |
  * | NumberOfHoles              | 1          | through the implant                                      |
  * | UndercutVolume             | 1          | mm^3, free space beside the edge that cannot be filled   |
  * | UndercutWidth, UndercutPoint | 1, 3     | mm, its largest width, and where, world mm               |

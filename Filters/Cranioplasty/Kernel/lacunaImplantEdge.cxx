@@ -13,9 +13,11 @@ namespace lacuna
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr double LeastStep = 0.15; // mm along the way out
-constexpr double DeepEnough = -1;  // mm in bone: no more is sought
-constexpr double WantedTaper = 10; // degrees
+constexpr double LeastLimit = 3;        // mm, of clearances on the way
+constexpr double BeyondClearance = 2.5; // mm: the same
+constexpr double LeastStep = 0.15;      // mm along the way out
+constexpr double DeepEnough = -1;       // mm in bone: no more is sought
+constexpr double WantedTaper = 10;      // degrees
 constexpr int DirectionSteps = 60;
 constexpr double MostLean = 1;        // tangent of the angle from where the search starts
 constexpr double NearStart = 1e-3;    // weight of the lean beside that of a wall
@@ -116,9 +118,10 @@ Vec3 ImplantSlab::GetNormal(const Vec2& p) const
 }
 
 //------------------------------------------------------------------------------
-InsertionPath::InsertionPath(const BoneDistance& bone, const Vec3& direction)
+InsertionPath::InsertionPath(const BoneDistance& bone, const Vec3& direction, double clearance)
   : Bone(bone)
   , Direction(Normalized(direction))
+  , Limit(std::max(LeastLimit, clearance + BeyondClearance))
   , Bounds(bone.GetBounds())
 {
 }
@@ -130,7 +133,8 @@ double InsertionPath::GetWay(const Vec3& x) const
   for (int a = 0; a < 3; ++a)
   {
     const double speed = -this->Direction[a];
-    const double end = speed > 0 ? this->Bounds[1][a] + Limit : this->Bounds[0][a] - Limit;
+    const double end =
+      speed > 0 ? this->Bounds[1][a] + this->Limit : this->Bounds[0][a] - this->Limit;
     way = speed == 0 ? way : std::min(way, (end - x[a]) / speed);
   }
   return std::max(way, 0.0);
@@ -140,17 +144,17 @@ double InsertionPath::GetWay(const Vec3& x) const
 double InsertionPath::GetClearance(const Vec3& x) const
 {
   const double way = this->GetWay(x);
-  double least = Limit;
+  double least = this->Limit;
   for (double along = 0;;)
   {
-    const double distance = this->Bone.Find(x - along * this->Direction, Limit).Distance;
+    const double distance = this->Bone.Find(x - along * this->Direction, this->Limit).Distance;
     least = std::min(least, distance);
     if (least < DeepEnough || along >= way)
     {
       return least;
     }
     // until then no bone can be nearer than least, nor a surface be met
-    along += std::max(LeastStep, distance >= Limit ? Limit : 0.5 * (distance - least));
+    along += std::max(LeastStep, distance >= this->Limit ? this->Limit : 0.5 * (distance - least));
   }
 }
 
@@ -215,7 +219,7 @@ public:
   ImplantEdge Follow(const std::vector<Loop>& outline)
   {
     ImplantEdge edge;
-    edge.Levels.resize(WallSteps + 1);
+    edge.Levels.resize(this->Slab.Steps + 1);
     edge.LeastTaper = 90;
     for (const Loop& loop : outline)
     {
@@ -229,7 +233,7 @@ public:
           }
         });
       LimitSlopes(places);
-      for (int level = 0; level <= WallSteps; ++level)
+      for (int level = 0; level <= this->Slab.Steps; ++level)
       {
         Loop moved;
         for (const Place& place : places)
@@ -244,10 +248,8 @@ public:
   }
 
 private:
-  static double DepthOf(int level) { return static_cast<double>(level) / WallSteps; }
-
   // Where the edge may go: not so far that neighbours meet.
-  static std::vector<Place> MakePlaces(const Loop& loop)
+  std::vector<Place> MakePlaces(const Loop& loop) const
   {
     const std::vector<Vec2> tangents = GetTangents(loop);
     std::vector<Place> places(loop.size());
@@ -255,7 +257,7 @@ private:
     {
       places[k].Foot = loop[k];
       places[k].Out = { tangents[k][1], -tangents[k][0] };
-      places[k].Moved.assign(WallSteps + 1, 0);
+      places[k].Moved.assign(this->Slab.Steps + 1, 0);
     }
     for (std::size_t k = 0; k < loop.size(); ++k)
     {
@@ -286,22 +288,22 @@ private:
 
   void Search(Place& place) const
   {
-    std::vector<double> excess(WallSteps + 1);
-    double least = InsertionPath::Limit;
-    for (int level = 0; level <= WallSteps; ++level)
+    std::vector<double> excess(this->Slab.Steps + 1);
+    double least = this->Path.GetLimit();
+    for (int level = 0; level <= this->Slab.Steps; ++level)
     {
-      excess[level] = this->GetExcess(this->Slab.GetPoint(place.Foot, DepthOf(level)));
+      excess[level] = this->GetExcess(this->Slab.GetPoint(place.Foot, this->Slab.DepthOf(level)));
       least = std::min(least, excess[level]);
     }
-    place.Height =
-      Norm(this->Slab.GetPoint(place.Foot, 0) - this->Slab.GetPoint(place.Foot, 1)) / WallSteps;
+    place.Height = Norm(this->Slab.GetPoint(place.Foot, 0) - this->Slab.GetPoint(place.Foot, 1)) /
+      this->Slab.Steps;
     if (least > AtBone)
     {
       return; // the outline leaves something out
     }
-    for (int level = 0; level <= WallSteps; ++level)
+    for (int level = 0; level <= this->Slab.Steps; ++level)
     {
-      place.Moved[level] = this->SearchLevel(place, DepthOf(level), excess[level]);
+      place.Moved[level] = this->SearchLevel(place, this->Slab.DepthOf(level), excess[level]);
     }
   }
 
@@ -339,7 +341,7 @@ private:
     return here;
   }
 
-  static void LimitSlopes(std::vector<Place>& places)
+  void LimitSlopes(std::vector<Place>& places) const
   {
     const std::size_t n = places.size();
     const auto limit = [&](std::size_t from, std::size_t to)
@@ -347,15 +349,15 @@ private:
       const Place& a = places[from];
       Place& b = places[to];
       const double way = std::hypot(a.Foot[0] - b.Foot[0], a.Foot[1] - b.Foot[1]);
-      for (int level = 0; level <= WallSteps; ++level)
+      for (int level = 0; level <= this->Slab.Steps; ++level)
       {
         b.Moved[level] = std::min(b.Moved[level], a.Moved[level] + MostSlopeAlong * way);
       }
-      for (int level = 1; level <= WallSteps; ++level)
+      for (int level = 1; level <= this->Slab.Steps; ++level)
       {
         b.Moved[level] = std::min(b.Moved[level], b.Moved[level - 1] + MostSlopeDown * b.Height);
       }
-      for (int level = WallSteps; level > 0; --level)
+      for (int level = this->Slab.Steps; level > 0; --level)
       {
         b.Moved[level - 1] =
           std::min(b.Moved[level - 1], b.Moved[level] + MostSlopeDown * b.Height);
@@ -379,23 +381,26 @@ private:
       const std::size_t n = edge.Levels[0][l].size();
       for (std::size_t k = 0; k < n; ++k)
       {
-        const auto at = [&](std::size_t place, int level)
-        { return this->Slab.GetPoint(edge.Levels[level][l][place % n], DepthOf(level)); };
+        const auto at = [&](std::size_t place, int level) {
+          return this->Slab.GetPoint(edge.Levels[level][l][place % n], this->Slab.DepthOf(level));
+        };
         const std::size_t reach = std::min<std::size_t>(SmoothReach, n / 4);
-        const Vec3 up = at(k, 0) - at(k, WallSteps);
-        const Vec3 along = at(k + reach, WallSteps / 2) - at(k + n - reach, WallSteps / 2);
+        const Vec3 up = at(k, 0) - at(k, this->Slab.Steps);
+        const Vec3 along =
+          at(k + reach, this->Slab.Steps / 2) - at(k + n - reach, this->Slab.Steps / 2);
         const Vec3 wall = Normalized(Cross(up, along));
         edge.LeastTaper =
           std::min(edge.LeastTaper, std::asin(std::clamp(Dot(wall, out), -1.0, 1.0)) * 180 / Pi);
-        const double width = 0.5 * Norm(at(k + 1, WallSteps / 2) - at(k + n - 1, WallSteps / 2));
-        for (int level = 0; level <= WallSteps; ++level)
+        const double width =
+          0.5 * Norm(at(k + 1, this->Slab.Steps / 2) - at(k + n - 1, this->Slab.Steps / 2));
+        for (int level = 0; level <= this->Slab.Steps; ++level)
         {
           const Vec3 x = at(k, level);
           const double clearance = this->Path.GetClearance(x);
           const double free = this->Bone.Find(x, UndercutReach).Distance - clearance;
           if (clearance < this->Clearance + AtBone && free > LeastUndercut)
           {
-            const double part = (level % WallSteps == 0 ? 0.5 : 1.0) / WallSteps;
+            const double part = (level % this->Slab.Steps == 0 ? 0.5 : 1.0) / this->Slab.Steps;
             edge.UndercutVolume += free * width * part * Norm(up);
             if (free > edge.UndercutWidth)
             {

@@ -13,6 +13,9 @@
 
 namespace lacuna
 {
+/// Steps of the edge are about so high, mm, so that it does not cut corners of bone.
+constexpr double MostStep = 1.6;
+
 /// The space between an outer and an inner surface over a grid of a chart.
 struct ImplantSlab
 {
@@ -20,6 +23,9 @@ struct ImplantSlab
   std::vector<Vec3> Outer; ///< of each node, world mm
   std::vector<Vec3> Inner;
   std::vector<bool> IsKnown; ///< whether a node has both
+  int Steps = 6;             ///< of the edge, from the outer to the inner surface
+
+  double DepthOf(int level) const { return static_cast<double>(level) / this->Steps; }
 
   bool Covers(const Vec2& p) const;
   /// Bilinear; depth is 0 on the outer and 1 on the inner surface. Covers(p) has to be true.
@@ -32,12 +38,14 @@ struct ImplantSlab
 class InsertionPath
 {
 public:
-  static constexpr double Limit = 3; ///< mm, of clearances
-
-  /// direction: unit, the way in which an implant is put in. Keeps a reference to bone.
-  InsertionPath(const BoneDistance& bone, const Vec3& direction);
+  /// direction: unit, the way in which an implant is put in. clearance: mm, that it keeps. Keeps a reference to bone.
+  InsertionPath(const BoneDistance& bone, const Vec3& direction, double clearance);
   const Vec3& GetDirection() const { return this->Direction; }
-  /// The least distance from bone of a point on its way out, mm, at most Limit; negative where it starts in bone or
+  double GetLimit() const
+  {
+    return this->Limit;
+  } ///< mm, of clearances: 3, and 2.5 more than is kept
+  /// The least distance from bone of a point on its way out, mm, at most GetLimit(); negative where it starts in bone or
   /// meets it. Distances below -1 are not sought on.
   double GetClearance(const Vec3& x) const;
 
@@ -46,6 +54,7 @@ private:
 
   const BoneDistance& Bone;
   Vec3 Direction;
+  double Limit;
   std::array<Vec3, 2> Bounds;
 };
 
@@ -69,8 +78,5 @@ struct ImplantEdge
 /// the outline leaves out, nor where the edge would fold.
 ImplantEdge FollowWall(const ImplantSlab& slab, const BoneDistance& bone, const InsertionPath& path,
   const std::vector<Loop>& outline, double clearance, Execution& execution);
-
-/// Of the edge, from the outer to the inner surface.
-constexpr int WallSteps = 6;
 }
 #endif

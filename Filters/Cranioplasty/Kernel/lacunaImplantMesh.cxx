@@ -36,11 +36,6 @@ struct Line
   Vec3 V;
 };
 
-double DepthOf(std::size_t level)
-{
-  return static_cast<double>(level) / WallSteps;
-}
-
 Line MakeLine(const ImplantSlab& slab, const Vec2& p)
 {
   Line line;
@@ -179,7 +174,7 @@ std::vector<Loop> FindTunnel(const ImplantSlab& slab, const ImplantHole& hole, d
   const int sides =
     std::max(LeastSides, static_cast<int>(std::ceil(2 * Pi * hole.Radius / spacing)));
   std::vector<Loop> levels;
-  for (int level = 0; level <= WallSteps; ++level)
+  for (int level = 0; level <= slab.Steps; ++level)
   {
     levels.emplace_back();
     for (int k = 0; k < sides; ++k)
@@ -189,7 +184,7 @@ std::vector<Loop> FindTunnel(const ImplantSlab& slab, const ImplantHole& hole, d
       const double y = hole.Radius * std::sin(angle);
       Vec2 p = level == 0 ? Vec2{ hole.Middle[0] + x, hole.Middle[1] + y }
                           : levels[level - 1][static_cast<std::size_t>(k)];
-      if (!FindBeside(slab, static_cast<double>(level) / WallSteps, line, x, y, p))
+      if (!FindBeside(slab, slab.DepthOf(level), line, x, y, p))
       {
         return {};
       }
@@ -204,23 +199,25 @@ ImplantRim::ImplantRim(const ImplantSlab& slab, const std::vector<std::vector<Lo
   : Slab(slab)
   , Levels(levels)
 {
-  for (std::size_t level = 0; level < levels.size(); ++level)
+  for (int level = 0; level <= slab.Steps; ++level)
   {
-    this->Rims.emplace_back(OnLevel(slab, levels[level], DepthOf(level)), 2);
+    this->Rims.emplace_back(OnLevel(slab, levels[level], slab.DepthOf(level)), 2);
   }
 }
 
 //------------------------------------------------------------------------------
-double ImplantRim::FindOn(std::size_t level, const Vec2& p, double limit) const
+double ImplantRim::FindOn(int level, const Vec2& p, double limit) const
 {
   const bool isIn = this->Slab.Covers(p) && IsInside(this->Levels[level], p);
-  return isIn ? this->Rims[level].Find(this->Slab.GetPoint(p, DepthOf(level)), limit).Distance : -1;
+  return isIn
+    ? this->Rims[level].Find(this->Slab.GetPoint(p, this->Slab.DepthOf(level)), limit).Distance
+    : -1;
 }
 
 //------------------------------------------------------------------------------
 double ImplantRim::FindInner(const Vec2& p, double limit) const
 {
-  return this->FindOn(WallSteps, p, limit);
+  return this->FindOn(this->Slab.Steps, p, limit);
 }
 
 //------------------------------------------------------------------------------
@@ -233,9 +230,9 @@ double ImplantRim::Find(const Vec2& p, double limit, Vec2& inner) const
   const Line line = MakeLine(this->Slab, p);
   double least = limit;
   inner = p;
-  for (std::size_t level = 0; level <= WallSteps && least >= 0; ++level)
+  for (int level = 0; level <= this->Slab.Steps && least >= 0; ++level)
   {
-    least = level == 0 || FindBeside(this->Slab, DepthOf(level), line, 0, 0, inner)
+    least = level == 0 || FindBeside(this->Slab, this->Slab.DepthOf(level), line, 0, 0, inner)
       ? std::min(least, this->FindOn(level, inner, limit))
       : -1;
   }
@@ -518,17 +515,18 @@ public:
     const std::vector<std::vector<Loop>>& levels, const std::vector<Loop>& text)
   {
     Rings rings; // level by level, loop by loop
-    for (int level = 0; level <= WallSteps; ++level)
+    for (int level = 0; level <= this->Slab.Steps; ++level)
     {
-      this->AddRings(levels[level], static_cast<double>(level) / WallSteps, rings);
+      this->AddRings(levels[level], this->Slab.DepthOf(level), rings);
     }
     const std::size_t loops = levels[0].size();
     this->AddFace(levels.front(), &rings[0], 0, SkullImplantFace::Outer);
-    for (std::size_t r = 0; r < WallSteps * loops; ++r)
+    const std::size_t above = this->Slab.Steps * loops;
+    for (std::size_t r = 0; r < above; ++r)
     {
       this->AddWall(rings[r], rings[r + loops], SkullImplantFace::Edge);
     }
-    Rings below(rings.begin() + static_cast<std::ptrdiff_t>(WallSteps * loops), rings.end());
+    Rings below(rings.begin() + static_cast<std::ptrdiff_t>(above), rings.end());
     std::vector<Loop> face = levels.back();
     face.insert(face.end(), text.begin(), text.end());
     this->AddRings(text, 1, below);

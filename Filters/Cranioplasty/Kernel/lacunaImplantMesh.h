@@ -42,7 +42,7 @@ public:
   double FindInner(const Vec2& p, double limit) const;
 
 private:
-  double FindOn(std::size_t level, const Vec2& p, double limit) const;
+  double FindOn(int level, const Vec2& p, double limit) const;
 
   const ImplantSlab& Slab;
   std::vector<std::vector<Loop>> Levels;

@@ -267,6 +267,18 @@ void ImplantSpace::SetSlab(const std::vector<std::int64_t>& nodes)
     }
     slab.Inner[node] = this->PointAt(directions[k], inner);
   }
+  this->SetSteps();
+}
+
+//------------------------------------------------------------------------------
+void ImplantSpace::SetSteps()
+{
+  double most = 0;
+  for (std::size_t node = 0; node < this->Slab.Outer.size(); ++node)
+  {
+    most = std::max(most, Norm(this->Slab.Outer[node] - this->Slab.Inner[node]));
+  }
+  this->Slab.Steps = std::max(ImplantSlab{}.Steps, static_cast<int>(std::ceil(most / MostStep)));
 }
 
 //------------------------------------------------------------------------------
@@ -436,14 +448,16 @@ std::vector<double> ImplantSpace::FindFreeWays(const InsertionPath& path) const
 {
   std::vector<double> free(this->Free.size(), -FarFromRim);
   std::vector<bool> wanted(free.size(), false);
+  const double edge = std::max(1.0, this->Options.EdgeClearance + 0.5);
   std::vector<std::int64_t> nodes;
   for (std::int64_t node = 0; node < static_cast<std::int64_t>(free.size()); ++node)
   {
     const bool isSparse =
       node % this->Grid.Columns % Sparse == 0 && node / this->Grid.Columns % Sparse == 0;
     const bool isHole = this->Free[node] > 0;
-    free[node] = isHole ? InsertionPath::Limit : -FarFromRim;
-    if (this->Slab.IsKnown[node] && (std::abs(this->FromHole[node]) < 1 || (isHole && isSparse)))
+    free[node] = isHole ? path.GetLimit() : -FarFromRim;
+    const bool isNearEdge = this->FromHole[node] > -1 && this->FromHole[node] < edge;
+    if (this->Slab.IsKnown[node] && (isNearEdge || (isHole && isSparse)))
     {
       nodes.push_back(node);
       wanted[node] = true;
@@ -456,10 +470,10 @@ std::vector<double> ImplantSpace::FindFreeWays(const InsertionPath& path) const
       {
         for (std::int64_t k = begin; k < end; ++k)
         {
-          double least = InsertionPath::Limit;
-          for (int level = 0; level <= WallSteps && least > -1; ++level)
+          double least = path.GetLimit();
+          for (int level = 0; level <= this->Slab.Steps && least > -1; ++level)
           {
-            const double depth = static_cast<double>(level) / WallSteps;
+            const double depth = this->Slab.DepthOf(level);
             const Vec3 x =
               (1 - depth) * this->Slab.Outer[nodes[k]] + depth * this->Slab.Inner[nodes[k]];
             least = std::min(least, path.GetClearance(x) - this->Options.EdgeClearance);
@@ -553,5 +567,6 @@ void ImplantSpace::Offset(const std::vector<Loop>& hole)
           Dot(way, normal) > -least ? below - (least + Dot(way, normal)) * normal : below;
       }
     });
+  this->SetSteps();
 }
 }

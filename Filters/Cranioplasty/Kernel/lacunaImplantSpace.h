@@ -74,6 +74,7 @@ private:
   Vec3 PointAt(const Vec3& direction, double radius) const;
   bool IsInScan(const Vec3& x) const;
   void SetSlab(const std::vector<std::int64_t>& nodes);
+  void SetSteps(); // by the slab's thickness
   // Of the rays next to the defect that leave the scan before they come to the skull, mm^2.
   double FindUnknownArea() const;
   // The outline where distances are a limit, without what is narrow (an opening). Empty: nothing is wide.

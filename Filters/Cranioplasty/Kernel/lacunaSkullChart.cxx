@@ -145,4 +145,27 @@ double GetArea(const std::vector<Loop>& loops)
   }
   return area;
 }
+
+//------------------------------------------------------------------------------
+bool CrossesItself(const Loop& loop)
+{
+  const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r)
+  { return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]); };
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const Vec2& a = loop[i];
+    const Vec2& b = loop[(i + 1) % n];
+    for (std::size_t j = i + 2; j < n; ++j)
+    {
+      const Vec2& c = loop[j];
+      const Vec2& d = loop[(j + 1) % n];
+      if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 }

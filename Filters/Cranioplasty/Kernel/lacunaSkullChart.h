@@ -67,5 +67,7 @@ Loop Resample(const Loop& loop, double spacing);
 std::vector<Loop> KeepLargest(std::vector<Loop> loops);
 
 double GetArea(const std::vector<Loop>& loops);
+
+bool CrossesItself(const Loop& loop);
 }
 #endif

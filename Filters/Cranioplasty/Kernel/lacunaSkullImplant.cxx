@@ -26,6 +26,9 @@ namespace
 constexpr double ErrorSpacing = 3;      // mm: standard errors vary slowly
 constexpr double AutomaticTriangle = 1; // mm
 constexpr double LeastLost = 50;        // mm^2 of a part: of which is told
+constexpr double BareGap = 3;           // mm, beyond the clearance: bone is not beside the rim
+constexpr double MostBare = 0.1;        // of the rim: of which is told
+constexpr double MostContact = 0.1;     // mm: of which is not told
 constexpr double BesideCut = 0.5;       // mm: of a screw, more than it needs
 
 class Builder
@@ -52,7 +55,8 @@ public:
     this->Run.SetStage(0.25, 0.3);
     std::vector<Loop> outline = this->Space.MoveInwards(hole);
     this->Run.SetStage(0.3, 0.5);
-    const InsertionPath path(this->Bone, this->Space.ChooseDirection(outline));
+    const InsertionPath path(
+      this->Bone, this->Space.ChooseDirection(outline), this->Options.EdgeClearance);
     const std::vector<double> free = this->Space.FindFreeWays(path);
     outline = this->Space.FindOutline(free);
     if (outline.empty())
@@ -96,7 +100,7 @@ public:
     this->MeasureThickness();
     this->SetHoleArea(hole, edge.Levels[0]);
     this->SetInsertion(edge, path);
-    this->Warn();
+    this->Warn(this->FindBareRim(edge));
     return std::move(this->Implant);
   }
 
@@ -199,7 +203,7 @@ private:
       const double low = part == 0 ? -Far : cuts.At[part - 1] - behind;
       const double high = part + 1 == parts ? Far : cuts.At[part] + behind;
       const PartBone bone(this->Bone, cuts.Axis, low, high);
-      const InsertionPath way(bone, path.GetDirection());
+      const InsertionPath way(bone, path.GetDirection(), clearance);
       const std::vector<Loop> outline =
         this->Space.FindOutline(this->Space.FindPart(free, bone, clearance));
       if (outline.empty())
@@ -263,11 +267,50 @@ private:
     return axis;
   }
 
-  void Warn()
+  // The part of the rim that has no bone beside it.
+  double FindBareRim(const ImplantEdge& edge) const
+  {
+    const double reach = this->Options.EdgeClearance + BareGap;
+    double length = 0;
+    double bare = 0;
+    for (std::size_t l = 0; l < edge.Levels[0].size(); ++l)
+    {
+      const std::size_t n = edge.Levels[0][l].size();
+      for (std::size_t k = 0; k < n; ++k)
+      {
+        bool isBare = true;
+        for (int level = 0; level <= this->Slab.Steps && isBare; ++level)
+        {
+          const Vec3 x = this->Slab.GetPoint(edge.Levels[level][l][k], this->Slab.DepthOf(level));
+          isBare = this->Bone.Find(x, reach).Distance >= reach;
+        }
+        const Vec2& a = edge.Levels[0][l][k];
+        const Vec2& b = edge.Levels[0][l][(k + 1) % n];
+        const double step = std::hypot(b[0] - a[0], b[1] - a[1]);
+        length += step;
+        bare += isBare ? step : 0;
+      }
+    }
+    return bare / length;
+  }
+
+  void Warn(double bareRim)
   {
     std::vector<std::string>& warnings = this->Implant.Warnings;
     const std::vector<std::string>& before = this->Space.GetWarnings();
     warnings.insert(warnings.begin(), before.begin(), before.end());
+    if (bareRim > MostBare && before.empty())
+    {
+      warnings.push_back("on " + FormatNumber(std::round(100 * bareRim)) +
+        " % of its rim the implant has no bone beside it: draw DefectOutline around all of the "
+        "hole");
+    }
+    if (this->Implant.InsertionClearance < -MostContact)
+    {
+      warnings.push_back("the implant touches bone by " +
+        FormatNumber(std::round(-10 * this->Implant.InsertionClearance) / 10) +
+        " mm when it is put in: give another InsertionDirection, or a larger EdgeClearance");
+    }
     const auto& plates = this->Implant.Plates;
     if (static_cast<int>(plates.size()) < this->Options.Plates)
     {
@@ -443,13 +486,23 @@ private:
     implant.UndercutVolume = edge.UndercutVolume;
     implant.UndercutWidth = edge.UndercutWidth;
     implant.UndercutPoint = edge.UndercutPoint;
-    std::vector<double> clearances(implant.Points.size());
+    std::vector<Vec3> places = implant.Points;
+    for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
+    {
+      if (implant.Faces[t] == SkullImplantFace::Edge) // corners of bone are between its points
+      {
+        const Triangle& c = implant.Triangles[t];
+        places.push_back(
+          (1.0 / 3) * (implant.Points[c[0]] + implant.Points[c[1]] + implant.Points[c[2]]));
+      }
+    }
+    std::vector<double> clearances(places.size());
     this->Run.For(static_cast<std::int64_t>(clearances.size()), 256,
       [&](std::int64_t begin, std::int64_t end)
       {
         for (std::int64_t k = begin; k < end; ++k)
         {
-          clearances[k] = path.GetClearance(implant.Points[k]);
+          clearances[k] = path.GetClearance(places[k]);
         }
       });
     implant.InsertionClearance = *std::min_element(clearances.begin(), clearances.end());
@@ -541,6 +594,10 @@ SkullImplant MakeSkullImplant(const VoxelVolume& volume, const SkullRays& rays,
   execution.SetStage(0, 0.05);
   SkullImplantOptions used = options;
   used.TriangleSize = options.TriangleSize == 0 ? AutomaticTriangle : options.TriangleSize;
+  if (options.Thickness > 0) // what is asked for is not too thin
+  {
+    used.MinimumThickness = std::min(options.MinimumThickness, options.Thickness);
+  }
   return Builder(volume, rays, defect, shape, bone, used, execution).Make();
 }
 }

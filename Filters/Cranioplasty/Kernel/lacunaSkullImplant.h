@@ -99,7 +99,7 @@ struct SkullImplant
   Vec3 InsertionDirection{ 0, 0, 0 }; ///< unit, the way in which it is put in
   double LeastTaper = 0; ///< degrees, least angle between it and the walls of the implant
   double InsertionClearance =
-    0; ///< mm, least distance of points from bone on the way in, at most 3
+    0; ///< mm, least distance from bone on the way in, at most 3, or 2.5 more than EdgeClearance
   /// Free space beside the edge that cannot be filled when it is put in so: mm^3, its width in mm, and where.
   double UndercutVolume = 0;
   double UndercutWidth = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lacunaSkullRays.h"
 
+#include "lacunaSkullChart.h"
+
 #include "lacunaPlanarCurves.h"
 #include "lacunaSkullEllipsoid.h"
 #include "lacunaSymmetricFactorization.h"
@@ -653,6 +655,10 @@ std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& 
         "the outline of the defect goes around more than half of the skull");
     }
     loop.push_back(toPlane(d));
+  }
+  if (CrossesItself(loop))
+  {
+    throw std::invalid_argument("the outline of the defect crosses itself: draw it once around");
   }
   const std::vector<Loop> curves{ loop };
   std::vector<int> within;

@@ -109,7 +109,7 @@ SoundBone GetSoundBone(const SkullRays& rays);
 std::vector<std::vector<int>> FindDefects(const SkullRays& rays, double leastArea = 100);
 
 /// The rays within a closed curve on the skull (world mm), as seen from the centre. Throws std::invalid_argument
-/// for fewer than three points, or a curve around more than about half of the skull.
+/// for fewer than three points, a curve that crosses itself, or one around more than about half of the skull.
 std::vector<int> FindRaysWithin(const SkullRays& rays, const std::vector<Vec3>& curve);
 }
 #endif

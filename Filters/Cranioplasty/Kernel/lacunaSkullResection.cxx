@@ -69,29 +69,6 @@ Vec3 FindOut(const std::vector<Vec3>& curve, const Vec3& from)
   return Dot(out, mean - from) < 0 ? -1 * out : out;
 }
 
-bool Crosses(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d)
-{
-  const auto turn = [](const Vec2& p, const Vec2& q, const Vec2& r)
-  { return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]); };
-  return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
-}
-
-bool CrossesItself(const Loop& loop)
-{
-  const std::size_t n = loop.size();
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    for (std::size_t j = i + 2; j < n; ++j)
-    {
-      if ((j + 1) % n != i && Crosses(loop[i], loop[i + 1], loop[j], loop[(j + 1) % n]))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 // A place of the guide's inner edge: the way out of the cut, and how far (mm) neighbours can go along theirs.
 struct InnerPlace
 {
@@ -590,11 +567,11 @@ SkullImplant SkullResection::MakeGuide(Execution& execution) const
     throw std::runtime_error("the guide has no room around the cut");
   }
   outside[0] = Resample(outside[0], 0.5 * GuideTriangle);
-  std::vector<std::vector<Loop>> levels(WallSteps + 1);
+  std::vector<std::vector<Loop>> levels(slab.Steps + 1);
   const std::vector<InnerPlace> places = FindInnerPlaces(inner);
-  for (int level = 0; level <= WallSteps; ++level)
+  for (int level = 0; level <= slab.Steps; ++level)
   {
-    const double depth = static_cast<double>(level) / WallSteps;
+    const double depth = slab.DepthOf(level);
     Loop hole;
     for (const InnerPlace& place : places)
     {

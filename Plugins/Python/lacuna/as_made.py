@@ -455,6 +455,8 @@ def main(arguments=None):
         if options.output:
             _write(options.output, found.part)
         if options.report:
+            from lacuna.implant import check_screen
+            check_screen("the deviation is measured, the report is not written", "lacuna.as_made")
             write_report(options.report, found, os.path.basename(options.plan), os.path.basename(os.path.abspath(options.part)))
     except (ValueError, RuntimeError, OSError, MemoryError) as error:
         print(f"lacuna.as_made: {error or 'there is not enough memory'}", file=sys.stderr, flush=True)

@@ -281,7 +281,7 @@ def _run(options):
     _say(f"written: {options.output} and {options.output}.json")
     if options.report:
         from lacuna import implant_report
-        _check_screen()
+        check_screen("the implant is written, the report is not", "lacuna.implant")
         with _told_once():
             written = implant_report.write(options.report, made, record, os.path.basename(os.path.abspath(options.ct)), warnings,
                                            options.template and os.path.basename(os.path.abspath(options.template)))
@@ -313,8 +313,11 @@ class _Steps:
             os.write(1, f"  {10 * self.said} %\n".encode())  # print's texts are silent meanwhile, see _told_once
 
 
-def _check_screen():
-    """Raises RuntimeError if pictures need an X server and there is none: VTK would end the program without a word."""
+def check_screen(state, command):
+    """Raises RuntimeError if pictures need an X server and there is none: VTK would end the program without a word.
+
+    state: what is done and what is not; command: the module that was called.
+    """
     if not vtkRenderWindow().GetClassName().startswith("vtkX"):
         return
     try:
@@ -324,8 +327,8 @@ def _check_screen():
     x11.XOpenDisplay.restype = ctypes.c_void_p
     display = x11.XOpenDisplay(None)
     if not display:
-        raise RuntimeError("the implant is written, the report is not: its pictures need a screen, and there is none. Call the command "
-                           f"with a virtual one: {SCREEN} pvpython -- -m lacuna.implant ...")
+        raise RuntimeError(f"{state}: its pictures need a screen, and there is none. Call the command "
+                           f"with a virtual one: {SCREEN} pvpython -- -m {command} ...")
     x11.XCloseDisplay(ctypes.c_void_p(display))
 
 

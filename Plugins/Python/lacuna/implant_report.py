@@ -293,9 +293,23 @@ def _rows(made, numbers):
              ("least taper of the implant's walls", f"{numbers['LeastTaper']:.1f}°"),
              ("least distance from bone on the way in", f"{numbers['InsertionClearance']:.2f} mm"),
              ("undercuts of the bone, not filled", implant.undercut_text(numbers, place)),
+             *_setting_rows(made.implant),
              ("holes through the implant", f"{numbers['NumberOfHoles']:.0f}"),
              *((f"plate {k}", text) for k, text in enumerate(implant.plate_texts(made, place), 1)),
              ("bone level", f"{made.implant.Level:g} HU")]
+    return rows
+
+
+def _setting_rows(design):
+    """Of what a Skull Implant adds to the shape only when it is asked to."""
+    rows = []
+    if design.Parts > 1:
+        rows.append(("parts", f"{design.Parts}"))
+    if design.OuterOffset or design.InnerOffset:
+        rows.append(("faces moved outwards, less towards the rim",
+                     f"outer {design.OuterOffset:+g} mm, inner {design.InnerOffset:+g} mm; in full {design.OffsetFade:g} mm from the rim"))
+    if design.EngravedText:
+        rows.append(("text in the inner face", design.EngravedText))
     return rows
 
 

@@ -121,14 +121,14 @@ TEST(InsertionPath, IsAsClearAsItsNarrowestPlace)
   const Vec3 low{ 0, -20, 0 };
   const Vec3 high{ 10, 20, 6 };
   const TriangleBone bone = MakeBone(MakeBox(low, high), low, high);
-  const lacuna::InsertionPath straight(bone, { 0, 0, -1 });
+  const lacuna::InsertionPath straight(bone, { 0, 0, -1 }, 0.5);
   EXPECT_NEAR(straight.GetClearance({ -0.7, 1, 2 }), 0.7, 1e-3);
   EXPECT_NEAR(straight.GetClearance({ -0.7, 1, -40 }), 0.7, 1e-3);
   EXPECT_EQ(straight.GetClearance({ -4, 1, 2 }), 3);
   EXPECT_LT(straight.GetClearance({ 5, 1, -30 }), -0.9);
   EXPECT_LT(straight.GetClearance({ 5, 1, 3 }), -0.9);
   // leaning over the box by half a mm a mm: nearest at the upper edge
-  const lacuna::InsertionPath leaning(bone, { -0.5, 0, -1 });
+  const lacuna::InsertionPath leaning(bone, { -0.5, 0, -1 }, 0.5);
   const double rise = 4;
   const double beside = 5 - 0.5 * rise; // of the edge, at its height
   EXPECT_NEAR(leaning.GetClearance({ -5, 0, 2 }), std::min(3.0, beside / std::sqrt(1.25)), 0.02);

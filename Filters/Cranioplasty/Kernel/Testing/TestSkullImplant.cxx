@@ -159,6 +159,9 @@ TEST(SkullImplant, HasTheWantedThickness)
   const SkullImplant thicker = Make(shell, options);
   EXPECT_GE(thicker.MinimumThickness, 8);
   EXPECT_LT(thicker.MinimumThickness, 8.2);
+  options.Thickness = 0.6; // thinner than the least thickness: what is asked for counts
+  options.MinimumThickness = 1.5;
+  EXPECT_NEAR(Make(shell, options).MinimumThickness, 0.6, 0.02);
   for (const auto* implant : { &uniform, &thicker })
   {
     const double inner = Outer - (implant == &uniform ? 3 : 8 * 1.01);
@@ -175,6 +178,51 @@ TEST(SkullImplant, HasTheWantedThickness)
       }
     }
   }
+}
+
+TEST(SkullImplant, KeepsWideClearances)
+{
+  const Shell shell;
+  SkullImplantOptions options;
+  options.TriangleSize = 1.5;
+  for (const double clearance : { 1.5, 4.0 })
+  {
+    options.EdgeClearance = clearance;
+    const SkullImplant implant = Make(shell, options);
+    EXPECT_TRUE(IsClosed(implant));
+    EXPECT_NEAR(implant.InsertionClearance, clearance, 0.05);
+    for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
+    {
+      if (implant.Faces[t] == SkullImplantFace::Edge)
+      {
+        EXPECT_NEAR(shell.GetWall(implant.Points[implant.Triangles[t][0]]), -clearance, 0.06);
+      }
+    }
+  }
+}
+
+// Far thicker than bone: the wall bends around the inner end of the bone's, and its triangles do not cut that corner.
+TEST(SkullImplant, DoesNotCutCornersOfBone)
+{
+  const Shell shell;
+  SkullImplantOptions options;
+  options.TriangleSize = 1.5;
+  options.Thickness = 20;
+  const SkullImplant implant = Make(shell, options);
+  EXPECT_TRUE(IsClosed(implant));
+  const ShellBone bone(shell);
+  double least = 100;
+  for (std::size_t t = 0; t < implant.Triangles.size(); ++t)
+  {
+    const auto& c = implant.Triangles[t];
+    for (int k = 0; implant.Faces[t] == SkullImplantFace::Edge && k <= 8; ++k)
+    {
+      const Vec3 a = implant.Points[c[0]];
+      least = std::min(least, bone.Find(a + (k / 8.0) * (implant.Points[c[1]] - a), 5).Distance);
+    }
+  }
+  EXPECT_GT(least, 0.4);
+  EXPECT_NEAR(implant.InsertionClearance, least, 0.05);
 }
 
 TEST(SkullImplant, TurnsWithTheVolume)

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 using lacuna::Matrix4;
@@ -286,6 +287,9 @@ TEST(SkullRays, KnowWhatACurveEncloses)
     }
   }
   EXPECT_THROW(lacuna::FindRaysWithin(rays, { axis, u }), std::invalid_argument);
+  std::vector<Vec3> eight = curve;
+  std::swap(eight[3], eight[eight.size() / 2]);
+  EXPECT_THROW(lacuna::FindRaysWithin(rays, eight), std::invalid_argument);
 }
 
 TEST(SkullRays, CenterIsAmidTheVault)
