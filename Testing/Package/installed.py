@@ -21,6 +21,8 @@ import lacuna.plugin
 from paraview import servermanager
 
 assert lacuna.__version__ == version, lacuna.__version__
+for name in ("__init__.pyi", "proxies.xml"):  # for editors and lacuna.help
+    assert os.path.getsize(os.path.join(os.path.dirname(lacuna.__file__), name)) > 10000, name
 assert os.path.samefile(lacuna.plugin.path(), tracker.GetPluginFileName(offered["LacunaPlugin"]))
 lacuna.plugin.load()
 from paraview.simple import *

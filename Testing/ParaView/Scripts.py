@@ -13,7 +13,7 @@ import lacuna
 import numpy as np
 import paraview.simple
 from ct_series_files import write_series
-from lacuna import errors, guide, session
+from lacuna import errors, guide, opening, session
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raise_errors, raising
 from lacuna_test import output
@@ -204,6 +204,9 @@ for name in (table, markup):
     opened = lacuna.open(name)
     assert opened.GetXMLLabel() == "Outline Reader"
     assert np.allclose(np.array(fetch(opened).GetBounds()), (1.5, 11, 2, 30, 3.25, 3.25), atol=0.5), (name, fetch(opened).GetBounds())
+
+structures = write("structures.dcm", bytes(128) + b"DICM" + bytes(60) + b"\x08\0\x60\0CS\x08\0RTSTRUCT")
+assert opening.find_reader(structures)[0] == "OutlineReader" and opening.find_reader(path("scan/003.dcm"))[0] == "CTSeriesReader"
 
 # what cannot be opened, and what to do
 before = len(GetSources())

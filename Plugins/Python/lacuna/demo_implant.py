@@ -169,7 +169,7 @@ def picture(depth, image, view, hole, zoom, name):
     bone = pv.Threshold(Input=surface, Scalars=mask, ThresholdMethod="Below Lower Threshold", LowerThreshold=0.5,
                         AllScalars=0)
     implant = pv.Threshold(Input=surface, Scalars=mask, ThresholdMethod="Above Upper Threshold", UpperThreshold=0.5)
-    before, after = pictures.new_view((720, 720)), pictures.new_view((880, 720))
+    before, after = pictures.new_view((640, 640)), pictures.new_view((760, 640))
     show_map(depth, before)
     before.OrientationAxesVisibility = 0
     pictures.show_surface(bone, after, pictures.BONE)
@@ -179,7 +179,7 @@ def picture(depth, image, view, hole, zoom, name):
         limit = math.ceil(10 * np.nanmax(np.abs(errors(image)))) / 10
         pictures.color_by(display, after, ERROR, "error of the implant, mm", (-limit, limit))
     marked = views.in_patient_coordinates(image)
-    for render, title in ((before, hole), (after, "the implant's surface" + (", coloured by its error" if known else ""))):
+    for render, title in ((before, hole), (after, "the implant" + (", coloured by its error" if known else ""))):
         pictures.look(render, view, view_up(view), zoom)
         render.CameraParallelScale = before.CameraParallelScale  # both as large
         pictures.add_scale_bar(render, 50, aside=marked)
@@ -188,7 +188,7 @@ def picture(depth, image, view, hole, zoom, name):
             title_beside(render, title)
         else:
             pictures.add_title(render, title)
-    pictures.save_layout(pictures.lay_out([before, after], "Cranial implant"), name)
+    pictures.save_layout(pictures.lay_out([before, after], "Cranial implant"), name, rendered=True)
 
 
 def title_beside(view, text):

@@ -236,7 +236,7 @@ class Picture:
         pictures.show_surface(contour, self.view, pictures.TISSUE)
         self.newest = pv.ExtractSubset(Input=self.source)
         plane = pv.SlicePlanes(Input=self.newest, InvalidSlices="Show", MaximumNumberOfPoints=75000)
-        demo_ultrasound.show_picture(plane, [self.view], sector=True)
+        demo_ultrasound.show_picture(plane, self.view, sector=True)
         frames = pv.SlicePlanes(Input=self.source, OutlineOnly=1, Stride=10, InvalidSlices="Show")
         pictures.show_surface(frames, self.view, (0.55, 0.63, 0.75)).LineWidth = 1
         self.look()

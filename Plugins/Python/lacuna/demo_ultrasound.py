@@ -142,25 +142,24 @@ def slice_poses(image):
     return vtk_to_numpy(image.GetFieldData().GetArray("ImageToReference")).reshape(-1, 4, 4)
 
 
-def show_slice(sweep, number, views, sector, points=80000):
-    """Shows a slice as a picture in space."""
+def show_slices(sweep, first, last, view, sector, points):
+    """Shows two slices, or one, as pictures in space."""
     extent = sweep.GetDataInformation().GetExtent()
-    one = pv.ExtractSubset(Input=sweep, VOI=[*extent[:4], extent[4] + number, extent[4] + number])
-    show_picture(pv.SlicePlanes(Input=one, MaximumNumberOfPoints=points), views, sector)
+    few = pv.ExtractSubset(Input=sweep, VOI=[*extent[:4], extent[4] + first, extent[4] + last], SampleRateK=max(1, last - first))
+    show_picture(pv.SlicePlanes(Input=few, MaximumNumberOfPoints=points), view, sector)
 
 
-def show_picture(planes, views, sector):
+def show_picture(planes, view, sector):
     """Shows Slice Planes in grey levels; sector: without the black beside it."""
     if sector:
         planes = pv.Threshold(Input=planes, Scalars=["POINTS", "Intensity"], ThresholdMethod="Above Upper Threshold", UpperThreshold=1)
-    for view in views:
-        display = pv.Show(planes, view)
-        display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
-        pv.ColorBy(display, ("POINTS", "Intensity"))
-        table = pv.GetColorTransferFunction("Intensity")
-        pictures.apply_preset(table, "Grayscale")
-        table.RescaleTransferFunction(0, 220)
-        display.SetScalarBarVisibility(view, False)
+    display = pv.Show(planes, view)
+    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+    pv.ColorBy(display, ("POINTS", "Intensity"))
+    table = pv.GetColorTransferFunction("Intensity")
+    pictures.apply_preset(table, "Grayscale")
+    table.RescaleTransferFunction(0, 220)
+    display.SetScalarBarVisibility(view, False)
 
 
 def picture(sweep, surface, sector, volume, name):
@@ -171,9 +170,9 @@ def picture(sweep, surface, sector, volume, name):
     center = poses[middle] @ (*[(low + high) / 2 for low, high in zip(fetch(sweep).GetBounds()[:4:2], fetch(sweep).GetBounds()[1:4:2])], 0, 1)
     lateral, depth = (poses[middle][:3, :2] / np.linalg.norm(poses[middle][:3, :2], axis=0)).T
     travel = np.cross(lateral, depth)
-    screen, space = pictures.new_view((620, 720)), pictures.new_view((980, 720))
+    screen, space = pictures.new_view((540, 640)), pictures.new_view((860, 640))
 
-    show_slice(sweep, middle, (screen, space), sector)
+    show_slices(sweep, middle, middle, screen, sector, 80000)
     outline = pv.Slice(Input=surface, SliceType="Plane")
     outline.SliceType.Origin, outline.SliceType.Normal = list(center[:3] - 0.05 * travel), list(travel)
     outline.UpdatePipeline()
@@ -185,7 +184,7 @@ def picture(sweep, surface, sector, volume, name):
     pictures.add_scale_bar(screen, 10)
     pictures.add_title(screen, "one slice, and the surface's outline in it")
 
-    show_slice(sweep, behind, (space,), sector, 40000)
+    show_slices(sweep, middle, behind, space, sector, 160000)
     pictures.show_surface(surface, space, pictures.TISSUE)
     frames = pv.SlicePlanes(Input=sweep, OutlineOnly=1, Stride=max(1, len(good) // 12))
     pictures.show_surface(frames, space, (0.55, 0.63, 0.75)).LineWidth = 1
@@ -193,4 +192,4 @@ def picture(sweep, surface, sector, volume, name):
     pictures.look(space, travel + 0.9 * lateral + 0.45 * depth, -depth, 1.35)
     pictures.add_scale_bar(space, 10)
     pictures.add_title(space, f"all {len(good)} slices in space: {volume}")
-    pictures.save_layout(pictures.lay_out([screen, space], "Freehand ultrasound"), name)
+    pictures.save_layout(pictures.lay_out([screen, space], "Freehand ultrasound"), name, rendered=True)

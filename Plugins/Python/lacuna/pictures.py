@@ -212,12 +212,12 @@ def lay_out(views, title):
     return layout
 
 
-def save_layout(layout, name):
-    """Renders all views of a layout into a PNG file, as large as they are together."""
+def save_layout(layout, name, rendered=False):
+    """Renders all views of a layout into a PNG file, as large as they are together. rendered: they have been drawn before, as by look()."""
     views = pv.GetViewsInLayout(layout)
     size = [sum(view.ViewSize[0] for view in views), max(view.ViewSize[1] for view in views)]
     layout.SetSize(*size)
-    for view in views:
+    for view in [] if rendered else views:
         pv.Render(view)
     with writing(name) as aside:
         pv.SaveScreenshot(aside, layout, SaveAllViews=1, ImageResolution=size, SeparatorWidth=2, SeparatorColor=[1, 1, 1])

@@ -13,6 +13,7 @@ import importlib
 import os
 import sys
 
+KINDS = ("source", "reader", "filter", "writer")  # that have a constructor
 _proposing = []
 
 
@@ -52,15 +53,16 @@ def _in_window(paraview):
 
 @functools.lru_cache(maxsize=None)
 def proxies():
-    """What the plugin's XML says of each source, reader, filter and writer (lacuna.proxies.Proxy), by the constructor's name; empty in a
-    build without ParaView."""
+    """What the plugin's XML says of each source, reader, filter, writer and region (lacuna.proxies.Proxy), by the constructor's name; empty
+    in a build without ParaView."""
     from lacuna.proxies import INSTALLED, read_files
-    return {proxy.constructor: proxy for proxy in (read_files([INSTALLED]) if os.path.exists(INSTALLED) else [])}
+    return {proxy.constructor: proxy for proxy in (read_files([INSTALLED]) if os.path.exists(INSTALLED) else [])
+            if proxy.kind in (*KINDS, "implicit_function")}
 
 
 def constructors():
     """Names of all constructors: labels without blanks and hyphens."""
-    return [name for name, proxy in proxies().items() if proxy.kind in ("source", "reader", "filter", "writer")]
+    return [name for name, proxy in proxies().items() if proxy.kind in KINDS]
 
 
 def find(name):
