@@ -5,6 +5,10 @@
 #include "vtkLacunaSlicePlanes.h"
 #include "vtkObjectFactory.h"
 #include "vtkProperty.h"
+#include "vtkThreshold.h"
+
+#include <cmath>
+#include <limits>
 
 namespace
 {
@@ -18,16 +22,37 @@ vtkLacunaSlicesRepresentation::vtkLacunaSlicesRepresentation()
 {
   this->Property->LightingOff();
   this->Planes->SetMaximumNumberOfPoints(MostPoints);
+  this->Bright->SetInputConnection(this->Planes->GetOutputPort());
+  this->Bright->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "Intensity");
+  this->Bright->SetThresholdFunction(vtkThreshold::THRESHOLD_UPPER);
+  this->Bright->SetAllScalars(false);
+  this->SetDark(0);
 }
 
 //------------------------------------------------------------------------------
 vtkLacunaSlicesRepresentation::~vtkLacunaSlicesRepresentation() = default;
 
 //------------------------------------------------------------------------------
+void vtkLacunaSlicesRepresentation::SetStride(int stride)
+{
+  this->Planes->SetStride(stride);
+  this->MarkModified();
+}
+
+//------------------------------------------------------------------------------
+void vtkLacunaSlicesRepresentation::SetDark(double level)
+{
+  this->Bright->SetUpperThreshold(
+    std::nextafter(static_cast<float>(level), std::numeric_limits<float>::infinity()));
+  this->MarkModified();
+}
+
+//------------------------------------------------------------------------------
 vtkAlgorithmOutput* vtkLacunaSlicesRepresentation::GetInternalOutputPort(int port, int connection)
 {
   this->Planes->SetInputConnection(this->Superclass::GetInternalOutputPort(port, connection));
-  return this->Planes->GetOutputPort();
+  return this->Bright->GetOutputPort();
 }
 
 //------------------------------------------------------------------------------

@@ -5,7 +5,8 @@
  *
  * For an image stack with poses, as Tracked Slice Reader makes it, this shows what Slice Planes makes
  * of it, without a filter in the pipeline: filters and selections still see the stack. The pictures are
- * not lit: their grey levels are those of the image from any side.
+ * not lit: their grey levels are those of the image from any side. What is dark is left out, so that
+ * slices do not hide each other; transparency would need a pass of drawing for each slice.
  *
  * @sa vtkLacunaSlicePlanes
  */
@@ -17,6 +18,7 @@
 #include "vtkNew.h"                         // for the filter
 
 class vtkLacunaSlicePlanes;
+class vtkThreshold;
 
 class VTKLACUNAREPRESENTATIONS_EXPORT vtkLacunaSlicesRepresentation
   : public vtkGeometryRepresentationWithFaces
@@ -24,6 +26,13 @@ class VTKLACUNAREPRESENTATIONS_EXPORT vtkLacunaSlicesRepresentation
 public:
   static vtkLacunaSlicesRepresentation* New();
   vtkTypeMacro(vtkLacunaSlicesRepresentation, vtkGeometryRepresentationWithFaces);
+
+  ///@{
+  /// Every n-th slice is shown; n >= 1. Default: 1.
+  void SetStride(int stride);
+  /// What is at or below this grey level is not shown. Default: 0.
+  void SetDark(double level);
+  ///@}
 
   using Superclass::GetInternalOutputPort;
   /// What the superclass shows: the slices in space instead of the stack.
@@ -40,5 +49,6 @@ private:
   void operator=(const vtkLacunaSlicesRepresentation&) = delete;
 
   vtkNew<vtkLacunaSlicePlanes> Planes;
+  vtkNew<vtkThreshold> Bright;
 };
 #endif

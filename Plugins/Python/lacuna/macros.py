@@ -62,12 +62,11 @@ def sweep_to_surface(source=None):
         surface = made(pv.Contour(registrationName=f"Surface of {name}", Input=smooth, ContourBy=["POINTS", grey], Isosurfaces=[level], ComputeScalars=0))
         surface.UpdatePipeline()
         slices = image.GetDimensions()[2]
-        pictured = made(pv.SlicePlanes(registrationName=f"Slices of {name}", Input=source, Stride=max(1, (slices - 1) // (PICTURES - 1))))
         if surface.GetDataInformation().GetNumberOfCells() == 0:
             raise ValueError(f"the volume of '{name}' has no surface at the grey level {level:.4g}")
-    view = _view(hide=source)
+    view = _view()
+    window.show_slices(source, view, max(1, (slices - 1) // (PICTURES - 1)))
     pictures.show_surface(surface, view, pictures.TISSUE)
-    window.show_pictures(pictured, view)
     _look_from_aside(image, view)
     pv.SetActiveSource(surface)
     pv.Render(view)
@@ -243,14 +242,12 @@ def _fit(volume):
     volume.OutputBounds = [bounds[i] + (1 if i % 2 else -1) * rim[i // 2] for i in range(6)]
 
 
-def _view(hide=None):
+def _view():
     view = pv.GetActiveView()
     if view is None or not hasattr(view, "GetActiveCamera"):
         found = pv.GetRenderViews()
         view = found[0] if found else pv.CreateRenderView()
         pv.SetActiveView(view)
-    if hide is not None:
-        pv.Hide(hide, view)
     return view
 
 

@@ -25,7 +25,7 @@ SLICES = "Slices in Space"
 # Of a volume rendering: Hounsfield units, then colour or opacity. Soft tissue is not seen.
 BONE_COLORS = ((150, 0.75, 0.55, 0.45), (350, 0.90, 0.83, 0.70), (1200, 0.97, 0.95, 0.90), (3000, 1, 1, 1))
 BONE_OPACITIES = ((250, 0), (400, 0.6), (700, 0.95), (3000, 1))
-DARK, BRIGHT = 0.03, 0.3  # parts of the grey levels: slices are transparent up to the first, or the median, and opaque behind the second
+DARK = 0.03  # part of the range of grey levels that is left out of slices at least, and that is left at least
 FRONT, UP = (0, 1, 0), (0, 0, 1)  # the view into the face, in patient coordinates (LPS)
 
 
@@ -99,8 +99,7 @@ def show(source, view=None):
             _mark_sides(view)
             return source
     elif fields["ImageToReference"] and information.GetDataSetTypeAsString() == "vtkImageData":
-        display.SetRepresentationType(SLICES)
-        _color_slices(source, display, view)
+        show_slices(source, view)
         bounds = _slice_bounds(fetch(source))
         if is_alone and bounds:
             poses = demo_ultrasound.slice_poses(fetch(source))
@@ -138,11 +137,18 @@ def _show_bone(source, display, view):
     display.Shade = 1
 
 
-def show_pictures(planes, view):
-    """Shows Slice Planes as grey pictures, in which black is not seen."""
-    display = pv.Show(planes, view)
-    display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
-    _color_slices(planes, display, view)
+def show_slices(source, view, stride=1):
+    """Shows tracked slices with poses as grey pictures where they lie, every stride-th. What is dark is left out. Returns the display."""
+    display = pv.Show(source, view)
+    display.SetRepresentationType(SLICES)
+    display.SliceStride = stride
+    grey = source.PointData["Intensity"]
+    if grey is not None and grey.GetNumberOfComponents() == 1:
+        low, high = grey.GetRange()
+        high = max(high, low + 1)
+        # tissue without echoes, bath, margins
+        display.Dark = min(max(_median(source), low + DARK * (high - low)), low + (1 - DARK) * (high - low))
+        _color_apart(display, view, "Intensity", ((low, 0, 0, 0), (high, 1, 1, 1)))
     return display
 
 
@@ -154,36 +160,22 @@ def _median(source):
     return float(np.median(grey[::max(1, len(grey) // 100000)])) if len(grey) else -math.inf
 
 
-def _color_slices(source, display, view):
-    """Grey pictures; what is black is not seen, so that slices do not hide each other."""
-    grey = source.PointData["Intensity"]
-    if grey is None or grey.GetNumberOfComponents() != 1:
-        return
-    low, high = grey.GetRange()
-    dark = max(_median(source), low + DARK * (high - low))  # tissue without echoes, bath, margins
-    opacities = ((low, 0), (dark, 0), (dark + BRIGHT * (high - dark), 0.85), (high, 1)) if low < dark < high else ((low, 1), (low + 1, 1))
-    table = _color_apart(display, view, "Intensity", ((low, 0, 0, 0), (max(high, low + 1), 1, 1, 1)), opacities)
-    table.EnableOpacityMapping = 1
-
-
-def _color_apart(display, view, name, colors, opacities):
-    """Colours a display by a point array with functions of its own: (value, red, green, blue) and (value, opacity). Returns the colours."""
+def _color_apart(display, view, name, colors, opacities=None):
+    """Colours a display by a point array with functions of its own: (value, red, green, blue) and, of a volume, (value, opacity)."""
     if display.ColorArrayName[1]:
         display.SetScalarBarVisibility(view, False)
     display.UseSeparateColorMap = 1
     pv.ColorBy(display, ("POINTS", name), separate=True)
     table = pv.GetColorTransferFunction(name, display, separate=True)
-    opacity = pv.GetOpacityTransferFunction(name, display, separate=True)
     table.AutomaticRescaleRangeMode = "Never"
     table.ColorSpace = "RGB"
     table.RGBPoints = list(itertools.chain(*colors))
-    opacity.Points = list(itertools.chain(*((value, each, 0.5, 0) for value, each in opacities)))
-    table.ScalarOpacityFunction = opacity
     display.LookupTable = table
-    if display.GetProperty("ScalarOpacityFunction"):
+    if opacities:
+        opacity = pv.GetOpacityTransferFunction(name, display, separate=True)
+        opacity.Points = list(itertools.chain(*((value, each, 0.5, 0) for value, each in opacities)))
         display.ScalarOpacityFunction = opacity
     display.SetScalarBarVisibility(view, False)
-    return table
 
 
 def _shown(view):
