@@ -57,6 +57,7 @@ def test(window):
     window.resize_view(992, 665)
     make("Sources/Lacuna/Skull Phantom", Spacing=(4, 4, 4))
     window.apply()
+    window.look_from_above()
     make("Filters/Lacuna/B-Spline Iso Ray Caster", ViewDirection=(-0.4, 0.2, -0.9), PixelSpacing=(6,))
     window.apply()
     caster, view = GetActiveSource(), GetActiveView()

@@ -65,6 +65,7 @@ def test(window):
     window.resize_view(992, 665)
     assert not window.has_menu("Filters/Lacuna/RBF Hole Filler") and not window.has_menu("File/Save Data...")
     make("Skull Phantom", Spacing=(2, 2, 2))
+    window.look_from_above()
     depth = make("B-Spline Iso Ray Caster", ViewDirection=(-0.4, 0.2, -0.9), PixelSpacing=(1.5,))
     make("Depth Map Surface")
     view = GetActiveView()

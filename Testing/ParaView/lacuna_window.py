@@ -217,6 +217,14 @@ class Window:
             window = [window[k] + size - view.ViewSize[k] for k, size in enumerate((width, height))]
         raise AssertionError(f"the view has {list(view.ViewSize)} pixels instead of {width} x {height}")
 
+    def look_from_above(self):
+        """The active view without letters, seen as ParaView's: a new ray caster takes its direction and what is up."""
+        from lacuna import views
+        from paraview.simple import GetActiveView
+        view = GetActiveView()
+        views.hide_orientation(view)
+        view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, 0, 500], [0, 0, 0], [0, 1, 0]
+
     def save(self, path, name=""):
         """A picture of a widget, or of the whole window."""
         assert self.library.lacuna_save(name.encode(), path.encode()), path
