@@ -382,13 +382,22 @@ bool vtkLacunaRequest::IsWanted(vtkInformationVector* outputs)
 void vtkLacunaRequest::Nothing(vtkAlgorithm* filter, vtkInformation* input)
 {
   const bool wanted = HasStrangersUpstream(filter);
-  const int* whole = input->Get(SDDP::WHOLE_EXTENT());
+  // meshes made of an image have its extent in their information, too
+  vtkDataObject* data = vtkDataObject::GetData(input);
+  const bool hasExtent = !data || data->GetExtentType() == VTK_3D_EXTENT;
+  const int* whole = hasExtent ? input->Get(SDDP::WHOLE_EXTENT()) : nullptr;
   if (!whole)
   {
     if (wanted)
     {
       OnePiece(input);
+      return;
     }
+    // Any piece but the first, in which filters make what they make as a whole.
+    const vtkLacunaRanks ranks;
+    input->Set(SDDP::UPDATE_PIECE_NUMBER(), std::max(ranks.GetRank(), 1));
+    input->Set(SDDP::UPDATE_NUMBER_OF_PIECES(), std::max(ranks.GetNumber(), 2));
+    input->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
     return;
   }
   if (!wanted)

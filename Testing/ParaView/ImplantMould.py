@@ -62,7 +62,9 @@ points = vtk_to_numpy(grid.GetPoints().GetData())
 defect = vtk_to_numpy(grid.GetPointData().GetArray("DefectMask")) != 0
 angles = vtk_to_numpy(grid.GetPointData().GetArray("WallAngle"))
 back = points @ to_patient[:3, :3].T + to_patient[:3, 3]
-columns, rows, _ = grid.GetDimensions()
+dimensions = [0, 0, 0]
+grid.GetDimensions(dimensions)
+columns, rows, _ = dimensions
 wide = defect.reshape(rows, columns)
 within = wide[2:-2, 2:-2].copy()  # not beside the rim, where the face ends
 for i in range(5):

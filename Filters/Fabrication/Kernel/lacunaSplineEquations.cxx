@@ -12,14 +12,15 @@ namespace
 {
 constexpr double Stiffness = 3e-5; // of differences of control points, beside a point of each
 
-CubicSplineSpace MakeSpace(double first, double last, int spans)
+// Control points of cubics with clamped ends of those that go on beyond them.
+void ClampEnds(std::vector<Vec3>& points)
 {
-  std::vector<double> interior;
-  for (int k = 1; k < spans; ++k)
-  {
-    interior.push_back(first + (last - first) * k / spans);
-  }
-  return { first, interior, last };
+  const std::vector<Vec3> p = points;
+  const std::size_t last = p.size() - 1;
+  points[0] = (1.0 / 6) * (p[0] + 4.0 * p[1] + p[2]);
+  points[1] = (1.0 / 3) * (2.0 * p[1] + p[2]);
+  points[last - 1] = (1.0 / 3) * (2.0 * p[last - 1] + p[last - 2]);
+  points[last] = (1.0 / 6) * (p[last] + 4.0 * p[last - 1] + p[last - 2]);
 }
 }
 
@@ -29,32 +30,34 @@ UniformSplines::UniformSplines(double first, double last, int spans, bool closed
   , Step((last - first) / spans)
   , Spans(spans)
   , Closed(closed)
-  , Clamped(MakeSpace(first, last, spans))
 {
 }
 
 //------------------------------------------------------------------------------
 CubicSplineSpace::Values UniformSplines::Evaluate(double x) const
 {
-  if (!this->Closed)
-  {
-    return this->Clamped.Evaluate(x);
-  }
   const double at = (x - this->First) / this->Step;
-  const double span = std::floor(at);
+  const double span = this->Closed
+    ? std::floor(at)
+    : std::clamp(std::floor(at), 0.0, static_cast<double>(this->Spans - 1));
   const double t = at - span;
   const double s = 1 - t;
-  const auto wrapped = static_cast<long long>(span) % this->Spans;
-  return { wrapped < 0 ? wrapped + this->Spans : wrapped,
+  const auto number =
+    static_cast<std::int64_t>(span) % (this->Closed ? this->Spans : this->Spans + 1);
+  return { number < 0 ? number + this->Spans : number,
     { s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
       t * t * t / 6 } };
 }
 
 //------------------------------------------------------------------------------
-CubicSplineSpace UniformSplines::GetPart(int firstSpan, int lastSpan) const
+CubicSplineSpace UniformSplines::GetClamped(int firstSpan, int lastSpan) const
 {
-  return MakeSpace(this->First + firstSpan * this->Step, this->First + lastSpan * this->Step,
-    lastSpan - firstSpan);
+  std::vector<double> interior;
+  for (int k = firstSpan + 1; k < lastSpan; ++k)
+  {
+    interior.push_back(this->First + k * this->Step);
+  }
+  return { this->First + firstSpan * this->Step, interior, this->First + lastSpan * this->Step };
 }
 
 //------------------------------------------------------------------------------
@@ -173,6 +176,37 @@ void SplineEquations::AddSquare(const Term* terms, int count, double weight)
 }
 
 //------------------------------------------------------------------------------
+BSplineSurface MakeClamped(const UniformSplines& u, const UniformSplines& v,
+  const std::vector<Vec3>& control, int firstSpan, int lastSpan)
+{
+  const int columns = lastSpan - firstSpan + 3;
+  const int rows = v.GetSize();
+  BSplineSurface surface{ u.GetClamped(firstSpan, lastSpan), v.GetClamped(0, v.GetSpans()),
+    std::vector<Vec3>(static_cast<std::size_t>(columns) * rows) };
+  for (int i = 0; i < columns; ++i)
+  {
+    std::vector<Vec3> column;
+    for (int j = 0; j < rows; ++j)
+    {
+      column.push_back(control[u.Wrap(firstSpan + i) + static_cast<std::size_t>(j) * u.GetSize()]);
+    }
+    ClampEnds(column);
+    for (int j = 0; j < rows; ++j)
+    {
+      surface.ControlPoints[i + static_cast<std::size_t>(j) * columns] = column[j];
+    }
+  }
+  for (int j = 0; j < rows; ++j)
+  {
+    const auto begin = surface.ControlPoints.begin() + static_cast<std::ptrdiff_t>(j) * columns;
+    std::vector<Vec3> row(begin, begin + columns);
+    ClampEnds(row);
+    std::copy(row.begin(), row.end(), begin);
+  }
+  return surface;
+}
+
+//------------------------------------------------------------------------------
 BSplineSurface FitScattered(
   const std::vector<SplinePoint>& points, const Vec2& low, const Vec2& high, double spacing)
 {
@@ -188,6 +222,6 @@ BSplineSurface FitScattered(
     equations.Add(point, share);
   }
   equations.AddStiffness(Stiffness, false, 3);
-  return { u.GetClamped(), v.GetClamped(), equations.Solve() };
+  return MakeClamped(u, v, equations.Solve(), 0, u.GetSpans());
 }
 }

@@ -19,27 +19,28 @@ struct SplinePoint
   Vec3 Place{};
 };
 
-/// Cubic B-splines with equal spans, closed or with clamped ends.
+/// Cubic B-splines with equal spans, closed or with ends. The ends are not clamped, so that what is stiff is the same
+/// everywhere.
 class UniformSplines
 {
 public:
   /// Closed: last is first again.
   UniformSplines(double first, double last, int spans, bool closed);
 
+  int GetSpans() const { return this->Spans; }
   int GetSize() const { return this->Closed ? this->Spans : this->Spans + 3; }
   /// The number of a control point that may be beyond the ends of a closed basis.
   int Wrap(int i) const { return this->Closed ? (i + this->Spans) % this->Spans : i; }
+  /// x is within the interval, unless closed.
   CubicSplineSpace::Values Evaluate(double x) const;
   /// The same functions over some spans, with clamped ends.
-  CubicSplineSpace GetPart(int firstSpan, int lastSpan) const;
-  const CubicSplineSpace& GetClamped() const { return this->Clamped; }
+  CubicSplineSpace GetClamped(int firstSpan, int lastSpan) const;
 
 private:
   double First;
   double Step;
   int Spans;
   bool Closed;
-  CubicSplineSpace Clamped;
 };
 
 /// The normal equations of a tensor product, as bands. Keeps references to both bases.
@@ -72,6 +73,11 @@ private:
   std::vector<std::array<double, Width * Width>> Bands;
   std::vector<Vec3> Right;
 };
+
+/// The same surface, of control points of equations, over some spans along u. Beyond the ends of a closed u they go on
+/// from the beginning.
+BSplineSurface MakeClamped(const UniformSplines& u, const UniformSplines& v,
+  const std::vector<Vec3>& control, int firstSpan, int lastSpan);
 
 /// The surface over a rectangle of parameters that is near the points, and beyond them goes on with their
 /// curvature. spacing: of control points, in parameters.
