@@ -484,7 +484,7 @@ def write_report(folder, found, plan_name, part_name):
     limit = max(0.5, np.ceil(10 * max(-there.low, there.high)) / 10)
     source = pv.TrivialProducer()
     source.GetClientSideObject().SetOutput(found.part)
-    view = pictures.new_view((900, 720))
+    view = pictures.new_picture((900, 720))
     view.OrientationAxesVisibility = 0
     display = pictures.show_surface(source, view, pictures.METAL)
     pictures.color_by(display, view, "Deviation", "deviation, mm", (-limit, limit))

@@ -227,7 +227,7 @@ def _draw(folder, made, numbers):
 
 
 def _new_view(size):
-    view = pictures.new_view(size)
+    view = pictures.new_picture(size)
     view.OrientationAxesVisibility = 0
     return view
 

@@ -174,9 +174,14 @@ def report_implant(source=None, folder=None):
     folder = _free_name(folder or os.path.expanduser("~"), "implant-report", "")
     os.makedirs(folder)
     template = source.Template and _name(source.Template)
-    with raising():
-        record = solids.save_solid(os.path.join(folder, "implant.stl"), source)
-        written = implant_report.write(folder, made, record, _name(source.Input), implant.warnings_of(source), template)
+    before = set(pv.GetSources())
+    try:
+        with raising():
+            record = solids.save_solid(os.path.join(folder, "implant.stl"), source)
+            written = implant_report.write(folder, made, record, _name(source.Input), implant.warnings_of(source), template)
+    finally:  # what the pictures needed, the last first
+        for key in sorted(set(pv.GetSources()) - before, key=lambda key: -int(key[1])):
+            pv.Delete(pv.GetSources()[key])
     pv.SetActiveView(view)
     pv.SetActiveSource(source)
     pv.Render(view)

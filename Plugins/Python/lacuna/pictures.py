@@ -2,6 +2,8 @@
 """Pictures in one style: white background, matt surfaces, scalar bars with units."""
 import numpy as np
 import paraview.simple as pv
+from paraview import servermanager
+from paraview.modules.vtkRemotingViews import vtkPVView
 from paraview.servermanager import vtkSMTransferFunctionPresets
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkChartsCore import vtkAxis, vtkChart, vtkChartLegend, vtkChartXY
@@ -23,7 +25,26 @@ TISSUE = (0.80, 0.45, 0.38)
 
 def new_view(size=(1200, 900)):
     """A render view on white with dark text."""
-    view = pv.CreateView("RenderView")
+    return _style(pv.CreateView("RenderView"), size)
+
+
+def new_picture(size):
+    """As new_view, for a picture alone: in the ParaView application it is in no layout, and can be drawn at once.
+
+    A view in a window that Qt has not shown yet gives black pictures.
+    """
+    if not vtkPVView.GetUseGenericOpenGLRenderWindow():
+        return new_view(size)
+    vtkPVView.SetUseGenericOpenGLRenderWindow(False)
+    try:
+        view = servermanager._create_view("RenderView")
+    finally:
+        vtkPVView.SetUseGenericOpenGLRenderWindow(True)
+    view.GetRenderWindow().SetOffScreenRendering(1)
+    return _style(view, size)
+
+
+def _style(view, size):
     view.ViewSize = list(size)
     view.UseColorPaletteForBackground = 0
     view.BackgroundColorMode = "Gradient"
