@@ -46,13 +46,13 @@ def load():
 
 
 def loaded_names():
-    """Names of Lacuna's proxies that ParaView knows."""
+    """Names of Lacuna's proxies that ParaView knows, without representations, which have no panel of their own."""
     session = servermanager.ProxyManager().SMProxyManager
     iterator = session.GetProxyDefinitionManager().NewIterator()
     names = set()
     iterator.InitTraversal()
     while not iterator.IsDoneWithTraversal():
-        if iterator.GetProxyName().startswith("Lacuna"):
+        if iterator.GetProxyName().startswith("Lacuna") and iterator.GetGroupName() != "representations":
             names.add(iterator.GetProxyName()[len("Lacuna"):])
         iterator.GoToNextItem()
     return names
