@@ -40,14 +40,13 @@ std::string Name(DicomTag tag)
 std::string DescribeOther(FileBytes& bytes)
 {
   constexpr std::int64_t niftiMark = 344;
-  std::string begin(niftiMark + 4, '\0');
-  begin.resize(static_cast<std::size_t>(std::min<std::int64_t>(bytes.GetSize(), begin.size())));
-  if (begin.empty() ||
-    !bytes.Read(
-      0, static_cast<std::int64_t>(begin.size()), reinterpret_cast<unsigned char*>(begin.data())))
+  const std::int64_t count = std::min<std::int64_t>(bytes.GetSize(), niftiMark + 4);
+  const unsigned char* first = count > 0 ? bytes.Get(0, count) : nullptr;
+  if (!first)
   {
     return {};
   }
+  const std::string begin(first, first + count);
   const auto startsWith = [&](const char* mark) { return begin.rfind(mark, 0) == 0; };
   if (startsWith("\xFF\xD8\xFF") || startsWith("\x89PNG"))
   {
