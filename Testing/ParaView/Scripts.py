@@ -48,7 +48,6 @@ def refused(call, kind, *texts):
 
 
 # --- load ---
-assert "SkullPhantom" not in globals() or os.environ.get("PV_PLUGIN_CONFIG_FILE")
 message = refused(lambda: lacuna.SkullImplantt, AttributeError, "did you mean SkullImplant")
 if not hasattr(paraview.simple, "SkullImplant"):
     refused(lambda: lacuna.SkullImplant, AttributeError, "call lacuna.load() first")

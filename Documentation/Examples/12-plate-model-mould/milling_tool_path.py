@@ -42,7 +42,7 @@ def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else "."
     os.makedirs(folder, exist_ok=True)
     mould = make_mould()
-    path = MillingToolPath(Input=mould, ToolRadius=4, StepOver=2)
+    path = MillingToolPath(Input=mould, ToolRadius=4, StepOver=2, RoughingStep=0)
     warnings = []
     with raising(warnings):
         path.UpdatePipeline()
