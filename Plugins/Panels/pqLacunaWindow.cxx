@@ -241,8 +241,16 @@ void pqLacunaWindow::AddMenu()
   }
   menu->addSeparator();
   AddFilters(menu, window);
-  // where ParaView learns of the filters later
-  QObject::connect(menu, &QMenu::aboutToShow, this, [menu, window] { AddFilters(menu, window); });
+  QObject::connect(menu, &QMenu::aboutToShow, this,
+    [menu, window]
+    {
+      // ParaView looks what fits the selection when its own menu of filters is opened
+      if (auto* filters = window->findChild<QMenu*>("menuFilters"))
+      {
+        Q_EMIT filters->aboutToShow();
+      }
+      AddFilters(menu, window); // where ParaView learns of the filters later
+    });
   QAction* before = nullptr; // Help is the last
   for (QAction* action : window->menuBar()->actions())
   {

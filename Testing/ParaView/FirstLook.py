@@ -91,6 +91,13 @@ view = new_view()
 window.show(made_volume(-1024, 1500), view)
 assert not [each for each in view.Representations if each.GetProperty("WindowLocation") and each.Input.GetXMLName() == "TextSource"]
 
+# Letters go when what has no known sides joins what is the patient's
+view = new_view()
+window.show(skull, view)
+assert len([each for each in view.Representations if each.GetProperty("WindowLocation") and each.Input.GetXMLName() == "TextSource"]) == 4
+window.show(PhantomSweep(NumberOfSlices=3, ImageSize=[32, 24]), view)
+assert not [each for each in view.Representations if each.GetProperty("WindowLocation") and each.Input.GetXMLName() == "TextSource"]
+
 # A sweep: the same picture as Slice Planes makes of it; the box around it is that of the slices' corners
 view = new_view()
 sweep = PhantomSweep(NumberOfSlices=9, ImageSize=[64, 48], PixelSpacing=0.8, Motion="Arbitrary")

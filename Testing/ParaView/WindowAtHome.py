@@ -55,6 +55,7 @@ def test(window):
     view = GetActiveView()
     assert GetDisplayProperties(GetActiveSource(), view).Representation == "Volume"
     window.compare("AtHomeBone", likeness=0.9)
+    assert window.has_menu("Lacuna/Skull and implant/Skull alone: Skull Bone"), "ParaView's own menu of filters was not opened"
     clicks.menu("Lacuna/CT to Implant")
     window.take_messages()
     implant = GetActiveSource()

@@ -9,7 +9,6 @@
 import math
 import os
 
-import numpy as np
 import paraview.simple as pv
 
 from lacuna import vtkLacunaScanRegion
@@ -67,7 +66,8 @@ def sweep_to_surface(source=None):
     view = _view()
     window.show_slices(source, view, max(1, (slices - 1) // (PICTURES - 1)))
     pictures.show_surface(surface, view, pictures.TISSUE)
-    _look_from_aside(image, view)
+    window.look_at_slices(source, view)
+    views.check_orientation(view)
     pv.SetActiveSource(surface)
     pv.Render(view)
     print(f"Lacuna: surface at grey level {level:.4g} of {slices} slices; change Isosurfaces of '{_name(surface)}' and Apply to move it")
@@ -254,18 +254,6 @@ def _view():
         view = found[0] if found else pv.CreateRenderView()
         pv.SetActiveView(view)
     return view
-
-
-def _look_from_aside(image, view):
-    """From the probe into the tissue and a little from the side, so that slices are not seen head-on."""
-    poses = demo_ultrasound.slice_poses(image)
-    poses = poses[np.isfinite(poses).all(axis=(1, 2))]
-    if not len(poses):
-        return pv.ResetCamera(view)
-    middle = poses[len(poses) // 2][:3, :2]
-    lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
-    travel = np.cross(lateral, depth)
-    return pictures.look(view, depth + 0.5 * lateral + 1.2 * travel, -depth)
 
 
 def _free_name(folder, stem="implant", ending=".igs"):

@@ -8,6 +8,7 @@
 """
 import os
 import sys
+import xml.etree.ElementTree
 
 VOLUMES = (".mha", ".mhd", ".nrrd", ".nhdr", ".nii", ".nii.gz")
 SEQUENCES = (".igs.mha", ".seq.mha", ".igs.mhd", ".seq.mhd", ".igs.nrrd", ".seq.nrrd", ".igs.nhdr", ".seq.nhdr")
@@ -150,7 +151,7 @@ def _check_data(path, name, reader):
     """Raises ValueError where a reader found nothing, or slices that nobody can lay in space."""
     information = reader.GetDataInformation()
     if name == "TrackedSliceReader" and information.GetFieldDataInformation().GetArrayInformation("ImageToReference") is None:
-        found = _calibrations(os.path.dirname(path) or ".")
+        found = calibrations(os.path.dirname(path) or ".")
         raise ValueError(
             f"{path} is a sweep without a calibration: where its slices lie on the probe is not known. Give CalibrationFileName=, a "
             "configuration of PLUS with the Image to Probe transform" + (f". Beside it there is {' and '.join(found)}" if found else "") +
@@ -159,15 +160,25 @@ def _check_data(path, name, reader):
         raise ValueError(f"{path} has nothing in it: no point was read")
 
 
-def _calibrations(folder):
+def calibrations(folder):
+    """Names of the device set configurations of PLUS (XML) in a folder that have a transform from Image to Probe."""
     found = []
-    for name in sorted(os.listdir(folder)):
-        path = os.path.join(folder, name)
-        if name.lower().endswith(".xml") and os.path.isfile(path):
-            with open(path, "rb") as file:
-                if b"<CoordinateDefinitions" in file.read(HEADER):
-                    found.append(path)
+    try:
+        for name in sorted(os.listdir(folder)):
+            path = os.path.join(folder, name)
+            if name.lower().endswith(".xml") and os.path.isfile(path) and os.path.getsize(path) <= HEADER and _is_calibration(path):
+                found.append(path)
+    except OSError:
+        pass  # what cannot be read is not offered
     return found
+
+
+def _is_calibration(path):
+    try:
+        root = xml.etree.ElementTree.parse(path).getroot()
+    except (xml.etree.ElementTree.ParseError, ValueError):
+        return False
+    return any(each.get("From") == "Image" and each.get("To") == "Probe" for each in root.iter("Transform"))
 
 
 def _in_patient_coordinates(path, reader):

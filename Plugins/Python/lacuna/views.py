@@ -211,6 +211,15 @@ def show_orientation(view=None, color=None, font_size=18, force=False):
     return {edge: source.Text for edge, (source, _) in marks.items()}
 
 
+def check_orientation(view):
+    """Takes the marks of show_orientation away where a view shows what is not known to be the patient's."""
+    if view.GetGlobalIDAsString() in _marked:
+        try:
+            _check_view(view)
+        except ValueError:
+            hide_orientation(view)
+
+
 def hide_orientation(view):
     """Takes the marks of show_orientation away."""
     marks, camera, tag = _marked.pop(view.GetGlobalIDAsString(), ({}, None, None))

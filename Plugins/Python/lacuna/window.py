@@ -10,14 +10,13 @@ import functools
 import itertools
 import math
 import os
-import xml.etree.ElementTree
 
 import numpy as np
 import paraview.simple as pv
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from lacuna import coordinates, demo_ultrasound, pictures, solids, views
+from lacuna import coordinates, demo_ultrasound, opening, pictures, solids, views
 from lacuna.data import fetch
 
 AIR, BONE = -200, 300  # Hounsfield units: below the first there is air, above the second bone
@@ -100,15 +99,16 @@ def show(source, view=None):
             return source
     elif fields["ImageToReference"] and information.GetDataSetTypeAsString() == "vtkImageData":
         show_slices(source, view)
-        bounds = _slice_bounds(fetch(source))
-        if is_alone and bounds:
-            poses = demo_ultrasound.slice_poses(fetch(source))
-            _look_askance(poses[np.isfinite(poses).all(axis=(1, 2))], view)
+        poses = _poses(source)
+        bounds = _slice_bounds(poses, bounds)
+        if is_alone and len(poses):
+            look_at_slices(source, view)
             return source
     elif source.GetXMLName() == "Contour":
         display.ColorArrayName = [None, ""]
         display.AmbientColor = display.DiffuseColor = list(pictures.BONE if coordinates.is_patient(source) else pictures.TISSUE)
         display.Specular = 0.15
+    views.check_orientation(view)
     if bounds and not _is_seen(bounds, view):
         pv.ResetCamera(view)
     return source
@@ -191,20 +191,30 @@ def _mark_sides(view):
         pass
 
 
-def _slice_bounds(image):
-    """The box around the slices that have poses, mm; None without."""
-    columns, rows, _ = image.GetDimensions()
-    corners = np.array([[u, v, 0, 1] for u in (0, columns - 1) for v in (0, rows - 1)], float)
-    poses = demo_ultrasound.slice_poses(image)
-    points = np.concatenate([corners @ pose.T for pose in poses if np.isfinite(pose).all()] or [np.empty((0, 4))])[:, :3]
-    return [f(points[:, axis]) for axis in range(3) for f in (np.min, np.max)] if len(points) else None
-
-
-def _look_askance(poses, view):
-    """From the probe into the tissue and from aside, so that slices are not seen head-on."""
+def look_at_slices(source, view):
+    """From the probe into the tissue and from aside, so that tracked slices are not seen head-on."""
+    poses = _poses(source)
+    if not len(poses):
+        pv.ResetCamera(view)
+        return
     middle = poses[len(poses) // 2][:3, :2]
     lateral, depth = (middle / np.linalg.norm(middle, axis=0)).T
     _look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
+
+
+def _poses(source):
+    """Of the slices that have one: N x 4 x 4. Of the pixels one alone is fetched."""
+    extent = source.GetDataInformation().GetExtent()
+    one = servermanager.filters.ExtractSubset(Input=source, VOI=[each for low in extent[::2] for each in (low, low)])
+    poses = demo_ultrasound.slice_poses(fetch(one))
+    return poses[np.isfinite(poses).all(axis=(1, 2))]
+
+
+def _slice_bounds(poses, bounds):
+    """The box (mm) around slices with these poses, of which the bounds in pixels are given; None without."""
+    corners = np.array([[u, v, 0, 1] for u in bounds[:2] for v in bounds[2:4]], float)
+    points = np.concatenate([corners @ pose.T for pose in poses] or [np.empty((0, 4))])[:, :3]
+    return [f(points[:, axis]) for axis in range(3) for f in (np.min, np.max)] if len(points) else None
 
 
 def _look(view, direction, up):
@@ -239,24 +249,12 @@ def offer_calibration(identity):
     if servermanager.ActiveConnection.IsRemote():
         return
     reader = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
-    found = calibration_beside(reader.FileName) if not reader.CalibrationFileName and not _is_calibrated(reader.FileName) else None
-    if found:
-        reader.CalibrationFileName = found
-        print(f"Lacuna: CalibrationFileName is {found}, which lies beside the sweep. Another probe's would give wrong millimetres: look at it before Apply")
-
-
-def calibration_beside(path):
-    """The name of the only XML file beside a sweep that has a transform from Image to Probe, or None."""
-    folder = os.path.dirname(path) or "."
-    found = []
-    try:
-        for name in sorted(os.listdir(folder)):
-            file = os.path.join(folder, name)
-            if name.lower().endswith(".xml") and os.path.isfile(file) and os.path.getsize(file) < 1 << 20 and _has_calibration(file):
-                found.append(file)
-    except OSError:
-        return None
-    return found[0] if len(found) == 1 else None
+    if reader.CalibrationFileName or _is_calibrated(reader.FileName):
+        return
+    found = opening.calibrations(os.path.dirname(reader.FileName) or ".")
+    if len(found) == 1:
+        reader.CalibrationFileName = found[0]
+        print(f"Lacuna: CalibrationFileName is {found[0]}, which lies beside the sweep. Another probe's would give wrong millimetres: look at it before Apply")
 
 
 def _is_calibrated(path):
@@ -267,11 +265,3 @@ def _is_calibrated(path):
     except OSError:
         return False
     return any(word in head for word in (b"ImageTo", b"ToImageTransform", b"ToCroppedImageTransform"))
-
-
-def _has_calibration(file):
-    try:
-        root = xml.etree.ElementTree.parse(file).getroot()
-    except (xml.etree.ElementTree.ParseError, OSError, ValueError):
-        return False
-    return any(each.get("From") == "Image" and each.get("To") == "Probe" for each in root.iter("Transform"))
