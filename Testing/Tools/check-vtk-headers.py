@@ -81,6 +81,7 @@ def commands(build, folders, plugins):
         if plugins:  # folders within ParaView's and Qt's
             command = re.sub(r"-isystem \S*/paraview-[\d.]+/", lambda _: f"-isystem {folders[0]}/", command)
             command = re.sub(r"-isystem \S*/include/([^/\s]+)/qt5(?=[/\s])", lambda found: f"-isystem {folders[-1]}/{found[1]}/qt6", command)
+        command = re.sub(r"(-Winvalid-pch|-include \S*/cmake_pch\.hxx)(?=\s)", "", command)  # those are ParaView's headers, compiled
         if replaced and "/Testing/" not in source and not source.startswith(build + os.sep) and ("/Plugins/" in source) == plugins:
             words = shlex.split(command)
             at = words.index("-o")
