@@ -20,7 +20,6 @@ vtkStandardNewMacro(vtkLacunaSlicesRepresentation);
 //------------------------------------------------------------------------------
 vtkLacunaSlicesRepresentation::vtkLacunaSlicesRepresentation()
 {
-  this->Property->LightingOff();
   this->Planes->SetMaximumNumberOfPoints(MostPoints);
   this->Bright->SetInputConnection(this->Planes->GetOutputPort());
   this->Bright->SetInputArrayToProcess(
@@ -46,6 +45,15 @@ void vtkLacunaSlicesRepresentation::SetDark(double level)
   this->Bright->SetUpperThreshold(
     std::nextafter(static_cast<float>(level), std::numeric_limits<float>::infinity()));
   this->MarkModified();
+}
+
+//------------------------------------------------------------------------------
+int vtkLacunaSlicesRepresentation::ProcessViewRequest(
+  vtkInformationRequestKey* request, vtkInformation* input, vtkInformation* output)
+{
+  const int done = this->Superclass::ProcessViewRequest(request, input, output);
+  this->Property->LightingOff();
+  return done;
 }
 
 //------------------------------------------------------------------------------
