@@ -23,6 +23,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <vtksys/SystemTools.hxx>
 
@@ -40,6 +41,7 @@ namespace
 constexpr double PlaceTolerance = 0.002; // mm
 constexpr double TiltTolerance = 0.001;  // degrees
 constexpr double NoEnvelope[6] = { 1, -1, 1, -1, 1, -1 };
+constexpr double Unlimited = 1e299;
 
 //------------------------------------------------------------------------------
 vtkDataArray* GetArray(vtkPolyData* path, const char* name)
@@ -171,6 +173,30 @@ std::string DescribePlace(vtkPolyData* path, bool changed)
     " was MOVED since it was made: no press coordinates, the way to the patient is not known";
 }
 
+// What Milling Tool Path warned of.
+std::vector<std::string> GetWarnings(vtkPolyData* path)
+{
+  std::vector<std::string> warnings;
+  auto* told = vtkStringArray::SafeDownCast(
+    path->GetFieldData()->GetAbstractArray(vtkLacunaMillingToolPath::WarningsName));
+  for (vtkIdType i = 0; told && i < told->GetNumberOfValues(); ++i)
+  {
+    warnings.push_back(told->GetValue(i));
+  }
+  return warnings;
+}
+
+// The question before a program with warnings is written.
+std::string Ask(const std::vector<std::string>& warnings)
+{
+  std::string text = "nothing is written, since there is a warning";
+  for (const std::string& warning : warnings)
+  {
+    text += (&warning == &warnings.front() ? ": " : "; ") + warning;
+  }
+  return text + ". Turn on AcceptWarnings to write it all the same";
+}
+
 std::string DescribeTool(vtkPolyData* path, int number)
 {
   const double radius = GetNumber(path, "ToolRadius");
@@ -263,7 +289,13 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   options.LineNumbers = this->LineNumbers;
   options.ArcTolerance = this->ArcTolerance;
   options.HasEnvelope = !std::equal(NoEnvelope, NoEnvelope + 6, this->Envelope);
-  std::copy_n(this->Envelope, 6, options.Envelope);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* range = this->Envelope + 2 * axis;
+    const bool isFree = range[0] == NoEnvelope[2 * axis] && range[1] == NoEnvelope[2 * axis + 1];
+    options.Envelope[2 * axis] = isFree ? -Unlimited : range[0];
+    options.Envelope[2 * axis + 1] = isFree ? Unlimited : range[1];
+  }
   if (this->Header && *this->Header)
   {
     options.Header = this->Header;
@@ -298,6 +330,17 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
   vtkLacunaExecution execution(this);
   execution.SetStage(0, 0.9);
   const lacuna::GCodeProgram program = lacuna::MakeGCode(start, moves, options, &execution);
+  std::vector<std::string> warnings = program.Warnings;
+  if (!moved.empty())
+  {
+    warnings.push_back(moved);
+  }
+  std::vector<std::string> all = GetWarnings(path); // told before
+  all.insert(all.end(), warnings.begin(), warnings.end());
+  if (!all.empty() && !this->AcceptWarnings)
+  {
+    throw std::runtime_error(Ask(all));
+  }
   execution.SetStage(0.9, 1);
   execution.Report(0);
   lacuna::WriteFileAtomically(this->FileName, program.Text);
@@ -309,13 +352,9 @@ void vtkLacunaGCodeWriter::WriteProgram(vtkPolyData* path)
     vtkWarningMacro(<< lacuna::ToPrintable(this->FileName)
                     << ": the path is over a mirror image of the patient; the file says so, too");
   }
-  for (const std::string& warning : program.Warnings)
+  for (const std::string& warning : warnings)
   {
     vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + warning)));
-  }
-  if (!moved.empty())
-  {
-    vtkWarningMacro(<< lacuna::ToPrintable(this->FileName + (": " + moved)));
   }
   vtkLog(INFO, << "G-Code Writer: " << this->FileName << ", " << this->FileSize << " bytes, "
                << this->NumberOfBlocks << " blocks");
@@ -336,6 +375,7 @@ void vtkLacunaGCodeWriter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Envelope: " << this->Envelope[0] << " " << this->Envelope[1] << " "
      << this->Envelope[2] << " " << this->Envelope[3] << " " << this->Envelope[4] << " "
      << this->Envelope[5] << "\n";
+  os << indent << "AcceptWarnings: " << this->AcceptWarnings << "\n";
   os << indent << "AllowMirrored: " << this->AllowMirrored << "\n";
   os << indent << "Header: " << text(this->Header) << "\n";
   os << indent << "Footer: " << text(this->Footer) << "\n";

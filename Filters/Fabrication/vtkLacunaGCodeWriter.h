@@ -9,7 +9,8 @@
  * words left out when they do not change. See lacuna::MakeGCode for what it refuses.
  *
  * A path that has been mirrored, scaled, bent, tilted or lowered since it was made (PressPosition) is
- * refused. One that lies elsewhere is written with a warning.
+ * refused. One that lies elsewhere, or that Milling Tool Path warned of, is refused with the warnings
+ * unless AcceptWarnings is on.
  *
  * Comments at the top name Lacuna's version, the tool, the steps of the provenance and the day, and
  * say of a path that lies elsewhere, or was made over a mould that did, that it was moved.
@@ -81,9 +82,16 @@ public:
   ///@}
   ///@{
   /** Least and largest x, y and z, mm, that the tool's tip may reach; a path or template that leaves
-   * them is refused. Default 1 -1 1 -1 1 -1: no limits. */
+   * them is refused. 1 -1 on an axis: no limit there. Default 1 -1 1 -1 1 -1. */
   vtkSetVector6Macro(Envelope, double);
   vtkGetVector6Macro(Envelope, double);
+  ///@}
+  ///@{
+  /** Whether a path is written of which vtkLacunaMillingToolPath, or this writer, warns, instead of
+   * refused with those warnings. Default off. */
+  vtkSetMacro(AcceptWarnings, bool);
+  vtkGetMacro(AcceptWarnings, bool);
+  vtkBooleanMacro(AcceptWarnings, bool);
   ///@}
   ///@{
   /** Whether a path over a mirror image of the patient (vtkLacunaMirrored) is written, with a comment
@@ -140,6 +148,7 @@ private:
   bool LineNumbers = false;
   double ArcTolerance = 0;
   double Envelope[6] = { 1, -1, 1, -1, 1, -1 };
+  bool AcceptWarnings = false;
   bool AllowMirrored = false;
   char* Header = nullptr;
   char* Footer = nullptr;

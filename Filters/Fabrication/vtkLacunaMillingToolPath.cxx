@@ -25,7 +25,9 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
@@ -331,9 +333,16 @@ int vtkLacunaMillingToolPath::RequestData(
     vtkLacunaFieldData::Find(grid, PressToPatientName, 16, 1);
     const std::string elsewhere = vtkLacunaPressPosition::Check(grid);
     const bool moved = !elsewhere.empty();
+    auto told = vtkSmartPointer<vtkStringArray>::New();
+    told->SetName(WarningsName);
+    const auto warn = [this, &told](const std::string& warning)
+    {
+      vtkWarningMacro(<< warning);
+      told->InsertNextValue(warning);
+    };
     if (moved)
     {
-      vtkWarningMacro(<< elsewhere);
+      warn(elsewhere);
     }
     if (vtkLacunaMirrored::IsMarked(grid))
     {
@@ -361,10 +370,7 @@ int vtkLacunaMillingToolPath::RequestData(
     options.LeadRadius = this->LeadRadius;
     execution.SetStage(0, 0.5);
     const lacuna::ToolPath path = lacuna::MakeToolPath(execution, surface, options);
-    for (const std::string& warning : path.Warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
+    std::for_each(path.Warnings.begin(), path.Warnings.end(), warn);
     execution.SetStage(0.5, 0.95);
     const double step = path.SmallestStepOver > 0 ? path.SmallestStepOver : this->ToolRadius;
     const lacuna::LeftOverMap map = lacuna::MapLeftOver(
@@ -378,7 +384,7 @@ int vtkLacunaMillingToolPath::RequestData(
     const std::string unreachable = DescribeUnreachable(map, this->ToolRadius, this->LeftOverLimit);
     if (!unreachable.empty())
     {
-      vtkWarningMacro(<< unreachable);
+      warn(unreachable);
     }
     if (this->Finishing)
     {
@@ -391,7 +397,7 @@ int vtkLacunaMillingToolPath::RequestData(
         DescribeBorder(map, this->LeftOverLimit + steep, this->Overrun >= this->ToolRadius);
       if (!border.empty())
       {
-        vtkWarningMacro(<< border);
+        warn(border);
       }
     }
 
@@ -406,6 +412,8 @@ int vtkLacunaMillingToolPath::RequestData(
       output->GetFieldData()->ShallowCopy(grid->GetFieldData());
       const auto set = [output](const char* name, const std::vector<double>& values)
       { vtkLacunaFieldData::Set(output, name, values, static_cast<int>(values.size())); };
+      output->GetFieldData()->RemoveArray(WarningsName); // those of Press Orientation
+      output->GetFieldData()->AddArray(told);
       set("ToolShape", { static_cast<double>(this->ToolShape) });
       set("ToolRadius", { this->ToolRadius });
       set("SpindleSpeed", { this->SpindleSpeed });

@@ -64,6 +64,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
   vtkLacunaKeepTimeAtStops();
 
+  /// Field data of both outputs: what was warned of, a text each; vtkLacunaGCodeWriter asks about it.
+  static constexpr const char* WarningsName = "Warnings";
   static constexpr const char* MotionName = "Motion";
   static constexpr const char* PassName = "Pass";
   static constexpr const char* FeedRateName = "FeedRate";

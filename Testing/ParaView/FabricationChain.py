@@ -99,7 +99,7 @@ def check_path(path, name, **options):
     warnings = []
     with raising(warnings):
         path.UpdatePipeline()
-        SaveData(file, path, **options)
+        SaveData(file, path, AcceptWarnings=1, **options)
     steps = read_gcode(file)
     lines, field = fetch(path)
     grid, grid_field = fetch(surface, port)

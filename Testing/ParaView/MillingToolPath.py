@@ -101,7 +101,7 @@ assert 0 < threshold.GetDataInformation().GetNumberOfPoints() < lines.GetNumberO
 # Save Data, both extensions; the file reproduces the path
 for name in ("MillingToolPath.nc", "MillingToolPath.gcode"):
     file = output(name)
-    SaveData(file, path, ToolNumber=3)
+    SaveData(file, path, ToolNumber=3, AcceptWarnings=1)  # of the border
     steps = distinct(read_gcode(file))
     expected = np.column_stack([vtk_to_numpy(lines.GetPoints().GetData()),
                                 np.where(array(lines, "Motion") == 0, 0, array(lines, "FeedRate"))])
@@ -115,11 +115,12 @@ assert "T03 M06" in text and "(T3 BALL END, DIAMETER 8 MM)" in text and "S6000 M
 writer = CreateWriter(output("Options.nc"), path)
 assert writer.GetXMLLabel() == "G-Code Writer", writer.GetXMLLabel()
 plain = lacuna.vtkLacunaGCodeWriter()
-for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers", "AllowMirrored",
+for name in ("ProgramNumber", "ToolNumber", "WorkOffset", "SpindleSpeed", "LineNumbers", "AcceptWarnings", "AllowMirrored",
              "ArcTolerance"):
     assert getattr(writer, name) == getattr(plain, "Get" + name)(), name
 assert list(writer.Envelope) == list(plain.GetEnvelope()) and not writer.Header and not writer.Footer
 writer.LineNumbers = 1
+writer.AcceptWarnings = 1
 writer.Header = "G21 G90 (MINE)\nT{TOOL} M06\nS{SPEED} M03"
 warnings = []
 with raising(warnings):
@@ -132,7 +133,7 @@ with open(output("Options.nc"), encoding="ascii") as file:
 
 # Motions joined to arcs: a shorter program
 file = output("Arcs.nc")
-SaveData(file, path, ArcTolerance=0.005)
+SaveData(file, path, ArcTolerance=0.005, AcceptWarnings=1)
 with open(file, encoding="ascii") as program:
     arcs = program.read()
 assert len(arcs.splitlines()) < 0.7 * len(text.splitlines()) and "\nG18\nG0" in arcs and "G18" not in text
@@ -142,14 +143,14 @@ vtkObject.GlobalWarningDisplayOff()
 file = output("Refused.nc")
 if os.path.exists(file):
     os.remove(file)
-SaveData(file, path, Envelope=[0, 61, 0, 41, -50, 50])
+SaveData(file, path, Envelope=[0, 61, 0, 41, -50, 50], AcceptWarnings=1)
 assert not os.path.exists(file)
 for options in ({"Header": "G20 G91\nS{SPEED} M03"}, {"Footer": "G00 Z-50.\nM30"}):
-    SaveData(file, path, **options)
+    SaveData(file, path, AcceptWarnings=1, **options)
     assert not os.path.exists(file), options
 moved = Transform(Input=path)
 moved.Transform.Scale = [-1, 1, 1]  # PressToPatient would go along unchanged
-SaveData(file, moved)
+SaveData(file, moved, AcceptWarnings=1)
 assert not os.path.exists(file)
 SaveData(file, Sphere())
 assert not os.path.exists(file)

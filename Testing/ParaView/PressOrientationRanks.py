@@ -25,7 +25,7 @@ def write(folder):
                         ("model", model), ("plate", ImplantPlate(Input=filled))):
         SaveData(os.path.join(folder, name + ".stl"), proxy=proxy)
     SaveData(os.path.join(folder, "mould.igs"), proxy=press)
-    SaveData(os.path.join(folder, "mould.nc"), proxy=path)
+    SaveData(os.path.join(folder, "mould.nc"), proxy=path, AcceptWarnings=1)
     path.UpdatePipeline()
     counts = [proxy.GetDataInformation().GetNumberOfPoints() for proxy in (press, path)]
     with open(os.path.join(folder, "points.txt"), "w", encoding="ascii") as file:

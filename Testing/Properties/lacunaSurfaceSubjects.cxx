@@ -495,6 +495,7 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
         Switch("LineNumbers", &T::SetLineNumbers),
         Real("ArcTolerance", &T::SetArcTolerance, 0.001, 1),
         Reals<6>("Envelope", &T::SetEnvelope, -100, 100),
+        Switch("AcceptWarnings", &T::SetAcceptWarnings),
         Switch("AllowMirrored", &T::SetAllowMirrored),
         Word("Header", &T::SetHeader, { "", "%\nO1\nG21 G90\n" }),
         Word("Footer", &T::SetFooter, { "", "M30\n%\n" }) } };

@@ -22,11 +22,40 @@ using namespace millingMould;
 namespace
 {
 //------------------------------------------------------------------------------
+// What Milling Tool Path warns of is written only when asked for, and what was there stays.
+void TestWarnings(const std::string& file)
+{
+  vtkNew<vtkLacunaMillingToolPath> filter;
+  filter->SetInputData(Mould());
+  const auto warned = lacunaCheck::Watch(filter);
+  vtkNew<vtkLacunaGCodeWriter> writer;
+  writer->SetInputConnection(filter->GetOutputPort());
+  writer->SetFileName(file.c_str());
+  vtksys::SystemTools::RemoveFile(file);
+  const auto asked = lacunaCheck::Watch(writer);
+  LACUNA_CHECK(writer->Write() == 0);
+  LACUNA_CHECK(!vtksys::SystemTools::FileExists(file));
+  LACUNA_CHECK(warned->HasWarning("up to 0.83 mm stay at the surface's border"));
+  LACUNA_CHECK_CONTAINS(asked->Errors, "up to 0.83 mm stay at the surface's border");
+  LACUNA_CHECK_CONTAINS(asked->Errors, "Turn on AcceptWarnings");
+  writer->AcceptWarningsOn();
+  LACUNA_CHECK(writer->Write() == 1);
+  LACUNA_CHECK(GCodeParser(Read(file)).Steps.size() > 10);
+  // one axis limited, the others free
+  writer->SetEnvelope(1, -1, 1, -1, -1000, -999);
+  LACUNA_CHECK(writer->Write() == 0);
+  LACUNA_CHECK_CONTAINS(asked->Errors, "leaves the envelope (Z -1000 to -999 mm)");
+  writer->SetEnvelope(1, -1, 1, -1, -1000, 1000);
+  LACUNA_CHECK(writer->Write() == 1);
+}
+
+//------------------------------------------------------------------------------
 void TestProgram(const std::string& file)
 {
   vtkNew<vtkLacunaMillingToolPath> filter;
   filter->SetInputData(Mould());
   filter->SetRoughingStep(2);
+  filter->SetOverrun(4);
   vtkNew<vtkLacunaGCodeWriter> writer;
   writer->SetInputConnection(filter->GetOutputPort());
   writer->SetFileName(file.c_str());
@@ -153,5 +182,6 @@ void TestProgram(const std::string& file)
 int TestGCodeWriter(int argc, char* argv[])
 {
   TestProgram(Folder(argc, argv) + "/TestGCodeWriter.nc");
+  TestWarnings(Folder(argc, argv) + "/TestGCodeWarnings.nc");
   return lacunaCheck::Result();
 }

@@ -25,6 +25,7 @@ void TestMirrored(const std::string& file)
   vtkLacunaMirrored::Mark(mould, { 1, 2, 3 }, { 1, 0, 0 });
   vtkNew<vtkLacunaMillingToolPath> filter;
   filter->SetInputData(mould);
+  filter->SetOverrun(4);
   auto messages = lacunaCheck::Watch(filter);
   filter->Update();
   LACUNA_CHECK_CONTAINS(messages->Warnings, "mirror image");
@@ -51,6 +52,7 @@ void TestMoved(const std::string& file)
   vtkNew<vtkLacunaMillingToolPath> filter;
   filter->SetInputData(Mould());
   filter->SetRoughingStep(2);
+  filter->SetOverrun(4);
   filter->Update();
   const auto write =
     [&](const lacuna::Matrix4& move, bool single, const std::string& words, bool written)
@@ -70,6 +72,14 @@ void TestMoved(const std::string& file)
     writer->SetInputData(path);
     writer->SetFileName(file.c_str());
     vtksys::SystemTools::RemoveFile(file);
+    const bool warns = written && !words.empty();
+    if (warns) // not unasked
+    {
+      const auto asked = lacunaCheck::Watch(writer);
+      LACUNA_CHECK(writer->Write() == 0 && !vtksys::SystemTools::FileExists(file));
+      LACUNA_CHECK_CONTAINS(asked->Errors, words);
+    }
+    writer->SetAcceptWarnings(warns);
     const auto messages = lacunaCheck::Watch(writer);
     LACUNA_CHECK(writer->Write() == (written ? 1 : 0));
     LACUNA_CHECK(vtksys::SystemTools::FileExists(file) == written);
@@ -170,6 +180,7 @@ void TestMovedMould(const std::string& file)
     vtkNew<vtkLacunaGCodeWriter> writer;
     writer->SetInputData(filter->GetOutput());
     writer->SetFileName(file.c_str());
+    writer->AcceptWarningsOn();
     LACUNA_CHECK(writer->Write() == 1);
     LACUNA_CHECK(
       (Read(file).find("MM, PRESS COORDINATES, TOOL TIP") == std::string::npos) == moved);
