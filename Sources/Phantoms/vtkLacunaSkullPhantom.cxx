@@ -48,6 +48,7 @@ lacuna::Skull vtkLacunaSkullPhantom::MakeSkull()
     this->DefectDirection[2] };
   p.NoiseLevel = this->NoiseLevel;
   p.Seed = static_cast<std::uint64_t>(this->Seed);
+  p.Sutures = this->Sutures;
   return lacuna::Skull(p);
 }
 
@@ -151,6 +152,7 @@ std::string vtkLacunaSkullPhantom::DescribeParameters()
     .Add("DefectDirection", this->DefectDirection)
     .Add("NoiseLevel", this->NoiseLevel)
     .Add("Seed", this->Seed)
+    .Add("Sutures", this->Sutures)
     .Add("Center", this->Center)
     .Get();
 }

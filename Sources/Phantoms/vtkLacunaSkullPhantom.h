@@ -68,6 +68,14 @@ public:
   ///@}
 
   ///@{
+  /// Whether the bone has sutures, as a real skull; there the outer surface is not that of the truth.
+  /// Default off.
+  vtkSetMacro(Sutures, bool);
+  vtkGetMacro(Sutures, bool);
+  vtkBooleanMacro(Sutures, bool);
+  ///@}
+
+  ///@{
   /// The point about which the head is built, mm, LPS. Default 0 0 0.
   vtkSetVector3Macro(Center, double);
   vtkGetVector3Macro(Center, double);
@@ -97,6 +105,7 @@ protected:
   double DefectDirection[3] = { 0.4, -0.2, 0.9 };
   double NoiseLevel = 0;
   int Seed = 0;
+  bool Sutures = false;
   double Center[3] = { 0, 0, 0 };
 
 private:

@@ -22,7 +22,7 @@ def fetch(proxy):
 skull = SkullPhantom()
 assert skull.SMProxy.GetXMLName() == "LacunaSkullPhantom"
 plain = lacuna.vtkLacunaSkullPhantom()
-names = ["Spacing", "DefectRadius", "DefectDirection", "NoiseLevel", "Seed", "Center"]
+names = ["Spacing", "DefectRadius", "DefectDirection", "NoiseLevel", "Seed", "Sutures", "Center"]
 check_defaults(skull, plain, names)
 assert set(skull.ListProperties()) - {"PointData", "CellData", "FieldData"} == set(names)
 

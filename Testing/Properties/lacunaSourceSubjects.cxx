@@ -41,7 +41,7 @@ void AddSourceSubjects(std::vector<Subject>& subjects)
       { Reals<3>("Spacing", &T::SetSpacing, 4, 5), Real("DefectRadius", &T::SetDefectRadius, 0, 40),
         Reals<3>("DefectDirection", &T::SetDefectDirection, -1, 1),
         Real("NoiseLevel", &T::SetNoiseLevel, 0, 50), Whole("Seed", &T::SetSeed, -5, 5),
-        Reals<3>("Center", &T::SetCenter, -50, 50) } };
+        Switch("Sutures", &T::SetSutures), Reals<3>("Center", &T::SetCenter, -50, 50) } };
     subject.Prepare = [](vtkAlgorithm* algorithm) { Cast<T>(algorithm)->SetSpacing(5, 5, 5); };
     subject.Cost = 20;
     subjects.push_back(subject);

@@ -37,6 +37,34 @@ double DiploeThickness(const Vec3& direction)
   return 3.4 + 0.6 * direction[1] + 0.4 * direction[2];
 }
 
+// A jagged line: a triangle wave of height 1 and period 1.
+double Jagged(double x)
+{
+  return 4 * std::abs(x - std::floor(x + 0.5)) - 1;
+}
+
+// Distance (mm, first order) of a point of the calvarium from the nearest suture, relative to the centre.
+double SutureDistance(const Vec3& p)
+{
+  constexpr double Bregma = -28, Lambda = 58; // y of the sagittal suture's ends
+  constexpr double Teeth = 1.6, Period = 9;
+  if (p[2] < 0)
+  {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double side = std::abs(p[0]);
+  const double coronal = std::abs(
+    p[1] - (Bregma - 0.12 * side) - Teeth * Jagged(p[0] / Period + 0.3)); // from ear to ear
+  double distance = coronal;
+  if (p[1] > Bregma && p[1] < Lambda)
+  {
+    distance = std::min(distance, std::abs(p[0] - Teeth * Jagged(p[1] / Period)));
+  }
+  const double lambdoid = Lambda - 0.35 * side + Teeth * Jagged(p[0] / Period + 0.6);
+  distance = std::min(distance, std::abs(p[1] - lambdoid));
+  return distance;
+}
+
 // A spongy look with a period of about 9 mm.
 double DiploeLevel(const Vec3& p)
 {
@@ -54,6 +82,7 @@ struct Skull::Layers
   double Inner;
   double Brain;
   double DiploeLevel;
+  double Suture; ///< distance from the nearest one along the surface, mm
 
   double Intact() const
   {
@@ -147,13 +176,14 @@ Skull::Layers Skull::Resolve(const Vec3& point) const
   const double widest =
     this->BlurWidth({ 1, 1, 1 }); // no unit normal gives more than all axes together
   const double value = SkullSurface::Implicit(p);
+  constexpr double none = std::numeric_limits<double>::infinity();
   if (value > SkullSurface::MaximumSlope * (ScalpThickness + 0.5 * widest))
   {
-    return { 0, 0, 0, 0, 0, Diploe };
+    return { 0, 0, 0, 0, 0, Diploe, none };
   }
   if (value < -1.5 * (DeepestBone + 0.5 * widest))
   {
-    return { 1, 1, 1, 1, 1, Diploe };
+    return { 1, 1, 1, 1, 1, Diploe, none };
   }
   Vec3 foot;
   Vec3 normal;
@@ -163,7 +193,7 @@ Skull::Layers Skull::Resolve(const Vec3& point) const
   const auto crossed = [&](double depth) { return SmoothStep(-d - depth, width); };
   const double inner = OuterTable + diploe;
   return { crossed(-ScalpThickness), crossed(0), crossed(OuterTable), crossed(inner),
-    crossed(inner + InnerTable), DiploeLevel(p) };
+    crossed(inner + InnerTable), DiploeLevel(p), this->P.Sutures ? SutureDistance(foot) : none };
 }
 
 double Skull::DefectDepth(const Vec3& point, Vec3& normal) const
@@ -200,15 +230,29 @@ bool Skull::IsInDefect(const Vec3& point) const
   return this->DefectDepth(point, normal) > 0;
 }
 
+double Skull::WithSutures(const Layers& layers) const
+{
+  constexpr double HalfWidth = 0.7, Share = 0.9;
+  const double intact = layers.Intact();
+  const double outer = layers.Bone - layers.Inner;
+  if (!(outer > 0) || !std::isfinite(layers.Suture))
+  {
+    return intact;
+  }
+  const double inside =
+    SmoothStep(HalfWidth - layers.Suture, this->BlurWidth(Normalized({ 1, 1, 1 })));
+  return intact + Share * inside * outer * (layers.WithoutBone() - intact);
+}
+
 double Skull::IntactValue(const Vec3& point) const
 {
-  return this->Resolve(point).Intact();
+  return this->WithSutures(this->Resolve(point));
 }
 
 double Skull::Value(const Vec3& point) const
 {
   const Layers layers = this->Resolve(point);
-  const double intact = layers.Intact();
+  const double intact = this->WithSutures(layers);
   if (layers.Bone == 0 || layers.Brain == 1)
   {
     return intact; // no bone here

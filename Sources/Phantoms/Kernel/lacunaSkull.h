@@ -27,6 +27,10 @@ namespace lacuna
 /// Defect: within a cylinder around DefectDirection through the centre, bone is replaced by soft
 /// tissue of 0 HU through its full thickness. The outline is irregular, of mean DefectRadius R:
 /// r(psi) = R (1 + 0.12 cos(2 psi + 0.5) + 0.08 cos(3 psi - 1.1) + 0.04 cos(5 psi + 2)).
+///
+/// Sutures (off by default): the coronal, the sagittal and the lambdoid one are jagged lines, 1.4 mm
+/// wide, in which 90 % of the bone's outer part, down to the inner table, is soft tissue. There the
+/// surface of 500 HU sinks in; elsewhere it stays where it is.
 class Skull
 {
 public:
@@ -38,6 +42,7 @@ public:
     Vec3 DefectDirection = { 0.4, -0.2, 0.9 };
     double NoiseLevel = 0; ///< HU, standard deviation
     std::uint64_t Seed = 0;
+    bool Sutures = false;
   };
   static constexpr double MaximumDefectRadius = 40;
 
@@ -65,6 +70,7 @@ private:
   /// Shares of the layers at a point.
   struct Layers;
   Layers Resolve(const Vec3& point) const;
+  double WithSutures(const Layers& layers) const;
   double BlurWidth(const Vec3& normal) const;
   /// Distance inside of the defect's outline (first order) and its outward normal.
   double DefectDepth(const Vec3& point, Vec3& normal) const;

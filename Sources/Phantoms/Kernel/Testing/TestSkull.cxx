@@ -88,6 +88,46 @@ TEST(Skull, FiveHundredIsTheOuterSurface)
   }
 }
 
+// Sutures are thin: there the outer surface sinks in, nowhere else, and the inner table stays.
+TEST(Skull, SuturesAreThinAndOnlyInTheOuterPart)
+{
+  Skull::Parameters p;
+  p.Center = { 5, -11, 40 };
+  p.Spacing = { 0.5, 0.5, 0.5 };
+  const Skull plain(p);
+  p.Sutures = true;
+  const Skull seamed(p);
+  constexpr int N = 20000;
+  int sunk = 0, left = 0;
+  for (int i = 0; i < N; ++i)
+  {
+    const Vec3 n = RandomDirection(i);
+    const Vec3 surface = SkullSurface::Radius(n) * n;
+    const Vec3 normal = SurfaceNormal(surface);
+    const auto at = [&](const Skull& skull, double d)
+    { return skull.IntactValue(p.Center + surface + d * normal); };
+    EXPECT_EQ(at(seamed, 1), at(plain, 1));
+    EXPECT_EQ(at(seamed, -7.6), at(plain, -7.6));
+    EXPECT_LE(at(seamed, -1), at(plain, -1));
+    if (at(seamed, -1) < 700) // the middle of a suture
+    {
+      EXPECT_LT(at(seamed, 0), 500) << surface[0] << " " << surface[1] << " " << surface[2];
+      ++sunk;
+      left += n[0] > 0;
+      EXPECT_GT(surface[2], -1);
+    }
+    else if (at(seamed, 0) == at(plain, 0))
+    {
+      EXPECT_NEAR(at(seamed, 0), 500, 1e-8);
+    }
+  }
+  // three lines of 1.4 mm and together some 0.5 m on a head of 7 dm2
+  EXPECT_GT(sunk, N / 200);
+  EXPECT_LT(sunk, N / 20);
+  EXPECT_GT(left, sunk / 3); // on both sides
+  EXPECT_LT(left, 2 * sunk / 3);
+}
+
 // How far wider voxels move the 500 HU surface because the outer table becomes too thin.
 TEST(Skull, WideVoxelsShiftTheSurfaceInwards)
 {
