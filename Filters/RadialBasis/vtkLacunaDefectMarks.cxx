@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -218,6 +219,57 @@ MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contra
     return lacuna::FindEnclosed(map.Grid, GetPolygon(contract, map.Grid, loop->GetLoop()));
   }
   return RegionMarker(contract, map, region).Run(execution);
+}
+
+//------------------------------------------------------------------------------
+std::string DescribeMiss(
+  const vtkLacunaDepthMap& contract, const lacuna::MarkedMap& map, vtkImplicitFunction* region)
+{
+  if (vtkImplicitSelectionLoop::SafeDownCast(region))
+  {
+    return {};
+  }
+  double least = std::numeric_limits<double>::infinity();
+  lacuna::Vec3 surface{};
+  for (std::size_t i = 0; i < map.Valid.size(); ++i)
+  {
+    if (map.Valid[i])
+    {
+      lacuna::Vec3 point = contract.GetPoint(static_cast<double>(map.Grid.GetColumn(i)),
+        static_cast<double>(map.Grid.GetRow(i)), map.Depth[i]);
+      const double value = region->FunctionValue(point.data());
+      if (value < least)
+      {
+        least = value;
+        surface = point;
+      }
+    }
+  }
+  // Newton's way along the gradient to where the function is 0
+  lacuna::Vec3 edge = surface;
+  for (int step = 0; step < 50 && std::isfinite(least); ++step)
+  {
+    lacuna::Vec3 gradient{};
+    region->FunctionGradient(edge.data(), gradient.data());
+    const double steepness = lacuna::Dot(gradient, gradient);
+    const double value = region->FunctionValue(edge.data());
+    if (!(steepness > 0) || !std::isfinite(value))
+    {
+      return {};
+    }
+    const lacuna::Vec3 towards = (value / steepness) * gradient;
+    edge = edge - towards;
+    if (lacuna::Norm(towards) < 1e-3)
+    {
+      const lacuna::Vec3 way = surface - edge;
+      std::ostringstream text;
+      text << std::fixed << std::setprecision(1) << "DefectRegion is " << lacuna::Norm(way)
+           << " mm away from the surface: move it by at least (" << way[0] << ", " << way[1] << ", "
+           << way[2] << ") mm";
+      return text.str();
+    }
+  }
+  return {};
 }
 
 //------------------------------------------------------------------------------

@@ -34,6 +34,11 @@ lacuna::MapMask FromArray(vtkImageData* map, const std::string& name, const char
 lacuna::MapMask FromRegion(lacuna::Execution& execution, const vtkLacunaDepthMap& contract,
   const lacuna::MarkedMap& map, vtkImplicitFunction* region);
 
+/// How far a region that marks nothing is from the surface, and how to move it there, a sentence in
+/// world coordinates; empty where that is not known, as of a loop.
+std::string DescribeMiss(
+  const vtkLacunaDepthMap& contract, const lacuna::MarkedMap& map, vtkImplicitFunction* region);
+
 /// Selected pixels, and those that they enclose. surface is a Depth Map Surface of the map, or part
 /// of one, whose pedigree ids (or array PixelId) say which pixels its points are; with nullptr the
 /// selection is one of the map's own points. Without selection all points of surface are selected.

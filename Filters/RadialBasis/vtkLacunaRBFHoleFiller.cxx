@@ -406,10 +406,14 @@ int vtkLacunaRBFHoleFiller::RequestData(
     const auto marked = std::count(input.Defect.begin(), input.Defect.end(), 1);
     if (marked == 0)
     {
-      vtkWarningMacro(
-        "the defect is empty, so the map is passed on as it is: no pixel is marked by "
-        "DefectRegion, DefectArray or the selection, or (without them) the main "
-        "surface of the map encloses no hole");
+      const std::string miss = this->DefectRegion
+        ? vtkLacunaDefectMarks::DescribeMiss(contract, input, this->DefectRegion)
+        : std::string();
+      vtkWarningMacro(<< "the defect is empty, so the map is passed on as it is: "
+                      << (miss.empty()
+                             ? "no pixel is marked by DefectRegion, DefectArray or the selection, "
+                               "or (without them) the main surface of the map encloses no hole"
+                             : miss));
     }
     const lacuna::HoleFillResult result = this->Filler->Fill(execution, input, options);
     for (const std::string& warning : result.Warnings)

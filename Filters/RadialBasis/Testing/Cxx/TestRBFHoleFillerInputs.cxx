@@ -20,6 +20,7 @@
 #include <cstring>
 #include <functional>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -189,6 +190,32 @@ void TestSelections()
   filler->Update();
   LACUNA_CHECK(messages->HasWarning("the defect is empty"));
   LACUNA_CHECK_CONTAINS(GetStep(filler), "SelectedPixels=\"\" DefectPixels=0 DefectExtent= ");
+}
+
+// A region that misses says how far it is and which way it has to go: then it touches the surface.
+void TestMissedRegion()
+{
+  const TestMap map;
+  vtkNew<vtkLacunaRBFHoleFiller> filler;
+  filler->SetInputData(map.Image);
+  vtkNew<vtkSphere> sphere;
+  const lacuna::Vec3 surface =
+    vtkLacunaDepthMap(map.Image).GetPoint(50, 40, TestMap::Depth(50, 32));
+  const lacuna::Vec3 normal = lacuna::Normalized(
+    lacuna::Cross(map.Right + 0.3 * map.View, map.Down + -0.15 * map.View)); // away from the viewer
+  const lacuna::Vec3 center = surface + 17.5 * normal;
+  sphere->SetCenter(center.data());
+  sphere->SetRadius(5);
+  filler->SetDefectRegion(sphere);
+  const auto messages = lacunaCheck::Watch(filler);
+  filler->Update();
+  LACUNA_CHECK_CONTAINS(
+    messages->Warnings, "DefectRegion is 12.5 mm away from the surface: move it by at least (");
+  const std::size_t at = messages->Warnings.find("at least (") + 10;
+  lacuna::Vec3 way{};
+  char comma = 0;
+  std::istringstream(messages->Warnings.substr(at)) >> way[0] >> comma >> way[1] >> comma >> way[2];
+  LACUNA_CHECK_NEAR(lacuna::Norm(way + 12.5 * normal), 0, 0.2);
 }
 
 // The provenance says which region: a sphere elsewhere is another step.
@@ -418,6 +445,7 @@ void TestFieldData()
 int TestRBFHoleFillerInputs(int, char*[])
 {
   TestSelections();
+  TestMissedRegion();
   TestRegionProvenance();
   TestMarksThatAreNoNumbers();
   TestPriorOfAnotherView();
