@@ -53,6 +53,27 @@ Slab GetSlab(vtkInformation* input, vtkInformation* output)
   return { static_cast<int>(whole[4] + depth * piece / pieces),
     static_cast<int>(whole[4] + depth * (piece + 1) / pieces - 1) };
 }
+
+//------------------------------------------------------------------------------
+// Whether a live source has given no slice with a pose yet, or has none for the moment.
+bool IsYetToCome(vtkImageData* stack, const Slab& slab)
+{
+  if (!vtkLacunaTrackedSlices::IsGrowing(stack))
+  {
+    return false;
+  }
+  if (!stack->GetFieldData()->HasArray(vtkLacunaTrackedSlices::ImageToReferenceName))
+  {
+    return true;
+  }
+  const vtkLacunaTrackedSlices slices(stack);
+  bool any = false;
+  for (int slice = slab.First; slice <= slab.Last; ++slice)
+  {
+    any = any || !(slices.GetStatus(slice) & vtkLacunaTrackedSlices::PoseInvalid);
+  }
+  return !any;
+}
 }
 
 vtkStandardNewMacro(vtkLacunaSlicePlanes);
@@ -77,7 +98,7 @@ int vtkLacunaSlicePlanes::RequestUpdateExtent(
     extent[4] = slab.First;
     extent[5] = slab.Last;
   }
-  else
+  else if (extent[4] <= extent[5])
   {
     extent[5] = extent[4]; // what the sweep is, is asked for even where no slice is wanted
   }
@@ -96,7 +117,10 @@ int vtkLacunaSlicePlanes::RequestData(
       vtkImageData* stack = vtkImageData::GetData(inputs[0]);
       vtkPolyData* output = vtkPolyData::GetData(outputs);
       output->GetFieldData()->Initialize(); // VTK passes the slices' own
-      if (stack->GetNumberOfPoints() == 0)
+      int whole[6];
+      in->Get(SDDP::WHOLE_EXTENT(), whole);
+      const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
+      if (stack->GetNumberOfPoints() == 0 || IsYetToCome(stack, slab))
       {
         return;
       }
@@ -110,9 +134,6 @@ int vtkLacunaSlicePlanes::RequestData(
       options.InvalidSlices = this->InvalidSlices;
       options.KeepOutliers = this->BadPoses == vtkLacunaSliceAlgorithm::KeepOutliers;
       options.MaximumNumberOfPoints = this->MaximumNumberOfPoints;
-      int whole[6];
-      in->Get(SDDP::WHOLE_EXTENT(), whole);
-      const Slab slab = GetSlab(in, outputs->GetInformationObject(0));
       vtkLacunaSlicePlaneBuilder builder(stack, whole, slab.First, slab.Last, options);
       this->CheckRequest(builder);
       if (!builder.GetLeftOut().empty())

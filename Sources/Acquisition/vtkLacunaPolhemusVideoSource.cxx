@@ -10,8 +10,11 @@
 #include "vtkLacunaLiveSweep.h"
 #include "vtkLacunaProvenance.h"
 #include "vtkLacunaTrackedSlices.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cctype>
@@ -281,7 +284,7 @@ int vtkLacunaPolhemusVideoSource::RequestData(
         }
         const vtkLacunaSliceStack* stack = port == 0 ? now.Stack.get() : now.Newest.get();
         vtkImageData* output = vtkImageData::GetData(outputs, port);
-        if (port == 0 && now.ToldCapturing)
+        if (port == 1 || now.ToldCapturing) // the newest frame may get a pose
         {
           vtkLacunaTrackedSlices::MarkAsGrowing(output);
         }
@@ -290,6 +293,13 @@ int vtkLacunaPolhemusVideoSource::RequestData(
           stack->Fill(output);
           vtkLacunaProvenance::Record(output, this, {},
             port == 0 ? now.TakenBy : now.DescribeDevices() + " " + this->DescribeRules());
+        }
+        else
+        {
+          // what shows it looks for the array that it is coloured by
+          vtkNew<vtkUnsignedCharArray> none;
+          none->SetName("Intensity");
+          output->GetPointData()->SetScalars(none);
         }
       }
     });
