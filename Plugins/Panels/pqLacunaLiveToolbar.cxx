@@ -5,12 +5,14 @@
 #include "pqApplicationCore.h"
 #include "pqLacunaLiveState.h"
 #include "pqLacunaSpeedGauge.h"
+#include "pqLacunaWindow.h"
 #include "pqPipelineSource.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "pqSettings.h"
-#include "vtkSMProxy.h"
+#include "vtkPVDataInformation.h"
 #include "vtkSMSession.h"
+#include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 
 #include <QLabel>
@@ -24,7 +26,11 @@
 
 namespace
 {
-constexpr int Interval = 200; // ms
+constexpr int Interval = 200;   // ms
+constexpr int EnoughToLook = 5; // slices, by which a camera is turned to them
+constexpr const char* StopStyle =
+  "QToolButton { background: #d32f2f; color: white; font-weight: bold; "
+  "border-radius: 4px; padding: 2px 10px; }";
 
 // ParaView keeps a shortcut by the words of the menu, so that these must not change.
 constexpr const char* ActionText = "Start or Stop Live Acquisition";
@@ -43,7 +49,7 @@ QIcon DrawIcon(bool isStop)
   QPainter painter(&picture);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(Qt::NoPen);
-  painter.setBrush(isStop ? QColor(0x45, 0x45, 0x45) : QColor(0xd3, 0x2f, 0x2f));
+  painter.setBrush(isStop ? QColor(Qt::white) : QColor(0xd3, 0x2f, 0x2f));
   if (isStop)
   {
     painter.drawRoundedRect(12, 12, size - 24, size - 24, 4, 4);
@@ -207,7 +213,19 @@ void pqLacunaLiveToolbar::Poll()
   {
     return; // it would be waited for
   }
-  this->ShowState(pqLacunaLiveState::Read(this->Source->getProxy()));
+  const pqLacunaLiveState state = pqLacunaLiveState::Read(this->Source->getProxy());
+  this->ShowState(state);
+  const int* extent = this->Source->getSourceProxy()->GetDataInformation(0)->GetExtent();
+  if (extent[5] - extent[4] + 1 < EnoughToLook) // in the views
+  {
+    this->Seen = nullptr;
+  }
+  else if (this->Seen != this->Source)
+  {
+    this->Seen = this->Source;
+    const QString identity = QString::number(this->Source->getProxy()->GetGlobalID());
+    pqLacunaWindow::Run("look_live(" + identity + ")");
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -235,6 +253,7 @@ void pqLacunaLiveToolbar::ShowNoSource()
   this->StartStop->setEnabled(false);
   this->StartStop->setIcon(this->StartIcon);
   this->StartStop->setIconText(tr("Start"));
+  this->widgetForAction(this->StartStop)->setStyleSheet("");
   this->StartStop->setToolTip(
     tr("Live acquisition: there is no Polhemus Video Source; Sources > Lacuna makes one."));
   for (QAction* readout : this->Readouts)
@@ -250,6 +269,11 @@ void pqLacunaLiveToolbar::ShowState(const pqLacunaLiveState& state)
   this->StartStop->setEnabled(!isNew);
   this->StartStop->setIcon(state.Capturing ? this->StopIcon : this->StartIcon);
   this->StartStop->setIconText(state.Capturing ? tr("Stop") : tr("Start"));
+  QWidget* button = this->widgetForAction(this->StartStop);
+  if (button->styleSheet().isEmpty() == state.Capturing)
+  {
+    button->setStyleSheet(state.Capturing ? StopStyle : "");
+  }
   const QString key = this->StartStop->shortcut().toString(QKeySequence::NativeText);
   QString tip = isNew ? tr("%1: set its devices and press Apply first")
     : state.Capturing ? tr("%1: stop taking slices")

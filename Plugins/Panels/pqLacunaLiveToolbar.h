@@ -44,6 +44,7 @@ private:
   void ShowState(const pqLacunaLiveState& state);
 
   QPointer<pqPipelineSource> Source;
+  QPointer<pqPipelineSource> Seen; ///< whose slices the cameras were turned to
   QTimer Timer;
   QAction* StartStop;
   pqLacunaSpeedGauge* Speed = nullptr;

@@ -4,16 +4,27 @@
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
+#include "pqLacunaGuide.h"
+#include "pqLacunaSliders.h"
 #include "pqPipelineSource.h"
+#include "pqPropertyWidget.h"
+#include "pqProxyWidget.h"
 #include "pqServerManagerModel.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
+#include "vtkPVXMLElement.h"
 #include "vtkPythonInterpreter.h"
+#include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 
 #include <QAction>
+#include <QApplication>
+#include <QComboBox>
+#include <QEvent>
+#include <QGridLayout>
+#include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
@@ -40,10 +51,13 @@ constexpr Entry Jobs[] = {
     "The hole that the 3-D view looks into becomes an IGES surface. Select the CT first." },
   { "&Sweep to Surface", "sweep_to_surface",
     "Tracked slices become a volume and a surface. Select the sweep first." },
+  { "&Live Layout", "live_layout",
+    "A tracker and a scanner, live: the scanner's picture, and slices and surface as they grow." },
 };
 constexpr Entry Samples[] = {
   { "Sample &CT: Skull with a Hole", "sample_ct", "A skull of mathematics, with a hole." },
-  { "Sample Sweep: &Ultrasound", "sample_sweep", "Tracked slices of an ellipsoid in speckle." },
+  { "Sample Sweep: &Ultrasound", "sample_sweep",
+    "Tracked slices of an organ with a cyst and lesions, of mathematics." },
 };
 
 /// What filters are for; one without a name begins a part of the menu.
@@ -84,23 +98,6 @@ constexpr Entry Filters[] = {
   { "Warp by landmarks", "LacunaRBFImageWarp", nullptr },
 };
 
-void Run(const QString& call)
-{
-  vtkPythonInterpreter::Initialize();
-  vtkPythonInterpreter::RunSimpleString(QString(
-    "try:\n"
-    "  import lacuna.window\n"
-    "except ImportError as lacuna_error:\n"
-    "  import paraview\n"
-    "  paraview.print_error(f\"Lacuna's Python package is not found ({lacuna_error}): start "
-    "ParaView after '. lacuna-env.sh'\")\n"
-    "else:\n"
-    "  lacuna.window.%1\n")
-                                          .arg(call)
-                                          .toUtf8()
-                                          .constData());
-}
-
 void SaveSolid(QMainWindow* window)
 {
   pqFileDialog dialog(nullptr, window, QObject::tr("Save Solid"), QString(),
@@ -110,7 +107,7 @@ void SaveSolid(QMainWindow* window)
   if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
   {
     const QByteArray path = dialog.getSelectedFiles().first().toUtf8().toHex();
-    Run("run('save_solid', bytes.fromhex('" + QString(path) + "').decode())");
+    pqLacunaWindow::Run("run('save_solid', bytes.fromhex('" + QString(path) + "').decode())");
   }
 }
 
@@ -181,6 +178,55 @@ bool IsOurs(vtkSMProxy* proxy)
   return proxy->GetProperty("Input") &&
     IsOurs(vtkSMPropertyHelper(proxy, "Input", true).GetAsProxy());
 }
+
+/// The label that a panel shows to the left of an editor; null when there is none.
+QLabel* FindLabel(const QGridLayout* layout, QWidget* editor)
+{
+  const int index = layout->indexOf(editor);
+  int row = 0, column = 0, rows = 0, columns = 0;
+  if (index >= 0)
+  {
+    layout->getItemPosition(index, &row, &column, &rows, &columns);
+  }
+  QLayoutItem* item = column > 0 ? layout->itemAtPosition(row, 0) : nullptr;
+  return item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
+}
+
+/// Adds units and what 0 means to labels that have none yet, and what "None" means to lists.
+void AddUnits(const QWidget* panel)
+{
+  constexpr const char* done = "LacunaUnit";
+  const auto* layout = qobject_cast<QGridLayout*>(panel->layout());
+  if (!layout)
+  {
+    return;
+  }
+  for (pqPropertyWidget* editor : panel->findChildren<pqPropertyWidget*>())
+  {
+    vtkPVXMLElement* hints = editor->property() ? editor->property()->GetHints() : nullptr;
+    vtkPVXMLElement* hint = hints ? hints->FindNestedElementByName("LacunaLabel") : nullptr;
+    if (const char* none = hint ? hint->GetAttribute("none") : nullptr)
+    {
+      auto* list = editor->findChild<QComboBox*>();
+      const int index = list ? list->findText("None") : -1;
+      if (index >= 0)
+      {
+        list->setItemText(index, QObject::tr(none));
+      }
+    }
+    QLabel* label = hint ? FindLabel(layout, editor) : nullptr;
+    if (label && !label->property(done).toBool())
+    {
+      label->setProperty(done, true);
+      const QString unit = hint->GetAttributeOrEmpty("unit"),
+                    zero = hint->GetAttributeOrEmpty("zero");
+      QString text = label->text().remove("<p>").remove("</p>");
+      text += unit.isEmpty() ? QString() : QString(" (%1)").arg(unit);
+      text += zero.isEmpty() ? QString() : QString("<br><small>0: %1</small>").arg(zero);
+      label->setText(text);
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -193,6 +239,24 @@ pqLacunaWindow::pqLacunaWindow(QObject* parent)
 pqLacunaWindow::~pqLacunaWindow() = default;
 
 //------------------------------------------------------------------------------
+void pqLacunaWindow::Run(const QString& call)
+{
+  vtkPythonInterpreter::Initialize();
+  vtkPythonInterpreter::RunSimpleString(QString(
+    "try:\n"
+    "  import lacuna.window\n"
+    "except ImportError as lacuna_error:\n"
+    "  import paraview\n"
+    "  paraview.print_error(f\"Lacuna's Python package is not found ({lacuna_error}): start "
+    "ParaView after '. lacuna-env.sh'\")\n"
+    "else:\n"
+    "  lacuna.window.%1\n")
+                                          .arg(call)
+                                          .toUtf8()
+                                          .constData());
+}
+
+//------------------------------------------------------------------------------
 void pqLacunaWindow::startup()
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -201,10 +265,27 @@ void pqLacunaWindow::startup()
   QObject::connect(model, &pqServerManagerModel::preItemRemoved, this,
     [this](pqServerManagerModelItem* item) { this->NewSources.remove(item); });
   QTimer::singleShot(0, this, &pqLacunaWindow::AddMenu); // when the window has its own
+  qApp->installEventFilter(this);
 }
 
 //------------------------------------------------------------------------------
-void pqLacunaWindow::shutdown() {}
+void pqLacunaWindow::shutdown()
+{
+  qApp->removeEventFilter(this);
+}
+
+//------------------------------------------------------------------------------
+bool pqLacunaWindow::eventFilter(QObject* object, QEvent* event)
+{
+  if (event->type() == QEvent::LayoutRequest)
+  {
+    if (const auto* panel = qobject_cast<pqProxyWidget*>(object))
+    {
+      AddUnits(panel);
+    }
+  }
+  return false;
+}
 
 //------------------------------------------------------------------------------
 void pqLacunaWindow::AddMenu()
@@ -241,6 +322,13 @@ void pqLacunaWindow::AddMenu()
   }
   menu->addSeparator();
   AddFilters(menu, window);
+  menu->addSeparator();
+  auto* guide = new pqLacunaGuide(window);
+  QAction* help = menu->addAction(tr("&Guide"));
+  help->setObjectName("Lacuna_guide");
+  help->setToolTip(
+    tr("The user guide. The button ? of the Properties panel opens a filter's page."));
+  QObject::connect(help, &QAction::triggered, guide, [guide] { guide->Open(QString()); });
   QObject::connect(menu, &QMenu::aboutToShow, this,
     [menu, window]
     {
@@ -260,6 +348,7 @@ void pqLacunaWindow::AddMenu()
     }
   }
   window->menuBar()->insertMenu(before, menu);
+  new pqLacunaSliders(window); // the window's
 }
 
 //------------------------------------------------------------------------------
@@ -278,6 +367,10 @@ void pqLacunaWindow::FollowState(pqServerManagerModelItem* item)
     if (std::strcmp(proxy->GetXMLName(), "LacunaTrackedSliceReader") == 0)
     {
       Run("offer_calibration(" + identity + ")");
+    }
+    if (std::strcmp(proxy->GetXMLName(), "LacunaRBFHoleFiller") == 0)
+    {
+      Run("place_regions(" + identity + ")");
     }
   }
   else if (source->modifiedState() == pqProxy::UNMODIFIED && this->NewSources.remove(item) &&

@@ -35,8 +35,8 @@ public:
   ///@}
 
   /// Not lit: from 5.13 on the superclass turns the light on again at each request.
-  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* input,
-    vtkInformation* output) override;
+  int ProcessViewRequest(
+    vtkInformationRequestKey* request, vtkInformation* input, vtkInformation* output) override;
 
   using Superclass::GetInternalOutputPort;
   /// What the superclass shows: the slices in space instead of the stack.

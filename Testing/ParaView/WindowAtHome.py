@@ -59,7 +59,7 @@ def test(window):
     clicks.menu("Lacuna/CT to Implant")
     window.take_messages()
     implant = GetActiveSource()
-    assert implant.GetXMLName() == "LacunaSkullImplant" and {each.Input for each in shown(view)} == {implant, FindSource("Bone surface of skull.vti")}
+    assert implant.GetXMLName() == "LacunaSkullImplant" and {each.Input for each in shown(view)} == {implant, FindSource("Bone surface of skull.vti"), FindSource("Scale, 50 mm")}
     window.compare("AtHomeImplant", likeness=0.9)
     solid = os.path.join(folder, "implant.stl")
 

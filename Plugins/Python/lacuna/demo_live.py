@@ -238,7 +238,7 @@ class Picture:
         plane = pv.SlicePlanes(Input=self.newest, InvalidSlices="Show", MaximumNumberOfPoints=75000)
         demo_ultrasound.show_picture(plane, self.view, sector=True)
         frames = pv.SlicePlanes(Input=self.source, OutlineOnly=1, Stride=10, InvalidSlices="Show")
-        pictures.show_surface(frames, self.view, (0.55, 0.63, 0.75)).LineWidth = 1
+        pictures.show_surface(frames, self.view, pictures.FRAME).LineWidth = 1
         self.look()
 
     def draw(self):

@@ -187,7 +187,7 @@ def picture(sweep, surface, sector, volume, name):
     show_slices(sweep, middle, behind, space, sector, 160000)
     pictures.show_surface(surface, space, pictures.TISSUE)
     frames = pv.SlicePlanes(Input=sweep, OutlineOnly=1, Stride=max(1, len(good) // 12))
-    pictures.show_surface(frames, space, (0.55, 0.63, 0.75)).LineWidth = 1
+    pictures.show_surface(frames, space, pictures.FRAME).LineWidth = 1
     # as on the scanner's screen, with the probe above, but from aside and a little from above
     pictures.look(space, travel + 0.9 * lateral + 0.45 * depth, -depth, 1.35)
     pictures.add_scale_bar(space, 10)

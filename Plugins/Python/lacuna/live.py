@@ -8,6 +8,10 @@
 """
 import time
 
+LEVEL = 100  # grey level of the surface to begin with
+DARK = 20  # grey level at and below which the newest frame is left out in space
+GREY = (0, 0, 0, 0), (255, 1, 1, 1)
+
 
 def connect(source):
     """Opens the devices; they take a moment (see TrackerWorks and VideoWorks)."""
@@ -88,3 +92,51 @@ def poll_until(source, condition, seconds=10, interval=0.02):
         time.sleep(interval)
         poll(source)
     return bool(condition())
+
+
+def show_layout(source=None):
+    """Two views side by side: the scanner's picture upright, and it in space with the frames of the slices and the surface that grows from them.
+
+    source: a Polhemus Video Source, by default the one that find() finds; without one a new one is made, whose devices are to be chosen.
+    The surface is that of the slices so far, by Swept Volume, a median filter and a Contour at LEVEL: its slider moves it while it grows.
+    Returns the source, the views and the Contour.
+    """
+    from lacuna import pictures, window
+    from paraview import simple
+
+    sources = [each for each in simple.GetSources().values() if each.GetXMLName() == "LacunaPolhemusVideoSource"]
+    source = source or (find() if sources else simple.PolhemusVideoSource(registrationName="Live"))
+    layout = simple.CreateLayout("Live")
+    picture = simple.CreateView("RenderView")
+    simple.AssignViewToLayout(view=picture, layout=layout, hint=0)
+    space = simple.CreateView("RenderView")
+    layout.SplitHorizontal(0, 0.42)
+    simple.AssignViewToLayout(view=space, layout=layout, hint=2)
+
+    picture.InteractionMode = "2D"
+    picture.OrientationAxesVisibility = 0
+    simple.SetActiveView(picture)
+    newest = simple.Show(simple.OutputPort(source, 1), picture)
+    newest.SetRepresentationType("Slice")
+    window._color_apart(newest, picture, "Intensity", GREY)
+    camera = picture.GetActiveCamera()
+    camera.SetPosition(0, 0, -1)  # rows of an image run downwards
+    camera.SetFocalPoint(0, 0, 0)
+    camera.SetViewUp(0, -1, 0)
+    simple.ResetCamera(picture)
+
+    volume = simple.SweptVolume(registrationName="Live volume", Input=source, UseTooFast=1)
+    smooth = simple.SpeckleFilter(registrationName="Live median", Input=volume, Operation="Median", KernelSize=[3] * 3)
+    surface = simple.Contour(registrationName="Live surface", Input=smooth, ContourBy=["POINTS", "Intensity"], Isosurfaces=[LEVEL],
+                             ComputeScalars=0)
+    frames = simple.SlicePlanes(registrationName="Live frames", Input=source, OutlineOnly=1, Stride=10, InvalidSlices="Show")
+    simple.SetActiveView(space)
+    placed = simple.Show(simple.OutputPort(source, 1), space)
+    placed.SetRepresentationType(window.SLICES)
+    placed.Dark = DARK
+    window._color_apart(placed, space, "Intensity", GREY)
+    pictures.show_surface(surface, space, pictures.TISSUE)
+    pictures.show_surface(frames, space, pictures.FRAME)
+    simple.SetActiveSource(source)
+    simple.RenderAllViews()
+    return source, picture, space, surface

@@ -9,17 +9,19 @@
 import math
 import os
 
+import numpy as np
 import paraview.simple as pv
 
 from lacuna import vtkLacunaScanRegion
 from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictures, solids, views, window
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
 
 BONE = 500  # Hounsfield units
 MEDIAN = 5  # voxels
-VOXELS = 30_000_000  # of a volume, at most
+VOXELS = 8_000_000  # of a volume, at most
 PICTURES = 4  # slices shown beside a surface
 SURE = 0.5  # of a scan region: below it Scan Region warns
 
@@ -148,6 +150,7 @@ def ct_to_implant(source=None):
     implant_report.show_error(result.implant, view, numbers)
     inwards = list(numbers["InsertionDirection"])
     pictures.look(view, inwards, demo_implant.view_up(inwards))
+    _show_scale(result.implant, view)
     pv.SetActiveSource(result.implant)
     try:
         views.show_orientation(view)
@@ -254,6 +257,21 @@ def _view():
         view = found[0] if found else pv.CreateRenderView()
         pv.SetActiveView(view)
     return view
+
+
+def _show_scale(source, view):
+    """A ruler below a surface as the view sees it, of 10, 20 or 50 mm; at the surface's place in space, so that it is right in any view."""
+    points = vtk_to_numpy(fetch(source).GetPoints().GetData())
+    camera = view.GetActiveCamera()
+    inwards, up = np.array(camera.GetDirectionOfProjection()), np.array(camera.GetViewUp())
+    right = np.cross(inwards, up)
+    low, high = points @ right, points @ up
+    length = max([each for each in (10, 20, 50) if each <= np.ptp(low)], default=10)
+    middle = (low.min() + low.max()) / 2 * right + (high.min() - 0.1 * np.ptp(high)) * up + (points @ inwards).min() * inwards
+    ruler = pv.Ruler(registrationName=f"Scale, {length} mm", Point1=list(middle - length / 2 * right), Point2=list(middle + length / 2 * right))
+    display = pv.Show(ruler, view)
+    display.Color = display.AxisColor = views.text_color(view)
+    display.LabelFormat = pictures.number_format("{:.0f} mm", display.LabelFormat)
 
 
 def _free_name(folder, stem="implant", ending=".igs"):

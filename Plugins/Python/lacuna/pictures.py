@@ -21,6 +21,7 @@ from lacuna.views import annotations, map_letters, text_color
 BONE = (0.93, 0.89, 0.80)
 METAL = (0.62, 0.66, 0.72)
 TISSUE = (0.80, 0.45, 0.38)
+FRAME = (0.55, 0.63, 0.75)
 
 
 def new_view(size=(1200, 900)):

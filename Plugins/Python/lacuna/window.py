@@ -4,7 +4,8 @@
     from lacuna import window
     window.show(reader)        # a CT as bone, upright, with letters at the edges; a sweep as slices in space
 
-The plugin calls show_applied after Apply of what is new, offer_calibration for a new Tracked Slice Reader, and run for the menu.
+The plugin calls show_applied after Apply of what is new, offer_calibration for a new Tracked Slice Reader,
+place_regions for a new RBF Hole Filler, and run for the menu.
 """
 import functools
 import itertools
@@ -15,8 +16,9 @@ import numpy as np
 import paraview.simple as pv
 from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject
 
-from lacuna import coordinates, demo_ultrasound, opening, pictures, solids, views
+from lacuna import coordinates, demo_ultrasound, live, opening, pictures, solids, views
 from lacuna.data import fetch
 
 AIR, BONE = -200, 300  # Hounsfield units: below the first there is air, above the second bone
@@ -31,7 +33,7 @@ FRONT, UP = (0, 1, 0), (0, 0, 1)  # the view into the face, in patient coordinat
 def run(job, *arguments):
     """A job of the menu by its name: one of lacuna.macros on the active source, or one of here. What is wrong is said in Output Messages."""
     from lacuna import macros
-    own = {"sample_ct": sample_ct, "sample_sweep": sample_sweep, "save_solid": save_solid}
+    own = {"sample_ct": sample_ct, "sample_sweep": sample_sweep, "save_solid": save_solid, "live_layout": live.show_layout}
     return macros.run(functools.partial(own.get(job) or getattr(macros, job), *arguments))
 
 
@@ -46,7 +48,7 @@ def save_solid(path):
 
 def sample_ct():
     """A Skull Phantom, shown."""
-    return _show_sample(pv.SkullPhantom(registrationName="Sample CT", Spacing=[1, 1, 1]))
+    return _show_sample(pv.SkullPhantom(registrationName="Sample CT", Spacing=[1, 1, 1], NoiseLevel=10, Sutures=1))
 
 
 def sample_sweep():
@@ -202,6 +204,15 @@ def look_at_slices(source, view):
     _look(view, depth + 0.5 * lateral + 1.2 * np.cross(lateral, depth), -depth)
 
 
+def look_live(identity):
+    """Turns the cameras of views that show a live source in space to its slices: before the first ones nothing is there to see."""
+    source = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
+    for view in pv.GetRenderViews():
+        if any(each.GetProperty("Representation") and each.Representation == SLICES and each.Input.SMProxy == source.SMProxy for each in _shown(view)):
+            look_at_slices(source, view)
+            pv.Render(view)
+
+
 def _poses(source):
     """Of the slices that have one: N x 4 x 4. Of the pixels one alone is fetched."""
     extent = source.GetDataInformation().GetExtent()
@@ -265,3 +276,97 @@ def _is_calibrated(path):
     except OSError:
         return False
     return any(word in head for word in (b"ImageTo", b"ToImageTransform", b"ToCroppedImageTransform"))
+
+
+def place_regions(identity):
+    """Puts the regions that a new RBF Hole Filler offers, before one is chosen, on the largest hole of its map: a loop around it, and
+    sphere, box and cylinder over it. Without a hole they stand in the middle of the map. Never raises; the maps of a remote server are
+    not fetched for it.
+    """
+    try:
+        filler = servermanager._getPyProxy(servermanager.ActiveConnection.Session.GetRemoteObject(identity))
+        if not servermanager.ActiveConnection.IsRemote():
+            _place_regions(filler, *hole_of_map(filler.Input))
+    except Exception as error:  # pylint: disable=broad-exception-caught
+        import paraview
+        paraview.print_warning(f"Lacuna: regions are where ParaView puts them, since {error}")
+
+
+def hole_of_map(source):
+    """The rim of the largest hole that the main surface of a depth map encloses, in order around it (N x 3), its middle on the surface that
+    would fill it, and the direction of the view; patient coordinates, mm. Without a hole: a circle of 15 mm around the middle.
+    """
+    image = fetch(source)
+    matrix = np.array(image.GetFieldData().GetArray("ImageToWorld").GetTuple(0)).reshape(4, 4)
+    right, down, view = (matrix[:3, axis] for axis in range(3))
+    extent = image.GetExtent()
+    shape = extent[3] - extent[2] + 1, extent[1] - extent[0] + 1
+    spacing = np.array([np.linalg.norm(right), np.linalg.norm(down)])
+    depth = vtk_to_numpy(image.GetPointData().GetArray("Depth")).reshape(shape).astype(float)
+    seen = np.isfinite(depth)
+    hole = _largest_hole(source, shape)
+    rows, columns = np.nonzero(hole) if hole.any() else np.nonzero(seen)
+    middle = np.array([columns.mean(), rows.mean()]) if len(rows) else np.array(shape[::-1]) / 2
+    reach = 15.0
+    offsets = (np.stack([columns, rows], 1) - middle) * spacing
+    points, depths = [], []
+    for angle in np.linspace(0, 2 * np.pi, 8, endpoint=False):
+        way = np.array([np.cos(angle), np.sin(angle)])
+        if hole.any():  # the rim lies 2 mm beyond what is empty
+            aside = np.abs(offsets @ [-way[1], way[0]])
+            along = offsets @ way
+            reach = max(along[(aside <= 2 * spacing.max()) & (along >= 0)], default=0) + 2
+        pixel = middle + reach * way / spacing
+        points.append(pixel)
+        column, row = np.clip(np.rint(pixel).astype(int), 0, np.array(shape[::-1]) - 1)
+        depths.append(depth[row, column])
+    known = np.isfinite(depths)
+    usual = np.median(np.array(depths)[known]) if known.any() else np.median(depth[seen]) if seen.any() else 0.0
+    depths = np.where(known, depths, usual)
+    view = view / np.linalg.norm(view)
+
+    def place(pixel, level):
+        return matrix[:3, 3] + (pixel[0] + extent[0]) * right + (pixel[1] + extent[2]) * down + level * view
+    rim = np.array([place(pixel, level) for pixel, level in zip(points, depths)])
+    return rim, rim.mean(axis=0), view
+
+
+def _largest_hole(source, shape):
+    """Pixels of the largest hole: what RBF Hole Filler finds by itself, coarsely filled."""
+    filler = servermanager.filters.RBFHoleFiller(Input=source, NodeSpacing=5)
+    display = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()  # that there is none is no error here
+    try:
+        mask = fetch(filler).GetPointData().GetArray("FilledMask")
+    finally:
+        vtkObject.SetGlobalWarningDisplay(display)
+    found = np.zeros(shape, bool) if mask is None else vtk_to_numpy(mask).reshape(shape) != 0
+    if not found.any():
+        return found
+    # each pixel takes the largest number beside it until all of a part have the same
+    parts = np.where(found, np.arange(1, found.size + 1).reshape(shape), 0)
+    while True:
+        around = np.pad(parts, 1)
+        grown = np.where(found, np.max([parts, around[:-2, 1:-1], around[2:, 1:-1], around[1:-1, :-2], around[1:-1, 2:]], axis=0), 0)
+        if (grown == parts).all():
+            break
+        parts = grown
+    numbers, counts = np.unique(parts[found], return_counts=True)
+    return parts == numbers[counts.argmax()]
+
+
+def _place_regions(filler, rim, middle, view):
+    radius = float(np.linalg.norm(rim - middle, axis=1).max())
+    places = {"Sphere": dict(Center=middle, Radius=[radius]), "Cylinder": dict(Center=middle, Axis=view, Radius=[radius]),
+              "Box": dict(Position=middle - radius, Rotation=np.zeros(3), Scale=np.full(3, 2 * radius)),
+              "Plane": dict(Origin=middle, Normal=view), "LacunaSplineLoop": dict(Points=rim.ravel())}
+    regions = filler.GetProperty("DefectRegion").SMProperty.FindDomain("vtkSMProxyListDomain")
+    for index in range(regions.GetNumberOfProxies()):
+        proxy = regions.GetProxy(index)
+        for name, value in places.get(proxy.GetXMLName(), {}).items():
+            if proxy.GetProperty(name):
+                helper = servermanager.vtkSMPropertyHelper(proxy, name)
+                helper.SetNumberOfElements(len(value))
+                for element, number in enumerate(value):
+                    helper.Set(element, float(number))
+        proxy.UpdateVTKObjects()
