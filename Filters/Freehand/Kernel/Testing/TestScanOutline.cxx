@@ -32,7 +32,8 @@ const std::vector<Bath>& GetSectors()
 {
   static const std::vector<Bath> baths{
     { "curved", Fan{ { 345, -20 }, { -30, 33 }, { 70, 440 } }, { 100, 30, 490, 480 } },
-    { "upside down", Fan{ { 335, 520 }, { 148, 215 }, { 50, 420 } }, { 100, 30, 490, 480 } },
+    { "upside down", Fan{ { 335, 520 }, { 148, 215 }, { 50, 420 } }, { 100, 30, 490, 480 }, 120,
+      false },
     { "cut by a window", Fan{ { 350, 20 }, { -58, 55 }, { 60, 430 } }, { 110, 30, 460, 480 } },
     { "upside down and cut", Fan{ { 340, 500 }, { 124, 236 }, { 55, 430 } },
       { 110, 30, 455, 480 } },
@@ -166,7 +167,7 @@ private:
         {
           if (std::hypot(x - fan.Origin[0], y - fan.Origin[1]) < fan.Radii[0] + 9)
           {
-            put(x, y, 190 + int(random() % 6));
+            put(x, y, 190);
           }
         }
       }
@@ -242,6 +243,10 @@ void ExpectProposed(const Bath& bath, const TestScreen& screen, double overlap, 
     measured.Texts, region.Confidence);
   EXPECT_EQ(region.Fan.IsSector, bath.Sector.has_value()) << bath.Name << ", " << what;
   EXPECT_GE(measured.Overlap, overlap) << bath.Name << ", " << what;
+  if (bath.Sector && bath.HasFace)
+  {
+    EXPECT_NEAR(region.Fan.Sector.Radii[0], bath.Sector->Radii[0], 4) << bath.Name << ", " << what;
+  }
   EXPECT_GE(measured.Contained, 0.999) << bath.Name << ", " << what;
   EXPECT_EQ(measured.Texts, 0) << bath.Name << ", " << what;
   EXPECT_GT(region.Confidence, 0.1);
