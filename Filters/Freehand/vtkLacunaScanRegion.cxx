@@ -3,6 +3,7 @@
 
 #include "lacunaDepthRuler.h"
 #include "lacunaParameterText.h"
+#include "lacunaScanOutline.h"
 #include "lacunaScanRegion.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -62,6 +63,7 @@ public:
     }
     int extent[6];
     image->GetExtent(extent);
+    this->Image = image;
     vtkDataArray* pixels = vtkLacunaStackPixels::Find(image);
     this->IsFlipped = vtkLacunaStackPixels::IsBottomRowFirst(pixels);
     this->Rows = { extent[2], extent[3] };
@@ -90,6 +92,27 @@ public:
   std::vector<lacuna::SliceImage> Images;
   lacuna::Vec2 First{ 0, 0 }; ///< column and row of the first pixel
 
+  int GetNumberOfSlices() const { return this->Image->GetDimensions()[2]; }
+
+  // All slices of the stack, one after the other.
+  template <class Function>
+  void ForEachSlice(const Function& f)
+  {
+    int extent[6];
+    this->Image->GetExtent(extent);
+    const std::array<int, 6> part{ extent[0], extent[1], extent[2], extent[3], 0, 0 };
+    const vtkSmartPointer<vtkDataArray> grey =
+      vtkLacunaStackPixels::Allocate(vtkLacunaStackPixels::Find(this->Image), part);
+    lacuna::SliceImage slice = this->Images.front();
+    slice.Pixels = grey->GetVoidPointer(0);
+    for (int n = 0; n < this->GetNumberOfSlices(); ++n)
+    {
+      vtkLacunaStackPixels::Copy(
+        this->Image, extent[4] + n, 1, this->IsFlipped, this->Rows, grey, part, 0);
+      f(slice, n);
+    }
+  }
+
   // Of a column and a row, counted in the images.
   lacuna::Vec3 GetPoint(double column, double row) const
   {
@@ -99,6 +122,7 @@ public:
   }
 
 private:
+  vtkImageData* Image;
   vtkSmartPointer<vtkDataArray> Grey;
   bool IsFlipped = false;
   std::array<int, 2> Rows{ 0, 0 };
@@ -236,6 +260,25 @@ private:
   std::vector<std::pair<const char*, std::vector<double>>> Numbers;
 };
 
+// Where hardly anything changes: the outline of all that does, over all slices.
+lacuna::ScanRegion Propose(
+  Frames& frames, const lacuna::Vec2& pixel, const std::string& doubt, lacuna::Execution& execution)
+{
+  lacuna::ScanOutline outline;
+  frames.ForEachSlice(
+    [&](const lacuna::SliceImage& slice, int n)
+    {
+      execution.Report(double(n) / frames.GetNumberOfSlices());
+      outline.Put(slice);
+    });
+  lacuna::ScanRegion region = outline.Propose(pixel);
+  if (!region.IsFound)
+  {
+    throw std::runtime_error(doubt + " (no outline can be proposed either: " + region.Text + ")");
+  }
+  return region;
+}
+
 void AddRegion(Report& report, const lacuna::ScanRegion& region, const Frames& frames)
 {
   const lacuna::DetectedFan& fan = region.Fan;
@@ -293,7 +336,7 @@ int vtkLacunaScanRegion::RequestData(
 {
   const bool isWanted = vtkLacunaRequest::IsWanted(outputs); // it is made in one piece
   return vtkLacunaExecution::RunAgreed(this, outputs, isWanted,
-    [&](vtkLacunaExecution&)
+    [&](vtkLacunaExecution& execution)
     {
       if (!(this->PixelAspect > 0) || !std::isfinite(this->PixelAspect))
       {
@@ -310,18 +353,22 @@ int vtkLacunaScanRegion::RequestData(
       {
         throw std::runtime_error("the image is empty");
       }
-      const Frames frames(image);
+      Frames frames(image);
       const lacuna::Vec2 pixel{ 1, this->PixelAspect };
-      const lacuna::ScanRegion region = lacuna::FindScanRegion(frames.Images, pixel);
+      lacuna::ScanRegion region = lacuna::FindScanRegion(frames.Images, pixel);
       if (!region.IsFound)
       {
-        throw std::runtime_error(region.Text);
+        if (frames.GetNumberOfSlices() < 3)
+        {
+          throw std::runtime_error(region.Text);
+        }
+        region = Propose(frames, pixel, region.Text, execution);
       }
       if (region.Confidence < DoubtfulConfidence)
       {
         vtkWarningMacro(<< "the scan region is doubtful (confidence "
-                        << std::lround(100 * region.Confidence)
-                        << " %): look at the second output over the image");
+                        << std::lround(100 * region.Confidence) << " %; " << region.Text
+                        << "): look at the second output over the image");
       }
       const lacuna::DepthRuler ruler = lacuna::FindDepthRuler(frames.Images, region.Fan, pixel);
 

@@ -24,7 +24,10 @@
  * and the depth ruler is found. PixelAspect (height by width of a pixel) when both rulers are found,
  * if a tick is as many mm in both.
  *
- * It is an error when the region is not found; the text says why.
+ * Where hardly anything changes, as in a dark bath, it is a proposal from all slices
+ * (lacunaScanOutline.h), with Confidence below 0.5. Below that there is a warning.
+ *
+ * It is an error when the region is not found and none can be proposed; the text says why.
  *
  * @sa vtkLacunaSweptVolume
  */

@@ -164,8 +164,9 @@ void vtkLacunaSweptVolumePlan::ApplyFans(
         }
         fans = {};
         throw std::runtime_error(error.what() +
-          std::string(". Give FanOrigin, FanAngles and FanRadii, or a ClipRectangle, and set "
-                      "FanMask to Given"));
+          std::string(
+            ". Give FanOrigin, FanAngles and FanRadii, or a ClipRectangle (Scan Region may "
+            "propose them), and set FanMask to Given"));
       }
     }
     fans.Key = key;

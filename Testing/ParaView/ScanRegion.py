@@ -13,7 +13,7 @@ from lacuna_test import check_defaults, output
 from tracked_slice_files import open_slices
 
 LoadPlugin(os.environ["LACUNA_PLUGIN"], remote=False, ns=globals())
-from lacuna import vtkLacunaScanRegion
+from lacuna import macros, vtkLacunaScanRegion
 from lacuna.errors import PipelineError, raising
 
 WIDTH, HEIGHT = 640, 480
@@ -124,10 +124,56 @@ check(servermanager.Fetch(png))
 bounds = png.GetClientSideObject().GetOutputDataObject(1).GetBounds()
 assert abs(bounds[3] - (HEIGHT - 1 - field(table, "ClipRectangle")[1]) - 0.5) < 3, bounds
 
+# In a dark bath only streaks change: a proposal, with a warning. All slices are looked at: the far end
+# of the sector is seen in one slice only, which is none of the 32 for the other ways.
+random = np.random.default_rng(5)
+baths = []
+for n in range(60):
+    bath = screen(0)
+    bath[sees] = 0
+    streaks = np.zeros(bath.shape, bool)
+    for x, y in zip(random.integers(8, WIDTH - 8, 120), random.integers(2, HEIGHT - 2, 120)):
+        streaks[y - 1:y + 2, x - 6:x + 7] = True
+    bath[streaks & sees & (radius < 440)] = 9 + n % 5
+    if n == 2:
+        bath[sees & (radius > 460)] = 9
+    baths.append(bath)
+bath = open_slices("ScanRegionBath", np.array(baths), [np.eye(4)] * len(baths))
+proxy = ScanRegion(Input=bath)
+warnings = []
+with raising(warnings):
+    proxy.UpdatePipeline()
+table = servermanager.Fetch(proxy)
+assert 0.3 < field(table, "Confidence") < 0.5, field(table, "Confidence")
+assert any("the true region may be larger" in warning for warning in warnings), warnings
+assert "the true region may be larger" in table.GetColumnByName("Remark").GetValue(0)
+x, y = field(table, "FanOrigin")
+angles, radii = field(table, "FanAngles"), field(table, "FanRadiiInPixels")
+assert abs(radii[1] + y - RADII[1] - ORIGIN[1]) < 3, (y, radii)
+left, top, width, height = field(table, "ClipRectangle")
+away = np.hypot(column - x, row - y)
+to = np.degrees(np.arctan2(column - x, row - y))
+proposed = ((away >= radii[0]) & (away <= radii[1]) & (to >= angles[0]) & (to <= angles[1]) & (column >= left)
+            & (column < left + width) & (row >= top) & (row < top + height))
+assert (proposed & sees).sum() > 0.95 * (proposed | sees).sum(), (x, y, angles, radii)
+changes = np.ptp(np.array(baths), axis=0) > 0
+assert proposed[changes].mean() > 0.999, proposed[changes].mean()
+# Nothing takes it by itself.
+assert macros._fan_mask(servermanager.Fetch(stack)) == "Automatic"
+assert macros._fan_mask(servermanager.Fetch(bath)) == "None"
+try:
+    with raising():
+        SweptVolume(Input=bath, FanMask="Automatic", Interpolation="NearestVoxel").UpdatePipeline()
+    raise AssertionError("a fan is found in the bath")
+except PipelineError as error:
+    assert "Scan Region may propose" in str(error), error
+
 # What cannot be is said.
+frozen = open_slices("ScanRegionFrozen", np.array([baths[0]] * 4), [np.eye(4)] * 4)
 black = open_slices("ScanRegionBlack", np.zeros((1, 60, 60), np.uint8), [np.eye(4)])
 for source, settings, words in [
         (black, {}, "the scan region is not found"), (black, {}, "Give several frames"),
+        (frozen, {}, "no outline can be proposed either: besides texts nothing changes"),
         (stack, {"PixelAspect": -1}, "PixelAspect is -1"), (stack, {"TickLength": -2}, "TickLength is -2")]:
     bad = ScanRegion(Input=source, **settings)
     try:
