@@ -64,6 +64,7 @@ pqLacunaGuide::pqLacunaGuide(QWidget* window)
   this->setObjectName("LacunaGuide");
   this->setWindowTitle(tr("Lacuna Guide"));
   this->resize(900, 800);
+  this->Browser->setObjectName("Pages");
   this->Browser->setOpenExternalLinks(true);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close, this);
   auto* back = buttons->addButton(tr("Back"), QDialogButtonBox::ActionRole);

@@ -218,6 +218,8 @@ void AddUnits(const QWidget* panel)
     if (label && !label->property(done).toBool())
     {
       label->setProperty(done, true);
+      label->setObjectName(
+        QString("LacunaLabel_") + editor->proxy()->GetPropertyName(editor->property()));
       const QString unit = hint->GetAttributeOrEmpty("unit"),
                     zero = hint->GetAttributeOrEmpty("zero");
       QString text = label->text().remove("<p>").remove("</p>");

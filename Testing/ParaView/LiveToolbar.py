@@ -18,7 +18,8 @@ PICTURES = "LACUNA_TEST_PICTURES" in os.environ
 
 def test(window):
     from lacuna import live
-    from paraview.simple import Delete, GetActiveSource, PolhemusVideoSource, Render, ResetCamera, SetActiveSource
+    from paraview.simple import (Delete, FindSource, GetActiveSource, GetLayoutByName, GetRenderViews, GetViewsInLayout, PolhemusVideoSource,
+                                 Render, ResetCamera, SetActiveSource)
 
     def picture(name):
         if PICTURES:
@@ -130,6 +131,29 @@ def test(window):
     window.wait_for_text("LiveStartStop", "false", "enabled")
     window.wait_for_text("LiveSlices", "false", "visible")
     window.take_messages()  # warnings of the devices that hung
+
+    # The layout, before and after there are slices: nothing is said but how fast the probe is
+    window.menu("Lacuna/Live Layout")
+    source, surface = FindSource("Live"), FindSource("Live surface")
+    picture, space = (view for view in GetRenderViews() if view in GetViewsInLayout(GetLayoutByName("Live")))
+    assert list(picture.GetActiveCamera().GetViewUp()) == [0, -1, 0] and picture.GetActiveCamera().GetDirectionOfProjection()[2] > 0.99
+    for name in ("TrackerConnection", "VideoURL", "CalibrationFileName", "CropRectangle"):
+        setattr(source, name, settings[name])
+    source.MovementThreshold, source.SpeedLimit = 0.8, 0
+    source.UpdatePipeline()
+    before = space.GetActiveCamera().GetPosition()
+    window.press("LiveStartStop")
+    window.wait_for_text("LiveSlices", r"^([2-9]\d|\d{3,}) slices$")
+    window.wait_for("the surface", lambda: surface.GetDataInformation().GetNumberOfCells() > 0)
+    window.wait_for("the camera", lambda: space.GetActiveCamera().GetPosition() != before)
+    picture_of = [each for each in space.Representations if each.GetProperty("Dark")]
+    assert [each.Representation for each in picture_of if each.Visibility and each.Input.SMProxy == source.SMProxy] == ["Slices in Space"]
+    assert "background" in window.get("LiveStartStop", "styleSheet")
+    window.press("LiveStartStop")
+    window.wait_for_text("LiveStartStop", "^Start$")
+    assert window.get("LiveStartStop", "styleSheet") == ""
+    live.disconnect(source)
+    window.check_messages()
 
 
 def main():
