@@ -197,7 +197,7 @@ function (lacuna_find_cgal)
 endfunction ()
 
 # lacuna_find_opencascade()
-# Makes the target LacunaOpenCASCADE (data exchange of the CAD kernel, for tests and benchmarks only)
+# Makes the target LacunaOpenCASCADE (data exchange of the CAD kernel, for tests and benchmarks)
 # if it is installed. Not through its CMake package: Debian's links libtbb, which it does not depend
 # on, and sets compile definitions for whole folders.
 function (lacuna_find_opencascade)
@@ -206,7 +206,7 @@ function (lacuna_find_opencascade)
   endif ()
   find_path(LACUNA_OPENCASCADE_INCLUDE_DIR IGESControl_Reader.hxx PATH_SUFFIXES opencascade)
   set(libraries)
-  foreach (library IN ITEMS TKIGES TKXSBase TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d
+  foreach (library IN ITEMS TKIGES TKSTEP TKXSBase TKShHealing TKTopAlgo TKGeomAlgo TKBRep TKGeomBase TKG3d
       TKG2d TKMath TKernel)
     string(REGEX REPLACE "^TK" "TKDE" later "${library}") # TKIGES is TKDEIGES since OpenCASCADE 7.8
     find_library(LACUNA_OPENCASCADE_${library} NAMES ${library} ${later})

@@ -43,3 +43,14 @@ find_path(LACUNA_OPENIGTLINK_INCLUDE_DIR igtl_header.h
   PATH_SUFFIXES openigtlink)
 lacuna_find_libraries(OPENIGTLINK "trackers and scanners behind OpenIGTLink cannot be used"
   OpenIGTLink)
+
+# OpenCASCADE writes STEP. Not through its CMake package: Debian's sets compile definitions for whole folders.
+# Since 7.8 the library of STEP has another name.
+find_path(LACUNA_OPENCASCADE_INCLUDE_DIR STEPControl_Writer.hxx PATH_SUFFIXES opencascade)
+find_library(LACUNA_OPENCASCADE_TKDESTEP TKDESTEP)
+set(lacuna_step TKSTEP)
+if (LACUNA_OPENCASCADE_TKDESTEP)
+  set(lacuna_step TKDESTEP)
+endif ()
+lacuna_find_libraries(OPENCASCADE "solids cannot be written as STEP"
+  ${lacuna_step} TKXSBase TKTopAlgo TKBRep TKG3d TKMath TKernel)

@@ -101,7 +101,7 @@ constexpr Entry Filters[] = {
 void SaveSolid(QMainWindow* window)
 {
   pqFileDialog dialog(nullptr, window, QObject::tr("Save Solid"), QString(),
-    QObject::tr("STL (*.stl);;PLY (*.ply);;3MF (*.3mf)"), false);
+    QObject::tr("STL (*.stl);;PLY (*.ply);;3MF (*.3mf);;STEP (*.step *.stp)"), false);
   dialog.setObjectName("LacunaSaveSolid");
   dialog.setFileMode(pqFileDialog::AnyFile);
   if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
@@ -312,7 +312,7 @@ void pqLacunaWindow::AddMenu()
   {
     add(entry);
   }
-  QAction* save = menu->addAction(tr("Save S&olid (STL, PLY, 3MF)..."));
+  QAction* save = menu->addAction(tr("Save S&olid (STL, PLY, 3MF, STEP)..."));
   save->setObjectName("Lacuna_save_solid");
   save->setToolTip(
     tr("Writes what is selected for a printer, in mm, with a record; mirrored data are refused."));

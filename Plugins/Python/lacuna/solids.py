@@ -4,6 +4,7 @@
     from lacuna.solids import save_solid
     save_solid("plate.stl", plate)     # writes plate.stl and plate.stl.json
     save_solid("plate.3mf", plate)     # writes plate.3mf, with unit and history, and plate.3mf.json
+    save_solid("plate.step", plate)    # a solid with flat faces for CAD programs, and plate.step.json
 """
 import hashlib
 import json
@@ -14,6 +15,7 @@ import shutil
 import zipfile
 from xml.sax.saxutils import escape, quoteattr
 
+STEP = (".step", ".stp")
 NOTICE = "Research software, not a medical device."
 TIMINGS = ("FitTime",)  # field data that differ from run to run; what stays the same gives the same record
 # Characters that an XML file cannot have, not even escaped.
@@ -21,13 +23,14 @@ NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def save_solid(path, proxy, allow_mirrored=False, **options):
-    """Writes a surface to a file: 3mf, or what ParaView writes by the ending (stl, ply, obj, vtp, ...).
+    """Writes a surface to a file: 3mf, step or stp, or what ParaView writes by the ending (stl, ply, obj, vtp, ...).
 
     Beside it, under the same name with .json behind it, are Lacuna's version, the steps that made
     the surface with hashes of their inputs and their parameters, its measures (field data with up to
     a few numbers; null where there is none; none behind filters of ParaView that move points, such as
     Transform) and the SHA-256 of the file: formats such as STL have no room for them. 3MF has, and
-    its unit is the millimetre; it holds closed surfaces of triangles that face outwards. In which
+    its unit is the millimetre; it holds closed surfaces of triangles that face outwards. STEP (STEP Writer;
+    Tolerance is an option) has and holds the same, as solids with flat faces within 0.02 mm. In which
     coordinates the surface is stands there, too, as lacuna.coordinates.find knows it: "unknown" if it
     does not. Raises PipelineError when a filter or the writer fails (also when the disk has no room
     left), when there is no polygon or a point is not finite, and for a mirror image of the patient
@@ -95,6 +98,8 @@ def _save_solid(path, proxy, allow_mirrored, options):
             if ending.lower() == ".3mf":
                 _write_3mf(name, path, data, proxy.GetXMLLabel(), f"Lacuna {__version__}", place, steps)
             else:
+                if ending.lower() in STEP:
+                    options = {"Note": f"Coordinates: {place} (mm). {NOTICE}", "AllowMirrored": int(allow_mirrored)} | options
                 _write_by_paraview(name, path, proxy, options)
             with open(name, "rb") as file:
                 digest = hashlib.sha256(file.read()).hexdigest()

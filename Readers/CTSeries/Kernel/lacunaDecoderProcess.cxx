@@ -2,19 +2,17 @@
 #include "lacunaDecoderProcess.h"
 
 #include "lacunaMemory.h"
+#include "lacunaProgram.h"
 
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -34,64 +32,13 @@ const std::string Advice =
 {
   throw std::runtime_error(Cannot + what + ": " + std::generic_category().message(code));
 }
-
-std::string DescribeSignal(int number)
-{
-  const char* name = sigdescr_np(number);
-  return "signal " + std::to_string(number) + (name ? std::string(", ") + name : "");
-}
-
-// How the process begins. Nothing is open but what it needs, and what codecs write to the terminal is for
-// nobody. Its signals do what they do in a new program, whatever this one has made of them. It has a group
-// of its own, for which an interrupt of the terminal is not meant.
-class SpawnSettings
-{
-public:
-  SpawnSettings(int socket, int memory)
-  {
-    posix_spawn_file_actions_init(&this->Actions);
-    posix_spawn_file_actions_adddup2(&this->Actions, socket, DecoderSocket);
-    posix_spawn_file_actions_addopen(&this->Actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&this->Actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&this->Actions, memory, DecoderMemory);
-    posix_spawn_file_actions_addclosefrom_np(&this->Actions, DecoderMemory + 1);
-    sigset_t signals;
-    posix_spawnattr_init(&this->Attributes);
-    posix_spawnattr_setflags(
-      &this->Attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&this->Attributes, &signals);
-    sigfillset(&signals);
-    posix_spawnattr_setsigdefault(&this->Attributes, &signals);
-    posix_spawnattr_setpgroup(&this->Attributes, 0);
-  }
-  ~SpawnSettings()
-  {
-    posix_spawnattr_destroy(&this->Attributes);
-    posix_spawn_file_actions_destroy(&this->Actions);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
-
-  posix_spawn_file_actions_t Actions{};
-  posix_spawnattr_t Attributes{};
-};
 }
 
 //------------------------------------------------------------------------------
 std::string FindDecoderProgram()
 {
-  std::filesystem::path folder;
-  Dl_info here{};
-  // not the address of a function, which in some programs is one of their own
   static const char anchor = 0;
-  if (dladdr(&anchor, &here) != 0 && here.dli_fname)
-  {
-    std::error_code wrong;
-    const std::filesystem::path file = std::filesystem::canonical(here.dli_fname, wrong);
-    folder = (wrong ? std::filesystem::path(here.dli_fname) : file).parent_path();
-  }
-  return (folder / LACUNA_DECODER).string();
+  return FindBeside(&anchor, LACUNA_DECODER);
 }
 
 //------------------------------------------------------------------------------
@@ -174,7 +121,6 @@ DecoderProcess::~DecoderProcess()
 }
 
 //------------------------------------------------------------------------------
-// Not fork: threads of this program may hold locks, and MPI forbids it.
 void DecoderProcess::Start(int socket)
 {
   Descriptor high[2];
@@ -186,19 +132,18 @@ void DecoderProcess::Start(int socket)
   }
   std::string name = this->Program;
   char* const arguments[] = { name.data(), nullptr };
-  const SpawnSettings settings(high[0].Get(), high[1].Get());
-  const int wrong = ::posix_spawn(
-    &this->Child, name.c_str(), &settings.Actions, &settings.Attributes, arguments, environ);
+  int wrong = 0;
+  // what codecs write to the terminal is for nobody
+  this->Child =
+    ProgramSettings({ high[0].Get(), -1, -1, high[1].Get() }).Start(name, arguments, wrong);
   if (wrong == ENOENT)
   {
-    this->Child = 0;
     throw std::runtime_error(Cannot + "there is no program " + this->Program +
       ", which comes with Lacuna when it is built with GDCM; install Lacuna again, or make an "
       "uncompressed copy of the file (gdcmconv --raw)");
   }
   if (wrong != 0)
   {
-    this->Child = 0;
     Fail(this->Program + " cannot be started", wrong);
   }
 }
