@@ -26,6 +26,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -73,9 +74,11 @@ lacuna::ClosedMesh GetMesh(vtkPolyData* surface)
 
 std::string DescribeFaces(const lacuna::FacetedSolid& solid)
 {
+  char deviation[32];
+  std::snprintf(deviation, sizeof deviation, "%.4f", std::ceil(1e4 * solid.Deviation) / 1e4);
   return std::to_string(solid.Bodies.size()) + " solid" + (solid.Bodies.size() > 1 ? "s" : "") +
-    " with " + std::to_string(solid.GetNumberOfFaces()) + " flat faces, at most " +
-    lacuna::FormatNumber(std::ceil(1e4 * solid.Deviation) / 1e4) + " mm from the surface";
+    " with " + std::to_string(solid.GetNumberOfFaces()) + " flat faces, at most " + deviation +
+    " mm from the surface";
 }
 }
 

@@ -38,7 +38,7 @@ MESHES = {"DepthMapSurface", "SlicePlanes"}
 # All of it on the first rank; the others make nothing, and ask nothing of what lies upstream
 FIRST = {"ContrastToSpeckle", "DefectModel", "ImplantPlate", "MillingToolPath", "OcclusionSurface", "OutlineReader", "OutlinedStructures",
          "PressOrientation", "RBFSurface", "ScanRegion", "SkullImplant", "SliceOutliner", "TemporalCalibration", "TrackerSelfTest"}
-WRITERS = {"GCodeWriter", "IGESWriter", "TrackedSliceWriter"}
+WRITERS = {"GCodeWriter", "IGESWriter", "STEPWriter", "TrackedSliceWriter"}
 # Devices belong to one process: it says so
 REFUSED = {"PolhemusVideoSource"}
 

@@ -129,10 +129,10 @@ save_solid(again, solid)
 refused(again, broken, "mirror image")
 assert os.path.exists(again + ".old2") and kept.GetDataInformation().GetBounds() == (5, 8, 0, 2, 0, 1)
 # nor what only ParaView's own writers or nobody can write over
-with open(output("SaveSolidAgain.step"), "w", encoding="ascii") as file:
+with open(output("SaveSolidAgain.xyz"), "w", encoding="ascii") as file:
     file.write("mine")
-refused(output("SaveSolidAgain.step"), solid, "step")
-with open(output("SaveSolidAgain.step.old"), encoding="ascii") as file:
+refused(output("SaveSolidAgain.xyz"), solid, "xyz")
+with open(output("SaveSolidAgain.xyz.old"), encoding="ascii") as file:
     assert file.read() == "mine"
 # one without a record before: each solid keeps its own
 first = output("SaveSolidFirst.stl")
@@ -248,8 +248,26 @@ split = [corners[k] for face in faces for k in face]  # as Generate Surface Norm
 refused(name, surface(split, np.arange(12).reshape(4, 3).tolist()), "Clean")
 save_solid(name, Clean(Input=surface(split, np.arange(12).reshape(4, 3).tolist())))
 
+# So does STEP; the header says what 3MF says, and a mirrored solid is written when it is wanted.
+name = output("SaveSolid.step")
+for ending in ("step", "stp", "STEP"):
+    record = save_solid(output("SaveSolid." + ending), strange)
+    with open(output("SaveSolid." + ending), encoding="ascii") as file:
+        text = " ".join(file.read().split())
+    for words in ("Coordinates: unknown (mm). Research software, not a medical device.", "Made by: Step one", "4 flat faces",
+                  "MANIFOLD_SOLID_BREP", "END-ISO-10303-21;"):
+        assert words in text, words
+    assert record["steps"] == [step] and record["measures"]["Volume"] == 1
+save_solid(name, Sphere(), Tolerance=0.005)
+refused(name, fit, "open", "triangle on one side only", "mm")
+refused(name, surface(corners, inside_out), "inside out")
+refused(name, surface(corners, faces + faces), "branches")
+flipped = Transform(Input=solid)
+flipped.Transform.Scale = [-1, 1, 1]
+refused(name, flipped, "mirror image")
+
 # What no format holds, in any of them.
-for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf"):
+for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf", "step"):
     name = output("SaveSolid." + ending)
     save_solid(name, solid)
     refused(name, surface(corners[:3] + [(0, math.inf, 1)], faces), "point 3", "not finite")
@@ -257,9 +275,10 @@ for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf"):
 refused(output("SaveSolid.stl"), Threshold(Input=Wavelet(), LowerThreshold=1e4, UpperThreshold=2e4), "nothing to write")
 
 # A full disk: no file is left that looks whole, at whatever byte it is full.
-fine = Sphere(ThetaResolution=40, PhiResolution=40)
-for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf"):
+fine, coarse = Sphere(ThetaResolution=40, PhiResolution=40), Sphere()
+for ending in ("stl", "ply", "obj", "vtp", "vtk", "3mf", "step"):
     name = output("SaveSolidFull." + ending)
+    fine = coarse if ending == "step" else fine
     save_solid(name, fine)
     size = os.path.getsize(name)
     for room in (0, 100, size // 2, size - 1):

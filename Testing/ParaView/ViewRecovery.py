@@ -62,7 +62,7 @@ BAD = {  # a property of each proxy, and a value that is an error
 # VTK executes them for each block
 TAKE_BLOCKS = {"LacunaContrastToSpeckle", "LacunaImplantPlate", "LacunaMillingToolPath", "LacunaOcclusionSurface", "LacunaOutlinedStructures", "LacunaScanRegion",
                "LacunaSkullImplant", "LacunaSlicePlanes", "LacunaTemporalCalibration", "LacunaTrackerSelfTest"}
-NOT_SHOWN = "LacunaPolhemusVideoSource", "LacunaIGESWriter", "LacunaTrackedSliceWriter", "LacunaGCodeWriter"
+NOT_SHOWN = "LacunaPolhemusVideoSource", "LacunaIGESWriter", "LacunaTrackedSliceWriter", "LacunaGCodeWriter", "LacunaSTEPWriter"
 
 
 def kind(proxy):

@@ -49,6 +49,7 @@ os.mkdir(place)
 
 sweep = PhantomSweep(NumberOfSlices=12)
 sphere = Sphere(ThetaResolution=60, PhiResolution=60)
+coarse = Sphere(ThetaResolution=12, PhiResolution=12)
 depth = BSplineIsoRayCaster(Input=SkullPhantom(Spacing=[3, 3, 3]), IsoValues=[500], ViewDirection=[-0.4, 0.2, -0.9])
 filled = RBFHoleFiller(Input=depth, Smoothing=5, NodeSpacing=3)
 outliner = SliceOutliner(Input=sweep)
@@ -119,7 +120,7 @@ WRITERS = {  # by names of files
     "apart.mhd": saved(sweep), "apart.nhdr": saved(sweep, CompressionLevel=6),
     "calibration.xml": calibration(),
     "solid.stl": lambda name: save_solid(name, sphere), "solid.3mf": lambda name: save_solid(name, sphere),
-    "solid.vtp": lambda name: save_solid(name, sphere),
+    "solid.vtp": lambda name: save_solid(name, sphere), "solid.step": lambda name: save_solid(name, coarse), "step.stp": saved(coarse),
     "outlines.csv": lambda name: outlines.save(outliner, name), "state.pvsm": states.save,
     "picture.png": lambda name: pictures.save(view, name), "pixels.png": pixels,
     "image.vti": lambda name: save_data(name, depth, DataMode="Binary"), "notes.txt": text_file,

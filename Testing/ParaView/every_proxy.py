@@ -17,7 +17,7 @@ from paraview.simple import *
 from tracked_slice_files import open_slices
 
 _folder = None
-WRITERS = {"igs": "LacunaIGESWriter", "nhdr": "LacunaTrackedSliceWriter", "nc": "LacunaGCodeWriter"}
+WRITERS = {"igs": "LacunaIGESWriter", "step": "LacunaSTEPWriter", "nhdr": "LacunaTrackedSliceWriter", "nc": "LacunaGCodeWriter"}
 
 
 def path(name):
@@ -190,12 +190,13 @@ def implant():
     with applied(looped):
         looped.DefectRegion.Points = [70, -15, 45, 45, 25, 55, 5, 10, 75, 15, -50, 65]
     DepthMapSurface(registrationName="Surface", Input=looped, MaximumAngle=75)
-    ImplantPlate(registrationName="Plate", Input=filled, Thickness=2, EdgeClearance=0.5)
+    plate = ImplantPlate(registrationName="Plate", Input=filled, Thickness=2, EdgeClearance=0.5)
     DefectModel(registrationName="Model", Input=filled)
     mould = PressOrientation(registrationName="Mould", Input=filled, Mould="Male", FlangeWidth=15)
     milled = MillingToolPath(registrationName="Path", Input=mould, ToolRadius=5, StepOver=3, RoughingStep=6)
     save_data("written.igs", filled, Tolerance=0.01)
     save_data("written.nc", milled)
+    save_data("written.step", plate, Tolerance=0.05)
 
 
 def occlusion():
@@ -233,7 +234,7 @@ def every_kind():
 
 def without_time(content):
     """Of a file: when it was written is the one thing that may differ."""
-    return re.sub(rb"\d{8}\.\d{6}|\d{4}-\d\d-\d\d \d\d:\d\d", b"", content)
+    return re.sub(rb"\d{8}\.\d{6}|\d{4}-\d\d-\d\d[ T]\d\d:\d\d(:\d\d)?", b"", content)
 
 
 def written():

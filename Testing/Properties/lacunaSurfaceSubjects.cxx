@@ -18,6 +18,7 @@
 #include "vtkLacunaRBFHoleFiller.h"
 #include "vtkLacunaRBFInterpolator.h"
 #include "vtkLacunaRBFSurface.h"
+#include "vtkLacunaSTEPWriter.h"
 #include "vtkLacunaSkullImplant.h"
 #include "vtkLacunaSkullResection.h"
 #include "vtkLacunaSplineLoop.h"
@@ -482,6 +483,17 @@ void AddSurfaceSubjects(std::vector<Subject>& subjects)
         Switch("AllowMirrored", &T::SetAllowMirrored),
         Switch("SkipUnsupported", &T::SetSkipUnsupported) } };
     subject.SetFile = FileOf<T>("igs");
+    subject.Cost = 20;
+    subjects.push_back(subject);
+  }
+  {
+    using T = vtkLacunaSTEPWriter;
+    Subject subject{ "STEPWriter", NewOf<T>,
+      [](Dice& dice) -> Inputs { return { RandomSolid(dice) }; },
+      { Real("Tolerance", &T::SetTolerance, 0.001, 0.5),
+        Switch("AllowMirrored", &T::SetAllowMirrored),
+        Word("Note", &T::SetNote, { "", "for the mill" }) } };
+    subject.SetFile = FileOf<T>("step");
     subject.Cost = 20;
     subjects.push_back(subject);
   }

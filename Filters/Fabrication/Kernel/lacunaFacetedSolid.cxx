@@ -331,7 +331,7 @@ FacetedSolid MakeFacetedSolid(ClosedMesh mesh, double tolerance, Execution& exec
   {
     largest = std::max({ largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2]) });
   }
-  solid.Flatness = std::max(1e-6, 1e-7 * largest); // single precision rounds to 6e-8
+  solid.Flatness = std::max(1e-6, 4e-7 * largest); // single precision rounds to 6e-8
 
   const MeshPieces pieces = FindPieces(simple.Mesh);
   const std::vector<std::int32_t> hosts = FindHosts(simple.Mesh, pieces);
