@@ -430,7 +430,7 @@ private:
         return false;
       }
     }
-    if (!this->AssignSamples())
+    if (!this->AssignSamples() || !this->AreNear())
     {
       this->Mesh.Points[to] = before;
       return false;
@@ -513,6 +513,25 @@ private:
         return false;
       }
       this->Owners.push_back(owner);
+    }
+    return true;
+  }
+
+  // Whether the triangles of Moved are near the mesh as it was between their corners, too, as across a crease.
+  bool AreNear() const
+  {
+    for (const ClosedMesh::Triangle& ids : this->Moved)
+    {
+      const Vec3& a = this->Mesh.Points[ids[0]];
+      const Vec3& b = this->Mesh.Points[ids[1]];
+      const Vec3& c = this->Mesh.Points[ids[2]];
+      for (const Vec3& x : { 1.0 / 3 * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })
+      {
+        if (this->Tree.GetDistance(x) > this->Tolerance)
+        {
+          return false;
+        }
+      }
     }
     return true;
   }
