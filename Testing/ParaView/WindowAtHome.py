@@ -63,7 +63,7 @@ def test(window):
     window.compare("AtHomeImplant", likeness=0.9)
     solid = os.path.join(folder, "implant.stl")
 
-    clicks.menu("Lacuna/Save Solid (STL, PLY, 3MF)...", lambda: window.choose_file(solid))
+    clicks.menu("Lacuna/Save Solid (STL, PLY, 3MF, STEP)...", lambda: window.choose_file(solid))
     clicks.number += 1  # Save
     assert os.path.getsize(solid) > 10000 and os.path.exists(solid + ".json")
     print(f"CT to a file for the printer: {clicks.number} clicks", flush=True)
