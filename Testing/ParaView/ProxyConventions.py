@@ -29,7 +29,7 @@ PIPELINES = [
     ["ScanRegion", "ProbeCalibration", "TemporalCalibration", "SweptVolume"],
     ["OccludedAngle", "OcclusionSurface"]]
 SMALL = {"OutlinedStructures": 2, "SliceOutliner": 2, "SkullBone": 2, "ScanRegion": 2, "TemporalCalibration": 1, "TrackedSliceWriter": 1, "SplineLoop": 1, "VolumeReader": 1,
-         "OutlineReader": 0}
+         "OutlineReader": 0, "STEPWriter": 1}
 
 
 def load():
