@@ -21,7 +21,7 @@ JOBS = {
         "CT Series Reader", "Volume Reader", "Skull Phantom", "Skull Bone", "B-Spline Iso Ray Caster", "Depth Map Shader", "Depth Map Surface"),
     "Plan an implant": ("Skull Implant", "Skull Resection", "Mirror", "RBF Hole Filler", "Spline Loop"),
     "Make an implant": (
-        "Implant Plate", "Defect Model", "Press Orientation", "Milling Tool Path", "IGES Writer", "G-Code Writer"),
+        "Implant Plate", "Defect Model", "Press Orientation", "Milling Tool Path", "IGES Writer", "STEP Writer", "G-Code Writer"),
     "Surfaces from points, outlines and incomplete data": (
         "Outline Reader", "RBF Surface", "RBF Interpolator", "RBF Image Warp", "Incomplete Shape", "Occluded Angle", "Occlusion Surface")}
 WIDTH = 110
