@@ -195,7 +195,7 @@ def implant():
     mould = PressOrientation(registrationName="Mould", Input=filled, Mould="Male", FlangeWidth=15)
     milled = MillingToolPath(registrationName="Path", Input=mould, ToolRadius=5, StepOver=3, RoughingStep=6)
     save_data("written.igs", filled, Tolerance=0.01)
-    save_data("written.nc", milled)
+    save_data("written.nc", milled, AcceptWarnings=1)
     save_data("written.step", plate, Tolerance=0.05)
 
 
