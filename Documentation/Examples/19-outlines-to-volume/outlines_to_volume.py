@@ -49,13 +49,14 @@ block = Transform(registrationName="Block", Input=FastUniformGrid(registrationNa
 block.Transform.Scale, block.Transform.Translate = [75, 33, 25], [0, 1, 0]
 planes = Slice(registrationName="Planes", Input=block, SliceOffsetValues=SLICES)
 planes.SliceType.Origin, planes.SliceType.Normal = [0, 0, 0], NORMAL
+# ParaView 5.13 and later hide half of a thick line that lies in a surface, but not a tube
+tubes = Tube(registrationName="Outline tubes", Input=outlines, Scalars=["POINTS", ""], Vectors=["POINTS", ""], Radius=0.65, NumberofSides=12)
 
 views = []
 for title in ("Seven outlines", "RBF Surface", "Its error"):
     view = pictures.new_view((560, 470))
     view.OrientationAxesVisibility = 0
-    lines = pictures.show_surface(outlines, view, (0.15, 0.4, 0.9))
-    lines.LineWidth, lines.RenderLinesAsTubes, lines.Ambient = 5, 1, 0.35
+    pictures.show_surface(tubes, view, (0.15, 0.4, 0.9)).Ambient = 0.35
     if not views:
         pictures.show_surface(planes, view, (0.45, 0.6, 0.85)).Opacity = 0.3
     elif len(views) == 1:

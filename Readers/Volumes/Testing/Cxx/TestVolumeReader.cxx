@@ -265,7 +265,8 @@ void TestBesideVTK()
     double point[4] = { 0, 0, 0, 1 };
     image->GetPoint(at, point);
     reader->GetSFormMatrix()->MultiplyPoint(point, point);
-    const vtkIdType there = own->FindPoint(-point[0], -point[1], point[2]);
+    double patient[3] = { -point[0], -point[1], point[2] };
+    const vtkIdType there = own->FindPoint(patient);
     LACUNA_CHECK(there >= 0 &&
       own->GetPointData()->GetScalars()->GetTuple1(there) ==
         image->GetPointData()->GetScalars()->GetTuple1(at) - 1024);
