@@ -241,6 +241,7 @@ CASES = {
     "Press Orientation": lambda n: PressOrientation(Input=filled(n)),
     "Milling Tool Path": milled,
     "IGES Writer": lambda n: written("fit.igs", filled(n)),
+    "STEP Writer": lambda n: written("plate.step", ImplantPlate(Input=filled(0.5), Thickness=2, EdgeClearance=0.5, TriangleSize=n)),
     "G-Code Writer": lambda n: written("path.nc", milled(1, StepOver=n, MapSpacing=2), AcceptWarnings=1),
     "Tracked Slice Writer, raw": lambda n: written("sweep.mha", sweep(n), CompressionLevel=0),
     "Tracked Slice Writer, compressed": lambda n: written("sweep.mha", sweep(n), CompressionLevel=1),

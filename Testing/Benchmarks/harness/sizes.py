@@ -45,6 +45,7 @@ SIZES = {
     "Press Orientation": (0.3, 0.15),
     "Milling Tool Path": (0.6, 0.3),
     "IGES Writer": (0.3, 0.15),
+    "STEP Writer": (1, 0.5),
     "G-Code Writer": (0.5, 0.1),
     "Tracked Slice Writer, raw": (100, 400),
     "Tracked Slice Writer, compressed": (100, 400),
