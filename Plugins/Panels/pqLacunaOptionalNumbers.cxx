@@ -33,7 +33,7 @@ pqLacunaOptionalNumbers::pqLacunaOptionalNumbers(
   for (unsigned int n = 0; n < count; ++n)
   {
     auto* field = new QLineEdit(this);
-    field->setObjectName(QString("LineEdit%1").arg(n));
+    field->setObjectName(QString("DoubleLineEdit%1").arg(n));
     field->setPlaceholderText(label ? label->GetAttributeOrEmpty("empty") : "");
     auto* validator = new QDoubleValidator(field);
     validator->setLocale(QLocale::c());

@@ -100,7 +100,7 @@ def test(window):
     window.choose(PANEL + "DefectRegion/comboBox", "Spline Loop")
     window.apply()
     loop = filler.DefectRegion
-    corners = [place(view, point) for point in np.reshape(loop.Points, (4, 3))]
+    corners = [place(view, point) for point in np.reshape(loop.Points, (-1, 3))]
     width, height = view.ViewSize
     assert all(0 < x < width and 0 < y < height for x, y in corners) and np.ptp(corners, 0).min() > 50, "does not begin in the map"
     center = np.array([0.4, -0.2, 0.9]) / np.linalg.norm([0.4, -0.2, 0.9])

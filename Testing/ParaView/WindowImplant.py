@@ -86,9 +86,11 @@ def test(window):
     assert GetActiveSource() == depth
     window.menu("Filters/Lacuna/RBF Hole Filler")
     filled = GetActiveSource()
+    window.press("propertiesPanel/AdvancedButton")
     assert window.entries(PANEL + "Surface/QComboBox")[0] == "(none)"
     window.choose(PANEL + "Surface/QComboBox", "DepthMapSurface1")
     window.press("pushButtonCopySelection")
+    window.press("propertiesPanel/AdvancedButton")
     window.type(PANEL + "NodeSpacing/DoubleLineEdit0", 3)
     window.choose(PANEL + "Kernel/ComboBox", "Cubic")
     assert filled.Surface is None and filled.Kernel == "ThinPlate", "before Apply"

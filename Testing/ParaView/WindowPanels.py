@@ -32,7 +32,7 @@ def test(window):
     caster = GetActiveSource()
     assert window.get("LacunaLabel_PixelSpacing") == "Pixel Spacing (mm)<br><small>0: smallest voxel edge</small>"
     window.press(ADVANCED)
-    first, second, third = (f"{lacuna_window.PANEL}FocalPoint/LineEdit{n}" for n in range(3))
+    first, second, third = (f"{lacuna_window.PANEL}FocalPoint/DoubleLineEdit{n}" for n in range(3))
     assert window.get(first) == "" and window.get(first, "placeholderText") == "middle of the volume"
     for name, text in ((first, "1.5"), (second, "-2"), (third, "3")):
         window.type(name, text)

@@ -72,8 +72,9 @@ Fingerprint FingerprintOfFile(const std::string& name)
 {
   std::ifstream file(name, std::ios::binary);
   const std::string content{ std::istreambuf_iterator<char>(file), {} };
-  // IGES has the time to the second, G-code to the minute
-  static const std::regex time("[0-9]{8}\\.[0-9]{6}|[0-9]{4}-[0-9]{2}-[0-9]{2} [0-9]{2}:[0-9]{2}");
+  // IGES and STEP have the time to the second, G-code to the minute
+  static const std::regex time(
+    "[0-9]{8}\\.[0-9]{6}|[0-9]{4}-[0-9]{2}-[0-9]{2}[ T][0-9]{2}:[0-9]{2}(:[0-9]{2})?");
   return { { "file", std::hash<std::string>{}(std::regex_replace(content, time, "")) } };
 }
 }
