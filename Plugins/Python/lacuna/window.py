@@ -18,6 +18,7 @@ from paraview import servermanager
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
 
+from lacuna import vtkLacunaRBFHoleFiller
 from lacuna import coordinates, demo_ultrasound, live, opening, pictures, solids, views
 from lacuna.data import fetch
 
@@ -304,7 +305,7 @@ def hole_of_map(source):
     spacing = np.array([np.linalg.norm(right), np.linalg.norm(down)])
     depth = vtk_to_numpy(image.GetPointData().GetArray("Depth")).reshape(shape).astype(float)
     seen = np.isfinite(depth)
-    hole = _largest_hole(source, shape)
+    hole = _largest_hole(image, shape)
     rows, columns = np.nonzero(hole) if hole.any() else np.nonzero(seen)
     middle = np.array([columns.mean(), rows.mean()]) if len(rows) else np.array(shape[::-1]) / 2
     reach = 15.0
@@ -331,15 +332,18 @@ def hole_of_map(source):
     return rim, rim.mean(axis=0), view
 
 
-def _largest_hole(source, shape):
+def _largest_hole(image, shape):
     """Pixels of the largest hole: what RBF Hole Filler finds by itself, coarsely filled."""
-    filler = servermanager.filters.RBFHoleFiller(Input=source, NodeSpacing=5)
+    filler = vtkLacunaRBFHoleFiller()
+    filler.SetInputData(image)
+    filler.SetNodeSpacing(5)
     display = vtkObject.GetGlobalWarningDisplay()
     vtkObject.GlobalWarningDisplayOff()  # that there is none is no error here
     try:
-        mask = fetch(filler).GetPointData().GetArray("FilledMask")
+        filler.Update()
     finally:
         vtkObject.SetGlobalWarningDisplay(display)
+    mask = filler.GetOutput().GetPointData().GetArray("FilledMask")
     found = np.zeros(shape, bool) if mask is None else vtk_to_numpy(mask).reshape(shape) != 0
     if not found.any():
         return found
