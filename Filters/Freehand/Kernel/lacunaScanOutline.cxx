@@ -332,6 +332,20 @@ Box GetBounds(const PixelSet& set)
   return box;
 }
 
+// The outermost pixels of each row, and of each column.
+std::array<std::vector<Box>, 2> GetLines(const PixelSet& set)
+{
+  std::vector<Box> rows(static_cast<std::size_t>(set.GetHeight()));
+  std::vector<Box> columns(static_cast<std::size_t>(set.GetWidth()));
+  ForEach(set,
+    [&](int column, int row)
+    {
+      rows[static_cast<std::size_t>(row)].Put(column, row);
+      columns[static_cast<std::size_t>(column)].Put(column, row);
+    });
+  return { std::move(rows), std::move(columns) };
+}
+
 // What changes, without what belongs to the screen.
 PixelSet FindMoving(const Screen& screen)
 {
@@ -416,17 +430,9 @@ public:
     , Bounds(GetBounds(set))
   {
     // the outermost pixels of rows and columns say all but the near radius at the sides
-    std::vector<Box> rows(static_cast<std::size_t>(set.GetHeight()));
-    std::vector<Box> columns(static_cast<std::size_t>(set.GetWidth()));
-    ForEach(set,
-      [&](int column, int row)
-      {
-        rows[static_cast<std::size_t>(row)].Put(column, row);
-        columns[static_cast<std::size_t>(column)].Put(column, row);
-      });
-    for (const std::vector<Box>* lines : { &rows, &columns })
+    for (const std::vector<Box>& lines : GetLines(set))
     {
-      for (const Box& line : *lines)
+      for (const Box& line : lines)
       {
         if (line.Right > 0)
         {
@@ -595,14 +601,7 @@ Proposal TryWedge(const PixelSet& moving, double aspect)
 // Part of a box that lies between the outermost pixels of rows, or of columns.
 double GetBetween(const PixelSet& set, const Box& box)
 {
-  std::vector<Box> rows(static_cast<std::size_t>(set.GetHeight()));
-  std::vector<Box> columns(static_cast<std::size_t>(set.GetWidth()));
-  ForEach(set,
-    [&](int column, int row)
-    {
-      rows[static_cast<std::size_t>(row)].Put(column, row);
-      columns[static_cast<std::size_t>(column)].Put(column, row);
-    });
+  const auto [rows, columns] = GetLines(set);
   double inRows = 0, inColumns = 0;
   for (const Box& row : rows)
   {

@@ -17,7 +17,6 @@ from lacuna import demo_implant, demo_ultrasound, implant, implant_report, pictu
 from lacuna.data import fetch
 from lacuna.errors import PipelineError, raising
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkObject
 
 BONE = 500  # Hounsfield units
 MEDIAN = 5  # voxels
@@ -227,12 +226,7 @@ def _fan_mask(image):
     """Automatic where the images show surely what the probe sees (Scan Region), else None: rulers and texts are no tissue."""
     region = vtkLacunaScanRegion()
     region.SetInputData(image)
-    display = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.GlobalWarningDisplayOff()  # that there is none is no error here
-    try:
-        region.Update()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(display)
+    window.update_quietly(region)  # that there is none is no error here
     confidence = region.GetOutputDataObject(0).GetFieldData().GetArray("Confidence")
     return "Automatic" if confidence and confidence.GetValue(0) >= SURE else "None"
 

@@ -332,17 +332,22 @@ def hole_of_map(source):
     return rim, rim.mean(axis=0), view
 
 
+def update_quietly(algorithm):
+    """Updates a VTK algorithm, whose errors and warnings are not shown."""
+    display = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()
+    try:
+        algorithm.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(display)
+
+
 def _largest_hole(image, shape):
     """Pixels of the largest hole: what RBF Hole Filler finds by itself, coarsely filled."""
     filler = vtkLacunaRBFHoleFiller()
     filler.SetInputData(image)
     filler.SetNodeSpacing(5)
-    display = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.GlobalWarningDisplayOff()  # that there is none is no error here
-    try:
-        filler.Update()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(display)
+    update_quietly(filler)  # that there is none is no error here
     mask = filler.GetOutput().GetPointData().GetArray("FilledMask")
     found = np.zeros(shape, bool) if mask is None else vtk_to_numpy(mask).reshape(shape) != 0
     if not found.any():
