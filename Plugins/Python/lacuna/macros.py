@@ -259,6 +259,8 @@ def _show_scale(source, view):
     camera = view.GetActiveCamera()
     inwards, up = np.array(camera.GetDirectionOfProjection()), np.array(camera.GetViewUp())
     right = np.cross(inwards, up)
+    right /= np.linalg.norm(right)  # up may be aslant
+    up = np.cross(right, inwards)
     low, high = points @ right, points @ up
     length = max([each for each in (10, 20, 50) if each <= np.ptp(low)], default=10)
     middle = (low.min() + low.max()) / 2 * right + (high.min() - 0.1 * np.ptp(high)) * up + (points @ inwards).min() * inwards
