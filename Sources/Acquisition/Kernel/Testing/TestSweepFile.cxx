@@ -300,10 +300,11 @@ TEST(SweepFile, WhileTheFolderIsMissingSlicesWaitInMemory)
     file.Add(MakeSlice(i), MakeFrame(true));
   }
   EXPECT_EQ(file.GetState().WaitingBytes, 4 * 20);
-  // told by the writing thread, which may come late on a busy machine
-  for (int wait = 0; wait < 500 && file.GetState().Trouble.empty(); ++wait)
+  // The thread that opens the file may come late on a busy machine; a capture asks again at each frame.
+  for (int frame = 0; frame < 3000 && file.GetState().Trouble.empty(); ++frame)
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    file.Retry();
   }
   EXPECT_NE(file.GetState().Trouble.find("missing"), std::string::npos);
   EXPECT_EQ(file.GetState().Added, 4);
